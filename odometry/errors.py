@@ -1,0 +1,21 @@
+"""The errors of the package: one base, one child per kind of input."""
+
+
+class OdometryError(Exception):
+    """Base of every error that this project raises on purpose."""
+
+
+class RunFolderError(OdometryError):
+    """A run folder, or a file of one, is not as the format says."""
+
+
+class ParameterError(OdometryError):
+    """A parameter set, or one of its tables, is not as the format says."""
+
+
+class ConfigError(OdometryError):
+    """A configuration table holds an unknown key or a value of the wrong kind."""
+
+
+class TrajectoryError(OdometryError):
+    """A trajectory is malformed, or does not cover what was asked of it."""

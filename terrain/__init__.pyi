@@ -1,0 +1,24 @@
+from .camera import Camera
+from .classifier import Classification, TerrainClassifier
+from .config import Config
+from .errors import TerrainError
+from .report import write_report
+from .results import write_results
+from .run_odometry import RunResult, run_odometry
+from .synthetic import synthesise
+from .texture import SFTA, sfta
+
+__all__ = [
+    "SFTA",
+    "Camera",
+    "Classification",
+    "Config",
+    "RunResult",
+    "TerrainClassifier",
+    "TerrainError",
+    "run_odometry",
+    "sfta",
+    "synthesise",
+    "write_report",
+    "write_results",
+]

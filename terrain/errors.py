@@ -1,0 +1,27 @@
+"""The errors of the package, all children of `odometry.errors.OdometryError`."""
+
+from odometry.errors import OdometryError
+
+
+class TerrainError(OdometryError):
+    """Base of the errors about cameras, images, patches and classifiers."""
+
+
+class CameraError(TerrainError):
+    """A camera description is incomplete or contradicts itself."""
+
+
+class ImageError(TerrainError):
+    """An image cannot be read, or is not of a kind that has features."""
+
+
+class PatchError(TerrainError):
+    """A set of labelled patches cannot be used for training."""
+
+
+class ModelFileError(TerrainError):
+    """A model file is damaged, foreign, or newer than this program."""
+
+
+class SynthesisError(TerrainError):
+    """A synthetic run cannot be made from what was given."""
