@@ -1,0 +1,93 @@
+"""Rigid motions in the plane; a pose is (x, y, yaw) in metres and radians."""
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.geometry.angles import wrap
+
+SMALL_ANGLE = 1e-4  # below it sin(a)/a and (1-cos(a))/a come from their series, exact to 1e-16
+
+
+def exp(displacement: FloatArray) -> FloatArray:
+    """The pose reached by moving for one unit of time with a constant body twist.
+
+    Parameters
+    ----------
+    displacement : (..., 3)
+        v_x dt [m], v_y dt [m] and omega dt [rad], in the body frame at the start.
+
+    Returns
+    -------
+    (..., 3)
+        Pose at the end in the body frame at the start; yaw is not wrapped.
+    """
+    along, across, angle = np.moveaxis(np.asarray(displacement, dtype=np.float64), -1, 0)
+    sine_ratio, cosine_ratio = _arc_ratios(angle)
+    return np.stack(
+        [
+            sine_ratio * along - cosine_ratio * across,
+            cosine_ratio * along + sine_ratio * across,
+            angle,
+        ],
+        axis=-1,
+    )
+
+
+def compose(first: FloatArray, second: FloatArray) -> FloatArray:
+    """The pose `second`, given in the frame of `first`, in the frame of `first`'s parent."""
+    first, second = np.asarray(first), np.asarray(second)
+    x, y = _rotate(second[..., 0], second[..., 1], first[..., 2])
+    return np.stack(
+        [first[..., 0] + x, first[..., 1] + y, wrap(first[..., 2] + second[..., 2])], axis=-1
+    )
+
+
+def inverse(pose: FloatArray) -> FloatArray:
+    """The parent's pose in the frame of `pose`."""
+    pose = np.asarray(pose)
+    x, y = _rotate(-pose[..., 0], -pose[..., 1], -pose[..., 2])
+    return np.stack([x, y, wrap(-pose[..., 2])], axis=-1)
+
+
+def between(first: FloatArray, second: FloatArray) -> FloatArray:
+    """The pose of `second` in the frame of `first`, both given in one parent frame."""
+    return compose(inverse(first), second)
+
+
+def transform(pose: FloatArray, points: FloatArray) -> FloatArray:
+    """Points (..., 2) of the frame of `pose` (..., 3), in its parent frame."""
+    pose, points = np.asarray(pose), np.asarray(points)
+    x, y = _rotate(points[..., 0], points[..., 1], pose[..., 2])
+    return np.stack([pose[..., 0] + x, pose[..., 1] + y], axis=-1)
+
+
+def _rotate(x: FloatArray, y: FloatArray, yaw: FloatArray) -> tuple[FloatArray, FloatArray]:
+    cosine, sine = np.cos(yaw), np.sin(yaw)
+    return cosine * x - sine * y, sine * x + cosine * y
+
+
+def _arc_ratios(angle: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """sin(a)/a and (1 - cos(a))/a."""
+    small = np.abs(angle) < SMALL_ANGLE
+    safe = np.where(small, 1.0, angle)
+    sine_ratio = np.where(small, 1 - angle**2 / 6, np.sin(safe) / safe)
+    cosine_ratio = np.where(small, angle / 2 - angle**3 / 24, 2 * np.sin(safe / 2) ** 2 / safe)
+    return sine_ratio, cosine_ratio
+
+
+def exp_jacobian(displacement: FloatArray) -> FloatArray:
+    """Derivative (3, 3) of `exp` by one displacement (3,)."""
+    along, across, angle = displacement
+    sine_ratio, cosine_ratio = (float(ratio) for ratio in _arc_ratios(np.asarray(angle)))
+    if abs(angle) < SMALL_ANGLE:
+        sine_slope, cosine_slope = -angle / 3, 0.5 - angle**2 / 8
+    else:
+        sine_slope = (np.cos(angle) - sine_ratio) / angle
+        cosine_slope = (np.sin(angle) - cosine_ratio) / angle
+    return np.array(
+        [
+            [sine_ratio, -cosine_ratio, sine_slope * along - cosine_slope * across],
+            [cosine_ratio, sine_ratio, cosine_slope * along + sine_slope * across],
+            [0.0, 0.0, 1.0],
+        ]
+    )

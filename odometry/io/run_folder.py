@@ -1,0 +1,95 @@
+"""Read and write run folders: the only door by which recordings come in."""
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from odometry.arrays import AnyArray
+from odometry.errors import RunFolderError
+from odometry.io.csv_table import read_csv_table, write_csv_table
+from odometry.io.files import atomic_write
+from odometry.table import Table
+
+# file: (is it required, columns it must have, columns with a number in every row)
+FILES = {
+    "odometry": (True, ("t", "v_left", "v_right"), ("t", "v_left", "v_right")),
+    "pose": (False, ("t", "x", "y", "yaw"), ("t",)),
+    "velocity": (False, ("t", "vx", "vy", "wz"), ("t",)),
+    "images": (False, ("t", "file"), ("t",)),
+    "truth": (False, ("t", "x", "y", "yaw"), ("t", "x", "y", "yaw")),
+}
+
+
+def read_settings(folder: Path) -> dict[str, Any]:
+    """Read `run.toml` whole; tables that the format does not name are kept.
+
+    Raises
+    ------
+    RunFolderError
+        If the folder or the file is missing, or the file is not TOML.
+    """
+    if not folder.is_dir():
+        raise RunFolderError(f"{folder}: there is no such folder; expected a run folder")
+    file = folder / "run.toml"
+    try:
+        with file.open("rb") as stream:
+            return tomllib.load(stream)
+    except FileNotFoundError:
+        raise RunFolderError(f"{file}: missing; a run folder needs run.toml") from None
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise RunFolderError(f"{file}: cannot be read as TOML: {error}") from error
+
+
+def read_tables(folder: Path) -> dict[str, Table]:
+    """Read and check the CSV files that are there, by their names without suffix.
+
+    Raises
+    ------
+    RunFolderError
+        If `odometry.csv` is missing, or a file is not as the format says.
+    """
+    tables = {}
+    for name, (needed, required, complete) in FILES.items():
+        file = folder / f"{name}.csv"
+        if file.exists():
+            tables[name] = read_csv_table(file, required, complete)
+        elif needed:
+            raise RunFolderError(f"{file}: missing; a run folder needs it")
+    if "images" in tables:
+        _check_image_files(folder, tables["images"])
+    return tables
+
+
+def write_run_folder(
+    folder: Path, settings: Mapping[str, Any], tables: Mapping[str, Mapping[str, AnyArray]]
+) -> None:
+    """Write `run.toml` and one CSV file a table.
+
+    Parameters
+    ----------
+    folder : Path
+        Made if it is missing. Image files are the caller's to write.
+    settings : Mapping
+        The content of `run.toml`; `[robot]` with `track_width` is required.
+    tables : Mapping of name to columns
+        Names of `FILES`; columns are arrays of one length, the first is `t`.
+    """
+    unknown = sorted(set(tables) - set(FILES))
+    if unknown:
+        raise RunFolderError(f"{folder}: no such table {unknown[0]!r}; known: {', '.join(FILES)}")
+    for name, columns in tables.items():
+        write_csv_table(Path(folder) / f"{name}.csv", columns)
+    with atomic_write(Path(folder) / "run.toml") as part:
+        part.write_text(tomli_w.dumps(settings), encoding="utf-8")
+
+
+def _check_image_files(folder: Path, images: Table) -> None:
+    for line, name in zip(images.lines, map(str, images["file"]), strict=True):
+        where = f"{images.file}: row {line}, column 'file'"
+        if Path(name).is_absolute():
+            raise RunFolderError(f"{where}: {name!r} is absolute; expected a path in the folder")
+        if not (folder / name).is_file():
+            raise RunFolderError(f"{where}: {name!r} is not a file in {folder}")

@@ -1,0 +1,56 @@
+"""A time-stamped table: the columns of one CSV file of a run folder."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from odometry.arrays import AnyArray, FloatArray, IntArray
+from odometry.errors import RunFolderError
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns of equal length, found by name; the first is `t`.
+
+    Attributes
+    ----------
+    file : Path
+        Where the table was read from, for error messages.
+    columns : Mapping[str, array (N,)]
+        Numbers as float64, names as str. Not measured is NaN, or an empty name.
+    lines : (N,)
+        Line of the file on which each row stands, header = 1.
+    """
+
+    file: Path
+    columns: Mapping[str, AnyArray]
+    lines: IntArray
+
+    def __len__(self) -> int:
+        return len(self.columns["t"])
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.columns
+
+    def __getitem__(self, name: str) -> AnyArray:
+        if name not in self.columns:
+            raise RunFolderError(
+                f"{self.file}: there is no column {name!r}; it has {', '.join(self.columns)}"
+            )
+        return self.columns[name]
+
+    @property
+    def stamps_s(self) -> FloatArray:
+        """Stamps (N,) in seconds, strictly increasing."""
+        return self["t"]
+
+    def stack(self, *names: str) -> FloatArray:
+        """The named columns side by side, (N, len(names))."""
+        return np.stack([self[name] for name in names], axis=-1)
+
+    def rows(self, chosen: slice) -> "Table":
+        """The same table with only the chosen rows."""
+        columns = {name: column[chosen] for name, column in self.columns.items()}
+        return Table(self.file, columns, self.lines[chosen])
