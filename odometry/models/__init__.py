@@ -1,0 +1,1 @@
+"""Kinematic models: from tread speeds to body twist."""

@@ -1,0 +1,95 @@
+"""The face of every kinematic model."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.errors import ParameterError
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of a model.
+
+    Attributes
+    ----------
+    name : str
+        As CONVENTIONS and the parameter sets spell it.
+    unit : str
+        "" where it has none.
+    low, high : float
+        Bounds within which the model means something.
+    default : float or None
+        The value of a parameter set that does not name it; None where it must.
+    """
+
+    name: str
+    unit: str = ""
+    low: float = -np.inf
+    high: float = np.inf
+    default: float | None = None
+
+
+class KinematicModel(ABC):
+    """Tread speeds in, body twist out.
+
+    A subclass is one file, and one row of `odometry.models.catalogue`.
+    """
+
+    name: ClassVar[str]
+    source: ClassVar[str]
+    parameters: ClassVar[tuple[Parameter, ...]]
+
+    @abstractmethod
+    def twist(self, values: FloatArray, tread_speeds: FloatArray) -> FloatArray:
+        """Body twist (..., 3): v_x, v_y [m/s], omega [rad/s].
+
+        Parameters
+        ----------
+        values : (..., P)
+            In the order of `parameters`.
+        tread_speeds : (..., 2)
+            v_left, v_right [m/s].
+        """
+
+    @abstractmethod
+    def parameter_jacobian(self, values: FloatArray, tread_speeds: FloatArray) -> FloatArray:
+        """Derivative (..., 3, P) of the twist by the parameters."""
+
+    @abstractmethod
+    def speed_jacobian(self, values: FloatArray, tread_speeds: FloatArray) -> FloatArray:
+        """Derivative (..., 3, 2) of the twist by (v_left, v_right)."""
+
+    def pack(self, values: Mapping[str, float]) -> FloatArray:
+        """Parameters by name as an array (P,) in the order of `parameters`.
+
+        Raises
+        ------
+        ParameterError
+            If one is missing, unknown, or out of its bounds.
+        """
+        names = [parameter.name for parameter in self.parameters]
+        for name in values:
+            if name not in names:
+                raise ParameterError(
+                    f"{name!r} is no parameter of {self.name!r}; it has {', '.join(names)}"
+                )
+        packed = []
+        for parameter in self.parameters:
+            value = values.get(parameter.name, parameter.default)
+            if value is None:
+                raise ParameterError(f"the model {self.name!r} needs {parameter.name!r}")
+            if not parameter.low <= value <= parameter.high:
+                raise ParameterError(
+                    f"{parameter.name} = {value}, expected {parameter.low} to {parameter.high}"
+                )
+            packed.append(float(value))
+        self.check(np.array(packed))
+        return np.array(packed)
+
+    def check(self, values: FloatArray) -> None:  # noqa: B027 - most models have no such relation
+        """Raise ParameterError where a relation between parameters (P,) does not hold."""

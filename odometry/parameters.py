@@ -1,0 +1,175 @@
+"""Parameter sets: one table of model parameters for each terrain, as TOML."""
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomli_w
+
+from odometry.arrays import FloatArray
+from odometry.errors import ParameterError
+from odometry.io.files import atomic_write
+from odometry.models.catalogue import MODELS, OPTIONAL_NAMES, PARAMETER_NAMES
+from odometry.parameter_covariance import covariance_of_table, finite_number
+
+RESERVED_TERRAIN = "unknown"
+
+
+@dataclass(frozen=True)
+class TerrainParameters:
+    """The parameters of one model on one terrain.
+
+    Attributes
+    ----------
+    model : str
+        A name of the catalogue.
+    values : Mapping[str, float]
+        Parameters by name, SI units.
+    covariance_order : tuple of str
+        The parameters that `covariance` speaks of; empty where the set states none.
+    covariance : (K, K)
+    source : str
+        Where the values come from.
+    effects : tuple of Mapping
+        Effects added to the model, as the set holds them.
+    """
+
+    model: str
+    values: Mapping[str, float]
+    covariance_order: tuple[str, ...] = ()
+    covariance: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
+    source: str = ""
+    effects: tuple[Mapping[str, Any], ...] = ()
+
+    def covariance_of(self, names: tuple[str, ...]) -> FloatArray | None:
+        """Covariance of the named parameters, None where the set does not state it."""
+        if not set(names) <= set(self.covariance_order):
+            return None
+        places = [self.covariance_order.index(name) for name in names]
+        return self.covariance[np.ix_(places, places)]
+
+
+@dataclass(frozen=True)
+class ParameterSet:
+    """Parameters by terrain, in the order of the file.
+
+    Attributes
+    ----------
+    terrains : Mapping[str, TerrainParameters]
+    vehicle : Mapping
+        name, source and what else `[vehicle]` holds.
+    """
+
+    terrains: Mapping[str, TerrainParameters] = field(default_factory=dict)
+    vehicle: Mapping[str, Any] = field(default_factory=dict)
+
+
+def read_parameters(file: str | Path) -> ParameterSet:
+    """Read a parameter set.
+
+    Raises
+    ------
+    ParameterError
+        Naming file, table and key: not TOML, an unknown model or key, a parameter missing or
+        not a finite number, a covariance that is not symmetric and positive semi-definite.
+    """
+    file = Path(file)
+    try:
+        with file.open("rb") as stream:
+            content = tomllib.load(stream)
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise ParameterError(f"{file}: cannot be read as TOML: {error}") from error
+    unknown = sorted(set(content) - {"vehicle", "terrain"})
+    if unknown:
+        raise ParameterError(f"{file}: unknown table [{unknown[0]}]; known: vehicle, terrain")
+    tables = content.get("terrain", {})
+    if not isinstance(tables, dict) or not tables:
+        raise ParameterError(f"{file}: no table [terrain.NAME]; expected at least one")
+    vehicle = content.get("vehicle", {})
+    if not isinstance(vehicle, dict):
+        raise ParameterError(f"{file}: vehicle = {vehicle!r}, expected a table [vehicle]")
+    return ParameterSet(
+        {
+            name: _terrain(table, name, f"{file}: [terrain.{name}]")
+            for name, table in tables.items()
+        },
+        vehicle,
+    )
+
+
+def write_parameters(file: str | Path, parameters: ParameterSet) -> None:
+    """Write a parameter set; `read_parameters` gives it back."""
+    content: dict[str, Any] = {}
+    if parameters.vehicle:
+        content["vehicle"] = dict(parameters.vehicle)
+    content["terrain"] = {name: _table(of) for name, of in parameters.terrains.items()}
+    with atomic_write(Path(file)) as part:
+        part.write_text(tomli_w.dumps(content), encoding="utf-8")
+
+
+def _terrain(table: Any, name: str, where: str) -> TerrainParameters:
+    if name == RESERVED_TERRAIN:
+        raise ParameterError(f"{where}: the name {name!r} is reserved")
+    if not isinstance(table, dict):
+        raise ParameterError(f"{where}: {table!r}, expected a table")
+    model = table.get("model", "icr")
+    if not isinstance(model, str) or model not in PARAMETER_NAMES:
+        raise ParameterError(
+            f"{where}: unknown model {model!r}; known: {', '.join(PARAMETER_NAMES)}"
+        )
+    names = PARAMETER_NAMES[model]
+    for key in table:
+        if key not in {*names, "model", "source", "sigma", "covariance", "effects"}:
+            raise ParameterError(
+                f"{where}: unknown key {key!r}; the model {model!r} has {', '.join(names)}"
+            )
+    missing = [key for key in names if key not in table and key not in OPTIONAL_NAMES]
+    if missing:
+        raise ParameterError(f"{where}: the model {model!r} needs {missing[0]!r}")
+    values = {key: finite_number(table[key], f"{where}: {key}") for key in names if key in table}
+    if {"y_left", "y_right"} <= set(values) and values["y_left"] <= values["y_right"]:
+        raise ParameterError(
+            f"{where}: y_left = {values['y_left']} and y_right = {values['y_right']}, "
+            "expected y_left > y_right"
+        )
+    if model in MODELS:
+        _check_values(model, values, where)
+    order, covariance = covariance_of_table(table, names, where)
+    return TerrainParameters(
+        model,
+        values,
+        order,
+        covariance,
+        str(table.get("source", "")),
+        _effects(table.get("effects", []), where),
+    )
+
+
+def _check_values(model: str, values: Mapping[str, float], where: str) -> None:
+    try:
+        MODELS[model].pack(values)
+    except ParameterError as error:
+        raise ParameterError(f"{where}: {error}") from error
+
+
+def _effects(effects: Any, where: str) -> tuple[Mapping[str, Any], ...]:
+    if not isinstance(effects, list) or not all(isinstance(effect, dict) for effect in effects):
+        raise ParameterError(f"{where}: effects = {effects!r}, expected tables [[...effects]]")
+    return tuple(effects)
+
+
+def _table(parameters: TerrainParameters) -> dict[str, Any]:
+    table: dict[str, Any] = {"model": parameters.model, **parameters.values}
+    if parameters.source:
+        table["source"] = parameters.source
+    if parameters.covariance_order:
+        table["covariance"] = {
+            "order": list(parameters.covariance_order),
+            "matrix": parameters.covariance.tolist(),
+        }
+    if parameters.effects:
+        table["effects"] = [dict(effect) for effect in parameters.effects]
+    return table
