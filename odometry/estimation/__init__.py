@@ -1,0 +1,1 @@
+"""Filters that estimate pose and ICRs."""

@@ -1,0 +1,100 @@
+"""What a filter believes at one stamp."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.models.icr import icr_twist
+
+STATE_NAMES = ("x", "y", "yaw", "y_left", "y_right", "x_icr")
+
+
+@dataclass(frozen=True)
+class IcrBelief:
+    """ICRs of one terrain, and how sure of them one is.
+
+    Attributes
+    ----------
+    icrs : (3,)
+        y_left, y_right, x_icr [m].
+    alphas : (2,)
+        Slip factors of the left and the right tread.
+    covariance : (3, 3)
+        Of `icrs`.
+    """
+
+    icrs: FloatArray
+    alphas: FloatArray
+    covariance: FloatArray
+
+
+@dataclass(frozen=True)
+class Innovation:
+    """What one measurement said against the prediction.
+
+    Attributes
+    ----------
+    residual : (3,)
+        Measured less predicted x, y [m], yaw [rad], yaw wrapped.
+    normalised_squared : float
+        Squared Mahalanobis length of the residual.
+    accepted : bool
+        Whether it passed the gate.
+    """
+
+    residual: FloatArray
+    normalised_squared: float
+    accepted: bool
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Belief of the filter at one stamp.
+
+    Attributes
+    ----------
+    stamp_s : float
+    mean : (6,)
+        x, y [m], yaw [rad] in the reference frame; y_left, y_right, x_icr [m] in the robot frame.
+    covariance : (6, 6)
+    alphas : (2,)
+        Slip factors in force.
+    tread_speeds_m_s : (2,)
+        Measured tread speeds in force from this stamp on.
+    terrain : str
+        The terrain in force.
+    innovation : Innovation or None
+        None where nothing was measured at this stamp.
+    rejected_in_row : int
+        Measurements that failed the gate since the last that passed.
+    recent : tuple of float
+        The latest normalised innovations squared, for the jump detector.
+    jumped : bool
+        Whether a jump of the ICRs was detected at this stamp.
+    learned : Mapping[str, IcrBelief]
+        What was last believed on the terrains that were left.
+    """
+
+    stamp_s: float
+    mean: FloatArray
+    covariance: FloatArray
+    alphas: FloatArray
+    tread_speeds_m_s: FloatArray
+    terrain: str
+    innovation: Innovation | None = None
+    rejected_in_row: int = 0
+    recent: tuple[float, ...] = ()
+    jumped: bool = False
+    learned: Mapping[str, IcrBelief] = field(default_factory=dict)
+
+    @property
+    def belief(self) -> IcrBelief:
+        """What is believed of the ICRs now."""
+        return IcrBelief(self.mean[3:], self.alphas, self.covariance[3:, 3:])
+
+    @property
+    def twist(self) -> FloatArray:
+        """Body twist (3,) at the tread speeds in force; zero where they are not known."""
+        return icr_twist(self.mean[3:], self.alphas * np.nan_to_num(self.tread_speeds_m_s))

@@ -1,0 +1,95 @@
+"""The numbers by which one trajectory of a run is judged."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.evaluation.relative import EvaluationConfig, position_errors, relative_errors
+from odometry.run import Run
+from odometry.trajectory import Trajectory
+
+
+@dataclass(frozen=True)
+class Score:
+    """Errors of one trajectory.
+
+    Attributes
+    ----------
+    windows : int
+        Number of spatial horizons.
+    translation_per_m : (3,) or None
+        Quartiles (25, 50, 75 %) of the position error in metres per metre of wheel travel.
+    mean_translation_per_m : float or None
+    rotation_deg_per_m : (3,) or None
+        Quartiles of the heading error, degrees per metre of wheel travel.
+    mean_rotation_deg_per_m : float or None
+    mean_position_m, final_position_m : float or None
+        Distance from the reference, over all its stamps and at the last.
+    """
+
+    windows: int
+    translation_per_m: FloatArray | None = None
+    mean_translation_per_m: float | None = None
+    rotation_deg_per_m: FloatArray | None = None
+    mean_rotation_deg_per_m: float | None = None
+    mean_position_m: float | None = None
+    final_position_m: float | None = None
+
+    def to_table(self) -> dict[str, Any]:
+        """Plain values with the unit in each name."""
+        return {
+            "windows": self.windows,
+            "translation_m_per_m": {
+                "mean": self.mean_translation_per_m,
+                "quartiles": _plain(self.translation_per_m),
+            },
+            "rotation_deg_per_m": {
+                "mean": self.mean_rotation_deg_per_m,
+                "quartiles": _plain(self.rotation_deg_per_m),
+            },
+            "position_m": {"mean": self.mean_position_m, "final": self.final_position_m},
+        }
+
+
+def reference_of(run: Run) -> tuple[str, Trajectory] | None:
+    """The trajectory that a run is judged against: truth.csv, else pose.csv, else none."""
+    for name, table in (("truth", run.truth), ("pose", run.pose)):
+        if table is None:
+            continue
+        poses = table.stack("x", "y", "yaw")
+        measured = np.isfinite(poses).all(axis=1)
+        if measured.sum() >= 2:
+            return name, Trajectory(table.stamps_s[measured], poses[measured])
+    return None
+
+
+def score(
+    run: Run, trajectory: Trajectory, reference: Trajectory, config: EvaluationConfig
+) -> Score:
+    """Judge a trajectory of a run against a reference."""
+    relative = relative_errors(
+        trajectory, reference, run.odometry.stamps_s, run.wheel_travel_m, config
+    )
+    _, distances = position_errors(trajectory, reference)
+    position = (
+        {"mean_position_m": float(distances.mean()), "final_position_m": float(distances[-1])}
+        if len(distances)
+        else {}
+    )
+    if not len(relative.start_s):
+        return Score(0, **position)
+    rotation = np.degrees(relative.rotation_per_m)
+    return Score(
+        len(relative.start_s),
+        np.percentile(relative.translation_per_m, [25, 50, 75]),
+        float(relative.translation_per_m.mean()),
+        np.percentile(rotation, [25, 50, 75]),
+        float(rotation.mean()),
+        **position,
+    )
+
+
+def _plain(quartiles: FloatArray | None) -> list[float] | None:
+    return None if quartiles is None else [float(value) for value in quartiles]
