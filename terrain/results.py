@@ -1,0 +1,141 @@
+"""The output folder of a run: tables, trajectories, numbers, what was learned."""
+
+import json
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from odometry.estimation.estimate import STATE_NAMES
+from odometry.io.csv_table import write_csv_table
+from odometry.io.files import atomic_write
+from odometry.io.tum import write_tum
+from odometry.parameters import write_parameters
+from odometry.trajectory import Trajectory
+from terrain.run_odometry import RunResult
+from terrain.switch_delay import switch_delays
+from terrain.watcher import Sighting
+
+FORMAT = 1  # of result.json
+
+
+def write_results(result: RunResult, out: str | Path) -> list[Path]:
+    """Write everything but figures and page.
+
+    Parameters
+    ----------
+    result : RunResult
+    out : path
+        Made if it is missing; files of an earlier run are replaced one by one.
+
+    Returns
+    -------
+    list of Path
+        odometer.csv and .tum, estimate.csv and .tum, result.json; learned.toml where there is
+        anything to hand on; with vision, terrain.csv.
+    """
+    out = Path(out)
+    replay = result.replay
+    odometer, estimate = replay.odometer(), replay.trajectory()
+    write_csv_table(out / "odometer.csv", _pose_columns(odometer))
+    means, sigmas = replay.means.T, replay.sigmas.T
+    write_csv_table(
+        out / "estimate.csv",
+        {"t": replay.stamps_s}
+        | dict(zip(STATE_NAMES, means, strict=True))
+        | {f"sigma_{name}": sigma for name, sigma in zip(STATE_NAMES, sigmas, strict=True)},
+    )
+    write_tum(out / "odometer.tum", odometer)
+    write_tum(out / "estimate.tum", estimate)
+    names = ["odometer.csv", "odometer.tum", "estimate.csv", "estimate.tum"]
+    if result.learned.terrains:
+        write_parameters(out / "learned.toml", result.learned)
+        names.append("learned.toml")
+    if result.watcher is not None and result.watcher.sightings:
+        _write_terrain(out / "terrain.csv", result.watcher.sightings, result.watcher.in_force)
+        names.append("terrain.csv")
+    for name in {"learned.toml", "terrain.csv"} - set(names):
+        (out / name).unlink(missing_ok=True)  # of an earlier run
+    text = json.dumps(result_table(result), indent=2, allow_nan=False)
+    with atomic_write(out / "result.json") as part:
+        part.write_text(text + "\n", encoding="utf-8")
+    return [out / name for name in (*names, "result.json")]
+
+
+def result_table(result: RunResult) -> dict[str, Any]:
+    """The content of result.json: plain values, units in the names."""
+    innovations = [e.innovation for e in result.replay.estimates if e.innovation is not None]
+    squared = [innovation.normalised_squared for innovation in innovations]
+    return {
+        "format": FORMAT,
+        "program": f"terrain-odometry {version('terrain-odometry')}",
+        "run": result.run.name,
+        "vision": result.watcher is not None,
+        "initial_terrain": result.initial_terrain,
+        "duration_s": float(result.replay.stamps_s[-1] - result.replay.stamps_s[0]),
+        "wheel_travel_m": float(result.run.wheel_travel_m[-1]),
+        "reference": result.reference_name or None,
+        "horizon_m": result.config.evaluation.horizon_m,
+        "errors": {name: score.to_table() for name, score in result.scores.items()},
+        "switches": _switches(result),
+        "sightings": _sightings(result),
+        "filter": {
+            "poses": len(innovations),
+            "poses_refused": sum(not innovation.accepted for innovation in innovations),
+            "median_normalised_innovation_squared": float(np.median(squared)) if squared else None,
+            "jumps_s": result.replay.stamps_s[result.replay.jumps].tolist(),
+        },
+        "learned": {name: dict(of.values) for name, of in result.learned.terrains.items()},
+        "config": result.config.to_table(),
+    }
+
+
+def _pose_columns(trajectory: Trajectory) -> dict[str, Any]:
+    x, y, yaw = trajectory.poses.T
+    return {"t": trajectory.stamps_s, "x": x, "y": y, "yaw": yaw}
+
+
+def _write_terrain(file: Path, sightings: list[Sighting], in_force: list[str]) -> None:
+    regions = [sighting.region for sighting in sightings]
+    distances = [np.nan if region is None else region.distance_ahead_m for region in regions]
+    columns: dict[str, Any] = {
+        "t": np.array([sighting.stamp_s for sighting in sightings]),
+        "label": np.array([sighting.label for sighting in sightings]),
+        "confidence": np.array([sighting.confidence for sighting in sightings]),
+        "distance_ahead": np.array(distances),
+        "terrain_in_force": np.array(in_force),
+        "reason": np.array([sighting.reason for sighting in sightings]),
+        "image": np.array([sighting.image for sighting in sightings]),
+    }
+    if any(sighting.left for sighting in sightings):
+        columns["left"] = np.array([sighting.left for sighting in sightings])
+        columns["right"] = np.array([sighting.right for sighting in sightings])
+    write_csv_table(file, columns)
+
+
+def _switches(result: RunResult) -> list[dict[str, Any]]:
+    if result.watcher is None:
+        return []
+    delays = switch_delays(result)
+    return [
+        {
+            "terrain": event.terrain,
+            "stamp_s": event.stamp_s,
+            "seen_s": event.sight.stamp_s,
+            "waited_s": event.waited_s,
+            "waited_m": event.waited_m,
+            "late_s": delay.late_s,
+            "late_m": delay.late_m,
+        }
+        for event, delay in zip(result.watcher.events, delays, strict=False)
+    ]
+
+
+def _sightings(result: RunResult) -> dict[str, int]:
+    """How often each label, or each reason for none, was given."""
+    counts: dict[str, int] = {}
+    for sighting in result.watcher.sightings if result.watcher else ():
+        word = sighting.label or f"no label: {sighting.reason}"
+        counts[word] = counts.get(word, 0) + 1
+    return dict(sorted(counts.items()))

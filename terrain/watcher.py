@@ -1,0 +1,203 @@
+"""The watcher: frame and estimate in, the name of the terrain in force out."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from odometry.arrays import ByteImage, FloatArray
+from odometry.estimation.estimate import Estimate
+from odometry.geometry import se2
+from odometry.models.icr import icr_twist
+from odometry.run import UNKNOWN, Frame, Run
+from terrain.camera import Camera
+from terrain.classifier import Classification, TerrainClassifier
+from terrain.errors import CameraError, ImageError
+from terrain.images import read_image
+from terrain.region import Rectangle, Region, RegionConfig, predict_region
+from terrain.switch import Sight, Switch, SwitchConfig, SwitchEvent
+from terrain.warp import ground_sampling_m, ground_view, pixel_view, view_shape
+
+
+@dataclass(frozen=True)
+class Sighting:
+    """What one image said of the ground ahead.
+
+    Attributes
+    ----------
+    stamp_s : float
+    image : str
+        File of the image, as images.csv names it.
+    label : str
+        A terrain, `unknown`, or "" where there was nothing to classify.
+    confidence : float
+        Probability of the most probable terrain; NaN without a label.
+    region : Region or None
+        In the robot frame at this stamp.
+    reason : str
+        Why there is no label, or what `unknown` means here; else "".
+    left, right : str
+        Labels of the tread strips, where they were classified apart.
+    """
+
+    stamp_s: float
+    image: str
+    label: str = ""
+    confidence: float = float("nan")
+    region: Region | None = None
+    reason: str = ""
+    left: str = ""
+    right: str = ""
+
+
+class TerrainWatcher:
+    """Classifies the region ahead in every image and switches the terrain in force.
+
+    Parameters
+    ----------
+    run : Run
+    camera : Camera
+    classifier : TerrainClassifier
+        Fitted.
+    initial : str
+        The terrain in force until the first switch.
+    region : RegionConfig
+    switch : SwitchConfig
+
+    Attributes
+    ----------
+    sightings : list of Sighting
+        One for each image that was seen.
+    in_force : list of str
+        The terrain in force after each sighting.
+    events : list of SwitchEvent
+    """
+
+    def __init__(
+        self,
+        run: Run,
+        camera: Camera,
+        classifier: TerrainClassifier,
+        initial: str,
+        region: RegionConfig,
+        switch: SwitchConfig,
+    ) -> None:
+        self.initial = initial
+        self.sightings: list[Sighting] = []
+        self.in_force: list[str] = []
+        self.events: list[SwitchEvent] = []
+        self._run = run
+        self._camera = camera
+        self._classifier = classifier
+        self._region = region
+        robot = run.robot
+        size = max(robot.length or robot.track_width, robot.width or robot.track_width)
+        self._switch = Switch(initial, region.footprint_scale * size, switch)
+        self._travel_m = run.wheel_travel_m
+
+    def terrain(self, frame: Frame, estimate: Estimate) -> str:
+        """Look at the frame's image, if it has one, and give the terrain in force."""
+        travel_m = float(np.interp(frame.stamp_s, self._run.odometry.stamps_s, self._travel_m))
+        pose = se2.compose(
+            estimate.mean[:3], se2.exp(estimate.twist * (frame.stamp_s - estimate.stamp_s))
+        )
+        if frame.image is not None:
+            sighting = self.look(frame, estimate)
+            self.sightings.append(sighting)
+            if sighting.label and sighting.region is not None:
+                self._switch = self._switch.see(_sight(sighting, sighting.region, pose, travel_m))
+        self._switch = self._switch.at(frame.stamp_s, pose, travel_m)
+        if self._switch.event is not None:
+            self.events.append(self._switch.event)
+        if frame.image is not None:
+            self.in_force.append(self._switch.in_force)
+        return self._switch.in_force
+
+    def look(self, frame: Frame, estimate: Estimate) -> Sighting:
+        """Classify the region ahead in the image of a frame.
+
+        An image that cannot be read, or one of another size among good ones, is a sighting
+        without a label, so that one bad file does not end a long run.
+
+        Raises
+        ------
+        CameraError
+            If the first image to be classified is not of the camera's size.
+        """
+        if frame.image is None:
+            raise ValueError(f"the frame at {frame.stamp_s} s has no image")
+        name = frame.image.relative_to(self._run.folder).as_posix()
+        speeds = np.nan_to_num(frame.tread_speeds_m_s)
+        twist = icr_twist(estimate.mean[3:], estimate.alphas * speeds)
+        region = predict_region(
+            self._run.robot, self._camera, twist, float(np.abs(speeds).mean()), self._region
+        )
+        if isinstance(region, str):
+            return Sighting(frame.stamp_s, name, reason=region)
+        rectangles = (
+            region.rectangle.halves() if self._region.per_tread else (region.rectangle,)
+        )
+        reason = next(filter(None, map(self._unfit, rectangles)), "")
+        if reason:
+            return Sighting(frame.stamp_s, name, region=region, reason=reason)
+        try:
+            image = read_image(frame.image)
+        except ImageError:
+            return Sighting(frame.stamp_s, name, region=region, reason="the image cannot be read")
+        if not self._is_of_size(image, frame.image):
+            reason = "the image is not of the camera's size"
+            return Sighting(frame.stamp_s, name, region=region, reason=reason)
+        answers = self._classifier.classify([self._view(image, r) for r in rectangles])
+        return _sighting(frame.stamp_s, name, region, answers)
+
+    def _is_of_size(self, image: ByteImage, file: Path) -> bool:
+        """Whether an image is of the camera's size; if the first is not, the camera is wrong."""
+        try:
+            self._camera.check_size(image)
+        except CameraError as error:
+            if any(sighting.label for sighting in self.sightings):
+                return False
+            raise CameraError(f"{file}: {error}; see [camera] image_size in run.toml") from error
+        return True
+
+    def _unfit(self, rectangle: Rectangle) -> str:
+        """Why a rectangle cannot be compared with the training patches, or ""."""
+        scale, size_px = self._classifier.metres_per_pixel, self._classifier.patch_size_px
+        if scale is None:
+            pixels = self._camera.ground_to_pixels(rectangle.corners)
+            smallest = float(np.min(pixels.max(axis=0) - pixels.min(axis=0)))
+            return "" if smallest >= size_px else "the region is smaller than a training patch"
+        if min(view_shape(rectangle, scale)) < size_px:
+            return "the region is smaller than a training patch"
+        if ground_sampling_m(self._camera, rectangle)[1] > self._region.coarsest * scale:
+            return "the image is too coarse there"
+        return ""
+
+    def _view(self, image: ByteImage, rectangle: Rectangle) -> ByteImage:
+        scale = self._classifier.metres_per_pixel
+        if scale is None:
+            return pixel_view(image, self._camera, rectangle)
+        return ground_view(image, self._camera, rectangle, scale)
+
+
+def _sighting(
+    stamp_s: float, name: str, region: Region, answers: list[Classification]
+) -> Sighting:
+    if len(answers) == 1:
+        return Sighting(stamp_s, name, answers[0].label, answers[0].confidence, region)
+    left, right = (answer.label for answer in answers)
+    confidence = min(answer.confidence for answer in answers)
+    if left == right:
+        return Sighting(stamp_s, name, left, confidence, region, "", left, right)
+    reason = f"astride: {left} on the left, {right} on the right"
+    return Sighting(stamp_s, name, UNKNOWN, confidence, region, reason, left, right)
+
+
+def _sight(sighting: Sighting, region: Region, pose: FloatArray, travel_m: float) -> Sight:
+    return Sight(
+        sighting.label,
+        sighting.stamp_s,
+        travel_m,
+        se2.transform(pose, region.pose_ahead[:2]),
+        region.distance_ahead_m,
+    )
