@@ -1,0 +1,1 @@
+"""Skid-steer drives made from first principles, to test estimators that know nothing of them."""
