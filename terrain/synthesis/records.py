@@ -1,0 +1,81 @@
+"""The tables and settings of the run folder of a simulated drive."""
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from math import degrees
+from typing import Any
+
+import numpy as np
+
+from odometry.arrays import AnyArray, FloatArray
+from odometry.simulation.drive import Drive
+from odometry.simulation.ground import GroundMap
+from odometry.simulation.noise import measured_poses
+from terrain.synthesis.config import SynthesisConfig
+
+Tables = dict[str, dict[str, AnyArray]]
+
+
+def motion_tables(config: SynthesisConfig, drive: Drive, rng: np.random.Generator) -> Tables:
+    """Tables odometry, pose (both with sensor noise) and truth."""
+    terrains = np.array(drive.terrains)
+    count = len(drive.stamps_s)
+    treads = drive.tread_speeds_m_s + config.sigma_tread_m_s * rng.standard_normal((count, 2))
+    gyro = drive.twists_body[:, 2] + config.sigma_gyro_rad_s * rng.standard_normal(count)
+    measured = slice(None, None, config.samples_between("pose_rate_hz"))
+    poses = measured_poses(
+        drive.poses_world[measured], config.sigma_position_m, config.sigma_yaw_rad, rng
+    )
+    return {
+        "odometry": {
+            "t": drive.stamps_s,
+            "v_left": treads[:, 0],
+            "v_right": treads[:, 1],
+            "gyro_z": gyro,
+        },
+        "pose": {"t": drive.stamps_s[measured], **_columns("x y yaw", poses)},
+        "truth": {
+            "t": drive.stamps_s,
+            **_columns("x y yaw", drive.poses_world),
+            "terrain": terrains,
+            **_columns("y_left y_right x_icr", drive.icrs_m),
+        },
+    }
+
+
+def run_settings(
+    config: SynthesisConfig,
+    ground: GroundMap,
+    true_icrs_m: Mapping[str, FloatArray],
+    photos_origin: str,
+) -> dict[str, Any]:
+    """Content of `run.toml`; `[source]` holds what is needed to make the run again."""
+    icrs = {name: [round(float(v), 6) for v in icr] for name, icr in true_icrs_m.items()}
+    source = {
+        "made_by": "terrain-odometry synthesise",
+        "seed": config.seed,
+        "photographs": photos_origin,
+        "metres_per_pixel": config.metres_per_pixel,
+        "zones": list(config.zones),
+        "zone_length_m": config.zone_length_m,
+        "strips": list(ground.terrains),
+        "edges_m": ground.edges_m.tolist(),
+        "edge_wave_m": config.edge_wave_m,
+        "edge_wave_phases_rad": list(ground.wave_phases_rad),
+        "icrs_y_left_y_right_x_icr_m": icrs,
+        "icr_wander_m": list(config.icr_wander_m),
+        "icr_wander_time_s": config.icr_wander_time_s,
+        "sigma_position_m": config.sigma_position_m,
+        "sigma_yaw_deg": degrees(config.sigma_yaw_rad),
+        "sigma_tread_m_s": config.sigma_tread_m_s,
+        "sigma_gyro_rad_s": config.sigma_gyro_rad_s,
+        "sigma_parameters_m": list(config.sigma_parameters_m),
+        "jpeg_quality": config.jpeg_quality,
+        "driver": {k: v for k, v in asdict(config.driver).items() if k != "phases_rad"},
+        "image_terrain": "the terrain of images.csv is that of the ground at the image's centre",
+    }
+    return {"robot": dict(config.robot), "camera": config.camera.to_table(), "source": source}
+
+
+def _columns(names: str, values: FloatArray) -> dict[str, AnyArray]:
+    return dict(zip(names.split(), values.T, strict=True))

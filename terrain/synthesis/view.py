@@ -1,0 +1,85 @@
+"""What a camera on the robot sees of a textured ground."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from odometry.arrays import AnyArray, BoolArray, FloatArray
+from odometry.simulation.ground import GroundMap, to_world
+from terrain.camera import Camera
+from terrain.errors import SynthesisError
+from terrain.synthesis.texture import Texture
+
+SKY_BRIGHTNESS = 190.0
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """The ground point behind every pixel of a camera, worked out once.
+
+    Attributes
+    ----------
+    points_robot : (H, W, 2) array
+        Ground points in the robot frame [m]; 0 where the pixel sees no ground.
+    detail_m : (H, W) array
+        Larger edge of the ground seen by a pixel [m].
+    sees_ground : (H, W) array of bool
+        False at and above the horizon.
+    """
+
+    points_robot: FloatArray
+    detail_m: FloatArray
+    sees_ground: BoolArray
+
+    @classmethod
+    def of(cls, camera: Camera) -> Self:
+        """View of a camera.
+
+        Raises
+        ------
+        SynthesisError
+            If no pixel sees the ground.
+        """
+        width, height = camera.image_size
+        columns, rows = np.meshgrid(np.arange(width), np.arange(height))
+        points = camera.pixels_to_ground(np.stack([columns, rows], axis=-1))
+        steps = [np.linalg.norm(np.gradient(points, axis=axis), axis=-1) for axis in (0, 1)]
+        detail = np.maximum(*steps)
+        sees_ground = np.isfinite(detail)
+        if not sees_ground.any():
+            raise SynthesisError("the camera sees no ground; its pitch must look down")
+        return cls(
+            np.where(sees_ground[..., None], points, 0.0),
+            np.where(sees_ground, detail, detail[sees_ground].max()),
+            sees_ground,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A camera's view of a ground whose strips each have a texture."""
+
+    view: View
+    ground: GroundMap
+    textures: tuple[Texture, ...]
+
+    def brightness(self, pose_world: FloatArray) -> AnyArray:
+        """Brightness of every pixel when the robot is at a pose (x, y, yaw).
+
+        Returns
+        -------
+        (H, W) or (H, W, 3) float32 array
+            0 to 255, before exposure and noise.
+        """
+        points_world = to_world(pose_world, self.view.points_robot)
+        strips = self.ground.strip_at(points_world)
+        shape = strips.shape + self.textures[0].levels[0].shape[2:]
+        image = np.full(shape, SKY_BRIGHTNESS, np.float32)
+        for strip in np.unique(strips[self.view.sees_ground]):
+            mask = (strips == strip) & self.view.sees_ground
+            used = np.flatnonzero(mask.any(axis=1))
+            rows = slice(used[0], used[-1] + 1)
+            seen = self.textures[strip].look_up(points_world[rows], self.view.detail_m[rows])
+            image[rows][mask[rows]] = seen[mask[rows]]
+        return image
