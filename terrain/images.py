@@ -1,0 +1,122 @@
+"""Reading images, and the grey image that the texture features are made from."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from odometry.arrays import AnyArray, ByteImage
+from terrain.errors import ImageError
+
+
+def read_image(path: Path | str) -> ByteImage:
+    """Read an image file as it is stored.
+
+    Parameters
+    ----------
+    path : Path or str
+        A JPEG, PNG or any other file that OpenCV decodes.
+
+    Returns
+    -------
+    ndarray of uint8, (H, W, 3) in RGB order, or (H, W) where the file is grey
+        An alpha channel is dropped and 16 bits become 8 (see `to_bytes`). An EXIF rotation is
+        not applied: cameras are calibrated in the pixels that they store.
+
+    Raises
+    ------
+    ImageError
+        The file cannot be opened, or does not hold an image.
+    """
+    try:
+        encoded = np.frombuffer(Path(path).read_bytes(), np.uint8)
+    except OSError as error:
+        raise ImageError(f"{path}: cannot be opened ({error.strerror})") from error
+    try:
+        decoded: AnyArray | None = cv2.imdecode(encoded, cv2.IMREAD_UNCHANGED)
+    except cv2.error:  # an empty file, or an image too large for OpenCV
+        decoded = None
+    if decoded is None:
+        raise ImageError(f"{path}: {encoded.size} bytes that do not decode as an image")
+    try:
+        image = to_bytes(decoded)
+    except ImageError as error:
+        raise ImageError(f"{path}: {error}") from error
+    if image.ndim == 2:
+        return image
+    return np.ascontiguousarray(image[..., 2::-1])  # OpenCV decodes to B, G, R(, A)
+
+
+def to_grey(image: AnyArray) -> ByteImage:
+    """Turn an image into 8-bit grey: 0.30 R + 0.59 G + 0.11 B, rounded half up.
+
+    Parameters
+    ----------
+    image : ndarray, (H, W), (H, W, 1), (H, W, 3) or (H, W, 4)
+        Grey, RGB in this order, or RGBA, whose alpha is ignored. Kinds other than uint8 are
+        first brought to 8 bits as in `to_bytes`.
+
+    Returns
+    -------
+    ndarray of uint8, (H, W)
+
+    Raises
+    ------
+    ImageError
+        The image is empty, or has another shape or kind of value.
+
+    References
+    ----------
+    Chen et al. 2023, eq. 18.
+    """
+    image = to_bytes(image)
+    if image.ndim == 2 or image.shape[2] == 1:
+        return np.ascontiguousarray(image.reshape(image.shape[:2]))
+    red, green, blue = (channel.astype(np.uint16) for channel in cv2.split(image)[:3])
+    percent = 30 * red + 59 * green + 11 * blue  # eq. 18, exactly: at most 25500
+    return ((percent + 50) // 100).astype(np.uint8)
+
+
+def to_bytes(image: AnyArray) -> ByteImage:
+    """Bring an image to 8 bits a channel.
+
+    Parameters
+    ----------
+    image : ndarray, (H, W) or (H, W, 1, 3 or 4)
+        uint8 is kept. bool becomes 0 and 255. uint16 is divided by 257, so that 65535 becomes
+        255; a 12-bit camera must be stretched before. float must lie in 0 to 1 and is
+        multiplied by 255. Both are rounded half up.
+
+    Returns
+    -------
+    ndarray of uint8, of the same shape
+
+    Raises
+    ------
+    ImageError
+        The image is empty, has another shape or kind of value, or is a float image with values
+        that are not finite or not in 0 to 1.
+    """
+    image = np.asarray(image)
+    if image.ndim not in {2, 3} or (image.ndim == 3 and image.shape[2] not in {1, 3, 4}):
+        raise ImageError(
+            f"an image has the shape (H, W), (H, W, 3) or (H, W, 4), not {image.shape}"
+        )
+    if image.size == 0:
+        raise ImageError(f"an image needs at least one pixel, this one has the shape {image.shape}")
+    if image.dtype == np.uint8:
+        return image
+    if image.dtype == np.bool_:
+        return image * np.uint8(255)
+    if image.dtype == np.uint16:
+        return ((image.astype(np.uint32) + 128) // 257).astype(np.uint8)
+    if np.issubdtype(image.dtype, np.floating):
+        lowest, highest = float(image.min()), float(image.max())
+        if not np.isfinite(lowest + highest):
+            raise ImageError("a float image has values in 0 to 1, this one holds NaN or inf")
+        if lowest < 0.0 or highest > 1.0:
+            raise ImageError(
+                f"a float image has values in 0 to 1, this one in {lowest:g} to {highest:g}"
+            )
+        return np.floor(image * 255.0 + 0.5).astype(np.uint8)
+    raise ImageError(f"an image holds uint8, uint16, bool or float values, not {image.dtype}")

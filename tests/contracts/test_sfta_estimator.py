@@ -1,0 +1,70 @@
+"""scikit-learn's shared checks on the SFTA transformer.
+
+The checks feed tables, so a row is shown to the transformer as an image of one row of pixels.
+Nothing else is changed: construction, fitting, names, cloning and errors are SFTA's own.
+"""
+
+from contextlib import contextmanager
+
+import numpy as np
+from sklearn.utils.estimator_checks import parametrize_with_checks
+
+from terrain.errors import ImageError
+from terrain.texture import SFTA
+
+SIZES_DIFFER = "images may differ in size: there is no number of columns to remember"
+OTHER_WORDS = "refused with an ImageError about images, not in the words for tables"
+EXPECTED_FAILURES = {
+    "check_n_features_in": SIZES_DIFFER,
+    "check_n_features_in_after_fitting": SIZES_DIFFER,
+    "check_complex_data": OTHER_WORDS,
+    "check_dtype_object": "refused: an array of Python objects is not an image",
+    "check_estimator_sparse_array": OTHER_WORDS,
+    "check_estimator_sparse_matrix": OTHER_WORDS,
+    "check_estimator_sparse_tag": OTHER_WORDS,
+    "check_estimators_empty_data_messages": OTHER_WORDS,
+    "check_fit2d_predict1d": OTHER_WORDS,
+}
+
+
+class RowsAsImages(SFTA):
+    """SFTA of tables: each row an image of height one, squeezed into 0 to 1."""
+
+    def fit(self, X, y=None):
+        with value_error():
+            return super().fit(as_images(X), y)
+
+    def transform(self, X):
+        with value_error():
+            return super().transform(as_images(X))
+
+    def __sklearn_tags__(self):
+        tags = super().__sklearn_tags__()
+        tags.input_tags.two_d_array = True
+        tags.input_tags.three_d_array = False
+        return tags
+
+
+def as_images(table):
+    rows = np.asarray(table)
+    if rows.ndim != 2 or rows.dtype.kind not in "iuf":
+        return rows
+    squeezed = np.where(np.isfinite(rows), 1.0 / (1.0 + np.exp(-np.clip(rows, -50, 50))), rows)
+    return squeezed[:, None, :]
+
+
+@contextmanager
+def value_error():
+    """The checks ask for ValueError, which our errors are not."""
+    try:
+        yield
+    except ImageError as error:
+        raise ValueError(str(error)) from error
+
+
+@parametrize_with_checks(
+    [RowsAsImages()],
+    expected_failed_checks=lambda _: EXPECTED_FAILURES,
+)
+def test_scikit_learn_checks(estimator, check):
+    check(estimator)
