@@ -1,5 +1,6 @@
 """Frozen blocks of settings, read from TOML; an unknown key is an error."""
 
+import math
 import tomllib
 from collections.abc import Mapping
 from dataclasses import fields
@@ -24,10 +25,12 @@ def block_from_table(kind: type[Block], table: Mapping[str, Any], where: str) ->
     for key, value in table.items():
         if key not in known:
             raise ConfigError(f"{where}: unknown key {key!r}; known: {', '.join(known)}")
-        expected = type(known[key].default)
+        expected: Any = type(known[key].default)
         allowed = (int, float) if expected is float else (expected,)
         if not isinstance(value, allowed) or (isinstance(value, bool) and expected is not bool):
             raise ConfigError(f"{where}: {key} = {value!r}, expected a {expected.__name__}")
+        if isinstance(value, float) and not math.isfinite(value):
+            raise ConfigError(f"{where}: {key} = {value}, expected a finite number")
         values[key] = expected(value)
     try:
         return kind(**values)

@@ -29,7 +29,9 @@ class Estimator(Protocol):
 class TerrainSource(Protocol):
     """Whatever knows the terrain that the robot is on."""
 
-    initial: str
+    @property
+    def initial(self) -> str:
+        """The terrain in force at the first frame."""
 
     def terrain(self, frame: Frame, estimate: Estimate) -> str:
         """The terrain in force from this frame on, given the estimate before it."""
@@ -126,7 +128,9 @@ def replay(
     if first is None:
         raise RunFolderError(f"{run.folder}: no pose lies within the time of odometry.csv")
     estimates = [estimator.start(first, source.initial)]
-    bar: Iterable[Frame] = tqdm(frames, desc=run.name, unit="frame", disable=not show_progress)
+    bar: Iterable[Frame] = tqdm(
+        frames, desc=run.name, unit="frame", disable=None if show_progress else True
+    )
     for frame in bar:
         terrain = source.terrain(frame, estimates[-1])
         estimates.append(estimator.step(estimates[-1], frame, terrain))

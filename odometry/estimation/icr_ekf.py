@@ -35,7 +35,8 @@ class IcrEkf:
     A frame goes in with the name of the terrain that the robot is on; a new Estimate comes out,
     and the one that went in is not changed. On a new name the ICRs are those last learned there
     or those of the parameter set, whichever is the more certain, and their covariance is reset
-    to `reset_sigma_widths` (or the broad prior's). A pose with NaN is as good as none.
+    to `reset_sigma_widths`, or to what was known before if that is less. A pose with NaN is as
+    good as none.
     """
 
     def __init__(
@@ -100,10 +101,12 @@ class IcrEkf:
 
     def _switch(self, estimate: Estimate, terrain: str) -> Estimate:
         learned = {**estimate.learned, estimate.terrain: estimate.belief}
-        belief, known = self._prior(terrain), terrain in self.parameters.terrains
+        belief = self._prior(terrain)
         if terrain in learned and _is_more_certain(learned[terrain], belief):
-            belief, known = learned[terrain], True
-        reset = self._reset_sigma_m**2 * np.eye(3) if known else belief.covariance
+            belief = learned[terrain]
+        reset = self._reset_sigma_m**2 * np.eye(3)
+        if np.trace(belief.covariance) > np.trace(reset):
+            reset = belief.covariance
         return replace(
             estimate,
             mean=np.concatenate([estimate.mean[:3], belief.icrs]),
@@ -146,10 +149,13 @@ class IcrEkf:
         )
 
     def _check_jump(self, estimate: Estimate, squared: float) -> Estimate:
-        """Chen 2023, 3.2: where the ICRs mutate, the error covariance is reset."""
+        """Chen 2023, 3.2: where the ICRs mutate, the error covariance is reset.
+
+        A refused pose counts no more than the gate, so that one outlier alone is no jump.
+        """
         if not self.config.detect_jumps:
             return estimate
-        recent = (*estimate.recent, squared)[-self.config.jump_window :]
+        recent = (*estimate.recent, min(squared, self._gate))[-self.config.jump_window :]
         if len(recent) < self.config.jump_window or sum(recent) <= self._jump:
             return replace(estimate, recent=recent)
         reset = self._reset_sigma_m**2 * np.eye(3)

@@ -17,6 +17,7 @@ class PoseKalman(ExtendedKalmanFilter):  # type: ignore[misc]
         self.H = np.eye(3, 6)  # eq. 13
 
     def predict_x(self, u: FloatArray) -> None:
+        """Take `u`, the mean that `transition` has reached: filterpy's hook."""
         self.x = u
 
     def predicted(

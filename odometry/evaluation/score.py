@@ -73,7 +73,7 @@ def score(
         trajectory, reference, run.odometry.stamps_s, run.wheel_travel_m, config
     )
     _, distances = position_errors(trajectory, reference)
-    position = (
+    position: dict[str, Any] = (
         {"mean_position_m": float(distances.mean()), "final_position_m": float(distances[-1])}
         if len(distances)
         else {}

@@ -27,10 +27,14 @@ def read_tum(file: str | Path) -> Trajectory:
     Raises
     ------
     TrajectoryError
-        Naming file and row where a row has not eight numbers.
+        If the file cannot be read; naming file and row where a row has not eight numbers.
     """
+    try:
+        lines = Path(file).read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise TrajectoryError(f"{file}: cannot be read: {error}") from error
     rows = []
-    for line, text in enumerate(Path(file).read_text(encoding="utf-8").splitlines(), start=1):
+    for line, text in enumerate(lines, start=1):
         if not text.strip() or text.startswith("#"):
             continue
         try:

@@ -96,4 +96,4 @@ def _speed_matrix(icrs: FloatArray) -> FloatArray:
         np.stack([x_icr, -x_icr], axis=-1),
         np.stack([-one, one], axis=-1),
     ]
-    return np.stack(rows, axis=-2) / (y_left - y_right)[..., None, None]
+    return np.asarray(np.stack(rows, axis=-2) / (y_left - y_right)[..., None, None])
