@@ -1,0 +1,43 @@
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import settings
+
+settings.register_profile("project", deadline=None, derandomize=True, database=None)
+settings.load_profile("project")
+
+ODOMETRY_CSV = "t,v_left,v_right\n0,0.5,0.5\n0.1,0.4,0.6\n0.2,0.4,0.6\n"
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(2023)
+
+
+@pytest.fixture(scope="session")
+def shared_data():
+    """The folder of recordings and reference values that the project does not carry."""
+    folder = os.environ.get("TERRAIN_ODOMETRY_DATA")
+    if not folder:
+        pytest.skip("TERRAIN_ODOMETRY_DATA is not set: it names the folder of shared recordings")
+    return Path(folder)
+
+
+@pytest.fixture
+def make_run(tmp_path):
+    """Make a run folder of literal file contents: text, or bytes as they are."""
+
+    def make(settings="[robot]\ntrack_width = 0.4\n", odometry=ODOMETRY_CSV, **files):
+        folder = tmp_path / "a_run"
+        folder.mkdir(exist_ok=True)
+        contents = {"run.toml": settings, "odometry.csv": odometry}
+        contents |= {f"{name}.csv": content for name, content in files.items()}
+        for name, content in contents.items():
+            if content is not None:
+                data = content if isinstance(content, bytes) else content.encode()
+                (folder / name).write_bytes(data)
+        return folder
+
+    return make

@@ -1,0 +1,75 @@
+import numpy as np
+import pytest
+
+from odometry.errors import ParameterError
+from odometry.estimation.icr_prior import prior_belief
+from odometry.models.catalogue import MODELS
+from odometry.parameters import ParameterSet, TerrainParameters
+
+WIDTH = 0.6
+RESET_M = 0.1
+
+
+def prior_of(table, terrain="here"):
+    return prior_belief(ParameterSet({"here": table}), terrain, WIDTH, RESET_M)
+
+
+def test_a_terrain_without_a_table_has_a_broad_prior_centred_on_the_track_width():
+    belief = prior_belief(ParameterSet(), "somewhere", WIDTH, RESET_M)
+    np.testing.assert_allclose(belief.icrs, [0.3, -0.3, 0])
+    np.testing.assert_array_equal(belief.alphas, [1, 1])
+    np.testing.assert_allclose(belief.covariance, 0.3**2 * np.eye(3))
+
+
+def test_a_table_without_uncertainty_has_that_of_a_reset():
+    belief = prior_of(TerrainParameters("icr", {"y_left": 0.4, "y_right": -0.5, "x_icr": 0.1}))
+    np.testing.assert_array_equal(belief.icrs, [0.4, -0.5, 0.1])
+    np.testing.assert_allclose(belief.covariance, RESET_M**2 * np.eye(3))
+
+
+def test_a_table_with_uncertainty_keeps_it_by_name():
+    values = {"y_left": 0.4, "y_right": -0.5, "x_icr": 0.1}
+    order, matrix = ("x_icr", "y_left", "y_right"), np.diag([3.0, 1.0, 2.0])
+    belief = prior_of(TerrainParameters("icr", values, order, matrix))
+    np.testing.assert_array_equal(belief.covariance, np.diag([1.0, 2.0, 3.0]))
+
+
+@pytest.mark.parametrize(
+    ("model", "values"),
+    [
+        (
+            "icr",
+            {"y_left": 0.4, "y_right": -0.5, "x_icr": 0.1, "alpha_left": 0.9, "alpha_right": 0.8},
+        ),
+        ("icr_symmetric", {"alpha": 0.8, "b_hat": 0.9}),
+        ("differential_drive", {"track_width": 0.7}),
+    ],
+)
+def test_the_icr_form_moves_as_the_model_does(model, values, rng):
+    belief = prior_of(TerrainParameters(model, values))
+    as_icr = np.concatenate([belief.icrs, belief.alphas])
+    for speeds in rng.uniform(-2, 2, (5, 2)):
+        np.testing.assert_allclose(
+            MODELS["icr"].twist(as_icr, speeds),
+            MODELS[model].twist(MODELS[model].pack(values), speeds),
+            atol=1e-14,
+        )
+
+
+def test_the_traction_mode_of_the_conventions():
+    """alpha_left = alpha_right = k and y_left - y_right = b k / m."""
+    belief = prior_of(TerrainParameters("traction_mode", {"k": 0.9, "m": 0.6, "track_width": 0.4}))
+    np.testing.assert_allclose(belief.icrs, [0.3, -0.3, 0])
+    np.testing.assert_array_equal(belief.alphas, [0.9, 0.9])
+
+
+def test_a_model_without_constant_icrs_is_refused():
+    values = {"alpha": 0.9, "beta_1": 1.0, "beta_2": 1.0, "track_width": 1.2}
+    with pytest.raises(ParameterError, match=r"terrain\.here.*radius_of_curvature"):
+        prior_of(TerrainParameters("radius_of_curvature", values))
+
+
+def test_effects_are_refused():
+    values = {"y_left": 0.4, "y_right": -0.5, "x_icr": 0.1}
+    with pytest.raises(ParameterError, match=r"terrain\.here.*effects"):
+        prior_of(TerrainParameters("icr", values, effects=({"name": "slope"},)))

@@ -1,0 +1,103 @@
+"""Rigid motions against homogeneous matrices and scipy's matrix exponential."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.linalg import expm
+
+from odometry.geometry import se2
+
+length = st.floats(-50, 50)
+turn = st.one_of(
+    st.floats(-7, 7), st.floats(-3e-4, 3e-4), st.sampled_from([0.0, 1e-4, -1e-4, 1e-9, 1e-300])
+)
+pose = st.tuples(length, length, st.floats(-7, 7)).map(np.array)
+displacement = st.tuples(length, length, turn).map(np.array)
+
+
+def matrix(pose):
+    x, y, yaw = pose
+    c, s = np.cos(yaw), np.sin(yaw)
+    return np.array([[c, -s, x], [s, c, y], [0, 0, 1]])
+
+
+@given(displacement)
+def test_exp_is_the_matrix_exponential(step):
+    v_x, v_y, omega = step
+    generator = np.array([[0, -omega, v_x], [omega, 0, v_y], [0, 0, 0]])
+    np.testing.assert_allclose(matrix(se2.exp(step)), expm(generator), rtol=0, atol=1e-11)
+
+
+def test_exp_of_a_quarter_turn_to_the_left():
+    """A quarter of a circle of radius 2 ends 2 ahead and 2 to the left."""
+    np.testing.assert_allclose(
+        se2.exp(np.array([np.pi, 0, np.pi / 2])), [2, 2, np.pi / 2], atol=1e-15
+    )
+
+
+def test_exp_keeps_whole_turns():
+    assert se2.exp(np.array([0, 0, 7.0]))[2] == 7.0
+
+
+@given(pose, pose)
+def test_compose_is_the_matrix_product(one, other):
+    np.testing.assert_allclose(
+        matrix(se2.compose(one, other)), matrix(one) @ matrix(other), rtol=0, atol=1e-11
+    )
+
+
+@given(pose)
+def test_inverse_undoes(one):
+    np.testing.assert_allclose(
+        matrix(se2.compose(one, se2.inverse(one))), np.eye(3), rtol=0, atol=1e-11
+    )
+
+
+@given(pose, pose)
+def test_between_leads_from_one_to_the_other(one, other):
+    np.testing.assert_allclose(
+        matrix(se2.between(one, other)),
+        np.linalg.inv(matrix(one)) @ matrix(other),
+        rtol=0,
+        atol=1e-10,
+    )
+
+
+@given(pose, st.tuples(length, length))
+def test_transform_takes_points_to_the_parent(one, point):
+    expected = matrix(one) @ [*point, 1]
+    np.testing.assert_allclose(
+        se2.transform(one, np.array(point)), expected[:2], rtol=0, atol=1e-11
+    )
+
+
+def test_transform_of_many_points_by_many_poses(rng):
+    poses, points = rng.normal(size=(4, 1, 3)), rng.normal(size=(1, 5, 2))
+    moved = se2.transform(poses, points)
+    assert moved.shape == (4, 5, 2)
+    np.testing.assert_allclose(moved[3, 2], se2.transform(poses[3, 0], points[0, 2]), atol=1e-15)
+
+
+@pytest.mark.parametrize("function", [se2.compose, se2.between])
+def test_stacks_of_pairs_are_taken_one_by_one(rng, function):
+    ones, others = rng.normal(size=(2, 6, 3))
+    each = [function(one, other) for one, other in zip(ones, others, strict=True)]
+    np.testing.assert_allclose(function(ones, others), each, rtol=0, atol=1e-15)
+
+
+def test_stacks_of_displacements_are_taken_one_by_one(rng):
+    steps = np.vstack([rng.normal(size=(5, 3)), [1, 2, 0], [1, 2, 1e-7]])
+    np.testing.assert_allclose(
+        se2.exp(steps), [se2.exp(step) for step in steps], rtol=0, atol=1e-15
+    )
+
+
+@given(displacement)
+def test_exp_jacobian_is_the_derivative(step):
+    """Central differences; the error is of the order of eps / h for lengths of 50."""
+    h = 1e-5
+    numeric = np.column_stack(
+        [(se2.exp(step + h * e) - se2.exp(step - h * e)) / (2 * h) for e in np.eye(3)]
+    )
+    np.testing.assert_allclose(se2.exp_jacobian(step), numeric, rtol=0, atol=2e-8)

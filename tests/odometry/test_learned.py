@@ -1,0 +1,67 @@
+import numpy as np
+import pytest
+
+from odometry.estimation.icr_ekf import IcrEkf
+from odometry.learned import learned_parameters
+from odometry.parameters import ParameterSet, TerrainParameters, read_parameters, write_parameters
+from odometry.pipeline import replay
+from odometry.run import Frame, Run
+
+BEFORE = ParameterSet(
+    {
+        "a": TerrainParameters(
+            "icr", {"y_left": 0.3, "y_right": -0.3, "x_icr": 0.0, "alpha_right": 0.9}, source="old"
+        ),
+        "never": TerrainParameters("icr_symmetric", {"alpha": 0.9, "b_hat": 0.7}, source="old"),
+    },
+    {"name": "a robot"},
+)
+
+
+class Zones:
+    """a, then b, then c, by time."""
+
+    initial = "a"
+
+    def terrain(self, frame, _):
+        return "a" if frame.stamp_s < 2 else "b" if frame.stamp_s < 4 else "c"
+
+
+@pytest.fixture
+def result(make_run):
+    """Poses on a and b, none on c."""
+    stamps_s = np.arange(0, 6.01, 0.25)
+    odometry = "t,v_left,v_right\n" + "".join(f"{t},0.2,0.5\n" for t in stamps_s)
+    yaws = {t: 0.45 * t for t in stamps_s if t < 4}
+    poses = "t,x,y,yaw\n" + "".join(
+        f"{t},{0.8 * np.sin(yaw)},{0.8 * (1 - np.cos(yaw))},{yaw}\n" for t, yaw in yaws.items()
+    )
+    run = Run.read(make_run(odometry=odometry, pose=poses))
+    return replay(run, IcrEkf(0.6, BEFORE), Zones())
+
+
+def test_terrains_with_poses_are_learned_and_others_stay(result):
+    learned = learned_parameters(BEFORE, result, "my_run")
+    assert list(learned.terrains) == ["a", "never", "b"]
+    assert learned.terrains["never"] is BEFORE.terrains["never"]
+    assert learned.vehicle == {"name": "a robot"}
+    assert "my_run" in learned.terrains["b"].source
+    assert " 8 poses" in learned.terrains["b"].source
+
+
+def test_what_is_written_is_what_the_filter_held_when_it_left(result, tmp_path):
+    write_parameters(tmp_path / "learned.toml", learned_parameters(BEFORE, result, "my_run"))
+    learned = read_parameters(tmp_path / "learned.toml").terrains["a"]
+    (last,) = (e for e in result.estimates if e.stamp_s == 1.75)
+    held = dict(zip(("y_left", "y_right", "x_icr"), last.mean[3:], strict=True))
+    assert learned.values == {**held, "alpha_left": 1.0, "alpha_right": 0.9}
+    np.testing.assert_allclose(
+        learned.covariance_of(("y_left", "y_right", "x_icr")), last.covariance[3:, 3:], rtol=1e-12
+    )
+
+
+def test_the_next_filter_starts_from_it(result):
+    learned = learned_parameters(BEFORE, result, "my_run")
+    start = IcrEkf(0.6, learned).start(Frame(0.0, np.zeros(2), 0, None, None), "b")
+    (last,) = (e for e in result.estimates if e.stamp_s == 3.75)
+    np.testing.assert_array_equal(start.mean[3:], last.mean[3:])

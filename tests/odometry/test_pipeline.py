@@ -1,0 +1,150 @@
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from odometry.errors import RunFolderError
+from odometry.estimation.icr_ekf import IcrEkf
+from odometry.parameters import ParameterSet, TerrainParameters
+from odometry.pipeline import ConstantTerrain, replay
+from odometry.run import Run
+
+ICRS = {"y_left": 0.4, "y_right": -0.3, "x_icr": 0.05, "alpha_left": 0.9}
+PARAMETERS = ParameterSet(
+    {
+        "a": TerrainParameters("icr", ICRS),
+        "b": TerrainParameters("icr", {"y_left": 0.8, "y_right": -0.6, "x_icr": -0.1}),
+    }
+)
+
+
+@dataclass
+class FromStamp:
+    """Another terrain from a stamp on; remembers what it was shown."""
+
+    stamp_s: float
+    initial: str = "a"
+
+    def __post_init__(self):
+        self.shown = []
+
+    def terrain(self, frame, estimate):
+        self.shown.append((frame.stamp_s, estimate.stamp_s))
+        return "a" if frame.stamp_s < self.stamp_s else "b"
+
+
+def odometry_csv(stamps_s):
+    rows = [f"{t},{0.5 + 0.2 * np.sin(t)},{0.6 - 0.1 * t}\n" for t in stamps_s]
+    return "t,v_left,v_right\n" + "".join(rows)
+
+
+STAMPS_S = np.arange(0, 4.01, 0.25)
+
+
+def replayed(run, source=None):
+    return replay(run, IcrEkf(0.6, PARAMETERS), source or ConstantTerrain("a"))
+
+
+def reckoned(stamps_s, tables, start):
+    """Open loop by 500 midpoint steps between rows, straight from CONVENTIONS."""
+    x, y, yaw = start
+    places = [(x, y)]
+    for (t, until), table in zip(pairwise(stamps_s), tables, strict=True):
+        v_left = (0.5 + 0.2 * np.sin(t)) * table.get("alpha_left", 1)
+        v_right = (0.6 - 0.1 * t) * table.get("alpha_right", 1)
+        omega = (v_right - v_left) / (table["y_left"] - table["y_right"])
+        v_x = (v_right * table["y_left"] - v_left * table["y_right"]) / (
+            table["y_left"] - table["y_right"]
+        )
+        v_y, dt = -table["x_icr"] * omega, (until - t) / 500
+        for _ in range(500):
+            middle = yaw + omega * dt / 2
+            x += (v_x * np.cos(middle) - v_y * np.sin(middle)) * dt
+            y += (v_x * np.sin(middle) + v_y * np.cos(middle)) * dt
+            yaw += omega * dt
+        places.append((x, y))
+    return np.array(places)
+
+
+def test_without_poses_odometer_and_filter_are_one_open_loop(make_run):
+    result = replayed(Run.read(make_run(odometry=odometry_csv(STAMPS_S))))
+    expected = reckoned(STAMPS_S, [ICRS] * 16, (0, 0, 0))
+    np.testing.assert_allclose(result.odometer().poses[:, :2], expected, atol=1e-7)
+    np.testing.assert_allclose(result.trajectory().poses[:, :2], expected, atol=1e-7)
+    np.testing.assert_array_equal(result.stamps_s, STAMPS_S)
+
+
+def test_the_odometer_takes_the_icrs_held_at_each_moment(make_run):
+    run = Run.read(make_run(odometry=odometry_csv(STAMPS_S)))
+    result = replayed(run, FromStamp(2.0))
+    values = {name: dict(table.values) for name, table in PARAMETERS.terrains.items()}
+    tables = [values["a"] if t < 2.0 else values["b"] for t in STAMPS_S[:-1]]
+    expected = reckoned(STAMPS_S, tables, (0, 0, 0))
+    np.testing.assert_allclose(result.odometer().poses[:, :2], expected, atol=1e-7)
+    assert result.terrains == ("a",) * 8 + ("b",) * 9
+
+
+def test_the_odometer_starts_at_the_first_pose_and_is_never_corrected(make_run):
+    """Poses that say the robot stands still pull the filter, not the odometer."""
+    poses = "t,x,y,yaw\n" + "".join(f"{t},3,4,0.5\n" for t in STAMPS_S[2:])
+    run = Run.read(make_run(odometry=odometry_csv(STAMPS_S), pose=poses))
+    result = replayed(run)
+    assert result.stamps_s[0] == 0.5
+    np.testing.assert_array_equal(result.odometer().poses[0], [3, 4, 0.5])
+    gone = np.linalg.norm(result.odometer().poses[-1, :2] - [3, 4])
+    held = np.linalg.norm(result.trajectory().poses[-1, :2] - [3, 4])
+    assert gone > 0.5
+    assert held < gone / 3
+
+
+def test_the_ideal_differential_drive(make_run):
+    result = replayed(Run.read(make_run(odometry=odometry_csv(STAMPS_S))))
+    ideal = {"y_left": 0.25, "y_right": -0.25, "x_icr": 0.0}
+    np.testing.assert_allclose(
+        result.differential_drive(0.5).poses[:, :2],
+        reckoned(STAMPS_S, [ideal] * 16, (0, 0, 0)),
+        atol=1e-7,
+    )
+
+
+def test_it_starts_at_the_first_whole_pose_within_the_odometry(make_run):
+    poses = "t,x,y,yaw\n-1,9,9,9\n0.1,,2,0\n0.6,1,2,0\n"
+    run = Run.read(make_run(odometry=odometry_csv(STAMPS_S), pose=poses))
+    result = replayed(run)
+    assert result.stamps_s[0] == 0.6
+    np.testing.assert_array_equal(result.means[0, :3], [1, 2, 0])
+
+
+def test_a_run_whose_poses_are_all_empty_starts_at_the_origin(make_run):
+    run = Run.read(make_run(odometry=odometry_csv(STAMPS_S), pose="t,x,y,yaw\n0.6,1,,0\n"))
+    np.testing.assert_array_equal(replayed(run).means[0, :3], [0, 0, 0])
+
+
+def test_poses_outside_of_the_odometry_are_an_error(make_run):
+    run = Run.read(make_run(odometry=odometry_csv(STAMPS_S), pose="t,x,y,yaw\n99,1,1,0\n"))
+    with pytest.raises(RunFolderError, match="pose"):
+        replayed(run)
+
+
+def test_poses_long_after_the_odometry_do_not_carry_it_on(make_run):
+    """The last speeds hold for one period of 0.25 s, not until the pose a minute later."""
+    poses = "t,x,y,yaw\n0,0,0,0\n64,0,0,0\n"
+    result = replayed(Run.read(make_run(odometry=odometry_csv(STAMPS_S), pose=poses)))
+    odometer = result.odometer()
+    assert result.stamps_s[-2:].tolist() == [4.25, 64]
+    np.testing.assert_array_equal(odometer.poses[-1], odometer.poses[-2])
+
+
+def test_the_source_sees_each_frame_with_the_estimate_before_it(make_run):
+    run = Run.read(make_run(odometry=odometry_csv(STAMPS_S)))
+    source = FromStamp(2.0)
+    replayed(run, source)
+    assert source.shown == list(zip(STAMPS_S[1:], STAMPS_S[:-1], strict=True))
+
+
+def test_what_a_replay_holds(make_run):
+    result = replayed(Run.read(make_run(odometry=odometry_csv(STAMPS_S))))
+    assert result.means.shape == result.sigmas.shape == (17, 6)
+    np.testing.assert_allclose(result.sigmas[5], np.sqrt(np.diag(result.estimates[5].covariance)))
+    assert result.jumps.tolist() == [False] * 17

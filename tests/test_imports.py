@@ -1,0 +1,99 @@
+"""Imports point one way, have no circles, and cost nothing until a name is used."""
+
+import ast
+import importlib
+import pkgutil
+import subprocess
+import sys
+from graphlib import TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+HEAVY = ("cv2", "sklearn", "skimage", "matplotlib", "filterpy", "scipy")
+
+
+def module_name(file):
+    parts = file.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+FILES = {
+    module_name(file): file
+    for package in ("odometry", "terrain")
+    for file in sorted((ROOT / package).rglob("*.py"))
+}
+
+
+def imported(file):
+    """Modules of ours that a file imports anywhere in it, functions included."""
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            names = [f"{node.module}.{alias.name}" for alias in node.names] + [node.module]
+            assert node.level == 0, f"{file}: relative import"
+        else:
+            continue
+        yield from (name for name in names if name in FILES)
+
+
+GRAPH = {name: set(imported(file)) - {name} for name, file in FILES.items()}
+
+
+def packages_only(names):
+    return {name for name in names if "." not in name}
+
+
+def test_there_is_no_circle_between_files():
+    """Importing a name from a package's lazy __init__ would hide one: nobody does."""
+    assert sum(map(len, GRAPH.values())) > len(GRAPH)
+    TopologicalSorter(GRAPH).prepare()
+    assert not any(packages_only(targets) for targets in GRAPH.values())
+
+
+def test_odometry_never_imports_terrain():
+    pointing_back = {
+        name: target
+        for name, targets in GRAPH.items()
+        for target in targets
+        if name.split(".")[0] == "odometry" and target.split(".")[0] == "terrain"
+    }
+    assert pointing_back == {}
+
+
+def test_only_the_command_line_imports_click_and_nobody_else_exits():
+    for name, file in FILES.items():
+        if not name.startswith("terrain.cli"):
+            text = file.read_text(encoding="utf-8")
+            assert "import click" not in text, name
+            assert "sys.exit" not in text, name
+
+
+@pytest.mark.parametrize("package", ["odometry", "terrain"])
+def test_every_module_can_be_imported(package):
+    root = importlib.import_module(package)
+    names = [module.name for module in pkgutil.walk_packages(root.__path__, f"{package}.")]
+    assert names
+    for name in names:
+        importlib.import_module(name)
+
+
+@pytest.mark.parametrize("package", ["odometry", "terrain"])
+def test_every_public_name_is_there(package):
+    module = importlib.import_module(package)
+    assert module.__all__
+    for name in module.__all__:
+        assert getattr(module, name) is not None
+
+
+def test_importing_the_packages_imports_nothing_heavy():
+    code = (
+        "import sys, terrain, odometry, terrain.cli.main\n"
+        f"print([name for name in {HEAVY!r} if name in sys.modules])"
+    )
+    finished = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT
+    )
+    assert finished.stdout.strip() == "[]"
