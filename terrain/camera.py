@@ -128,6 +128,8 @@ class Camera:
             If a key is missing or wrong, or not exactly one of `mount` and `ground_to_image` is
             there; the message names `where`.
         """
+        if not isinstance(table, Mapping):
+            raise CameraError(f"{where}: camera = {table!r}, expected a table [camera]")
         try:
             pose = pose_key(table)
             make = cls.from_mount if pose == "mount" else cls.from_homography

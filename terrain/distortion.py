@@ -4,7 +4,6 @@ The polynomials of the model turn back on themselves far from the axis, so that 
 outside the field of view would land in the image. Beyond the turning point the answer is NaN.
 """
 
-import cv2
 import numpy as np
 
 from odometry.arrays import FloatArray
@@ -104,15 +103,55 @@ def _distort(
     valid = radius <= limit  # False for NaN
     image = np.full_like(points, np.nan)
     jacobian = np.full((len(points), 2, 2), np.nan)
-    if valid.any():
-        rays = np.column_stack([points[valid], np.ones(valid.sum())])
-        projected, derivative = cv2.projectPoints(
-            rays, np.zeros(3), np.zeros(3), np.eye(3), distortion if len(distortion) else None
-        )
-        image[valid] = projected.reshape(-1, 2)
-        # columns 3 and 4 are the derivatives by t_x and t_y, which at depth 1 are those by x and y
-        jacobian[valid] = derivative[:, 3:5].reshape(-1, 2, 2)
+    coefficients = np.pad(distortion, (0, 14 - len(distortion)))
+    lens, lens_jacobian = _lens(points[valid], coefficients[:12])
+    image[valid], jacobian[valid] = _tilt(lens, lens_jacobian, coefficients[12:])
     return image, jacobian
+
+
+def _lens(points: FloatArray, coefficients: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Apply the radial, tangential and thin prism terms, with their derivatives (N, 2, 2)."""
+    k1, k2, p1, p2, k3, k4, k5, k6, s1, s2, s3, s4 = coefficients
+    x, y = points.T
+    square = x * x + y * y
+    numerator = 1 + square * (k1 + square * (k2 + square * k3))
+    denominator = 1 + square * (k4 + square * (k5 + square * k6))
+    radial = numerator / denominator
+    slope = k1 + square * (2 * k2 + 3 * square * k3)
+    slope = (slope - radial * (k4 + square * (2 * k5 + 3 * square * k6))) / denominator
+    image = np.column_stack(
+        [
+            x * radial + 2 * p1 * x * y + p2 * (square + 2 * x * x) + square * (s1 + s2 * square),
+            y * radial + p1 * (square + 2 * y * y) + 2 * p2 * x * y + square * (s3 + s4 * square),
+        ]
+    )
+    prism_x, prism_y = 2 * (s1 + 2 * s2 * square), 2 * (s3 + 2 * s4 * square)
+    mixed = 2 * (x * y * slope + p1 * x + p2 * y)
+    jacobian = np.empty((len(points), 2, 2))
+    jacobian[:, 0, 0] = radial + 2 * x * x * slope + 2 * p1 * y + 6 * p2 * x + prism_x * x
+    jacobian[:, 0, 1] = mixed + prism_x * y
+    jacobian[:, 1, 0] = mixed + prism_y * x
+    jacobian[:, 1, 1] = radial + 2 * y * y * slope + 6 * p1 * y + 2 * p2 * x + prism_y * y
+    return image, jacobian
+
+
+def _tilt(
+    points: FloatArray, jacobian: FloatArray, angles: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Project on a sensor that is tilted by (tau_x, tau_y), as OpenCV defines it."""
+    if not angles.any():
+        return points, jacobian
+    (cos_x, cos_y), (sin_x, sin_y) = np.cos(angles), np.sin(angles)
+    about_x = np.array([[1, 0, 0], [0, cos_x, sin_x], [0, -sin_x, cos_x]])
+    about_y = np.array([[cos_y, 0, -sin_y], [0, 1, 0], [sin_y, 0, cos_y]])
+    rotation = about_y @ about_x
+    corner = rotation[2, 2]
+    projection = np.array([[corner, 0, -rotation[0, 2]], [0, corner, -rotation[1, 2]], [0, 0, 1]])
+    matrix = projection @ rotation
+    projected = points @ matrix[:, :2].T + matrix[:, 2]
+    image = projected[:, :2] / projected[:, 2:]
+    by_point = (matrix[:2, :2] - image[:, :, None] * matrix[2, :2]) / projected[:, 2:, None]
+    return image, by_point @ jacobian
 
 
 def _without_folds(points: FloatArray, jacobian: FloatArray) -> FloatArray:

@@ -79,7 +79,7 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "horizon_m": result.config.evaluation.horizon_m,
         "errors": {name: score.to_table() for name, score in result.scores.items()},
         "switches": _switches(result),
-        "sightings": _sightings(result),
+        "sightings": sighting_counts(result),
         "filter": {
             "poses": len(innovations),
             "poses_refused": sum(not innovation.accepted for innovation in innovations),
@@ -89,6 +89,15 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "learned": {name: dict(of.values) for name, of in result.learned.terrains.items()},
         "config": result.config.to_table(),
     }
+
+
+def sighting_counts(result: RunResult) -> dict[str, int]:
+    """How often each label, or each reason for none, was given."""
+    counts: dict[str, int] = {}
+    for sighting in result.watcher.sightings if result.watcher else ():
+        word = sighting.label or f"no label: {sighting.reason}"
+        counts[word] = counts.get(word, 0) + 1
+    return dict(sorted(counts.items()))
 
 
 def _pose_columns(trajectory: Trajectory) -> dict[str, Any]:
@@ -130,12 +139,3 @@ def _switches(result: RunResult) -> list[dict[str, Any]]:
         }
         for event, delay in zip(result.watcher.events, delays, strict=False)
     ]
-
-
-def _sightings(result: RunResult) -> dict[str, int]:
-    """How often each label, or each reason for none, was given."""
-    counts: dict[str, int] = {}
-    for sighting in result.watcher.sightings if result.watcher else ():
-        word = sighting.label or f"no label: {sighting.reason}"
-        counts[word] = counts.get(word, 0) + 1
-    return dict(sorted(counts.items()))

@@ -129,8 +129,12 @@ def _watcher(
             "leave the model out or turn vision off"
         )
     camera = Camera.from_table(run.settings["camera"], str(run.folder / "run.toml"))
-    classifier = model if isinstance(model, TerrainClassifier) else TerrainClassifier.load(Path(model))
-    return TerrainWatcher(run, camera, classifier, initial, config.region, config.switch)
+    classifier = (
+        model if isinstance(model, TerrainClassifier) else TerrainClassifier.load(Path(model))
+    )
+    return TerrainWatcher(
+        run, camera, classifier, initial, region=config.region, switch=config.switch
+    )
 
 
 def _scores(

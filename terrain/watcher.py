@@ -79,6 +79,7 @@ class TerrainWatcher:
         camera: Camera,
         classifier: TerrainClassifier,
         initial: str,
+        *,
         region: RegionConfig,
         switch: SwitchConfig,
     ) -> None:
@@ -134,9 +135,7 @@ class TerrainWatcher:
         )
         if isinstance(region, str):
             return Sighting(frame.stamp_s, name, reason=region)
-        rectangles = (
-            region.rectangle.halves() if self._region.per_tread else (region.rectangle,)
-        )
+        rectangles = region.rectangle.halves() if self._region.per_tread else (region.rectangle,)
         reason = next(filter(None, map(self._unfit, rectangles)), "")
         if reason:
             return Sighting(frame.stamp_s, name, region=region, reason=reason)
@@ -180,9 +179,7 @@ class TerrainWatcher:
         return ground_view(image, self._camera, rectangle, scale)
 
 
-def _sighting(
-    stamp_s: float, name: str, region: Region, answers: list[Classification]
-) -> Sighting:
+def _sighting(stamp_s: float, name: str, region: Region, answers: list[Classification]) -> Sighting:
     if len(answers) == 1:
         return Sighting(stamp_s, name, answers[0].label, answers[0].confidence, region)
     left, right = (answer.label for answer in answers)

@@ -21,12 +21,12 @@ _KNOWN_ICRS = {
 
 
 def default_camera() -> Camera:
-    """Camera on a mast that looks 42 degrees down, as in data/cameras/mast.toml."""
+    """Camera on a mast that looks 40 degrees down, as in data/cameras/mast.toml."""
     return Camera.from_mount(
         (640, 480),
-        [[700.0, 0.0, 319.5], [0.0, 700.0, 239.5], [0.0, 0.0, 1.0]],
+        [[460.0, 0.0, 319.5], [0.0, 460.0, 239.5], [0.0, 0.0, 1.0]],
         [-0.12, 0.05, 0.0005, -0.0003, 0.0],
-        [0.15, 0.0, 1.0, 0.0, radians(42.0), 0.0],
+        [0.15, 0.0, 1.2, 0.0, radians(40.0), 0.0],
     )
 
 
@@ -88,7 +88,7 @@ class SynthesisConfig:
     pose_rate_hz: float = 10.0
     image_rate_hz: float = 4.0
     metres_per_pixel: float = 0.003
-    patch_size_px: int = 128
+    patch_size_px: int = 96
     patches_per_terrain: int = 32
     jpeg_quality: int = 85
     edge_wave_m: float = 0.06

@@ -141,7 +141,7 @@ def test_jpeg_keeps_the_order_of_colours():
 
 
 def test_default_camera_resolves_patches_at_the_region(view):
-    """Ground sampling at about 1 m ahead is as fine as the patches' 3 mm."""
+    """A pixel about 1 m ahead is at most 1.5 times the patches' 3 mm; the region takes up to 2."""
     points = view.points_robot
     near = (np.abs(points[..., 0] - 1.0) < 0.02) & (np.abs(points[..., 1]) < 0.3)
-    assert view.detail_m[near].max() < 0.003
+    assert view.detail_m[near].max() < 1.5 * 0.003

@@ -1,0 +1,237 @@
+"""The output folder: every file, its columns, its numbers, and the same bytes twice."""
+
+import csv
+import json
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from odometry.parameters import read_parameters
+from terrain.config import Config
+from terrain.region import RegionConfig
+from terrain.results import write_results
+from terrain.run_odometry import run_odometry
+
+POSE = ["t", "x", "y", "yaw"]
+STATE = [*POSE, "y_left", "y_right", "x_icr"]
+TERRAIN = ["t", "label", "confidence", "distance_ahead", "terrain_in_force"]
+
+
+@pytest.fixture(scope="module")
+def curvy_result(curvy_run):
+    return run_odometry(curvy_run, terrain="sand")
+
+
+@pytest.fixture(scope="module")
+def curvy_out(curvy_result, tmp_path_factory):
+    out = tmp_path_factory.mktemp("out") / "curvy"
+    write_results(curvy_result, out)
+    return out
+
+
+@pytest.fixture(scope="module")
+def across_out(across_result, tmp_path_factory):
+    out = tmp_path_factory.mktemp("out") / "across"
+    write_results(across_result, out)
+    return out
+
+
+def columns(file):
+    """Header, and columns as text by name."""
+    with file.open(newline="") as stream:
+        rows = list(csv.reader(stream))
+    return rows[0], dict(zip(rows[0], zip(*rows[1:], strict=True), strict=True))
+
+
+def numbers(file, names):
+    """The named columns side by side."""
+    _, found = columns(file)
+    return np.column_stack([np.array(found[name], float) for name in names])
+
+
+def refuse(word):
+    raise ValueError(f"{word} is no JSON")
+
+
+def strict(text):
+    """JSON as the standard has it, without NaN and Infinity."""
+    return json.loads(text, parse_constant=refuse)
+
+
+def test_every_promised_file_is_written_and_nothing_else(across_result, curvy_result, tmp_path):
+    always = {"odometer.csv", "odometer.tum", "estimate.csv", "estimate.tum", "learned.toml"}
+    always |= {"result.json"}
+    for name, result, expected in (
+        ("across", across_result, always | {"terrain.csv"}),
+        ("curvy", curvy_result, always),
+    ):
+        written = write_results(result, tmp_path / name)
+        assert {file.name for file in written} == expected
+        assert {file.name for file in (tmp_path / name).iterdir()} == expected
+
+
+def test_columns_are_those_of_the_format(across_out):
+    assert columns(across_out / "odometer.csv")[0] == POSE
+    sigmas = [f"sigma_{name}" for name in STATE[1:]]
+    assert columns(across_out / "estimate.csv")[0] == STATE + sigmas
+    assert columns(across_out / "terrain.csv")[0][:5] == TERRAIN
+
+
+def test_the_estimates_are_those_of_the_replay(curvy_out, curvy_result):
+    estimates = curvy_result.replay.estimates
+    found = numbers(curvy_out / "estimate.csv", STATE)
+    np.testing.assert_allclose(found[:, 0], [e.stamp_s for e in estimates], atol=1e-9)
+    np.testing.assert_allclose(found[:, 1:], [e.mean for e in estimates], atol=1e-9)
+    sigmas = numbers(curvy_out / "estimate.csv", [f"sigma_{name}" for name in STATE[1:]])
+    variances = [np.diag(e.covariance) for e in estimates]
+    np.testing.assert_allclose(sigmas, np.sqrt(variances), atol=1e-9)
+
+
+def test_the_odometer_is_the_model_run_open_loop_with_the_icrs_then_held(
+    curvy_out, curvy_run, world
+):
+    """Integrated anew, in small steps, from the two tables and the first measured pose."""
+    estimate = numbers(curvy_out / "estimate.csv", STATE)
+    odometry = numbers(curvy_run / "odometry.csv", ["t", "v_left", "v_right"])
+    pose = numbers(curvy_run / "pose.csv", POSE)[0, 1:]
+    expected = [pose]
+    for row, following in pairwise(estimate):
+        speeds = odometry[np.searchsorted(odometry[:, 0], row[0] + 1e-12, side="right") - 1, 1:]
+        v_x, v_y, omega = world.twist(*speeds, *row[4:])
+        step_s = (following[0] - row[0]) / 20
+        x, y, yaw = expected[-1]
+        for _ in range(20):
+            middle = yaw + omega * step_s / 2
+            x += (v_x * np.cos(middle) - v_y * np.sin(middle)) * step_s
+            y += (v_x * np.sin(middle) + v_y * np.cos(middle)) * step_s
+            yaw += omega * step_s
+        expected.append(np.array([x, y, yaw]))
+    odometer = numbers(curvy_out / "odometer.csv", POSE)
+    np.testing.assert_allclose(odometer[:, 0], estimate[:, 0], atol=1e-9)
+    difference = odometer[:, 1:] - expected
+    assert np.abs(difference[:, :2]).max() < 1e-5
+    assert np.abs(np.angle(np.exp(1j * difference[:, 2]))).max() < 1e-6
+    # and it is no copy of the corrected one
+    assert np.abs(odometer[-1, 1:3] - estimate[-1, 1:3]).max() > 1e-3
+
+
+def test_tum_holds_the_same_poses(curvy_out):
+    """TUM: stamp x y z qx qy qz qw, the rotation about z."""
+    for name in ("odometer", "estimate"):
+        poses = numbers(curvy_out / f"{name}.csv", POSE)
+        tum = np.loadtxt(curvy_out / f"{name}.tum")
+        assert tum.shape[1] == 8
+        np.testing.assert_allclose(tum[:, :3], poses[:, :3], atol=1e-8)
+        assert not tum[:, 3:6].any()
+        yaw = 2 * np.arctan2(tum[:, 6], tum[:, 7])
+        np.testing.assert_allclose(np.exp(1j * yaw), np.exp(1j * poses[:, 3]), atol=1e-8)
+
+
+def test_the_terrain_table_says_what_was_seen_and_where(across_out, across_run, world):
+    _, table = columns(across_out / "terrain.csv")
+    images = (across_run / "images.csv").read_text().split()[1:]
+    stamps_s = [float(line.split(",")[0]) for line in images]
+    np.testing.assert_allclose(np.array(table["t"], float), stamps_s, atol=1e-9)
+    assert set(table["label"]) <= {"gravel", "boards", "unknown"}
+    confidence = np.array(table["confidence"], float)
+    assert ((confidence >= 0) & (confidence <= 1)).all()
+    ahead = np.array(table["distance_ahead"], float)
+    assert np.ptp(ahead) < 0.05  # the same motion again and again
+    assert 0.4 < ahead[0] < 0.8
+    on_boards = [name == "boards" for name in table["terrain_in_force"]]
+    x = world.speed_m_s * np.array(stamps_s)
+    half = world.robot["length"] / 2 + 0.12
+    inside = (x > world.edges_m[0] + half) & (x < world.edges_m[1] - half)
+    outside = (x < world.edges_m[0] - half) | (x > world.edges_m[1] + half)
+    assert np.array(on_boards)[inside].all()
+    assert not np.array(on_boards)[outside].any()
+
+
+def test_result_json_is_strict_and_names_the_switches(across_out, across_result):
+    content = strict((across_out / "result.json").read_text())
+    assert content["vision"] is True
+    assert content["initial_terrain"] == "gravel"
+    assert [switch["terrain"] for switch in content["switches"]] == ["boards", "gravel"]
+    for switch in content["switches"]:
+        assert switch["waited_s"] == pytest.approx(switch["stamp_s"] - switch["seen_s"])
+        assert switch["waited_m"] == pytest.approx(0.5 * switch["waited_s"], abs=1e-6)
+    assert sum(content["sightings"].values()) == len(across_result.watcher.sightings)
+    assert content["config"] == across_result.config.to_table()
+    assert content["reference"] == "pose"
+
+
+def test_the_errors_of_result_json_are_those_of_the_tables(curvy_out, curvy_run):
+    """Mean and last distance between odometer.csv and pose.csv, whose stamps it shares."""
+    content = strict((curvy_out / "result.json").read_text())
+    pose = numbers(curvy_run / "pose.csv", POSE)
+    odometer = numbers(curvy_out / "odometer.csv", POSE)
+    rows = np.searchsorted(odometer[:, 0], pose[:, 0] - 1e-6)
+    distances = np.hypot(*(odometer[rows, 1:3] - pose[:, 1:3]).T)
+    found = content["errors"]["odometer"]["position_m"]
+    assert found["mean"] == pytest.approx(distances.mean(), abs=1e-6)
+    assert found["final"] == pytest.approx(distances[-1], abs=1e-6)
+    assert "estimate" not in content["errors"]
+    assert content["filter"]["poses"] == len(pose) - 1  # the first starts the filter
+    assert content["duration_s"] == pytest.approx(12.0)
+
+
+@pytest.mark.parametrize("poses", [True, False])
+def test_a_run_too_short_to_judge_is_still_strict_json(tmp_path, world, poses):
+    run = world.drive_curves(tmp_path / "run", pose=poses, stamps_s=np.array([0.0, 0.05]))
+    write_results(run_odometry(run), tmp_path / "out")
+    content = strict((tmp_path / "out" / "result.json").read_text())
+    assert content["reference"] is None
+    assert content["errors"] == {}
+
+
+def test_the_same_input_gives_the_same_bytes(across_run, classifier, across_out, tmp_path):
+    again = run_odometry(across_run, model=classifier, terrain="gravel")
+    written = write_results(again, tmp_path)
+    for file in written:
+        assert file.read_bytes() == (across_out / file.name).read_bytes(), file.name
+
+
+def test_learned_toml_reads_back_and_starts_the_next_run(curvy_out, curvy_result, curvy_run):
+    assert list(read_parameters(curvy_out / "learned.toml").terrains) == ["sand"]
+    after = run_odometry(curvy_run, parameters=curvy_out / "learned.toml")
+    assert after.initial_terrain == "sand"
+    start, end = after.replay.estimates[0], curvy_result.replay.estimates[-1]
+    np.testing.assert_allclose(start.mean[3:], end.mean[3:], atol=1e-12)
+
+
+def test_where_nothing_was_learned_there_is_no_file_that_cannot_be_read(tmp_path, world):
+    result = run_odometry(world.drive_curves(tmp_path / "run", pose=False))
+    write_results(result, tmp_path / "out")
+    assert not (tmp_path / "out" / "learned.toml").exists()
+
+
+def test_no_table_of_an_earlier_run_stays_behind(across_result, across_run, tmp_path):
+    """With vision first, then without, into one folder."""
+    write_results(across_result, tmp_path)
+    assert (tmp_path / "terrain.csv").exists()
+    write_results(run_odometry(across_run), tmp_path)
+    assert not (tmp_path / "terrain.csv").exists()
+    assert strict((tmp_path / "result.json").read_text())["switches"] == []
+
+
+def test_an_image_without_a_label_is_an_empty_cell_with_a_reason(tmp_path, world, classifier):
+    run = world.drive_straight(tmp_path / "run", world.across, 0.5)
+    (run / "images" / "001.png").write_bytes(b"")
+    write_results(run_odometry(run, model=classifier), tmp_path / "out")
+    _, table = columns(tmp_path / "out" / "terrain.csv")
+    assert table["label"][1] == table["confidence"][1] == ""
+    assert table["reason"][1] == "the image cannot be read"
+    assert table["image"][1] == "images/001.png"
+    assert table["label"][0] == table["label"][2] == "gravel"
+    content = strict((tmp_path / "out" / "result.json").read_text())
+    assert content["sightings"]["no label: the image cannot be read"] == 1
+
+
+def test_the_tread_strips_have_columns_of_their_own(astride_run, classifier, tmp_path):
+    config = Config(region=RegionConfig(per_tread=True))
+    write_results(run_odometry(astride_run, model=classifier, config=config), tmp_path)
+    header, table = columns(tmp_path / "terrain.csv")
+    assert header[:5] == TERRAIN
+    assert "gravel" in table["left"]
+    assert "boards" in table["right"]

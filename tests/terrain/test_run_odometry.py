@@ -1,0 +1,202 @@
+"""The main job end to end, on runs whose ground and motion the tests made themselves."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from odometry.errors import OdometryError, ParameterError, RunFolderError
+from odometry.parameters import ParameterSet, TerrainParameters, read_parameters, write_parameters
+from odometry.run import Run
+from terrain.config import Config
+from terrain.errors import CameraError, ModelFileError
+from terrain.region import RegionConfig
+from terrain.run_odometry import run_odometry
+
+SET = ParameterSet(
+    {
+        "boards": TerrainParameters("icr", {"y_left": 0.21, "y_right": -0.19, "x_icr": 0.01}),
+        "gravel": TerrainParameters("icr", {"y_left": 0.31, "y_right": -0.27, "x_icr": -0.02}),
+    }
+)
+
+
+def spans(result):
+    """x of the robot where the terrain in force changed, and the new terrain; it drives along x."""
+    pairs = pairwise(result.replay.estimates)
+    return [(now.mean[0], now.terrain) for old, now in pairs if now.terrain != old.terrain]
+
+
+def test_the_terrain_changes_where_the_robot_crosses_the_edges(across_result, world):
+    """Within half a robot length: the region is of that size, and an image comes every 0.12 m."""
+    (first, boards), (second, gravel) = spans(across_result)
+    assert (boards, gravel) == ("boards", "gravel")
+    half = world.robot["length"] / 2
+    assert first == pytest.approx(world.edges_m[0], abs=half)
+    assert second == pytest.approx(world.edges_m[1], abs=half)
+
+
+def test_ground_that_fills_the_region_is_named_rightly(across_result, world):
+    """The robot drives along x at constant speed, so a region's place in the world is known."""
+    wrong = checked = 0
+    for sighting in across_result.watcher.sightings:
+        start = world.speed_m_s * sighting.stamp_s
+        box = sighting.region.rectangle
+        low, high = start + box.x_min, start + box.x_max
+        if all(high < edge or low > edge for edge in world.edges_m):
+            true = "boards" if world.edges_m[0] < low < world.edges_m[1] else "gravel"
+            wrong += sighting.label != true
+            checked += 1
+    assert checked > 15
+    assert wrong <= 0.1 * checked
+
+
+def test_every_image_of_the_run_was_looked_at(across_result, across_run):
+    files = [line.split(",")[1] for line in (across_run / "images.csv").read_text().split()[1:]]
+    assert [sighting.image for sighting in across_result.watcher.sightings] == files
+    assert len(across_result.watcher.in_force) == len(files)
+
+
+def test_a_change_of_terrain_brings_its_parameters(across_run, classifier):
+    """A straight drive says nothing of the ICRs, so the filter holds those of the set."""
+    result = run_odometry(across_run, model=classifier, parameters=SET, terrain="gravel")
+    (_, boards), (_, gravel) = spans(result)
+    assert (boards, gravel) == ("boards", "gravel")
+    for estimate in result.replay.estimates:
+        values = SET.terrains[estimate.terrain].values
+        assert estimate.mean[5] == pytest.approx(values["x_icr"], abs=1e-6)
+        assert estimate.mean[3] - estimate.mean[4] == pytest.approx(
+            values["y_left"] - values["y_right"], abs=0.02
+        )
+
+
+def test_per_tread_sees_a_robot_astride_an_edge(astride_run, classifier):
+    per_tread = Config(region=RegionConfig(per_tread=True))
+    result = run_odometry(astride_run, model=classifier, terrain="gravel", config=per_tread)
+    seen = [(s.label, s.left, s.right) for s in result.watcher.sightings]
+    assert len(seen) > 5
+    assert seen.count(("unknown", "gravel", "boards")) >= 0.9 * len(seen)
+    assert set(result.replay.terrains) == {"gravel"}
+
+
+def test_without_vision_one_terrain_stays_and_no_model_is_opened(across_run):
+    result = run_odometry(across_run, model="no such model", vision=False, terrain="mud")
+    assert set(result.replay.terrains) == {"mud"}
+    assert result.watcher is None
+
+
+def test_without_a_model_one_terrain_stays(across_run):
+    result = run_odometry(across_run)
+    assert set(result.replay.terrains) == {result.initial_terrain}
+    assert result.watcher is None
+
+
+def test_the_first_terrain_is_the_one_named_else_the_sets_first_else_the_runs(
+    tmp_path, world, curvy_run
+):
+    folder = world.drive_curves(tmp_path / "run")
+    world.write_toml(folder / "run.toml", robot=world.robot, run={"terrain": "sand"})
+    assert run_odometry(folder, parameters=SET, terrain="mud").initial_terrain == "mud"
+    assert run_odometry(folder, parameters=SET).initial_terrain == "boards"
+    assert run_odometry(folder).initial_terrain == "sand"
+    assert run_odometry(curvy_run).initial_terrain == "ground"
+
+
+def test_the_reserved_name_is_never_in_force(tmp_path, world, curvy_run):
+    """No parameter set may hold it, so what is learned there could not be handed on."""
+    with pytest.raises(ParameterError, match="'unknown' is reserved"):
+        run_odometry(curvy_run, terrain="unknown")
+    folder = world.drive_curves(tmp_path / "run")
+    world.write_toml(folder / "run.toml", robot=world.robot, run={"terrain": "unknown"})
+    assert run_odometry(folder).initial_terrain == "ground"
+
+
+def test_a_run_and_a_model_may_be_given_as_objects_or_paths(across_run, model_file, across_result):
+    for run, model in ((Run.read(across_run), model_file), (str(across_run), str(model_file))):
+        result = run_odometry(run, model=model, terrain="gravel")
+        np.testing.assert_array_equal(result.replay.means, across_result.replay.means)
+        seen, expected = result.watcher.sightings, across_result.watcher.sightings
+        assert [(s.label, s.confidence) for s in seen] == [
+            (s.label, s.confidence) for s in expected
+        ]
+
+
+def test_a_model_without_images_is_an_error(tmp_path, world, classifier):
+    folder = world.drive_curves(tmp_path / "run")
+    for tables in ({}, {"camera": world.camera}):
+        world.write_toml(folder / "run.toml", robot=world.robot, **tables)
+        with pytest.raises(RunFolderError, match=r"model was given.*no images\.csv"):
+            run_odometry(folder, model=classifier)
+
+
+def test_a_model_without_a_camera_is_an_error(tmp_path, world, classifier):
+    folder = world.drive_straight(tmp_path / "run", world.across, 0.3)
+    world.write_toml(folder / "run.toml", robot=world.robot)
+    with pytest.raises(RunFolderError, match=r"model was given.*no \[camera\] in run\.toml"):
+        run_odometry(folder, model=classifier)
+
+
+def test_a_wrong_camera_and_a_wrong_model_are_errors(tmp_path, world, classifier, across_run):
+    folder = world.drive_straight(tmp_path / "run", world.across, 0.3)
+    camera = {key: value for key, value in world.camera.items() if key != "mount"}
+    world.write_toml(folder / "run.toml", robot=world.robot, camera=camera)
+    with pytest.raises(CameraError, match=r"run\.toml: \[camera\]"):
+        run_odometry(folder, model=classifier)
+    with pytest.raises(ModelFileError, match=r"run\.toml"):
+        run_odometry(across_run, model=across_run / "run.toml")
+
+
+def test_images_of_another_size_than_the_cameras_name_image_and_setting(
+    tmp_path, world, classifier
+):
+    folder = world.drive_straight(tmp_path / "run", world.across, 0.3)
+    camera = world.camera | {"image_size": [320, 240]}
+    world.write_toml(folder / "run.toml", robot=world.robot, camera=camera)
+    with pytest.raises(OdometryError, match=r"000\.png.*160x120.*320x240"):
+        run_odometry(folder, model=classifier)
+
+
+def test_what_there_is_to_judge_by_decides_what_is_judged(tmp_path, world, curvy_run):
+    """The filter has seen pose.csv, so only truth.csv may judge it."""
+    by_pose = run_odometry(curvy_run)
+    assert by_pose.reference_name == "pose"
+    assert set(by_pose.scores) == {"odometer", "differential_drive"}
+    by_truth = run_odometry(world.drive_curves(tmp_path / "truth", truth=True))
+    assert by_truth.reference_name == "truth"
+    assert set(by_truth.scores) == {"odometer", "differential_drive", "estimate"}
+    by_nothing = run_odometry(world.drive_curves(tmp_path / "nothing", pose=False))
+    assert (by_nothing.reference_name, by_nothing.reference) == ("", None)
+    assert by_nothing.scores == {}
+
+
+def test_truth_is_for_scoring_alone(tmp_path, world):
+    """With and without truth.csv the estimates are the same."""
+    plain = run_odometry(world.drive_curves(tmp_path / "plain"))
+    told = run_odometry(world.drive_curves(tmp_path / "told", truth=True))
+    np.testing.assert_array_equal(plain.replay.means, told.replay.means)
+
+
+def test_the_filter_finds_the_icrs_of_the_drive_and_the_next_run_starts_there(tmp_path, curvy_run):
+    """The drive was made with y_left 0.26, y_right -0.24, x_icr 0.03."""
+    first = run_odometry(curvy_run, terrain="sand")
+    learned = first.learned.terrains["sand"].values
+    found = [learned[name] for name in ("y_left", "y_right", "x_icr")]
+    np.testing.assert_allclose(found, [0.26, -0.24, 0.03], atol=0.02)
+    write_parameters(tmp_path / "set.toml", first.learned)
+    second = run_odometry(curvy_run, parameters=tmp_path / "set.toml")
+    assert second.initial_terrain == "sand"
+    np.testing.assert_allclose(second.replay.means[0, 3:], found, atol=1e-12)
+    belief = first.replay.estimates[-1].covariance[3:, 3:]
+    np.testing.assert_allclose(second.replay.estimates[0].covariance[3:, 3:], belief, atol=1e-12)
+    assert read_parameters(tmp_path / "set.toml") is not None
+
+
+def test_terrains_not_visited_keep_their_tables(curvy_run):
+    result = run_odometry(curvy_run, parameters=SET, terrain="sand")
+    assert list(result.learned.terrains) == ["boards", "gravel", "sand"]
+    assert result.learned.terrains["boards"] == SET.terrains["boards"]
+
+
+def test_a_run_folder_that_is_none_is_an_error(tmp_path):
+    with pytest.raises(RunFolderError, match="no such folder"):
+        run_odometry(tmp_path / "absent")
