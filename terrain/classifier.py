@@ -1,0 +1,238 @@
+"""The terrain classifier: SFTA features, a scaler and k nearest neighbours, with rejection."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+
+from odometry.arrays import AnyArray, ByteImage, IntArray
+from odometry.errors import ConfigError
+from terrain.errors import ImageError, ModelFileError, PatchError
+from terrain.features import feature_matrix
+from terrain.model_settings import ModelSettings
+from terrain.neighbours import vote
+from terrain.patches import RESERVED_LABEL, cut_patches
+from terrain.persistence import read_model, write_model
+from terrain.presets import PRESETS
+from terrain.training_set import check_labels, common_size, has_colour
+from terrain.validation import CrossValidation, cross_validate
+
+
+@dataclass(frozen=True)
+class Classification:
+    """The answer for one image.
+
+    Attributes
+    ----------
+    label : str
+        The terrain, or ``unknown`` where `distance` is beyond the rejection threshold.
+    confidence : float
+        The probability of the likeliest known terrain, also where the label is ``unknown``.
+    distance : float
+        Distance to the nearest class in the preset's measure; compare with
+        `TerrainClassifier.rejection_distance_`.
+    probabilities : dict of str to float
+        One per known terrain; they add up to 1.
+    """
+
+    label: str
+    confidence: float
+    distance: float
+    probabilities: dict[str, float]
+
+
+class TerrainClassifier:
+    """Name the terrain of ground patches, or say that it is unknown.
+
+    Parameters
+    ----------
+    preset : {"default", "chen2023"}
+        ``chen2023`` is the paper: SFTA of the grey image (n_t = 4), unscaled, Euclidean nearest
+        neighbours. ``default`` takes SFTA of 19 filtered copies of the grey image, counts by
+        area, scaled and projected on shrunk linear discriminants before the neighbours vote.
+    colour : bool
+        Add SFTA of two colour differences (``default`` only). Off by default: colour depends on
+        camera, white balance and light, and where each class came from a camera of its own it
+        recognises the camera. Use it where training and use share one camera. It stays off if
+        the training patches are grey; see `colour_`.
+    metres_per_pixel : float, optional
+        The scale of the patches on the ground; kept for those who cut patches for it.
+    rejected_share : float
+        The share of known ground that may be called unknown: the rejection distance is this
+        upper quantile of out-of-fold distances.
+
+    Attributes
+    ----------
+    classes_ : list of str
+    patch_size_px : int
+    colour_ : bool
+    n_neighbors_ : int
+    rejection_distance_ : float
+    cross_validation_ : CrossValidation
+        Of the last `fit`; a loaded classifier has none.
+
+    References
+    ----------
+    Chen et al. 2023, eq. 18-21 (features) and 23-26 (neighbours).
+    """
+
+    def __init__(
+        self,
+        preset: str = "default",
+        *,
+        colour: bool = False,
+        metres_per_pixel: float | None = None,
+        rejected_share: float = 0.05,
+    ) -> None:
+        if preset not in PRESETS:
+            raise ConfigError(f"preset '{preset}' is not one of {', '.join(sorted(PRESETS))}")
+        if not 0 < rejected_share < 1:
+            raise ConfigError(f"rejected_share is {rejected_share}, expected between 0 and 1")
+        self.preset = preset
+        self.colour = colour
+        self.metres_per_pixel = metres_per_pixel
+        self.rejected_share = rejected_share
+
+    def fit(
+        self,
+        images: Sequence[ByteImage],
+        labels: Sequence[str],
+        groups: Sequence[str],
+        progress: bool = False,
+    ) -> Self:
+        """Learn from labelled patches.
+
+        Parameters
+        ----------
+        images : sequence of ByteImage
+            Square patches of one size, grey (S, S) or RGB (S, S, 3).
+        labels, groups : sequences of str
+            The terrain of each patch, and the photograph (or part of one) that it is of. k and
+            the rejection distance are chosen by cross-validation that keeps groups whole.
+        progress : bool
+            Show a progress bar.
+
+        Raises
+        ------
+        PatchError
+            If the patches differ in size, or there are fewer than two classes, or a class has
+            patches of fewer than two groups, or nothing varies within the classes.
+        """
+        check_labels(len(images), labels, groups)
+        self.patch_size_px = common_size(images)
+        self.classes_ = sorted(set(labels))
+        codes: IntArray = np.searchsorted(self.classes_, labels)
+        preset = PRESETS[self.preset]
+        wanted = self.colour and all(map(has_colour, images))
+        self._features = preset.colour_features if wanted else preset.features
+        self.colour_ = bool(self._features.colour_copies)
+        features = feature_matrix(images, self._features, progress)
+        try:
+            self.cross_validation_: CrossValidation = cross_validate(
+                preset.neighbours, preset.neighbour_counts, features, codes, np.asarray(groups)
+            )
+            self._neighbours = preset.neighbours().fit(features, codes)
+        except np.linalg.LinAlgError as error:
+            raise PatchError(
+                f"{len(images)} patches of {len(self.classes_)} classes are too few, or too much "
+                "alike, to tell how patches of one class differ"
+            ) from error
+        self.n_neighbors_ = self.cross_validation_.n_neighbors
+        self.rejection_distance_ = float(
+            np.quantile(self.cross_validation_.distances, 1 - self.rejected_share)
+        )
+        return self
+
+    def classify(self, images: Sequence[ByteImage]) -> list[Classification]:
+        """Classify images of at least the patch size.
+
+        A larger image is cut into patches side by side; their probabilities are averaged, and
+        the median of their distances decides whether it is unknown.
+
+        Raises
+        ------
+        ImageError
+            If an image is smaller than a patch, or grey where the classifier needs colour.
+        """
+        return [self._classify(image) for image in images]
+
+    def _classify(self, image: ByteImage) -> Classification:
+        patches = cut_patches(image, self.patch_size_px)
+        if not patches:
+            raise ImageError(
+                f"image of {image.shape[1]} x {image.shape[0]} pixels is smaller than the "
+                f"classifier's patches of {self.patch_size_px} x {self.patch_size_px}"
+            )
+        if self.colour_ and image.ndim != 3:
+            raise ImageError("the image is grey, the classifier was trained with colour")
+        features = feature_matrix(patches, self._features)
+        labels = self._neighbours.labels(features, self.n_neighbors_)
+        probabilities = vote(labels, self._neighbours.class_weights_).mean(axis=0)
+        distance = float(np.median(self._neighbours.distances(features)))
+        best = int(probabilities.argmax())  # eq. 26
+        return Classification(
+            self.classes_[best] if distance <= self.rejection_distance_ else RESERVED_LABEL,
+            float(probabilities[best]),
+            distance,
+            dict(zip(self.classes_, probabilities.tolist(), strict=True)),
+        )
+
+    def save(self, path: Path) -> None:
+        """Write the classifier to one file of arrays and JSON; see `terrain.persistence`."""
+        settings = ModelSettings(
+            self.preset,
+            self.colour_,
+            self.metres_per_pixel,
+            self.rejected_share,
+            self.patch_size_px,
+            tuple(self.classes_),
+            self.n_neighbors_,
+            self.rejection_distance_,
+            self._features,
+        )
+        write_model(path, settings.to_table(), self._neighbours.arrays())
+
+    @classmethod
+    def load(cls, path: Path) -> Self:
+        """Read what `save` wrote. The loaded classifier gives the same answers.
+
+        Raises
+        ------
+        ModelFileError
+            If the file is missing, damaged, foreign, or of a newer program. Nothing in it is
+            executed.
+        """
+        table, arrays = read_model(path)
+        try:
+            return cls._from_file(ModelSettings.from_table(table), arrays)
+        except (KeyError, TypeError, ValueError, ConfigError) as error:
+            raise ModelFileError(f"{path}: its settings or arrays do not fit: {error!r}") from error
+
+    @classmethod
+    def _from_file(cls, settings: ModelSettings, arrays: dict[str, AnyArray]) -> Self:
+        model = cls(
+            settings.preset,
+            colour=settings.colour,
+            metres_per_pixel=settings.metres_per_pixel,
+            rejected_share=settings.rejected_share,
+        )
+        model.colour_ = settings.colour
+        model.patch_size_px = settings.patch_size_px
+        model.classes_ = list(settings.classes)
+        model.n_neighbors_ = settings.n_neighbors
+        model.rejection_distance_ = settings.rejection_distance
+        model._features = settings.features
+        model._neighbours = PRESETS[model.preset].neighbours.from_arrays(arrays)
+        model._check_that_parts_fit()
+        return model
+
+    def _check_that_parts_fit(self) -> None:
+        """Ask about one blank patch: ValueError if the parts of a file contradict each other."""
+        blank = np.zeros((self.patch_size_px, self.patch_size_px, 3), np.uint8)
+        features = feature_matrix([blank], self._features)
+        self._neighbours.labels(features, self.n_neighbors_)
+        self._neighbours.distances(features)
+        if len(self.classes_) != len(self._neighbours.class_weights_):
+            raise ValueError(f"{len(self.classes_)} class names for the samples of others")

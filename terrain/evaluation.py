@@ -1,0 +1,80 @@
+"""Scores of classifiers: by patch and by photograph, with intervals; rejection of the unknown."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from sklearn.metrics import confusion_matrix, roc_auc_score
+
+from odometry.arrays import AnyArray, FloatArray, IntArray
+
+BOOTSTRAP_SAMPLES = 2000
+
+
+def confusion(codes: IntArray, answers: IntArray, n_classes: int) -> IntArray:
+    """Count answers (columns) by true class (rows), shape (classes, classes)."""
+    return np.asarray(confusion_matrix(codes, answers, labels=range(n_classes)))
+
+
+def balanced_accuracy(codes: IntArray, answers: IntArray) -> float:
+    """Return the mean over the classes in `codes` of the share that is answered rightly."""
+    right = codes == answers
+    return float(np.mean([right[codes == c].mean() for c in np.unique(codes)]))
+
+
+def photo_votes(
+    codes: IntArray, probabilities: FloatArray, photos: AnyArray
+) -> tuple[IntArray, IntArray, AnyArray]:
+    """Let the patches of each photograph vote with their probabilities.
+
+    Parameters
+    ----------
+    codes : IntArray, shape (n,)
+    probabilities : FloatArray, shape (n, classes)
+    photos : array, shape (n,)
+
+    Returns
+    -------
+    codes, answers : IntArray, shape (photographs,)
+    rows : array, shape (photographs,)
+        The first patch of each photograph, to look up its group.
+    """
+    _, rows, indices = np.unique(photos, return_index=True, return_inverse=True)
+    sums = np.zeros((len(rows), probabilities.shape[1]))
+    np.add.at(sums, indices, probabilities)
+    return codes[rows], sums.argmax(axis=1), rows
+
+
+def balanced_accuracy_interval(
+    codes: IntArray, answers: IntArray, groups: AnyArray, rng: np.random.Generator
+) -> tuple[float, float]:
+    """Return the 95 % bootstrap interval of the balanced accuracy.
+
+    Whole groups (photographs) are drawn with replacement within each class, since patches of one
+    photograph are no independent evidence.
+    """
+    recalls = []
+    for c in np.unique(codes):
+        chosen = codes == c
+        _, members = np.unique(groups[chosen], return_inverse=True)
+        sizes = np.bincount(members)
+        right = np.bincount(members, weights=(answers == codes)[chosen])
+        draws = rng.multinomial(len(sizes), np.full(len(sizes), 1 / len(sizes)), BOOTSTRAP_SAMPLES)
+        recalls.append((draws @ right) / (draws @ sizes))
+    low, high = np.quantile(np.mean(recalls, axis=0), [0.025, 0.975])
+    return float(low), float(high)
+
+
+def rejection_roc_area(known_distances: FloatArray, unknown_distances: FloatArray) -> float:
+    """Return the probability that unknown ground is farther away than known ground."""
+    truth = np.repeat([0, 1], [len(known_distances), len(unknown_distances)])
+    return float(roc_auc_score(truth, np.concatenate([known_distances, unknown_distances])))
+
+
+def confusion_text(table: IntArray, classes: Sequence[str]) -> str:
+    """Lay a confusion table out as text: true classes down, answers across, in per cent."""
+    width = max(9, *(len(name) + 2 for name in classes))
+    lines = [" " * width + "".join(name.rjust(width) for name in classes) + "patches".rjust(width)]
+    for name, row in zip(classes, table, strict=True):
+        shares = "".join(f"{100 * n / max(row.sum(), 1):{width}.1f}" for n in row)
+        lines.append(name.ljust(width) + shares + f"{row.sum():{width}d}")
+    return "\n".join(lines)

@@ -1,0 +1,99 @@
+"""Filtered copies of a grey patch: what each shows is a texture of its own for SFTA.
+
+Every filter takes the grey patch as float32 (rows, columns) and returns an 8-bit image.
+Gains are fixed where the contrast of the ground is told by them, and relative to the patch
+where it is not.
+"""
+
+from collections.abc import Callable
+
+import cv2
+import numpy as np
+
+from odometry.arrays import AnyArray, ByteImage
+
+Filter = Callable[[AnyArray], ByteImage]
+
+
+def reduced(factor: int) -> Filter:
+    """Average over squares of `factor` x `factor` pixels: a coarser scale of the grey image."""
+
+    def apply(grey: AnyArray) -> ByteImage:
+        size = (max(grey.shape[1] // factor, 1), max(grey.shape[0] // factor, 1))
+        return _to_bytes(cv2.resize(grey, size, interpolation=cv2.INTER_AREA))
+
+    return apply
+
+
+def band_pass(sigma_px: float) -> Filter:
+    """Difference of Gaussians of `sigma_px` and its double, 8 grey levels a level."""
+    return lambda grey: _to_bytes(128 + 8 * (_blur(grey, sigma_px) - _blur(grey, 2 * sigma_px)))
+
+
+def gradient_magnitude(sigma_px: float) -> Filter:
+    """Logarithm of the gradient at `sigma_px`: the strength of edges, over decades."""
+
+    def apply(grey: AnyArray) -> ByteImage:
+        across, down = _gradient(grey, sigma_px)
+        return _to_bytes(90 + 40 * np.log(np.hypot(across, down) + 0.2))
+
+    return apply
+
+
+def gradient_orientation(sigma_px: float) -> Filter:
+    """Direction of the gradient at `sigma_px`, modulo half a turn: indifferent to contrast."""
+
+    def apply(grey: AnyArray) -> ByteImage:
+        across, down = _gradient(grey, sigma_px)
+        return _to_bytes((np.arctan2(down, across) % np.pi) * (255 / np.pi))
+
+    return apply
+
+
+def local_contrast(sigma_px: float) -> Filter:
+    """Local contrast normalisation: grey less its local mean, in local standard deviations."""
+
+    def apply(grey: AnyArray) -> ByteImage:
+        mean = _blur(grey, sigma_px)
+        variance = np.maximum(_blur(grey * grey, sigma_px) - mean * mean, 0)
+        return _to_bytes(128 + 50 * (grey - mean) / (np.sqrt(variance) + 1.5))
+
+    return apply
+
+
+def coherence(sigma_px: float) -> Filter:
+    """Coherence of the structure tensor at `sigma_px`: 255 for lines, 0 for grains."""
+
+    def apply(grey: AnyArray) -> ByteImage:
+        across, down = _gradient(grey, sigma_px)
+        xx, yy, xy = (_blur(p, 2 * sigma_px) for p in (across * across, down * down, across * down))
+        return _to_bytes(255 * np.hypot(xx - yy, 2 * xy) / (xx + yy + 1e-3))
+
+    return apply
+
+
+def red_green(image: ByteImage) -> ByteImage:
+    """Red less green of an RGB image (rows, columns, 3), 2 grey levels a level."""
+    red, green, _ = cv2.split(image.astype(np.float32))
+    return _to_bytes(128 + 2 * (red - green))
+
+
+def yellow_blue(image: ByteImage) -> ByteImage:
+    """Mean of red and green less blue of an RGB image, 2 grey levels a level."""
+    red, green, blue = cv2.split(image.astype(np.float32))
+    return _to_bytes(128 + 2 * ((red + green) / 2 - blue))
+
+
+def _gradient(grey: AnyArray, sigma_px: float) -> tuple[AnyArray, AnyArray]:
+    smooth = _blur(grey, sigma_px)
+    across = cv2.Sobel(smooth, cv2.CV_32F, 1, 0, scale=0.125)
+    down = cv2.Sobel(smooth, cv2.CV_32F, 0, 1, scale=0.125)
+    return np.asarray(across), np.asarray(down)
+
+
+def _blur(image: AnyArray, sigma_px: float) -> AnyArray:
+    return np.asarray(cv2.GaussianBlur(image, (0, 0), sigma_px))
+
+
+def _to_bytes(image: AnyArray) -> ByteImage:
+    return np.clip(np.rint(image), 0, 255).astype(np.uint8)

@@ -1,0 +1,90 @@
+"""The spaces in which nearest neighbours are sought."""
+
+from typing import Self
+
+import numpy as np
+from scipy.linalg import eigh
+from sklearn.base import BaseEstimator, TransformerMixin
+from sklearn.covariance import ledoit_wolf, shrunk_covariance
+from sklearn.decomposition import PCA
+from sklearn.preprocessing import StandardScaler
+
+from odometry.arrays import AnyArray, FloatArray
+
+CLIP = 3.0
+SMALLEST_SHRINKAGE = 0.01
+APPEARANCE_DIMENSIONS = 10
+
+
+class ClippedScaler(StandardScaler):  # type: ignore[misc]
+    """Standardise each feature, then clip it to three standard deviations.
+
+    A count or dimension of an empty region is far from all others; the clip keeps one such
+    feature from outvoting the rest.
+    """
+
+    def transform(self, X: FloatArray, copy: bool | None = None) -> FloatArray:
+        """Map features (n, F) to the same shape."""
+        return np.asarray(np.clip(super().transform(X, copy=copy), -CLIP, CLIP))
+
+
+class DiscriminantMetric(TransformerMixin, BaseEstimator):  # type: ignore[misc]
+    """Project on linear discriminants: distances in units of the spread within a class.
+
+    Fisher's linear discriminant analysis. The covariance within classes, of all classes
+    together, is shrunk towards a multiple of the identity by Ledoit and Wolf's share, at least
+    1 %: it stays defined with fewer samples than features.
+
+    Attributes
+    ----------
+    projection_ : FloatArray, shape (F, classes - 1)
+
+    References
+    ----------
+    Ledoit and Wolf 2004, "A well-conditioned estimator for large-dimensional covariance matrices".
+    """
+
+    def fit(self, X: FloatArray, y: AnyArray) -> Self:
+        """Learn the projection from features `X` (n, F) and labels `y` (n,).
+
+        Raises
+        ------
+        LinAlgError
+            If the samples of each class are all alike.
+        """
+        classes, codes, counts = np.unique(y, return_inverse=True, return_counts=True)
+        means = np.array([X[codes == c].mean(axis=0) for c in range(len(classes))])
+        within = X - means[codes]
+        _, share = ledoit_wolf(within, assume_centered=True)
+        covariance = shrunk_covariance(within.T @ within / len(X), max(share, SMALLEST_SHRINKAGE))
+        between = np.cov(means.T, fweights=counts, bias=True)
+        _, vectors = eigh(between, covariance)  # ascending, of unit length within classes
+        self.projection_ = np.ascontiguousarray(vectors[:, : -len(classes) : -1])
+        return self
+
+    def transform(self, X: FloatArray) -> FloatArray:
+        """Map features (n, F) to discriminants (n, classes - 1)."""
+        return np.asarray(X @ self.projection_)
+
+
+class AppearanceMetric(TransformerMixin, BaseEstimator):  # type: ignore[misc]
+    """Project on whitened principal components: what patches look like, whatever their class.
+
+    Attributes
+    ----------
+    offset_ : FloatArray, shape (F,)
+    projection_ : FloatArray, shape (F, up to 10)
+    """
+
+    def fit(self, X: FloatArray, y: AnyArray | None = None) -> Self:  # noqa: ARG002
+        """Learn the components of features `X` (n, F)."""
+        analysis = PCA(min(APPEARANCE_DIMENSIONS, *X.shape), svd_solver="covariance_eigh").fit(X)
+        spread = np.sqrt(analysis.explained_variance_)
+        kept = spread > 1e-6 * spread[0]
+        self.offset_ = analysis.mean_
+        self.projection_ = np.ascontiguousarray(analysis.components_[kept].T / spread[kept])
+        return self
+
+    def transform(self, X: FloatArray) -> FloatArray:
+        """Map features (n, F) to components of unit variance."""
+        return np.asarray((X - self.offset_) @ self.projection_)

@@ -1,0 +1,175 @@
+"""Nearest neighbours: who they are, how they vote, and how far away they are.
+
+Two final classes behind one face, `Neighbours`: `PlainNeighbours` is the paper's,
+`DiscriminantNeighbours` the default's. Features are (n, F), class codes 0 ... classes - 1.
+"""
+
+from collections.abc import Mapping
+from typing import Protocol, Self
+
+import numpy as np
+from sklearn.neighbors import KNeighborsClassifier
+from sklearn.pipeline import Pipeline, make_pipeline
+
+from odometry.arrays import AnyArray, FloatArray, IntArray
+from terrain.metric import AppearanceMetric, ClippedScaler, DiscriminantMetric
+from terrain.novelty import NEIGHBOURS, LocalSparsity
+
+
+class Neighbours(Protocol):
+    """What the classifier asks of its nearest neighbours."""
+
+    class_weights_: FloatArray
+
+    def fit(self, features: FloatArray, codes: IntArray) -> Self:
+        """Learn from training features (n, F) and class codes (n,)."""
+
+    def labels(self, features: FloatArray, k: int) -> IntArray:
+        """Return the class codes of the k nearest training samples, nearest first, (n, k)."""
+
+    def distances(self, features: FloatArray) -> FloatArray:
+        """Return the distances to the nearest class, (n,)."""
+
+    def arrays(self) -> dict[str, AnyArray]:
+        """Return everything learned, by name."""
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, AnyArray]) -> Self:
+        """Rebuild from what `arrays` gave; KeyError or ValueError if they do not fit."""
+
+
+def vote(labels: IntArray, class_weights: FloatArray) -> FloatArray:
+    """Turn the neighbours' classes into probabilities.
+
+    Parameters
+    ----------
+    labels : IntArray, shape (n, k)
+    class_weights : FloatArray, shape (classes,)
+        The weight of one neighbour of each class; 1 throughout in the paper.
+
+    Returns
+    -------
+    FloatArray, shape (n, classes)
+        Rows add up to 1. The paper decides for the largest (eq. 26).
+
+    References
+    ----------
+    Chen et al. 2023, eq. 25 (g_i = k_i, here weighted).
+    """
+    counts = np.stack([(labels == c).sum(axis=1) for c in range(len(class_weights))], axis=1)
+    votes = counts * class_weights  # eq. 25
+    return np.asarray(votes / votes.sum(axis=1, keepdims=True))
+
+
+class PlainNeighbours:
+    """Euclidean neighbours of unscaled features, one vote each (Chen et al. 2023, eq. 24-25)."""
+
+    class_weights_: FloatArray
+
+    def fit(self, features: FloatArray, codes: IntArray) -> Self:
+        """Remember features (n, F) and class codes (n,)."""
+        self.pipeline_ = make_pipeline(_knn()).fit(features, codes)
+        self.class_weights_ = np.ones(int(codes.max()) + 1)
+        return self
+
+    def labels(self, features: FloatArray, k: int) -> IntArray:
+        """Return the class codes of the k nearest, (n, k)."""
+        return _labels(self.pipeline_, features, k)
+
+    def distances(self, features: FloatArray) -> FloatArray:
+        """Return the mean Euclidean distances to the nearest samples, (n,)."""
+        return _mean_distances(self.pipeline_, features)  # eq. 24
+
+    def arrays(self) -> dict[str, AnyArray]:
+        """Return the training samples."""
+        return {"points": self.pipeline_[-1]._fit_X, "codes": self.pipeline_[-1]._y}
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, AnyArray]) -> Self:
+        """Rebuild from the training samples."""
+        return cls().fit(arrays["points"], arrays["codes"])
+
+
+class DiscriminantNeighbours:
+    """Neighbours among shrunk linear discriminants; rare classes weigh as much as common ones.
+
+    A distance is the mean distance to the nearest samples among the discriminants, times the
+    local sparsity among whitened principal components. The first factor asks whether a patch is
+    like any class in what tells classes apart, the second whether it looks like anything seen.
+    """
+
+    class_weights_: FloatArray
+
+    def fit(self, features: FloatArray, codes: IntArray) -> Self:
+        """Learn scale, discriminants, components and spacings from (n, F) and (n,)."""
+        self.pipeline_ = make_pipeline(ClippedScaler(), DiscriminantMetric(), _knn())
+        self.pipeline_.fit(features, codes)
+        self.class_weights_ = 1.0 / np.bincount(codes)
+        scaled = self.pipeline_[0].transform(features)
+        self.appearance_ = AppearanceMetric().fit(scaled)
+        self.sparsity_ = LocalSparsity().fit(self.appearance_.transform(scaled))
+        return self
+
+    def labels(self, features: FloatArray, k: int) -> IntArray:
+        """Return the class codes of the k nearest, (n, k)."""
+        return _labels(self.pipeline_, features, k)
+
+    def distances(self, features: FloatArray) -> FloatArray:
+        """Return discriminant distance times local sparsity, (n,)."""
+        appearance = self.appearance_.transform(self.pipeline_[0].transform(features))
+        return _mean_distances(self.pipeline_, features) * self.sparsity_.sparsity(appearance)
+
+    def arrays(self) -> dict[str, AnyArray]:
+        """Return everything learned."""
+        scaler, metric, knn = (step for _, step in self.pipeline_.steps)
+        return {
+            "scaler_mean": scaler.mean_,
+            "scaler_scale": scaler.scale_,
+            "discriminants": metric.projection_,
+            "points": knn._fit_X,
+            "codes": knn._y,
+            "appearance_offset": self.appearance_.offset_,
+            "appearance_projection": self.appearance_.projection_,
+            "appearance_points": self.sparsity_.points_,
+            "appearance_spacings": self.sparsity_.spacings_,
+        }
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, AnyArray]) -> Self:
+        """Rebuild without learning again."""
+        model = cls()
+        scaler, metric = ClippedScaler(), DiscriminantMetric()
+        scaler.mean_, scaler.scale_ = arrays["scaler_mean"], arrays["scaler_scale"]
+        metric.projection_ = arrays["discriminants"]
+        knn = _knn().fit(arrays["points"], arrays["codes"])
+        model.pipeline_ = make_pipeline(scaler, metric, knn)
+        model.class_weights_ = 1.0 / np.bincount(arrays["codes"])
+        model.appearance_ = AppearanceMetric()
+        model.appearance_.offset_ = arrays["appearance_offset"]
+        model.appearance_.projection_ = arrays["appearance_projection"]
+        model.sparsity_ = LocalSparsity().restore(
+            arrays["appearance_points"], arrays["appearance_spacings"]
+        )
+        return model
+
+
+def _knn() -> KNeighborsClassifier:
+    return KNeighborsClassifier(n_neighbors=1, algorithm="brute")
+
+
+def _labels(pipeline: Pipeline, features: FloatArray, k: int) -> IntArray:
+    knn = pipeline[-1]
+    indices = knn.kneighbors(_to_space(pipeline, features), k, return_distance=False)
+    return np.asarray(knn._y[indices], dtype=np.int64)
+
+
+def _mean_distances(pipeline: Pipeline, features: FloatArray) -> FloatArray:
+    knn = pipeline[-1]
+    k = min(NEIGHBOURS, knn.n_samples_fit_)
+    return np.asarray(knn.kneighbors(_to_space(pipeline, features), k)[0].mean(axis=1))
+
+
+def _to_space(pipeline: Pipeline, features: FloatArray) -> FloatArray:
+    for _, step in pipeline.steps[:-1]:
+        features = step.transform(features)
+    return features

@@ -1,0 +1,183 @@
+"""Labelled photographs of ground: find them, group them, cut them to patches of one size."""
+
+import csv
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from odometry.arrays import ByteImage
+from terrain.errors import PatchError
+from terrain.images import read_image
+
+SUFFIXES = (".jpg", ".jpeg", ".png")
+RESERVED_LABEL = "unknown"
+PATCHES_PER_PHOTO = 60
+
+
+@dataclass(frozen=True)
+class LabelledPhoto:
+    """One photograph: its file, its terrain name and the photo_id that groups it."""
+
+    path: Path
+    label: str
+    group: str
+
+
+@dataclass(frozen=True)
+class LabelledPatches:
+    """Patches of one size with their terrain names, groups and the photographs they are of."""
+
+    images: list[ByteImage]
+    labels: list[str]
+    groups: list[str]
+    photos: list[Path]
+    too_small: list[Path]
+
+
+def find_photos(root: Path) -> list[LabelledPhoto]:
+    """Return the photographs of ``root/<class>/*.jpg|png``, sorted by path.
+
+    Photographs are grouped by the ``photo_id`` of ``manifest.csv`` in `root` or its parent;
+    a photograph that no manifest names is a group of its own.
+
+    Raises
+    ------
+    PatchError
+        If `root` is not a folder, holds no photographs, or uses the reserved name ``unknown``.
+    """
+    if not root.is_dir():
+        raise PatchError(f"{root} is not a folder; expected {root}/<class>/*.jpg or *.png")
+    groups = _photo_ids(root)
+    photos = [
+        LabelledPhoto(path, path.parent.name, groups.get(path.resolve(), str(path)))
+        for path in sorted(root.glob("*/*"))
+        if path.suffix.lower() in SUFFIXES
+    ]
+    if not photos:
+        raise PatchError(f"{root} holds no photographs; expected {root}/<class>/*.jpg or *.png")
+    if any(photo.label == RESERVED_LABEL for photo in photos):
+        raise PatchError(f"{root / RESERVED_LABEL}: the name '{RESERVED_LABEL}' is reserved")
+    return photos
+
+
+def cut_patches(image: ByteImage, size_px: int, stride_px: int | None = None) -> list[ByteImage]:
+    """Cut an image into square patches on a centred grid, row by row.
+
+    Parameters
+    ----------
+    image : ByteImage, shape (rows, columns) or (rows, columns, 3)
+    size_px : int
+        Side of a patch.
+    stride_px : int, optional
+        Step of the grid; side by side if left out.
+
+    Returns
+    -------
+    list of ByteImage
+        Views of `image`; empty if it is smaller than one patch.
+    """
+    tops, lefts = (_starts(length, size_px, stride_px or size_px) for length in image.shape[:2])
+    return [image[top : top + size_px, left : left + size_px] for top in tops for left in lefts]
+
+
+def load_patches(
+    photos: Sequence[LabelledPhoto],
+    size_px: int,
+    max_per_photo: int = PATCHES_PER_PHOTO,
+) -> LabelledPatches:
+    """Read photographs and cut them to patches, each overlapping the next by half.
+
+    Parameters
+    ----------
+    photos : sequence of LabelledPhoto
+    size_px : int
+        Side of a patch.
+    max_per_photo : int
+        Keep at most so many patches of a photograph, spread evenly over it.
+
+    Raises
+    ------
+    PatchError
+        If a class has no photograph of at least `size_px` x `size_px`.
+    ImageError
+        If a photograph cannot be read.
+    """
+    patches = LabelledPatches([], [], [], [], [])
+    for photo in photos:
+        cut = cut_patches(read_image(photo.path), size_px, max(size_px // 2, 1))
+        if len(cut) > max_per_photo:
+            cut = [cut[i] for i in np.linspace(0, len(cut) - 1, max_per_photo).astype(int)]
+        if not cut:
+            patches.too_small.append(photo.path)
+        patches.images.extend(cut)
+        patches.labels.extend([photo.label] * len(cut))
+        patches.groups.extend([photo.group] * len(cut))
+        patches.photos.extend([photo.path] * len(cut))
+    counts = Counter(photo.label for photo in photos)
+    for label in sorted(set(counts) - set(patches.labels)):
+        raise PatchError(
+            f"class '{label}': none of its {counts[label]} photographs is {size_px} x {size_px} "
+            "pixels or larger; choose a smaller patch size"
+        )
+    return patches
+
+
+def _starts(length: int, size_px: int, stride_px: int) -> range:
+    if length < size_px:
+        return range(0)
+    count = (length - size_px) // stride_px + 1
+    first = (length - size_px - (count - 1) * stride_px) // 2
+    return range(first, first + count * stride_px, stride_px)
+
+
+def shortest_side_px(photos: Sequence[LabelledPhoto]) -> int:
+    """Shortest side of all photographs.
+
+    Raises
+    ------
+    ImageError
+        If a photograph cannot be read.
+    """
+    return int(min(min(read_image(photo.path).shape[:2]) for photo in photos))
+
+
+def stated_metres_per_pixel(root: Path) -> float | None:
+    """Scale that `manifest.csv` states in a column `metres_per_pixel`, None where it has none.
+
+    Raises
+    ------
+    PatchError
+        If a value is not a number above zero, or the photographs differ in scale.
+    """
+    file, rows = _manifest(root)
+    cells = {row["metres_per_pixel"] for row in rows if row.get("metres_per_pixel")}
+    if not cells:
+        return None
+    try:
+        (scale,) = {float(cell) for cell in cells}
+    except ValueError:
+        seen = ", ".join(sorted(cells))
+        raise PatchError(f"{file}: metres_per_pixel is {seen}; expected one number") from None
+    if not 0 < scale < math.inf:
+        raise PatchError(f"{file}: metres_per_pixel is {scale}; expected a number above zero")
+    return scale
+
+
+def _photo_ids(root: Path) -> dict[Path, str]:
+    file, rows = _manifest(root)
+    return {(file.parent / row["path"]).resolve(): row["photo_id"] for row in rows}
+
+
+def _manifest(root: Path) -> tuple[Path, list[dict[str, str]]]:
+    """Rows of the manifest in `root` or its parent; none where neither has one."""
+    for file in (root / "manifest.csv", root.parent / "manifest.csv"):
+        if file.is_file():
+            with file.open(newline="", encoding="utf-8") as stream:
+                reader = csv.DictReader(stream)
+                if {"path", "photo_id"} <= set(reader.fieldnames or ()):
+                    return file, list(reader)
+    return root / "manifest.csv", []

@@ -1,0 +1,41 @@
+"""The two ways to classify terrain, as a table."""
+
+from dataclasses import dataclass
+
+from terrain.features import COLOUR_COPIES, GREY_COPIES, FeatureSettings
+from terrain.neighbours import DiscriminantNeighbours, Neighbours, PlainNeighbours
+
+
+@dataclass(frozen=True)
+class Preset:
+    """What a preset computes of a patch, and how it looks for neighbours.
+
+    Attributes
+    ----------
+    features, colour_features : FeatureSettings
+        Without and with colour.
+    neighbours : type
+        One of the classes of `terrain.neighbours`.
+    neighbour_counts : tuple of int
+        The numbers k of neighbours among which cross-validation chooses.
+    """
+
+    features: FeatureSettings
+    colour_features: FeatureSettings
+    neighbours: type[Neighbours]
+    neighbour_counts: tuple[int, ...]
+
+
+_CHEN2023 = FeatureSettings(("grey",), (), n_thresholds=4, counts_per_area=False)
+_ALL_GREY = tuple(GREY_COPIES)
+_ALL_COLOUR = tuple(COLOUR_COPIES)
+
+PRESETS = {
+    "default": Preset(
+        FeatureSettings(_ALL_GREY, (), n_thresholds=4, counts_per_area=True),
+        FeatureSettings(_ALL_GREY, _ALL_COLOUR, n_thresholds=4, counts_per_area=True),
+        DiscriminantNeighbours,
+        (5, 9, 15, 25, 45),
+    ),
+    "chen2023": Preset(_CHEN2023, _CHEN2023, PlainNeighbours, (1, 3, 5, 9, 15)),
+}

@@ -1,0 +1,70 @@
+"""From a folder of labelled patches to a fitted classifier."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from terrain.classifier import TerrainClassifier
+from terrain.patches import (
+    LabelledPatches,
+    find_photos,
+    load_patches,
+    shortest_side_px,
+    stated_metres_per_pixel,
+)
+
+LARGEST_PATCH_PX = 128
+
+
+@dataclass(frozen=True)
+class Training:
+    """A fitted classifier and the patches that it was fitted on.
+
+    Attributes
+    ----------
+    classifier : TerrainClassifier
+    patches : LabelledPatches
+    """
+
+    classifier: TerrainClassifier
+    patches: LabelledPatches
+
+
+def train(
+    root: str | Path,
+    *,
+    preset: str = "default",
+    patch_size_px: int | None = None,
+    metres_per_pixel: float | None = None,
+    colour: bool = False,
+    show_progress: bool = False,
+) -> Training:
+    """Cut the photographs of a folder to patches of one size and fit a classifier.
+
+    Parameters
+    ----------
+    root : path
+        `root/<class>/*.jpg|png`, see CONVENTIONS, "Labelled patches".
+    preset : {"default", "chen2023"}
+    patch_size_px : int, optional
+        Side of a patch; by default 128, or the shortest side of a photograph if that is less.
+    metres_per_pixel : float, optional
+        Scale of the photographs, by default what `manifest.csv` states in a column of that name.
+        Without either, a run's images are cropped, not warped.
+    colour : bool
+        Whether colour is used beside grey.
+    show_progress : bool
+
+    Raises
+    ------
+    PatchError
+        If the folder is not as the format says, or has too few photographs of a class.
+    ImageError
+        If a photograph cannot be read.
+    """
+    root = Path(root)
+    photos = find_photos(root)
+    patches = load_patches(photos, patch_size_px or min(LARGEST_PATCH_PX, shortest_side_px(photos)))
+    scale = metres_per_pixel or stated_metres_per_pixel(root)
+    classifier = TerrainClassifier(preset, colour=colour, metres_per_pixel=scale)
+    classifier.fit(patches.images, patches.labels, patches.groups, progress=show_progress)
+    return Training(classifier, patches)

@@ -1,0 +1,37 @@
+"""What labelled patches must be before a classifier learns from them."""
+
+from collections.abc import Sequence
+
+from odometry.arrays import ByteImage
+from terrain.errors import PatchError
+from terrain.patches import RESERVED_LABEL
+
+
+def common_size(images: Sequence[ByteImage]) -> int:
+    """Return the side of square patches of one size; PatchError for any others."""
+    shapes = {image.shape[:2] for image in images}
+    if len(shapes) > 1 or any(rows != columns for rows, columns in shapes):
+        raise PatchError(f"patches must be square and of one size; seen: {sorted(shapes)}")
+    return int(images[0].shape[0])
+
+
+def check_labels(n_images: int, labels: Sequence[str], groups: Sequence[str]) -> None:
+    """Raise PatchError unless there are two classes of two groups each, named lawfully."""
+    if not n_images == len(labels) == len(groups):
+        raise PatchError(f"{n_images} images, {len(labels)} labels and {len(groups)} groups")
+    if RESERVED_LABEL in labels:
+        raise PatchError(f"the label '{RESERVED_LABEL}' is reserved")
+    photos: dict[str, set[str]] = {}
+    for label, group in sorted(zip(labels, groups, strict=True)):
+        photos.setdefault(label, set()).add(group)
+    if len(photos) < 2 or min(map(len, photos.values())) < 2:
+        seen = ", ".join(f"{label} {len(members)}" for label, members in photos.items())
+        raise PatchError(
+            "training needs at least 2 classes with patches of at least 2 photographs each, "
+            f"so that some can be held back; photographs seen: {seen or 'none'}"
+        )
+
+
+def has_colour(image: ByteImage) -> bool:
+    """Tell whether any pixel of an image differs between its channels."""
+    return image.ndim == 3 and bool((image != image[..., :1]).any())

@@ -1,0 +1,59 @@
+import json
+from dataclasses import asdict
+
+import numpy as np
+import pytest
+
+from terrain.features import COLOUR_COPIES, GREY_COPIES, FeatureSettings, feature_matrix
+from terrain.features import patch_features as features_of
+from terrain.filters import gradient_magnitude, red_green, yellow_blue
+from terrain.presets import PRESETS
+from terrain.texture import sfta
+
+GREY = PRESETS["default"].features
+BANK = PRESETS["default"].colour_features
+
+
+def test_chen2023_is_sfta_of_the_grey_image_and_nothing_else(rng):
+    image = rng.integers(0, 256, (40, 40, 3), dtype=np.uint8)
+    for settings in (PRESETS["chen2023"].features, PRESETS["chen2023"].colour_features):
+        np.testing.assert_array_equal(features_of(image, settings), sfta(image, n_thresholds=4))
+
+
+def test_each_copy_gives_its_sfta_with_counts_by_area(rng):
+    image = rng.integers(0, 256, (40, 40, 3), dtype=np.uint8)
+    blocks = features_of(image, BANK).reshape(len(GREY_COPIES) + len(COLOUR_COPIES), 8, 3)
+    grey = ((image @ np.array([30, 59, 11]) + 50) // 100).astype(np.float32)
+    names = [*GREY_COPIES, *COLOUR_COPIES]
+    for name, copy in (
+        ("magnitude_1.4", gradient_magnitude(1.4)(grey)),
+        ("red_green", red_green(image)),
+        ("yellow_blue", yellow_blue(image)),
+    ):
+        expected = sfta(copy).reshape(8, 3) / [1, copy.size, 1]
+        np.testing.assert_allclose(blocks[names.index(name)], expected, atol=1e-12)
+    assert blocks[..., 1].min() >= 0
+    assert blocks[..., 1].max() <= 1
+
+
+def test_counts_by_area_do_not_depend_on_the_size_of_the_patch(rng):
+    tile = np.kron(rng.integers(0, 256, (16, 16), dtype=np.uint8), np.ones((4, 4), np.uint8))
+    settings = FeatureSettings(("grey", "grey_4"), (), 3, counts_per_area=True)
+    small, large = (features_of(image, settings) for image in (tile, np.tile(tile, (2, 2))))
+    np.testing.assert_allclose(small[1::3], large[1::3], atol=1e-12)
+    np.testing.assert_allclose(small[2::3], large[2::3], atol=1e-9)
+
+
+def test_a_matrix_has_a_row_per_patch(rng):
+    images = list(rng.integers(0, 256, (3, 24, 24), dtype=np.uint8))
+    matrix = feature_matrix(images, GREY)
+    assert matrix.shape == (3, 24 * 19)
+    np.testing.assert_array_equal(matrix[2], features_of(images[2], GREY))
+    assert np.isfinite(feature_matrix([np.zeros((24, 24), np.uint8)], GREY)).all()
+
+
+def test_settings_come_back_from_json_and_unknown_copies_are_refused():
+    table = json.loads(json.dumps(asdict(BANK)))
+    assert FeatureSettings.from_table(table) == BANK
+    with pytest.raises(ValueError, match=r"does not know: .*wavelets"):
+        FeatureSettings.from_table(table | {"grey_copies": ["grey", "wavelets"]})

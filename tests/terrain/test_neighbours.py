@@ -1,0 +1,67 @@
+import numpy as np
+import pytest
+from sklearn.neighbors import KNeighborsClassifier
+
+from terrain.neighbours import DiscriminantNeighbours, PlainNeighbours, vote
+
+
+@pytest.fixture
+def samples(rng):
+    codes = np.repeat([0, 1, 2], [60, 20, 40])
+    features = rng.normal(size=(120, 8))
+    features[:, :3] += 3 * np.eye(3)[codes]
+    return features, codes
+
+
+def test_plain_votes_are_scikit_learns(samples, rng):
+    features, codes = samples
+    queries = rng.normal(size=(50, 8)) + 1
+    model = PlainNeighbours().fit(features, codes)
+    for k in (1, 4, 15):
+        expected = KNeighborsClassifier(k).fit(features, codes).predict_proba(queries)
+        np.testing.assert_allclose(vote(model.labels(queries, k), model.class_weights_), expected)
+    gaps = np.linalg.norm(queries[:, None] - features, axis=2)
+    np.testing.assert_allclose(
+        model.distances(queries), np.sort(gaps, axis=1)[:, :5].mean(axis=1), rtol=1e-6
+    )
+
+
+def test_weighted_votes_by_hand():
+    labels = np.array([[0, 0, 0, 1], [1, 1, 2, 2]])
+    np.testing.assert_allclose(
+        vote(labels, np.array([1 / 6, 1 / 2, 1 / 4])), [[0.5, 0.5, 0], [0, 2 / 3, 1 / 3]]
+    )
+
+
+def test_rare_classes_weigh_as_much_as_common_ones(samples):
+    model = DiscriminantNeighbours().fit(*samples)
+    everything = vote(model.labels(samples[0], 120), model.class_weights_)
+    np.testing.assert_allclose(everything, 1 / 3)
+
+
+def test_distance_is_discriminant_distance_times_sparsity(samples, rng):
+    model = DiscriminantNeighbours().fit(*samples)
+    queries = rng.normal(size=(30, 8))
+    scaled = ((queries - samples[0].mean(axis=0)) / samples[0].std(axis=0)).clip(-3, 3)
+    points = model.arrays()["points"]
+    gaps = np.linalg.norm((scaled @ model.pipeline_[1].projection_)[:, None] - points, axis=2)
+    near = np.sort(gaps, axis=1)[:, :5].mean(axis=1)
+    sparsity = model.sparsity_.sparsity(model.appearance_.transform(scaled))
+    np.testing.assert_allclose(model.distances(queries), near * sparsity, rtol=1e-6)
+
+
+def test_unlike_samples_are_farther_by_either_factor(samples):
+    features, codes = samples
+    model = DiscriminantNeighbours().fit(features, codes)
+    strange = np.array([[0, 0, 0, 3, -3, 3, -3, 3.0]])  # like a class, unlike any sample
+    assert model.distances(strange)[0] > np.quantile(model.distances(features), 0.99)
+
+
+@pytest.mark.parametrize("kind", [PlainNeighbours, DiscriminantNeighbours])
+def test_arrays_bring_back_the_same_answers(kind, samples, rng):
+    model = kind().fit(*samples)
+    again = kind.from_arrays({name: array.copy() for name, array in model.arrays().items()})
+    queries = rng.normal(size=(30, 8)) * 2
+    np.testing.assert_array_equal(again.labels(queries, 7), model.labels(queries, 7))
+    np.testing.assert_array_equal(again.distances(queries), model.distances(queries))
+    np.testing.assert_array_equal(again.class_weights_, model.class_weights_)

@@ -1,0 +1,92 @@
+import cv2
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from terrain.errors import ImageError, PatchError
+from terrain.patches import cut_patches, find_photos, load_patches
+
+
+def photo(path, size=(40, 50), seed=0):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    image = np.random.default_rng(seed).integers(0, 256, (*size, 3), dtype=np.uint8)
+    assert cv2.imwrite(str(path), image)
+
+
+@given(st.integers(1, 40), st.integers(1, 40), st.integers(1, 12), st.none() | st.integers(1, 12))
+def test_patches_lie_on_a_centred_grid_that_cannot_be_extended(rows, columns, size, stride):
+    image = np.arange(rows * columns).reshape(rows, columns)
+    patches = cut_patches(image, size, stride)
+    if rows < size or columns < size:
+        assert patches == []
+        return
+    tops = sorted({int(patch[0, 0]) // columns for patch in patches})
+    lefts = sorted({int(patch[0, 0]) % columns for patch in patches})
+    assert len(patches) == len(tops) * len(lefts)
+    for starts, length in ((tops, rows), (lefts, columns)):
+        before, after = starts[0], length - starts[-1] - size
+        assert 0 <= after - before <= 1
+        assert before + after < (stride or size)
+        assert set(np.diff(starts)) <= {stride or size}
+    assert all(patch.shape == (size, size) for patch in patches)
+
+
+def test_photo_ids_of_a_manifest_group_and_other_photos_stand_alone(tmp_path):
+    for name in ("grass/a.jpg", "grass/b.PNG", "sand/c.png", "sand/d.png"):
+        photo(tmp_path / "set" / name)
+    (tmp_path / "set/grass/notes.txt").write_text("no photo")
+    manifest = "photo_id,path\nlook,set/grass/a.jpg\nlook,set/grass/b.PNG\nother,set/sand/c.png\n"
+    (tmp_path / "manifest.csv").write_text(manifest)
+    photos = find_photos(tmp_path / "set")
+    assert [p.label for p in photos] == ["grass", "grass", "sand", "sand"]
+    groups = [p.group for p in photos]
+    assert groups[:3] == ["look", "look", "other"]
+    assert groups[3] not in groups[:3]
+
+
+def test_the_folders_own_manifest_goes_before_its_parents(tmp_path):
+    photo(tmp_path / "set/grass/a.jpg")
+    (tmp_path / "manifest.csv").write_text("path,photo_id\nset/grass/a.jpg,parent\n")
+    (tmp_path / "set/manifest.csv").write_text("path,photo_id\ngrass/a.jpg,own\n")
+    assert [p.group for p in find_photos(tmp_path / "set")] == ["own"]
+
+
+def test_a_manifest_without_photo_id_groups_nothing(tmp_path):
+    photo(tmp_path / "grass/a.jpg")
+    photo(tmp_path / "grass/b.jpg")
+    (tmp_path / "manifest.csv").write_text("path,class\ngrass/a.jpg,grass\ngrass/b.jpg,grass\n")
+    assert len({p.group for p in find_photos(tmp_path)}) == 2
+
+
+def test_folders_that_hold_no_classes_are_errors(tmp_path):
+    with pytest.raises(PatchError, match="not a folder"):
+        find_photos(tmp_path / "absent")
+    with pytest.raises(PatchError, match="no photographs"):
+        find_photos(tmp_path)
+    photo(tmp_path / "unknown/a.jpg")
+    with pytest.raises(PatchError, match="reserved"):
+        find_photos(tmp_path)
+
+
+def test_loaded_patches_overlap_by_half_and_are_capped_evenly(tmp_path):
+    photo(tmp_path / "grass/large.png", size=(40, 50))
+    photo(tmp_path / "grass/small.png", size=(15, 50))
+    photos = find_photos(tmp_path)
+    loaded = load_patches(photos, 16)
+    assert len(loaded.images) == 4 * 5  # starts 0, 8, 16, 24 and 1, 9, ..., 33
+    assert loaded.too_small == [tmp_path / "grass/small.png"]
+    assert set(loaded.labels) == {"grass"}
+    assert set(loaded.photos) == {tmp_path / "grass/large.png"}
+    capped = load_patches(photos, 16, max_per_photo=3)
+    np.testing.assert_array_equal(capped.images, [loaded.images[i] for i in (0, 9, 19)])
+
+
+def test_a_class_without_a_patch_and_a_broken_photo_are_errors(tmp_path):
+    photo(tmp_path / "grass/a.png")
+    photo(tmp_path / "sand/a.png", size=(15, 15))
+    with pytest.raises(PatchError, match=r"'sand'.*1 photographs.*16 x 16"):
+        load_patches(find_photos(tmp_path), 16)
+    (tmp_path / "sand/b.png").write_bytes(b"no image")
+    with pytest.raises(ImageError, match=r"b\.png"):
+        load_patches(find_photos(tmp_path), 16)
