@@ -59,7 +59,7 @@ def synthesise(
     Example:
       terrain-odometry synthesise --out my_run --seed 3
       terrain-odometry synthesise --out my_run --photos my_photos --zone asphalt --zone sand
-    """  # noqa: D301 - click needs the character itself
+    """
     from terrain.synthesis.files import read_camera, read_robot
     from terrain.synthetic import SynthesisConfig
     from terrain.synthetic import synthesise as make_run
@@ -80,11 +80,8 @@ def synthesise(
         f"{config.metres_per_pixel:g} m per pixel) and {out / 'parameters.toml'}."
     )
     click.echo("Next:")
+    click.echo(f"  terrain-odometry train {out / 'patches'} --out terrain.model")
     click.echo(
-        f"  terrain-odometry train {out / 'patches'} --out model.npz "
-        f"--patch-size {config.patch_size_px} --metres-per-pixel {config.metres_per_pixel:g}"
-    )
-    click.echo(
-        f"  terrain-odometry run {out} --model model.npz "
+        f"  terrain-odometry run {out} --model terrain.model "
         f"--parameters {out / 'parameters.toml'} --out result"
     )

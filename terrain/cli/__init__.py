@@ -1,0 +1,1 @@
+"""The command `terrain-odometry`, one file a verb."""

@@ -1,0 +1,64 @@
+"""The verb that names the terrain of images."""
+
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from terrain.classifier import TerrainClassifier
+
+
+@click.command()
+@click.argument("model", type=click.Path(path_type=Path))
+@click.argument("images", type=click.Path(path_type=Path), nargs=-1, required=True)
+@click.option("--json", "as_json", is_flag=True, help="Print a JSON list, with probabilities.")
+def classify(model: Path, images: tuple[Path, ...], as_json: bool) -> None:
+    """Name the terrain of each of IMAGES with MODEL, a file that `train` wrote.
+
+    Prints label, confidence, and the distance to the nearest class; a label is unknown where the
+    distance is beyond the rejection threshold. An image larger than the model's patches is cut
+    into patches. An image that cannot be used becomes a row with the reason, and the exit code 1.
+
+    \b
+    Example:
+      terrain-odometry classify ground.model photo_1.jpg photo_2.jpg --json
+    """
+    from terrain.classifier import TerrainClassifier
+
+    classifier = TerrainClassifier.load(model)
+    rows = [_row(classifier, path) for path in images]
+    click.echo(json.dumps(rows, indent=2) if as_json else _table(classifier, rows))
+    if any("error" in row for row in rows):
+        sys.exit(1)
+
+
+def _row(classifier: "TerrainClassifier", path: Path) -> dict[str, Any]:
+    from dataclasses import asdict
+
+    from terrain.errors import ImageError
+    from terrain.images import read_image
+
+    try:
+        (answer,) = classifier.classify([read_image(path)])
+    except ImageError as error:
+        return {"image": str(path), "error": str(error)}
+    return {"image": str(path)} | asdict(answer)
+
+
+def _table(classifier: "TerrainClassifier", rows: list[dict[str, Any]]) -> str:
+    width = max(len(row["image"]) for row in rows)
+    names = max(len(name) for name in [*classifier.classes_, "unknown"])
+    lines = [f"{'image':{width}}  {'label':{names}}  confidence  distance"]
+    for row in rows:
+        if "error" in row:
+            lines.append(f"{row['image']:{width}}  error: {row['error']}")
+        else:
+            lines.append(
+                f"{row['image']:{width}}  {row['label']:{names}}  {row['confidence']:10.2f}  "
+                f"{row['distance']:8.4g}"
+            )
+    lines.append(f"unknown beyond distance {classifier.rejection_distance_:.4g}")
+    return "\n".join(lines)

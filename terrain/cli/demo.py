@@ -1,0 +1,30 @@
+"""`terrain-odometry demo`: train, run and report on the shipped data."""
+
+from pathlib import Path
+
+import click
+
+
+@click.command()
+@click.option(
+    "--out",
+    default=Path("terrain-odometry-demo"),
+    show_default=True,
+    type=click.Path(file_okay=False, path_type=Path),
+    help="Folder for the results.",
+)
+def demo(out: Path) -> None:
+    """Train on the shipped patches, replay the shipped run, with and without vision.
+
+    \b
+    Example:
+      terrain-odometry demo --out demo
+    """
+    from terrain.cli.results import print_errors, print_written
+    from terrain.demo import run_demo
+
+    click.echo("Training on the shipped patches, then replaying the shipped run twice ...")
+    results, written = run_demo(out, show_progress=True)
+    print_errors(results)
+    print_written(written, out)
+    click.echo(f"Next: open {out / 'report.html'}")

@@ -1,0 +1,58 @@
+"""Entry point: finds the verb, and turns known errors into a message and an exit code."""
+
+import importlib
+import sys
+
+import click
+
+from odometry.errors import OdometryError
+
+VERBS = {
+    "train": "Train a terrain classifier on labelled patches.",
+    "classify": "Name the terrain of images.",
+    "run": "Replay a run: the main job.",
+    "evaluate": "Show the errors of finished runs side by side.",
+    "synthesise": "Make a run folder with images, its patches and parameters.",
+    "demo": "Train, run and report on the shipped data.",
+}
+
+
+class LazyGroup(click.Group):
+    """Imports the file of a verb only when that verb is asked for."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002 - click's signature
+        """Verbs in the order in which one uses them."""
+        return list(VERBS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:  # noqa: ARG002
+        """The verb's command, None where there is no such verb."""
+        if cmd_name not in VERBS:
+            return None
+        module = importlib.import_module(f"terrain.cli.{cmd_name}")
+        command: click.Command = getattr(module, cmd_name)
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
+        """List the verbs without importing them."""
+        with formatter.section("Verbs"):
+            formatter.write_dl(list(VERBS.items()))
+
+
+@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="terrain-odometry")
+def cli() -> None:
+    """Terrain-aware odometry for skid-steer robots.
+
+    \b
+    Example:
+      terrain-odometry demo --out demo
+    """
+
+
+def main() -> None:
+    """Run the command line; a known error prints one message and exits with 1."""
+    try:
+        cli()
+    except (OdometryError, OSError) as error:
+        click.echo(f"Error: {error}", err=True)
+        sys.exit(1)

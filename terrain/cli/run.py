@@ -1,0 +1,70 @@
+"""`terrain-odometry run`: the main job."""
+
+from pathlib import Path
+
+import click
+
+FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
+FOLDER = click.Path(file_okay=False, path_type=Path)
+
+
+@click.command()
+@click.argument("run_folder", metavar="RUN", type=FOLDER)
+@click.option("--out", required=True, type=FOLDER, help="Folder for the results.")
+@click.option("--model", type=FILE, help="Classifier made by `train`; without it, no vision.")
+@click.option("--parameters", type=FILE, help="Parameter set: ICRs by terrain (TOML).")
+@click.option("--no-vision", is_flag=True, help="Keep one terrain in force throughout.")
+@click.option("--terrain", metavar="NAME", help="In force until the first switch.")
+@click.option("--config", type=FILE, help="Settings (TOML): [filter] [region] [switch] ...")
+@click.option("--per-tread", is_flag=True, help="Classify the left and right tread strip apart.")
+@click.option("--detect-jumps", is_flag=True, help="Watch the innovations for jumps of the ICRs.")
+def run(
+    run_folder: Path,
+    *,
+    out: Path,
+    model: Path | None,
+    parameters: Path | None,
+    no_vision: bool,
+    terrain: str | None,
+    config: Path | None,
+    per_tread: bool,
+    detect_jumps: bool,
+) -> None:
+    """Replay the run folder RUN and write terrain-aware odometry.
+
+    Reads images, tread speeds and poses in time order, classifies the ground ahead, switches the
+    ICRs when the robot gets there, and writes trajectories, ICRs, terrain, figures and one page.
+
+    \b
+    Example:
+      terrain-odometry run my_run --model terrain.model --parameters set.toml --out results
+    """
+    from dataclasses import replace
+
+    from terrain.cli.results import print_errors, print_sightings, print_written
+    from terrain.config import Config
+    from terrain.report import write_report
+    from terrain.results import sighting_counts, write_results
+    from terrain.run_odometry import run_odometry
+
+    settings = Config.read(config) if config else Config()
+    if per_tread:
+        settings = replace(settings, region=replace(settings.region, per_tread=True))
+    if detect_jumps:
+        settings = replace(settings, filter=replace(settings.filter, detect_jumps=True))
+    result = run_odometry(
+        run_folder,
+        model=model,
+        parameters=parameters,
+        vision=not no_vision,
+        terrain=terrain,
+        config=settings,
+        show_progress=True,
+    )
+    written = write_results(result, out) + write_report(result, out)
+    print_errors({result.run.name: result})
+    print_sightings(sighting_counts(result))
+    print_written(written, out)
+    click.echo(f"Next: open {out / 'report.html'}")
+    if out / "learned.toml" in written:
+        click.echo(f"Next time: --parameters {out / 'learned.toml'} starts from what was learned")

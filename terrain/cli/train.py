@@ -1,0 +1,94 @@
+"""The verb that trains a terrain classifier from labelled photographs."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from terrain.classifier import TerrainClassifier
+
+
+@click.command()
+@click.argument("patches", type=click.Path(path_type=Path))
+@click.option("--out", type=click.Path(path_type=Path), required=True, help="The model file.")
+@click.option(
+    "--preset",
+    type=click.Choice(["default", "chen2023"]),
+    default="default",
+    show_default=True,
+    help="chen2023 is the paper's classifier.",
+)
+@click.option(
+    "--patch-size",
+    type=click.IntRange(min=8),
+    metavar="PX",
+    help="Side of a patch.  [default: 128, or the shortest side of a photograph]",
+)
+@click.option(
+    "--metres-per-pixel",
+    type=click.FloatRange(min=0, min_open=True),
+    help="Scale of the photographs on the ground; kept in the model.  [default: as manifest.csv "
+    "states it]",
+)
+@click.option("--colour", is_flag=True, help="Use colour: for one camera in training and in use.")
+def train(
+    *,
+    patches: Path,
+    out: Path,
+    preset: str,
+    patch_size: int | None,
+    metres_per_pixel: float | None,
+    colour: bool,
+) -> None:
+    """Train a terrain classifier on PATCHES/<terrain>/*.jpg or *.png.
+
+    Photographs are cut to patches of one size, overlapping by half, at most 60 a photograph.
+    Those that share a photo_id in manifest.csv (in PATCHES or beside it) are held back together
+    in cross-validation.
+
+    \b
+    Example:
+      terrain-odometry train my_photos --out ground.model --metres-per-pixel 0.002
+    """
+    from terrain.training import train as train_classifier
+
+    training = train_classifier(
+        patches,
+        preset=preset,
+        patch_size_px=patch_size,
+        metres_per_pixel=metres_per_pixel,
+        colour=colour,
+        show_progress=True,
+    )
+    classifier, loaded = training.classifier, training.patches
+    size = classifier.patch_size_px
+    for path in loaded.too_small:
+        click.echo(f"left out, smaller than {size} x {size} pixels: {path}", err=True)
+    if colour and not classifier.colour_:
+        click.echo("Some patches are grey, or the preset is: colour is left out.", err=True)
+    classifier.save(out)
+    click.echo(_summary(classifier, loaded.photos))
+    click.echo(f"\nWrote {out}. Next: terrain-odometry classify {out} IMAGE...")
+
+
+def _summary(classifier: "TerrainClassifier", photos: list[Path]) -> str:
+    import numpy as np
+
+    from terrain.evaluation import balanced_accuracy, confusion, confusion_text, photo_votes
+
+    found = classifier.cross_validation_
+    answers = found.probabilities.argmax(axis=1)
+    names = np.array([str(photos[row]) for row in found.rows])
+    photo_codes, photo_answers, _ = photo_votes(found.codes, found.probabilities, names)
+    table = confusion(found.codes, answers, len(classifier.classes_))
+    return (
+        f"{len(photos)} patches of {classifier.patch_size_px} px from {len(set(photos))} "
+        "photographs, cross-validated by photograph (true terrain down, answer across, %):\n\n"
+        f"{confusion_text(table, classifier.classes_)}\n\n"
+        f"balanced accuracy by patch {balanced_accuracy(found.codes, answers):.3f}, by vote of a "
+        f"photograph's patches {balanced_accuracy(photo_codes, photo_answers):.3f}\n"
+        f"chosen k {classifier.n_neighbors_}, rejection threshold "
+        f"{classifier.rejection_distance_:.4g} ({100 * classifier.rejected_share:g} % of known "
+        "ground lies beyond)"
+    )

@@ -1,0 +1,42 @@
+"""The demonstration: every step of the main job on the shipped data."""
+
+from pathlib import Path
+
+from odometry.run import Run
+from terrain.report import write_report
+from terrain.results import write_results
+from terrain.run_odometry import RunResult, run_odometry
+from terrain.shipped import shipped_data
+from terrain.training import train
+
+WITH, WITHOUT = "with terrain classification", "without terrain classification"
+
+
+def run_demo(
+    out: str | Path, *, show_progress: bool = False
+) -> tuple[dict[str, RunResult], list[Path]]:
+    """Train on the shipped patches, replay the shipped run with and without vision, report.
+
+    Parameters
+    ----------
+    out : path
+        Gets terrain.model, the results with vision and the page; the results without vision go
+        to its folder `without_vision`.
+    show_progress : bool
+
+    Returns
+    -------
+    results : dict of str to RunResult
+    written : list of Path
+    """
+    out, data = Path(out), shipped_data()
+    run = Run.read(data / "runs" / "demo")
+    training = train(data / "patches", show_progress=show_progress)
+    model = out / "terrain.model"
+    training.classifier.save(model)
+    parameters = run.folder / "parameters.toml"
+    seen = run_odometry(run, model=model, parameters=parameters, show_progress=show_progress)
+    blind = run_odometry(run, parameters=parameters, show_progress=show_progress)
+    written = [model, *write_results(seen, out), *write_results(blind, out / "without_vision")]
+    written += write_report(seen, out, compared_with={WITHOUT: blind})
+    return {WITH: seen, WITHOUT: blind}, written

@@ -1,0 +1,97 @@
+"""`evaluate`: finished runs side by side, and folders that are none."""
+
+import json
+
+import pytest
+from click.testing import CliRunner
+
+from terrain.cli.evaluate import evaluate
+
+
+@pytest.fixture
+def results(tmp_path):
+    """Folders with a result.json of known numbers."""
+
+    def make(name, content):
+        folder = tmp_path / name
+        folder.mkdir()
+        text = content if isinstance(content, str) else json.dumps(content)
+        (folder / "result.json").write_text(text)
+        return str(folder)
+
+    return make
+
+
+def finished(mean, final=0.5):
+    errors = {
+        "windows": 3,
+        "translation_m_per_m": {"mean": mean, "quartiles": [0.01, 0.02, 0.03]},
+        "rotation_deg_per_m": {"mean": 1.5, "quartiles": None},
+        "position_m": {"mean": 0.25, "final": final},
+    }
+    return {"reference": "pose", "horizon_m": 5.0, "errors": {"odometer": errors}}
+
+
+def test_a_row_for_each_trajectory_of_each_run(results):
+    with_vision = results("with", finished(0.0123))
+    without = results("without", finished(None, None))
+    answer = CliRunner().invoke(evaluate, [with_vision, without])
+    assert answer.exit_code == 0
+    lines = answer.output.splitlines()
+    numbers = ["0.0123", "1.5000", "0.2500", "0.5000"]
+    assert lines[1].split() == [with_vision, "odometer", "pose", *numbers]
+    assert lines[2].split() == [without, "odometer", "pose", "-", "1.5000", "0.2500", "-"]
+
+
+def test_a_run_without_a_reference_says_so(results):
+    folder = results("blind", {"reference": None, "horizon_m": 5.0, "errors": {}})
+    answer = CliRunner().invoke(evaluate, [folder])
+    assert answer.exit_code == 0
+    assert "nothing to compare with" in answer.output
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        "{",
+        "[1, 2]",
+        "3",
+        {"reference": "pose"},
+        {"errors": None},
+        {"errors": {"odometer": {}}},
+        {"errors": {"odometer": 3}},
+        {"errors": [1]},
+        finished("much"),
+    ],
+)
+def test_a_failed_folder_is_a_row_and_the_exit_code_1(results, content):
+    good, bad = results("good", finished(0.0123)), results("bad", content)
+    answer = CliRunner().invoke(evaluate, [bad, good])
+    assert isinstance(answer.exception, SystemExit)
+    assert answer.exit_code == 1
+    assert "0.0123" in answer.output
+    (row,) = [line for line in answer.output.splitlines() if line.split()[0] == bad]
+    assert "failed: " in row
+    assert "result.json" in row
+
+
+def test_a_missing_folder_is_a_row(tmp_path, results):
+    answer = CliRunner().invoke(
+        evaluate, [str(tmp_path / "absent"), results("good", finished(1.0))]
+    )
+    assert answer.exit_code == 1
+    assert "failed: " in answer.output
+    assert "1.0000" in answer.output
+
+
+def test_json_gives_the_numbers_and_the_failures(tmp_path, results):
+    good, absent = results("good", finished(0.0123)), str(tmp_path / "absent")
+    answer = CliRunner().invoke(evaluate, ["--json", good, absent])
+    assert answer.exit_code == 1
+    content = json.loads(answer.output)
+    assert content[good] == finished(0.0123)
+    assert set(content[absent]) == {"error"}
+
+
+def test_no_folder_is_a_usage_error():
+    assert CliRunner().invoke(evaluate, []).exit_code == 2

@@ -1,0 +1,74 @@
+"""The command itself: help without slow imports, errors as one line."""
+
+import importlib.metadata
+import subprocess
+import sys
+
+import pytest
+
+VERBS = ("train", "classify", "run", "evaluate", "synthesise", "demo")
+SLOW = ("numpy", "scipy", "sklearn", "skimage", "cv2", "matplotlib", "filterpy", "pandas")
+
+
+def command(*arguments, cwd=None):
+    """The command in a process of its own; what it imported is told on the last line."""
+    program = (
+        "import atexit, sys\n"
+        f"slow = {SLOW!r}\n"
+        "atexit.register(lambda: print('imported', *[m for m in slow if m in sys.modules]))\n"
+        "from terrain.cli.main import main\n"
+        "main()\n"
+    )
+    return subprocess.run(
+        [sys.executable, "-c", program, *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=cwd,
+    )
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_help_shows_an_example_and_imports_nothing_slow(verb):
+    answer = command(verb, "--help")
+    assert answer.returncode == 0, answer.stderr
+    text, _, imported = answer.stdout.rstrip().rpartition("\n")
+    assert f"  terrain-odometry {verb} " in text.split("Example:")[1]
+    assert imported == "imported"
+
+
+def test_the_groups_help_lists_every_verb_and_imports_nothing_slow():
+    answer = command("--help")
+    assert answer.returncode == 0
+    assert "Example:" in answer.stdout
+    assert all(f"\n  {verb} " in answer.stdout for verb in VERBS)
+    assert answer.stdout.rstrip().endswith("imported")
+
+
+def test_version():
+    answer = command("--version")
+    assert answer.returncode == 0
+    assert importlib.metadata.version("terrain-odometry") in answer.stdout
+
+
+def test_a_known_error_is_one_line_and_exit_code_1(tmp_path):
+    answer = command("run", tmp_path / "absent", "--out", tmp_path / "out")
+    assert answer.returncode == 1
+    assert answer.stderr.count("\n") == 1
+    assert answer.stderr.startswith("Error: ")
+    assert "absent: there is no such folder" in answer.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_that_cannot_be_made_is_one_line_and_exit_code_1(tmp_path, curvy_run):
+    (tmp_path / "file").write_text("")
+    answer = command("run", curvy_run, "--out", tmp_path / "file" / "out")
+    assert answer.returncode == 1
+    assert "Traceback" not in answer.stderr
+    assert answer.stderr.splitlines()[-1].startswith("Error: ")
+
+
+def test_an_unknown_verb_is_a_usage_error():
+    answer = command("fly")
+    assert answer.returncode == 2
+    assert "No such command 'fly'" in answer.stderr

@@ -1,0 +1,55 @@
+"""What the commands print of results."""
+
+from pathlib import Path
+
+from terrain.cli.results import (
+    error_cells,
+    print_errors,
+    print_sightings,
+    print_table,
+    print_written,
+)
+from terrain.run_odometry import run_odometry
+
+
+def test_columns_line_up_words_to_the_left_numbers_to_the_right(capsys):
+    print_table([("", "m"), ("a", "0.25"), ("long name", "10.5")])
+    assert capsys.readouterr().out.splitlines() == [
+        "                m",
+        "  a          0.25",
+        "  long name  10.5",
+    ]
+
+
+def test_cells_hold_the_means_and_a_dash_where_there_is_none():
+    errors = {
+        "translation_m_per_m": {"mean": 0.01234, "quartiles": None},
+        "rotation_deg_per_m": {"mean": None, "quartiles": None},
+        "position_m": {"mean": 1.0, "final": 2.0},
+    }
+    assert error_cells(errors) == ("0.0123", "-", "1.0000", "2.0000")
+
+
+def test_errors_are_those_of_the_scores_and_name_the_reference(curvy_run, capsys):
+    result = run_odometry(curvy_run)
+    print_errors({"a run": result})
+    lines = capsys.readouterr().out.splitlines()
+    assert "against pose.csv" in lines[0]
+    assert "5 m of wheel travel" in lines[0]
+    rows = {line.split("  ")[1]: line.split()[-1] for line in lines[2:]}
+    assert set(rows) == {"a run: odometer", "a run: differential_drive"}
+    for name, score in result.scores.items():
+        assert rows[f"a run: {name}"] == f"{score.final_position_m:.4f}"
+
+
+def test_files_are_named_within_their_folder(capsys):
+    out = Path("some") / "out"
+    print_written([out / "result.json", out / "figures" / "a.png"], out)
+    assert capsys.readouterr().out == f"Wrote to {out}: figures/a.png, result.json\n"
+
+
+def test_images_are_counted_by_what_they_said(capsys):
+    print_sightings({"mud": 12, "no label: the robot stands": 3})
+    assert capsys.readouterr().out == "Images: 12 mud, 3 no label: the robot stands\n"
+    print_sightings({})
+    assert capsys.readouterr().out == ""

@@ -1,0 +1,100 @@
+"""`run`: the options reach the job, and the command says what it wrote."""
+
+import csv
+import json
+
+import pytest
+from click.testing import CliRunner
+
+from odometry.errors import OdometryError
+from terrain.cli.run import run
+
+
+def invoke(*arguments):
+    """The verb in this process; errors of the project come through as they are."""
+    return CliRunner().invoke(run, [str(argument) for argument in arguments])
+
+
+def content_of(out):
+    return json.loads((out / "result.json").read_text())
+
+
+def test_with_a_model_the_terrain_is_seen(across_run, model_file, tmp_path):
+    out = tmp_path / "out"
+    answer = invoke(across_run, "--out", out, "--model", model_file, "--terrain", "gravel")
+    assert answer.exit_code == 0, answer.output
+    assert [s["terrain"] for s in content_of(out)["switches"]] == ["boards", "gravel"]
+    (wrote,) = [line for line in answer.output.splitlines() if line.startswith("Wrote to ")]
+    names = wrote.split(": ", 1)[1].split(", ")
+    found = [f.relative_to(out).as_posix() for f in out.rglob("*") if f.is_file()]
+    assert sorted(names) == sorted(found)
+    assert {"report.html", "terrain.csv", "learned.toml"} <= set(names)
+    assert "odometer" in answer.output
+    counts = content_of(out)["sightings"]
+    assert f"{counts['boards']} boards" in answer.output
+    assert str(out / "report.html") in answer.output.split("Next: ")[1]
+
+
+def test_no_vision_and_terrain_keep_one_terrain(across_run, model_file, tmp_path):
+    out = tmp_path / "out"
+    answer = invoke(
+        across_run, "--out", out, "--model", model_file, "--no-vision", "--terrain", "mud"
+    )
+    assert answer.exit_code == 0, answer.output
+    content = content_of(out)
+    assert (content["vision"], content["initial_terrain"]) == (False, "mud")
+    assert not (out / "terrain.csv").exists()
+
+
+def test_learned_toml_goes_back_in(curvy_run, tmp_path):
+    first, second = tmp_path / "first", tmp_path / "second"
+    assert invoke(curvy_run, "--out", first, "--terrain", "sand").exit_code == 0
+    answer = invoke(curvy_run, "--out", second, "--parameters", first / "learned.toml")
+    assert answer.exit_code == 0, answer.output
+    assert content_of(second)["initial_terrain"] == "sand"
+    assert str(second / "learned.toml") in answer.output
+
+
+def test_settings_come_from_the_file_and_the_options(astride_run, model_file, tmp_path):
+    config = tmp_path / "config.toml"
+    config.write_text("[region]\nmost_ahead_m = 2.0\n[switch]\nlabels_in_row = 4\n")
+    out = tmp_path / "out"
+    arguments = ["--config", config, "--per-tread", "--detect-jumps", "--model", model_file]
+    answer = invoke(astride_run, "--out", out, *arguments)
+    assert answer.exit_code == 0, answer.output
+    settings = content_of(out)["config"]
+    assert settings["region"]["most_ahead_m"] == 2.0
+    assert settings["region"]["per_tread"] is True
+    assert settings["switch"]["labels_in_row"] == 4
+    assert settings["filter"]["detect_jumps"] is True
+    with (out / "terrain.csv").open() as stream:
+        assert {"left", "right"} <= set(next(csv.reader(stream)))
+
+
+def test_without_a_reference_it_says_so_and_offers_nothing_to_learn(tmp_path, world):
+    folder = world.drive_curves(tmp_path / "run", pose=False)
+    answer = invoke(folder, "--out", tmp_path / "out")
+    assert answer.exit_code == 0, answer.output
+    assert "no pose.csv or truth.csv" in answer.output
+    assert "learned.toml" not in answer.output
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--config", "odometry.csv"], "cannot be read as TOML"),
+        (["--parameters", "run.toml"], "unknown table"),
+        (["--model", "odometry.csv"], r"odometry\.csv"),
+        (["--terrain", "unknown"], "reserved"),
+    ],
+)
+def test_a_wrong_input_is_a_known_error_before_anything_is_written(
+    across_run, tmp_path, arguments, message
+):
+    files = [across_run / a if "." in a else a for a in arguments]
+    out = tmp_path / "out"
+    answer = invoke(across_run, "--out", out, *files)
+    assert isinstance(answer.exception, OdometryError)
+    with pytest.raises(OdometryError, match=message):
+        raise answer.exception
+    assert not out.exists()
