@@ -1,0 +1,179 @@
+"""Chen's experiment on synthesised runs: terrain A - B - A, with and without vision.
+
+    python tests/studies/switching.py [--seeds 20] [--out FOLDER]
+
+For each seed a run is made, a classifier is trained on its patches (photos that do not lie on its
+ground), and the run is replayed with vision, without, and without but with the process noise tuned
+on these very runs, in its favour. Printed: error per metre over 5 m horizons, mean position error,
+delay of the switches, time and metres until the ICRs are within 5 % after a change.
+"""
+
+import argparse
+import tempfile
+from dataclasses import dataclass, replace
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+from tqdm import tqdm
+
+from odometry.arrays import FloatArray
+from odometry.evaluation.score import score
+from odometry.run import Run
+from terrain.config import Config
+from terrain.run_odometry import RunResult, run_odometry
+from terrain.switch_delay import switch_delays
+from terrain.synthesis.config import SynthesisConfig
+from terrain.synthetic import synthesise
+from terrain.training import train
+
+TUNED_ICR_NOISE = (0.05, 0.1, 0.2, 0.4, 0.8)  # track widths per square root of second
+TUNED_POSE_NOISE = (0.001, 0.003, 0.01)
+SETTLED_SHARE = 0.05
+SETTLED_S = 1.0
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """What one replay showed."""
+
+    per_m: float
+    rotation_per_m: float
+    position_m: float
+    settled_s: tuple[float, ...]
+    settled_m: tuple[float, ...]
+
+
+def main() -> None:
+    """Run the study and print its table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seeds", type=int, default=20)
+    parser.add_argument("--out", type=Path, default=None, help="keep the runs here")
+    parser.add_argument("--rough", action="store_true", help="noisier wheels, wandering ICRs")
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory() as scratch:
+        study(arguments.out or Path(scratch), arguments.seeds, arguments.rough)
+
+
+def study(out: Path, seeds: int, rough: bool) -> None:
+    """Make, train, replay and print."""
+    seen, blind, tuned = [], [], {}
+    delays = []
+    for seed in tqdm(range(seeds), "seeds"):
+        run = Run.read(_make(out / f"seed_{seed:02d}", seed, rough))
+        model = train(run.folder / "patches").classifier
+        parameters = run.folder / "parameters.toml"
+        with_vision = run_odometry(run, model=model, parameters=parameters)
+        seen.append(numbers(with_vision))
+        delays += [delay for delay in switch_delays(with_vision)]
+        blind.append(numbers(run_odometry(run, parameters=parameters)))
+        for noises in product(TUNED_ICR_NOISE, TUNED_POSE_NOISE):
+            result = run_odometry(run, parameters=parameters, config=_tuned(*noises))
+            tuned.setdefault(noises, []).append(numbers(result))
+    best = min(tuned, key=lambda noises: np.mean([n.per_m for n in tuned[noises]]))
+    print(
+        f"\ntuned without vision: ICR noise {best[0]} widths, pose noise {best[1]} per root second"
+    )
+    table({"with vision": seen, "without": blind, "without, tuned": tuned[best]})
+    late_s = [d.late_s for d in delays if d.late_s is not None]
+    late_m = [d.late_m for d in delays if d.late_m is not None]
+    print(f"switches {len(delays)} (true changes {2 * seeds})")
+    print(f"late by s, median and 5-95 %: {spread(late_s)}; by m: {spread(late_m)}")
+
+
+def _make(folder: Path, seed: int, rough: bool) -> Path:
+    if (folder / "run.toml").exists():
+        return folder
+    config = SynthesisConfig(seed=seed)
+    if rough:
+        config = replace(config, sigma_tread_m_s=0.005, icr_wander_m=(0.01, 0.01, 0.004))
+    return synthesise(folder, config)
+
+
+def _tuned(icr_noise: float, pose_noise: float) -> Config:
+    config = Config()
+    return replace(
+        config,
+        filter=replace(
+            config.filter,
+            icr_noise_widths=icr_noise,
+            position_noise=pose_noise,
+            yaw_noise=pose_noise,
+        ),
+    )
+
+
+def numbers(result: RunResult) -> Numbers:
+    """Errors of the odometer, and how long the ICRs took after each true change."""
+    assert result.reference is not None
+    errors = score(result.run, result.replay.odometer(), result.reference, result.config.evaluation)
+    settled = [settling(result, stamp_s) for stamp_s in true_changes_s(result.run)]
+    return Numbers(
+        errors.mean_translation_per_m,
+        errors.mean_rotation_deg_per_m,
+        errors.mean_position_m,
+        tuple(seconds for seconds, _ in settled),
+        tuple(metres for _, metres in settled),
+    )
+
+
+def true_changes_s(run: Run) -> FloatArray:
+    """Stamps at which the robot's centre came onto another terrain."""
+    names = run.truth["terrain"]
+    return run.truth.stamps_s[1:][names[1:] != names[:-1]]
+
+
+def settling(result: RunResult, change_s: float) -> tuple[float, float]:
+    """Seconds and wheel metres from a change until every ICR is within 5 % of the true width.
+
+    It must stay there for a second. Infinite if it never does before the next change.
+    """
+    run, stamps_s = result.run, result.replay.stamps_s
+    truth = run.truth.stack("y_left", "y_right", "x_icr")
+    true_icrs = np.stack([np.interp(stamps_s, run.truth.stamps_s, c) for c in truth.T], axis=-1)
+    width = (true_icrs[:, 0] - true_icrs[:, 1])[:, None]
+    near = (np.abs(result.replay.means[:, 3:] - true_icrs) <= SETTLED_SHARE * width).all(axis=1)
+    later = true_changes_s(run)
+    end_s = min([t for t in later if t > change_s], default=stamps_s[-1])
+    for start in np.flatnonzero((stamps_s >= change_s) & (stamps_s <= end_s - SETTLED_S) & near):
+        stays = (stamps_s >= stamps_s[start]) & (stamps_s <= stamps_s[start] + SETTLED_S)
+        if near[stays].all():
+            travel = np.interp(
+                [change_s, stamps_s[start]], run.odometry.stamps_s, run.wheel_travel_m
+            )
+            return float(stamps_s[start] - change_s), float(travel[1] - travel[0])
+    return np.inf, np.inf
+
+
+def table(results: dict[str, list[Numbers]]) -> None:
+    """Print means over seeds, their spread, and what vision saves."""
+    first = next(iter(results.values()))
+    for name, numbers_of in results.items():
+        per_m = np.array([n.per_m for n in numbers_of])
+        rotation = np.array([n.rotation_per_m for n in numbers_of])
+        position = np.array([n.position_m for n in numbers_of])
+        seconds = [s for n in numbers_of for s in n.settled_s]
+        metres = [m for n in numbers_of for m in n.settled_m]
+        print(f"{name}:")
+        print(f"  error per metre, mean {per_m.mean():.4f} m/m, 5-95 % of seeds {spread(per_m)}")
+        print(f"  heading error per metre, mean {rotation.mean():.3f} deg/m")
+        print(f"  mean position error m, median and 5-95 % of seeds: {spread(position)}")
+        print(f"  ICRs within 5 % after s: {spread(seconds)}, m: {spread(metres)}")
+        if numbers_of is not first:
+            mine = np.array([n.per_m for n in first])
+            here = np.array([n.position_m for n in first])
+            print(f"  vision saves {1 - mine.mean() / per_m.mean():.1%} of the error per metre")
+            print(
+                f"  and of the mean position error, median of seeds: {1 - np.median(here / position):.1%}"
+                f" (5-95 %: {spread(1 - here / position)})"
+            )
+
+
+def spread(values: object) -> str:
+    """Median and the range that holds the middle 90 %."""
+    low, middle, high = np.percentile(values, [5, 50, 95], method="nearest")
+    return f"{middle:.3f} [{low:.3f}, {high:.3f}]"
+
+
+if __name__ == "__main__":
+    main()
