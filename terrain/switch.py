@@ -43,7 +43,8 @@ class Sight:
     travel_m : float
         Wheel travel of the run when it was seen.
     place : (2,)
-        The middle of the region in the reference frame [m].
+        The middle of the region in the reference frame [m]; in a `Switch`, where the label's
+        terrain begins.
     distance_ahead_m : float
         Wheel travel from the robot to the place when it was seen.
     passed : bool
@@ -89,6 +90,8 @@ class Switch:
     reach_m : float
         The robot is at a place once that is no longer ahead and no farther away than this.
     config : SwitchConfig
+    last : Sight or None
+        The latest label that was not `unknown`.
     row : tuple of Sight
         The latest equal labels.
     waiting : tuple of Sight
@@ -100,6 +103,7 @@ class Switch:
     in_force: str
     reach_m: float
     config: SwitchConfig = SwitchConfig()
+    last: Sight | None = None
     row: tuple[Sight, ...] = ()
     waiting: tuple[Sight, ...] = ()
     event: SwitchEvent | None = None
@@ -114,11 +118,21 @@ class Switch:
         if sight.label == UNKNOWN:
             return replace(self, row=())
         same = self.row and self.row[-1].label == sight.label
-        row = (*self.row, sight) if same else (sight,)
+        row = (*self.row, sight) if same else (self._from_edge(sight),)
         row = row[-self.config.labels_in_row :]
+        seen = replace(self, last=sight, row=row)
         if len(row) < self.config.labels_in_row or sight.label == self.ahead:
-            return replace(self, row=row)
-        return replace(self, row=row, waiting=(*self.waiting, row[0]))
+            return seen
+        return replace(seen, waiting=(*self.waiting, row[0]))
+
+    def _from_edge(self, sight: Sight) -> Sight:
+        """Move a first label half-way to the last place of another: the edge lies between them."""
+        if self.last is None or self.last.label == sight.label:
+            return sight
+        edge = (self.last.place + sight.place) / 2
+        if np.hypot(*(edge - sight.place)) > self.reach_m / 2:
+            return sight
+        return replace(sight, place=edge)
 
     def at(self, stamp_s: float, pose: FloatArray, travel_m: float) -> "Switch":
         """Bring into force the last change that the robot has got to, and forget missed ones."""

@@ -26,6 +26,7 @@ def region_borders(bits: ByteImage) -> ByteImage:
     padded: AnyArray = cv2.copyMakeBorder(bits, 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=255)
     across: AnyArray = padded[:, :-2] & padded[:, 1:-1]
     across &= padded[:, 2:]
-    inside = across[:-2] & across[1:-1]
+    inside: AnyArray = across[:-2] & across[1:-1]
     inside &= across[2:]
-    return bits ^ inside  # inside is a part of bits
+    inside ^= bits  # inside is a part of bits: what is left is its border
+    return inside

@@ -50,17 +50,29 @@ def changes(history):
     return [(round(x, 6), now) for (_, before), (x, now) in pairs if now != before]
 
 
-def test_two_equal_labels_switch_at_the_place_of_the_first():
-    """First gravel at 0.5 m, of the place at 1.5 m; the second at 0.75 m."""
+def test_two_equal_labels_switch_half_way_to_the_place_of_the_first():
+    """Last grass of the place at 1.25 m, first gravel, seen at 0.5 m, of that at 1.5 m."""
     history, events = drive(start(), ["grass", "grass", "gravel", "gravel", "gravel"])
-    assert changes(history) == [(1.5, "gravel")]
+    assert changes(history) == [(1.4, "gravel")]
     (event,) = events
     assert event.terrain == "gravel"
     assert event.sight.label == "gravel"
-    assert event.stamp_s == pytest.approx(3.0)
+    assert event.stamp_s == pytest.approx(2.8)
     assert event.sight.stamp_s == pytest.approx(1.0)
-    assert event.waited_s == pytest.approx(2.0)
-    assert event.waited_m == pytest.approx(1.0)
+    assert event.waited_s == pytest.approx(1.8)
+    assert event.waited_m == pytest.approx(0.9)
+
+
+def test_an_edge_is_not_sought_between_places_far_apart():
+    """Places 1 m apart: the first gravel counts from its own place on."""
+    history, _ = drive(start(), ["grass", "gravel", "gravel"], spacing_m=1.0)
+    assert changes(history) == [(2.0, "gravel")]
+
+
+def test_unknown_ground_between_two_terrains_is_parted_in_the_middle():
+    """Grass to 1.0 m, unknown at 1.25 m, gravel from 1.5 m on."""
+    history, _ = drive(start(), ["grass", "unknown", "gravel", "gravel"])
+    assert changes(history) == [(1.25, "gravel")]
 
 
 def test_one_label_does_not_switch():
@@ -149,13 +161,13 @@ def test_a_place_passed_far_aside_is_not_reached():
 def test_a_strip_narrower_than_the_look_ahead():
     """Gravel of 0.5 m is seen whole, and grass beyond it, before the robot is there."""
     history, events = drive(start(), ["grass", "gravel", "gravel", "grass", "grass", "grass"])
-    assert changes(history) == [(1.25, "gravel"), (1.75, "grass")]
+    assert changes(history) == [(1.15, "gravel"), (1.65, "grass")]
     assert [event.terrain for event in events] == ["gravel", "grass"]
 
 
 def test_three_terrains_come_into_force_in_turn():
     labels = ["gravel"] * 2 + ["sand"] * 2 + ["grass"] * 2
-    assert changes(drive(start(), labels)[0]) == [(1.0, "gravel"), (1.5, "sand"), (2.0, "grass")]
+    assert changes(drive(start(), labels)[0]) == [(1.0, "gravel"), (1.4, "sand"), (1.9, "grass")]
 
 
 def test_of_two_places_reached_at_once_the_later_label_counts():
@@ -212,11 +224,12 @@ def test_no_label_in_a_row_makes_no_sense():
     strips=st.lists(st.floats(2.2, 5.0), min_size=1, max_size=4),
     share=st.floats(0.05, 0.95),
 )
-def test_with_true_labels_the_change_comes_after_the_edge_by_the_spacing_at_most(strips, share):
+def test_with_true_labels_the_change_is_near_the_edge(strips, share):
     """Names alternate at the edges; a label is that of the ground 1 m ahead.
 
-    The first label beyond an edge belongs to a place at most one spacing beyond it. The second
-    is seen one spacing later: after the place is passed, if the spacing exceeds the look-ahead.
+    The edge is taken half-way between the last place before it and the first beyond it, unless
+    these are farther apart than the reach: then it is the latter. The second label is seen one
+    spacing later: after the place is passed, if the spacing exceeds the look-ahead.
     """
     spacing_m = share * min(strips) / 2  # two labels in each strip, at least
     edges = np.cumsum(strips)
@@ -230,6 +243,8 @@ def test_with_true_labels_the_change_comes_after_the_edge_by_the_spacing_at_most
     wanted = [edge for edge in edges if edge > AHEAD_M]
     found = changes(history)
     assert [name for _, name in found] == [true_at(edge + 1e-6) for edge in wanted]
-    most_late_m = spacing_m + max(0.0, spacing_m - AHEAD_M) + 0.05  # and two steps
+    near = spacing_m <= REACH_M
+    most_early_m = (spacing_m / 2 if near else 0.0) + 0.021
+    most_late_m = (spacing_m / 2 if near else spacing_m) + max(0.0, spacing_m - AHEAD_M) + 0.05
     for edge, (x, _) in zip(wanted, found, strict=True):
-        assert -0.021 <= x - edge <= most_late_m
+        assert -most_early_m <= x - edge <= most_late_m
