@@ -1,5 +1,6 @@
 from .camera import Camera
-from .classifier import Classification, TerrainClassifier
+from .classification.classifier import Classification, TerrainClassifier
+from .classification.training import Training, train
 from .config import Config
 from .errors import TerrainError
 from .report import write_report
@@ -16,9 +17,11 @@ __all__ = [
     "RunResult",
     "TerrainClassifier",
     "TerrainError",
+    "Training",
     "run_odometry",
     "sfta",
     "synthesise",
+    "train",
     "write_report",
     "write_results",
 ]

@@ -3,11 +3,11 @@
 from pathlib import Path
 
 from odometry.run import Run
+from terrain.classification.training import train
 from terrain.report import write_report
 from terrain.results import write_results
 from terrain.run_odometry import RunResult, run_odometry
 from terrain.shipped import shipped_data
-from terrain.training import train
 
 WITH, WITHOUT = "with terrain classification", "without terrain classification"
 

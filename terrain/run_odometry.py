@@ -12,7 +12,7 @@ from odometry.pipeline import ConstantTerrain, Replay, replay
 from odometry.run import UNKNOWN, Run
 from odometry.trajectory import Trajectory
 from terrain.camera import Camera
-from terrain.classifier import TerrainClassifier
+from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config
 from terrain.watcher import TerrainWatcher
 

@@ -11,7 +11,7 @@ from odometry.geometry import se2
 from odometry.models.icr import icr_twist
 from odometry.run import UNKNOWN, Frame, Run
 from terrain.camera import Camera
-from terrain.classifier import Classification, TerrainClassifier
+from terrain.classification.classifier import Classification, TerrainClassifier
 from terrain.errors import CameraError, ImageError
 from terrain.images import read_image
 from terrain.region import Rectangle, Region, RegionConfig, predict_region

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
-    from terrain.classifier import TerrainClassifier
+    from terrain.classification.classifier import TerrainClassifier
 
 
 @click.command()
@@ -26,7 +26,7 @@ def classify(model: Path, images: tuple[Path, ...], as_json: bool) -> None:
     Example:
       terrain-odometry classify ground.model photo_1.jpg photo_2.jpg --json
     """
-    from terrain.classifier import TerrainClassifier
+    from terrain.classification.classifier import TerrainClassifier
 
     classifier = TerrainClassifier.load(model)
     rows = [_row(classifier, path) for path in images]

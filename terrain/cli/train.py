@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from terrain.classifier import TerrainClassifier
+    from terrain.classification.classifier import TerrainClassifier
 
 
 @click.command()
@@ -51,7 +51,7 @@ def train(
     Example:
       terrain-odometry train my_photos --out ground.model --metres-per-pixel 0.002
     """
-    from terrain.training import train as train_classifier
+    from terrain.classification.training import train as train_classifier
 
     training = train_classifier(
         patches,
@@ -75,7 +75,12 @@ def train(
 def _summary(classifier: "TerrainClassifier", photos: list[Path]) -> str:
     import numpy as np
 
-    from terrain.evaluation import balanced_accuracy, confusion, confusion_text, photo_votes
+    from terrain.classification.evaluation import (
+        balanced_accuracy,
+        confusion,
+        confusion_text,
+        photo_votes,
+    )
 
     found = classifier.cross_validation_
     answers = found.probabilities.argmax(axis=1)

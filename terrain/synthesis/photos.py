@@ -8,9 +8,9 @@ import numpy as np
 import skimage.data
 
 from odometry.arrays import ByteImage
+from terrain.classification.patches import LabelledPhoto, find_photos
 from terrain.errors import SynthesisError, TerrainError
 from terrain.images import read_image, to_grey
-from terrain.patches import LabelledPhoto, find_photos
 
 BUILT_IN = ("brick", "grass", "gravel")
 """Terrains of the photographs in scikit-image's wheel."""

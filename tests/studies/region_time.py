@@ -15,16 +15,16 @@ from pathlib import Path
 
 import numpy as np
 
-from odometry.pipeline import ConstantTerrain, replay
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.parameters import read_parameters
+from odometry.pipeline import ConstantTerrain, replay
 from odometry.run import Run
 from terrain.camera import Camera
+from terrain.classification.training import train
 from terrain.config import Config
 from terrain.images import read_image
 from terrain.region import Rectangle, predict_region
 from terrain.synthetic import synthesise
-from terrain.training import train
 from terrain.warp import ground_view
 from terrain.whole_image import classify_ground
 

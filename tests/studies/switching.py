@@ -20,12 +20,12 @@ from tqdm import tqdm
 from odometry.arrays import FloatArray
 from odometry.evaluation.score import score
 from odometry.run import Run
+from terrain.classification.training import train
 from terrain.config import Config
 from terrain.run_odometry import RunResult, run_odometry
 from terrain.switch_delay import switch_delays
 from terrain.synthesis.config import SynthesisConfig
 from terrain.synthetic import synthesise
-from terrain.training import train
 
 TUNED_ICR_NOISE = (0.05, 0.1, 0.2, 0.4, 0.8)  # track widths per square root of second
 TUNED_POSE_NOISE = (0.001, 0.003, 0.01)

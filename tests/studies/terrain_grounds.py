@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
-from terrain.evaluation import balanced_accuracy
-from terrain.features import feature_matrix
-from terrain.neighbours import Neighbours, vote
-from terrain.patches import find_photos, load_patches
-from terrain.presets import PRESETS, Preset
-from terrain.validation import cross_validate
+from terrain.classification.evaluation import balanced_accuracy
+from terrain.classification.features import feature_matrix
+from terrain.classification.neighbours import Neighbours, vote
+from terrain.classification.patches import find_photos, load_patches
+from terrain.classification.presets import PRESETS, Preset
+from terrain.classification.validation import cross_validate
 
 REJECTED_SHARE = 0.05
 COPIES = {"grey": 1, "scales": 3, "bank": 19, "bank and colour": 21}

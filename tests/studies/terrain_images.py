@@ -18,7 +18,7 @@ import numpy as np
 from terrain_grounds import Grounds, Way, choose, joined, read_grounds
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
-from terrain.evaluation import (
+from terrain.classification.evaluation import (
     balanced_accuracy,
     balanced_accuracy_interval,
     confusion,
@@ -26,8 +26,8 @@ from terrain.evaluation import (
     photo_votes,
     rejection_roc_area,
 )
-from terrain.presets import PRESETS
-from terrain.validation import grouped_folds
+from terrain.classification.presets import PRESETS
+from terrain.classification.validation import grouped_folds
 
 NEW_CAMERA_DRAWS = 5
 

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from terrain.classifier import TerrainClassifier
+from terrain.classification.classifier import TerrainClassifier
 from terrain.run_odometry import run_odometry
 
 EDGES_M = (1.6, 3.0)  # gravel, then boards from the first edge on, then gravel again

@@ -14,10 +14,10 @@ from odometry.parameters import read_parameters
 from odometry.run import Run
 from odometry.simulation.ground import GroundMap
 from terrain.camera import Camera
+from terrain.classification.patches import find_photos
 from terrain.cli.synthesise import synthesise as command
 from terrain.errors import SynthesisError
 from terrain.images import read_image
-from terrain.patches import find_photos
 from terrain.synthesis.config import default_camera, default_robot
 from terrain.synthesis.files import read_camera, read_robot
 from terrain.synthetic import SynthesisConfig, synthesise

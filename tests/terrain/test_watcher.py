@@ -10,7 +10,7 @@ import pytest
 from odometry.estimation.estimate import Estimate
 from odometry.run import Frame, Run
 from terrain.camera import Camera
-from terrain.classifier import Classification
+from terrain.classification.classifier import Classification
 from terrain.errors import CameraError
 from terrain.region import RegionConfig
 from terrain.switch import SwitchConfig

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from terrain.classifier import TerrainClassifier
+from terrain.classification.classifier import TerrainClassifier
 from terrain.cli.classify import classify
 from terrain.cli.train import train
 from terrain.images import read_image

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from terrain.features import COLOUR_COPIES, GREY_COPIES, FeatureSettings
-from terrain.neighbours import DiscriminantNeighbours, Neighbours, PlainNeighbours
+from terrain.classification.features import COLOUR_COPIES, GREY_COPIES, FeatureSettings
+from terrain.classification.neighbours import DiscriminantNeighbours, Neighbours, PlainNeighbours
 
 
 @dataclass(frozen=True)
@@ -15,7 +15,7 @@ class Preset:
     features, colour_features : FeatureSettings
         Without and with colour.
     neighbours : type
-        One of the classes of `terrain.neighbours`.
+        One of the classes of `terrain.classification.neighbours`.
     neighbour_counts : tuple of int
         The numbers k of neighbours among which cross-validation chooses.
     """

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from terrain.classifier import TerrainClassifier
-from terrain.patches import (
+from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.patches import (
     LabelledPatches,
     find_photos,
     load_patches,

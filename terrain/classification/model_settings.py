@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, Self
 
-from terrain.features import FeatureSettings
+from terrain.classification.features import FeatureSettings
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
+from terrain.classification.neighbours import PlainNeighbours
+from terrain.classification.validation import cross_validate, grouped_folds
 from terrain.errors import PatchError
-from terrain.neighbours import PlainNeighbours
-from terrain.validation import cross_validate, grouped_folds
 
 
 def ground(rng, photos=6, patches=5, photo_spread=0.3):

@@ -4,10 +4,15 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 
-from terrain.features import COLOUR_COPIES, GREY_COPIES, FeatureSettings, feature_matrix
-from terrain.features import patch_features as features_of
-from terrain.filters import gradient_magnitude, red_green, yellow_blue
-from terrain.presets import PRESETS
+from terrain.classification.features import (
+    COLOUR_COPIES,
+    GREY_COPIES,
+    FeatureSettings,
+    feature_matrix,
+)
+from terrain.classification.features import patch_features as features_of
+from terrain.classification.filters import gradient_magnitude, red_green, yellow_blue
+from terrain.classification.presets import PRESETS
 from terrain.texture import sfta
 
 GREY = PRESETS["default"].features

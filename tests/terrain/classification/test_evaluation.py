@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from terrain.evaluation import (
+from terrain.classification.evaluation import (
     balanced_accuracy,
     balanced_accuracy_interval,
     confusion,

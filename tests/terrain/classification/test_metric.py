@@ -1,6 +1,6 @@
 import numpy as np
 
-from terrain.metric import AppearanceMetric, ClippedScaler, DiscriminantMetric
+from terrain.classification.metric import AppearanceMetric, ClippedScaler, DiscriminantMetric
 
 
 def test_the_scaler_standardises_and_clips(rng):

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from terrain.filters import (
+from terrain.classification.filters import (
     band_pass,
     coherence,
     gradient_magnitude,

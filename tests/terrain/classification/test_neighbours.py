@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from sklearn.neighbors import KNeighborsClassifier
 
-from terrain.neighbours import DiscriminantNeighbours, PlainNeighbours, vote
+from terrain.classification.neighbours import DiscriminantNeighbours, PlainNeighbours, vote
 
 
 @pytest.fixture

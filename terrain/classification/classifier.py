@@ -9,15 +9,15 @@ import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage, IntArray
 from odometry.errors import ConfigError
+from terrain.classification.features import feature_matrix
+from terrain.classification.model_settings import ModelSettings
+from terrain.classification.neighbours import vote
+from terrain.classification.patches import RESERVED_LABEL, cut_patches
+from terrain.classification.persistence import read_model, write_model
+from terrain.classification.presets import PRESETS
+from terrain.classification.training_set import check_labels, common_size, has_colour
+from terrain.classification.validation import CrossValidation, cross_validate
 from terrain.errors import ImageError, ModelFileError, PatchError
-from terrain.features import feature_matrix
-from terrain.model_settings import ModelSettings
-from terrain.neighbours import vote
-from terrain.patches import RESERVED_LABEL, cut_patches
-from terrain.persistence import read_model, write_model
-from terrain.presets import PRESETS
-from terrain.training_set import check_labels, common_size, has_colour
-from terrain.validation import CrossValidation, cross_validate
 
 
 @dataclass(frozen=True)
@@ -180,7 +180,7 @@ class TerrainClassifier:
         )
 
     def save(self, path: Path) -> None:
-        """Write the classifier to one file of arrays and JSON; see `terrain.persistence`."""
+        """Write the classifier to one file of arrays and JSON; see `terrain.classification.persistence`."""
         settings = ModelSettings(
             self.preset,
             self.colour_,

@@ -1,6 +1,6 @@
 import numpy as np
 
-from terrain.novelty import LocalSparsity
+from terrain.classification.novelty import LocalSparsity
 
 
 def by_loops(points, queries, k=5):

@@ -8,8 +8,8 @@ from sklearn.metrics import balanced_accuracy_score
 from sklearn.model_selection import StratifiedGroupKFold
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
+from terrain.classification.neighbours import Neighbours, vote
 from terrain.errors import PatchError
-from terrain.neighbours import Neighbours, vote
 
 MOST_FOLDS = 5
 

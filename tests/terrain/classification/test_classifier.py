@@ -5,10 +5,10 @@ import pytest
 from sklearn.neighbors import KNeighborsClassifier
 
 from odometry.errors import ConfigError
-from terrain.classifier import TerrainClassifier
+from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.persistence import read_model, write_model
 from terrain.errors import ImageError, ModelFileError, PatchError
 from terrain.images import to_grey
-from terrain.persistence import read_model, write_model
 from terrain.texture import sfta
 
 SIZE = 32

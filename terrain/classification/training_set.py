@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 from odometry.arrays import ByteImage
+from terrain.classification.patches import RESERVED_LABEL
 from terrain.errors import PatchError
-from terrain.patches import RESERVED_LABEL
 
 
 def common_size(images: Sequence[ByteImage]) -> int:

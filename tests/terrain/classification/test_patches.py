@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from terrain.classification.patches import cut_patches, find_photos, load_patches
 from terrain.errors import ImageError, PatchError
-from terrain.patches import cut_patches, find_photos, load_patches
 
 
 def photo(path, size=(40, 50), seed=0):

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from terrain.classification.persistence import read_model, write_model
 from terrain.errors import ModelFileError
-from terrain.persistence import read_model, write_model
 
 SETTINGS = {"preset": "default", "classes": ["grass", "sand"], "scale": None, "k": 5}
 ARRAYS = {"points": np.arange(12.0).reshape(4, 3) / 7, "codes": np.array([0, 1, 1, 0])}

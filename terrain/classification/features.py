@@ -8,7 +8,7 @@ import numpy as np
 from tqdm import tqdm
 
 from odometry.arrays import ByteImage, FloatArray
-from terrain.filters import (
+from terrain.classification.filters import (
     Filter,
     band_pass,
     coherence,

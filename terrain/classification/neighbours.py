@@ -12,8 +12,8 @@ from sklearn.neighbors import KNeighborsClassifier
 from sklearn.pipeline import Pipeline, make_pipeline
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
-from terrain.metric import AppearanceMetric, ClippedScaler, DiscriminantMetric
-from terrain.novelty import NEIGHBOURS, LocalSparsity
+from terrain.classification.metric import AppearanceMetric, ClippedScaler, DiscriminantMetric
+from terrain.classification.novelty import NEIGHBOURS, LocalSparsity
 
 
 class Neighbours(Protocol):

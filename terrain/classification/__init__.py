@@ -1,0 +1,1 @@
+"""Naming terrain: patches, features, nearest neighbours, rejection, model files."""
