@@ -180,7 +180,7 @@ class TerrainClassifier:
         )
 
     def save(self, path: Path) -> None:
-        """Write the classifier to one file of arrays and JSON; see `terrain.classification.persistence`."""
+        """Write the classifier to one file of arrays and JSON; see `persistence`."""
         settings = ModelSettings(
             self.preset,
             self.colour_,

@@ -134,15 +134,16 @@ def _starts(length: int, size_px: int, stride_px: int) -> range:
     return range(first, first + count * stride_px, stride_px)
 
 
-def shortest_side_px(photos: Sequence[LabelledPhoto]) -> int:
-    """Shortest side of all photographs.
+def fitting_side_px(photos: Sequence[LabelledPhoto]) -> int:
+    """Side of the largest square that fits into nine of ten photographs.
 
     Raises
     ------
     ImageError
         If a photograph cannot be read.
     """
-    return int(min(min(read_image(photo.path).shape[:2]) for photo in photos))
+    sides = [min(read_image(photo.path).shape[:2]) for photo in photos]
+    return int(np.percentile(sides, 10, method="lower"))
 
 
 def stated_metres_per_pixel(root: Path) -> float | None:

@@ -8,7 +8,7 @@ from terrain.classification.patches import (
     LabelledPatches,
     find_photos,
     load_patches,
-    shortest_side_px,
+    fitting_side_px,
     stated_metres_per_pixel,
 )
 
@@ -46,7 +46,7 @@ def train(
         `root/<class>/*.jpg|png`, see CONVENTIONS, "Labelled patches".
     preset : {"default", "chen2023"}
     patch_size_px : int, optional
-        Side of a patch; by default 128, or the shortest side of a photograph if that is less.
+        Side of a patch; by default 128, or less where that fits into nine of ten photographs.
     metres_per_pixel : float, optional
         Scale of the photographs, by default what `manifest.csv` states in a column of that name.
         Without either, a run's images are cropped, not warped.
@@ -63,7 +63,7 @@ def train(
     """
     root = Path(root)
     photos = find_photos(root)
-    patches = load_patches(photos, patch_size_px or min(LARGEST_PATCH_PX, shortest_side_px(photos)))
+    patches = load_patches(photos, patch_size_px or min(LARGEST_PATCH_PX, fitting_side_px(photos)))
     scale = metres_per_pixel or stated_metres_per_pixel(root)
     classifier = TerrainClassifier(preset, colour=colour, metres_per_pixel=scale)
     classifier.fit(patches.images, patches.labels, patches.groups, progress=show_progress)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     "--patch-size",
     type=click.IntRange(min=8),
     metavar="PX",
-    help="Side of a patch.  [default: 128, or the shortest side of a photograph]",
+    help="Side of a patch.  [default: 128, or what fits into nine of ten photographs]",
 )
 @click.option(
     "--metres-per-pixel",

@@ -65,7 +65,7 @@ def study(out: Path, seeds: int, rough: bool) -> None:
         parameters = run.folder / "parameters.toml"
         with_vision = run_odometry(run, model=model, parameters=parameters)
         seen.append(numbers(with_vision))
-        delays += [delay for delay in switch_delays(with_vision)]
+        delays += switch_delays(with_vision)
         blind.append(numbers(run_odometry(run, parameters=parameters)))
         for noises in product(TUNED_ICR_NOISE, TUNED_POSE_NOISE):
             result = run_odometry(run, parameters=parameters, config=_tuned(*noises))
@@ -164,8 +164,8 @@ def table(results: dict[str, list[Numbers]]) -> None:
             here = np.array([n.position_m for n in first])
             print(f"  vision saves {1 - mine.mean() / per_m.mean():.1%} of the error per metre")
             print(
-                f"  and of the mean position error, median of seeds: {1 - np.median(here / position):.1%}"
-                f" (5-95 %: {spread(1 - here / position)})"
+                f"  and of the mean position error {1 - np.median(here / position):.1%} in the "
+                f"median of seeds (5-95 %: {spread(1 - here / position)})"
             )
 
 

@@ -4,7 +4,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from terrain.classification.patches import cut_patches, find_photos, load_patches
+from terrain.classification.patches import (
+    cut_patches,
+    find_photos,
+    fitting_side_px,
+    load_patches,
+    stated_metres_per_pixel,
+)
 from terrain.errors import ImageError, PatchError
 
 
@@ -90,3 +96,22 @@ def test_a_class_without_a_patch_and_a_broken_photo_are_errors(tmp_path):
     (tmp_path / "sand/b.png").write_bytes(b"no image")
     with pytest.raises(ImageError, match=r"b\.png"):
         load_patches(find_photos(tmp_path), 16)
+
+
+def test_the_patch_size_fits_nine_of_ten_photographs(tmp_path):
+    folder = tmp_path / "gravel"
+    folder.mkdir()
+    for i, side in enumerate([20, 70, 80, *[90] * 8]):
+        cv2.imwrite(str(folder / f"{i:02d}.png"), np.zeros((side, side + 5), np.uint8))
+    assert fitting_side_px(find_photos(tmp_path)) == 70
+
+
+def test_the_scale_is_what_the_manifest_states(tmp_path):
+    manifest = tmp_path / "manifest.csv"
+    assert stated_metres_per_pixel(tmp_path) is None
+    manifest.write_text("path,photo_id,metres_per_pixel\na/1.jpg,1,0.003\na/2.jpg,2,\n")
+    assert stated_metres_per_pixel(tmp_path) == 0.003
+    for cells in ("0.003\na/2.jpg,2,0.004", "fine", "-1", "inf"):
+        manifest.write_text(f"path,photo_id,metres_per_pixel\na/1.jpg,1,{cells}\n")
+        with pytest.raises(PatchError, match=r"manifest\.csv: metres_per_pixel"):
+            stated_metres_per_pixel(tmp_path)
