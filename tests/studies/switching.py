@@ -3,8 +3,9 @@
     python tests/studies/switching.py [--seeds 20] [--out FOLDER]
 
 For each seed a run is made, a classifier is trained on its patches (photos that do not lie on its
-ground), and the run is replayed with vision, without, and without but with the process noise tuned
-on these very runs, in its favour. Printed: error per metre over 5 m horizons, mean position error,
+ground), and the run is replayed with vision, without, without but with jumps of the ICRs detected
+from the innovations, and without but with the process noise tuned on these very runs, in its
+favour. Printed: error per metre over 5 m horizons, mean position error,
 delay of the switches, time and metres until the ICRs are within 5 % after a change.
 """
 
@@ -57,7 +58,7 @@ def main() -> None:
 
 def study(out: Path, seeds: int, rough: bool) -> None:
     """Make, train, replay and print."""
-    seen, blind, tuned = [], [], {}
+    seen, blind, jumps, tuned = [], [], [], {}
     delays = []
     for seed in tqdm(range(seeds), "seeds"):
         run = Run.read(_make(out / f"seed_{seed:02d}", seed, rough))
@@ -67,6 +68,7 @@ def study(out: Path, seeds: int, rough: bool) -> None:
         seen.append(numbers(with_vision))
         delays += switch_delays(with_vision)
         blind.append(numbers(run_odometry(run, parameters=parameters)))
+        jumps.append(numbers(run_odometry(run, parameters=parameters, config=_jumps())))
         for noises in product(TUNED_ICR_NOISE, TUNED_POSE_NOISE):
             result = run_odometry(run, parameters=parameters, config=_tuned(*noises))
             tuned.setdefault(noises, []).append(numbers(result))
@@ -74,7 +76,14 @@ def study(out: Path, seeds: int, rough: bool) -> None:
     print(
         f"\ntuned without vision: ICR noise {best[0]} widths, pose noise {best[1]} per root second"
     )
-    table({"with vision": seen, "without": blind, "without, tuned": tuned[best]})
+    table(
+        {
+            "with vision": seen,
+            "without": blind,
+            "without, jumps detected": jumps,
+            "without, tuned": tuned[best],
+        }
+    )
     late_s = [d.late_s for d in delays if d.late_s is not None]
     late_m = [d.late_m for d in delays if d.late_m is not None]
     print(f"switches {len(delays)} (true changes {2 * seeds})")
@@ -88,6 +97,11 @@ def _make(folder: Path, seed: int, rough: bool) -> Path:
     if rough:
         config = replace(config, sigma_tread_m_s=0.005, icr_wander_m=(0.01, 0.01, 0.004))
     return synthesise(folder, config)
+
+
+def _jumps() -> Config:
+    config = Config()
+    return replace(config, filter=replace(config.filter, detect_jumps=True))
 
 
 def _tuned(icr_noise: float, pose_noise: float) -> Config:
