@@ -3,7 +3,7 @@ from .classification.classifier import Classification, TerrainClassifier
 from .classification.training import Training, train
 from .config import Config
 from .errors import TerrainError
-from .report import write_report
+from .report.page import write_report
 from .results import write_results
 from .run_odometry import RunResult, run_odometry
 from .synthetic import synthesise

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from odometry.run import Run
 from terrain.classification.training import train
-from terrain.report import write_report
+from terrain.report.page import write_report
 from terrain.results import write_results
 from terrain.run_odometry import RunResult, run_odometry
 from terrain.shipped import shipped_data

@@ -66,6 +66,7 @@ class TerrainWatcher:
 
     Attributes
     ----------
+    classifier : TerrainClassifier
     sightings : list of Sighting
         One for each image that was seen.
     in_force : list of str
@@ -89,7 +90,7 @@ class TerrainWatcher:
         self.events: list[SwitchEvent] = []
         self._run = run
         self._camera = camera
-        self._classifier = classifier
+        self.classifier = classifier
         self._region = region
         robot = run.robot
         size = max(robot.length or robot.track_width, robot.width or robot.track_width)
@@ -146,7 +147,7 @@ class TerrainWatcher:
         if not self._is_of_size(image, frame.image):
             reason = "the image is not of the camera's size"
             return Sighting(frame.stamp_s, name, region=region, reason=reason)
-        answers = self._classifier.classify([self._view(image, r) for r in rectangles])
+        answers = self.classifier.classify([self._view(image, r) for r in rectangles])
         return _sighting(frame.stamp_s, name, region, answers)
 
     def _is_of_size(self, image: ByteImage, file: Path) -> bool:
@@ -161,7 +162,7 @@ class TerrainWatcher:
 
     def _unfit(self, rectangle: Rectangle) -> str:
         """Why a rectangle cannot be compared with the training patches, or ""."""
-        scale, size_px = self._classifier.metres_per_pixel, self._classifier.patch_size_px
+        scale, size_px = self.classifier.metres_per_pixel, self.classifier.patch_size_px
         if scale is None:
             pixels = self._camera.ground_to_pixels(rectangle.corners)
             smallest = float(np.min(pixels.max(axis=0) - pixels.min(axis=0)))
@@ -173,7 +174,7 @@ class TerrainWatcher:
         return ""
 
     def _view(self, image: ByteImage, rectangle: Rectangle) -> ByteImage:
-        scale = self._classifier.metres_per_pixel
+        scale = self.classifier.metres_per_pixel
         if scale is None:
             return pixel_view(image, self._camera, rectangle)
         return ground_view(image, self._camera, rectangle, scale)

@@ -7,8 +7,8 @@ from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.patches import (
     LabelledPatches,
     find_photos,
-    load_patches,
     fitting_side_px,
+    load_patches,
     stated_metres_per_pixel,
 )
 

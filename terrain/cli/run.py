@@ -43,7 +43,7 @@ def run(
 
     from terrain.cli.results import print_errors, print_sightings, print_written
     from terrain.config import Config
-    from terrain.report import write_report
+    from terrain.report.page import write_report
     from terrain.results import sighting_counts, write_results
     from terrain.run_odometry import run_odometry
 

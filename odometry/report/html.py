@@ -1,0 +1,148 @@
+"""One self-contained page: titled sections of text, tables and figures."""
+
+import base64
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+
+from odometry.io.files import atomic_write
+
+_CSS = """
+:root { color-scheme: light dark; }
+body { font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 0 auto; padding: 1rem; }
+h1 { font-size: 1.5rem; line-height: 1.25; overflow-wrap: anywhere; }
+h2 { font-size: 1.15rem; margin-top: 2.2rem; border-bottom: 1px solid #8886; }
+.lead { font-size: 1.1rem; }
+figure { margin: 1rem 0; }
+figure img { display: block; max-width: 100%; height: auto; background: #fff; border-radius: 6px; }
+figcaption, .note { font-size: .9rem; opacity: .85; }
+.scroll { overflow-x: auto; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
+caption { text-align: left; font-size: .9rem; opacity: .85; padding-bottom: .3rem; }
+th, td { padding: .25rem .7rem; border-bottom: 1px solid #8884; text-align: right; }
+th:first-child, td:first-child { text-align: left; padding-left: 0; }
+thead th { vertical-align: bottom; }
+tbody th { min-width: 7.5rem; }
+"""
+
+
+@dataclass(frozen=True)
+class Paragraph:
+    """Plain text."""
+
+    text: str
+
+    def html(self) -> str:
+        """The element."""
+        return f"<p>{escape(self.text)}</p>"
+
+
+@dataclass(frozen=True)
+class Listing:
+    """A list of plain sentences."""
+
+    items: Sequence[str]
+
+    def html(self) -> str:
+        """The element."""
+        return "<ul>" + "".join(f"<li>{escape(item)}</li>" for item in self.items) + "</ul>"
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A table of plain text; the first column names its row."""
+
+    header: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    caption: str = ""
+
+    def html(self) -> str:
+        """The element."""
+        head = "".join(f'<th scope="col">{escape(name)}</th>' for name in self.header)
+        body = "".join(_row(row) for row in self.rows)
+        caption = f"<caption>{escape(self.caption)}</caption>" if self.caption else ""
+        return (
+            f'<div class="scroll"><table>{caption}<thead><tr>{head}</tr></thead>'
+            f"<tbody>{body}</tbody></table></div>"
+        )
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A PNG file, taken into the page.
+
+    Attributes
+    ----------
+    file : Path
+    alt : str
+        What it shows, for those who do not see it.
+    caption : str
+    """
+
+    file: Path
+    alt: str
+    caption: str = ""
+
+    def html(self) -> str:
+        """The element."""
+        data = base64.b64encode(self.file.read_bytes()).decode("ascii")
+        caption = f"<figcaption>{escape(self.caption)}</figcaption>" if self.caption else ""
+        return (
+            f'<figure><img alt="{escape(self.alt)}" src="data:image/png;base64,{data}">'
+            f"{caption}</figure>"
+        )
+
+
+@dataclass(frozen=True)
+class Section:
+    """A title and what stands below it."""
+
+    title: str
+    blocks: Sequence[Paragraph | Listing | Grid | Picture]
+
+
+def render_page(title: str, lead: str, sections: Sequence[Section]) -> str:
+    """Put a page together: no script, nothing loaded, every text escaped.
+
+    Parameters
+    ----------
+    title : str
+    lead : str
+        The one sentence that a hurried reader should see.
+    sections : sequence of Section
+        Those without blocks are left out.
+    """
+    parts = [
+        f"<section><h2>{escape(section.title)}</h2>\n"
+        + "\n".join(block.html() for block in section.blocks)
+        + "</section>"
+        for section in sections
+        if section.blocks
+    ]
+    name = escape(title)
+    return "\n".join(
+        [
+            '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
+            '<meta name="viewport" content="width=device-width, initial-scale=1">',
+            '<meta http-equiv="Content-Security-Policy" '
+            "content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'\">",
+            f"<title>{name}</title>\n<style>{_CSS}</style>\n</head>\n<body>\n<main>",
+            f'<h1>{name}</h1>\n<p class="lead">{escape(lead)}</p>',
+            *parts,
+            "</main>\n</body>\n</html>\n",
+        ]
+    )
+
+
+def write_page(file: Path, title: str, lead: str, sections: Sequence[Section]) -> Path:
+    """Write `render_page`; letters that UTF-8 cannot hold become question marks."""
+    with atomic_write(file) as part:
+        part.write_bytes(render_page(title, lead, sections).encode("utf-8", "replace"))
+    return file
+
+
+def _row(row: Sequence[str]) -> str:
+    first, *others = row
+    cells = "".join(f"<td>{escape(cell)}</td>" for cell in others)
+    return f'<tr><th scope="row">{escape(first)}</th>{cells}</tr>'

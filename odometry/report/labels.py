@@ -1,0 +1,89 @@
+"""Lines with labels beside them, so that no legend covers the data."""
+
+from collections.abc import Mapping
+from textwrap import fill
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patheffects import withStroke
+from scipy.optimize import isotonic_regression
+
+from odometry.arrays import FloatArray
+from odometry.report.palette import LineStyle
+
+HALO = (withStroke(linewidth=2.5, foreground="white"),)
+_LINE_PT = 12.0
+_ASIDE_PT = 9.0
+_LETTERS = 25  # of a line of a label
+
+
+def draw_line(axes: Axes, x: FloatArray, y: FloatArray, name: str, style: LineStyle) -> None:
+    """Draw a line (N,) in its style; `name` is its label in matplotlib's sense."""
+    axes.plot(
+        x, y, color=style.colour, linestyle=style.dashes, linewidth=style.width_pt, label=name
+    )
+
+
+def last_point(x: FloatArray, y: FloatArray) -> tuple[float, float]:
+    """Where a line ends."""
+    return float(x[-1]), float(y[-1])
+
+
+def spread(positions: FloatArray, heights: FloatArray) -> FloatArray:
+    """Move labels as little as possible, in least squares, so that none overlap.
+
+    Parameters
+    ----------
+    positions, heights : (N,)
+        Middles and heights of the labels, in one unit.
+
+    Returns
+    -------
+    (N,)
+        New middles, in the order given; the order from low to high is kept: what is left of a
+        position after the labels below it have been stacked must not decrease.
+    """
+    order = np.argsort(positions, kind="stable")
+    sorted_heights = heights[order]
+    stacked = np.cumsum(sorted_heights) - sorted_heights / 2
+    placed = np.empty(len(positions))
+    placed[order] = isotonic_regression(positions[order] - stacked).x + stacked
+    return placed
+
+
+def label_points(
+    axes: Axes, points: Mapping[str, tuple[float, float]], styles: Mapping[str, LineStyle]
+) -> None:
+    """Write each name to the right of its point, in the colour of its line.
+
+    Parameters
+    ----------
+    axes : Axes
+        With its final limits and place in the figure.
+    points : Mapping of name to (x, y)
+        In data units; where they crowd, labels are moved up or down and a thin line leads there.
+    styles : Mapping of name to LineStyle
+    """
+    if not points:
+        return
+    axes.apply_aspect()
+    points_per_pixel = 72.0 / axes.figure.dpi
+    heights_pt = axes.transData.transform(list(points.values()))[:, 1] * points_per_pixel
+    texts = [fill(name, _LETTERS) for name in points]
+    sizes_pt = np.array([_LINE_PT * (text.count("\n") + 1) for text in texts])
+    moves_pt = spread(heights_pt, sizes_pt) - heights_pt
+    for (name, point), text, move_pt in zip(points.items(), texts, moves_pt, strict=True):
+        colour = styles[name].colour
+        axes.annotate(
+            text,
+            xy=point,
+            xytext=(_ASIDE_PT, move_pt),
+            textcoords="offset points",
+            va="center",
+            color=colour,
+            fontsize=9,
+            path_effects=HALO,
+            annotation_clip=False,
+            parse_math=False,
+            arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.6, "shrinkB": 0.0},
+        )

@@ -1,0 +1,112 @@
+"""One page and its figures from the result of a run."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
+from odometry.report.palette import terrain_colours
+from terrain.report.figures import (
+    Tints,
+    distribution_picture,
+    icr_picture,
+    path_picture,
+    position_picture,
+)
+from terrain.report.images import (
+    confusion_picture,
+    labels_picture,
+    regions_picture,
+    whole_image_picture,
+)
+from terrain.report.lines import ReportLines
+from terrain.report.seen_ahead import confusion
+from terrain.report.words import (
+    error_table,
+    headline,
+    icr_table,
+    notes,
+    settings_table,
+    switch_table,
+)
+from terrain.run_odometry import RunResult
+from terrain.switch_delay import true_stretches
+
+Block = Paragraph | Listing | Grid | Picture
+
+
+def write_report(
+    result: RunResult,
+    out: str | Path,
+    compared_with: Mapping[str, RunResult] | None = None,
+) -> list[Path]:
+    """Write `figures/*.png` and `report.html`.
+
+    Parameters
+    ----------
+    result : RunResult
+    out : path
+        Folder; made if it is missing.
+    compared_with : Mapping of name to RunResult, optional
+        Other results of the same run, such as {"without vision": ...}.
+
+    Returns
+    -------
+    list of Path
+        The files written, the page last. What the run has no data for is left out.
+
+    Raises
+    ------
+    OdometryError
+        If an image cannot be read any more.
+    """
+    folder = Path(out) / "figures"
+    lines = ReportLines(result, compared_with or {})
+    tints = _tints(result)
+    sections = [
+        Section("Errors", _errors(lines, folder)),
+        Section("Path", [path_picture(lines, tints, folder)]),
+        Section("Terrain", _terrain(result, tints, folder)),
+        Section("Centres of rotation", [icr_picture(lines, folder), icr_table(result)]),
+        Section("Settings", [settings_table(result)]),
+        Section("Notes", [Listing(notes(lines))]),
+    ]
+    title = f"{result.run.name}: terrain-aware odometry"
+    page = write_page(Path(out) / "report.html", title, headline(lines, lines.scores()), sections)
+    pictures = [block for s in sections for block in s.blocks if isinstance(block, Picture)]
+    return [*(picture.file for picture in pictures), page]
+
+
+def _errors(lines: ReportLines, folder: Path) -> list[Block]:
+    scores = lines.scores()
+    if not scores:
+        return []
+    pictures = (position_picture(lines, folder), distribution_picture(lines, folder))
+    return [error_table(lines, scores), *(picture for picture in pictures if picture)]
+
+
+def _terrain(result: RunResult, tints: Tints, folder: Path) -> list[Block]:
+    watcher = result.watcher
+    if watcher is None:
+        return []
+    if not watcher.sightings:
+        return [Paragraph("No image lies within the time of the run.")]
+    switches = switch_table(result)
+    seen = confusion(result)
+    blocks = [
+        switches or Paragraph(f"The terrain never changed from {result.initial_terrain}."),
+        labels_picture(result, watcher, tints, folder),
+        confusion_picture(seen, folder) if seen else None,
+        regions_picture(result, watcher, tints, folder),
+        whole_image_picture(result, watcher, watcher.classifier, tints, folder),
+    ]
+    return [block for block in blocks if block is not None]
+
+
+def _tints(result: RunResult) -> Tints:
+    """One colour a terrain for the whole page."""
+    names = {result.initial_terrain, *result.replay.terrains, *result.learned.terrains}
+    names |= {stretch.terrain for stretch in true_stretches(result)}
+    if result.watcher is not None:
+        names |= {sighting.label for sighting in result.watcher.sightings}
+        names |= {str(name) for name in result.watcher.classifier.classes_}
+    return terrain_colours(names)

@@ -1,0 +1,200 @@
+"""The words and tables of a report."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from odometry.evaluation.score import Score
+from odometry.report.html import Grid
+from terrain.report.lines import ICR_COORDINATES, IDEAL, ODOMETER, ReportLines, other_odometer
+from terrain.run_odometry import RunResult
+from terrain.switch_delay import SwitchDelay, switch_delays, true_stretches
+
+NOTHING = "\N{EN DASH}"
+
+
+def headline(lines: ReportLines, scores: Mapping[str, Score]) -> str:
+    """The result in one plain sentence, or why there is none."""
+    result = lines.result
+    if not scores:
+        return (
+            "The run has neither truth.csv nor pose.csv with two poses or more: this page shows "
+            "what was estimated, and nothing is judged."
+        )
+    own = scores[ODOMETER].mean_translation_per_m
+    horizon_m = result.config.evaluation.horizon_m
+    if own is None:
+        return (
+            f"The run is shorter than the {horizon_m:g} m of wheel travel over which errors per "
+            "metre are taken: there are none."
+        )
+    rivals = {f"an ideal {IDEAL}": scores[IDEAL]} | {
+        name: scores[other_odometer(name)] for name in lines.compared_with
+    }
+    parts = [
+        f"{_less(own, of.mean_translation_per_m)} than {name} ({_cm(of.mean_translation_per_m)})"
+        for name, of in rivals.items()
+        if of.mean_translation_per_m is not None
+    ]
+    return (
+        f"Over stretches of {horizon_m:g} m the odometer errs by {_cm(own)} per metre of wheel "
+        f"travel against the {lines.reference_name}: {', '.join(parts)}."
+    )
+
+
+def error_table(lines: ReportLines, scores: Mapping[str, Score]) -> Grid:
+    """Errors by trajectory."""
+    return Grid(
+        (
+            "trajectory",
+            "position, mean [cm/m]",
+            "position, median [cm/m]",
+            "heading, mean [°/m]",
+            "heading, median [°/m]",
+            "off course, mean [m]",
+            "off course, at the end [m]",
+            "stretches",
+        ),
+        [
+            (
+                name,
+                _number(of.mean_translation_per_m, 2, 100),
+                _number(None if of.translation_per_m is None else of.translation_per_m[1], 2, 100),
+                _number(of.mean_rotation_deg_per_m, 2),
+                _number(None if of.rotation_deg_per_m is None else of.rotation_deg_per_m[1], 2),
+                _number(of.mean_position_m, 3),
+                _number(of.final_position_m, 3),
+                str(of.windows),
+            )
+            for name, of in scores.items()
+        ],
+        f"Errors against the {lines.reference_name}.",
+    )
+
+
+def switch_table(result: RunResult) -> Grid | None:
+    """Every change of the terrain in force, then the true changes that were missed."""
+    delays = switch_delays(result)
+    if result.watcher is None or not delays:
+        return None
+    known = bool(true_stretches(result))
+    events = result.watcher.events
+    header = ("terrain", "first seen [s]", "then ahead [m]", "in force [s]")
+    rows = [
+        (
+            event.terrain,
+            f"{event.sight.stamp_s:.2f}",
+            f"{event.sight.distance_ahead_m:.2f}",
+            f"{event.stamp_s:.2f}",
+            *(_against_truth(delay) if known else ()),
+        )
+        for event, delay in zip(events, delays, strict=False)
+    ]
+    rows += [
+        (d.terrain, "missed", *[NOTHING] * 2, *_against_truth(d)) for d in delays[len(events) :]
+    ]
+    truth = ("truly from [s]", "late by [s]", "late by [m]")
+    return Grid((*header, *truth) if known else header, rows)
+
+
+def icr_table(result: RunResult) -> Grid:
+    """ICRs by terrain: known before, learned, and the mean of the truth where that is known."""
+    rows = []
+    for name, learned in result.learned.terrains.items():
+        before = result.parameters.terrains.get(name)
+        if before is not None:
+            rows.append((name, "known before", *_icrs(before)))
+        if before is not learned:
+            rows.append((name, "learned", *_icrs(learned)))
+        true = _true_icrs(result, name)
+        if true:
+            rows.append((name, "truth, mean", *true))
+    return Grid(("terrain", "", *(f"{icr} [m]" for icr in ICR_COORDINATES)), rows,
+                "Instantaneous centres of rotation, ± one standard deviation.")  # fmt: skip
+
+
+def settings_table(result: RunResult) -> Grid:
+    """Every setting that was used."""
+    rows = [("run", result.run.name), ("terrain at the start", result.initial_terrain)]
+    rows += [
+        (f"{block}.{key}", str(value))
+        for block, table in result.config.to_table().items()
+        for key, value in table.items()
+    ]
+    return Grid(("setting", "value"), rows)
+
+
+def notes(lines: ReportLines) -> list[str]:
+    """What each number is against, and what it cannot say."""
+    result = lines.result
+    evaluation = result.config.evaluation
+    found = [
+        "The odometer integrates the model open loop, from the first pose on, with the ICRs that "
+        "the filter held at each moment; no measurement corrects its pose.",
+        f"The {IDEAL} does the same without slip, with the track width of "
+        f"{result.run.robot.track_width:g} m.",
+        f"Errors per metre are taken over {evaluation.horizon_m:g} m of wheel travel, the mean of "
+        f"both treads, starting anew every {evaluation.stride_m:g} m.",
+    ]
+    if result.reference_name == "pose":
+        found.append(
+            "Errors are against pose.csv, whose own noise is in them. The filter has seen these "
+            "poses, so it is not judged; the odometer's ICRs were learned from those that came "
+            "before each moment."
+        )
+    if result.reference_name == "truth":
+        found.append("Errors are against truth.csv, which no estimator has seen.")
+    if result.watcher is None:
+        found.append(f"There was no vision: {result.initial_terrain} was in force throughout.")
+    elif true_stretches(result):
+        found.append(
+            "A switch is late by the time and wheel travel since the robot's centre came onto the "
+            "terrain; below zero it came early."
+        )
+    return found
+
+
+def _icrs(parameters: Any) -> list[str]:
+    sigmas = dict(
+        zip(parameters.covariance_order, np.sqrt(np.diag(parameters.covariance)), strict=True)
+    )
+    return [
+        (
+            _number(parameters.values.get(icr), 3)
+            + (f" ± {sigmas[icr]:.3f}" if icr in sigmas else "")
+        )
+        for icr in ICR_COORDINATES
+    ]
+
+
+def _true_icrs(result: RunResult, terrain: str) -> list[str]:
+    truth = result.run.truth
+    if truth is None or "terrain" not in truth or not all(icr in truth for icr in ICR_COORDINATES):
+        return []
+    there = truth["terrain"] == terrain
+    return (
+        [_number(float(truth[icr][there].mean()), 3) for icr in ICR_COORDINATES]
+        if any(there)
+        else []
+    )
+
+
+def _against_truth(delay: SwitchDelay) -> tuple[str, str, str]:
+    return _number(delay.true_s, 2), _number(delay.late_s, 2), _number(delay.late_m, 2)
+
+
+def _number(value: float | None, digits: int, factor: float = 1.0) -> str:
+    return NOTHING if value is None else f"{factor * value:.{digits}f}"
+
+
+def _cm(metres: float | None) -> str:
+    return f"{_number(metres, 1, 100)} cm"
+
+
+def _less(own: float, other: float | None) -> str:
+    """How much less or more an error is than another one, in words."""
+    if not other:
+        return "no less"
+    share = 1 - own / other
+    return f"{abs(share):.0%} {'less' if share >= 0 else 'more'}"

@@ -1,0 +1,54 @@
+"""Labels that do not overlap: an optimum has no better neighbour."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from matplotlib.text import Text
+
+from odometry.report.labels import label_points, spread
+from odometry.report.palette import LineStyle
+
+NUMBERS = st.lists(
+    st.tuples(st.floats(-100, 100), st.floats(1, 20)),
+    min_size=1,
+    max_size=8,
+    unique_by=lambda p: p[0],
+)
+
+
+@given(NUMBERS)
+def test_labels_neither_overlap_nor_change_places(pairs):
+    positions, heights = np.array(pairs).T
+    placed = spread(positions, heights)
+    order = np.argsort(positions, kind="stable")
+    gaps = np.diff(placed[order])
+    assert np.all(gaps >= (heights[order][1:] + heights[order][:-1]) / 2 - 1e-9)
+
+
+@given(NUMBERS)
+def test_labels_stay_around_where_they_were(pairs):
+    """The mean of a least squares fit with free offset is that of the data."""
+    positions, heights = np.array(pairs).T
+    assert spread(positions, heights).mean() == pytest.approx(positions.mean(), abs=1e-9)
+
+
+def test_labels_with_room_stay():
+    positions = np.array([30.0, 0.0, 12.0])
+    assert spread(positions, np.full(3, 10.0)) == pytest.approx(positions)
+
+
+def test_two_labels_in_one_place_share_the_way():
+    assert spread(np.array([5.0, 5.0]), np.array([10.0, 20.0])) == pytest.approx([-2.5, 12.5])
+
+
+def test_labels_stand_apart_on_the_axes(axes):
+    axes.set(xlim=(0, 1), ylim=(0, 1))
+    points = {"one $x^$": (1.0, 0.5), "two": (1.0, 0.5), "three": (1.0, 0.52)}
+    label_points(axes, points, {name: LineStyle("#000000") for name in points})
+    axes.figure.canvas.draw()
+    boxes = sorted(map(Text.get_window_extent, axes.texts), key=lambda box: box.y0)
+    assert [text.get_text() for text in axes.texts] == list(points)
+    assert all(low.y1 <= high.y0 + 1 for low, high in pairwise(boxes))

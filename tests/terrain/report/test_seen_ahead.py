@@ -1,0 +1,90 @@
+"""Labels against what was there, and the images that show it."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from odometry.run import Robot, Run
+from odometry.table import Table
+from terrain.region import Rectangle, Region
+from terrain.report.seen_ahead import around_switches, confusion
+from terrain.switch import Sight, SwitchEvent
+from terrain.watcher import Sighting
+
+STAMPS_S = np.arange(0.0, 20.5, 0.5)  # at 0.5 m/s; snow from 10 s on
+ROWS = np.arange(len(STAMPS_S)) + 2
+REGION = Region(Rectangle(0.8, 1.2, -0.2, 0.2), 2.0, 1.0, np.array([1.0, 0.0, 0.0]))
+
+
+def seen(stamp_s, label):
+    return Sighting(stamp_s, f"{stamp_s}.png", label, 0.9, REGION)
+
+
+def result_of(sightings, truth=True):
+    speeds = np.full(len(STAMPS_S), 0.5)
+    odometry = Table(Path("o.csv"), {"t": STAMPS_S, "v_left": speeds, "v_right": speeds}, ROWS)
+    names = np.where(STAMPS_S < 10, "ice", "snow").astype(object)
+    table = Table(Path("t.csv"), {"t": STAMPS_S, "terrain": names}, ROWS) if truth else None
+    return SimpleNamespace(
+        run=Run(Path("run"), Robot(0.4), {}, odometry, truth=table),
+        initial_terrain="ice",
+        replay=SimpleNamespace(stamps_s=STAMPS_S),
+        watcher=SimpleNamespace(sightings=sightings),
+    )
+
+
+def test_a_label_is_judged_by_the_place_that_it_speaks_of():
+    """One metre ahead at 0.5 m/s is two seconds later."""
+    found = confusion(result_of([seen(7.0, "ice"), seen(9.0, "ice"), seen(9.5, "snow")]))
+    assert found.names == ("ice", "snow")
+    assert found.counts.tolist() == [[1, 1], [0, 1]]
+
+
+def test_other_labels_have_rows_and_unknown_is_the_last():
+    sightings = [seen(1.0, "unknown"), seen(2.0, "mud"), seen(3.0, "zinc"), seen(9.0, "unknown")]
+    found = confusion(result_of(sightings))
+    assert found.said == ("ice", "snow", "mud", "zinc", "unknown")
+    assert found.counts.tolist() == [[0, 0], [0, 0], [1, 0], [1, 0], [1, 1]]
+
+
+def test_places_that_are_not_reached_are_left_out():
+    assert confusion(result_of([seen(18.5, "snow")])) is None
+    assert confusion(result_of([seen(18.0, "snow")])).counts.sum() == 1
+
+
+@pytest.mark.parametrize(
+    "result",
+    [
+        result_of([seen(7.0, "ice")], truth=False),
+        result_of([]),
+        result_of([Sighting(7.0, "a.png", reason="the robot stands")]),
+    ],
+)
+def test_nothing_to_compare(result):
+    assert confusion(result) is None
+
+
+def switch_at(stamp_s):
+    sight = Sight("snow", stamp_s, 0.0, np.zeros(2), 1.0)
+    return SwitchEvent("snow", stamp_s + 2, sight, 2.0, 1.0)
+
+
+def test_images_stand_around_the_first_sight_of_a_change():
+    sightings = [seen(float(t), "ice") for t in range(10)]
+    sightings[5] = Sighting(5.0, "5.png", reason="the robot stands")
+    chosen = around_switches(sightings, [switch_at(6.0)])
+    assert [sighting.stamp_s for sighting in chosen] == [4.0, 6.0, 7.0]
+
+
+def test_every_change_is_shown_before_any_neighbour():
+    sightings = [seen(float(t), "ice") for t in range(20)]
+    chosen = around_switches(sightings, [switch_at(t) for t in (3.0, 9.0, 15.0)], most=4)
+    assert [sighting.stamp_s for sighting in chosen] == [2.0, 3.0, 9.0, 15.0]
+
+
+def test_without_a_change_images_are_spread_over_the_run():
+    sightings = [seen(float(t), "ice") for t in range(11)]
+    assert [s.stamp_s for s in around_switches(sightings, [], most=3)] == [0.0, 5.0, 10.0]
+    assert around_switches([], []) == []

@@ -1,0 +1,58 @@
+"""Sentences and numbers from scores made by hand."""
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from odometry.evaluation.score import Score
+from terrain.config import Config
+from terrain.report.words import NOTHING, error_table, headline
+
+LINES = SimpleNamespace(
+    result=SimpleNamespace(config=Config()),
+    reference_name="measured pose",
+    compared_with={"without vision": None, "tuned": None},
+)
+
+
+def errs(metres_per_metre):
+    return Score(
+        7,
+        np.array([0.5, 1.0, 2.0]) * metres_per_metre,
+        metres_per_metre,
+        np.array([1.0, 2.0, 3.0]),
+        2.5,
+        0.25,
+        0.5,
+    )
+
+
+def scores(own, ideal, without, tuned):
+    names = ("odometer", "differential drive", "odometer, without vision", "odometer, tuned")
+    return dict(zip(names, map(errs, (own, ideal, without, tuned)), strict=True))
+
+
+def test_the_first_sentence_says_how_much_less_or_more():
+    assert headline(LINES, scores(0.02, 0.2, 0.08, 0.016)) == (
+        "Over stretches of 5 m the odometer errs by 2.0 cm per metre of wheel travel against the "
+        "measured pose: 90% less than an ideal differential drive (20.0 cm), 75% less than "
+        "without vision (8.0 cm), 25% more than tuned (1.6 cm)."
+    )
+
+
+def test_a_rival_without_errors_is_no_rival():
+    without = scores(0.02, 0.2, 0.08, 0.0) | {"odometer, without vision": Score(0)}
+    sentence = headline(LINES, without)
+    assert "without vision" not in sentence
+    assert sentence.endswith("no less than tuned (0.0 cm).")
+
+
+def test_the_first_sentence_without_scores_or_horizons():
+    assert "nothing is judged" in headline(LINES, {})
+    assert "shorter than the 5 m" in headline(LINES, {"odometer": Score(0)})
+
+
+def test_the_table_is_in_centimetres_and_degrees():
+    rows = error_table(LINES, {"a": errs(0.0234), "b": Score(0, mean_position_m=0.1)}).rows
+    assert rows[0] == ("a", "2.34", "2.34", "2.50", "2.00", "0.250", "0.500", "7")
+    assert rows[1] == ("b", *[NOTHING] * 4, "0.100", NOTHING, "0")
