@@ -36,7 +36,7 @@ class RegionConfig:
     ahead_s: float = 0.0
     most_ahead_s: float = 60.0
     most_ahead_m: float = 3.0
-    coarsest: float = 2.0
+    coarsest: float = 2.5
     per_tread: bool = False
 
     def __post_init__(self) -> None:

@@ -5,7 +5,7 @@ import math
 import cv2
 import numpy as np
 
-from odometry.arrays import ByteImage, FloatArray
+from odometry.arrays import ByteImage
 from terrain.camera import Camera
 from terrain.region import Rectangle
 
@@ -62,14 +62,13 @@ def view_shape(rectangle: Rectangle, metres_per_pixel: float) -> tuple[int, int]
 def ground_sampling_m(camera: Camera, rectangle: Rectangle) -> tuple[float, float]:
     """Finest and coarsest size of a pixel on the ground over a rectangle [m].
 
-    The size is taken along and across the view at the corners, by a small step inwards.
+    The singular values of the map from ground to pixels at the corners, by a small step inwards:
+    the finest and the coarsest direction need not be those of the robot's axes.
     """
     step = 1e-3
     corners = rectangle.corners
     inwards = step * np.sign(corners.mean(axis=0) - corners)
     here = camera.ground_to_pixels(corners)
-    sizes: list[FloatArray] = []
-    for axis in ([1.0, 0.0], [0.0, 1.0]):
-        there = camera.ground_to_pixels(corners + inwards * axis)
-        sizes.append(step / np.linalg.norm(there - here, axis=-1))
-    return float(np.min(sizes)), float(np.max(sizes))
+    moved = [camera.ground_to_pixels(corners + inwards * axis) - here for axis in np.eye(2)]
+    pixels_per_metre = np.linalg.svd(np.stack(moved, axis=-1) / step, compute_uv=False)
+    return float(1 / pixels_per_metre.max()), float(1 / pixels_per_metre.min())

@@ -8,11 +8,10 @@ from odometry.arrays import BoolArray, ByteImage, FloatArray
 from terrain.camera import Camera
 from terrain.classification.classifier import Classification, TerrainClassifier
 from terrain.errors import TerrainError
-from terrain.region import Rectangle
+from terrain.region import Rectangle, RegionConfig
 from terrain.warp import ground_sampling_m, ground_view
 
 MOST_AHEAD_M = 4.0
-COARSEST = 2.0  # the image may resolve a cell so much more coarsely than the training patches
 
 
 @dataclass(frozen=True)
@@ -53,7 +52,7 @@ def classify_ground(image: ByteImage, camera: Camera, classifier: TerrainClassif
             "can only be cut into cells of a known size"
         )
     camera.check_size(image)
-    cells = visible_cells(camera, classifier.patch_size_px * scale, COARSEST * scale)
+    cells = visible_cells(camera, classifier.patch_size_px * scale, RegionConfig.coarsest * scale)
     views = [ground_view(image, camera, cell, scale) for cell in cells]
     answers = classifier.classify(views)
     return [Cell(cell, answer) for cell, answer in zip(cells, answers, strict=True)]
