@@ -243,8 +243,10 @@ def test_with_true_labels_the_change_is_near_the_edge(strips, share):
     wanted = [edge for edge in edges if edge > AHEAD_M]
     found = changes(history)
     assert [name for _, name in found] == [true_at(edge + 1e-6) for edge in wanted]
-    near = spacing_m <= REACH_M
-    most_early_m = (spacing_m / 2 if near else 0.0) + 0.021
-    most_late_m = (spacing_m / 2 if near else spacing_m) + max(0.0, spacing_m - AHEAD_M) + 0.05
+    step_m = 0.02  # labels are seen, and changes found, at the next step
+    half_m = spacing_m / 2
+    most_early_m = (half_m if spacing_m <= REACH_M + step_m else 0.0) + step_m + 0.001
+    most_late_m = half_m if spacing_m <= REACH_M - step_m else spacing_m
+    most_late_m += max(0.0, spacing_m - AHEAD_M) + 2 * step_m + 0.01
     for edge, (x, _) in zip(wanted, found, strict=True):
         assert -most_early_m <= x - edge <= most_late_m
