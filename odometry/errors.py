@@ -19,3 +19,7 @@ class ConfigError(OdometryError):
 
 class TrajectoryError(OdometryError):
     """A trajectory is malformed, or does not cover what was asked of it."""
+
+
+class OutputError(OdometryError):
+    """Results cannot be written where they are wanted."""

@@ -1,9 +1,13 @@
 """What a replay has learned, as a parameter set for the next run."""
 
+import numpy as np
+
 from odometry.estimation.estimate import Estimate, IcrBelief
 from odometry.models.catalogue import ICR_NAMES
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.pipeline import Replay
+
+MUCH_SURER = 2.0  # times less variance
 
 
 def learned_parameters(before: ParameterSet, replay: Replay, run_name: str) -> ParameterSet:
@@ -12,7 +16,8 @@ def learned_parameters(before: ParameterSet, replay: Replay, run_name: str) -> P
     Parameters
     ----------
     before : ParameterSet
-        Terrains where no pose was taken in keep their tables.
+        Terrains where no pose was taken in keep their tables, and so does one that was left
+        before the filter knew it about as well as its table states.
     replay : Replay
     run_name : str
         Named as the source.
@@ -21,10 +26,18 @@ def learned_parameters(before: ParameterSet, replay: Replay, run_name: str) -> P
     for name in dict.fromkeys(replay.terrains):
         there = [estimate for estimate in replay.estimates if estimate.terrain == name]
         poses = sum(_took_pose(estimate) for estimate in there)
-        if poses:
+        if poses and not _is_much_surer(before.terrains.get(name), there[-1].belief):
             source = f"learned by terrain-odometry from {poses} poses of {run_name}"
             terrains[name] = _table(there[-1].belief, source)
     return ParameterSet(terrains, before.vehicle)
+
+
+def _is_much_surer(table: TerrainParameters | None, belief: IcrBelief) -> bool:
+    """Whether a table states less than half the variance of the ICRs."""
+    if table is None or not set(ICR_NAMES[:3]) <= set(table.covariance_order):
+        return False
+    stated = float(np.trace(table.covariance_of(ICR_NAMES[:3])))
+    return MUCH_SURER * stated < float(np.trace(belief.covariance))
 
 
 def _took_pose(estimate: Estimate) -> bool:

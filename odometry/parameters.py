@@ -14,8 +14,7 @@ from odometry.errors import ParameterError
 from odometry.io.files import atomic_write
 from odometry.models.catalogue import MODELS, OPTIONAL_NAMES, PARAMETER_NAMES
 from odometry.parameter_covariance import covariance_of_table, finite_number
-
-RESERVED_TERRAIN = "unknown"
+from odometry.run import UNKNOWN
 
 
 @dataclass(frozen=True)
@@ -44,10 +43,8 @@ class TerrainParameters:
     source: str = ""
     effects: tuple[Mapping[str, Any], ...] = ()
 
-    def covariance_of(self, names: tuple[str, ...]) -> FloatArray | None:
-        """Covariance of the named parameters, None where the set does not state it."""
-        if not set(names) <= set(self.covariance_order):
-            return None
+    def covariance_of(self, names: tuple[str, ...]) -> FloatArray:
+        """Covariance of the named parameters, all of them of `covariance_order`."""
         places = [self.covariance_order.index(name) for name in names]
         return self.covariance[np.ix_(places, places)]
 
@@ -111,7 +108,7 @@ def write_parameters(file: str | Path, parameters: ParameterSet) -> None:
 
 
 def _terrain(table: Any, name: str, where: str) -> TerrainParameters:
-    if name == RESERVED_TERRAIN:
+    if name == UNKNOWN:
         raise ParameterError(f"{where}: the name {name!r} is reserved")
     if not isinstance(table, dict):
         raise ParameterError(f"{where}: {table!r}, expected a table")

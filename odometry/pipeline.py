@@ -108,7 +108,7 @@ class Replay:
 def replay(
     run: Run, estimator: Estimator, source: TerrainSource, *, show_progress: bool = False
 ) -> Replay:
-    """Replay a run frame by frame.
+    """Replay a run frame by frame, from its first usable pose to the end of its odometry.
 
     Parameters
     ----------
@@ -128,6 +128,7 @@ def replay(
     if first is None:
         raise RunFolderError(f"{run.folder}: no pose lies within the time of odometry.csv")
     estimates = [estimator.start(first, source.initial)]
+    source.terrain(first, estimates[0])  # its image is looked at; a switch takes effect next
     bar: Iterable[Frame] = tqdm(
         frames, desc=run.name, unit="frame", disable=None if show_progress else True
     )
@@ -138,15 +139,17 @@ def replay(
 
 
 def _from_start(run: Run) -> Iterator[Frame]:
-    """The frames from the first that can start a filter."""
+    """The frames from the first that can start a filter to the end of odometry."""
     has_pose = run.pose is not None and bool(
         np.isfinite(run.pose.stack("x", "y", "yaw")).all(axis=1).any()
     )
     started = False
     for frame in run.frames():
+        moves = bool(np.all(np.isfinite(frame.tread_speeds_m_s)))
         if not started:
-            moves = bool(np.all(np.isfinite(frame.tread_speeds_m_s)))
             posed = frame.pose is not None and bool(np.all(np.isfinite(frame.pose)))
             started = moves and (posed or not has_pose)
         if started:
             yield frame
+            if not moves:
+                return

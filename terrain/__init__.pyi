@@ -2,11 +2,12 @@ from .camera import Camera
 from .classification.classifier import Classification, TerrainClassifier
 from .classification.training import Training, train
 from .config import Config
+from .demo import run_demo
 from .errors import TerrainError
 from .report.page import write_report
-from .results import write_results
+from .results import read_errors, write_results
 from .run_odometry import RunResult, run_odometry
-from .synthetic import synthesise
+from .synthetic import SynthesisConfig, synthesise
 from .texture import SFTA, sfta
 
 __all__ = [
@@ -15,9 +16,12 @@ __all__ = [
     "Classification",
     "Config",
     "RunResult",
+    "SynthesisConfig",
     "TerrainClassifier",
     "TerrainError",
     "Training",
+    "read_errors",
+    "run_demo",
     "run_odometry",
     "sfta",
     "synthesise",

@@ -25,3 +25,7 @@ class ModelFileError(TerrainError):
 
 class SynthesisError(TerrainError):
     """A synthetic run cannot be made from what was given."""
+
+
+class ResultError(TerrainError):
+    """A folder does not hold the result of a finished run."""

@@ -24,23 +24,24 @@ class RegionConfig:
         The footprint is made larger by this factor (Chen 2023: 1.2).
     ahead_s : float
         How far ahead in time; 0 means the smallest for which the region lies in the image.
-    most_ahead_s, most_ahead_m : float
-        Limits of that search, in time and in wheel travel.
+    most_ahead_s, most_ahead_lengths : float
+        Limits of that search, in time and in robot lengths of wheel travel.
     coarsest : float
         The image may resolve the region this much more coarsely than the training patches.
     per_tread : bool
-        Classify the left and the right tread strip apart.
+        Classify the ground of the left and of the right tread apart: the two halves of the
+        footprint.
     """
 
     footprint_scale: float = 1.2
     ahead_s: float = 0.0
     most_ahead_s: float = 60.0
-    most_ahead_m: float = 3.0
+    most_ahead_lengths: float = 6.0
     coarsest: float = 2.5
     per_tread: bool = False
 
     def __post_init__(self) -> None:
-        for name in ("footprint_scale", "most_ahead_s", "most_ahead_m", "coarsest"):
+        for name in ("footprint_scale", "most_ahead_s", "most_ahead_lengths", "coarsest"):
             require(getattr(self, name) > 0, f"{name} = {getattr(self, name)}, expected above 0")
         require(self.ahead_s >= 0, f"ahead_s = {self.ahead_s}, expected 0 or more")
 
@@ -66,14 +67,6 @@ class Rectangle:
             ]
         )
 
-    def halves(self) -> tuple["Rectangle", "Rectangle"]:
-        """Its left and right half."""
-        middle = (self.y_min + self.y_max) / 2
-        return (
-            Rectangle(self.x_min, self.x_max, middle, self.y_max),
-            Rectangle(self.x_min, self.x_max, self.y_min, middle),
-        )
-
 
 @dataclass(frozen=True)
 class Region:
@@ -82,6 +75,9 @@ class Region:
     Attributes
     ----------
     rectangle : Rectangle
+        Round the footprint.
+    tread_rectangles : (Rectangle, Rectangle)
+        Round its left and its right half.
     ahead_s : float
     distance_ahead_m : float
         Wheel travel until the robot is there.
@@ -90,6 +86,7 @@ class Region:
     """
 
     rectangle: Rectangle
+    tread_rectangles: tuple[Rectangle, Rectangle]
     ahead_s: float
     distance_ahead_m: float
     pose_ahead: FloatArray
@@ -118,29 +115,53 @@ def predict_region(
     """
     if wheel_speed_m_s <= 0:
         return "the robot stands"
-    latest_s = min(config.most_ahead_s, config.most_ahead_m / wheel_speed_m_s)
+    length = robot.length or robot.track_width
+    latest_s = min(config.most_ahead_s, config.most_ahead_lengths * length / wheel_speed_m_s)
     if config.ahead_s > 0:
         ahead_s = np.array([config.ahead_s])
     else:
         ahead_s = np.linspace(0.0, latest_s, STEPS)
     poses = se2.exp(twist * ahead_s[:, None])
-    half_sizes = _half_sizes(robot, poses[:, 2], config.footprint_scale)
+    footprint = _footprint(robot, config.footprint_scale)
+    half_sizes = _half_sizes(footprint, poses[:, 2])
     low, high = poses[:, :2] - half_sizes, poses[:, :2] + half_sizes
     seen = camera.in_image(camera.ground_to_pixels(_outline(low, high))).all(axis=1)
     if not seen.any():
         return "the region lies outside the image"
     first = int(seen.argmax())
-    rectangle = Rectangle(
-        float(low[first, 0]), float(high[first, 0]), float(low[first, 1]), float(high[first, 1])
-    )
     time_s = float(ahead_s[first])
-    return Region(rectangle, time_s, wheel_speed_m_s * time_s, poses[first])
+    return Region(
+        _rectangle(poses[first, :2], half_sizes[first]),
+        _tread_rectangles(poses[first], footprint),
+        time_s,
+        wheel_speed_m_s * time_s,
+        poses[first],
+    )
 
 
-def _half_sizes(robot: Robot, yaw: FloatArray, scale: float) -> FloatArray:
-    """Half the sides (N, 2) of the bounding rectangle along x and y (eq. 22)."""
-    length = scale * (robot.length or robot.track_width)  # W_1
-    width = scale * (robot.width or robot.track_width)  # B_1
+def _footprint(robot: Robot, scale: float) -> tuple[float, float]:
+    """Length W_1 and width B_1 of the enlarged footprint."""
+    return scale * (robot.length or robot.track_width), scale * (robot.width or robot.track_width)
+
+
+def _rectangle(centre: FloatArray, half_size: FloatArray) -> Rectangle:
+    (x_min, y_min), (x_max, y_max) = centre - half_size, centre + half_size
+    return Rectangle(float(x_min), float(x_max), float(y_min), float(y_max))
+
+
+def _tread_rectangles(
+    pose: FloatArray, footprint: tuple[float, float]
+) -> tuple[Rectangle, Rectangle]:
+    """Rectangles round the left and the right half of the footprint at a pose (3,)."""
+    length, width = footprint
+    half_size = _half_sizes((length, width / 2), pose[2])
+    left, right = se2.transform(pose, np.array([[0.0, width / 4], [0.0, -width / 4]]))
+    return _rectangle(left, half_size), _rectangle(right, half_size)
+
+
+def _half_sizes(footprint: tuple[float, float], yaw: FloatArray) -> FloatArray:
+    """Half the sides (..., 2) of the bounding rectangle along x and y (eq. 22)."""
+    length, width = footprint
     sine, cosine = np.abs(np.sin(yaw)), np.abs(np.cos(yaw))
     along_x = width * sine + length * cosine  # H_p
     along_y = width * cosine + length * sine  # L_p

@@ -13,6 +13,7 @@ from odometry.io.files import atomic_write
 from odometry.io.tum import write_tum
 from odometry.parameters import write_parameters
 from odometry.trajectory import Trajectory
+from terrain.errors import ResultError
 from terrain.run_odometry import RunResult
 from terrain.switch_delay import switch_delays
 from terrain.watcher import Sighting
@@ -79,6 +80,7 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "horizon_m": result.config.evaluation.horizon_m,
         "errors": {name: score.to_table() for name, score in result.scores.items()},
         "switches": _switches(result),
+        "missed_changes": _missed_changes(result),
         "sightings": sighting_counts(result),
         "filter": {
             "poses": len(innovations),
@@ -132,6 +134,7 @@ def _switches(result: RunResult) -> list[dict[str, Any]]:
             "terrain": event.terrain,
             "stamp_s": event.stamp_s,
             "seen_s": event.sight.stamp_s,
+            "distance_ahead_m": event.sight.distance_ahead_m,
             "waited_s": event.waited_s,
             "waited_m": event.waited_m,
             "late_s": delay.late_s,
@@ -139,3 +142,37 @@ def _switches(result: RunResult) -> list[dict[str, Any]]:
         }
         for event, delay in zip(result.watcher.events, delays, strict=False)
     ]
+
+
+def _missed_changes(result: RunResult) -> list[dict[str, Any]]:
+    """True changes of terrain that no switch answered."""
+    if result.watcher is None:
+        return []
+    missed = switch_delays(result)[len(result.watcher.events) :]
+    return [{"terrain": delay.terrain, "stamp_s": delay.true_s} for delay in missed]
+
+
+def read_errors(folder: str | Path) -> dict[str, Any]:
+    """Errors of a finished run, from the `result.json` in its folder.
+
+    Returns
+    -------
+    dict
+        `errors` by trajectory, `reference` and `horizon_m`, as `result.json` holds them.
+
+    Raises
+    ------
+    ResultError
+        If the folder has no result of `run`.
+    """
+    file = Path(folder) / "result.json"
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+        for errors in content["errors"].values():
+            for name in ("translation_m_per_m", "rotation_deg_per_m", "position_m"):
+                float(errors[name]["mean"] or 0)
+        return {key: content[key] for key in ("errors", "reference", "horizon_m")}
+    except (OSError, ValueError) as error:
+        raise ResultError(f"{file}: {error}") from error
+    except (KeyError, TypeError, AttributeError) as error:
+        raise ResultError(f"{file}: it is not a result of `run`") from error

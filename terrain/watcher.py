@@ -136,7 +136,7 @@ class TerrainWatcher:
         )
         if isinstance(region, str):
             return Sighting(frame.stamp_s, name, reason=region)
-        rectangles = region.rectangle.halves() if self._region.per_tread else (region.rectangle,)
+        rectangles = region.tread_rectangles if self._region.per_tread else (region.rectangle,)
         reason = next(filter(None, map(self._unfit, rectangles)), "")
         if reason:
             return Sighting(frame.stamp_s, name, region=region, reason=reason)

@@ -35,8 +35,8 @@ class IcrEkf:
     A frame goes in with the name of the terrain that the robot is on; a new Estimate comes out,
     and the one that went in is not changed. On a new name the ICRs are those last learned there
     or those of the parameter set, whichever is the more certain, and their covariance is reset
-    to `reset_sigma_widths`, or to what was known before if that is less. A pose with NaN is as
-    good as none.
+    to `reset_sigma_widths`, or to what was known before where that is less certain. A pose
+    with NaN is as good as none.
     """
 
     def __init__(

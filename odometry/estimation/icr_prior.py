@@ -5,9 +5,11 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
 from odometry.estimation.estimate import IcrBelief
+from odometry.models.catalogue import ICR_NAMES
 from odometry.parameters import ParameterSet, TerrainParameters
 
 ICR_FORM_MODELS = ("icr", "icr_symmetric", "differential_drive", "traction_mode")
+WIDTH_NAMES = {"icr_symmetric": "b_hat", "differential_drive": "track_width"}
 BROAD_SIGMA_WIDTHS = 0.5  # standard deviation of the broad prior, in track widths
 
 
@@ -37,10 +39,19 @@ def prior_belief(
             np.array([track_width / 2, -track_width / 2, 0.0]), np.ones(2), sigma**2 * np.eye(3)
         )
     icrs, alphas = icr_form(table, f"[terrain.{terrain}]")
-    covariance = table.covariance_of(("y_left", "y_right", "x_icr"))
-    if covariance is None:
-        covariance = reset_sigma_m**2 * np.eye(3)
-    return IcrBelief(icrs, alphas, covariance)
+    return IcrBelief(icrs, alphas, _covariance(table, reset_sigma_m))
+
+
+def _covariance(table: TerrainParameters, reset_sigma_m: float) -> FloatArray:
+    """Covariance (3, 3) of the ICRs: what the table states, `reset_sigma_m` for the rest."""
+    covariance = reset_sigma_m**2 * np.eye(3)
+    stated = tuple(name for name in ICR_NAMES[:3] if name in table.covariance_order)
+    places = [ICR_NAMES.index(name) for name in stated]
+    covariance[np.ix_(places, places)] = table.covariance_of(stated)
+    width = WIDTH_NAMES.get(table.model)
+    if width in table.covariance_order:  # y_left = -y_right = width / 2
+        covariance[[0, 1], [0, 1]] = table.covariance_of((width,))[0, 0] / 4
+    return covariance
 
 
 def icr_form(table: TerrainParameters, where: str) -> tuple[FloatArray, FloatArray]:
@@ -65,6 +76,10 @@ def icr_form(table: TerrainParameters, where: str) -> tuple[FloatArray, FloatArr
             icrs = [values["track_width"] / 2, -values["track_width"] / 2, 0.0]
             alphas = [1.0, 1.0]
         case "traction_mode":  # alpha_left = alpha_right = k, y_left - y_right = b k / m
+            if values["m"] * values["k"] <= 0:
+                raise ParameterError(
+                    f"{where}: k = {values['k']} and m = {values['m']}, expected both above 0"
+                )
             width = values["track_width"] * values["k"] / values["m"]
             icrs = [width / 2, -width / 2, 0.0]
             alphas = [values["k"], values["k"]]

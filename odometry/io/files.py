@@ -5,6 +5,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from odometry.errors import OutputError
+
 
 @contextmanager
 def atomic_write(path: Path) -> Iterator[Path]:
@@ -29,3 +31,18 @@ def atomic_write(path: Path) -> Iterator[Path]:
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def check_writable(folder: Path) -> None:
+    """Find out before long work, and without making anything, whether a folder can be made.
+
+    Raises
+    ------
+    OutputError
+        If a part of the path is not a folder, or is one that may not be written to.
+    """
+    there = next(path for path in (folder, *folder.resolve().parents) if path.exists())
+    if not there.is_dir():
+        raise OutputError(f"cannot write to {folder}: {there} is not a folder")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise OutputError(f"cannot write to {folder}: {there} may not be written to")

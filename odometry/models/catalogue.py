@@ -10,11 +10,10 @@ MODELS: dict[str, KinematicModel] = {
 
 ICR_NAMES = ("y_left", "y_right", "x_icr", "alpha_left", "alpha_right")
 
-# Every name that a parameter set may hold, so that a set identified elsewhere can be read.
+# Names that a parameter set may hold, so that a set identified elsewhere can be read: those of
+# the models above, and those of models that CONVENTIONS names and nothing here computes yet.
 PARAMETER_NAMES: dict[str, tuple[str, ...]] = {
-    "differential_drive": ("track_width",),
-    "icr_symmetric": ("alpha", "b_hat"),
-    "icr": ICR_NAMES,
+    **{name: tuple(p.name for p in model.parameters) for name, model in MODELS.items()},
     "radius_of_curvature": ("alpha", "beta_1", "beta_2", "track_width"),
     "full_linear": tuple(f"gamma_{row}{column}" for row in (1, 2, 3) for column in (1, 2)),
     "icr_slope": (*ICR_NAMES, "lambda_1", "lambda_2", "v_max", "half_width", "half_length"),

@@ -9,10 +9,11 @@ import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage, IntArray
 from odometry.errors import ConfigError
+from odometry.run import UNKNOWN
 from terrain.classification.features import feature_matrix
 from terrain.classification.model_settings import ModelSettings
 from terrain.classification.neighbours import vote
-from terrain.classification.patches import RESERVED_LABEL, cut_patches
+from terrain.classification.patches import cut_patches
 from terrain.classification.persistence import read_model, write_model
 from terrain.classification.presets import PRESETS
 from terrain.classification.training_set import check_labels, common_size, has_colour
@@ -173,13 +174,13 @@ class TerrainClassifier:
         distance = float(np.median(self._neighbours.distances(features)))
         best = int(probabilities.argmax())  # eq. 26
         return Classification(
-            self.classes_[best] if distance <= self.rejection_distance_ else RESERVED_LABEL,
+            self.classes_[best] if distance <= self.rejection_distance_ else UNKNOWN,
             float(probabilities[best]),
             distance,
             dict(zip(self.classes_, probabilities.tolist(), strict=True)),
         )
 
-    def save(self, path: Path) -> None:
+    def save(self, path: str | Path) -> None:
         """Write the classifier to one file of arrays and JSON; see `persistence`."""
         settings = ModelSettings(
             self.preset,
@@ -192,10 +193,10 @@ class TerrainClassifier:
             self.rejection_distance_,
             self._features,
         )
-        write_model(path, settings.to_table(), self._neighbours.arrays())
+        write_model(Path(path), settings.to_table(), self._neighbours.arrays())
 
     @classmethod
-    def load(cls, path: Path) -> Self:
+    def load(cls, path: str | Path) -> Self:
         """Read what `save` wrote. The loaded classifier gives the same answers.
 
         Raises
@@ -204,7 +205,7 @@ class TerrainClassifier:
             If the file is missing, damaged, foreign, or of a newer program. Nothing in it is
             executed.
         """
-        table, arrays = read_model(path)
+        table, arrays = read_model(Path(path))
         try:
             return cls._from_file(ModelSettings.from_table(table), arrays)
         except (KeyError, TypeError, ValueError, ConfigError) as error:

@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 
 from odometry.arrays import ByteImage
+from odometry.run import UNKNOWN
 from terrain.errors import PatchError
 from terrain.images import read_image
 
 SUFFIXES = (".jpg", ".jpeg", ".png")
-RESERVED_LABEL = "unknown"
 PATCHES_PER_PHOTO = 60
 
 
@@ -59,8 +59,8 @@ def find_photos(root: Path) -> list[LabelledPhoto]:
     ]
     if not photos:
         raise PatchError(f"{root} holds no photographs; expected {root}/<class>/*.jpg or *.png")
-    if any(photo.label == RESERVED_LABEL for photo in photos):
-        raise PatchError(f"{root / RESERVED_LABEL}: the name '{RESERVED_LABEL}' is reserved")
+    if any(photo.label == UNKNOWN for photo in photos):
+        raise PatchError(f"{root / UNKNOWN}: the name '{UNKNOWN}' is reserved")
     return photos
 
 
@@ -113,7 +113,7 @@ def load_patches(
             cut = [cut[i] for i in np.linspace(0, len(cut) - 1, max_per_photo).astype(int)]
         if not cut:
             patches.too_small.append(photo.path)
-        patches.images.extend(cut)
+        patches.images.extend(patch.copy() for patch in cut)  # so that no photograph is kept
         patches.labels.extend([photo.label] * len(cut))
         patches.groups.extend([photo.group] * len(cut))
         patches.photos.extend([photo.path] * len(cut))
@@ -176,9 +176,23 @@ def _photo_ids(root: Path) -> dict[Path, str]:
 def _manifest(root: Path) -> tuple[Path, list[dict[str, str]]]:
     """Rows of the manifest in `root` or its parent; none where neither has one."""
     for file in (root / "manifest.csv", root.parent / "manifest.csv"):
-        if file.is_file():
-            with file.open(newline="", encoding="utf-8") as stream:
-                reader = csv.DictReader(stream)
-                if {"path", "photo_id"} <= set(reader.fieldnames or ()):
-                    return file, list(reader)
+        if file.is_file() and (rows := _manifest_rows(file)):
+            return file, rows
     return root / "manifest.csv", []
+
+
+def _manifest_rows(file: Path) -> list[dict[str, str]]:
+    """Rows with path and photo_id; none where the file is about something else."""
+    try:
+        with file.open(newline="", encoding="utf-8-sig") as stream:
+            reader = csv.DictReader(stream)
+            rows = list(reader)
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise PatchError(f"{file}: cannot be read as CSV: {error}") from error
+    if not {"path", "photo_id"} <= set(reader.fieldnames or ()):
+        return []
+    for line, row in enumerate(rows, start=2):
+        for name in ("path", "photo_id"):
+            if not row[name]:
+                raise PatchError(f"{file}: row {line}, column {name!r}: it is empty")
+    return rows

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from odometry.arrays import ByteImage
-from terrain.classification.patches import RESERVED_LABEL
+from odometry.run import UNKNOWN
 from terrain.errors import PatchError
 
 
@@ -19,8 +19,8 @@ def check_labels(n_images: int, labels: Sequence[str], groups: Sequence[str]) ->
     """Raise PatchError unless there are two classes of two groups each, named lawfully."""
     if not n_images == len(labels) == len(groups):
         raise PatchError(f"{n_images} images, {len(labels)} labels and {len(groups)} groups")
-    if RESERVED_LABEL in labels:
-        raise PatchError(f"the label '{RESERVED_LABEL}' is reserved")
+    if UNKNOWN in labels:
+        raise PatchError(f"the label '{UNKNOWN}' is reserved")
     photos: dict[str, set[str]] = {}
     for label, group in sorted(zip(labels, groups, strict=True)):
         photos.setdefault(label, set()).add(group)

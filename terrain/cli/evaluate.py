@@ -37,16 +37,14 @@ def evaluate(folders: tuple[Path, ...], as_json: bool) -> None:
 
 
 def _read(folder: Path) -> dict[str, Any]:
-    file = folder / "result.json"
+    """Errors of one folder; what went wrong where they cannot be read."""
+    from odometry.errors import OdometryError
+    from terrain.results import read_errors
+
     try:
-        content = json.loads(file.read_text(encoding="utf-8"))
-        for errors in content["errors"].values():
-            error_cells(errors)
-    except (OSError, ValueError) as error:
-        return {"error": f"{file}: {error}"}
-    except (KeyError, TypeError, AttributeError):
-        return {"error": f"{file}: it is not a result of `run`"}
-    return {key: content[key] for key in ("errors", "reference", "horizon_m") if key in content}
+        return read_errors(folder)
+    except OdometryError as error:
+        return {"error": str(error)}
 
 
 def _rows(name: str, result: dict[str, Any]) -> list[tuple[str, ...]]:

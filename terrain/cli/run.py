@@ -16,7 +16,7 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
 @click.option("--no-vision", is_flag=True, help="Keep one terrain in force throughout.")
 @click.option("--terrain", metavar="NAME", help="In force until the first switch.")
 @click.option("--config", type=FILE, help="Settings (TOML): [filter] [region] [switch] ...")
-@click.option("--per-tread", is_flag=True, help="Classify the left and right tread strip apart.")
+@click.option("--per-tread", is_flag=True, help="Classify the ground of each tread apart.")
 @click.option("--detect-jumps", is_flag=True, help="Watch the innovations for jumps of the ICRs.")
 def run(
     run_folder: Path,
@@ -41,6 +41,8 @@ def run(
     """
     from dataclasses import replace
 
+    from odometry.io.files import check_writable
+    from terrain.cli.hints import hints
     from terrain.cli.results import print_errors, print_sightings, print_written
     from terrain.config import Config
     from terrain.report.page import write_report
@@ -52,6 +54,7 @@ def run(
         settings = replace(settings, region=replace(settings.region, per_tread=True))
     if detect_jumps:
         settings = replace(settings, filter=replace(settings.filter, detect_jumps=True))
+    check_writable(out)
     result = run_odometry(
         run_folder,
         model=model,
@@ -61,6 +64,8 @@ def run(
         config=settings,
         show_progress=True,
     )
+    for hint in hints(result, vision=not no_vision):
+        click.echo(f"Note: {hint}", err=True)
     written = write_results(result, out) + write_report(result, out)
     print_errors({result.run.name: result})
     print_sightings(sighting_counts(result))

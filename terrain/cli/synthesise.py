@@ -13,7 +13,13 @@ import click
     type=click.Path(path_type=Path),
     help="Folder to make; must be missing or empty.",
 )
-@click.option("--seed", default=0, show_default=True, help="Seed of all randomness.")
+@click.option(
+    "--seed",
+    type=click.IntRange(min=0),
+    default=0,
+    show_default=True,
+    help="Seed of all randomness.",
+)
 @click.option(
     "--zone",
     "zones",

@@ -51,8 +51,10 @@ def train(
     Example:
       terrain-odometry train my_photos --out ground.model --metres-per-pixel 0.002
     """
+    from odometry.io.files import check_writable
     from terrain.classification.training import train as train_classifier
 
+    check_writable(out.parent)
     training = train_classifier(
         patches,
         preset=preset,

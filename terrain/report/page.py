@@ -33,6 +33,11 @@ from terrain.switch_delay import true_stretches
 
 Block = Paragraph | Listing | Grid | Picture
 
+FIGURES = (
+    *("path", "position_errors", "error_per_metre", "icrs"),
+    *("labels", "confusion", "regions", "whole_image"),
+)
+
 
 def write_report(
     result: RunResult,
@@ -72,8 +77,11 @@ def write_report(
     ]
     title = f"{result.run.name}: terrain-aware odometry"
     page = write_page(Path(out) / "report.html", title, headline(lines, lines.scores()), sections)
-    pictures = [block for s in sections for block in s.blocks if isinstance(block, Picture)]
-    return [*(picture.file for picture in pictures), page]
+    pictures = [b.file for s in sections for b in s.blocks if isinstance(b, Picture)]
+    for name in FIGURES:
+        if folder / f"{name}.png" not in pictures:
+            (folder / f"{name}.png").unlink(missing_ok=True)  # of an earlier run
+    return [*pictures, page]
 
 
 def _errors(lines: ReportLines, folder: Path) -> list[Block]:

@@ -65,3 +65,12 @@ def test_the_next_filter_starts_from_it(result):
     start = IcrEkf(0.6, learned).start(Frame(0.0, np.zeros(2), 0, None, None), "b")
     (last,) = (e for e in result.estimates if e.stamp_s == 3.75)
     np.testing.assert_array_equal(start.mean[3:], last.mean[3:])
+
+
+def test_a_table_that_is_much_surer_than_a_short_visit_stays(result):
+    """The filter left b with some centimetres of uncertainty; the table says 1 mm, or 1 m."""
+    values = {"y_left": 0.3, "y_right": -0.3, "x_icr": 0.0}
+    for sigma_m, stays in ((1e-3, True), (1.0, False)):
+        table = TerrainParameters("icr", values, tuple(values), sigma_m**2 * np.eye(3))
+        learned = learned_parameters(ParameterSet({"b": table}), result, "my_run")
+        assert (learned.terrains["b"] is table) is stays

@@ -56,7 +56,7 @@ def test_the_example_of_the_conventions(read):
     assert asphalt.source == "identified from ..."
     assert asphalt.effects[0]["parameters"]["lambda_2"] == 5.0
     np.testing.assert_allclose(asphalt.covariance_of(("y_left",)), [[0.0004]])
-    assert asphalt.covariance_of(("y_left", "y_right")) is None
+    assert asphalt.covariance_order == ("y_left",)
 
 
 def test_model_is_icr_and_slip_factors_are_one_when_absent(read):

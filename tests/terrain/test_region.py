@@ -178,7 +178,7 @@ def test_the_search_ends_at_its_limits():
     forward = np.array([0.5, 0.0, 0.0])
     found = predict_region(ROBOT, AHEAD, forward, 0.5, RegionConfig())
     for limit in (
-        RegionConfig(most_ahead_m=0.9 * found.distance_ahead_m),
+        RegionConfig(most_ahead_lengths=0.9 * found.distance_ahead_m / ROBOT.length),
         RegionConfig(most_ahead_s=0.9 * found.ahead_s),
     ):
         assert isinstance(predict_region(ROBOT, AHEAD, forward, 0.5, limit), str)
@@ -198,10 +198,36 @@ def test_a_camera_that_sees_the_robots_own_ground_looks_no_time_ahead():
     np.testing.assert_allclose(region.pose_ahead, 0.0, atol=1e-12)
 
 
-def test_halves_are_left_and_right_and_make_the_whole():
-    left, right = Rectangle(1.0, 2.0, -0.4, 0.6).halves()
-    assert left == Rectangle(1.0, 2.0, pytest.approx(0.1), 0.6)
-    assert right == Rectangle(1.0, 2.0, -0.4, pytest.approx(0.1))
+def test_straight_ahead_the_treads_have_the_left_and_the_right_half():
+    region = predict_region(ROBOT, AHEAD, np.array([0.5, 0.0, 0.0]), 0.5, RegionConfig())
+    left, right = region.tread_rectangles
+    whole = region.rectangle
+    assert (left.x_min, left.x_max) == pytest.approx((whole.x_min, whole.x_max))
+    assert (left.y_min, left.y_max) == pytest.approx((0.0, whole.y_max))
+    assert (right.y_min, right.y_max) == pytest.approx((whole.y_min, 0.0))
+
+
+def test_after_a_turn_the_halves_lie_along_the_heading_then():
+    """Each half holds its four corners, carried to the pose ahead, and no more."""
+    region = predict_region(ROBOT, AHEAD, np.array([0.5, 0.0, 0.15]), 0.5, RegionConfig())
+    x, y, yaw = region.pose_ahead
+    assert yaw > 0.2
+    length, width = 1.2 * ROBOT.length, 1.2 * ROBOT.width
+    for rectangle, side in zip(region.tread_rectangles, (1, -1), strict=True):
+        ends, edges = (-length / 2, length / 2), (0, side * width / 2)
+        corners = np.array([(a, b) for a in ends for b in edges])
+        turned = corners @ np.array([[np.cos(yaw), np.sin(yaw)], [-np.sin(yaw), np.cos(yaw)]])
+        low, high = turned.min(axis=0) + [x, y], turned.max(axis=0) + [x, y]
+        assert (rectangle.x_min, rectangle.y_min) == pytest.approx(tuple(low))
+        assert (rectangle.x_max, rectangle.y_max) == pytest.approx(tuple(high))
+
+
+def test_a_large_robot_looks_farther_ahead():
+    """2.1 m long, with a camera that sees the ground from 1.8 m on."""
+    large = Robot(track_width=1.4, length=2.12, width=1.5)
+    camera = Camera.from_mount((640, 480), MATRIX, [], [1.0, 0.0, 1.5, 0.0, 0.4, 0.0])
+    region = predict_region(large, camera, np.array([1.0, 0.0, 0.0]), 1.0, RegionConfig())
+    assert region.distance_ahead_m > 3.0
 
 
 def test_corners_go_clockwise_in_the_image_from_far_left():
@@ -217,7 +243,7 @@ def test_corners_go_clockwise_in_the_image_from_far_left():
     [
         {"footprint_scale": 0.0},
         {"most_ahead_s": -1.0},
-        {"most_ahead_m": 0.0},
+        {"most_ahead_lengths": 0.0},
         {"coarsest": 0.0},
         {"ahead_s": -0.1},
     ],

@@ -73,3 +73,29 @@ def test_effects_are_refused():
     values = {"y_left": 0.4, "y_right": -0.5, "x_icr": 0.1}
     with pytest.raises(ParameterError, match=r"terrain\.here.*effects"):
         prior_of(TerrainParameters("icr", values, effects=({"name": "slope"},)))
+
+
+def test_what_a_table_states_of_one_coordinate_is_kept():
+    values = {"y_left": 0.4, "y_right": -0.5, "x_icr": 0.1}
+    belief = prior_of(TerrainParameters("icr", values, ("y_left",), np.array([[4e-4]])))
+    np.testing.assert_allclose(belief.covariance, np.diag([4e-4, RESET_M**2, RESET_M**2]))
+
+
+@pytest.mark.parametrize(
+    ("model", "values", "name"),
+    [
+        ("icr_symmetric", {"alpha": 0.8, "b_hat": 0.9}, "b_hat"),
+        ("differential_drive", {"track_width": 0.7}, "track_width"),
+    ],
+)
+def test_half_the_uncertainty_of_a_width_is_that_of_each_side(model, values, name):
+    belief = prior_of(TerrainParameters(model, values, (name,), np.array([[0.06**2]])))
+    np.testing.assert_allclose(np.sqrt(np.diag(belief.covariance)), [0.03, 0.03, RESET_M])
+
+
+@pytest.mark.parametrize(
+    "mode", [{"k": 0.9, "m": 0.0}, {"k": 0.9, "m": -1.0}, {"k": 0.0, "m": 1.0}]
+)
+def test_a_traction_mode_without_a_width_is_an_error(mode):
+    with pytest.raises(ParameterError, match="expected both above 0"):
+        prior_of(TerrainParameters("traction_mode", {"track_width": 0.6, **mode}))

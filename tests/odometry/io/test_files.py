@@ -1,6 +1,7 @@
 import pytest
 
-from odometry.io.files import atomic_write
+from odometry.errors import OutputError
+from odometry.io.files import atomic_write, check_writable
 
 
 def test_the_file_is_there_when_the_block_ends(tmp_path):
@@ -27,3 +28,11 @@ def test_a_block_that_raises_leaves_what_was_there(tmp_path):
         half_done()
     assert file.read_text() == "before"
     assert list(tmp_path.iterdir()) == [file]
+
+
+def test_a_folder_that_cannot_be_made_is_known_before(tmp_path):
+    check_writable(tmp_path / "a" / "b")
+    assert not (tmp_path / "a").exists()
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError, match="is not a folder"):
+        check_writable(tmp_path / "file" / "b")

@@ -92,8 +92,8 @@ def test_too_small_an_image_is_an_error(trained):
 
 
 def test_a_loaded_classifier_gives_the_same_answers_and_bytes(trained, rng, tmp_path):
-    trained.save(tmp_path / "a.model")
-    loaded = TerrainClassifier.load(tmp_path / "a.model")
+    trained.save(str(tmp_path / "a.model"))
+    loaded = TerrainClassifier.load(str(tmp_path / "a.model"))
     fresh = [texture(rng) for texture in (grains, stripes, blobs)]
     assert loaded.classify(fresh) == trained.classify(fresh)
     for name in ("preset", "classes_", "patch_size_px", "metres_per_pixel", "colour_"):

@@ -115,3 +115,28 @@ def test_the_scale_is_what_the_manifest_states(tmp_path):
         manifest.write_text(f"path,photo_id,metres_per_pixel\na/1.jpg,1,{cells}\n")
         with pytest.raises(PatchError, match=r"manifest\.csv: metres_per_pixel"):
             stated_metres_per_pixel(tmp_path)
+
+
+def test_a_manifest_saved_by_a_spreadsheet_groups_too(tmp_path):
+    photo(tmp_path / "grass/a.jpg")
+    photo(tmp_path / "grass/b.jpg")
+    text = "path,photo_id\ngrass/a.jpg,1\ngrass/b.jpg,1\n"
+    (tmp_path / "manifest.csv").write_text(text, encoding="utf-8-sig")
+    assert len({p.group for p in find_photos(tmp_path)}) == 1
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [(b"grass/a.jpg\n", "row 2, column 'photo_id'"), (b"gr\xfcn/a.jpg,1\n", "cannot be read")],
+)
+def test_a_manifest_with_holes_is_an_error(tmp_path, rows, message):
+    photo(tmp_path / "grass/a.jpg")
+    (tmp_path / "manifest.csv").write_bytes(b"path,photo_id\n" + rows)
+    with pytest.raises(PatchError, match=message):
+        find_photos(tmp_path)
+
+
+def test_patches_do_not_keep_their_photographs(tmp_path):
+    photo(tmp_path / "grass/a.jpg", (64, 64))
+    patches = load_patches(find_photos(tmp_path), 16)
+    assert all(patch.base is None for patch in patches.images)

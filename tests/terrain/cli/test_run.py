@@ -57,13 +57,13 @@ def test_learned_toml_goes_back_in(curvy_run, tmp_path):
 
 def test_settings_come_from_the_file_and_the_options(astride_run, model_file, tmp_path):
     config = tmp_path / "config.toml"
-    config.write_text("[region]\nmost_ahead_m = 2.0\n[switch]\nlabels_in_row = 4\n")
+    config.write_text("[region]\nmost_ahead_lengths = 5.0\n[switch]\nlabels_in_row = 4\n")
     out = tmp_path / "out"
     arguments = ["--config", config, "--per-tread", "--detect-jumps", "--model", model_file]
     answer = invoke(astride_run, "--out", out, *arguments)
     assert answer.exit_code == 0, answer.output
     settings = content_of(out)["config"]
-    assert settings["region"]["most_ahead_m"] == 2.0
+    assert settings["region"]["most_ahead_lengths"] == 5.0
     assert settings["region"]["per_tread"] is True
     assert settings["switch"]["labels_in_row"] == 4
     assert settings["filter"]["detect_jumps"] is True

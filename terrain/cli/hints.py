@@ -1,0 +1,21 @@
+"""What a user may not have meant."""
+
+from terrain.run_odometry import RunResult
+
+
+def hints(result: RunResult, *, vision: bool) -> list[str]:
+    """Sentences about a result that may come from a typing error or a missing option."""
+    known, found = result.parameters.terrains, []
+    if known and result.initial_terrain not in known:
+        found.append(
+            f"{result.initial_terrain!r} has no table in the parameter set, which has "
+            f"{', '.join(known)}: it starts from a broad prior"
+        )
+    if vision and result.watcher is None and result.run.images is not None:
+        found.append("the run has images, but there is no vision without --model")
+    if result.watcher is not None and known:
+        found += [
+            f"the model knows {name!r}, the parameter set does not: it starts from a broad prior"
+            for name in sorted(set(result.watcher.classifier.classes_) - set(known))
+        ]
+    return found
