@@ -54,6 +54,12 @@ class RunResult:
     scores: dict[str, Score]
     learned: ParameterSet
 
+    @property
+    def has_learned(self) -> bool:
+        """Whether `learned` differs from what was known before."""
+        before = self.parameters.terrains
+        return any(of is not before.get(name) for name, of in self.learned.terrains.items())
+
 
 def run_odometry(
     run: Run | str | Path,

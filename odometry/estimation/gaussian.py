@@ -16,6 +16,30 @@ def normalised_squared(residual: FloatArray, covariance: FloatArray) -> float:
     return float(residual @ np.linalg.solve(covariance, residual))
 
 
+def project_into(
+    mean: FloatArray, covariance: FloatArray, directions: FloatArray, least: FloatArray
+) -> FloatArray:
+    """The most probable mean with `directions @ mean >= least`, for two constraints.
+
+    Parameters
+    ----------
+    mean, covariance : (n,), (n, n)
+    directions, least : (2, n), (2,)
+
+    Returns
+    -------
+    (n,)
+        On neither bound where `mean` obeys, on one where that suffices, else on both.
+    """
+    for direction, bound in zip(directions, least, strict=True):
+        projected = project_above(mean, covariance, direction, float(bound))
+        if np.all(directions @ projected >= least - 1e-12):
+            return projected
+    gain = covariance @ directions.T
+    shortfall = least - directions @ mean
+    return np.asarray(mean + gain @ np.linalg.lstsq(directions @ gain, shortfall, rcond=None)[0])
+
+
 def project_above(
     mean: FloatArray, covariance: FloatArray, direction: FloatArray, least: float
 ) -> FloatArray:

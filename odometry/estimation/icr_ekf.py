@@ -8,15 +8,15 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.estimate import Estimate, IcrBelief, Innovation
-from odometry.estimation.gaussian import gate_threshold, normalised_squared, project_above
+from odometry.estimation.gaussian import gate_threshold, normalised_squared, project_into
 from odometry.estimation.icr_prior import prior_belief
 from odometry.estimation.pose_kalman import PoseKalman, pose_residual
 from odometry.geometry.angles import wrap
 from odometry.parameters import ParameterSet
 from odometry.run import Frame
 
-WIDTH_DIRECTION = np.array([0.0, 0.0, 0.0, 1.0, -1.0, 0.0])  # y_left - y_right
-LEAST_WIDTH = 0.1  # of the track width; y_left - y_right is kept above it
+SIDES = np.array([[0.0, 0.0, 0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, -1.0, 0.0]])
+LEAST_SIDE = 0.05  # of the track width; y_left and -y_right are kept above it
 
 
 class IcrEkf:
@@ -127,7 +127,8 @@ class IcrEkf:
         if not accepted:
             return self._refuse(estimate, pose, innovation)
         mean, covariance = self._kalman.updated(estimate.mean, estimate.covariance, pose)
-        mean = project_above(mean, covariance, WIDTH_DIRECTION, LEAST_WIDTH * self.track_width)
+        least = np.full(2, LEAST_SIDE * self.track_width)
+        mean = project_into(mean, covariance, SIDES, least)
         mean[2] = wrap(mean[2])
         return replace(
             estimate, mean=mean, covariance=covariance, innovation=innovation, rejected_in_row=0

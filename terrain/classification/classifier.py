@@ -126,7 +126,7 @@ class TerrainClassifier:
         self.classes_ = sorted(set(labels))
         codes: IntArray = np.searchsorted(self.classes_, labels)
         preset = PRESETS[self.preset]
-        wanted = self.colour and all(map(has_colour, images))
+        wanted = self.colour and has_colour(images, labels)
         self._features = preset.colour_features if wanted else preset.features
         self.colour_ = bool(self._features.colour_copies)
         features = feature_matrix(images, self._features, progress)

@@ -32,6 +32,15 @@ def check_labels(n_images: int, labels: Sequence[str], groups: Sequence[str]) ->
         )
 
 
-def has_colour(image: ByteImage) -> bool:
-    """Tell whether any pixel of an image differs between its channels."""
-    return image.ndim == 3 and bool((image != image[..., :1]).any())
+def has_colour(images: Sequence[ByteImage], labels: Sequence[str]) -> bool:
+    """Tell whether every image has channels, and most of each class differ between them.
+
+    A few colourless photographs are nothing unusual; a colourless class would make colour a
+    mark of its camera.
+    """
+    if any(image.ndim != 3 for image in images):
+        return False
+    coloured: dict[str, list[bool]] = {}
+    for image, label in zip(images, labels, strict=True):
+        coloured.setdefault(label, []).append(bool((image != image[..., :1]).any()))
+    return all(2 * sum(of_class) > len(of_class) for of_class in coloured.values())

@@ -2,6 +2,8 @@
 
 from terrain.run_odometry import RunResult
 
+MANY_REFUSED = 0.1
+
 
 def hints(result: RunResult, *, vision: bool) -> list[str]:
     """Sentences about a result that may come from a typing error or a missing option."""
@@ -18,4 +20,11 @@ def hints(result: RunResult, *, vision: bool) -> list[str]:
             f"the model knows {name!r}, the parameter set does not: it starts from a broad prior"
             for name in sorted(set(result.watcher.classifier.classes_) - set(known))
         ]
+    innovations = [e.innovation for e in result.replay.estimates if e.innovation is not None]
+    refused = sum(not innovation.accepted for innovation in innovations)
+    if refused > MANY_REFUSED * len(innovations):
+        found.append(
+            f"the filter refused {refused} of {len(innovations)} poses: units of pose.csv or "
+            "odometry.csv, jumps of the reference, or noise settings ([filter] of --config)?"
+        )
     return found

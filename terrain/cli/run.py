@@ -54,6 +54,8 @@ def run(
         settings = replace(settings, region=replace(settings.region, per_tread=True))
     if detect_jumps:
         settings = replace(settings, filter=replace(settings.filter, detect_jumps=True))
+    if out.resolve() == run_folder.resolve():
+        raise click.UsageError("--out is the run folder itself; choose another folder")
     check_writable(out)
     result = run_odometry(
         run_folder,
@@ -71,5 +73,5 @@ def run(
     print_sightings(sighting_counts(result))
     print_written(written, out)
     click.echo(f"Next: open {out / 'report.html'}")
-    if out / "learned.toml" in written:
+    if out / "learned.toml" in written and result.has_learned:
         click.echo(f"Next time: --parameters {out / 'learned.toml'} starts from what was learned")

@@ -11,7 +11,12 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("patches", type=click.Path(path_type=Path))
-@click.option("--out", type=click.Path(path_type=Path), required=True, help="The model file.")
+@click.option(
+    "--out",
+    type=click.Path(dir_okay=False, path_type=Path),
+    required=True,
+    help="The model file.",
+)
 @click.option(
     "--preset",
     type=click.Choice(["default", "chen2023"]),
@@ -68,7 +73,10 @@ def train(
     for path in loaded.too_small:
         click.echo(f"left out, smaller than {size} x {size} pixels: {path}", err=True)
     if colour and not classifier.colour_:
-        click.echo("Some patches are grey, or the preset is: colour is left out.", err=True)
+        click.echo(
+            "Colour is left out: patches are grey, or most of a class are, or the preset is.",
+            err=True,
+        )
     classifier.save(out)
     click.echo(_summary(classifier, loaded.photos))
     click.echo(f"\nWrote {out}. Next: terrain-odometry classify {out} IMAGE...")

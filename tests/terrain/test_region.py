@@ -217,7 +217,8 @@ def test_after_a_turn_the_halves_lie_along_the_heading_then():
         ends, edges = (-length / 2, length / 2), (0, side * width / 2)
         corners = np.array([(a, b) for a in ends for b in edges])
         turned = corners @ np.array([[np.cos(yaw), np.sin(yaw)], [-np.sin(yaw), np.cos(yaw)]])
-        low, high = turned.min(axis=0) + [x, y], turned.max(axis=0) + [x, y]
+        turned += (x, y)
+        low, high = turned.min(axis=0), turned.max(axis=0)
         assert (rectangle.x_min, rectangle.y_min) == pytest.approx(tuple(low))
         assert (rectangle.x_max, rectangle.y_max) == pytest.approx(tuple(high))
 

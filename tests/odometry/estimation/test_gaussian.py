@@ -2,7 +2,12 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from odometry.estimation.gaussian import gate_threshold, normalised_squared, project_above
+from odometry.estimation.gaussian import (
+    gate_threshold,
+    normalised_squared,
+    project_above,
+    project_into,
+)
 
 
 @pytest.mark.parametrize("probability", [0.5, 0.95, 0.9999])
@@ -49,3 +54,24 @@ def test_projection_is_the_most_probable_point_that_obeys(rng):
         assert direction @ projected == pytest.approx(least)
         cost = (projected - mean) @ information @ (projected - mean)
         assert cost == pytest.approx(best.fun, rel=1e-5)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_two_constraints_give_the_nearest_point_of_a_search(seed):
+    """Against scipy's constrained minimiser of the squared Mahalanobis distance."""
+    rng = np.random.default_rng(seed)
+    root = rng.normal(size=(3, 3))
+    covariance, mean = root @ root.T + 0.1 * np.eye(3), rng.normal(size=3)
+    directions, least = np.array([[1.0, 0, 0], [0, -1.0, 0]]), rng.uniform(-0.5, 1.5, 2)
+    found = project_into(mean, covariance, directions, least)
+    bound = {"type": "ineq", "fun": lambda x: directions @ x - least}
+    inverse = np.linalg.inv(covariance)
+    best = minimize(
+        lambda x: (x - mean) @ inverse @ (x - mean),
+        mean + 5,
+        constraints=bound,
+        options={"ftol": 1e-14, "maxiter": 500},
+    )
+    assert np.all(directions @ found >= least - 1e-9)
+    cost = (found - mean) @ inverse @ (found - mean)
+    assert cost == pytest.approx(best.fun, rel=1e-4, abs=1e-6)

@@ -221,6 +221,9 @@ def test_colour_stays_off_for_grey_patches_and_for_the_paper(rng):
     images, labels, groups = patches(rng, (reddish, bluish), photos=2)
     assert not TerrainClassifier("chen2023", colour=True).fit(images, labels, groups).colour_
     images[3] = np.repeat(images[3][..., :1], 3, axis=2)
+    assert TerrainClassifier(colour=True).fit(images, labels, groups).colour_
+    for i in np.flatnonzero(np.array(labels) == labels[0]):
+        images[i] = np.repeat(images[i][..., :1], 3, axis=2)
     model = TerrainClassifier(colour=True).fit(images, labels, groups)
     assert not model.colour_
     assert model.classify([grains(rng)])

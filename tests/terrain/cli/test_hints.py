@@ -5,7 +5,7 @@ from types import SimpleNamespace
 from terrain.cli.hints import hints
 
 
-def result(initial="gravel", tables=("gravel",), classes=None, images=True):
+def result(initial="gravel", tables=("gravel",), classes=None, images=True, refused=0):
     watcher = (
         None if classes is None else SimpleNamespace(classifier=SimpleNamespace(classes_=classes))
     )
@@ -14,7 +14,12 @@ def result(initial="gravel", tables=("gravel",), classes=None, images=True):
         parameters=SimpleNamespace(terrains=dict.fromkeys(tables)),
         watcher=watcher,
         run=SimpleNamespace(images=images or None),
+        replay=SimpleNamespace(estimates=[estimate(True)] * 10 + [estimate(False)] * refused),
     )
+
+
+def estimate(accepted):
+    return SimpleNamespace(innovation=SimpleNamespace(accepted=accepted))
 
 
 def test_nothing_to_say():
@@ -34,3 +39,9 @@ def test_a_terrain_without_a_table_is_named():
 def test_images_without_a_model_are_named():
     (hint,) = hints(result(), vision=True)
     assert "--model" in hint
+
+
+def test_many_refused_poses_are_named():
+    assert hints(result(refused=1), vision=False) == []
+    (hint,) = hints(result(refused=2), vision=False)
+    assert "refused 2 of 12 poses" in hint
