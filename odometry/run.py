@@ -14,6 +14,7 @@ from odometry.io.run_folder import read_settings, read_tables
 from odometry.table import Table
 
 UNKNOWN = "unknown"  # the reserved terrain name: nothing is known of this ground
+UNNAMED_TERRAIN = "ground"  # of a run where nobody names the terrain
 
 
 @dataclass(frozen=True)

@@ -9,14 +9,13 @@ from odometry.evaluation.score import Score, reference_of, score
 from odometry.learned import learned_parameters
 from odometry.parameters import ParameterSet, read_parameters
 from odometry.pipeline import ConstantTerrain, Replay, replay
-from odometry.run import UNKNOWN, Run
+from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
 from odometry.trajectory import Trajectory
 from terrain.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config
 from terrain.watcher import TerrainWatcher
 
-UNNAMED_TERRAIN = "ground"  # in force where nobody names the terrain
 
 
 @dataclass(frozen=True)

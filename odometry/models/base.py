@@ -9,6 +9,8 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
+from odometry.models.inputs import Inputs
+from odometry.run import Robot
 
 
 @dataclass(frozen=True)
@@ -25,6 +27,12 @@ class Parameter:
         Bounds within which the model means something.
     default : float or None
         The value of a parameter set that does not name it; None where it must.
+    known : bool
+        Measured on the robot or chosen, not identified from its motion unless asked to.
+    search : (float, float) or None
+        Where an identification looks; between the bounds where None.
+    in_sign : bool
+        Acts through a sign alone: it has no derivative, and is found by trying values.
     """
 
     name: str
@@ -32,12 +40,16 @@ class Parameter:
     low: float = -np.inf
     high: float = np.inf
     default: float | None = None
+    known: bool = False
+    search: tuple[float, float] | None = None
+    in_sign: bool = False
 
 
 class KinematicModel(ABC):
-    """Tread speeds in, body twist out.
+    """Tread speeds and attitude in, body twist out.
 
-    A subclass is one file, and one row of `odometry.models.catalogue`.
+    A subclass is one file, and one row of `odometry.models.catalogue`. Stacks broadcast:
+    values (..., P) against inputs (...).
     """
 
     name: ClassVar[str]
@@ -45,24 +57,33 @@ class KinematicModel(ABC):
     parameters: ClassVar[tuple[Parameter, ...]]
 
     @abstractmethod
-    def twist(self, values: FloatArray, tread_speeds: FloatArray) -> FloatArray:
+    def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """Body twist (..., 3): v_x, v_y [m/s], omega [rad/s].
 
         Parameters
         ----------
         values : (..., P)
             In the order of `parameters`.
-        tread_speeds : (..., 2)
-            v_left, v_right [m/s].
+        inputs : Inputs
+            Of stack (...).
+
+        Raises
+        ------
+        ParameterError
+            If the model needs an input that was not recorded.
         """
 
     @abstractmethod
-    def parameter_jacobian(self, values: FloatArray, tread_speeds: FloatArray) -> FloatArray:
+    def parameter_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """Derivative (..., 3, P) of the twist by the parameters."""
 
     @abstractmethod
-    def speed_jacobian(self, values: FloatArray, tread_speeds: FloatArray) -> FloatArray:
+    def speed_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """Derivative (..., 3, 2) of the twist by (v_left, v_right)."""
+
+    @abstractmethod
+    def guess(self, robot: Robot) -> dict[str, float]:
+        """Every parameter, from what is known of a robot: where an identification starts."""
 
     def pack(self, values: Mapping[str, float]) -> FloatArray:
         """Parameters by name as an array (P,) in the order of `parameters`.

@@ -4,7 +4,12 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
-from odometry.models.base import KinematicModel, Parameter
+from odometry.models.base import Parameter
+from odometry.models.inputs import Inputs
+from odometry.models.invertible import InvertibleModel, before_slip, icr_tread_speeds
+from odometry.run import Robot
+
+GUESSED_WIDTHS = 1.5  # distance between tread ICRs in track widths, where nothing else is known
 
 
 def icr_twist(icrs: FloatArray, tread_speeds: FloatArray) -> FloatArray:
@@ -38,25 +43,34 @@ def icr_twist_jacobian(icrs: FloatArray, tread_speeds: FloatArray) -> FloatArray
     y_left, y_right, x_icr = np.moveaxis(np.asarray(icrs), -1, 0)
     omega = icr_twist(icrs, tread_speeds)[..., 2]
     rate = omega / (y_left - y_right)
-    zero = np.zeros_like(rate)
-    return np.stack(
-        [
-            np.stack([-y_right * rate, y_left * rate, zero], axis=-1),
-            np.stack([x_icr * rate, -x_icr * rate, -omega], axis=-1),
-            np.stack([-rate, rate, zero], axis=-1),
-        ],
-        axis=-2,
-    )
+    jacobian = np.zeros((*np.shape(rate), 3, 3))
+    jacobian[..., 0, 0], jacobian[..., 0, 1] = -y_right * rate, y_left * rate
+    jacobian[..., 1, 0], jacobian[..., 1, 1] = x_icr * rate, -x_icr * rate
+    jacobian[..., 1, 2] = -omega
+    jacobian[..., 2, 0], jacobian[..., 2, 1] = -rate, rate
+    return jacobian
 
 
-class Icr(KinematicModel):
+def icr_speed_matrix(icrs: FloatArray) -> FloatArray:
+    """Derivative (..., 3, 2) of `icr_twist` by the effective tread speeds (Baril 2020 eq. 7)."""
+    y_left, y_right, x_icr = np.moveaxis(np.asarray(icrs), -1, 0)
+    one = np.ones_like(y_left)
+    rows = [
+        np.stack([-y_right, y_left], axis=-1),
+        np.stack([x_icr, -x_icr], axis=-1),
+        np.stack([-one, one], axis=-1),
+    ]
+    return np.asarray(np.stack(rows, axis=-2) / (y_left - y_right)[..., None, None])
+
+
+class Icr(InvertibleModel):
     """Asymmetric ICRs with a slip factor for each tread (Baril 2020 eq. 7)."""
 
     name = "icr"
     source = "Baril 2020, eq. 7"
     parameters = (
-        Parameter("y_left", "m"),
-        Parameter("y_right", "m"),
+        Parameter("y_left", "m", search=(1e-3, np.inf)),
+        Parameter("y_right", "m", search=(-np.inf, -1e-3)),
         Parameter("x_icr", "m"),
         Parameter("alpha_left", "", 0.0, 2.0, default=1.0),
         Parameter("alpha_right", "", 0.0, 2.0, default=1.0),
@@ -69,31 +83,35 @@ class Icr(KinematicModel):
                 f"y_left = {values[0]} and y_right = {values[1]}, expected y_left > y_right"
             )
 
-    def twist(self, values: FloatArray, tread_speeds: FloatArray) -> FloatArray:
+    def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.twist`."""
-        return icr_twist(values[..., :3], values[..., 3:] * tread_speeds)
+        return icr_twist(values[..., :3], values[..., 3:] * inputs.tread_speeds_m_s)
 
-    def parameter_jacobian(self, values: FloatArray, tread_speeds: FloatArray) -> FloatArray:
+    def parameter_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.parameter_jacobian`."""
-        by_icr = icr_twist_jacobian(values[..., :3], values[..., 3:] * tread_speeds)
-        by_effective_speed = _speed_matrix(values[..., :3])
-        by_alpha = by_effective_speed * np.asarray(tread_speeds)[..., None, :]
+        by_icr = icr_twist_jacobian(values[..., :3], values[..., 3:] * inputs.tread_speeds_m_s)
+        by_effective_speed = icr_speed_matrix(values[..., :3])
+        by_alpha = by_effective_speed * np.asarray(inputs.tread_speeds_m_s)[..., None, :]
         return np.concatenate([by_icr, by_alpha], axis=-1)
 
-    def speed_jacobian(self, values: FloatArray, tread_speeds: FloatArray) -> FloatArray:
+    def speed_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.speed_jacobian`."""
-        matrix = _speed_matrix(values[..., :3]) * values[..., None, 3:]
-        stack = np.broadcast_shapes(matrix.shape[:-2], np.shape(tread_speeds)[:-1])
+        matrix = icr_speed_matrix(values[..., :3]) * values[..., None, 3:]
+        stack = np.broadcast_shapes(matrix.shape[:-2], inputs.shape)
         return np.asarray(np.broadcast_to(matrix, (*stack, 3, 2)))
 
+    def tread_speeds(self, values: FloatArray, v_x: FloatArray, omega: FloatArray) -> FloatArray:
+        """See `InvertibleModel.tread_speeds`."""
+        effective = icr_tread_speeds(values[..., 0], values[..., 1], v_x, omega)
+        return before_slip(effective, values[..., 3:])
 
-def _speed_matrix(icrs: FloatArray) -> FloatArray:
-    """The matrix (..., 3, 2) of Baril 2020 eq. 7."""
-    y_left, y_right, x_icr = np.moveaxis(np.asarray(icrs), -1, 0)
-    one = np.ones_like(y_left)
-    rows = [
-        np.stack([-y_right, y_left], axis=-1),
-        np.stack([x_icr, -x_icr], axis=-1),
-        np.stack([-one, one], axis=-1),
-    ]
-    return np.asarray(np.stack(rows, axis=-2) / (y_left - y_right)[..., None, None])
+    def guess(self, robot: Robot) -> dict[str, float]:
+        """Tread ICRs 1.5 times as far apart as the treads, no slip."""
+        half = GUESSED_WIDTHS * robot.track_width / 2
+        return {
+            "y_left": half,
+            "y_right": -half,
+            "x_icr": 0.0,
+            "alpha_left": 1.0,
+            "alpha_right": 1.0,
+        }

@@ -14,6 +14,7 @@ from odometry.dead_reckoning import dead_reckon
 from odometry.evaluation.relative import EvaluationConfig
 from odometry.evaluation.score import reference_of, score
 from odometry.models.catalogue import MODELS
+from odometry.models.inputs import Inputs
 from odometry.run import Run
 
 WINDOWS = EvaluationConfig(horizon_m=2.0, stride_m=2.0)
@@ -22,7 +23,7 @@ WINDOWS = EvaluationConfig(horizon_m=2.0, stride_m=2.0)
 def scored(run, model, **values):
     model = MODELS[model]
     speeds = run.odometry.stack("v_left", "v_right")
-    twists = model.twist(model.pack(values), speeds)
+    twists = model.twist(model.pack(values), Inputs(speeds))
     open_loop = dead_reckon(run.odometry.stamps_s, twists, np.zeros(3))
     return score(run, open_loop, reference_of(run)[1], WINDOWS)
 

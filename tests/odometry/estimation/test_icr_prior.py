@@ -4,6 +4,7 @@ import pytest
 from odometry.errors import ParameterError
 from odometry.estimation.icr_prior import prior_belief
 from odometry.models.catalogue import MODELS
+from odometry.models.inputs import Inputs
 from odometry.parameters import ParameterSet, TerrainParameters
 
 WIDTH = 0.6
@@ -43,6 +44,7 @@ def test_a_table_with_uncertainty_keeps_it_by_name():
         ),
         ("icr_symmetric", {"alpha": 0.8, "b_hat": 0.9}),
         ("differential_drive", {"track_width": 0.7}),
+        ("traction_mode", {"k": 0.9, "m": 0.6, "track_width": 0.4}),
     ],
 )
 def test_the_icr_form_moves_as_the_model_does(model, values, rng):
@@ -50,8 +52,8 @@ def test_the_icr_form_moves_as_the_model_does(model, values, rng):
     as_icr = np.concatenate([belief.icrs, belief.alphas])
     for speeds in rng.uniform(-2, 2, (5, 2)):
         np.testing.assert_allclose(
-            MODELS["icr"].twist(as_icr, speeds),
-            MODELS[model].twist(MODELS[model].pack(values), speeds),
+            MODELS["icr"].twist(as_icr, Inputs(speeds)),
+            MODELS[model].twist(MODELS[model].pack(values), Inputs(speeds)),
             atol=1e-14,
         )
 

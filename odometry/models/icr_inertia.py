@@ -1,0 +1,94 @@
+"""Tread ICRs moved by the inertia of the model's own motion (Martinez 2017 eq. 4-30)."""
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.models.consistent_force import consistent_force
+from odometry.models.inertia_model import G_M_S2, InertiaModel, Turn
+from odometry.models.invertible import InvertibleModel, icr_tread_speeds
+from odometry.models.steering_indices import indices_under
+
+
+class IcrInertia(InertiaModel, InvertibleModel):
+    """The force of inertia is that of the steady motion which the model itself predicts.
+
+    The indices are those that the paper prints. The product of signs in eq. 26 and 27 reversed,
+    with which the printed coefficients come nearer to the paper's own mean ICRs, is said by
+    epsilon_1 and eta_1 of the other sign.
+    """
+
+    name = "icr_inertia"
+    source = "Martinez 2017, eq. 4-30"
+
+    def caused_force(self, values: FloatArray, turn: Turn) -> tuple[FloatArray, FloatArray]:
+        """See `InertiaModel.caused_force` (Martinez 2017 eq. 11)."""
+        mass, x_cm, y_cm = np.moveaxis(values[..., 8:11], -1, 0)
+        zeta, epsilon, omega = turn.indices.zeta, turn.indices.epsilon, turn.omega
+        speed, ahead, left = _centre_of_mass(values, turn.v_x, omega, zeta)
+        momentum_rate = mass * np.abs(omega)
+        by_omega = left * (x_cm - zeta) - ahead * (y_cm + epsilon)
+        by_turn = (
+            -momentum_rate * left * omega,
+            -momentum_rate * ahead * omega,
+            momentum_rate * by_omega + mass * np.sign(omega) * speed,
+        )
+        return momentum_rate * speed, np.stack(np.broadcast_arrays(*by_turn), axis=-1)
+
+    def caused_force_gradient(self, values: FloatArray, turn: Turn) -> FloatArray:
+        """See `InertiaModel.caused_force_gradient`."""
+        speed, ahead, left = _centre_of_mass(values, turn.v_x, turn.omega, turn.indices.zeta)
+        momentum_rate = values[..., 8] * np.abs(turn.omega)
+        gradient = np.zeros((*turn.omega.shape, 14))
+        gradient[..., 8] = np.abs(turn.omega) * speed
+        gradient[..., 9] = momentum_rate * left * turn.omega
+        gradient[..., 10] = -momentum_rate * ahead * turn.omega
+        gradient[..., 12] = gradient[..., 13] = momentum_rate * ahead / 2
+        return gradient
+
+    def tread_speeds(self, values: FloatArray, v_x: FloatArray, omega: FloatArray) -> FloatArray:
+        """See `InvertibleModel.tread_speeds` (Martinez 2017 eq. 23-24).
+
+        Both signs of V_l + H V_r are supposed, and speeds that come out with the sign supposed
+        are kept, those of the positive one first. Near turning on the spot neither sign may
+        come out, or both: the twist jumps there, leaving out some motions and making others
+        twice.
+        """
+        speeds = np.full(
+            (*np.broadcast_shapes(values.shape[:-1], v_x.shape, omega.shape), 2), np.nan
+        )
+        for x2_sign in (-1.0, 1.0):
+            supposed = _tread_speeds(values, v_x, omega, x2_sign)
+            x2 = supposed[..., 0] + values[..., 7] * supposed[..., 1]  # eq. 15
+            agrees = (np.sign(x2) == x2_sign) | (omega == 0)
+            speeds = np.where(agrees[..., None], supposed, speeds)
+        return speeds
+
+
+def _centre_of_mass(
+    values: FloatArray, v_x: FloatArray, omega: FloatArray, zeta: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Speed (...) of the centre of mass, and the direction in which it moves (eq. 9)."""
+    ahead = v_x - values[..., 10] * omega
+    left = (values[..., 9] - zeta) * omega
+    speed = np.hypot(ahead, left)
+    moving = np.where(speed > 0, speed, 1.0)
+    return speed, ahead / moving, left / moving
+
+
+def _tread_speeds(
+    values: FloatArray, v_x: FloatArray, omega: FloatArray, x2_sign: float
+) -> FloatArray:
+    """Tread speeds (..., 2) if V_l + H V_r has the sign supposed."""
+    mass, track_width = values[..., 8], values[..., 11]
+    slide = values[..., 1] * x2_sign  # of zeta by the force
+
+    def force_at(force_n: FloatArray) -> tuple[FloatArray, FloatArray]:
+        zeta = values[..., 0] + slide * force_n
+        speed, _, left = _centre_of_mass(values, v_x, omega, zeta)
+        return mass * np.abs(omega) * speed, -mass * np.abs(omega) * left * omega * slide
+
+    stack = np.broadcast_shapes(mass.shape, v_x.shape, omega.shape)
+    force_n = consistent_force(force_at, np.broadcast_to(mass * G_M_S2, stack))
+    found = indices_under(values[..., :7], force_n, -np.sign(omega), np.asarray(x2_sign))
+    half = track_width * found.eta / 2
+    return icr_tread_speeds(half - found.epsilon, -half - found.epsilon, v_x, omega)

@@ -1,0 +1,117 @@
+"""Effective width as a function of the path's radius of curvature (Baril 2020 eq. 10-11)."""
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.errors import ParameterError
+from odometry.models.base import KinematicModel, Parameter
+from odometry.models.icr import GUESSED_WIDTHS
+from odometry.models.inputs import Inputs
+from odometry.run import Robot
+
+
+class RadiusOfCurvature(KinematicModel):
+    """Symmetric model whose width narrows from turning on the spot to driving straight.
+
+    With lambda = |(right + left) / (right - left)| (eq. 10) the width 2 y_0 of eq. 11 is
+    track_width (1 + beta_1 / (1 + beta_2 sqrt(lambda))). Computed is its inverse, by |right -
+    left| and |right + left|, so that nothing is divided by zero:
+
+    - straight (lambda infinite), beta_2 > 0: the width is the track width;
+    - beta_2 = 0: the width is track_width (1 + beta_1) everywhere;
+    - beta_2 < 0: the width has a pole at sqrt(lambda) = -1 / beta_2 and is negative above. The
+      inverse width is held at 0 there: on straighter paths than that the robot does not turn.
+
+    At a standstill the speed Jacobian is that of turning on the spot. Exactly on the spot
+    (right = -left) sqrt(lambda) has an infinite slope; the Jacobian takes the mean of both
+    sides, in which it drops out.
+    """
+
+    name = "radius_of_curvature"
+    source = "Baril 2020, eq. 8 with eq. 10-11"
+    parameters = (
+        Parameter("alpha", "", 0.0, 2.0),
+        Parameter("beta_1", "", -0.99, search=(-0.9, 1e3)),
+        Parameter("beta_2", "", search=(0.0, 1e3)),
+        Parameter("track_width", "m", 1e-3, known=True),
+    )
+
+    def check(self, values: FloatArray) -> None:
+        """Where beta_2 < 0, beta_1 < 0 would let the width fall to zero on a curve."""
+        if values[1] < 0 and values[2] < 0:
+            raise ParameterError(
+                f"beta_1 = {values[1]} and beta_2 = {values[2]}, expected one of them at least 0"
+            )
+
+    def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """See `KinematicModel.twist`."""
+        alpha, _, _, width = np.moveaxis(values, -1, 0)
+        factor, *_ = _width_factor(values, inputs)
+        v_x = alpha * (inputs.left + inputs.right) / 2
+        omega = alpha * (inputs.right - inputs.left) / width * factor  # eq. 8
+        return np.stack(np.broadcast_arrays(v_x, np.zeros(()), omega), axis=-1)
+
+    def parameter_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """See `KinematicModel.parameter_jacobian`."""
+        alpha, _, _, width = np.moveaxis(values, -1, 0)
+        factor, by_beta_1, by_beta_2, _, _ = _width_factor(values, inputs)
+        turn = (inputs.right - inputs.left) / width
+        jacobian = np.zeros((*np.shape(factor), 3, 4))
+        jacobian[..., 0, 0] = (inputs.left + inputs.right) / 2
+        jacobian[..., 2, 0] = turn * factor
+        jacobian[..., 2, 1] = alpha * turn * by_beta_1
+        jacobian[..., 2, 2] = alpha * turn * by_beta_2
+        jacobian[..., 2, 3] = -alpha * turn * factor / width
+        return jacobian
+
+    def speed_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """See `KinematicModel.speed_jacobian`."""
+        alpha, _, _, width = np.moveaxis(values, -1, 0)
+        factor, _, _, by_difference, by_sum = _width_factor(values, inputs)
+        by_sum = by_sum * np.sign(inputs.right - inputs.left) * np.sign(inputs.right + inputs.left)
+        jacobian = np.zeros((*np.shape(factor), 3, 2))
+        jacobian[..., 0, :] = alpha[..., None] / 2
+        jacobian[..., 2, 0] = alpha / width * (by_sum - factor - by_difference)
+        jacobian[..., 2, 1] = alpha / width * (by_sum + factor + by_difference)
+        return jacobian
+
+    def guess(self, robot: Robot) -> dict[str, float]:
+        """A width of 1.5 track widths at lambda = 1, no slip."""
+        return {
+            "alpha": 1.0,
+            "beta_1": 2 * (GUESSED_WIDTHS - 1),
+            "beta_2": 1.0,
+            "track_width": robot.track_width,
+        }
+
+
+def _width_factor(values: FloatArray, inputs: Inputs) -> tuple[FloatArray, ...]:
+    """Track width over effective width, (...), and how it changes.
+
+    With p = sqrt(|right - left|) and q = sqrt(|right + left|), lambda = q^2 / p^2 and eq. 11
+    turns into factor = (p + beta_2 q) / ((1 + beta_1) p + beta_2 q).
+
+    Returns
+    -------
+    tuple of (...)
+        The factor; its derivatives by beta_1 and beta_2; and |right - left| times its
+        derivatives by |right - left| and by |right + left|.
+    """
+    _, beta_1, beta_2, _ = np.moveaxis(values, -1, 0)
+    p = np.sqrt(np.abs(inputs.right - inputs.left))
+    q = np.sqrt(np.abs(inputs.right + inputs.left))
+    above, below = p + beta_2 * q, (1 + beta_1) * p + beta_2 * q
+    turns = (above > 0) & (below > 0)
+    below = np.where(turns, below, 1.0)
+    still = np.where((p == 0) & (beta_2 * q == 0), 1 / (1 + beta_1), 0.0)  # the limit p = 0
+    factor = np.where(turns, above / below, still)
+    rate = np.where(turns, beta_1 * p / below**2, 0.0)
+    by_sum = np.zeros_like(rate)
+    np.divide(beta_2 * p**2 * rate, 2 * q, out=by_sum, where=q > 0)
+    return (
+        factor,
+        np.where(turns, -above * p / below**2, 0.0),
+        q * rate,
+        -beta_2 * q * rate / 2,
+        by_sum,
+    )
