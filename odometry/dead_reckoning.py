@@ -1,10 +1,13 @@
-"""From body twists to a trajectory."""
+"""From body twists to a trajectory, in the plane and in space."""
 
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.geometry import se2
+from odometry.gaps import level_where_missing
+from odometry.geometry import se2, se3
 from odometry.geometry.angles import wrap
+from odometry.geometry.levelled import level_steps, rises
+from odometry.spatial_trajectory import SpatialTrajectory
 from odometry.trajectory import Trajectory
 
 
@@ -24,12 +27,54 @@ def dead_reckon(stamps_s: FloatArray, twists: FloatArray, start: FloatArray) -> 
     Trajectory
         N poses. Each step is the exact arc, so that splitting a step changes nothing.
     """
-    steps = se2.exp(twists[:-1] * np.diff(stamps_s)[:, None])
-    yaw = start[2] + np.concatenate([[0.0], np.cumsum(steps[:, 2])])
+    return Trajectory(np.asarray(stamps_s), _chain(_steps(stamps_s, twists), np.asarray(start)))
+
+
+def dead_reckon_in_space(
+    stamps_s: FloatArray,
+    twists: FloatArray,
+    roll_rad: FloatArray | None,
+    pitch_rad: FloatArray | None,
+    start: FloatArray,
+) -> SpatialTrajectory:
+    """Integrate twists over ground whose tilt is measured (Martinez 2024 eq. 12).
+
+    The attitude is REP-103's; eq. 12 is printed for another order of the angles (CONVENTIONS).
+    Each twist stays in the plane on which its step starts, so that on one tilted plane both
+    position and heading are exact. The attitude of the answer is the measured roll and pitch.
+
+    Parameters
+    ----------
+    stamps_s : (N,)
+    twists : (N, 3)
+        v_x [m/s], v_y [m/s], omega [rad/s] in the body frame; the last has no effect.
+    roll_rad, pitch_rad : (N,) or None
+        NaN where not measured: interpolated in time, held at the ends. Level where None or
+        never measured; with both level this is `dead_reckon`.
+    start : (4,)
+        x, y, z [m] and yaw [rad] at the first stamp.
+    """
+    x, y, z, yaw = start
+    roll, pitch = (level_where_missing(stamps_s, angle) for angle in (roll_rad, pitch_rad))
+    steps = _steps(stamps_s, twists)
+    plane = _chain(level_steps(steps, roll[:-1], pitch[:-1]), np.array([x, y, yaw]))
+    heights = z + np.append(0.0, np.cumsum(rises(steps, roll[:-1], pitch[:-1])))
+    rotations = se3.rotation_from_roll_pitch_yaw(np.column_stack([roll, pitch, plane[:, 2]]))
+    positions = np.column_stack([plane[:, :2], heights])
+    return SpatialTrajectory(np.asarray(stamps_s), se3.pose(positions, rotations))
+
+
+def _steps(stamps_s: FloatArray, twists: FloatArray) -> FloatArray:
+    """Displacements (N - 1, 3) in the body frame at the start of each step."""
+    return se2.exp(twists[:-1] * np.diff(stamps_s)[:, None])
+
+
+def _chain(steps: FloatArray, start: FloatArray) -> FloatArray:
+    """Poses (N, 3) reached by one step (N - 1, 3) after another."""
+    yaw = start[2] + np.append(0.0, np.cumsum(steps[:, 2]))
     cosine, sine = np.cos(yaw[:-1]), np.sin(yaw[:-1])
     x = np.cumsum(cosine * steps[:, 0] - sine * steps[:, 1])
     y = np.cumsum(sine * steps[:, 0] + cosine * steps[:, 1])
-    poses = np.stack(
+    return np.stack(
         [start[0] + np.append(0.0, x), start[1] + np.append(0.0, y), wrap(yaw)], axis=-1
     )
-    return Trajectory(np.asarray(stamps_s), poses)

@@ -76,18 +76,17 @@ def _arc_ratios(angle: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def exp_jacobian(displacement: FloatArray) -> FloatArray:
-    """Derivative (3, 3) of `exp` by one displacement (3,)."""
-    along, across, angle = displacement
-    sine_ratio, cosine_ratio = (float(ratio) for ratio in _arc_ratios(np.asarray(angle)))
-    if abs(angle) < SMALL_ANGLE:
-        sine_slope, cosine_slope = -angle / 3, 0.5 - angle**2 / 8
-    else:
-        sine_slope = (np.cos(angle) - sine_ratio) / angle
-        cosine_slope = (np.sin(angle) - cosine_ratio) / angle
-    return np.array(
-        [
-            [sine_ratio, -cosine_ratio, sine_slope * along - cosine_slope * across],
-            [cosine_ratio, sine_ratio, cosine_slope * along + sine_slope * across],
-            [0.0, 0.0, 1.0],
-        ]
-    )
+    """Derivative (..., 3, 3) of `exp` by displacements (..., 3)."""
+    along, across, angle = np.moveaxis(np.asarray(displacement), -1, 0)
+    sine_ratio, cosine_ratio = _arc_ratios(angle)
+    small = np.abs(angle) < SMALL_ANGLE
+    safe = np.where(small, 1.0, angle)
+    sine_slope = np.where(small, -angle / 3, (np.cos(angle) - sine_ratio) / safe)
+    cosine_slope = np.where(small, 0.5 - angle**2 / 8, (np.sin(angle) - cosine_ratio) / safe)
+    jacobian = np.zeros((*np.shape(angle), 3, 3))
+    jacobian[..., 0, 0] = jacobian[..., 1, 1] = sine_ratio
+    jacobian[..., 0, 1], jacobian[..., 1, 0] = -cosine_ratio, cosine_ratio
+    jacobian[..., 0, 2] = sine_slope * along - cosine_slope * across
+    jacobian[..., 1, 2] = cosine_slope * along + sine_slope * across
+    jacobian[..., 2, 2] = 1.0
+    return jacobian

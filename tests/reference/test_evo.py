@@ -1,40 +1,87 @@
-"""Position and relative errors against evo, run as a separate program on our TUM files."""
+"""Trajectory errors against evo, run as a separate program on our TUM files."""
 
+import json
 import subprocess
 import sys
 import zipfile
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from odometry.dead_reckoning import dead_reckon
+from odometry.dead_reckoning import dead_reckon, dead_reckon_in_space
+from odometry.evaluation.alignment import align_origin, align_rigid
+from odometry.evaluation.pose_errors import absolute_pose_errors, relative_pose_errors, statistics
+from odometry.evaluation.pose_pairs import (
+    all_frame_pairs,
+    all_path_pairs,
+    consecutive_frame_pairs,
+    consecutive_path_pairs,
+)
 from odometry.evaluation.relative import EvaluationConfig, position_errors, relative_errors
-from odometry.io.tum import write_tum
+from odometry.io.tum import write_spatial_tum, write_tum
+from odometry.spatial_trajectory import SpatialTrajectory
 
 STEP_S, SPEED, STEPS = 0.25, 1.0, 160  # binary fractions: wheel travel has no rounding
+STAMPS_S = STEP_S * np.arange(STEPS + 1)
+RELATIONS = {"trans_part": "translation_m", "angle_rad": "rotation_rad", "full": "full"}
+ALIGNMENTS = {"-a": align_rigid, "--align_origin": align_origin}
+PAIRS = {
+    "-d 7 -u f": lambda ours: consecutive_frame_pairs(ours, 7),
+    "-d 7 -u f --all_pairs": lambda ours: all_frame_pairs(ours, 7),
+    "-d 3.3 -u m": lambda ours: consecutive_path_pairs(ours, 3.3),
+    "-d 3.3 -u m -t 0.02 --all_pairs": lambda ours: all_path_pairs(ours, 3.3, 0.02),
+}
+
+
+def weaving():
+    """Body twists of a path that bends to both sides, and of an odometer that drifts from it."""
+    turns = 0.6 * np.sin(0.2 * STAMPS_S)
+    twists = np.column_stack([np.full(STEPS + 1, SPEED), 0 * turns, turns])
+    drifting = twists * [0.97, 1, 1.05] + [0, 0.02, 0.01]
+    drifting[:, 0] += 0.1 * np.sin(0.7 * STAMPS_S)  # uneven steps: not every pair is near enough
+    return twists, drifting
+
+
+def plane():
+    twists, drifting = weaving()
+    start = np.array([3.0, -2.0, 2.5])
+    reference = dead_reckon(STAMPS_S, twists, start)
+    return reference, dead_reckon(STAMPS_S, drifting, np.add(start, [0.2, -0.1, 0.05]))
+
+
+def space():
+    """Over rolling ground; the odometer reads its tilt with a bias and starts off the place."""
+    twists, drifting = weaving()
+    roll, pitch = 0.3 * np.sin(0.5 * STAMPS_S), 0.2 * np.cos(0.3 * STAMPS_S)
+    start = np.array([3.0, -2.0, 1.0, 2.5])
+    reference = dead_reckon_in_space(STAMPS_S, twists, roll, pitch, start)
+    shifted = np.add(start, [0.2, -0.1, 0.3, 0.05])
+    return reference, dead_reckon_in_space(STAMPS_S, drifting, roll + 0.02, pitch - 0.03, shifted)
 
 
 @pytest.fixture(scope="module")
 def trajectories(tmp_path_factory):
-    """A weaving reference and an odometer that drifts from it, also as TUM files."""
-    folder = tmp_path_factory.mktemp("evo")
-    stamps_s = STEP_S * np.arange(STEPS + 1)
-    turns = 0.6 * np.sin(0.2 * stamps_s)
-    twists = np.column_stack([np.full(STEPS + 1, SPEED), 0 * turns, turns])
-    reference = dead_reckon(stamps_s, twists, np.array([3.0, -2.0, 2.5]))
-    drifting = dead_reckon(stamps_s, twists * [0.97, 1, 1.05] + [0, 0.02, 0.01], reference.poses[0])
-    write_tum(folder / "reference.tum", reference)
-    write_tum(folder / "drifting.tum", drifting)
-    return folder, reference, drifting
+    """By kind: a folder of TUM files, the reference and the odometer in space."""
+    found = {}
+    for kind, make, write in (("plane", plane, write_tum), ("space", space, write_spatial_tum)):
+        folder = tmp_path_factory.mktemp(kind)
+        reference, drifting = make()
+        write(folder / "reference.tum", reference)
+        write(folder / "drifting.tum", drifting)
+        if kind == "plane":
+            reference, drifting = map(SpatialTrajectory.from_plane, (reference, drifting))
+        found[kind] = folder, reference, drifting
+    return found
 
 
-def evo_errors(folder, program, *options):
-    """The error array that an evo program saves."""
+def evo_results(folder, program, *options):
+    """The error array and the statistics that an evo program saves."""
     executable = Path(sys.executable).with_name(program)
     if not executable.exists():
         pytest.skip(f"{program} is not installed: it is in the extra `test`")
-    result = folder / f"{program}{len(options)}{options[-1]}.zip"
+    result = folder / f"{program}{''.join(options)}.zip"
     command = [executable, "tum", "reference.tum", "drifting.tum", *options]
     finished = subprocess.run(
         [*command, "--save_results", result, "--no_warnings"],
@@ -46,15 +93,64 @@ def evo_errors(folder, program, *options):
     )
     assert finished.returncode == 0, finished.stdout + finished.stderr
     with zipfile.ZipFile(result) as archive:
-        return np.load(archive.open("error_array.npy"), allow_pickle=False)
+        errors = np.load(archive.open("error_array.npy"), allow_pickle=False)
+        return errors, json.loads(archive.read("stats.json"))
 
 
-def test_position_errors_without_alignment(trajectories):
-    folder, reference, drifting = trajectories
-    theirs = evo_errors(folder, "evo_ape", "--pose_relation", "trans_part")
-    _, ours = position_errors(drifting, reference)
+def assert_agrees(ours, theirs, their_statistics):
+    """Each error and each statistic; a sum of squares relative to its size."""
     np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-9)
-    assert abs(ours.mean() - theirs.mean()) < 1e-9
+    assert theirs.mean() > 0.01
+    our_statistics = asdict(statistics(ours))
+    assert our_statistics.keys() == their_statistics.keys()
+    for name, value in our_statistics.items():
+        assert value == pytest.approx(their_statistics[name], rel=1e-9, abs=1e-9), name
+
+
+@pytest.mark.parametrize(
+    ("kind", "relation", "alignment"),
+    [
+        *[("space", relation, flag) for relation in RELATIONS for flag in (None, *ALIGNMENTS)],
+        ("plane", "full", None),
+        ("plane", "angle_rad", "-a"),
+        ("plane", "trans_part", "--align_origin"),
+    ],
+)
+def test_absolute_pose_errors(trajectories, kind, relation, alignment):
+    folder, reference, drifting = trajectories[kind]
+    aligned = ALIGNMENTS[alignment](drifting, reference) if alignment else drifting
+    ours = getattr(absolute_pose_errors(aligned, reference), RELATIONS[relation])
+    flags = [alignment] if alignment else []
+    assert_agrees(ours, *evo_results(folder, "evo_ape", "-r", relation, *flags))
+
+
+@pytest.mark.parametrize(
+    ("kind", "relation", "delta"),
+    [
+        ("space", "full", "-d 7 -u f"),
+        ("space", "angle_rad", "-d 7 -u f --all_pairs"),
+        ("space", "trans_part", "-d 3.3 -u m"),
+        ("space", "angle_rad", "-d 3.3 -u m"),
+        ("space", "full", "-d 3.3 -u m -t 0.02 --all_pairs"),
+        ("plane", "angle_rad", "-d 7 -u f"),
+        ("plane", "trans_part", "-d 7 -u f --all_pairs"),
+        ("plane", "full", "-d 3.3 -u m"),
+        ("plane", "trans_part", "-d 3.3 -u m -t 0.02 --all_pairs"),
+    ],
+)
+def test_relative_pose_errors(trajectories, kind, relation, delta):
+    folder, reference, drifting = trajectories[kind]
+    pairs = PAIRS[delta](drifting)
+    assert 5 < len(pairs) < STEPS
+    ours = getattr(relative_pose_errors(drifting, reference, pairs), RELATIONS[relation])
+    assert_agrees(ours, *evo_results(folder, "evo_rpe", "-r", relation, *delta.split()))
+
+
+def test_position_errors_of_the_plane(trajectories):
+    folder, reference, drifting = trajectories["plane"]
+    theirs, _ = evo_results(folder, "evo_ape", "-r", "trans_part")
+    _, ours = position_errors(drifting.plane, reference.plane)
+    np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-9)
     assert theirs.mean() > 0.5
 
 
@@ -63,13 +159,10 @@ def test_position_errors_without_alignment(trajectories):
 )
 def test_relative_errors_over_five_metres(trajectories, relation, name):
     """Twenty frames are five metres of wheel travel; evo's windows follow one another."""
-    folder, reference, drifting = trajectories
-    theirs = evo_errors(
-        folder, "evo_rpe", "--delta", "20", "--delta_unit", "f", "--pose_relation", relation
-    )
+    folder, reference, drifting = trajectories["plane"]
+    theirs, _ = evo_results(folder, "evo_rpe", "-d", "20", "-u", "f", "-r", relation)
     config = EvaluationConfig(horizon_m=5.0, stride_m=5.0)
-    travel_m = SPEED * reference.stamps_s
-    ours = relative_errors(drifting, reference, reference.stamps_s, travel_m, config)
+    ours = relative_errors(drifting.plane, reference.plane, STAMPS_S, SPEED * STAMPS_S, config)
     assert len(theirs) == 8
     np.testing.assert_allclose(getattr(ours, name) * 5, theirs, rtol=0, atol=1e-8)
     assert theirs.mean() > 0.05
