@@ -2,6 +2,7 @@
 
 from odometry.errors import ParameterError
 from odometry.models.base import KinematicModel
+from odometry.models.contact import Contact
 from odometry.models.full_linear import FullLinear
 from odometry.models.icr import Icr
 from odometry.models.icr_inertia import IcrInertia
@@ -23,18 +24,15 @@ MODELS: dict[str, KinematicModel] = {
         IcrInertia(),
         IcrInertiaMeasured(),
         TractionMode(),
+        Contact(),
     )
 }
 
 ICR_NAMES = ("y_left", "y_right", "x_icr", "alpha_left", "alpha_right")
 
-# Names that a parameter set may hold, so that a set identified elsewhere can be read.
+# The names that a parameter set may hold.
 PARAMETER_NAMES: dict[str, tuple[str, ...]] = {
-    **{name: tuple(p.name for p in model.parameters) for name, model in MODELS.items()},
-    "contact": (
-        *("mu", "mass", "x_cm", "y_cm", "height", "half_length", "half_width"),
-        *("contacts", "slip_scale"),
-    ),
+    name: tuple(parameter.name for parameter in model.parameters) for name, model in MODELS.items()
 }
 
 OPTIONAL_NAMES = frozenset({"alpha_left", "alpha_right"})  # 1 when absent

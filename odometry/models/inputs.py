@@ -13,7 +13,7 @@ def _level() -> FloatArray:
 
 @dataclass(frozen=True)
 class Inputs:
-    """Measured inputs of a model, one sample or a stack of them.
+    """Measured inputs of a model, one sample or a stack of them; all are broadcast to one stack.
 
     Attributes
     ----------
@@ -31,29 +31,35 @@ class Inputs:
     pitch_rad: FloatArray = field(default_factory=_level)
     accelerations_m_s2: FloatArray | None = None
 
+    def __post_init__(self) -> None:
+        speeds = np.asarray(self.tread_speeds_m_s)
+        stack = np.broadcast_shapes(
+            speeds.shape[:-1], np.shape(self.roll_rad), np.shape(self.pitch_rad)
+        )
+        object.__setattr__(self, "tread_speeds_m_s", np.broadcast_to(speeds, (*stack, 2)))
+        object.__setattr__(self, "roll_rad", np.broadcast_to(self.roll_rad, stack))
+        object.__setattr__(self, "pitch_rad", np.broadcast_to(self.pitch_rad, stack))
+
     @property
     def left(self) -> FloatArray:
         """v_left (...)."""
-        return np.asarray(self.tread_speeds_m_s)[..., 0]
+        return self.tread_speeds_m_s[..., 0]
 
     @property
     def right(self) -> FloatArray:
         """v_right (...)."""
-        return np.asarray(self.tread_speeds_m_s)[..., 1]
+        return self.tread_speeds_m_s[..., 1]
 
     @property
     def shape(self) -> tuple[int, ...]:
         """Shape of the stack, () for one sample."""
-        return np.broadcast_shapes(
-            np.shape(self.tread_speeds_m_s)[:-1], np.shape(self.roll_rad), np.shape(self.pitch_rad)
-        )
+        return self.roll_rad.shape
 
     def rows(self, chosen: slice | IntArray) -> "Inputs":
         """Some samples of a stack (N, ...)."""
-        stack = self.shape
         return Inputs(
             self.tread_speeds_m_s[chosen],
-            np.broadcast_to(self.roll_rad, stack)[chosen],
-            np.broadcast_to(self.pitch_rad, stack)[chosen],
+            self.roll_rad[chosen],
+            self.pitch_rad[chosen],
             None if self.accelerations_m_s2 is None else self.accelerations_m_s2[chosen],
         )

@@ -1,0 +1,132 @@
+"""Quasi-static force balance of the ground contacts under both treads.
+
+None of the papers has it. Its parts are known: pressure on single points and centrifugal force
+as in Martinez 2017 (section II, eq. 4-10), Coulomb friction against the sliding of each contact.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.errors import ParameterError
+from odometry.models.base import KinematicModel, Parameter
+from odometry.models.contact_balance import balance_at
+from odometry.models.contact_derivatives import parameter_derivative, speed_derivative
+from odometry.models.contact_solve import balanced_twist
+from odometry.models.contact_stance import INSIDE, Stance, stance_of
+from odometry.models.icr_slope import GUESSED_HALF_LENGTH
+from odometry.models.inputs import Inputs
+from odometry.run import Robot
+
+BLOCK = 4096  # samples at a time: what is known of their contacts fits the cache
+GUESSED_HEIGHT = 0.3  # of the track width
+GUESSED_MASS_KG = 1.0
+
+
+class Contact(KinematicModel):
+    """The steady twist at which friction, gravity and centrifugal force balance.
+
+    `contacts` points a side (rounded), evenly spaced from -half_length to half_length at
+    y = half_width and y = -half_width, slide at s_i = (v_x - omega y_i - v_tread, v_y + omega x_i)
+    and are held back by mu N_i s_i / sqrt(|s_i|^2 + slip_scale^2). Gravity, by roll and pitch, and
+    the centrifugal force of the steady twist act at the centre of mass (x_cm, y_cm, height). The
+    loads N_i are those of a rigid body on equal springs that cannot pull: they balance the normal
+    force and the moments of roll and pitch, load transfer included. Angular acceleration, changes
+    of the twist and products of inertia are left out.
+
+    The loads are shares of the normal part of m g, and so friction, gravity and centrifugal force
+    are all proportional to m: divided by it, no term of the balance has it left. The twist does
+    not depend on the mass. Level and slow, it does not depend on mu or height either.
+
+    Limits, all of them continuous, with derivatives that jump:
+
+    - A slope steeper than 0.95 mu is taken as one of 0.95 mu: beyond mu a robot slides ever
+      faster, and no twist is steady.
+    - Load transfer ends where the centre of pressure has gone 0.95 of the way from the middle to
+      the edge of the base: beyond 1 the robot tips over.
+    - A contact lifts off, or comes down.
+
+    Below `slip_scale` friction is viscous: a robot at rest on a slope creeps down, at
+    slip_scale tan / sqrt(mu^2 - tan^2) of the slope. Where a robot corners at more than its
+    friction bears there may be no steady twist, or several; the answer is then the one that the
+    search finds or, failing that, the twist of least residual, whose derivatives mean little.
+    It is always finite.
+    """
+
+    name = "contact"
+    source = "force balance of this project; contacts and inertia as Martinez 2017, section II"
+    parameters = (
+        Parameter("mu", "", 1e-3, search=(0.05, 1.5)),
+        Parameter("mass", "kg", 1e-3, known=True),
+        Parameter("x_cm", "m", search=(-0.3, 0.3)),
+        Parameter("y_cm", "m", search=(-0.3, 0.3)),
+        Parameter("height", "m", 0.0, search=(0.0, 2.0)),
+        Parameter("half_length", "m", 1e-3, search=(0.02, 3.0)),
+        Parameter("half_width", "m", 1e-3, known=True),
+        Parameter("contacts", "", 2.0, 100.0, known=True),
+        Parameter("slip_scale", "m/s", 1e-9, search=(1e-3, 0.3)),
+    )
+
+    def check(self, values: FloatArray) -> None:
+        """The centre of mass must lie within 0.9 of the base."""
+        for name, centre, half in (("x_cm", *values[[2, 5]]), ("y_cm", *values[[3, 6]])):
+            if abs(centre) > INSIDE * half:
+                raise ParameterError(
+                    f"{name} = {centre} m, expected within {INSIDE} of {half} m from the middle "
+                    "of the contacts: the robot would tip over"
+                )
+
+    def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """See `KinematicModel.twist`."""
+        return _in_blocks(balanced_twist, values, inputs)
+
+    def parameter_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """See `KinematicModel.parameter_jacobian`."""
+        return _in_blocks(_parameter_derivative, values, inputs)
+
+    def speed_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """See `KinematicModel.speed_jacobian`."""
+        return _in_blocks(_speed_derivative, values, inputs)
+
+    def guess(self, robot: Robot) -> dict[str, float]:
+        """Four wheels under the treads, mass in the middle."""
+        half_width = robot.track_width / 2
+        return {
+            "mu": 0.6,
+            "mass": robot.mass or GUESSED_MASS_KG,
+            "x_cm": 0.0,
+            "y_cm": 0.0,
+            "height": GUESSED_HEIGHT * robot.track_width,
+            "half_length": GUESSED_HALF_LENGTH * robot.length if robot.length else half_width,
+            "half_width": half_width,
+            "contacts": 2.0,
+            "slip_scale": 0.03,
+        }
+
+
+def _parameter_derivative(stance: Stance) -> FloatArray:
+    return parameter_derivative(balance_at(stance, balanced_twist(stance)))
+
+
+def _speed_derivative(stance: Stance) -> FloatArray:
+    return speed_derivative(balance_at(stance, balanced_twist(stance)))
+
+
+def _in_blocks(
+    answer: Callable[[Stance], FloatArray], values: FloatArray, inputs: Inputs
+) -> FloatArray:
+    """Broadcast, and answer (..., N) a stance of N samples at a time; samples first: (..., ...)."""
+    stack = np.broadcast_shapes(np.shape(values)[:-1], inputs.shape)
+    rows = np.broadcast_to(values, (*stack, np.shape(values)[-1])).reshape(-1, np.shape(values)[-1])
+    speeds = np.broadcast_to(inputs.tread_speeds_m_s, (*stack, 2)).reshape(-1, 2)
+    roll, pitch = (
+        np.broadcast_to(angle, stack).reshape(-1) for angle in (inputs.roll_rad, inputs.pitch_rad)
+    )
+    flat = Inputs(speeds, roll, pitch)
+    answers = [
+        answer(stance_of(rows[block], flat.rows(block)))
+        for block in (slice(k, k + BLOCK) for k in range(0, max(len(rows), 1), BLOCK))
+    ]
+    joined = np.moveaxis(np.concatenate(answers, axis=-1), -1, 0)
+    return np.ascontiguousarray(joined.reshape(*stack, *joined.shape[1:]))
