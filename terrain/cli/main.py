@@ -13,6 +13,9 @@ VERBS = {
     "run": "Replay a run: the main job.",
     "evaluate": "Show the errors of finished runs side by side.",
     "synthesise": "Make a run folder with images, its patches and parameters.",
+    "simulate": "Make a run folder from a simulated skid-steer robot.",
+    "identify": "Parameters of a kinematic model from recorded runs.",
+    "compare": "Held-out errors of several models, side by side.",
     "demo": "Train, run and report on the shipped data.",
 }
 

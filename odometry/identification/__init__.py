@@ -1,0 +1,1 @@
+"""Parameters of kinematic models from recorded runs."""

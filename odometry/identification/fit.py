@@ -1,0 +1,177 @@
+"""Fit one model to windows: values, covariance, and what the windows leave open."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray
+from odometry.errors import ParameterError
+from odometry.identification.by_trial import try_values
+from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.identification.errors import IdentificationError
+from odometry.identification.excitation import Undetermined, ordinary_sizes, undetermined
+from odometry.identification.noise import pose_variances
+from odometry.identification.problem import Problem
+from odometry.identification.solve import Solution, solve
+from odometry.identification.uncertainty import parameter_covariance, residual_scale
+from odometry.identification.windows import Windows
+from odometry.models.base import KinematicModel
+from odometry.run import Robot
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Parameters of one model on one ground.
+
+    Attributes
+    ----------
+    model : KinematicModel
+    values : Mapping of name to float
+        Every parameter of the model.
+    names : tuple of str
+        Those that were identified and have a variance.
+    covariance : (F, F)
+        Of `names`.
+    undetermined : tuple of Undetermined
+        What the windows leave open.
+    by_trial : tuple of str
+        Identified by trying values, because they act through a sign alone: no variance.
+    at_bound : tuple of str
+        Parameters that ended at the edge of where the search may look.
+    residuals : (K, 3)
+        Predicted less measured motion: along, across [m], yaw [rad].
+    weights : (K,)
+        1 where a window counts in full, less where it is an outlier.
+    scale : float
+        How many times larger the residuals are than the poses' stated noise explains.
+    agreeing, starts : int
+        How many of the starts found this minimum.
+    windows : Windows
+    """
+
+    model: KinematicModel
+    values: Mapping[str, float]
+    names: tuple[str, ...]
+    covariance: FloatArray
+    undetermined: tuple[Undetermined, ...]
+    by_trial: tuple[str, ...]
+    at_bound: tuple[str, ...]
+    residuals: FloatArray
+    weights: FloatArray
+    scale: float
+    agreeing: int
+    starts: int
+    windows: Windows
+
+    @property
+    def packed(self) -> FloatArray:
+        """Parameters (P,) in the order of the model."""
+        return np.array([self.values[parameter.name] for parameter in self.model.parameters])
+
+    @property
+    def sigmas(self) -> dict[str, float]:
+        """Standard deviation of each identified parameter."""
+        deviations = np.sqrt(np.diag(self.covariance))
+        return {name: float(value) for name, value in zip(self.names, deviations, strict=True)}
+
+
+def fit(
+    model: KinematicModel,
+    windows: Windows,
+    robot: Robot,
+    *,
+    fixed: Mapping[str, float],
+    released: frozenset[str] = frozenset(),
+    window_config: WindowConfig,
+    solver_config: SolverConfig,
+) -> Fit:
+    """Identify the parameters of a model that are neither fixed nor known.
+
+    Parameters
+    ----------
+    model : KinematicModel
+    windows : Windows
+    robot : Robot
+        Gives the starting values, and those of known parameters.
+    fixed : Mapping of name to float
+        Held at these values.
+    released : names
+        Known parameters to identify all the same.
+    window_config : WindowConfig
+        Its pose noise states the covariance of the loss.
+    solver_config : SolverConfig
+
+    Raises
+    ------
+    IdentificationError
+        If there are fewer measured numbers than free parameters.
+    ParameterError
+        If a name is no parameter of the model, or a fixed value is out of bounds.
+    """
+    values = _start(model, robot, fixed, released)
+    free = np.array(
+        [p.name not in fixed and (not p.known or p.name in released) for p in model.parameters]
+    )
+    in_sign = np.array([parameter.in_sign for parameter in model.parameters])
+    if 3 * len(windows) <= free.sum():
+        raise IdentificationError(
+            f"{len(windows)} windows cannot tell {int(free.sum())} parameters of {model.name!r}"
+        )
+    sizes = ordinary_sizes(model, robot)
+    problem = Problem(model, windows, values, free & ~in_sign, pose_variances(window_config))
+    solution = solve(problem, values[problem.free], sizes[problem.free], solver_config)
+    for place in np.flatnonzero(free & in_sign):
+        problem, solution = try_values(problem, solution, sizes, int(place), solver_config)
+    return _finish(problem, solution, sizes[problem.free], free & in_sign, solver_config)
+
+
+def _start(
+    model: KinematicModel, robot: Robot, fixed: Mapping[str, float], released: frozenset[str]
+) -> FloatArray:
+    names = {parameter.name for parameter in model.parameters}
+    for name in sorted({*fixed, *released} - names):
+        raise ParameterError(
+            f"{name!r} is no parameter of {model.name!r}; it has {', '.join(sorted(names))}"
+        )
+    return model.pack({**model.guess(robot), **fixed})
+
+
+def _finish(
+    problem: Problem,
+    solution: Solution,
+    sizes: FloatArray,
+    in_sign: BoolArray,
+    config: SolverConfig,
+) -> Fit:
+    scale = residual_scale(problem, solution)
+    whitened = np.sqrt(solution.weights)[:, None, None] * (
+        problem.whitening() @ problem.jacobian(solution.chosen)
+    )
+    low, high = problem.bounds()
+    edge = 1e-3 * sizes
+    at_bound = (solution.chosen < low + edge) | (solution.chosen > high - edge)
+    values = problem.complete(solution.chosen)
+    return Fit(
+        model=problem.model,
+        values={p.name: float(v) for p, v in zip(problem.model.parameters, values, strict=True)},
+        names=problem.names,
+        covariance=parameter_covariance(problem, solution, sizes),
+        undetermined=undetermined(
+            whitened.reshape(3 * len(problem.windows), len(sizes)),
+            problem.names,
+            sizes,
+            max(1.0, scale),
+            config.undetermined,
+        ),
+        by_trial=tuple(
+            p.name for p, sign in zip(problem.model.parameters, in_sign, strict=True) if sign
+        ),
+        at_bound=tuple(name for name, edged in zip(problem.names, at_bound, strict=True) if edged),
+        residuals=problem.residuals(solution.chosen),
+        weights=solution.weights,
+        scale=scale,
+        agreeing=solution.agreeing,
+        starts=config.starts,
+        windows=problem.windows,
+    )

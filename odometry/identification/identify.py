@@ -1,0 +1,207 @@
+"""Identify one model from recorded runs, ground by ground."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from tqdm import tqdm
+
+from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.identification.errors import IdentificationError
+from odometry.identification.fit import Fit, fit
+from odometry.identification.held_out import (
+    WindowErrors,
+    held_out_errors,
+    parts_of,
+    window_errors,
+)
+from odometry.identification.slopes import fit_in_two_stages
+from odometry.identification.windows import Windows, windows_of
+from odometry.models.base import KinematicModel
+from odometry.models.catalogue import MODELS, model_named
+from odometry.parameters import ParameterSet, TerrainParameters
+from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Robot, Run
+
+FITTERS: dict[str, Callable[..., Fit]] = {"icr_slope": fit_in_two_stages}  # else `fit`
+
+
+@dataclass(frozen=True)
+class Identified:
+    """What runs tell of a model on one ground.
+
+    Attributes
+    ----------
+    fit : Fit
+        To all windows.
+    held_out : WindowErrors or None
+        By other runs of the ground, or by halves where it has one; None where a part alone
+        cannot be fitted.
+    ideal : WindowErrors
+        Of the ideal differential drive on the same windows.
+    """
+
+    fit: Fit
+    held_out: WindowErrors | None
+    ideal: WindowErrors
+
+    def to_parameters(self, source: str) -> TerrainParameters:
+        """The table of a parameter set."""
+        return TerrainParameters(
+            self.fit.model.name, self.fit.values, self.fit.names, self.fit.covariance, source
+        )
+
+
+@dataclass(frozen=True)
+class Identification:
+    """What runs tell of a model, by ground.
+
+    Attributes
+    ----------
+    robot : Robot
+    grounds : Mapping of terrain to Identified
+    window_config : WindowConfig
+    """
+
+    robot: Robot
+    grounds: Mapping[str, Identified]
+    window_config: WindowConfig
+
+    def require_determined(self) -> None:
+        """Raise IdentificationError, with numbers, where a fit leaves parameters open."""
+        lines = [
+            f"[{terrain}] {open_.words()}"
+            for terrain, found in self.grounds.items()
+            for open_ in found.fit.undetermined
+        ]
+        if lines:
+            raise IdentificationError(
+                "the runs cannot tell these parameters apart from others, or at all:\n  "
+                + "\n  ".join(lines)
+                + "\nAdd runs that excite them (turns both ways at several speeds; slopes), fix "
+                "values that are known, or choose a model with fewer parameters."
+            )
+
+    def to_parameter_set(self) -> ParameterSet:
+        """One table a ground, with covariances and where the values come from."""
+        terrains = {}
+        for terrain, found in self.grounds.items():
+            runs = ", ".join(dict.fromkeys(map(str, found.fit.windows.run)))
+            source = (
+                f"identified by terrain-odometry from {len(found.fit.windows)} windows of {runs}"
+            )
+            terrains[terrain] = found.to_parameters(source)
+        return ParameterSet(terrains, {"name": self.robot.name} if self.robot.name else {})
+
+
+def identify(
+    runs: Sequence[Run],
+    model: str | KinematicModel,
+    *,
+    fixed: Mapping[str, float] | None = None,
+    released: Sequence[str] = (),
+    terrain: str | None = None,
+    window_config: WindowConfig | None = None,
+    solver_config: SolverConfig | None = None,
+    show_progress: bool = False,
+) -> Identification:
+    """Fit a model to runs, one fit for each ground that they name.
+
+    Parameters
+    ----------
+    runs : sequence of Run
+        Of one robot, with poses.
+    model : str or KinematicModel
+        A name of the catalogue.
+    fixed : Mapping of name to float, optional
+        Parameters held at a value.
+    released : sequence of str
+        Known parameters (the track width, the mass ...) to identify all the same.
+    terrain : str, optional
+        The ground of runs that name none.
+    window_config, solver_config : optional
+    show_progress : bool
+        Whether to draw a bar on standard error.
+
+    Raises
+    ------
+    IdentificationError
+        If the runs are of robots of different width, or too short, or lack poses.
+    ParameterError
+        If there is no such model or parameter.
+    """
+    chosen = model_named(model) if isinstance(model, str) else model
+    window_config, solver_config = window_config or WindowConfig(), solver_config or SolverConfig()
+    robot = robot_of(runs)
+    windows = windows_of(runs, window_config)
+    fit_to = fitter(
+        chosen,
+        robot,
+        fixed=fixed or {},
+        released=frozenset(released),
+        window_config=window_config,
+        solver_config=solver_config,
+    )
+    ground = np.array([_ground_name(str(name), terrain) for name in windows.terrain], dtype=object)
+    names = list(dict.fromkeys(ground))
+    bar = tqdm(names, desc=chosen.name, unit="ground", disable=None if show_progress else True)
+    grounds = {name: _identified(windows.where(ground == name), fit_to, robot) for name in bar}
+    return Identification(robot, grounds, window_config)
+
+
+def fitter(
+    model: KinematicModel,
+    robot: Robot,
+    *,
+    fixed: Mapping[str, float],
+    released: frozenset[str] = frozenset(),
+    window_config: WindowConfig,
+    solver_config: SolverConfig,
+) -> Callable[[Windows], Fit]:
+    """The function from windows to a fit that suits a model."""
+    fit_with = FITTERS.get(model.name, fit)
+
+    def fit_to(windows: Windows) -> Fit:
+        return fit_with(
+            model,
+            windows,
+            robot,
+            fixed=fixed,
+            released=released,
+            window_config=window_config,
+            solver_config=solver_config,
+        )
+
+    return fit_to
+
+
+def robot_of(runs: Sequence[Run]) -> Robot:
+    """The robot that all runs share.
+
+    Raises
+    ------
+    IdentificationError
+        If there is no run, or track widths differ.
+    """
+    if not runs:
+        raise IdentificationError("no run was given; expected one or more")
+    for run in runs:
+        if run.robot.track_width != runs[0].robot.track_width:
+            raise IdentificationError(
+                f"{run.folder}: track_width = {run.robot.track_width}, but {runs[0].folder} has "
+                f"{runs[0].robot.track_width}; expected runs of one robot"
+            )
+    return runs[0].robot
+
+
+def _identified(windows: Windows, fit_to: Callable[[Windows], Fit], robot: Robot) -> Identified:
+    fitted = fit_to(windows)
+    try:
+        held_out = held_out_errors(windows, parts_of(windows), fit_to)
+    except IdentificationError:
+        held_out = None
+    ideal = window_errors(MODELS["differential_drive"], np.array([robot.track_width]), windows)
+    return Identified(fitted, held_out, ideal)
+
+
+def _ground_name(name: str, given: str | None) -> str:
+    return given or UNNAMED_TERRAIN if name == UNKNOWN else name

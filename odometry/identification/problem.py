@@ -1,0 +1,72 @@
+"""The loss of an identification: squared Mahalanobis distances of windows (Baril 2020 eq. 13)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray
+from odometry.geometry.angles import wrap
+from odometry.identification.motion import window_motion, window_motion_jacobian
+from odometry.identification.noise import window_covariances
+from odometry.identification.windows import Windows
+from odometry.models.base import KinematicModel
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Which parameters of a model are free, and the windows that shall tell them.
+
+    Attributes
+    ----------
+    model : KinematicModel
+    windows : Windows
+    values : (P,)
+        All parameters; the free ones are ignored.
+    free : (P,) of bool
+    variances : (3,)
+        Of a measured pose.
+    """
+
+    model: KinematicModel
+    windows: Windows
+    values: FloatArray
+    free: BoolArray
+    variances: FloatArray
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The free parameters."""
+        return tuple(
+            parameter.name
+            for parameter, free in zip(self.model.parameters, self.free, strict=True)
+            if free
+        )
+
+    def complete(self, chosen: FloatArray) -> FloatArray:
+        """All parameters (P,) with the free ones (F,) put in."""
+        values = self.values.copy()
+        values[self.free] = chosen
+        return values
+
+    def bounds(self) -> tuple[FloatArray, FloatArray]:
+        """Where to search the free parameters."""
+        ranges = [p.search or (p.low, p.high) for p in self.model.parameters]
+        low, high = np.array(ranges)[self.free].reshape(-1, 2).T
+        return low, high
+
+    def whitening(self) -> FloatArray:
+        """Inverse Cholesky factors (K, 3, 3) of the windows' stated covariances."""
+        covariances = window_covariances(self.windows, self.variances)
+        return np.asarray(np.linalg.inv(np.linalg.cholesky(covariances)))
+
+    def residuals(self, chosen: FloatArray) -> FloatArray:
+        """Predicted less measured motion (K, 3), yaw wrapped."""
+        predicted = window_motion(self.model, self.complete(chosen), self.windows)
+        error = predicted - self.windows.measured
+        error[:, 2] = wrap(error[:, 2])
+        return error
+
+    def jacobian(self, chosen: FloatArray) -> FloatArray:
+        """Derivative (K, 3, F) of the residuals by the free parameters."""
+        every = window_motion_jacobian(self.model, self.complete(chosen), self.windows)
+        return every[:, :, self.free]

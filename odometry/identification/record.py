@@ -1,0 +1,109 @@
+"""A run as an identification sees it: inputs that hold between stamps, and measured poses."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
+from odometry.identification.config import WindowConfig
+from odometry.identification.errors import IdentificationError
+from odometry.models.inputs import Inputs
+from odometry.models.run_inputs import inputs_of
+from odometry.run import UNKNOWN, Run
+
+GAP_PERIODS = 5.0  # odometry stamps farther apart than this many usual periods are a gap
+
+
+@dataclass(frozen=True)
+class Record:
+    """Samples of one run: the stamps of odometry and of its poses, merged.
+
+    Attributes
+    ----------
+    run : Run
+    stamps_s : (N,)
+    inputs : Inputs
+        Of stack (N,), each in force until the next stamp.
+    travel_m : (N,)
+        Wheel travel up to each stamp.
+    poses : (M, 3)
+        Measured x, y, yaw.
+    pose_samples : (M,)
+        The sample at which each pose was measured.
+    stretch : (M,)
+        Number of the stretch without gap, change of `window` or of terrain in which a pose lies.
+    terrains : (M,) of str
+        Terrain at each pose.
+    """
+
+    run: Run
+    stamps_s: FloatArray
+    inputs: Inputs
+    travel_m: FloatArray
+    poses: FloatArray
+    pose_samples: IntArray
+    stretch: IntArray
+    terrains: AnyArray
+
+
+def record_of(run: Run, config: WindowConfig) -> Record:
+    """Merge odometry and poses of a run.
+
+    Raises
+    ------
+    IdentificationError
+        If the run has no two measured poses within the time of its odometry.
+    """
+    odometry_s = run.odometry.stamps_s
+    poses, pose_s, windows = _measured_poses(run)
+    inside = (pose_s >= odometry_s[0]) & (pose_s <= odometry_s[-1])
+    if inside.sum() < 2:
+        raise IdentificationError(
+            f"{run.folder}: {int(inside.sum())} measured poses within the time of odometry.csv, "
+            "expected two or more: an identification needs pose.csv"
+        )
+    poses, pose_s, windows = poses[inside], pose_s[inside], windows[inside]
+    stamps_s = np.unique(np.concatenate([odometry_s, pose_s]))
+    rows = np.searchsorted(odometry_s, stamps_s, side="right") - 1
+    inputs = inputs_of(run).rows(rows)
+    speed = np.abs(inputs.tread_speeds_m_s).mean(axis=1)
+    travel_m = np.concatenate([[0.0], np.cumsum(speed[:-1] * np.diff(stamps_s))])
+    terrains = _terrains(run, rows)[np.searchsorted(stamps_s, pose_s)]
+    breaks = (
+        (np.diff(pose_s) > config.pose_gap_s)
+        | (windows[1:] != windows[:-1])
+        | (terrains[1:] != terrains[:-1])
+        | _odometry_gap_between(odometry_s, pose_s)
+    )
+    stretch = np.concatenate([[0], np.cumsum(breaks)])
+    samples = np.searchsorted(stamps_s, pose_s)
+    return Record(run, stamps_s, inputs, travel_m, poses, samples, stretch, terrains)
+
+
+def _measured_poses(run: Run) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Poses (M, 3), their stamps (M,) and source windows (M,), without rows of missing cells."""
+    if run.pose is None:
+        return np.empty((0, 3)), np.empty(0), np.empty(0)
+    poses = run.pose.stack("x", "y", "yaw")
+    measured = np.isfinite(poses).all(axis=1)
+    windows = run.pose["window"] if "window" in run.pose.columns else np.zeros(len(poses))
+    return poses[measured], run.pose.stamps_s[measured], np.nan_to_num(windows)[measured]
+
+
+def _terrains(run: Run, rows: IntArray) -> AnyArray:
+    """The terrain (N,) at rows of odometry: its column where there is one, else the run's."""
+    usual = run.terrain or UNKNOWN
+    if "terrain" not in run.odometry.columns:
+        return np.full(len(rows), usual, dtype=object)
+    names = run.odometry["terrain"].astype(object)
+    return np.asarray(np.where(names == "", usual, names)[rows])
+
+
+def _odometry_gap_between(odometry_s: FloatArray, pose_s: FloatArray) -> BoolArray:
+    """Whether an odometry gap (M - 1,) lies between a pose and the next."""
+    periods_s = np.diff(odometry_s)
+    gap = np.concatenate([[False], periods_s > GAP_PERIODS * np.median(periods_s)])
+    gaps_before = np.cumsum(gap)
+    behind = np.searchsorted(odometry_s, pose_s[:-1], side="right") - 1
+    ahead = np.searchsorted(odometry_s, pose_s[1:])
+    return np.asarray(gaps_before[ahead] > gaps_before[behind])

@@ -1,0 +1,158 @@
+"""Windows of recorded motion: inputs on the way, and the measured motion from end to end."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
+from odometry.evaluation.horizons import spatial_horizons
+from odometry.geometry import se2
+from odometry.identification.config import WindowConfig
+from odometry.identification.errors import IdentificationError
+from odometry.identification.record import Record, record_of
+from odometry.models.inputs import Inputs
+from odometry.run import Run
+
+
+@dataclass(frozen=True)
+class Windows:
+    """K windows over N samples of one or many runs.
+
+    Attributes
+    ----------
+    inputs : Inputs
+        Of stack (N,).
+    steps_s : (N,)
+        How long each sample was in force; 0 at the end of a run.
+    first, last : (K,)
+        Samples at which a window starts and ends.
+    first_pose, last_pose : (K,)
+        Numbers of the measured poses there: windows may share one, and its noise.
+    measured : (K, 3)
+        Pose at the end in the level frame of the pose at the start.
+    travel_m : (K,)
+        Wheel travel.
+    start_s : (K,)
+    run, terrain : (K,) of str
+        Name of the run, and of the ground.
+    """
+
+    inputs: Inputs
+    steps_s: FloatArray
+    first: IntArray
+    last: IntArray
+    first_pose: IntArray
+    last_pose: IntArray
+    measured: FloatArray
+    travel_m: FloatArray
+    start_s: FloatArray
+    run: AnyArray
+    terrain: AnyArray
+
+    def __len__(self) -> int:
+        return len(self.first)
+
+    def where(self, chosen: BoolArray) -> "Windows":
+        """The chosen (K,) windows, with the samples that they need."""
+        first, last = self.first[chosen], self.last[chosen]
+        depth = np.zeros(len(self.steps_s) + 1, dtype=np.int64)
+        np.add.at(depth, first, 1)
+        np.add.at(depth, last + 1, -1)
+        kept = np.flatnonzero(np.cumsum(depth[:-1]) > 0)
+        return Windows(
+            self.inputs.rows(kept),
+            self.steps_s[kept],
+            np.searchsorted(kept, first),
+            np.searchsorted(kept, last),
+            self.first_pose[chosen],
+            self.last_pose[chosen],
+            self.measured[chosen],
+            self.travel_m[chosen],
+            self.start_s[chosen],
+            self.run[chosen],
+            self.terrain[chosen],
+        )
+
+
+def windows_of(runs: Sequence[Run], config: WindowConfig) -> Windows:
+    """Cut runs into windows of one horizon; none straddles a gap or a change of `window`.
+
+    Raises
+    ------
+    IdentificationError
+        If a run has no measured poses, or there is no window in any of them.
+    """
+    parts = [_windows_of_record(record_of(run, config), config) for run in runs]
+    if not sum(map(len, parts)):
+        raise IdentificationError(_no_window(runs, config))
+    samples = np.cumsum([0, *(len(part.steps_s) for part in parts[:-1])])
+    poses = np.cumsum([0, *(1 + part.last_pose.max(initial=-1) for part in parts[:-1])])
+    return Windows(
+        _joined([part.inputs for part in parts]),
+        np.concatenate([part.steps_s for part in parts]),
+        np.concatenate([part.first + n for part, n in zip(parts, samples, strict=True)]),
+        np.concatenate([part.last + n for part, n in zip(parts, samples, strict=True)]),
+        np.concatenate([part.first_pose + n for part, n in zip(parts, poses, strict=True)]),
+        np.concatenate([part.last_pose + n for part, n in zip(parts, poses, strict=True)]),
+        np.concatenate([part.measured for part in parts]),
+        np.concatenate([part.travel_m for part in parts]),
+        np.concatenate([part.start_s for part in parts]),
+        np.concatenate([part.run for part in parts]),
+        np.concatenate([part.terrain for part in parts]),
+    )
+
+
+def _windows_of_record(record: Record, config: WindowConfig) -> Windows:
+    pose_s = record.stamps_s[record.pose_samples]
+    travel_m = record.travel_m[record.pose_samples]
+    measure, horizon = (
+        (pose_s, config.horizon_s) if config.horizon_s else (travel_m, config.horizon_m)
+    )
+    found = [np.empty((0, 2), dtype=np.int64)]
+    begins = np.flatnonzero(np.diff(record.stretch, prepend=-1))
+    for begin, end in zip(begins, [*begins[1:], len(pose_s)], strict=True):
+        found.append(begin + _windows_of_stretch(measure[begin:end], horizon, config))
+    first, last = np.concatenate(found).T
+    return Windows(
+        record.inputs,
+        np.append(np.diff(record.stamps_s), 0.0),
+        record.pose_samples[first],
+        record.pose_samples[last],
+        first,
+        last,
+        se2.between(record.poses[first], record.poses[last]),
+        travel_m[last] - travel_m[first],
+        pose_s[first],
+        np.full(len(first), record.run.name, dtype=object),
+        record.terrains[first],
+    )
+
+
+def _windows_of_stretch(measure: FloatArray, horizon: float, config: WindowConfig) -> IntArray:
+    """First and last pose (K, 2) of the windows of one stretch; a short stretch is one window."""
+    length = measure[-1] - measure[0]
+    if config.shortest * horizon <= length < horizon:
+        return np.array([[0, len(measure) - 1]])
+    return spatial_horizons(measure, horizon, config.stride * horizon)
+
+
+def _joined(parts: Sequence[Inputs]) -> Inputs:
+    accelerations = [part.accelerations_m_s2 for part in parts]
+    known = [values for values in accelerations if values is not None]
+    return Inputs(
+        np.concatenate([part.tread_speeds_m_s for part in parts]),
+        np.concatenate([part.roll_rad for part in parts]),
+        np.concatenate([part.pitch_rad for part in parts]),
+        np.concatenate(known) if len(known) == len(parts) else None,
+    )
+
+
+def _no_window(runs: Sequence[Run], config: WindowConfig) -> str:
+    wanted = f"{config.horizon_s:g} s" if config.horizon_s else f"{config.horizon_m:g} m"
+    longest = max(float(run.wheel_travel_m[-1]) for run in runs)
+    return (
+        f"no window of {wanted} in {', '.join(run.name for run in runs)}: the longest run has "
+        f"{longest:.2f} m of wheel travel, and windows do not straddle gaps of odometry.csv or "
+        "pose.csv or changes of `window`; choose a shorter horizon"
+    )

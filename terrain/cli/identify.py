@@ -1,0 +1,138 @@
+"""`terrain-odometry identify`: the parameters of a model from recorded runs."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from terrain.cli.options import assignments, window_options
+from terrain.cli.results import print_table
+
+if TYPE_CHECKING:
+    from odometry.identification.config import WindowConfig
+    from odometry.identification.identify import Identified
+
+
+@click.command()
+@click.argument(
+    "folders",
+    metavar="RUN...",
+    nargs=-1,
+    required=True,
+    type=click.Path(file_okay=False, path_type=Path),
+)
+@click.option("--model", required=True, help="Name of the model: icr, icr_slope, contact ...")
+@click.option(
+    "--out",
+    required=True,
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Parameter set to write (TOML).",
+)
+@window_options
+@click.option("--fix", multiple=True, metavar="NAME=VALUE", help="Hold a parameter; repeat.")
+@click.option("--free", multiple=True, metavar="NAME", help="Identify a known one too; repeat.")
+@click.option("--terrain", metavar="NAME", help="Ground of runs that name none.")
+@click.option(
+    "--loss",
+    type=click.Choice(["huber", "linear"]),
+    default="huber",
+    show_default=True,
+    help="Weigh outliers down, or take the squares as they are.",
+)
+@click.option("--starts", type=click.IntRange(min=1), default=4, show_default=True)
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True)
+def identify(
+    folders: tuple[Path, ...],
+    *,
+    model: str,
+    out: Path,
+    windows: "WindowConfig",
+    fix: tuple[str, ...],
+    free: tuple[str, ...],
+    terrain: str | None,
+    loss: str,
+    starts: int,
+    seed: int,
+) -> None:
+    """Identify the parameters of a kinematic model from the run folders RUN.
+
+    Runs are cut into windows of equal wheel travel; the parameters are those whose dead reckoning
+    ends nearest to the measured poses. One table is written for each ground that the runs name.
+    Parameters that the runs cannot tell are named, and nothing is written then.
+
+    \b
+    Example:
+      terrain-odometry identify grass_1 grass_2 asphalt_1 --model icr --out set.toml
+    """
+    from odometry.identification.config import SolverConfig
+    from odometry.identification.identify import identify as identify_runs
+    from odometry.parameters import write_parameters
+    from odometry.run import Run
+
+    found = identify_runs(
+        [Run.read(folder) for folder in folders],
+        model,
+        fixed=assignments(fix),
+        released=free,
+        terrain=terrain,
+        window_config=windows,
+        solver_config=SolverConfig(loss=loss, starts=starts, seed=seed),
+        show_progress=True,
+    )
+    for name, ground in found.grounds.items():
+        _print_ground(name, ground)
+    found.require_determined()
+    write_parameters(out, found.to_parameter_set())
+    click.echo(f"Wrote {out}")
+    click.echo(f"Next: terrain-odometry compare RUN --model {out} --model icr --out comparison")
+
+
+def _print_ground(name: str, ground: "Identified") -> None:
+    """Print one ground: parameters, what the fit leaves, errors."""
+    fit = ground.fit
+    click.echo(
+        f"[{name}] {len(fit.windows)} windows of {fit.windows.travel_m.mean():.2f} m; residuals "
+        f"{fit.scale:.1f} times the poses' stated noise; "
+        f"{fit.agreeing} of {fit.starts} starts agree"
+    )
+    rows = [("parameter", "value", "sigma", "95 % low", "high", "")]
+    units = {parameter.name: parameter.unit for parameter in fit.model.parameters}
+    for parameter, value in fit.values.items():
+        sigma = fit.sigmas.get(parameter)
+        spread = (
+            ("held", "", "")
+            if sigma is None
+            else (f"{sigma:.3g}", f"{value - 1.96 * sigma:.5g}", f"{value + 1.96 * sigma:.5g}")
+        )
+        if parameter in fit.by_trial:
+            spread = ("by trial", "", "")
+        rows.append((parameter, f"{value:.5g}", *spread, units[parameter]))
+    print_table(rows)
+    for parameter in fit.at_bound:
+        click.echo(f"Note: {parameter} ended at the edge of its search range", err=True)
+    for parameter in fit.by_trial:
+        click.echo(
+            f"Note: {parameter} acts through a sign alone: a range of values fits equally well, "
+            "and no interval can be stated",
+            err=True,
+        )
+    _print_errors(ground)
+
+
+def _print_errors(ground: "Identified") -> None:
+    from math import degrees
+
+    rows = [("mean error", "m per m", "deg per m")]
+    for name, errors in (
+        ("held out", ground.held_out),
+        ("ideal differential drive", ground.ideal),
+    ):
+        if errors is not None:
+            rows.append(
+                (
+                    name,
+                    f"{errors.translation_per_m.mean():.4f}",
+                    f"{degrees(errors.rotation_per_m.mean()):.3f}",
+                )
+            )
+    print_table(rows)

@@ -1,0 +1,78 @@
+"""Options that several commands share."""
+
+from collections.abc import Callable, Sequence
+from functools import wraps
+from typing import Any
+
+import click
+
+
+def assignments(texts: Sequence[str]) -> dict[str, float]:
+    """Values by name, from texts like mu=0.6."""
+    values = {}
+    for text in texts:
+        name, _, number = text.partition("=")
+        try:
+            values[name.strip()] = float(number)
+        except ValueError:
+            raise click.BadParameter(
+                f"{text!r}, expected NAME=VALUE with a number", param_hint="--fix"
+            ) from None
+    return values
+
+
+def window_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Add the options that cut runs into windows; the command gets them as `windows`."""
+
+    @click.option(
+        "--horizon",
+        "horizon_m",
+        type=float,
+        default=2.0,
+        show_default=True,
+        help="Wheel travel of a window [m].",
+    )
+    @click.option("--horizon-s", type=float, default=0.0, help="Duration of a window instead [s].")
+    @click.option(
+        "--stride",
+        type=float,
+        default=1.0,
+        show_default=True,
+        help="Between starts of windows, in horizons.",
+    )
+    @click.option(
+        "--position-sigma",
+        type=float,
+        default=0.02,
+        show_default=True,
+        help="Standard deviation of a measured position [m].",
+    )
+    @click.option(
+        "--yaw-sigma",
+        type=float,
+        default=0.01,
+        show_default=True,
+        help="Standard deviation of a measured heading [rad].",
+    )
+    @wraps(command)
+    def with_windows(
+        *,
+        horizon_m: float,
+        horizon_s: float,
+        stride: float,
+        position_sigma: float,
+        yaw_sigma: float,
+        **others: Any,
+    ) -> None:
+        from odometry.identification.config import WindowConfig
+
+        windows = WindowConfig(
+            horizon_m=horizon_m,
+            horizon_s=horizon_s,
+            stride=stride,
+            position_sigma_m=position_sigma,
+            yaw_sigma_rad=yaw_sigma,
+        )
+        command(windows=windows, **others)
+
+    return with_windows
