@@ -6,7 +6,8 @@ import sys
 
 import pytest
 
-VERBS = ("train", "classify", "run", "evaluate", "synthesise", "demo")
+VERBS = ("train", "classify", "run", "evaluate", "synthesise")
+VERBS += ("simulate", "identify", "compare", "demo")
 SLOW = ("numpy", "scipy", "sklearn", "skimage", "cv2", "matplotlib", "filterpy", "pandas")
 
 

@@ -1,0 +1,138 @@
+"""Drives of skid-steer vehicles on contacts: many at once, with the truth of every stamp."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.simulation.contact.dynamics import MEMORY, POSITION, YAW, YAW_RATE, ContactDynamics
+from odometry.simulation.contact.integrate import LONGEST_STEP_S, rosenbrock_step
+from odometry.simulation.contact.slope import Ground, Plane, gravity
+from odometry.simulation.contact.vectors import ComplexArray
+from odometry.simulation.contact.vehicle import ContactVehicle
+from odometry.simulation.errors import SimulationError
+
+
+@dataclass(frozen=True, eq=False)
+class ContactDrive:
+    """What truly happened at N stamps, of one drive or of a stack (...) of them.
+
+    Attributes
+    ----------
+    vehicle : ContactVehicle
+    ground : Ground
+    stamps_s : (N,) array
+        Time [s], from 0.
+    tread_speeds_m_s : (..., N, 2) array
+        Left and right, each held until the next stamp.
+    poses_world : (..., N, 6) array
+        x, y, z [m], roll, pitch, yaw [rad]; yaw is not wrapped.
+    twists_body : (..., N, 3) array
+        v_x, v_y [m/s] of the origin and omega [rad/s] about the body's z.
+    accelerations_m_s2 : (..., N, 2) array
+        accel_x, accel_y of an accelerometer at the origin, gravity included (CONVENTIONS): the
+        mean from the stamp before; at the first stamp that of rest.
+    """
+
+    vehicle: ContactVehicle
+    ground: Ground
+    stamps_s: FloatArray
+    tread_speeds_m_s: FloatArray
+    poses_world: FloatArray
+    twists_body: FloatArray
+    accelerations_m_s2: FloatArray
+
+    def __getitem__(self, index: int | tuple[int, ...]) -> "ContactDrive":
+        """One drive of a stack."""
+        return ContactDrive(
+            self.vehicle,
+            self.ground,
+            self.stamps_s,
+            self.tread_speeds_m_s[index],
+            self.poses_world[index],
+            self.twists_body[index],
+            self.accelerations_m_s2[index],
+        )
+
+
+def simulate_contact(
+    vehicle: ContactVehicle,
+    tread_speeds_m_s: FloatArray,
+    step_s: float,
+    *,
+    ground: Ground | None = None,
+    start_poses: FloatArray | tuple[float, float, float] = (0.0, 0.0, 0.0),
+    longest_step_s: float = LONGEST_STEP_S,
+) -> ContactDrive:
+    """Drive from rest with given tread speeds.
+
+    Parameters
+    ----------
+    vehicle : ContactVehicle
+    tread_speeds_m_s : (..., N, 2) array
+        Left and right at each stamp, held until the next. A stack (...) of drives costs little
+        more than one.
+    step_s : float
+        Time between stamps [s].
+    ground : Ground, optional
+        Level when absent.
+    start_poses : (..., 3) array
+        x, y [m], yaw [rad] at the first stamp.
+    longest_step_s : float
+        Steps of the integration are at most this long; the error falls with its square.
+
+    Raises
+    ------
+    SimulationError
+        If the speeds are not as above, or the vehicle tips over.
+    """
+    speeds = np.asarray(tread_speeds_m_s, dtype=np.float64)
+    if speeds.ndim < 2 or speeds.shape[-1] != 2 or not np.isfinite(speeds).all():
+        raise SimulationError(
+            f"tread speeds of shape {speeds.shape}, expected (..., N, 2), all of them finite"
+        )
+    ground = Plane() if ground is None else ground
+    stack, count = speeds.shape[:-2], speeds.shape[-2]
+    flat = speeds.reshape(-1, count, 2)
+    starts = np.broadcast_to(start_poses, (*stack, 3)).reshape(-1, 3)
+    dynamics = ContactDynamics(vehicle, ground)
+    state = dynamics.start(starts[:, 0] + 1j * starts[:, 1], starts[:, 2])
+    substeps = max(1, int(np.ceil(step_s / longest_step_s - 1e-9)))
+    states = np.empty((count, len(state), MEMORY), dtype=np.complex128)
+    for k in range(count):
+        states[k] = state[:, :MEMORY]
+        for _ in range(substeps if k < count - 1 else 0):
+            state = rosenbrock_step(dynamics, state, flat[:, k], step_s / substeps)
+    poses, twists, accelerations = _observed(dynamics, states, step_s)
+    return ContactDrive(
+        vehicle,
+        ground,
+        np.asarray(np.arange(count) * step_s),
+        speeds,
+        poses.reshape(*stack, count, 6),
+        twists.reshape(*stack, count, 3),
+        accelerations.reshape(*stack, count, 2),
+    )
+
+
+def _observed(
+    dynamics: ContactDynamics, states: ComplexArray, step_s: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Poses, twists and accelerations (B, N, ...) of states (N, B, S)."""
+    count, drives, _ = states.shape
+    rows = np.swapaxes(states, 0, 1).reshape(drives * count, -1)
+    attitude = dynamics.tilt(rows)
+    roll = np.arctan2(attitude.sin_roll, attitude.cos_roll)
+    pitch = np.arctan2(attitude.sin_pitch, attitude.cos_pitch)
+    position = rows[:, POSITION]
+    z = dynamics.ground.heights_m(position)
+    yaw, omega = rows[:, YAW].real, rows[:, YAW_RATE].real
+    velocity = dynamics.origin_velocity(rows)
+    turning = (1j * omega * velocity - gravity(attitude)[0]).reshape(drives, count)
+    gained = np.diff(velocity.reshape(drives, count), axis=1) / step_s
+    felt = np.empty((drives, count), dtype=np.complex128)
+    felt[:, 0] = turning[:, 0]
+    felt[:, 1:] = gained + (turning[:, 1:] + turning[:, :-1]) / 2
+    poses = np.stack([position.real, position.imag, z, roll, pitch, yaw], axis=-1)
+    twists = np.stack([velocity.real, velocity.imag, omega], axis=-1)
+    return poses, twists, np.stack([felt.real, felt.imag], axis=-1)

@@ -1,0 +1,147 @@
+"""`terrain-odometry simulate`: a run from the contact simulator, without images."""
+
+from math import radians
+from pathlib import Path
+from typing import Any
+
+import click
+
+
+@click.command()
+@click.option(
+    "--out",
+    required=True,
+    type=click.Path(path_type=Path),
+    help="Run folder to make; must be missing or empty.",
+)
+@click.option(
+    "--vehicle",
+    default="husky_like",
+    show_default=True,
+    metavar="NAME|FILE",
+    help="auriga_alpha, lazaro, j8, warthog_like, husky_like, or a TOML file with [robot] and "
+    "[contact].",
+)
+@click.option(
+    "--drive",
+    type=click.Choice(["excitation", "spin", "figure_eight", "tour"]),
+    default="excitation",
+    show_default=True,
+    help="What is driven; a tour crosses three zones of slope.",
+)
+@click.option(
+    "--duration",
+    type=click.FloatRange(min=1, min_open=False),
+    default=160.0,
+    show_default=True,
+    help="About how long [s].",
+)
+@click.option(
+    "--max-speed",
+    type=click.FloatRange(min=0, min_open=True),
+    default=1.0,
+    show_default=True,
+    help="Largest tread speed [m/s].",
+)
+@click.option("--slope", type=float, default=0.0, show_default=True, help="Slope [degrees].")
+@click.option(
+    "--slope-direction",
+    type=float,
+    default=90.0,
+    show_default=True,
+    help="Direction uphill, from world x counter-clockwise [degrees]; the robot starts along x.",
+)
+@click.option(
+    "--friction",
+    type=click.FloatRange(min=0, min_open=True),
+    help="Mean friction coefficient.  [default: the vehicle's]",
+)
+@click.option(
+    "--law",
+    type=click.Choice(["coulomb", "shear"]),
+    help="Friction law.  [default: the vehicle's]",
+)
+@click.option(
+    "--terrain", default="ground", show_default=True, metavar="TERRAIN", help="Name of the ground."
+)
+@click.option(
+    "--seed",
+    type=click.IntRange(min=0),
+    default=0,
+    show_default=True,
+    help="Seed of all randomness.",
+)
+def simulate(
+    *,
+    out: Path,
+    vehicle: str,
+    drive: str,
+    duration: float,
+    max_speed: float,
+    slope: float,
+    slope_direction: float,
+    friction: float | None,
+    law: str | None,
+    terrain: str,
+    seed: int,
+) -> None:
+    """Make a run folder by simulating a skid-steer robot on frictional contacts.
+
+    Wheels or track rollers slide under a rigid body with inertia, load transfer and gravity on
+    slopes. The run has noisy odometry (tread speeds, attitude, yaw rate, accelerations), poses,
+    and the truth; its friction and slopes can be asked back from `identify`.
+
+    \b
+    Example:
+      terrain-odometry simulate --out train --seed 1
+      terrain-odometry simulate --out slope --vehicle j8 --drive tour --slope 5
+    """
+    import numpy as np
+
+    from odometry.io.files import check_writable
+    from odometry.simulation.contact.drive import simulate_contact
+    from odometry.simulation.contact.vehicle import read_contact_vehicle
+    from odometry.simulation.courses import STEP_S, make_course
+    from odometry.simulation.errors import SimulationError
+    from odometry.simulation.record import ContactSensors, write_contact_run
+
+    check_writable(out)
+    if out.exists() and any(out.iterdir()):
+        raise SimulationError(f"{out} is there already and not empty; choose another folder")
+    robot = read_contact_vehicle(_vehicle_file(vehicle), {"law": law} if law else {})
+    if friction is not None:
+        robot = robot.with_friction(friction)
+    streams = np.random.SeedSequence(seed).spawn(2)
+    course = make_course(
+        drive,
+        robot,
+        duration_s=duration,
+        max_speed_m_s=max_speed,
+        slope_rad=radians(slope),
+        uphill_rad=radians(slope_direction),
+        rng=np.random.default_rng(streams[0]),
+    )
+    truth = simulate_contact(robot, course.tread_speeds_m_s, STEP_S, ground=course.ground)
+    settings: dict[str, Any] = {"drive": drive, "max_speed_m_s": max_speed, "seed": seed}
+    noise = np.random.default_rng(streams[1])
+    write_contact_run(out, truth, ContactSensors(), noise, terrain=terrain, settings=settings)
+    name = robot.robot.get("name", vehicle)
+    click.echo(
+        f"Wrote the run {out}: {truth.stamps_s[-1]:.0f} s of {name}, drive {drive}, "
+        f"slope {slope:g} degrees."
+    )
+    click.echo("Next:")
+    click.echo(f"  terrain-odometry identify {out} --model icr --out {terrain}.toml")
+
+
+def _vehicle_file(name: str) -> Path:
+    """The shipped file of that name, else `name` itself as a path."""
+    from odometry.simulation.errors import SimulationError
+    from terrain.shipped import shipped_data
+
+    folder = shipped_data() / "vehicles"
+    for file in (folder / f"{name}.toml", Path(name)):
+        if file.is_file():
+            return file
+    names = ", ".join(file.stem for file in sorted(folder.glob("*.toml")))
+    raise SimulationError(f"--vehicle {name}: neither a file nor one of {names}")
