@@ -1,15 +1,23 @@
-from .dead_reckoning import dead_reckon
+from .comparison.compare import compare
+from .dead_reckoning import dead_reckon, dead_reckon_in_space
 from .errors import OdometryError
 from .estimation.config import IcrEkfConfig
 from .estimation.estimate import Estimate
 from .estimation.icr_ekf import IcrEkf
+from .evaluation.fitness import fitness
+from .evaluation.open_loop import measured_poses, open_loop
 from .evaluation.relative import EvaluationConfig, position_errors, relative_errors
+from .identification.identify import identify
 from .io.run_folder import write_run_folder
-from .io.tum import read_tum, write_tum
+from .io.tum import read_spatial_tum, read_tum, write_spatial_tum, write_tum
 from .models.catalogue import MODELS
+from .models.inputs import Inputs
+from .models.run_inputs import inputs_of
 from .parameters import ParameterSet, TerrainParameters, read_parameters, write_parameters
 from .pipeline import ConstantTerrain, Replay, replay
 from .run import Frame, Robot, Run
+from .simulation.contact.drive import simulate_contact
+from .spatial_trajectory import SpatialTrajectory
 from .trajectory import Trajectory
 
 __all__ = [
@@ -20,20 +28,32 @@ __all__ = [
     "Frame",
     "IcrEkf",
     "IcrEkfConfig",
+    "Inputs",
     "OdometryError",
     "ParameterSet",
     "Replay",
     "Robot",
     "Run",
+    "SpatialTrajectory",
     "TerrainParameters",
     "Trajectory",
+    "compare",
     "dead_reckon",
+    "dead_reckon_in_space",
+    "fitness",
+    "identify",
+    "inputs_of",
+    "measured_poses",
+    "open_loop",
     "position_errors",
     "read_parameters",
+    "read_spatial_tum",
     "read_tum",
     "relative_errors",
     "replay",
+    "simulate_contact",
     "write_parameters",
     "write_run_folder",
+    "write_spatial_tum",
     "write_tum",
 ]

@@ -17,7 +17,6 @@ from terrain.config import Config
 from terrain.watcher import TerrainWatcher
 
 
-
 @dataclass(frozen=True)
 class RunResult:
     """All that came out of one run.

@@ -105,7 +105,8 @@ def fit(
     Raises
     ------
     IdentificationError
-        If there are fewer measured numbers than free parameters.
+        If there are fewer measured numbers than free parameters, or the best ones contradict
+        each other.
     ParameterError
         If a name is no parameter of the model, or a fixed value is out of bounds.
     """
@@ -152,6 +153,10 @@ def _finish(
     edge = 1e-3 * sizes
     at_bound = (solution.chosen < low + edge) | (solution.chosen > high - edge)
     values = problem.complete(solution.chosen)
+    try:
+        problem.model.check(values)
+    except ParameterError as error:
+        raise IdentificationError(f"the best fit of {problem.model.name!r}: {error}") from error
     return Fit(
         model=problem.model,
         values={p.name: float(v) for p, v in zip(problem.model.parameters, values, strict=True)},

@@ -64,6 +64,7 @@ def identify(
     Example:
       terrain-odometry identify grass_1 grass_2 asphalt_1 --model icr --out set.toml
     """
+    from odometry.estimation.icr_prior import ICR_FORM_MODELS
     from odometry.identification.config import SolverConfig
     from odometry.identification.identify import identify as identify_runs
     from odometry.parameters import write_parameters
@@ -85,6 +86,8 @@ def identify(
     write_parameters(out, found.to_parameter_set())
     click.echo(f"Wrote {out}")
     click.echo(f"Next: terrain-odometry compare RUN --model {out} --model icr --out comparison")
+    if model in ICR_FORM_MODELS:
+        click.echo(f"or:   terrain-odometry run RUN --parameters {out} --out results")
 
 
 def _print_ground(name: str, ground: "Identified") -> None:
