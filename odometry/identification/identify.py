@@ -142,9 +142,17 @@ def identify(
         solver_config=solver_config,
     )
     ground = np.array([_ground_name(str(name), terrain) for name in windows.terrain], dtype=object)
-    names = list(dict.fromkeys(ground))
-    bar = tqdm(names, desc=chosen.name, unit="ground", disable=None if show_progress else True)
-    grounds = {name: _identified(windows.where(ground == name), fit_to, robot) for name in bar}
+    by_ground = {name: windows.where(ground == name) for name in dict.fromkeys(ground)}
+    fits = sum(1 + len(np.unique(parts_of(here))) for here in by_ground.values())
+    off = None if show_progress else True
+    with tqdm(total=fits, desc=chosen.name, unit="fit", disable=off) as bar:
+
+        def counted(here: Windows) -> Fit:
+            fitted = fit_to(here)
+            bar.update()
+            return fitted
+
+        grounds = {name: _identified(here, counted, robot) for name, here in by_ground.items()}
     return Identification(robot, grounds, window_config)
 
 

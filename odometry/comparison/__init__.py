@@ -1,0 +1,1 @@
+"""Models side by side on runs that they were not identified on."""

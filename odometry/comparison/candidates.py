@@ -1,0 +1,165 @@
+"""What is compared: models to be identified, and parameter sets that are taken as they are."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from odometry.comparison.config import ComparisonConfig
+from odometry.comparison.errors import ComparisonError
+from odometry.comparison.parts import windows_of_parts
+from odometry.comparison.predictor import Predictor
+from odometry.comparison.split import Split
+from odometry.errors import ParameterError
+from odometry.identification.errors import IdentificationError
+from odometry.identification.identify import fitter
+from odometry.identification.windows import Windows
+from odometry.models.base import KinematicModel
+from odometry.models.catalogue import MODELS
+from odometry.parameters import ParameterSet, read_parameters
+
+AS_GIVEN = "taken as it is; it may have been identified on these very runs"
+
+
+class Candidate(ABC):
+    """One row of a comparison."""
+
+    @property
+    @abstractmethod
+    def label(self) -> str:
+        """Its name in tables and figures."""
+
+    @abstractmethod
+    def on(self, split: Split, config: ComparisonConfig) -> Predictor:
+        """The model that may be judged on a split.
+
+        Raises
+        ------
+        OdometryError
+            Why there is none.
+        """
+
+
+@dataclass(frozen=True)
+class IdentifiedModel(Candidate):
+    """A model of the catalogue, identified on what a split lets it see.
+
+    Attributes
+    ----------
+    model : KinematicModel
+    fixed : Mapping of name to float
+        Parameters held at a value.
+    most_windows : int or None
+        Where there are more, as many of them at even distances: for models that are slow.
+    """
+
+    model: KinematicModel
+    fixed: Mapping[str, float] = field(default_factory=dict)
+    most_windows: int | None = None
+
+    @property
+    def label(self) -> str:
+        """The model's name."""
+        return self.model.name
+
+    def on(self, split: Split, config: ComparisonConfig) -> Predictor:
+        """See `Candidate.on`."""
+        robot = split.judged[0].run.robot
+        if all(parameter.known for parameter in self.model.parameters):
+            values = self.model.guess(robot)
+            return Predictor(self.model, values, (), np.empty((0, 0)), "known of the robot")
+        if not split.seen:
+            raise IdentificationError("no run of --train is of this robot on this ground")
+        windows = _thinned(windows_of_parts(split.seen, config.training), self.most_windows)
+        fit = fitter(
+            self.model,
+            robot,
+            fixed=self.fixed,
+            window_config=config.training,
+            solver_config=config.solver,
+        )(windows)
+        return Predictor(
+            self.model,
+            fit.values,
+            fit.names,
+            fit.covariance,
+            f"identified by terrain-odometry from {len(windows)} windows of {split.words}",
+            tuple(open_.words() for open_ in fit.undetermined),
+            tuple(f"{name} ended at the edge of its search range" for name in fit.at_bound),
+        )
+
+
+@dataclass(frozen=True)
+class GivenParameters(Candidate):
+    """A parameter set, by terrain, whatever it was identified on."""
+
+    name: str
+    parameters: ParameterSet
+
+    @property
+    def label(self) -> str:
+        """The given name."""
+        return self.name
+
+    def on(self, split: Split, config: ComparisonConfig) -> Predictor:  # noqa: ARG002 - its face
+        """See `Candidate.on`."""
+        table = self.parameters.terrains.get(split.ground)
+        if table is None:
+            raise ParameterError(
+                f"the set has no terrain {split.ground!r}; it has "
+                f"{', '.join(self.parameters.terrains)}"
+            )
+        if table.effects:
+            raise ParameterError("the set has effects, which a comparison does not apply")
+        if table.model not in MODELS:
+            raise ParameterError(f"the model {table.model!r} cannot be computed")
+        return Predictor(
+            MODELS[table.model],
+            table.values,
+            table.covariance_order,
+            table.covariance,
+            table.source,
+            notes=(AS_GIVEN,),
+        )
+
+
+def _thinned(windows: Windows, most: int | None) -> Windows:
+    if most is None or len(windows) <= most:
+        return windows
+    kept = np.zeros(len(windows), dtype=np.bool_)
+    kept[np.linspace(0, len(windows) - 1, most).astype(np.int64)] = True
+    return windows.where(kept)
+
+
+def candidates_named(names: Sequence[str | Candidate]) -> tuple[Candidate, ...]:
+    """Candidates from names of the catalogue and files of parameter sets; others pass through.
+
+    Raises
+    ------
+    ComparisonError
+        If one is neither, or there twice, or there is none.
+    ParameterError
+        If a file is no parameter set.
+    """
+    found: list[Candidate] = []
+    for name in names:
+        if isinstance(name, Candidate):
+            found.append(name)
+        elif name in MODELS:
+            found.append(IdentifiedModel(MODELS[name]))
+        elif Path(name).suffix == ".toml":
+            found.append(GivenParameters(Path(name).stem, read_parameters(name)))
+        else:
+            raise ComparisonError(
+                f"there is no model {name!r}; known: {', '.join(MODELS)}, or a parameter set "
+                "(.toml)"
+            )
+    labels = [candidate.label for candidate in found]
+    twice = [label for label in labels if labels.count(label) > 1]
+    if twice or not labels:
+        raise ComparisonError(
+            f"models {', '.join(labels) or '(none)'}: expected one or more, each name once"
+        )
+    return tuple(found)

@@ -1,0 +1,53 @@
+"""Settings of a comparison."""
+
+import math
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+from odometry.config import require
+from odometry.identification.config import SolverConfig, WindowConfig
+
+ROTATION_HORIZON_M = 1.0  # over which Baril 2020 Fig. 7 shows what commands lead to
+CURVE_HORIZONS_M = (0.5, ROTATION_HORIZON_M, 2.0, 5.0, 10.0)  # of Baril 2020 Fig. 4
+
+
+@dataclass(frozen=True)
+class ComparisonConfig:
+    """Settings of a comparison.
+
+    Attributes
+    ----------
+    training : WindowConfig
+        How runs are cut to identify a model; its horizon is h_t of Baril 2020.
+    solver : SolverConfig
+    horizons_m : tuple of float
+        Evaluation horizons h_e of Baril 2020: wheel travel over which errors are taken. Models
+        are told apart on the first.
+    draws : int
+        Of the bootstrap.
+    block_m : float
+        Wheel travel of the blocks that the bootstrap draws; neighbouring windows err alike.
+    seed : int
+        Of the bootstrap.
+    """
+
+    training: WindowConfig = field(default_factory=WindowConfig)
+    solver: SolverConfig = field(default_factory=SolverConfig)
+    horizons_m: tuple[float, ...] = (2.0,)
+    draws: int = 2000
+    block_m: float = 10.0
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        require(bool(self.horizons_m), "no evaluation horizon; expected one or more")
+        for horizon in self.horizons_m:
+            require(0 < horizon < math.inf, f"evaluation horizon {horizon} m, expected above 0")
+        doubled = [a for a, b in pairwise(sorted(self.horizons_m)) if a == b]
+        require(not doubled, f"evaluation horizons {doubled} m are given twice")
+        require(self.draws >= 100, f"draws = {self.draws}, expected 100 or more")
+        require(0 < self.block_m < math.inf, f"block_m = {self.block_m}, expected above 0")
+
+    @property
+    def evaluated_m(self) -> tuple[float, ...]:
+        """All horizons over which errors are taken: those asked for, and those of the figures."""
+        return tuple(sorted({*self.horizons_m, *CURVE_HORIZONS_M}))

@@ -1,0 +1,180 @@
+"""The output folder of a comparison: numbers, windows, parameters."""
+
+import json
+import re
+from dataclasses import asdict
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from odometry.comparison.comparison import Comparison
+from odometry.comparison.judgement import Judgement
+from odometry.comparison.prepare import Prepared
+from odometry.comparison.summary import Place, Summary, values_of
+from odometry.io.csv_table import write_csv_table
+from odometry.io.files import atomic_write
+from odometry.parameters import write_parameters
+
+FORMAT = 1  # of comparison.json
+
+
+def write_comparison(comparison: Comparison, out: str | Path) -> list[Path]:
+    """Write everything but figures and page.
+
+    Parameters
+    ----------
+    comparison : Comparison
+    out : path
+        Folder; made if it is missing.
+
+    Returns
+    -------
+    list of Path
+        comparison.json, windows.csv, and one file of parameters/ a model; where there are
+        several robots, in a folder for each.
+    """
+    out = Path(out)
+    text = json.dumps(comparison_table(comparison), indent=2, allow_nan=False)
+    with atomic_write(out / "comparison.json") as part:
+        part.write_text(text + "\n", encoding="utf-8")
+    _write_windows(out / "windows.csv", comparison)
+    robots = {robot for robot, _ in comparison.parameters}
+    files = []
+    for (robot, model), parameters in comparison.parameters.items():
+        folder = out / "parameters" / (file_name(robot) if len(robots) > 1 else "")
+        files.append(folder / f"{model}.toml")
+        write_parameters(files[-1], parameters)
+    return [out / "comparison.json", out / "windows.csv", *files]
+
+
+def file_name(*names: str) -> str:
+    """Names as a part of a path: letters, digits and underscores."""
+    return "_".join(re.sub(r"\W+", "_", name).strip("_") or "unnamed" for name in names)
+
+
+def comparison_table(comparison: Comparison) -> dict[str, Any]:
+    """The content of comparison.json: plain values with the unit in each name."""
+    return {
+        "format": FORMAT,
+        "version": version("terrain-odometry"),
+        "settings": asdict(comparison.config),
+        "models": list(comparison.models),
+        "places": [_place(comparison, place) for place in comparison.places],
+        "by_horizon": [
+            _summary(summary)
+            for robot, ground in comparison.robots_and_grounds
+            for horizon_m in comparison.config.evaluated_m
+            for summary in comparison.summaries_at(Place(robot, ground, horizon_m))
+            if summary.windows
+        ],
+        "splits": [_split(prepared) for prepared in comparison.prepared],
+        "fitness": [
+            {
+                "robot": each.robot,
+                "run": each.run,
+                "model": each.model,
+                **asdict(each.fitness),
+                "mean": each.fitness.mean,
+            }
+            for each in comparison.fitness
+        ],
+        "left_out": dict(comparison.left_out),
+    }
+
+
+def _place(comparison: Comparison, place: Place) -> dict[str, Any]:
+    return {
+        **asdict(place),
+        "models": [_summary(summary) for summary in comparison.summaries_at(place)],
+        "differences": [
+            {
+                "quantity": each.quantity,
+                "first": each.first,
+                "second": each.second,
+                "windows": each.windows,
+                **asdict(each.interval),
+            }
+            for each in comparison.differences_at(place)
+        ],
+        "sentences": comparison.sentences_at(place),
+    }
+
+
+def _summary(summary: Summary) -> dict[str, Any]:
+    return {
+        **asdict(summary.place),
+        "model": summary.model,
+        "runs": list(summary.runs),
+        "seen": list(summary.seen),
+        "windows": summary.windows,
+        "complete": summary.complete,
+        **{
+            name: {
+                "mean": summary.means.get(quantity),
+                "quartiles": summary.quartiles[quantity].tolist() if summary.windows else None,
+            }
+            for quantity, name in (
+                ("translation", "translation_m_per_m"),
+                ("rotation", "rotation_deg_per_m"),
+            )
+        },
+        "reasons": list(summary.reasons),
+    }
+
+
+def _split(prepared: Prepared) -> dict[str, Any]:
+    split = prepared.split
+    return {
+        "robot": split.robot,
+        "ground": split.ground,
+        "judged": [part.name for part in split.judged],
+        "seen": split.words,
+        "models": {
+            model: {
+                "model": predictor.model.name,
+                "parameters": dict(predictor.values),
+                "source": predictor.source,
+                "undetermined": list(predictor.undetermined),
+                "notes": list(predictor.notes),
+            }
+            for model, predictor in prepared.predictors.items()
+        },
+        "failed": dict(prepared.reasons),
+    }
+
+
+def _write_windows(file: Path, comparison: Comparison) -> None:
+    """One row a model and window, over the horizons that were asked for."""
+    rows = [
+        (judgement, model)
+        for judgement in comparison.judgements
+        if judgement.horizon_m in comparison.config.horizons_m
+        for model in judgement.errors
+    ]
+    columns = [_columns(judgement, model) for judgement, model in rows]
+    if columns:
+        write_csv_table(
+            file, {name: np.concatenate([each[name] for each in columns]) for name in columns[0]}
+        )
+
+
+def _columns(judgement: Judgement, model: str) -> dict[str, Any]:
+    judged, errors = judgement.judged, judgement.errors[model]
+    names = {
+        "robot": judgement.robot,
+        "ground": judgement.ground,
+        "run": judgement.run,
+        "model": model,
+    }
+    return {
+        **{key: np.full(len(judged), name, dtype=object) for key, name in names.items()},
+        "horizon": np.full(len(judged), judgement.horizon_m),
+        "start_s": judged.windows.start_s,
+        "travel": judged.windows.travel_m,
+        "translation_m_per_m": values_of(errors, "translation"),
+        "rotation_deg_per_m": values_of(errors, "rotation"),
+        "v_left": judged.mean_speeds_m_s[:, 0],
+        "v_right": judged.mean_speeds_m_s[:, 1],
+    }

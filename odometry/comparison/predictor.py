@@ -1,0 +1,51 @@
+"""A model that is ready to be judged."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from odometry.arrays import FloatArray
+from odometry.models.base import KinematicModel
+from odometry.parameters import TerrainParameters
+
+
+@dataclass(frozen=True)
+class Predictor:
+    """A model with parameters, ready to be judged.
+
+    Attributes
+    ----------
+    model : KinematicModel
+    values : Mapping of name to float
+    covariance_order : tuple of str
+        The identified parameters.
+    covariance : (F, F)
+    source : str
+    undetermined : tuple of str
+        What the windows left open; the model can be judged all the same.
+    notes : tuple of str
+        What else a reader should know of the identification.
+    """
+
+    model: KinematicModel
+    values: Mapping[str, float]
+    covariance_order: tuple[str, ...]
+    covariance: FloatArray
+    source: str
+    undetermined: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    @property
+    def packed(self) -> FloatArray:
+        """Parameters (P,) in the order of the model."""
+        return self.model.pack(self.values)
+
+    def to_parameters(self) -> TerrainParameters:
+        """The table of a parameter set; what was left open stands in its source."""
+        open_ = "; not determined: " + "; ".join(self.undetermined) if self.undetermined else ""
+        return TerrainParameters(
+            self.model.name,
+            self.values,
+            self.covariance_order,
+            self.covariance,
+            self.source + open_,
+        )

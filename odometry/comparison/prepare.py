@@ -1,0 +1,55 @@
+"""The models of every split, identified on what it lets them see."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from tqdm import tqdm
+
+from odometry.comparison.candidates import Candidate
+from odometry.comparison.config import ComparisonConfig
+from odometry.comparison.predictor import Predictor
+from odometry.comparison.split import Split
+from odometry.errors import OdometryError
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """Models that may be judged on one split.
+
+    Attributes
+    ----------
+    split : Split
+    predictors : Mapping of model to Predictor
+    reasons : Mapping of model to str
+        Why there is no predictor of the others.
+    """
+
+    split: Split
+    predictors: Mapping[str, Predictor]
+    reasons: Mapping[str, str]
+
+
+def prepare(
+    planned: Sequence[Split],
+    candidates: Sequence[Candidate],
+    config: ComparisonConfig,
+    *,
+    show_progress: bool,
+) -> tuple[Prepared, ...]:
+    """Identify every candidate for every split; one that fails becomes a reason."""
+    found = []
+    steps = len(planned) * len(candidates)
+    with tqdm(
+        total=steps, desc="models", unit="fit", disable=None if show_progress else True
+    ) as bar:
+        for split in planned:
+            predictors, reasons = {}, {}
+            for candidate in candidates:
+                bar.set_postfix_str(f"{candidate.label} on {split.ground}", refresh=False)
+                try:
+                    predictors[candidate.label] = candidate.on(split, config)
+                except OdometryError as error:
+                    reasons[candidate.label] = str(error)
+                bar.update()
+            found.append(Prepared(split, predictors, reasons))
+    return tuple(found)

@@ -1,0 +1,117 @@
+"""One page and its figures from a comparison."""
+
+from pathlib import Path
+
+from odometry.comparison.comparison import Comparison
+from odometry.comparison.summary import Place
+from odometry.report.comparison_figures import (
+    distribution_picture,
+    horizon_picture,
+    picture_name,
+    rotation_picture,
+)
+from odometry.report.comparison_tables import (
+    difference_grid,
+    error_grid,
+    fitness_grid,
+    parameter_grid,
+    seen_grid,
+    settings_grid,
+    split_grid,
+)
+from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
+from odometry.report.speed_plane_figure import speed_plane_picture
+
+Block = Paragraph | Listing | Grid | Picture
+
+FIGURES = ("errors", "speed_plane", "horizons", "rotation")
+HOW = (
+    "Every window is judged by a model that did not see it; the tables say what it had seen. "
+    "Errors are per metre of wheel travel. Windows are distinct; they may straddle changes of "
+    "`window` (joints of chained reference poses), where the reference is less certain, but no "
+    "gaps; that is the same for every model. Intervals are 95 % intervals of paired differences "
+    "by a bootstrap of runs and of blocks of neighbouring windows. Each is of one pair of models: "
+    "of many such intervals some miss by chance."
+)
+
+
+def write_comparison_report(comparison: Comparison, out: str | Path) -> list[Path]:
+    """Write `figures/*.png` and `report.html`.
+
+    Parameters
+    ----------
+    comparison : Comparison
+    out : path
+        Folder; made if it is missing.
+
+    Returns
+    -------
+    list of Path
+        The files written, the page last. Figures of an earlier comparison are removed.
+    """
+    folder = Path(out) / "figures"
+    robots = dict.fromkeys(robot for robot, _ in comparison.robots_and_grounds)
+    sections = [
+        Section("How to read this", [Paragraph(HOW)]),
+        Section("All errors", [error_grid(comparison), *_left_out(comparison)]),
+        *(_place(comparison, place, folder) for place in comparison.places),
+        *(_horizons(comparison, *pair, folder) for pair in comparison.robots_and_grounds),
+        *(_rotation(comparison, robot, folder) for robot in robots),
+        Section("Whole runs", [fitness_grid(comparison)]),
+        Section("Parameters", [parameter_grid(comparison)]),
+        Section("Settings", [settings_grid(comparison)]),
+    ]
+    page = write_page(
+        Path(out) / "report.html", "Kinematic models compared", lead(comparison), sections
+    )
+    pictures = [b.file for s in sections for b in s.blocks if isinstance(b, Picture)]
+    for kind in FIGURES:
+        for file in set(folder.glob(f"{kind}_*.png")) - set(pictures):
+            file.unlink()
+    return [*pictures, page]
+
+
+def lead(comparison: Comparison) -> str:
+    """The one sentence that a hurried reader should see."""
+    if len(comparison.places) == 1:
+        said = comparison.sentences_at(comparison.places[0])
+        return said[0] if said else "No model could be judged."
+    least: dict[str, int] = {}
+    for place in comparison.places:
+        judged = [summary for summary in comparison.summaries_at(place) if summary.complete]
+        if judged:
+            best = min(judged, key=lambda summary: summary.means["translation"]).model
+            least[best] = least.get(best, 0) + 1
+    counts = ", ".join(f"{model} {count} times" for model, count in least.items())
+    return f"Least mean translation error at {len(comparison.places)} places: {counts or 'none'}."
+
+
+def _place(comparison: Comparison, place: Place, folder: Path) -> Section:
+    """Everything about one robot and ground over one horizon."""
+    judgements = comparison.judgements_at(place)
+    name = picture_name(comparison, place)
+    pictures = (
+        distribution_picture(comparison, place, folder),
+        speed_plane_picture(judgements, comparison.models, folder / f"speed_plane_{name}.png"),
+    )
+    found = comparison.differences_at(place)
+    blocks: list[Block] = [Listing(comparison.sentences_at(place)), seen_grid(comparison, place)]
+    blocks += [picture for picture in pictures if picture is not None]
+    blocks += [difference_grid(found)] if found else []
+    blocks += [split_grid(comparison, place)] if judgements else []
+    return Section(place.title, blocks)
+
+
+def _horizons(comparison: Comparison, robot: str, ground: str, folder: Path) -> Section:
+    picture = horizon_picture(comparison, robot, ground, folder)
+    return Section(f"{robot} on {ground}, over every horizon", [picture] if picture else [])
+
+
+def _rotation(comparison: Comparison, robot: str, folder: Path) -> Section:
+    picture = rotation_picture(comparison, robot, folder)
+    return Section(f"{robot}: commanded and measured turns", [picture] if picture else [])
+
+
+def _left_out(comparison: Comparison) -> list[Block]:
+    reasons = [f"Left out: {reason}." for reason in comparison.left_out.values()]
+    return [Listing(reasons)] if reasons else []

@@ -1,0 +1,129 @@
+"""`terrain-odometry compare`: held-out errors of several models, side by side."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from terrain.cli.options import window_options
+from terrain.cli.results import print_table, print_written
+
+if TYPE_CHECKING:
+    from odometry.comparison.comparison import Comparison
+    from odometry.identification.config import WindowConfig
+
+FOLDER = click.Path(file_okay=False, path_type=Path)
+
+
+@click.command()
+@click.argument("folders", metavar="RUN...", nargs=-1, required=True, type=FOLDER)
+@click.option(
+    "--model",
+    "models",
+    multiple=True,
+    default=("differential_drive", "icr_symmetric", "icr"),
+    show_default=True,
+    metavar="NAME",
+    help="Model to identify, or a parameter set (TOML) to take as it is; repeat.",
+)
+@click.option("--out", required=True, type=FOLDER, help="Folder for the results.")
+@click.option(
+    "--train", multiple=True, metavar="RUN", type=FOLDER, help="Identify on this run; repeat."
+)
+@window_options
+@click.option(
+    "--evaluation-horizon",
+    "horizons_m",
+    multiple=True,
+    type=float,
+    default=(2.0,),
+    show_default=True,
+    metavar="H",
+    help="Wheel travel over which errors are taken [m]; repeat.",
+)
+@click.option("--terrain", metavar="NAME", help="Ground of runs that name none.")
+@click.option(
+    "--seed",
+    type=click.IntRange(min=0),
+    default=0,
+    show_default=True,
+    help="Of further starts of an identification, and of the bootstrap.",
+)
+def compare(
+    folders: tuple[Path, ...],
+    *,
+    models: tuple[str, ...],
+    out: Path,
+    train: tuple[Path, ...],
+    windows: "WindowConfig",
+    horizons_m: tuple[float, ...],
+    terrain: str | None,
+    seed: int,
+) -> None:
+    """Compare kinematic models on the run folders RUN, by robot and ground.
+
+    No window is judged by a model that was identified on it. With --train, models are identified
+    on those runs; else each run is judged by models identified on the other runs of the same
+    robot and ground, and where a ground has one run, each half of it by the other half.
+
+    \b
+    Example:
+      terrain-odometry compare grass_1 grass_2 --model icr --model icr_symmetric --out comparison
+    """
+    from odometry.comparison.compare import compare as compare_models
+    from odometry.comparison.config import ComparisonConfig
+    from odometry.comparison.files import write_comparison
+    from odometry.identification.config import SolverConfig
+    from odometry.io.files import check_writable
+    from odometry.report.comparison_page import write_comparison_report
+    from odometry.run import Run
+
+    config = ComparisonConfig(
+        training=windows, solver=SolverConfig(seed=seed), horizons_m=horizons_m, seed=seed
+    )
+    if out.resolve() in {folder.resolve() for folder in (*folders, *train)}:
+        raise click.UsageError("--out is one of the run folders; choose another folder")
+    check_writable(out)
+    comparison = compare_models(
+        [Run.read(folder) for folder in folders],
+        models,
+        train=[Run.read(folder) for folder in train],
+        terrain=terrain,
+        config=config,
+        show_progress=True,
+    )
+    written = write_comparison(comparison, out) + write_comparison_report(comparison, out)
+    for reason in comparison.left_out.values():
+        click.echo(f"Note: left out: {reason}", err=True)
+    _print_errors(comparison)
+    print_written(written, out)
+    click.echo(f"Next: open {out / 'report.html'}")
+
+
+def _print_errors(comparison: "Comparison") -> None:
+    """Print one row a place and model, what they had seen, and what the numbers say."""
+    rows: list[tuple[str, ...]] = [
+        ("robot", "ground", "over", "model", "windows", "m per m", "deg per m", "")
+    ]
+    for place in comparison.places:
+        for summary in comparison.summaries_at(place):
+            means = (summary.means.get("translation"), summary.means.get("rotation"))
+            cells = ["-" if mean is None else f"{mean:.4f}" for mean in means]
+            remark = "see below" if comparison.remarks_at(place, summary) else ""
+            over = f"{place.horizon_m:g} m"
+            where = (place.robot, place.ground, over, summary.model, str(summary.windows))
+            rows.append((*where, *cells, remark))
+    click.echo("Mean held-out errors, per metre of wheel travel:")
+    print_table(rows)
+    click.echo("Each run was judged by models identified on:")
+    for prepared in comparison.prepared:
+        split = prepared.split
+        judged = ", ".join(part.name for part in split.judged)
+        click.echo(f"  {split.robot} on {split.ground}: {judged}: {split.words}")
+    for place in comparison.places:
+        click.echo(f"{place.title}:")
+        for summary in comparison.summaries_at(place):
+            for remark in comparison.remarks_at(place, summary):
+                click.echo(f"  Note: {summary.model}: {remark}")
+        for sentence in comparison.sentences_at(place):
+            click.echo(f"  {sentence}")

@@ -1,0 +1,95 @@
+"""Intervals against closed forms, and how often they hold a known truth."""
+
+import numpy as np
+import pytest
+
+from odometry.comparison.bootstrap import Interval, mean_interval
+
+
+def interval(values, runs, block, draws=4000, seed=0):
+    return mean_interval(values, runs, block, draws, np.random.default_rng(seed))
+
+
+def width(found):
+    """Half width in standard deviations of a normal interval."""
+    return (found.high - found.low) / 2 / 1.96
+
+
+def test_windows_of_one_run_that_are_independent_have_the_normal_interval(rng):
+    """Blocks of one: sigma / sqrt(K)."""
+    values = rng.normal(0.3, 2.0, 400)
+    found = interval(values, np.zeros(400), 1)
+    assert found.mean == pytest.approx(values.mean())
+    assert width(found) == pytest.approx(values.std() / 20, rel=0.05)
+    assert (found.low + found.high) / 2 == pytest.approx(values.mean(), abs=0.02)
+
+
+def test_neighbours_that_are_alike_count_once(rng):
+    """Five equal neighbours: as if there were K / 5 windows. Of moving blocks of five, one holds
+    i of a group and 5 - i of the next: mean variance (25 + 2 (1 + 4 + 9 + 16)) / 125 of a group.
+    """
+    groups = rng.normal(0, 1, 200)
+    values = np.repeat(groups, 5)
+    expected = np.sqrt(
+        groups.var() / 200 * (25 + 2 * sum((i * i + (5 - i) ** 2) / 2 for i in range(1, 5))) / 125
+    )
+    assert width(interval(values, np.zeros(1000), 5)) == pytest.approx(expected, rel=0.05)
+    blind = width(interval(values, np.zeros(1000), 1))
+    assert blind == pytest.approx(groups.std() / np.sqrt(1000), rel=0.05)
+    assert blind < 0.6 * expected
+
+
+def test_what_differs_from_run_to_run_widens_the_interval(rng):
+    """R runs of n windows: the variance of the runs' means, plus that of windows, over R."""
+    runs = np.repeat(np.arange(12), 50)
+    values = rng.normal(0, 1, 12)[runs] + rng.normal(0, 0.5, 600)
+    means = values.reshape(12, 50).mean(axis=1)
+    within = values.reshape(12, 50).var(axis=1).mean() / 50
+    expected = np.sqrt((means.var() + within) / 12)
+    assert width(interval(values, runs, 1)) == pytest.approx(expected, rel=0.05)
+    assert width(interval(values, np.zeros(600), 1)) < 0.4 * expected
+
+
+def test_the_interval_holds_the_truth_about_as_often_as_it_says():
+    """Six runs with their own means, windows alike within blocks of four."""
+    held = 0
+    for seed in range(200):
+        rng = np.random.default_rng(seed)
+        runs = np.repeat(np.arange(6), 40)
+        values = rng.normal(0, 0.3, 6)[runs] + np.repeat(rng.normal(0, 1, 60), 4)
+        held += interval(values, runs, 5, draws=500, seed=seed).holds_zero
+    assert 0.88 <= held / 200 <= 0.99
+
+
+def test_a_run_with_more_windows_counts_more():
+    """Ten runs of eighteen windows of 0, ten runs of two windows of 1: a mean of 0.1."""
+    sizes = [18] * 10 + [2] * 10
+    values, runs = np.repeat([0.0, 1.0], [180, 20]), np.repeat(np.arange(20), sizes)
+    found = interval(values, runs, 1)
+    assert found.mean == pytest.approx(0.1)
+    assert 0.03 < found.low < 0.1 < found.high < 0.25
+
+
+def test_a_short_run_still_has_five_blocks():
+    values = np.arange(10.0)
+    assert width(interval(values, np.zeros(10), 100)) > 0.5
+
+
+@pytest.mark.parametrize("count", [1, 2, 4])
+def test_few_windows_are_no_error(count):
+    found = interval(np.full(count, 0.2), np.zeros(count), 5)
+    assert (found.mean, found.low, found.high) == pytest.approx((0.2, 0.2, 0.2))
+
+
+def test_the_seed_decides():
+    values = np.random.default_rng(1).normal(0, 1, 50)
+    runs = np.repeat([0, 1], 25)
+    assert interval(values, runs, 3) == interval(values, runs, 3)
+    assert interval(values, runs, 3) != interval(values, runs, 3, seed=1)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "holds"), [(-1, 1, True), (0, 1, True), (-1, 0, True), (0.1, 1, False)]
+)
+def test_an_interval_that_holds_zero(low, high, holds):
+    assert Interval(0.5, low, high).holds_zero is holds

@@ -1,0 +1,284 @@
+"""Comparisons of models whose truth is known."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.comparison.candidates import IdentifiedModel, candidates_named
+from odometry.comparison.compare import compare
+from odometry.comparison.config import ComparisonConfig
+from odometry.comparison.differences import between
+from odometry.comparison.errors import ComparisonError
+from odometry.errors import ConfigError, ParameterError
+from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.models.catalogue import MODELS
+from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
+from odometry.run import Run
+
+WIDTH = {"alpha": 1.0, "b_hat": 0.8}
+
+
+def write_set(file, model, values, terrain="grass", **more):
+    write_parameters(file, ParameterSet({terrain: TerrainParameters(model, values, **more)}))
+    return str(file)
+
+
+@pytest.fixture(scope="module")
+def compared(grass, quick):
+    return compare(grass, config=quick)
+
+
+def test_models_that_are_the_same_cannot_be_told_apart_and_a_wrong_one_is(
+    grass, quick, bench, tmp_path
+):
+    """A robot whose ICRs are symmetric: `icr` and `icr_symmetric` predict the same motion."""
+    models = [
+        write_set(tmp_path / "icr.toml", "icr", bench.symmetric),
+        write_set(tmp_path / "width.toml", "icr_symmetric", WIDTH),
+        write_set(tmp_path / "wrong.toml", "icr_symmetric", {"alpha": 1.0, "b_hat": 0.9}),
+    ]
+    comparison = compare(grass, models, config=quick)
+    found = comparison.differences_at(comparison.places[0])
+    for quantity in (0, 1):
+        of_quantity = found[quantity::2]
+        same = between(of_quantity, "icr", "width").interval
+        assert (same.low, same.mean, same.high) == pytest.approx((0, 0, 0), abs=1e-9)
+        assert between(of_quantity, "icr", "wrong").interval.high < 0
+    lines = comparison.sentences_at(comparison.places[0])
+    assert "wrong" not in " ".join(lines)
+    assert sum("cannot be told apart" in line for line in lines) == 2
+    for summary in comparison.summaries_at(comparison.places[0]):
+        (remark,) = comparison.remarks_at(comparison.places[0], summary)
+        assert "may have been identified on these very runs" in remark
+
+
+def test_identified_models_find_the_truth_and_the_ideal_one_errs(compared, bench):
+    place = compared.places[0]
+    means = {s.model: s.means for s in compared.summaries_at(place)}
+    for model in ("icr", "icr_symmetric"):
+        assert means[model]["translation"] < 0.02 < means["differential_drive"]["translation"]
+    found = compared.differences_at(place)[0::2]
+    assert between(found, "icr", "differential_drive").interval.high < 0
+    table = compared.parameters["rover", "icr_symmetric"].terrains["grass"]
+    assert table.values == pytest.approx(WIDTH, abs=0.01)
+    assert table.covariance_order == ("alpha", "b_hat")
+    assert "run_0, run_1, run_2" in table.source
+    ideal = compared.parameters["rover", "differential_drive"].terrains["grass"]
+    assert ideal.values == {"track_width": bench.track_width}
+
+
+def test_every_horizon_is_judged_and_only_those_asked_for_are_compared(compared):
+    horizons = {judgement.horizon_m for judgement in compared.judgements}
+    assert horizons == {0.5, 1.0, 2.0, 5.0, 10.0}
+    assert {each.place.horizon_m for each in compared.differences} == {2.0}
+
+
+def test_fitness_is_that_of_a_plain_loop_over_the_whole_run(compared, grass, bench):
+    run = grass[0]
+    ideal = bench.symmetric | {"y_left": bench.track_width / 2, "y_right": -bench.track_width / 2}
+    measured = run.pose.stack("x", "y", "yaw")
+    at, errors = measured[0], []
+    for i, (left, right) in enumerate(run.odometry.stack("v_left", "v_right")):
+        if i % 2 == 0:
+            errors.append(at - measured[i // 2])
+        at = bench.advance(at, left, right, ideal, bench.step_s)
+    errors = np.array(errors)
+    errors[:, 2] = np.arctan2(np.sin(errors[:, 2]), np.cos(errors[:, 2]))
+    (found,) = [
+        f.fitness for f in compared.fitness if (f.run, f.model) == ("run_0", "differential_drive")
+    ]
+    expected = (errors**2).mean(axis=0)
+    assert (found.x_m2, found.y_m2, found.yaw_rad2) == pytest.approx(tuple(expected), abs=1e-4)
+    assert (found.poses, found.heights) == (len(errors), 0)
+    assert len(compared.fitness) == 9
+
+
+def test_fitness_changes_parameters_with_the_ground(tmp_path, bench, quick):
+    """Given widths of 0.6 m on grass, 1 m on ice, in turn along one run."""
+    speeds = bench.varied(np.random.default_rng(4), 20.0)
+    names = (["grass"] * 70 + ["ice"] * 60) * 4
+    run = Run.read(bench.write(tmp_path / "r", speeds, terrain_column=names[: len(speeds)]))
+    widths = {"grass": 0.6, "ice": 1.0}
+    file = tmp_path / "set.toml"
+    tables = {
+        ground: TerrainParameters("icr_symmetric", {"alpha": 1.0, "b_hat": width})
+        for ground, width in widths.items()
+    }
+    write_parameters(file, ParameterSet(tables))
+    (found,) = compare([run], [str(file)], config=quick).fitness
+    measured = run.pose.stack("x", "y", "yaw")
+    at, errors = measured[0], []
+    for i, (left, right) in enumerate(speeds):
+        if i % 2 == 0:
+            errors.append(at[:2] - measured[i // 2, :2])
+        half = widths[names[i]] / 2
+        icrs = bench.symmetric | {"y_left": half, "y_right": -half}
+        at = np.array(bench.advance(at, left, right, icrs, bench.step_s))
+    expected = np.mean(np.square(errors), axis=0)
+    assert (found.fitness.x_m2, found.fitness.y_m2) == pytest.approx(tuple(expected), abs=1e-4)
+
+
+def test_the_only_run_of_a_ground_is_judged_by_halves(grass, quick):
+    comparison = compare(grass[:1], ["icr_symmetric"], config=quick)
+    assert {judgement.seen for judgement in comparison.judgements} == {
+        "the first half of the run",
+        "the second half of the run",
+    }
+    values = [p.predictors["icr_symmetric"].values["b_hat"] for p in comparison.prepared]
+    assert values[0] != values[1]
+    assert len(comparison.fitness) == 1
+
+
+def test_training_runs_are_seen_and_the_others_judged(grass, quick):
+    comparison = compare(grass[:2], ["icr_symmetric"], train=grass[2:], config=quick)
+    assert {(j.run, j.seen) for j in comparison.judgements} == {
+        ("run_0", "run_2"),
+        ("run_1", "run_2"),
+    }
+    (prepared,) = comparison.prepared
+    table = comparison.parameters["rover", "icr_symmetric"].terrains["grass"]
+    assert table.values == prepared.predictors["icr_symmetric"].values
+
+
+def test_grounds_within_one_run_have_models_of_their_own(tmp_path, bench, quick):
+    """Half of each run on another ground, where the robot turns less."""
+    runs = []
+    for seed in range(2):
+        speeds = bench.varied(np.random.default_rng(seed), 40.0)
+        names = ["grass"] * 400 + ["ice"] * 400
+        run = bench.write(tmp_path / f"run_{seed}", speeds, seed=seed, terrain_column=names)
+        runs.append(Run.read(run))
+    comparison = compare(runs, ["icr_symmetric"], config=quick)
+    assert comparison.robots_and_grounds == (("rover", "grass"), ("rover", "ice"))
+    assert set(comparison.parameters["rover", "icr_symmetric"].terrains) == {"grass", "ice"}
+    assert {f.run for f in comparison.fitness} == {"run_0", "run_1"}
+
+
+def test_a_model_that_fails_is_a_row_with_its_reason(grass, quick, tmp_path):
+    """`icr_slope` needs tilted ground, a set of ice has no grass, effects are not applied."""
+    models = [
+        "icr_symmetric",
+        "icr_slope",
+        write_set(tmp_path / "ice.toml", "icr_symmetric", WIDTH, terrain="ice"),
+        write_set(tmp_path / "more.toml", "icr_symmetric", WIDTH, effects=({"name": "a"},)),
+    ]
+    comparison = compare(grass[:2], models, config=quick)
+    place = comparison.places[0]
+    rows = {summary.model: summary for summary in comparison.summaries_at(place)}
+    assert rows["icr_symmetric"].complete
+    expected = {
+        "icr_slope": "0 windows are tilted",
+        "ice": "no terrain 'grass'; it has ice",
+        "more": "effects",
+    }
+    for model, words in expected.items():
+        assert rows[model].windows == 0
+        assert words in rows[model].reasons[0]
+        assert any(model in line and words in line for line in comparison.sentences_at(place))
+
+
+def test_a_fit_that_leaves_something_open_is_judged_and_flagged(tmp_path, bench, quick):
+    """Straight ahead, nothing tells the width."""
+    runs = [
+        Run.read(bench.write(tmp_path / f"run_{i}", np.full((400, 2), 0.5), seed=i))
+        for i in range(2)
+    ]
+    comparison = compare(runs, ["icr_symmetric"], config=quick)
+    place = comparison.places[0]
+    (summary,) = comparison.summaries_at(place)
+    assert summary.complete
+    (remark,) = comparison.remarks_at(place, summary)
+    assert remark.startswith("not determined in 2 of 2 identifications, such as b_hat")
+    table = comparison.parameters["rover", "icr_symmetric"].terrains["grass"]
+    assert "not determined: b_hat" in table.source
+
+
+def test_a_candidate_of_ones_own_may_hold_values_and_see_fewer_windows(grass, quick):
+    """Every second window or so, from the first to the last of what may be seen."""
+    held = IdentifiedModel(MODELS["icr_symmetric"], {"b_hat": 0.7}, most_windows=9)
+    comparison = compare(grass, [held], config=quick)
+    for prepared in comparison.prepared:
+        predictor = prepared.predictors["icr_symmetric"]
+        assert predictor.values["b_hat"] == 0.7
+        assert predictor.covariance_order == ("alpha",)
+        assert "from 9 windows of" in predictor.source
+    few = IdentifiedModel(MODELS["icr_symmetric"], most_windows=9)
+    assert few.on(comparison.prepared[0].split, quick).values["b_hat"] == pytest.approx(
+        0.8, abs=0.02
+    )
+
+
+def test_runs_without_poses_are_left_out(grass, quick):
+    blind = replace(grass[0], pose=None)
+    comparison = compare([blind, *grass[1:]], ["differential_drive"], config=quick)
+    (reason,) = comparison.left_out.values()
+    assert "needs pose.csv" in reason
+    assert {judgement.run for judgement in comparison.judgements} == {"run_1", "run_2"}
+    with pytest.raises(ComparisonError, match=r"no run to compare on\n.*needs pose.csv"):
+        compare([blind], ["differential_drive"], config=quick)
+    with pytest.raises(ComparisonError, match=r"no run to compare on\n.*needs pose.csv"):
+        compare(grass[1:], ["differential_drive"], train=[blind], config=quick)
+
+
+def test_a_robot_that_training_does_not_know_has_no_model(grass, quick):
+    other = replace(grass[2], robot=replace(grass[2].robot, track_width=0.7))
+    comparison = compare(grass[:1], ["icr_symmetric"], train=[other], config=quick)
+    (summary,) = comparison.summaries_at(comparison.places[0])
+    assert summary.reasons == ("run_0: no run of --train is of this robot on this ground",)
+
+
+def test_without_a_long_enough_run_there_is_a_row_that_says_so(grass, quick):
+    comparison = compare(
+        grass[:2], ["differential_drive"], config=replace(quick, horizons_m=(900.0,))
+    )
+    (summary,) = comparison.summaries_at(comparison.places[0])
+    assert summary.windows == 0
+    assert "no window of 900 m" in summary.reasons[0]
+
+
+@pytest.mark.parametrize(
+    ("names", "words"),
+    [
+        (["bicycle"], "no model 'bicycle'; known: differential_drive"),
+        ([], "expected one or more"),
+        (["icr", "icr"], "each name once"),
+    ],
+)
+def test_names_that_are_no_candidates(names, words):
+    with pytest.raises(ComparisonError, match=words):
+        candidates_named(names)
+
+
+def test_a_file_that_is_no_parameter_set(tmp_path):
+    (tmp_path / "a.toml").write_text("x = 1")
+    with pytest.raises(ParameterError, match="unknown table"):
+        candidates_named([str(tmp_path / "a.toml")])
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"horizons_m": ()},
+        {"horizons_m": (0.0,)},
+        {"horizons_m": (2.0, 2.0)},
+        {"draws": 5},
+        {"block_m": 0.0},
+    ],
+)
+def test_settings_that_mean_nothing(wrong):
+    with pytest.raises(ConfigError):
+        ComparisonConfig(**wrong)
+
+
+def test_settings_reach_the_identification(grass):
+    config = ComparisonConfig(
+        training=WindowConfig(horizon_m=4.0), solver=SolverConfig(starts=1), draws=100
+    )
+    comparison = compare(grass[:2], ["icr_symmetric"], config=config)
+    counts = [
+        p.predictors["icr_symmetric"].source.split(" windows")[0] for p in comparison.prepared
+    ]
+    usual = compare(grass[:2], ["icr_symmetric"], config=replace(config, training=WindowConfig()))
+    others = [p.predictors["icr_symmetric"].source.split(" windows")[0] for p in usual.prepared]
+    assert counts != others

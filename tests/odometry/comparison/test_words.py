@@ -1,0 +1,153 @@
+"""Tables, differences and sentences from errors that are written down here."""
+
+import numpy as np
+import pytest
+
+from odometry.comparison.bootstrap import Interval
+from odometry.comparison.config import ComparisonConfig
+from odometry.comparison.differences import Difference, between, differences
+from odometry.comparison.judged import Errors
+from odometry.comparison.judgement import Judgement, Shortfall
+from odometry.comparison.summary import Place, summarise
+from odometry.comparison.words import sentences
+
+PLACE = Place("rover", "grass", 2.0)
+
+
+class Counted(list):
+    """Stands for windows of which only the number matters."""
+
+
+def judgement(run, **models):
+    """Errors by model: translation in m per m, rotation in degrees per m ten times that."""
+    errors = {
+        name: Errors(np.array(values), np.radians(10 * np.array(values)))
+        for name, values in models.items()
+    }
+    count = len(next(iter(models.values())))
+    return Judgement("rover", "grass", run, "others", 2.0, Counted([0] * count), errors)
+
+
+def test_summaries_pool_the_windows_of_all_runs():
+    judgements = [judgement("a", icr=[0.1, 0.2]), judgement("b", icr=[0.3, 0.4, 0.9])]
+    summary = summarise(PLACE, judgements, [], "icr")
+    assert (summary.runs, summary.windows, summary.complete) == (("a", "b"), 5, True)
+    assert summary.means == pytest.approx({"translation": 0.38, "rotation": 3.8})
+    np.testing.assert_allclose(summary.quartiles["translation"], [0.2, 0.3, 0.4])
+    np.testing.assert_allclose(summary.quartiles["rotation"], [2, 3, 4])
+
+
+def test_a_model_that_failed_on_a_run_says_why():
+    judgements = [judgement("a", icr=[0.1, 0.2], other=[1, 1]), judgement("b", other=[1])]
+    shortfalls = [
+        Shortfall("rover", "grass", "b", "icr", "too few windows"),
+        Shortfall("rover", "ice", "c", "icr", "elsewhere"),
+        Shortfall("rover", "grass", "d", "", "no window of 2 m"),
+    ]
+    summary = summarise(PLACE, judgements, shortfalls, "icr")
+    assert (summary.windows, summary.complete) == (2, False)
+    assert summary.reasons == ("b: too few windows", "d: no window of 2 m")
+    absent = summarise(PLACE, judgements, shortfalls, "nothing")
+    assert (absent.windows, absent.complete, absent.means) == (0, False, {})
+
+
+def test_differences_are_taken_on_the_windows_of_both():
+    judgements = [
+        judgement("a", one=[0.1] * 20, two=[0.3] * 20),
+        judgement("b", one=[9.0] * 20),
+    ]
+    found = differences(PLACE, judgements, ("one", "two", "three"), ComparisonConfig(draws=100))
+    assert [(each.quantity, each.first, each.second) for each in found] == [
+        ("translation", "one", "two"),
+        ("rotation", "one", "two"),
+    ]
+    assert found[0].windows == 20
+    assert found[0].interval.mean == pytest.approx(-0.2)
+    assert found[1].interval.mean == pytest.approx(-2.0)
+
+
+def test_differences_pair_windows(rng):
+    """Errors vary by 1, but the second model always errs 0.01 more: the interval sees it."""
+    hard = rng.uniform(0, 1, 60)
+    judgements = [judgement("a", one=hard, two=hard + 0.01 + rng.normal(0, 0.001, 60))]
+    (found, _) = differences(PLACE, judgements, ("one", "two"), ComparisonConfig(draws=200))
+    assert found.interval.low == pytest.approx(-0.01, abs=0.001)
+    assert found.interval.high == pytest.approx(-0.01, abs=0.001)
+
+
+def difference(first, second, mean, low, high, *, quantity="translation"):
+    return Difference(PLACE, quantity, first, second, 60, Interval(mean, low, high))
+
+
+def test_a_difference_can_be_seen_from_either_model():
+    one = difference("icr", "width", 0.01, -0.02, 0.05)
+    other = between([one], "width", "icr")
+    assert (other.first, other.second) == ("width", "icr")
+    assert other.interval == Interval(-0.01, -0.05, 0.02)
+    assert between([one], "icr", "width") is one
+    assert between([one], "icr", "none") is None
+
+
+@pytest.mark.parametrize(
+    ("quantity", "expected"),
+    [
+        ("translation", "-0.0012 [-0.0500, 0.0000] m per m"),
+        ("rotation", "-0.001 [-0.050, 0.000] degrees per m"),
+    ],
+)
+def test_a_difference_in_words(quantity, expected):
+    assert difference("a", "b", -0.00123, -0.05, -0.000001, quantity=quantity).words() == expected
+
+
+def said(errors, found):
+    """Sentences on one run with these constant errors."""
+    one = judgement("a", **{name: [value] * 4 for name, value in errors.items()})
+    summaries = [summarise(PLACE, [one], [], name) for name in errors]
+    both = [
+        difference(*key, *numbers, quantity=q)
+        for key, numbers in found.items()
+        for q in ("translation", "rotation")
+    ]
+    return sentences(PLACE, summaries, both)
+
+
+def test_models_that_cannot_be_told_apart_are_named_with_numbers():
+    lines = said(
+        {"icr_symmetric": 0.02, "icr": 0.0196, "ideal": 0.1},
+        {
+            ("icr_symmetric", "icr"): (0.0004, -0.001, 0.0017),
+            ("icr_symmetric", "ideal"): (-0.08, -0.09, -0.07),
+            ("icr", "ideal"): (-0.08, -0.09, -0.07),
+        },
+    )
+    assert lines[:2] == [
+        "icr errs least on grass in translation, 0.0196 m per m.",
+        "icr cannot be told apart on grass in translation from icr_symmetric "
+        "(difference -0.0004 [-0.0017, 0.0010] m per m).",
+    ]
+    assert lines[-1] == (
+        "Nothing beats a fitted effective width (icr_symmetric) on grass in translation or "
+        "rotation."
+    )
+
+
+def test_a_model_that_beats_all_others():
+    lines = said(
+        {"icr_symmetric": 0.03, "icr": 0.02}, {("icr_symmetric", "icr"): (0.01, 0.005, 0.02)}
+    )
+    assert lines[0] == (
+        "icr errs least on grass in translation, 0.0200 m per m; every other model errs more."
+    )
+    assert not any("Nothing beats" in line for line in lines)
+
+
+def test_a_model_that_was_not_judged_everywhere_is_not_ranked():
+    judgements = [
+        judgement("a", icr=[0.1], width=[0.2], part=[0.0]),
+        judgement("b", icr=[0.1], width=[0.2]),
+    ]
+    shortfalls = [Shortfall("rover", "grass", "b", "part", "too few windows")]
+    summaries = [summarise(PLACE, judgements, shortfalls, m) for m in ("icr", "width", "part")]
+    lines = sentences(PLACE, summaries, [difference("icr", "width", -0.1, -0.2, -0.05)])
+    assert lines[0].startswith("icr errs least")
+    assert lines[-1] == "part is not in this comparison on grass: b: too few windows."

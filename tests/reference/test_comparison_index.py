@@ -1,0 +1,45 @@
+"""Held-out windows on real recordings against those that the recordings' makers evaluated.
+
+INDEX.csv has the mean errors per metre over 2 m of the ideal differential drive and of a symmetric
+ICR fit whose values it states. Its windows straddle joints of the chained poses, as ours do, and
+gaps, as ours do not: single runs differ, the recordings as a whole do not.
+"""
+
+import csv
+
+import numpy as np
+
+from odometry.comparison.judged import judge, judged_windows
+from odometry.comparison.parts import parts_by_ground, with_named_ground
+from odometry.identification.config import WindowConfig
+from odometry.models.catalogue import MODELS
+from odometry.run import Run
+
+
+def mean_errors(judged, model, **values):
+    model = MODELS[model]
+    errors = judge(model, model.pack(values), judged)
+    return [errors.translation_per_m.mean(), np.degrees(errors.rotation_per_m.mean())]
+
+
+def test_errors_over_two_metres_meet_the_index(shared_data):
+    ratios, counts = [], []
+    with (shared_data / "motion" / "INDEX.csv").open(newline="") as file:
+        for row in csv.DictReader(file):
+            run = with_named_ground(Run.read(shared_data / "motion" / row["run"]), None)
+            if run.pose is None:
+                continue
+            (part,) = parts_by_ground(run, run.name).values()
+            judged = judged_windows(part, 2.0, WindowConfig())
+            ideal = mean_errors(judged, "differential_drive", track_width=run.robot.track_width)
+            fitted = mean_errors(
+                judged, "icr_symmetric", alpha=float(row["alpha"]), b_hat=float(row["b_hat"])
+            )
+            names = ("ideal_te_per_m", "ideal_he_deg_per_m", "icr_te_per_m", "icr_he_deg_per_m")
+            ratios.append(np.array([*ideal, *fitted]) / [float(row[name]) for name in names])
+            counts.append(len(judged) / float(row["n_win"]))
+    assert len(ratios) == 26
+    np.testing.assert_allclose(np.median(ratios, axis=0), 1, atol=0.03)
+    np.testing.assert_allclose(ratios, 1, atol=0.4)
+    assert min(counts) > 0.7
+    assert max(counts) <= 1.1
