@@ -76,15 +76,6 @@ def parts_by_ground(run: Run, name: str) -> dict[str, Part]:
     return {ground: Part(run, name, ground, 0, len(run.odometry)) for ground in grounds}
 
 
-def run_names(runs: Sequence[Run]) -> list[str]:
-    """Names of the folders; where two are alike, their paths."""
-    names = [run.name for run in runs]
-    return [
-        name if names.count(name) == 1 else str(run.folder)
-        for name, run in zip(names, runs, strict=True)
-    ]
-
-
 def halves(part: Part) -> tuple[Part, Part]:
     """A part cut where half of its wheel travel is done."""
     run = part.run

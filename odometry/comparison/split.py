@@ -3,9 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from odometry.comparison.errors import ComparisonError
-from odometry.comparison.parts import Part, halves, parts_by_ground, run_names
-from odometry.run import Robot, Run
+from odometry.comparison.parts import Part, halves, parts_by_ground
+from odometry.run import Robot, Run, check_no_run_twice, run_names
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,10 +59,10 @@ def splits(runs: Sequence[Run], train: Sequence[Run] = ()) -> tuple[Split, ...]:
 
     Raises
     ------
-    ComparisonError
+    RunFolderError
         If a run is there twice.
     """
-    _check_no_run_twice([*runs, *train])
+    check_no_run_twice([*runs, *train])
     names = run_names([*runs, *train])
     labels = robot_labels([run.robot for run in [*runs, *train]])
     judged = _by_robot_and_ground(runs, names[: len(runs)], labels)
@@ -116,12 +115,3 @@ def _by_robot_and_ground(
 
 def _words(seen: Sequence[Part]) -> str:
     return ", ".join(part.name for part in seen) or "nothing"
-
-
-def _check_no_run_twice(runs: Sequence[Run]) -> None:
-    folders = [run.folder.resolve() for run in runs]
-    for folder in folders:
-        if folders.count(folder) > 1:
-            raise ComparisonError(
-                f"{folder} is given twice: a model would be judged on what it was identified on"
-            )

@@ -22,7 +22,7 @@ class WindowConfig:
     shortest : float
         A stretch shorter than a horizon still makes a window if it has this share of it.
     pose_gap_s : float
-        Longest time between two poses that is no gap.
+        Longest time between two poses that is no gap; five usual periods where that is longer.
     position_sigma_m, yaw_sigma_rad : float
         Standard deviations of a measured pose: they state the covariance of the loss.
     """

@@ -135,6 +135,8 @@ def _start(
         raise ParameterError(
             f"{name!r} is no parameter of {model.name!r}; it has {', '.join(sorted(names))}"
         )
+    for name in sorted(released & set(fixed)):
+        raise ParameterError(f"{name!r} is both fixed and free; expected one of them")
     return model.pack({**model.guess(robot), **fixed})
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.geometry.angles import wrap
+from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
 from odometry.identification.motion import window_motion
 from odometry.identification.windows import Windows
@@ -38,30 +39,53 @@ def window_errors(model: KinematicModel, values: FloatArray, windows: Windows) -
     )
 
 
-def parts_of(windows: Windows) -> IntArray:
-    """Parts (K,) to hold out in turn: the runs, or the two halves of the only run."""
+def by_runs(windows: Windows) -> IntArray:
+    """Parts (K,) to hold out in turn: the runs."""
     runs = list(dict.fromkeys(windows.run))
-    if len(runs) > 1:
-        return np.array([runs.index(run) for run in windows.run])
-    return (np.arange(len(windows)) >= len(windows) / 2).astype(np.int64)
+    return np.array([runs.index(run) for run in windows.run], dtype=np.int64)
+
+
+def by_halves(windows: Windows) -> IntArray:
+    """Parts (K,) to hold out in turn: the first and the second half of every run.
+
+    Windows that reach into the other half are in neither: -1.
+    """
+    parts = np.zeros(len(windows), dtype=np.int64)
+    for run in dict.fromkeys(windows.run):
+        here = np.flatnonzero(windows.run == run)
+        second = here[len(here) // 2 :]
+        parts[second] = 1
+        first = here[: len(here) // 2]
+        parts[first[windows.last[first] > windows.first[second[0]]]] = -1
+    return parts
 
 
 def held_out_errors(
     windows: Windows, parts: IntArray, fit_to: Callable[[Windows], Fit]
 ) -> WindowErrors:
-    """Errors of every window under the model fitted to the other parts.
+    """Errors of every window that is in a part, under the model fitted to the other parts.
 
     Parameters
     ----------
     windows : Windows
     parts : (K,)
+        -1 for windows that take no part.
     fit_to : callable
         From windows to a fit.
+
+    Raises
+    ------
+    IdentificationError
+        If there is one part, or the others cannot be fitted.
     """
-    translation, rotation = np.empty(len(windows)), np.empty(len(windows))
-    for part in np.unique(parts):
+    numbers = np.unique(parts[parts >= 0])
+    if len(numbers) < 2:
+        raise IdentificationError("there is one part, and nothing to fit on but what is held out")
+    translation, rotation = np.full((2, len(windows)), np.nan)
+    for part in numbers:
         here = parts == part
-        fitted = fit_to(windows.where(~here))
+        fitted = fit_to(windows.where((parts >= 0) & ~here))
         errors = window_errors(fitted.model, fitted.packed, windows.where(here))
         translation[here], rotation[here] = errors.translation_per_m, errors.rotation_per_m
-    return WindowErrors(translation, rotation)
+    judged = parts >= 0
+    return WindowErrors(translation[judged], rotation[judged])

@@ -6,13 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 from tqdm import tqdm
 
+from odometry.errors import ParameterError
 from odometry.identification.config import SolverConfig, WindowConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit, fit
 from odometry.identification.held_out import (
     WindowErrors,
+    by_halves,
+    by_runs,
     held_out_errors,
-    parts_of,
     window_errors,
 )
 from odometry.identification.slopes import fit_in_two_stages
@@ -20,7 +22,7 @@ from odometry.identification.windows import Windows, windows_of
 from odometry.models.base import KinematicModel
 from odometry.models.catalogue import MODELS, model_named
 from odometry.parameters import ParameterSet, TerrainParameters
-from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Robot, Run
+from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Robot, Run, check_no_run_twice
 
 FITTERS: dict[str, Callable[..., Fit]] = {"icr_slope": fit_in_two_stages}  # else `fit`
 
@@ -34,14 +36,17 @@ class Identified:
     fit : Fit
         To all windows.
     held_out : WindowErrors or None
-        By other runs of the ground, or by halves where it has one; None where a part alone
-        cannot be fitted.
+        None where a part alone cannot be fitted.
+    held_out_by : str
+        "runs": each by the others; "halves": each half of every run by the others, where a ground
+        has one run or one run does not tell the model.
     ideal : WindowErrors
         Of the ideal differential drive on the same windows.
     """
 
     fit: Fit
     held_out: WindowErrors | None
+    held_out_by: str
     ideal: WindowErrors
 
     def to_parameters(self, source: str) -> TerrainParameters:
@@ -127,10 +132,15 @@ def identify(
     IdentificationError
         If the runs are of robots of different width, or too short, or lack poses.
     ParameterError
-        If there is no such model or parameter.
+        If there is no such model or parameter, or `terrain` is the reserved name.
+    RunFolderError
+        If a run is given twice.
     """
     chosen = model_named(model) if isinstance(model, str) else model
     window_config, solver_config = window_config or WindowConfig(), solver_config or SolverConfig()
+    if terrain == UNKNOWN:
+        raise ParameterError(f"the terrain name {UNKNOWN!r} is reserved; name another, or none")
+    check_no_run_twice(runs)
     robot = robot_of(runs)
     windows = windows_of(runs, window_config)
     fit_to = fitter(
@@ -143,7 +153,7 @@ def identify(
     )
     ground = np.array([_ground_name(str(name), terrain) for name in windows.terrain], dtype=object)
     by_ground = {name: windows.where(ground == name) for name in dict.fromkeys(ground)}
-    fits = sum(1 + len(np.unique(parts_of(here))) for here in by_ground.values())
+    fits = sum(1 + max(2, len(set(here.run))) for here in by_ground.values())
     off = None if show_progress else True
     with tqdm(total=fits, desc=chosen.name, unit="fit", disable=off) as bar:
 
@@ -188,27 +198,36 @@ def robot_of(runs: Sequence[Run]) -> Robot:
     Raises
     ------
     IdentificationError
-        If there is no run, or track widths differ.
+        If there is no run, or track width, length or mass differ.
     """
     if not runs:
         raise IdentificationError("no run was given; expected one or more")
     for run in runs:
-        if run.robot.track_width != runs[0].robot.track_width:
-            raise IdentificationError(
-                f"{run.folder}: track_width = {run.robot.track_width}, but {runs[0].folder} has "
-                f"{runs[0].robot.track_width}; expected runs of one robot"
-            )
+        for name in ("track_width", "length", "mass"):
+            here, there = getattr(run.robot, name), getattr(runs[0].robot, name)
+            if here != there:
+                raise IdentificationError(
+                    f"{run.folder}: [robot] {name} = {here}, but {runs[0].folder} has {there}; "
+                    "expected runs of one robot"
+                )
     return runs[0].robot
 
 
 def _identified(windows: Windows, fit_to: Callable[[Windows], Fit], robot: Robot) -> Identified:
-    fitted = fit_to(windows)
-    try:
-        held_out = held_out_errors(windows, parts_of(windows), fit_to)
-    except IdentificationError:
-        held_out = None
     ideal = window_errors(MODELS["differential_drive"], np.array([robot.track_width]), windows)
-    return Identified(fitted, held_out, ideal)
+    return Identified(fit_to(windows), *_held_out(windows, fit_to), ideal)
+
+
+def _held_out(
+    windows: Windows, fit_to: Callable[[Windows], Fit]
+) -> tuple[WindowErrors | None, str]:
+    """Errors by runs, else by halves of every run, and which it was."""
+    for words, parts in (("runs", by_runs(windows)), ("halves", by_halves(windows))):
+        try:
+            return held_out_errors(windows, parts, fit_to), words
+        except IdentificationError:
+            continue
+    return None, ""
 
 
 def _ground_name(name: str, given: str | None) -> str:

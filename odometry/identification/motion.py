@@ -101,6 +101,6 @@ def _between(path: FloatArray, windows: Windows) -> FloatArray:
 def _before(steps: FloatArray) -> FloatArray:
     """Sum of all steps (..., N) before each one."""
     sums = np.empty_like(steps)
-    sums[..., 0] = 0.0
+    sums[..., :1] = 0.0
     np.cumsum(steps[..., :-1], axis=-1, out=sums[..., 1:])
     return sums

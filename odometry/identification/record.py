@@ -11,7 +11,7 @@ from odometry.models.inputs import Inputs
 from odometry.models.run_inputs import inputs_of
 from odometry.run import UNKNOWN, Run
 
-GAP_PERIODS = 5.0  # odometry stamps farther apart than this many usual periods are a gap
+GAP_PERIODS = 5.0  # stamps farther apart than this many usual periods are a gap
 
 
 @dataclass(frozen=True)
@@ -68,16 +68,17 @@ def record_of(run: Run, config: WindowConfig) -> Record:
     inputs = inputs_of(run).rows(rows)
     speed = np.abs(inputs.tread_speeds_m_s).mean(axis=1)
     travel_m = np.concatenate([[0.0], np.cumsum(speed[:-1] * np.diff(stamps_s))])
-    terrains = _terrains(run, rows)[np.searchsorted(stamps_s, pose_s)]
+    samples = np.searchsorted(stamps_s, pose_s)
+    terrains = _terrains(run, rows)
+    changes = np.concatenate([[0], np.cumsum(terrains[1:] != terrains[:-1])])[samples]
     breaks = (
-        (np.diff(pose_s) > config.pose_gap_s)
+        (np.diff(pose_s) > max(config.pose_gap_s, GAP_PERIODS * np.median(np.diff(pose_s))))
         | (windows[1:] != windows[:-1])
-        | (terrains[1:] != terrains[:-1])
+        | (changes[1:] != changes[:-1])
         | _odometry_gap_between(odometry_s, pose_s)
     )
     stretch = np.concatenate([[0], np.cumsum(breaks)])
-    samples = np.searchsorted(stamps_s, pose_s)
-    return Record(run, stamps_s, inputs, travel_m, poses, samples, stretch, terrains)
+    return Record(run, stamps_s, inputs, travel_m, poses, samples, stretch, terrains[samples])
 
 
 def _measured_poses(run: Run) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -5,12 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import BoolArray, FloatArray
 from odometry.identification.config import SolverConfig, WindowConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit, fit
 from odometry.identification.noise import pose_variances
 from odometry.identification.problem import Problem
+from odometry.identification.solve import Solution
+from odometry.identification.uncertainty import residual_scale
 from odometry.identification.windows import Windows
 from odometry.models.base import KinematicModel
 from odometry.models.icr import Icr
@@ -46,43 +48,46 @@ def fit_in_two_stages(
         If the flat or the tilted windows are too few for their stage.
     """
     tilted = mean_tilt_rad(windows) > FLAT_RAD
-    flat_free = [p.name for p in Icr.parameters if p.name not in fixed]
-    if flat_free and 3 * np.sum(~tilted) <= len(flat_free):
-        raise IdentificationError(
-            f"{int(np.sum(~tilted))} windows lie on ground flatter than "
-            f"{np.degrees(FLAT_RAD):.1f} degrees, too few for {', '.join(flat_free)}: add a run on "
-            "flat ground, or fix these"
+    icr_free = [p.name for p in Icr.parameters if p.name not in fixed]
+    _check_counts(int(np.sum(~tilted)), int(np.sum(tilted)), icr_free)
+
+    def stage(chosen: BoolArray, known: Mapping[str, float], free: frozenset[str]) -> Fit:
+        return fit(
+            model,
+            windows.where(chosen),
+            robot,
+            fixed=known,
+            released=free,
+            window_config=window_config,
+            solver_config=solver_config,
         )
-    if 3 * np.sum(tilted) <= len(SLOPE_NAMES):
-        raise IdentificationError(
-            f"{int(np.sum(tilted))} windows are tilted more than {np.degrees(FLAT_RAD):.1f} "
-            f"degrees (roll and pitch of odometry.csv), too few for {', '.join(SLOPE_NAMES)}"
-        )
+
     usual = {} if "v_max" in released else {"v_max": _largest_speed(windows)}
     held = usual | dict(fixed)
+    if not icr_free:
+        return stage(tilted, held, released)
     terms = {name: held.get(name, 0.0) for name in SLOPE_NAMES}
     for _ in range(ROUNDS):
-        flat = fit(
-            model,
-            windows.where(~tilted),
-            robot,
-            fixed=held | terms,
-            window_config=window_config,
-            solver_config=solver_config,
-        )
-        sloped = fit(
-            model,
-            windows.where(tilted),
-            robot,
-            fixed=held | {name: flat.values[name] for name in flat.names},
-            released=released,
-            window_config=window_config,
-            solver_config=solver_config,
-        )
-        before, terms = terms, {name: sloped.values[name] for name in SLOPE_NAMES}
+        flat = stage(~tilted, held | terms, frozenset())
+        sloped = stage(tilted, held | {name: flat.values[name] for name in flat.names}, released)
+        before, terms = terms, {name: sloped.values[name] for name in (*SLOPE_NAMES, *released)}
         if max(abs(terms[name] - before[name]) for name in SLOPE_NAMES) < SETTLED:
             break
-    return _joined(flat, sloped, pose_variances(window_config))
+    return _joined(flat, sloped, windows, tilted, pose_variances(window_config))
+
+
+def _check_counts(flat: int, tilted: int, icr_free: list[str]) -> None:
+    limit = f"{np.degrees(FLAT_RAD):.1f} degrees"
+    if icr_free and 3 * flat <= len(icr_free):
+        raise IdentificationError(
+            f"{flat} windows lie on ground flatter than {limit}, too few for "
+            f"{', '.join(icr_free)}: add a run on flat ground, or fix these"
+        )
+    if 3 * tilted <= len(SLOPE_NAMES):
+        raise IdentificationError(
+            f"{tilted} windows are tilted more than {limit} (roll and pitch of odometry.csv), too "
+            f"few for {', '.join(SLOPE_NAMES)}"
+        )
 
 
 def mean_tilt_rad(windows: Windows) -> FloatArray:
@@ -99,11 +104,13 @@ def _largest_speed(windows: Windows) -> float:
     return float(np.abs(windows.inputs.tread_speeds_m_s.mean(axis=-1)).max())
 
 
-def _joined(flat: Fit, sloped: Fit, variances: FloatArray) -> Fit:
-    """The second stage with the parameters of the first, and the covariance of both.
+def _joined(
+    flat: Fit, sloped: Fit, windows: Windows, tilted: BoolArray, variances: FloatArray
+) -> Fit:
+    """The second stage with what the first one found, over all windows.
 
     The optimum of the second stage moves with the first's parameters by -H22^-1 H21, H being the
-    curvature of its loss.
+    curvature of its loss: that carries the first's covariance into the slope terms.
     """
     names = flat.names + sloped.names
     free = np.array([parameter.name in names for parameter in sloped.model.parameters])
@@ -115,14 +122,21 @@ def _joined(flat: Fit, sloped: Fit, variances: FloatArray) -> Fit:
     first, second = flattened[:, : len(flat.names)], flattened[:, len(flat.names) :]
     moves = -np.linalg.pinv(second) @ first
     cross = moves @ flat.covariance
-    covariance = np.block(
-        [[flat.covariance, cross.T], [cross, sloped.covariance + cross @ moves.T]]
-    )
+    weights = np.empty(len(windows))
+    weights[~tilted], weights[tilted] = flat.weights, sloped.weights
+    every = replace(problem, windows=windows)
+    solution = Solution(sloped.packed[free], weights, np.nan, min(flat.agreeing, sloped.agreeing))
     return replace(
         sloped,
         names=names,
-        covariance=covariance,
+        covariance=np.block(
+            [[flat.covariance, cross.T], [cross, sloped.covariance + cross @ moves.T]]
+        ),
         undetermined=flat.undetermined + sloped.undetermined,
         at_bound=flat.at_bound + sloped.at_bound,
-        agreeing=min(flat.agreeing, sloped.agreeing),
+        residuals=every.residuals(solution.chosen),
+        weights=weights,
+        scale=residual_scale(every, solution),
+        agreeing=solution.agreeing,
+        windows=windows,
     )

@@ -6,6 +6,7 @@ from odometry.arrays import FloatArray
 from odometry.identification.noise import score_covariance, window_covariances
 from odometry.identification.problem import Problem
 from odometry.identification.solve import Solution
+from odometry.identification.windows import Windows
 
 
 def residual_scale(problem: Problem, solution: Solution) -> float:
@@ -20,7 +21,7 @@ def parameter_covariance(problem: Problem, solution: Solution, sizes: FloatArray
 
     The poses have the stated noise, or less where the residuals are smaller than it explains;
     windows that share a pose share its noise. What the residuals have beyond is the model's own
-    error, taken as independent from window to window and growing with wheel travel.
+    error: independent on every metre of wheel travel, and so shared by windows that overlap.
 
     Parameters
     ----------
@@ -51,4 +52,15 @@ def _unexplained_per_m(problem: Problem, solution: Solution, variances: FloatArr
     count = 3 * weights.sum()
     freed = count / max(count - len(solution.chosen), 1.0)
     surplus = np.sum(weights[:, None] * (freed * residuals**2 - stated), axis=0)
-    return np.asarray(np.maximum(surplus, 0.0) / np.sum(weights * windows.travel_m))
+    return np.asarray(
+        _overlap(windows) * np.maximum(surplus, 0.0) / np.sum(weights * windows.travel_m)
+    )
+
+
+def _overlap(windows: Windows) -> float:
+    """In how many windows a sample lies on average: their own errors are that much alike."""
+    depth = np.zeros(len(windows.steps_s) + 1)
+    np.add.at(depth, windows.first, 1.0)
+    np.add.at(depth, windows.last, -1.0)
+    covered = np.cumsum(depth[:-1])
+    return float(covered.sum() / np.count_nonzero(covered))

@@ -12,7 +12,9 @@ from odometry.identification.config import WindowConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.record import Record, record_of
 from odometry.models.inputs import Inputs
-from odometry.run import Run
+from odometry.run import Run, run_names
+
+STANDING_M = 1e-3  # less wheel travel than this says nothing of a model
 
 
 @dataclass(frozen=True)
@@ -35,7 +37,7 @@ class Windows:
         Wheel travel.
     start_s : (K,)
     run, terrain : (K,) of str
-        Name of the run, and of the ground.
+        Name of the run (its path where names are alike), and of the ground.
     """
 
     inputs: Inputs
@@ -78,12 +80,19 @@ class Windows:
 def windows_of(runs: Sequence[Run], config: WindowConfig) -> Windows:
     """Cut runs into windows of one horizon; none straddles a gap or a change of `window`.
 
+    Windows in which the wheels stand still are left out.
+
     Raises
     ------
     IdentificationError
         If a run has no measured poses, or there is no window in any of them.
     """
-    parts = [_windows_of_record(record_of(run, config), config) for run in runs]
+    if not runs:
+        raise IdentificationError("no run was given; expected one or more")
+    parts = [
+        _windows_of_record(record_of(run, config), name, config)
+        for run, name in zip(runs, run_names(runs), strict=True)
+    ]
     if not sum(map(len, parts)):
         raise IdentificationError(_no_window(runs, config))
     samples = np.cumsum([0, *(len(part.steps_s) for part in parts[:-1])])
@@ -103,7 +112,7 @@ def windows_of(runs: Sequence[Run], config: WindowConfig) -> Windows:
     )
 
 
-def _windows_of_record(record: Record, config: WindowConfig) -> Windows:
+def _windows_of_record(record: Record, name: str, config: WindowConfig) -> Windows:
     pose_s = record.stamps_s[record.pose_samples]
     travel_m = record.travel_m[record.pose_samples]
     measure, horizon = (
@@ -114,6 +123,8 @@ def _windows_of_record(record: Record, config: WindowConfig) -> Windows:
     for begin, end in zip(begins, [*begins[1:], len(pose_s)], strict=True):
         found.append(begin + _windows_of_stretch(measure[begin:end], horizon, config))
     first, last = np.concatenate(found).T
+    moved = travel_m[last] - travel_m[first] > STANDING_M
+    first, last = first[moved], last[moved]
     return Windows(
         record.inputs,
         np.append(np.diff(record.stamps_s), 0.0),
@@ -124,7 +135,7 @@ def _windows_of_record(record: Record, config: WindowConfig) -> Windows:
         se2.between(record.poses[first], record.poses[last]),
         travel_m[last] - travel_m[first],
         pose_s[first],
-        np.full(len(first), record.run.name, dtype=object),
+        np.full(len(first), name, dtype=object),
         record.terrains[first],
     )
 

@@ -104,9 +104,10 @@ class KinematicModel(ABC):
             value = values.get(parameter.name, parameter.default)
             if value is None:
                 raise ParameterError(f"the model {self.name!r} needs {parameter.name!r}")
-            if not parameter.low <= value <= parameter.high:
+            if not (np.isfinite(value) and parameter.low <= value <= parameter.high):
                 raise ParameterError(
-                    f"{parameter.name} = {value}, expected {parameter.low} to {parameter.high}"
+                    f"{parameter.name} = {value}, expected a finite number from {parameter.low} "
+                    f"to {parameter.high}"
                 )
             packed.append(float(value))
         self.check(np.array(packed))

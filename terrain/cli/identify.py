@@ -127,7 +127,7 @@ def _print_errors(ground: "Identified") -> None:
 
     rows = [("mean error", "m per m", "deg per m")]
     for name, errors in (
-        ("held out", ground.held_out),
+        (f"held out, by {ground.held_out_by}", ground.held_out),
         ("ideal differential drive", ground.ideal),
     ):
         if errors is not None:

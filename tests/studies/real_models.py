@@ -6,8 +6,8 @@ Runs with a pose are grouped by robot and ground as INDEX.csv names them; record
 is not stated are one ground of each robot. A run is judged by models identified on the other runs
 of its group, where there is one run each half by the other. `chosen` is the candidate that errs
 least when the runs that it may see are split once more in the same way: it never sees what it is
-judged on. H of the inertia models is held at 1, since it acts inside a sign alone; the inertia
-models and `contact` are identified on at most 60 windows, evenly picked, since they are slow.
+judged on. H of the inertia models is held at 1, since it acts inside a sign alone; `contact` is
+identified on at most 60 windows, evenly picked, since it is slow.
 
 Printed, and written to FOLDER/real_models.md: a table robot x ground x model of mean errors per
 metre over 2 m, with paired 95 % intervals of the difference to `icr`, and what they say.
@@ -47,7 +47,7 @@ NAMES = (
     *("differential_drive", "icr_symmetric", "icr", "radius_of_curvature", "full_linear"),
     *("traction_mode", "icr_slope", "icr_inertia", "icr_inertia_measured", "contact"),
 )
-SLOW = {"icr_inertia": 60, "icr_inertia_measured": 60, "contact": 60}  # most windows of a fit
+SLOW = {"contact": 60}  # most windows of a fit
 CONFIG = ComparisonConfig(solver=SolverConfig(starts=1))
 
 

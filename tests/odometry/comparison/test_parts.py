@@ -6,14 +6,13 @@ import pytest
 from odometry.comparison.parts import (
     halves,
     parts_by_ground,
-    run_names,
     terrains_of,
     windows_of_parts,
     with_named_ground,
 )
 from odometry.identification.config import WindowConfig
 from odometry.identification.errors import IdentificationError
-from odometry.run import Run
+from odometry.run import Run, run_names
 
 ROWS = "t,v_left,v_right,terrain\n0,1,1,\n1,1,1,ice\n2,3,3,ice\n3,0,0,unknown\n4,1,1,ice\n"
 POSES = "t,x,y,yaw\n-1,0,0,0\n0,1,0,0\n1,2,0,0\n2.5,3,0,0\n4,4,0,0\n9,5,0,0\n"

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.comparison.errors import ComparisonError
 from odometry.comparison.judged import judged_windows
 from odometry.comparison.parts import windows_of_parts, with_named_ground
 from odometry.comparison.split import of_all, robot_labels, splits
+from odometry.errors import RunFolderError
 from odometry.identification.config import WindowConfig
 from odometry.run import Robot, Run
 from odometry.table import Table
@@ -118,7 +118,7 @@ def test_one_split_of_all_sees_everything(grass):
 def test_a_run_given_twice_is_refused(grass):
     run = with_named_ground(grass[0], None)
     again = replace(run, folder=run.folder / ".." / run.folder.name)
-    with pytest.raises(ComparisonError, match="run_0 is given twice"):
+    with pytest.raises(RunFolderError, match="run_0 is given twice"):
         splits([run], [again])
 
 

@@ -1,0 +1,203 @@
+"""`identify`: from run folders to a parameter set, or a refusal that says why."""
+
+import shutil
+import sys
+
+import numpy as np
+import pytest
+
+from odometry.parameters import read_parameters
+from terrain.cli.main import main
+
+SHORT = ("--horizon", "0.5", "--starts", "1")
+TRUTH = {"y_left": 0.26, "y_right": -0.24, "x_icr": 0.03, "alpha_left": 1.0, "alpha_right": 1.0}
+
+
+@pytest.fixture
+def command(monkeypatch, capsys, tmp_path):
+    """Run the verb as a user would: its exit code, output and messages; the file to write."""
+    out = tmp_path / "set.toml"
+
+    def run(*arguments, model="icr"):
+        texts = ["identify", "--model", model, "--out", str(out), *map(str, arguments)]
+        monkeypatch.setattr(sys, "argv", ["terrain-odometry", *texts])
+        with pytest.raises(SystemExit) as caught:
+            main()
+        output, messages = capsys.readouterr()
+        return caught.value.code, output, messages
+
+    run.out = out
+    return run
+
+
+def test_the_parameters_are_shown_and_written(command, curvy_run):
+    code, output, _ = command(curvy_run, *SHORT)
+    assert code == 0
+    table = read_parameters(command.out).terrains["ground"]
+    assert table.values == pytest.approx(TRUTH, abs=1e-3)
+    assert table.covariance_order == tuple(TRUTH)
+    assert "curvy" in table.source
+    assert f"Wrote {command.out}" in output
+    assert "\nNext: terrain-odometry " in output
+
+
+def test_values_intervals_and_errors_are_shown(command, curvy_run, tmp_path):
+    """With 5 mm of noise, so that there is something to show."""
+    noisy = shutil.copytree(curvy_run, tmp_path / "noisy")
+    header, *lines = (noisy / "pose.csv").read_text().splitlines()
+    rows = np.array([line.split(",") for line in lines], dtype=float)
+    rows[:, 1:3] += 0.005 * np.random.default_rng(1).standard_normal((len(rows), 2))
+    text = "\n".join([header, *(",".join(map(str, row)) for row in rows.tolist())]) + "\n"
+    (noisy / "pose.csv").write_text(text)
+    sigmas = ("--position-sigma", "0.005", "--yaw-sigma", "0.001")
+    code, output, _ = command(noisy, *SHORT, *sigmas, model="icr_symmetric")
+    assert code == 0
+    shown = {line.split()[0]: line.split() for line in output.splitlines() if line.strip()}
+    table = read_parameters(command.out).terrains["ground"]
+    for name, value in table.values.items():
+        sigma = table.covariance_of((name,))[0, 0] ** 0.5
+        assert sigma > 0.003
+        expected = [value, sigma, value - 1.96 * sigma, value + 1.96 * sigma]
+        assert list(map(float, shown[name][1:5])) == pytest.approx(expected, rel=0.005)
+    assert shown["b_hat"][5] == "m"
+    assert shown["held"][:4] == ["held", "out,", "by", "halves"]
+    assert float(shown["held"][4]) < float(shown["ideal"][3])
+
+
+def test_fixed_parameters_are_held(command, curvy_run):
+    code, output, _ = command(
+        curvy_run, *SHORT, "--fix", "alpha_left=1", "--fix", "alpha_right=1.0"
+    )
+    assert code == 0
+    table = read_parameters(command.out).terrains["ground"]
+    assert table.covariance_order == ("y_left", "y_right", "x_icr")
+    assert table.values["alpha_left"] == 1.0
+    assert sum(line.split()[-1] == "held" for line in output.splitlines() if line.strip()) == 2
+
+
+def test_known_parameters_can_be_freed(command, curvy_run):
+    options = ("--fix", "m=1", "--free", "track_width")
+    assert command(curvy_run, *SHORT, *options, model="traction_mode")[0] == 0
+    values = read_parameters(command.out).terrains["ground"].values
+    assert values["track_width"] == pytest.approx(0.5, abs=0.01)
+    command(curvy_run, *SHORT, model="traction_mode")
+    values = read_parameters(command.out).terrains["ground"].values
+    assert values == pytest.approx({"k": 1.0, "m": 0.6, "track_width": 0.3}, abs=0.02)
+
+
+def test_the_ground_can_be_named(command, curvy_run):
+    assert command(curvy_run, *SHORT, "--terrain", "wet grass")[0] == 0
+    assert list(read_parameters(command.out).terrains) == ["wet grass"]
+
+
+def test_the_windows_are_those_that_were_asked_for(command, curvy_run):
+    """6.2 m of wheel travel in 12 s."""
+    numbers = []
+    for options in (
+        ("--horizon", "1"),
+        ("--horizon-s", "1"),
+        ("--horizon", "1", "--stride", "0.5"),
+    ):
+        _, output, _ = command(curvy_run, *options, "--starts", "1")
+        numbers.append(int(output.split("windows of")[0].split()[-1]))
+    assert numbers[0] in (5, 6)
+    assert numbers[1] in (10, 11, 12)
+    assert 2 * numbers[0] - 2 <= numbers[2] <= 2 * numbers[0] + 1
+
+
+def test_the_same_call_writes_the_same_bytes(command, curvy_run):
+    contents = []
+    for _ in range(2):
+        command(curvy_run, *SHORT, "--seed", "3", "--loss", "linear")
+        contents.append(command.out.read_bytes())
+    assert contents[0] == contents[1]
+
+
+def assert_refused(command, answer, *words, code=1):
+    assert answer[0] == code, answer
+    assert "Traceback" not in answer[2]
+    for word in words:
+        assert word in answer[2]
+    assert not command.out.exists()
+
+
+def test_a_straight_run_is_refused_with_names_and_nothing_is_written(command, across_run):
+    answer = command(across_run, *SHORT)
+    assert_refused(command, answer, "Error: ", "y_left", "y_right", "x_icr", "[ground]")
+
+
+def test_a_refusal_leaves_an_earlier_file_alone(command, across_run):
+    command.out.write_text("earlier")
+    assert command(across_run, *SHORT)[0] == 1
+    assert command.out.read_text() == "earlier"
+
+
+def test_robots_of_different_width_are_refused(command, curvy_run, tmp_path):
+    other = shutil.copytree(curvy_run, tmp_path / "other")
+    settings = (other / "run.toml").read_text().replace("track_width = 0.3", "track_width = 0.4")
+    (other / "run.toml").write_text(settings)
+    answer = command(curvy_run, other, *SHORT)
+    assert_refused(command, answer, str(curvy_run), str(other), "0.3", "0.4")
+
+
+def test_a_run_without_poses_is_refused(command, curvy_run, tmp_path):
+    blind = shutil.copytree(curvy_run, tmp_path / "blind")
+    (blind / "pose.csv").unlink()
+    assert_refused(command, command(curvy_run, blind, *SHORT), str(blind), "pose.csv")
+
+
+def test_a_missing_run_is_refused(command, tmp_path):
+    answer = command(tmp_path / "absent")
+    assert_refused(command, answer, "absent: there is no such folder")
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--fix", "mu=0.5"), ("'mu' is no parameter of 'icr'",)),
+        (("--free", "mu"), ("'mu' is no parameter of 'icr'",)),
+        (("--fix", "alpha_left=3"), ("alpha_left = 3.0",)),
+        (("--horizon", "-1"), ("horizon_m = -1.0",)),
+        (("--stride", "0"), ("stride = 0.0",)),
+        (("--position-sigma", "nan"), ("position_sigma_m = nan",)),
+        (("--horizon", "500"), ("no window of 500 m", "choose a shorter horizon")),
+    ],
+)
+def test_what_cannot_be_done_is_one_message_and_exit_code_1(command, curvy_run, options, words):
+    assert_refused(command, command(curvy_run, *options), "Error: ", *words)
+
+
+def test_an_unknown_model_is_told_with_the_known_ones(command, curvy_run):
+    assert_refused(command, command(curvy_run, model="icrs"), "'icrs'", "icr_symmetric")
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ("--fix", "mu"),
+        ("--fix", "mu=much"),
+        ("--loss", "cauchy"),
+        ("--starts", "0"),
+        ("--seed", "-1"),
+    ],
+)
+def test_a_call_that_makes_no_sense_is_a_usage_error(command, curvy_run, options):
+    assert_refused(command, command(curvy_run, *options), code=2)
+
+
+def test_no_run_is_a_usage_error(command):
+    assert_refused(command, command(), "RUN", code=2)
+
+
+def test_the_reserved_name_is_no_ground(command, curvy_run):
+    assert_refused(command, command(curvy_run, *SHORT, "--terrain", "unknown"), "unknown")
+
+
+def test_infinity_is_no_value(command, curvy_run):
+    assert_refused(command, command(curvy_run, *SHORT, "--fix", "x_icr=inf"), "x_icr = inf")
+
+
+def test_a_file_that_cannot_be_written_is_one_message(command, curvy_run, tmp_path):
+    (tmp_path / "file").write_text("")
+    answer = command(curvy_run, *SHORT, "--out", tmp_path / "file" / "set.toml")
+    assert_refused(command, answer, "Error: ", "file")
