@@ -58,13 +58,13 @@ class SolverConfig:
         Of the further starts.
     undetermined : float
         A combination of parameters is undetermined where its standard deviation is above this
-        share of the parameters' ordinary size.
+        many of the parameters' ordinary sizes.
     """
 
     loss: str = "huber"
     starts: int = 4
     seed: int = 0
-    undetermined: float = 0.5
+    undetermined: float = 1.0
 
     def __post_init__(self) -> None:
         require(self.loss in ("huber", "linear"), f"loss = {self.loss!r}: huber or linear")

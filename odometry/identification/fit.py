@@ -1,7 +1,7 @@
 """Fit one model to windows: values, covariance, and what the windows leave open."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -83,6 +83,7 @@ def fit(
     *,
     fixed: Mapping[str, float],
     released: frozenset[str] = frozenset(),
+    near: Mapping[str, float] | None = None,
     window_config: WindowConfig,
     solver_config: SolverConfig,
 ) -> Fit:
@@ -98,6 +99,9 @@ def fit(
         Held at these values.
     released : names
         Known parameters to identify all the same.
+    near : Mapping of name to float, optional
+        Where the one search starts that is then made; without it, searches start from the guess
+        for the robot and around it.
     window_config : WindowConfig
         Its pose noise states the covariance of the loss.
     solver_config : SolverConfig
@@ -110,7 +114,9 @@ def fit(
     ParameterError
         If a name is no parameter of the model, or a fixed value is out of bounds.
     """
-    values = _start(model, robot, fixed, released)
+    values = _start(model, robot, fixed, released, near or {})
+    if near is not None:
+        solver_config = replace(solver_config, starts=1)
     free = np.array(
         [p.name not in fixed and (not p.known or p.name in released) for p in model.parameters]
     )
@@ -128,7 +134,11 @@ def fit(
 
 
 def _start(
-    model: KinematicModel, robot: Robot, fixed: Mapping[str, float], released: frozenset[str]
+    model: KinematicModel,
+    robot: Robot,
+    fixed: Mapping[str, float],
+    released: frozenset[str],
+    near: Mapping[str, float],
 ) -> FloatArray:
     names = {parameter.name for parameter in model.parameters}
     for name in sorted({*fixed, *released} - names):
@@ -137,7 +147,7 @@ def _start(
         )
     for name in sorted(released & set(fixed)):
         raise ParameterError(f"{name!r} is both fixed and free; expected one of them")
-    return model.pack({**model.guess(robot), **fixed})
+    return model.pack({**model.guess(robot), **near, **fixed})
 
 
 def _finish(

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from tqdm import tqdm
@@ -23,6 +24,14 @@ from odometry.models.base import KinematicModel
 from odometry.models.catalogue import MODELS, model_named
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Robot, Run, check_no_run_twice
+
+
+class FitTo(Protocol):
+    """Fits one model to windows; `near` saves searching far, see `fit`."""
+
+    def __call__(self, windows: Windows, near: Mapping[str, float] | None = None) -> Fit:
+        """The fit."""
+
 
 FITTERS: dict[str, Callable[..., Fit]] = {"icr_slope": fit_in_two_stages}  # else `fit`
 
@@ -157,8 +166,8 @@ def identify(
     off = None if show_progress else True
     with tqdm(total=fits, desc=chosen.name, unit="fit", disable=off) as bar:
 
-        def counted(here: Windows) -> Fit:
-            fitted = fit_to(here)
+        def counted(windows: Windows, near: Mapping[str, float] | None = None) -> Fit:
+            fitted = fit_to(windows, near)
             bar.update()
             return fitted
 
@@ -174,17 +183,18 @@ def fitter(
     released: frozenset[str] = frozenset(),
     window_config: WindowConfig,
     solver_config: SolverConfig,
-) -> Callable[[Windows], Fit]:
-    """The function from windows to a fit that suits a model."""
+) -> FitTo:
+    """The function that fits a model to windows, in the way that suits it."""
     fit_with = FITTERS.get(model.name, fit)
 
-    def fit_to(windows: Windows) -> Fit:
+    def fit_to(windows: Windows, near: Mapping[str, float] | None = None) -> Fit:
         return fit_with(
             model,
             windows,
             robot,
             fixed=fixed,
             released=released,
+            near=near,
             window_config=window_config,
             solver_config=solver_config,
         )
@@ -213,18 +223,22 @@ def robot_of(runs: Sequence[Run]) -> Robot:
     return runs[0].robot
 
 
-def _identified(windows: Windows, fit_to: Callable[[Windows], Fit], robot: Robot) -> Identified:
+def _identified(windows: Windows, fit_to: FitTo, robot: Robot) -> Identified:
+    fitted = fit_to(windows)
     ideal = window_errors(MODELS["differential_drive"], np.array([robot.track_width]), windows)
-    return Identified(fit_to(windows), *_held_out(windows, fit_to), ideal)
+    return Identified(fitted, *_held_out(windows, fit_to, fitted.values), ideal)
 
 
 def _held_out(
-    windows: Windows, fit_to: Callable[[Windows], Fit]
+    windows: Windows, fit_to: FitTo, near: Mapping[str, float]
 ) -> tuple[WindowErrors | None, str]:
-    """Errors by runs, else by halves of every run, and which it was."""
+    """Errors by runs, else by halves of every run, and which it was.
+
+    The fit to all windows tells where to search, and nothing else.
+    """
     for words, parts in (("runs", by_runs(windows)), ("halves", by_halves(windows))):
         try:
-            return held_out_errors(windows, parts, fit_to), words
+            return held_out_errors(windows, parts, lambda part: fit_to(part, near)), words
         except IdentificationError:
             continue
     return None, ""

@@ -31,6 +31,7 @@ def fit_in_two_stages(
     *,
     fixed: Mapping[str, float],
     released: frozenset[str] = frozenset(),
+    near: Mapping[str, float] | None = None,
     window_config: WindowConfig,
     solver_config: SolverConfig,
 ) -> Fit:
@@ -58,6 +59,7 @@ def fit_in_two_stages(
             robot,
             fixed=known,
             released=free,
+            near=near,
             window_config=window_config,
             solver_config=solver_config,
         )
@@ -66,7 +68,7 @@ def fit_in_two_stages(
     held = usual | dict(fixed)
     if not icr_free:
         return stage(tilted, held, released)
-    terms = {name: held.get(name, 0.0) for name in SLOPE_NAMES}
+    terms = {name: {**(near or {}), **held}.get(name, 0.0) for name in SLOPE_NAMES}
     for _ in range(ROUNDS):
         flat = stage(~tilted, held | terms, frozenset())
         sloped = stage(tilted, held | {name: flat.values[name] for name in flat.names}, released)

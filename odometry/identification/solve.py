@@ -12,8 +12,9 @@ from odometry.identification.problem import Problem
 
 CUTOFF = float(np.sqrt(chi2.ppf(0.95, 3)))  # Huber's, of a Mahalanobis distance in three dimensions
 REWEIGHTINGS = 20
-SAME_WEIGHT = 1e-3
+SAME_WEIGHT = 1e-2
 EVALUATIONS = 60  # of the loss in one search
+FEW_EVALUATIONS = 4  # between two weighings
 SAME_COST = 1e-4  # relative difference below which two starts have found the same minimum
 SPREAD = 0.35  # of the further starts, as a share of each parameter's ordinary size
 
@@ -61,7 +62,7 @@ def solve(problem: Problem, start: FloatArray, sizes: FloatArray, config: Solver
     for number in range(config.starts):
         away = SPREAD * sizes * rng.standard_normal(len(start)) * (number > 0)
         inside = np.clip(start + away, low + 1e-3 * sizes, high - 1e-3 * sizes)
-        found.append(_least_squares(problem, inside, sizes, everything))
+        found.append(_least_squares(problem, inside, sizes, everything, EVALUATIONS))
         costs.append(_squares(problem, found[-1]))
     agreeing = sum(cost <= min(costs) * (1 + SAME_COST) + 1e-12 for cost in costs)
     chosen, weights = found[int(np.argmin(costs))], everything
@@ -92,12 +93,12 @@ def _reweighted(
         before, weights = weights, np.minimum(1.0, CUTOFF * _scale(distances) / distances)
         if np.abs(weights - before).max() < SAME_WEIGHT:
             break
-        chosen = _least_squares(problem, chosen, sizes, weights)
+        chosen = _least_squares(problem, chosen, sizes, weights, FEW_EVALUATIONS)
     return chosen, weights
 
 
 def _least_squares(
-    problem: Problem, start: FloatArray, sizes: FloatArray, weights: FloatArray
+    problem: Problem, start: FloatArray, sizes: FloatArray, weights: FloatArray, evaluations: int
 ) -> FloatArray:
     root = np.sqrt(weights)[:, None, None] * problem.whitening()
 
@@ -110,7 +111,7 @@ def _least_squares(
         )
 
     solved = least_squares(
-        residuals, start, jacobian, bounds=problem.bounds(), x_scale=sizes, max_nfev=EVALUATIONS
+        residuals, start, jacobian, bounds=problem.bounds(), x_scale=sizes, max_nfev=evaluations
     )
     return np.asarray(solved.x)
 

@@ -192,7 +192,7 @@ def mu_on_flat_ground() -> str:
 
 def icrs_on_a_straight() -> str:
     """What the check says of `icr` where both treads always turn alike."""
-    return "icr at creeping speed differences:\n" + _undetermined("icr", Case(ICR, speed_m_s=0.01))
+    return "icr where the treads creep:\n" + _undetermined("icr", Case(ICR, speed_m_s=0.004))
 
 
 def _undetermined(name: str, case: Case) -> str:
