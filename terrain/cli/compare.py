@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import window_options
+from terrain.cli.options import MODEL_NAMES, window_options
 from terrain.cli.results import print_table, print_written
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
     default=("differential_drive", "icr_symmetric", "icr"),
     show_default=True,
     metavar="NAME",
-    help="Model to identify, or a parameter set (TOML) to take as it is; repeat.",
+    help=f"{', '.join(MODEL_NAMES)}, or a parameter set (.toml) to take as it is; repeat.",
 )
 @click.option("--out", required=True, type=FOLDER, help="Folder for the results.")
 @click.option(

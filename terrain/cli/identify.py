@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import assignments, window_options
+from terrain.cli.options import MODEL_NAMES, assignments, window_options
 from terrain.cli.results import print_table
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     required=True,
     type=click.Path(file_okay=False, path_type=Path),
 )
-@click.option("--model", required=True, help="Name of the model: icr, icr_slope, contact ...")
+@click.option("--model", required=True, metavar="NAME", help=f"One of {', '.join(MODEL_NAMES)}.")
 @click.option(
     "--out",
     required=True,
@@ -39,8 +39,20 @@ if TYPE_CHECKING:
     show_default=True,
     help="Weigh outliers down, or take the squares as they are.",
 )
-@click.option("--starts", type=click.IntRange(min=1), default=4, show_default=True)
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True)
+@click.option(
+    "--starts",
+    type=click.IntRange(min=1),
+    default=4,
+    show_default=True,
+    help="Searches from different values.",
+)
+@click.option(
+    "--seed",
+    type=click.IntRange(min=0),
+    default=0,
+    show_default=True,
+    help="Seed of the further starts.",
+)
 def identify(
     folders: tuple[Path, ...],
     *,

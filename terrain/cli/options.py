@@ -6,6 +6,12 @@ from typing import Any
 
 import click
 
+# Those of odometry.models.catalogue, which is too slow to import for a --help.
+MODEL_NAMES = (
+    *("differential_drive", "icr_symmetric", "icr", "radius_of_curvature", "full_linear"),
+    *("icr_slope", "icr_inertia", "icr_inertia_measured", "traction_mode", "contact"),
+)
+
 
 def assignments(texts: Sequence[str]) -> dict[str, float]:
     """Values by name, from texts like mu=0.6."""

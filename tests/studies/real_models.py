@@ -7,8 +7,8 @@ is not stated are one ground of each robot. A run is judged by models identified
 of its group, where there is one run each half by the other. `least` is the candidate that errs
 least, translation and rotation as ratios to those of `icr` added up, when the runs that it may see
 are split once more in the same way; `chosen` is the same among those that err no more than `icr`
-in either. Neither sees what it is judged on. H of the inertia models is held at 1, since it acts inside a sign alone; `contact` is
-identified on at most 60 windows, evenly picked, since it is slow.
+in either. Neither sees what it is judged on. H of the inertia models is held at 1, since it acts
+inside a sign alone; `contact` is identified on at most 60 windows, evenly picked, since it is slow.
 
 Printed, and written to FOLDER/real_models.md: a table robot x ground x model of mean errors per
 metre over 2 m, with paired 95 % intervals of the difference to `icr`, and what they say.

@@ -5,7 +5,12 @@ import pytest
 from click.testing import CliRunner
 
 from odometry.identification.config import WindowConfig
-from terrain.cli.options import assignments, window_options
+from odometry.models.catalogue import MODELS
+from terrain.cli.options import MODEL_NAMES, assignments, window_options
+
+
+def test_the_help_names_every_model():
+    assert tuple(MODELS) == MODEL_NAMES
 
 
 def test_assignments_by_name():
