@@ -14,7 +14,7 @@ from odometry.comparison.predictor import Predictor
 from odometry.comparison.split import Split
 from odometry.errors import ParameterError
 from odometry.identification.errors import IdentificationError
-from odometry.identification.identify import fitter
+from odometry.identification.fitters import fitter
 from odometry.identification.windows import Windows
 from odometry.models.base import KinematicModel
 from odometry.models.catalogue import MODELS

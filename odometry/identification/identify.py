@@ -1,8 +1,6 @@
 """Identify one model from recorded runs, ground by ground."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Protocol
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from tqdm import tqdm
@@ -10,7 +8,8 @@ from tqdm import tqdm
 from odometry.errors import ParameterError
 from odometry.identification.config import SolverConfig, WindowConfig
 from odometry.identification.errors import IdentificationError
-from odometry.identification.fit import Fit, fit
+from odometry.identification.fit import Fit
+from odometry.identification.fitters import FitTo, fitter
 from odometry.identification.held_out import (
     WindowErrors,
     by_halves,
@@ -18,93 +17,11 @@ from odometry.identification.held_out import (
     held_out_errors,
     window_errors,
 )
-from odometry.identification.slopes import fit_in_two_stages
+from odometry.identification.identification import Identification, Identified
 from odometry.identification.windows import Windows, windows_of
 from odometry.models.base import KinematicModel
 from odometry.models.catalogue import MODELS, model_named
-from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Robot, Run, check_no_run_twice
-
-
-class FitTo(Protocol):
-    """Fits one model to windows; `near` saves searching far, see `fit`."""
-
-    def __call__(self, windows: Windows, near: Mapping[str, float] | None = None) -> Fit:
-        """The fit."""
-
-
-FITTERS: dict[str, Callable[..., Fit]] = {"icr_slope": fit_in_two_stages}  # else `fit`
-
-
-@dataclass(frozen=True)
-class Identified:
-    """What runs tell of a model on one ground.
-
-    Attributes
-    ----------
-    fit : Fit
-        To all windows.
-    held_out : WindowErrors or None
-        None where a part alone cannot be fitted.
-    held_out_by : str
-        "runs": each by the others; "halves": each half of every run by the others, where a ground
-        has one run or one run does not tell the model.
-    ideal : WindowErrors
-        Of the ideal differential drive on the same windows.
-    """
-
-    fit: Fit
-    held_out: WindowErrors | None
-    held_out_by: str
-    ideal: WindowErrors
-
-    def to_parameters(self, source: str) -> TerrainParameters:
-        """The table of a parameter set."""
-        return TerrainParameters(
-            self.fit.model.name, self.fit.values, self.fit.names, self.fit.covariance, source
-        )
-
-
-@dataclass(frozen=True)
-class Identification:
-    """What runs tell of a model, by ground.
-
-    Attributes
-    ----------
-    robot : Robot
-    grounds : Mapping of terrain to Identified
-    window_config : WindowConfig
-    """
-
-    robot: Robot
-    grounds: Mapping[str, Identified]
-    window_config: WindowConfig
-
-    def require_determined(self) -> None:
-        """Raise IdentificationError, with numbers, where a fit leaves parameters open."""
-        lines = [
-            f"[{terrain}] {open_.words()}"
-            for terrain, found in self.grounds.items()
-            for open_ in found.fit.undetermined
-        ]
-        if lines:
-            raise IdentificationError(
-                "the runs cannot tell these parameters apart from others, or at all:\n  "
-                + "\n  ".join(lines)
-                + "\nAdd runs that excite them (turns both ways at several speeds; slopes), fix "
-                "values that are known, or choose a model with fewer parameters."
-            )
-
-    def to_parameter_set(self) -> ParameterSet:
-        """One table a ground, with covariances and where the values come from."""
-        terrains = {}
-        for terrain, found in self.grounds.items():
-            runs = ", ".join(dict.fromkeys(map(str, found.fit.windows.run)))
-            source = (
-                f"identified by terrain-odometry from {len(found.fit.windows)} windows of {runs}"
-            )
-            terrains[terrain] = found.to_parameters(source)
-        return ParameterSet(terrains, {"name": self.robot.name} if self.robot.name else {})
 
 
 def identify(
@@ -173,33 +90,6 @@ def identify(
 
         grounds = {name: _identified(here, counted, robot) for name, here in by_ground.items()}
     return Identification(robot, grounds, window_config)
-
-
-def fitter(
-    model: KinematicModel,
-    robot: Robot,
-    *,
-    fixed: Mapping[str, float],
-    released: frozenset[str] = frozenset(),
-    window_config: WindowConfig,
-    solver_config: SolverConfig,
-) -> FitTo:
-    """The function that fits a model to windows, in the way that suits it."""
-    fit_with = FITTERS.get(model.name, fit)
-
-    def fit_to(windows: Windows, near: Mapping[str, float] | None = None) -> Fit:
-        return fit_with(
-            model,
-            windows,
-            robot,
-            fixed=fixed,
-            released=released,
-            near=near,
-            window_config=window_config,
-            solver_config=solver_config,
-        )
-
-    return fit_to
 
 
 def robot_of(runs: Sequence[Run]) -> Robot:

@@ -10,7 +10,7 @@ from terrain.cli.results import print_table
 
 if TYPE_CHECKING:
     from odometry.identification.config import WindowConfig
-    from odometry.identification.identify import Identified
+    from odometry.identification.identification import Identified
 
 
 @click.command()

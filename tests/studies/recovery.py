@@ -19,7 +19,8 @@ from scipy.stats import binomtest
 
 from odometry.dead_reckoning import dead_reckon_in_space
 from odometry.identification.config import SolverConfig, WindowConfig
-from odometry.identification.identify import fitter, identify
+from odometry.identification.fitters import fitter
+from odometry.identification.identify import identify
 from odometry.identification.windows import windows_of
 from odometry.io.run_folder import write_run_folder
 from odometry.models.catalogue import MODELS

@@ -8,8 +8,9 @@ from odometry.errors import ParameterError
 from odometry.identification.config import SolverConfig, WindowConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import fit
+from odometry.identification.fitters import fitter
 from odometry.identification.held_out import window_errors
-from odometry.identification.identify import fitter, identify, robot_of
+from odometry.identification.identify import identify, robot_of
 from odometry.identification.windows import windows_of
 from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr

@@ -1,0 +1,48 @@
+"""Which way of fitting suits which model."""
+
+from collections.abc import Callable, Mapping
+from typing import Protocol
+
+from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.identification.fit import Fit, fit
+from odometry.identification.slopes import fit_in_two_stages
+from odometry.identification.windows import Windows
+from odometry.models.base import KinematicModel
+from odometry.run import Robot
+
+
+class FitTo(Protocol):
+    """Fits one model to windows; `near` saves searching far, see `fit`."""
+
+    def __call__(self, windows: Windows, near: Mapping[str, float] | None = None) -> Fit:
+        """The fit."""
+
+
+FITTERS: dict[str, Callable[..., Fit]] = {"icr_slope": fit_in_two_stages}  # else `fit`
+
+
+def fitter(
+    model: KinematicModel,
+    robot: Robot,
+    *,
+    fixed: Mapping[str, float],
+    released: frozenset[str] = frozenset(),
+    window_config: WindowConfig,
+    solver_config: SolverConfig,
+) -> FitTo:
+    """The function that fits a model to windows, in the way that suits it."""
+    fit_with = FITTERS.get(model.name, fit)
+
+    def fit_to(windows: Windows, near: Mapping[str, float] | None = None) -> Fit:
+        return fit_with(
+            model,
+            windows,
+            robot,
+            fixed=fixed,
+            released=released,
+            near=near,
+            window_config=window_config,
+            solver_config=solver_config,
+        )
+
+    return fit_to

@@ -1,0 +1,82 @@
+"""What an identification finds."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from odometry.identification.config import WindowConfig
+from odometry.identification.errors import IdentificationError
+from odometry.identification.fit import Fit
+from odometry.identification.held_out import WindowErrors
+from odometry.parameters import ParameterSet, TerrainParameters
+from odometry.run import Robot
+
+
+@dataclass(frozen=True)
+class Identified:
+    """What runs tell of a model on one ground.
+
+    Attributes
+    ----------
+    fit : Fit
+        To all windows.
+    held_out : WindowErrors or None
+        None where a part alone cannot be fitted.
+    held_out_by : str
+        "runs": each by the others; "halves": each half of every run by the others, where a ground
+        has one run or one run does not tell the model.
+    ideal : WindowErrors
+        Of the ideal differential drive on the same windows.
+    """
+
+    fit: Fit
+    held_out: WindowErrors | None
+    held_out_by: str
+    ideal: WindowErrors
+
+    def to_parameters(self, source: str) -> TerrainParameters:
+        """The table of a parameter set."""
+        return TerrainParameters(
+            self.fit.model.name, self.fit.values, self.fit.names, self.fit.covariance, source
+        )
+
+
+@dataclass(frozen=True)
+class Identification:
+    """What runs tell of a model, by ground.
+
+    Attributes
+    ----------
+    robot : Robot
+    grounds : Mapping of terrain to Identified
+    window_config : WindowConfig
+    """
+
+    robot: Robot
+    grounds: Mapping[str, Identified]
+    window_config: WindowConfig
+
+    def require_determined(self) -> None:
+        """Raise IdentificationError, with numbers, where a fit leaves parameters open."""
+        lines = [
+            f"[{terrain}] {open_.words()}"
+            for terrain, found in self.grounds.items()
+            for open_ in found.fit.undetermined
+        ]
+        if lines:
+            raise IdentificationError(
+                "the runs cannot tell these parameters apart from others, or at all:\n  "
+                + "\n  ".join(lines)
+                + "\nAdd runs that excite them (turns both ways at several speeds; slopes), fix "
+                "values that are known, or choose a model with fewer parameters."
+            )
+
+    def to_parameter_set(self) -> ParameterSet:
+        """One table a ground, with covariances and where the values come from."""
+        terrains = {}
+        for terrain, found in self.grounds.items():
+            runs = ", ".join(dict.fromkeys(map(str, found.fit.windows.run)))
+            source = (
+                f"identified by terrain-odometry from {len(found.fit.windows)} windows of {runs}"
+            )
+            terrains[terrain] = found.to_parameters(source)
+        return ParameterSet(terrains, {"name": self.robot.name} if self.robot.name else {})
