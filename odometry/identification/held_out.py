@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.geometry.angles import wrap
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
 from odometry.identification.motion import window_motion
@@ -23,7 +22,7 @@ class WindowErrors:
     translation_per_m : (K,)
         Distance between predicted and measured end, metres per metre.
     rotation_per_m : (K,)
-        Absolute difference of the turns, rad per metre.
+        Absolute difference of the turns, rad per metre; a robot may turn more than once.
     """
 
     translation_per_m: FloatArray
@@ -35,7 +34,7 @@ def window_errors(model: KinematicModel, values: FloatArray, windows: Windows) -
     error = window_motion(model, values, windows) - windows.measured
     return WindowErrors(
         np.hypot(error[:, 0], error[:, 1]) / windows.travel_m,
-        np.abs(wrap(error[:, 2])) / windows.travel_m,
+        np.abs(error[:, 2]) / windows.travel_m,
     )
 
 

@@ -32,7 +32,7 @@ class Windows:
     first_pose, last_pose : (K,)
         Numbers of the measured poses there: windows may share one, and its noise.
     measured : (K, 3)
-        Pose at the end in the level frame of the pose at the start.
+        Pose at the end in the level frame of the pose at the start; yaw is not wrapped.
     travel_m : (K,)
         Wheel travel.
     start_s : (K,)
@@ -132,12 +132,20 @@ def _windows_of_record(record: Record, name: str, config: WindowConfig) -> Windo
         record.pose_samples[last],
         first,
         last,
-        se2.between(record.poses[first], record.poses[last]),
+        _motion(record.poses, first, last),
         travel_m[last] - travel_m[first],
         pose_s[first],
         np.full(len(first), name, dtype=object),
         record.terrains[first],
     )
+
+
+def _motion(poses: FloatArray, first: IntArray, last: IntArray) -> FloatArray:
+    """Poses (K, 3) of the ends seen from the starts, the turn counted in full over all poses."""
+    motion = se2.between(poses[first], poses[last])
+    yaw = np.unwrap(poses[:, 2])
+    motion[:, 2] = yaw[last] - yaw[first]
+    return np.asarray(motion)
 
 
 def _windows_of_stretch(measure: FloatArray, horizon: float, config: WindowConfig) -> IntArray:

@@ -39,8 +39,8 @@ def distribution_picture(comparison: Comparison, place: Place, folder: Path) -> 
 
     def draw(figure: Figure) -> None:
         bottom, height = 0.55 / height_in, 1 - 0.65 / height_in
-        for quantity, left in (("translation", 0.225), ("rotation", 0.63)):
-            axes = figure.add_axes((left, bottom, 0.35, height))
+        for quantity, left in (("translation", 0.25), ("rotation", 0.64)):
+            axes = figure.add_axes((left, bottom, 0.34, height))
             plot_violins(
                 axes, errors[quantity], styles, f"{quantity} error [{QUANTITIES[quantity]}]"
             )

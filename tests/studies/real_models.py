@@ -7,7 +7,8 @@ is not stated are one ground of each robot. A run is judged by models identified
 of its group, where there is one run each half by the other. `least` is the candidate that errs
 least, translation and rotation as ratios to those of `icr` added up, when the runs that it may see
 are split once more in the same way; `chosen` is the same among those that err no more than `icr`
-in either. Neither sees what it is judged on. H of the inertia models is held at 1, since it acts
+in either. Neither sees what it is judged on, but the rule of `chosen` was added after a first look
+at how `least` fares. H of the inertia models is held at 1, since it acts
 inside a sign alone. Slow models are identified on a part of the windows, evenly picked: at most 120
 for inertia, 45 for `contact`.
 

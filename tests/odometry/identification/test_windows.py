@@ -204,9 +204,11 @@ def test_measured_is_the_end_in_the_frame_of_the_start(winding, synthetic):
     windows = windows_of([winding], WindowConfig())
     poses = winding.pose.stack("x", "y", "yaw")
     for k, (i, j) in enumerate(zip(windows.first_pose, windows.last_pose, strict=True)):
-        np.testing.assert_allclose(
-            windows.measured[k], synthetic.between(poses[i], poses[j]), rtol=0, atol=1e-12
-        )
+        expected = synthetic.between(poses[i], poses[j])
+        steps = [synthetic.between(poses[n], poses[n + 1])[2] for n in range(i, j)]
+        expected = [*expected[:2], sum(steps)]  # the turn of all steps, more than half a turn too
+        np.testing.assert_allclose(windows.measured[k], expected, rtol=0, atol=1e-12)
+    assert np.abs(windows.measured[:, 2]).max() > np.pi
 
 
 def test_distinct_segments_share_their_ends_and_half_a_stride_overlaps(winding):
