@@ -81,7 +81,8 @@ def run_odometry(
     vision : bool
         False keeps one terrain in force throughout.
     terrain : str, optional
-        In force until the first switch; by default the first of `parameters`, else the run's own.
+        In force until the first switch; by default the run's own where `parameters` has it, else
+        the first of `parameters`, else the run's own.
     config : Config, optional
     show_progress : bool
         Whether to draw a bar on standard error.
@@ -120,7 +121,8 @@ def _initial_terrain(run: Run, parameters: ParameterSet, terrain: str | None) ->
     if terrain == UNKNOWN:
         raise ParameterError(f"the terrain name {UNKNOWN!r} is reserved; name another, or none")
     of_run = None if run.terrain == UNKNOWN else run.terrain
-    return terrain or next(iter(parameters.terrains), None) or of_run or UNNAMED_TERRAIN
+    known = of_run if of_run in parameters.terrains else next(iter(parameters.terrains), None)
+    return terrain or known or of_run or UNNAMED_TERRAIN
 
 
 def _watcher(

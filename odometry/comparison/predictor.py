@@ -40,12 +40,13 @@ class Predictor:
         return self.model.pack(self.values)
 
     def to_parameters(self) -> TerrainParameters:
-        """The table of a parameter set; what was left open stands in its source."""
-        open_ = "; not determined: " + "; ".join(self.undetermined) if self.undetermined else ""
+        """The table of a parameter set.
+
+        What was left open stands in its source, and no covariance is stated then.
+        """
+        if self.undetermined:
+            source = f"{self.source}; not determined: {'; '.join(self.undetermined)}"
+            return TerrainParameters(self.model.name, self.values, source=source)
         return TerrainParameters(
-            self.model.name,
-            self.values,
-            self.covariance_order,
-            self.covariance,
-            self.source + open_,
+            self.model.name, self.values, self.covariance_order, self.covariance, self.source
         )

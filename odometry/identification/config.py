@@ -39,7 +39,9 @@ class WindowConfig:
         for name in ("horizon_m", "stride", "pose_gap_s", "position_sigma_m", "yaw_sigma_rad"):
             value = getattr(self, name)
             require(0 < value < math.inf, f"{name} = {value}, expected above 0")
-        require(self.horizon_s >= 0, f"horizon_s = {self.horizon_s}, expected 0 or above")
+        require(
+            0 <= self.horizon_s < math.inf, f"horizon_s = {self.horizon_s}, expected 0 or above"
+        )
         require(0 < self.shortest <= 1, f"shortest = {self.shortest}, expected 0 to 1")
 
 

@@ -65,6 +65,11 @@ class Fit:
     windows: Windows
 
     @property
+    def open_names(self) -> frozenset[str]:
+        """Parameters of the combinations that the windows leave open: their sigmas mean nothing."""
+        return frozenset(name for open_ in self.undetermined for name in open_.direction)
+
+    @property
     def packed(self) -> FloatArray:
         """Parameters (P,) in the order of the model."""
         return np.array([self.values[parameter.name] for parameter in self.model.parameters])

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.geometry.angles import wrap
 from odometry.identification.motion import window_motion, window_motion_jacobian
 from odometry.identification.noise import window_covariances
 from odometry.identification.windows import Windows
@@ -60,11 +59,9 @@ class Problem:
         return np.asarray(np.linalg.inv(np.linalg.cholesky(covariances)))
 
     def residuals(self, chosen: FloatArray) -> FloatArray:
-        """Predicted less measured motion (K, 3), yaw wrapped."""
+        """Predicted less measured motion (K, 3); turns count in full."""
         predicted = window_motion(self.model, self.complete(chosen), self.windows)
-        error = predicted - self.windows.measured
-        error[:, 2] = wrap(error[:, 2])
-        return error
+        return np.asarray(predicted - self.windows.measured)
 
     def jacobian(self, chosen: FloatArray) -> FloatArray:
         """Derivative (K, 3, F) of the residuals by the free parameters."""

@@ -85,7 +85,8 @@ def speed_plane_picture(
         save_figure(file, (_WIDTH_IN, 2 * layout.block_in), draw),
         f"Errors over the plane of tread speeds of {', '.join(names)}.",
         "Mean held-out errors by the mean tread speeds of the windows (as Baril 2020 Fig. 8), on a "
-        "logarithmic scale of colours. On the grey line both treads run alike.",
+        "logarithmic scale of colours; white where there was no window. On the grey line both "
+        "treads run alike.",
     )
 
 
@@ -123,7 +124,7 @@ def _draw_block(
         axes.set_xlabel("v_left [m/s]" if last_of_column else "", fontsize=8.5)
         axes.set_ylabel("v_right [m/s]" if first_of_row else "", fontsize=8.5)
         for axis in (axes.xaxis, axes.yaxis):
-            axis.set_major_locator(MaxNLocator(4))
+            axis.set_major_locator(MaxNLocator(3, prune="both"))
     bar = figure.add_axes(layout.bar(block))
     figure.colorbar(mesh, cax=bar)
     bar.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))

@@ -39,7 +39,7 @@ def plot_violins(
         logs = np.log10(np.maximum(values, FLOOR * largest))
         colour = styles[name].colour
         _draw_curve(axes, row, logs, colour)
-        low, middle, high = 10 ** np.percentile(logs, [25, 50, 75])
+        low, middle, high = np.percentile(values, [25, 50, 75])
         axes.barh(
             row, high - low, left=low, height=0.24, facecolor="#BBBBBB", edgecolor=colour, zorder=3
         )

@@ -72,6 +72,7 @@ def compare(
     """
     from odometry.comparison.compare import compare as compare_models
     from odometry.comparison.config import ComparisonConfig
+    from odometry.comparison.errors import ComparisonError
     from odometry.comparison.files import write_comparison
     from odometry.identification.config import SolverConfig
     from odometry.io.files import check_writable
@@ -92,6 +93,12 @@ def compare(
         config=config,
         show_progress=True,
     )
+    if not any(s.windows for p in comparison.places for s in comparison.summaries_at(p)):
+        reasons = dict.fromkeys(
+            [*comparison.left_out.values()]
+            + [r for p in comparison.places for s in comparison.summaries_at(p) for r in s.reasons]
+        )
+        raise ComparisonError(f"there is nothing to compare: {'; '.join(reasons)}")
     written = write_comparison(comparison, out) + write_comparison_report(comparison, out)
     for reason in comparison.left_out.values():
         click.echo(f"Note: left out: {reason}", err=True)

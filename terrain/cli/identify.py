@@ -79,9 +79,13 @@ def identify(
     from odometry.estimation.icr_prior import ICR_FORM_MODELS
     from odometry.identification.config import SolverConfig
     from odometry.identification.identify import identify as identify_runs
+    from odometry.io.files import check_writable
     from odometry.parameters import write_parameters
     from odometry.run import Run
 
+    if out.suffix != ".toml":
+        raise click.UsageError(f"--out {out}: expected a name that ends in .toml")
+    check_writable(out.parent)
     found = identify_runs(
         [Run.read(folder) for folder in folders],
         model,
@@ -93,16 +97,20 @@ def identify(
         show_progress=True,
     )
     for name, ground in found.grounds.items():
-        _print_ground(name, ground)
+        _print_ground(name, ground, assignments(fix))
     found.require_determined()
     write_parameters(out, found.to_parameter_set())
     click.echo(f"Wrote {out}")
-    click.echo(f"Next: terrain-odometry compare RUN --model {out} --model icr --out comparison")
+    named = f" --terrain {terrain}" if terrain else ""
+    click.echo(
+        f"Next, on a run that is not among these: terrain-odometry compare RUN{named} "
+        f"--model {out} --model differential_drive --out comparison"
+    )
     if model in ICR_FORM_MODELS:
         click.echo(f"or:   terrain-odometry run RUN --parameters {out} --out results")
 
 
-def _print_ground(name: str, ground: "Identified") -> None:
+def _print_ground(name: str, ground: "Identified", given: dict[str, float]) -> None:
     """Print one ground: parameters, what the fit leaves, errors."""
     fit = ground.fit
     click.echo(
@@ -115,14 +123,27 @@ def _print_ground(name: str, ground: "Identified") -> None:
     for parameter, value in fit.values.items():
         sigma = fit.sigmas.get(parameter)
         spread = (
-            ("held", "", "")
+            ("given" if parameter in given else "assumed", "", "")
             if sigma is None
             else (f"{sigma:.3g}", f"{value - 1.96 * sigma:.5g}", f"{value + 1.96 * sigma:.5g}")
         )
         if parameter in fit.by_trial:
             spread = ("by trial", "", "")
+        elif parameter in fit.open_names:
+            spread = ("open", "", "")
+        elif parameter in fit.at_bound:
+            spread = ("at its bound", "", "")
         rows.append((parameter, f"{value:.5g}", *spread, units[parameter]))
     print_table(rows)
+    assumed = [n for n in fit.values if n not in (*fit.sigmas, *fit.by_trial, *given)]
+    if assumed:
+        click.echo(
+            f"Note: {', '.join(assumed)}: assumed from [robot] of run.toml or by rule of thumb; "
+            "--fix NAME=VALUE says better",
+            err=True,
+        )
+    if fit.agreeing == 1 < fit.starts:
+        click.echo("Note: no two starts agree; the minimum may not be the least", err=True)
     for parameter in fit.at_bound:
         click.echo(f"Note: {parameter} ended at the edge of its search range", err=True)
     for parameter in fit.by_trial:
@@ -151,3 +172,12 @@ def _print_errors(ground: "Identified") -> None:
                 )
             )
     print_table(rows)
+    if ground.held_out and (
+        ground.held_out.translation_per_m.mean() >= ground.ideal.translation_per_m.mean()
+        or ground.held_out.rotation_per_m.mean() >= ground.ideal.rotation_per_m.mean()
+    ):
+        click.echo(
+            "Note: held out, it errs no less than no model at all: too little data, or an effect "
+            "that this model does not have",
+            err=True,
+        )

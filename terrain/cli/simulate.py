@@ -89,7 +89,7 @@ def simulate(
 
     Wheels or track rollers slide under a rigid body with inertia, load transfer and gravity on
     slopes. The run has noisy odometry (tread speeds, attitude, yaw rate, accelerations), poses,
-    and the truth; its friction and slopes can be asked back from `identify`.
+    and the truth. `identify --model contact` finds its friction again where it drives on slopes.
 
     \b
     Example:

@@ -110,7 +110,11 @@ def main() -> None:
         with ProcessPoolExecutor(arguments.workers) as pool:
             found = list(pool.map(partial(recover, name), range(arguments.seeds)))
         report(name, found)
-    for note in (mu_on_flat_ground(), icrs_on_a_straight()):
+    for note in (
+        mu_on_flat_ground(),
+        icrs_of_creeping_treads(0.01),
+        icrs_of_creeping_treads(0.004),
+    ):
         print(note)
 
 
@@ -191,9 +195,10 @@ def mu_on_flat_ground() -> str:
     return "contact on level ground:\n" + _undetermined("contact", case)
 
 
-def icrs_on_a_straight() -> str:
-    """What the check says of `icr` where both treads always turn alike."""
-    return "icr where the treads creep:\n" + _undetermined("icr", Case(ICR, speed_m_s=0.004))
+def icrs_of_creeping_treads(speed_m_s: float) -> str:
+    """What the check says of `icr` where the robot hardly moves."""
+    case = Case(ICR, speed_m_s=speed_m_s)
+    return f"icr at up to {speed_m_s:g} m/s:\n" + _undetermined("icr", case)
 
 
 def _undetermined(name: str, case: Case) -> str:

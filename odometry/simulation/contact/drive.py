@@ -84,7 +84,7 @@ def simulate_contact(
     Raises
     ------
     SimulationError
-        If the speeds are not as above, or the vehicle tips over.
+        If the speeds are not as above, or the vehicle tips over or runs away.
     """
     speeds = np.asarray(tread_speeds_m_s, dtype=np.float64)
     if speeds.ndim < 2 or speeds.shape[-1] != 2 or not np.isfinite(speeds).all():
@@ -100,9 +100,15 @@ def simulate_contact(
     substeps = max(1, int(np.ceil(step_s / longest_step_s - 1e-9)))
     states = np.empty((count, len(state), MEMORY), dtype=np.complex128)
     for k in range(count):
+        if not np.isfinite(state).all():
+            raise SimulationError(
+                f"the drive runs away {k * step_s:.2f} s after its start: speeds too high for the "
+                "turns, or a slope steeper than its friction holds"
+            )
         states[k] = state[:, :MEMORY]
-        for _ in range(substeps if k < count - 1 else 0):
-            state = rosenbrock_step(dynamics, state, flat[:, k], step_s / substeps)
+        with np.errstate(over="ignore", invalid="ignore"):
+            for _ in range(substeps if k < count - 1 else 0):
+                state = rosenbrock_step(dynamics, state, flat[:, k], step_s / substeps)
     poses, twists, accelerations = _observed(dynamics, states, step_s)
     return ContactDrive(
         vehicle,

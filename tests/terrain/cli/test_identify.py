@@ -38,7 +38,7 @@ def test_the_parameters_are_shown_and_written(command, curvy_run):
     assert table.covariance_order == tuple(TRUTH)
     assert "curvy" in table.source
     assert f"Wrote {command.out}" in output
-    assert "\nNext: terrain-odometry " in output
+    assert "\nNext, on a run that is not among these: terrain-odometry compare " in output
 
 
 def test_values_intervals_and_errors_are_shown(command, curvy_run, tmp_path):
@@ -72,7 +72,7 @@ def test_fixed_parameters_are_held(command, curvy_run):
     table = read_parameters(command.out).terrains["ground"]
     assert table.covariance_order == ("y_left", "y_right", "x_icr")
     assert table.values["alpha_left"] == 1.0
-    assert sum(line.split()[-1] == "held" for line in output.splitlines() if line.strip()) == 2
+    assert sum(line.split()[-1] == "given" for line in output.splitlines() if line.strip()) == 2
 
 
 def test_known_parameters_can_be_freed(command, curvy_run):
