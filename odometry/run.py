@@ -1,7 +1,7 @@
 """One recording: its robot, its tables, and its frames in time order."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -143,22 +143,6 @@ class Run:
                 pose=poses[pose_row[i]] if pose_row[i] >= 0 else None,
                 image=image,
             )
-
-
-def run_names(runs: Sequence[Run]) -> list[str]:
-    """Names of the folders; where those of different folders are alike, their paths."""
-    folders: dict[str, set[Path]] = {}
-    for run in runs:
-        folders.setdefault(run.name, set()).add(run.folder)
-    return [run.name if len(folders[run.name]) == 1 else str(run.folder) for run in runs]
-
-
-def check_no_run_twice(runs: Sequence[Run]) -> None:
-    """Raise RunFolderError if a folder is there twice: a model would be judged by its own data."""
-    folders = [run.folder.resolve() for run in runs]
-    for folder in folders:
-        if folders.count(folder) > 1:
-            raise RunFolderError(f"{folder} is given twice; expected each run once")
 
 
 def _stamps_and_values(

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 from odometry.arrays import BoolArray, FloatArray
 from odometry.errors import TrajectoryError
 from odometry.geometry import se3
-from odometry.trajectory import Trajectory
+from odometry.trajectory import Trajectory, lies_within, require_within
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class SpatialTrajectory:
 
     def covers(self, stamps_s: FloatArray) -> BoolArray:
         """Which stamps (M,) lie between the first and the last of this trajectory."""
-        return np.asarray((stamps_s >= self.stamps_s[0]) & (stamps_s <= self.stamps_s[-1]))
+        return lies_within(self.stamps_s, stamps_s)
 
     def at(self, stamps_s: FloatArray) -> "SpatialTrajectory":
         """Poses at other stamps: positions linear, attitude along the shortest turn.
@@ -79,12 +79,7 @@ class SpatialTrajectory:
         TrajectoryError
             If a stamp lies outside of this trajectory.
         """
-        stamps_s = np.asarray(stamps_s, dtype=np.float64)
-        if len(stamps_s) and not np.all(self.covers(stamps_s)):
-            raise TrajectoryError(
-                f"asked for {stamps_s.min():.3f} to {stamps_s.max():.3f} s; the trajectory covers "
-                f"{self.stamps_s[0]:.3f} to {self.stamps_s[-1]:.3f} s"
-            )
+        stamps_s = require_within(self.stamps_s, stamps_s)
         before = np.searchsorted(self.stamps_s, stamps_s, side="right") - 1
         after = np.minimum(before + 1, len(self) - 1)
         duration_s = np.where(after > before, self.stamps_s[after] - self.stamps_s[before], 1.0)

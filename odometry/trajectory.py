@@ -4,10 +4,26 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import BoolArray, FloatArray
 from odometry.errors import TrajectoryError
 from odometry.geometry import se2
 from odometry.geometry.angles import wrap
+
+
+def lies_within(stamps_s: FloatArray, asked_s: FloatArray) -> BoolArray:
+    """Which of the asked stamps (M,) lie between the first and the last of stamps (N,)."""
+    return np.asarray((asked_s >= stamps_s[0]) & (asked_s <= stamps_s[-1]))
+
+
+def require_within(stamps_s: FloatArray, asked_s: FloatArray) -> FloatArray:
+    """The asked stamps (M,) as floats; TrajectoryError if one lies outside of stamps (N,)."""
+    asked_s = np.asarray(asked_s, dtype=np.float64)
+    if len(asked_s) and not np.all(lies_within(stamps_s, asked_s)):
+        raise TrajectoryError(
+            f"asked for {asked_s.min():.3f} to {asked_s.max():.3f} s; the trajectory covers "
+            f"{stamps_s[0]:.3f} to {stamps_s[-1]:.3f} s"
+        )
+    return asked_s
 
 
 @dataclass(frozen=True)
@@ -37,9 +53,9 @@ class Trajectory:
     def __len__(self) -> int:
         return len(self.stamps_s)
 
-    def covers(self, stamps_s: FloatArray) -> FloatArray:
+    def covers(self, stamps_s: FloatArray) -> BoolArray:
         """Which stamps (M,) lie between the first and the last of this trajectory."""
-        return np.asarray((stamps_s >= self.stamps_s[0]) & (stamps_s <= self.stamps_s[-1]))
+        return lies_within(self.stamps_s, stamps_s)
 
     def at(self, stamps_s: FloatArray) -> "Trajectory":
         """Poses at other stamps, linear in x, y and along the shorter way in yaw.
@@ -49,12 +65,7 @@ class Trajectory:
         TrajectoryError
             If a stamp lies outside of this trajectory.
         """
-        stamps_s = np.asarray(stamps_s, dtype=np.float64)
-        if len(stamps_s) and not np.all(self.covers(stamps_s)):
-            raise TrajectoryError(
-                f"asked for {stamps_s.min():.3f} to {stamps_s.max():.3f} s; the trajectory covers "
-                f"{self.stamps_s[0]:.3f} to {self.stamps_s[-1]:.3f} s"
-            )
+        stamps_s = require_within(self.stamps_s, stamps_s)
         continuous = self.poses.copy()
         continuous[:, 2] = np.unwrap(continuous[:, 2])
         poses = np.stack(

@@ -9,12 +9,12 @@ from odometry.comparison.differences import Difference, differences
 from odometry.comparison.errors import ComparisonError
 from odometry.comparison.judgement import Judgement
 from odometry.comparison.judging import judge_all
-from odometry.comparison.parts import with_named_ground
 from odometry.comparison.prepare import Prepared, prepare
 from odometry.comparison.run_fitness import run_fitness
 from odometry.comparison.split import of_all, splits
 from odometry.comparison.summary import Place
 from odometry.errors import OdometryError
+from odometry.grounds import with_named_ground
 from odometry.identification.record import record_of
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.run import Run

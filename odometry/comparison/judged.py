@@ -1,4 +1,4 @@
-"""Windows over which models are judged, and the errors of a model there."""
+"""Windows over which models are judged."""
 
 from dataclasses import dataclass, replace
 
@@ -6,11 +6,8 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.comparison.parts import Part, windows_of_parts
-from odometry.evaluation.open_loop import measured_poses
 from odometry.identification.config import WindowConfig
-from odometry.identification.motion import window_motion
 from odometry.identification.windows import Windows
-from odometry.models.base import KinematicModel
 from odometry.run import Run
 
 
@@ -21,34 +18,15 @@ class JudgedWindows:
     Attributes
     ----------
     windows : Windows
-    turns_rad : (K,)
-        Measured turns, not wrapped: a robot that spins turns by more than half a circle.
     mean_speeds_m_s : (K, 2)
         v_left, v_right averaged over the time of each window.
     """
 
     windows: Windows
-    turns_rad: FloatArray
     mean_speeds_m_s: FloatArray
 
     def __len__(self) -> int:
         return len(self.windows)
-
-
-@dataclass(frozen=True)
-class Errors:
-    """Errors of K windows per metre of wheel travel (CONVENTIONS, "Horizons and errors").
-
-    Attributes
-    ----------
-    translation_per_m : (K,)
-        Distance between predicted and measured end [m per m].
-    rotation_per_m : (K,)
-        Absolute difference of the turns [rad per m].
-    """
-
-    translation_per_m: FloatArray
-    rotation_per_m: FloatArray
 
 
 def judged_windows(part: Part, horizon_m: float, training: WindowConfig) -> JudgedWindows:
@@ -73,25 +51,7 @@ def judged_windows(part: Part, horizon_m: float, training: WindowConfig) -> Judg
     config = replace(training, horizon_m=horizon_m, horizon_s=0.0, stride=1.0, shortest=1.0)
     whole = replace(part, run=_as_one_chain(part.run))
     windows = windows_of_parts([whole], config)
-    last_s = windows.start_s + _sums(windows, windows.steps_s)
-    return JudgedWindows(windows, _turns(part.run, windows.start_s, last_s), _mean_speeds(windows))
-
-
-def judge(model: KinematicModel, values: FloatArray, judged: JudgedWindows) -> Errors:
-    """Errors of a model with parameters (P,).
-
-    Raises
-    ------
-    ParameterError
-        If the model needs an input that was not recorded.
-    """
-    windows = judged.windows
-    predicted = window_motion(model, values, windows)
-    away = predicted[:, :2] - windows.measured[:, :2]
-    return Errors(
-        np.hypot(away[:, 0], away[:, 1]) / windows.travel_m,
-        np.abs(predicted[:, 2] - judged.turns_rad) / windows.travel_m,
-    )
+    return JudgedWindows(windows, _mean_speeds(windows))
 
 
 def _as_one_chain(run: Run) -> Run:
@@ -99,14 +59,6 @@ def _as_one_chain(run: Run) -> Run:
         return run
     columns = {name: column for name, column in run.pose.columns.items() if name != "window"}
     return replace(run, pose=replace(run.pose, columns=columns))
-
-
-def _turns(run: Run, first_s: FloatArray, last_s: FloatArray) -> FloatArray:
-    """Measured turns (K,) between stamps of pose.csv, followed from pose to pose."""
-    stamps_s, poses = measured_poses(run)
-    yaw = np.unwrap(poses[:, 3])
-    first, last = (np.interp(at_s, stamps_s, yaw) for at_s in (first_s, last_s))
-    return np.asarray(last - first)
 
 
 def _mean_speeds(windows: Windows) -> FloatArray:

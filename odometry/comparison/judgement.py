@@ -3,8 +3,9 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from odometry.comparison.judged import Errors, JudgedWindows
+from odometry.comparison.judged import JudgedWindows
 from odometry.evaluation.fitness import Fitness
+from odometry.identification.window_errors import WindowErrors
 
 
 @dataclass(frozen=True)
@@ -18,7 +19,7 @@ class Judgement:
         What the identified models had seen.
     horizon_m : float
     judged : JudgedWindows
-    errors : Mapping of model to Errors
+    errors : Mapping of model to WindowErrors
         Without the models that failed here.
     """
 
@@ -28,7 +29,7 @@ class Judgement:
     seen: str
     horizon_m: float
     judged: JudgedWindows
-    errors: Mapping[str, Errors]
+    errors: Mapping[str, WindowErrors]
 
 
 @dataclass(frozen=True)

@@ -3,11 +3,12 @@
 from collections.abc import Sequence
 
 from odometry.comparison.config import ComparisonConfig
-from odometry.comparison.judged import Errors, judge, judged_windows
+from odometry.comparison.judged import judged_windows
 from odometry.comparison.judgement import Judgement, Shortfall
 from odometry.comparison.parts import Part
 from odometry.comparison.prepare import Prepared
 from odometry.errors import OdometryError
+from odometry.identification.window_errors import WindowErrors, window_errors
 
 
 def judge_all(
@@ -36,10 +37,10 @@ def _judge_part(
             if horizon_m in config.horizons_m:
                 reasons[""] = str(error)
             continue
-        errors: dict[str, Errors] = {}
+        errors: dict[str, WindowErrors] = {}
         for model, predictor in prepared.predictors.items():
             try:
-                errors[model] = judge(predictor.model, predictor.packed, judged)
+                errors[model] = window_errors(predictor.model, predictor.packed, judged.windows)
             except OdometryError as error:
                 reasons[model] = str(error)
         found.append(

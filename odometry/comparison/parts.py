@@ -5,11 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from odometry.arrays import AnyArray, BoolArray
+from odometry.arrays import BoolArray
+from odometry.grounds import terrains_of
 from odometry.identification.config import WindowConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.windows import Windows, windows_of
-from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
+from odometry.run import Run
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,25 +50,6 @@ class Part:
             end = int(np.searchsorted(pose.stamps_s, odometry.stamps_s[-1], side="right"))
             pose = pose.rows(slice(first, end))
         return replace(self.run, odometry=odometry, pose=pose)
-
-
-def with_named_ground(run: Run, given: str | None) -> Run:
-    """The run with a name for every ground: `given`, or "ground", where nobody names it."""
-    usual = run.terrain if run.terrain not in (None, UNKNOWN) else given or UNNAMED_TERRAIN
-    settings = {**run.settings, "run": {**run.settings.get("run", {}), "terrain": usual}}
-    odometry = run.odometry
-    if "terrain" in odometry:
-        names = odometry["terrain"].astype(object)
-        named = np.where((names == "") | (names == UNKNOWN), usual, names)
-        odometry = replace(odometry, columns={**odometry.columns, "terrain": named})
-    return replace(run, settings=settings, odometry=odometry)
-
-
-def terrains_of(run: Run) -> AnyArray:
-    """Name of the ground (N,) at each row of a run whose grounds are named."""
-    if "terrain" in run.odometry:
-        return np.asarray(run.odometry["terrain"])
-    return np.full(len(run.odometry), run.terrain, dtype=object)
 
 
 def parts_by_ground(run: Run, name: str) -> dict[str, Part]:

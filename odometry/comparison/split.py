@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from odometry.comparison.parts import Part, halves, parts_by_ground
-from odometry.run import Robot, Run, check_no_run_twice, run_names
+from odometry.run import Robot, Run
+from odometry.runs import check_no_run_twice, run_names
 
 
 @dataclass(frozen=True, eq=False)

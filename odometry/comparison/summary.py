@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.comparison.judged import Errors
 from odometry.comparison.judgement import Judgement, Shortfall
+from odometry.identification.window_errors import WindowErrors
 
 # Quantity to unit. Angles are degrees in everything that a comparison states.
 QUANTITIES = {"translation": "m per m", "rotation": "degrees per m"}
@@ -67,7 +67,7 @@ class Summary:
     reasons: tuple[str, ...]
 
 
-def values_of(errors: Errors, quantity: str) -> FloatArray:
+def values_of(errors: WindowErrors, quantity: str) -> FloatArray:
     """Errors (K,) in the unit of `QUANTITIES`."""
     if quantity == "translation":
         return errors.translation_per_m

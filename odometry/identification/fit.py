@@ -164,7 +164,7 @@ def _finish(
 ) -> Fit:
     scale = residual_scale(problem, solution)
     whitened = np.sqrt(solution.weights)[:, None, None] * (
-        problem.whitening() @ problem.jacobian(solution.chosen)
+        problem.whitening @ problem.jacobian(solution.chosen)
     )
     low, high = problem.bounds()
     edge = 1e-3 * sizes

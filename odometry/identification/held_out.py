@@ -1,41 +1,14 @@
 """Errors of a fitted model on windows that did not take part in its fit."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.arrays import FloatArray, IntArray
+from odometry.arrays import IntArray
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
-from odometry.identification.motion import window_motion
+from odometry.identification.window_errors import WindowErrors, window_errors
 from odometry.identification.windows import Windows
-from odometry.models.base import KinematicModel
-
-
-@dataclass(frozen=True)
-class WindowErrors:
-    """Errors of K windows per metre of wheel travel.
-
-    Attributes
-    ----------
-    translation_per_m : (K,)
-        Distance between predicted and measured end, metres per metre.
-    rotation_per_m : (K,)
-        Absolute difference of the turns, rad per metre; a robot may turn more than once.
-    """
-
-    translation_per_m: FloatArray
-    rotation_per_m: FloatArray
-
-
-def window_errors(model: KinematicModel, values: FloatArray, windows: Windows) -> WindowErrors:
-    """Errors of a model over windows (CONVENTIONS, "Horizons and errors")."""
-    error = window_motion(model, values, windows) - windows.measured
-    return WindowErrors(
-        np.hypot(error[:, 0], error[:, 1]) / windows.travel_m,
-        np.abs(error[:, 2]) / windows.travel_m,
-    )
 
 
 def by_runs(windows: Windows) -> IntArray:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from odometry.identification.config import WindowConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
-from odometry.identification.held_out import WindowErrors
+from odometry.identification.window_errors import WindowErrors
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.run import Robot
 

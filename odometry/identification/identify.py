@@ -1,27 +1,25 @@
 """Identify one model from recorded runs, ground by ground."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from tqdm import tqdm
 
 from odometry.errors import ParameterError
+from odometry.grounds import with_named_ground
 from odometry.identification.config import SolverConfig, WindowConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
 from odometry.identification.fitters import FitTo, fitter
-from odometry.identification.held_out import (
-    WindowErrors,
-    by_halves,
-    by_runs,
-    held_out_errors,
-    window_errors,
-)
+from odometry.identification.held_out import by_halves, by_runs, held_out_errors
 from odometry.identification.identification import Identification, Identified
+from odometry.identification.window_errors import WindowErrors, window_errors
 from odometry.identification.windows import Windows, windows_of
 from odometry.models.base import KinematicModel
 from odometry.models.catalogue import MODELS, model_named
-from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Robot, Run, check_no_run_twice
+from odometry.run import UNKNOWN, Robot, Run
+from odometry.runs import check_no_run_twice
 
 
 def identify(
@@ -68,7 +66,7 @@ def identify(
         raise ParameterError(f"the terrain name {UNKNOWN!r} is reserved; name another, or none")
     check_no_run_twice(runs)
     robot = robot_of(runs)
-    windows = windows_of(runs, window_config)
+    windows = windows_of([with_named_ground(run, terrain) for run in runs], window_config)
     fit_to = fitter(
         chosen,
         robot,
@@ -77,8 +75,9 @@ def identify(
         window_config=window_config,
         solver_config=solver_config,
     )
-    ground = np.array([_ground_name(str(name), terrain) for name in windows.terrain], dtype=object)
-    by_ground = {name: windows.where(ground == name) for name in dict.fromkeys(ground)}
+    by_ground = {
+        str(name): windows.where(windows.terrain == name) for name in dict.fromkeys(windows.terrain)
+    }
     fits = sum(1 + max(2, len(set(here.run))) for here in by_ground.values())
     off = None if show_progress else True
     with tqdm(total=fits, desc=chosen.name, unit="fit", disable=off) as bar:
@@ -93,24 +92,27 @@ def identify(
 
 
 def robot_of(runs: Sequence[Run]) -> Robot:
-    """The robot that all runs share.
+    """The robot that all runs share: the first one's, with what only others state of its size.
 
     Raises
     ------
     IdentificationError
-        If there is no run, or track width, length or mass differ.
+        If there is no run, or two state different track widths, lengths or masses.
     """
     if not runs:
         raise IdentificationError("no run was given; expected one or more")
-    for run in runs:
-        for name in ("track_width", "length", "mass"):
-            here, there = getattr(run.robot, name), getattr(runs[0].robot, name)
-            if here != there:
-                raise IdentificationError(
-                    f"{run.folder}: [robot] {name} = {here}, but {runs[0].folder} has {there}; "
-                    "expected runs of one robot"
-                )
-    return runs[0].robot
+    robot = runs[0].robot
+    for name in ("track_width", "length", "mass"):
+        stated = {getattr(r.robot, name): r for r in runs if getattr(r.robot, name) is not None}
+        if len(stated) > 1:
+            (here, first), (there, second), *_ = stated.items()
+            raise IdentificationError(
+                f"{second.folder}: [robot] {name} = {there}, but {first.folder} has {here}; "
+                "expected runs of one robot"
+            )
+        if stated:
+            robot = replace(robot, **{name: next(iter(stated))})
+    return robot
 
 
 def _identified(windows: Windows, fit_to: FitTo, robot: Robot) -> Identified:
@@ -132,7 +134,3 @@ def _held_out(
         except IdentificationError:
             continue
     return None, ""
-
-
-def _ground_name(name: str, given: str | None) -> str:
-    return given or UNNAMED_TERRAIN if name == UNKNOWN else name

@@ -1,6 +1,7 @@
 """The loss of an identification: squared Mahalanobis distances of windows (Baril 2020 eq. 13)."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -53,6 +54,7 @@ class Problem:
         low, high = np.array(ranges)[self.free].reshape(-1, 2).T
         return low, high
 
+    @cached_property
     def whitening(self) -> FloatArray:
         """Inverse Cholesky factors (K, 3, 3) of the windows' stated covariances."""
         covariances = window_covariances(self.windows, self.variances)

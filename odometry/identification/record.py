@@ -5,11 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
+from odometry.grounds import terrains_of
 from odometry.identification.config import WindowConfig
 from odometry.identification.errors import IdentificationError
 from odometry.models.inputs import Inputs
 from odometry.models.run_inputs import inputs_of
-from odometry.run import UNKNOWN, Run
+from odometry.run import Run
 
 GAP_PERIODS = 5.0  # stamps farther apart than this many usual periods are a gap
 
@@ -69,7 +70,7 @@ def record_of(run: Run, config: WindowConfig) -> Record:
     speed = np.abs(inputs.tread_speeds_m_s).mean(axis=1)
     travel_m = np.concatenate([[0.0], np.cumsum(speed[:-1] * np.diff(stamps_s))])
     samples = np.searchsorted(stamps_s, pose_s)
-    terrains = _terrains(run, rows)
+    terrains = terrains_of(run)[rows]
     changes = np.concatenate([[0], np.cumsum(terrains[1:] != terrains[:-1])])[samples]
     breaks = (
         (np.diff(pose_s) > max(config.pose_gap_s, GAP_PERIODS * np.median(np.diff(pose_s))))
@@ -89,15 +90,6 @@ def _measured_poses(run: Run) -> tuple[FloatArray, FloatArray, FloatArray]:
     measured = np.isfinite(poses).all(axis=1)
     windows = run.pose["window"] if "window" in run.pose.columns else np.zeros(len(poses))
     return poses[measured], run.pose.stamps_s[measured], np.nan_to_num(windows)[measured]
-
-
-def _terrains(run: Run, rows: IntArray) -> AnyArray:
-    """The terrain (N,) at rows of odometry: its column where there is one, else the run's."""
-    usual = run.terrain or UNKNOWN
-    if "terrain" not in run.odometry.columns:
-        return np.full(len(rows), usual, dtype=object)
-    names = run.odometry["terrain"].astype(object)
-    return np.asarray(np.where(names == "", usual, names)[rows])
 
 
 def _odometry_gap_between(odometry_s: FloatArray, pose_s: FloatArray) -> BoolArray:

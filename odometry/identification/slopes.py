@@ -119,7 +119,7 @@ def _joined(
     problem = Problem(sloped.model, sloped.windows, sloped.packed, free, variances)
     order = [problem.names.index(name) for name in names]
     jacobian = problem.jacobian(sloped.packed[free])[:, :, order]
-    weighted = np.sqrt(sloped.weights)[:, None, None] * problem.whitening() @ jacobian
+    weighted = np.sqrt(sloped.weights)[:, None, None] * problem.whitening @ jacobian
     flattened = weighted.reshape(-1, len(names))
     first, second = flattened[:, : len(flat.names)], flattened[:, len(flat.names) :]
     moves = -np.linalg.pinv(second) @ first

@@ -100,7 +100,7 @@ def _reweighted(
 def _least_squares(
     problem: Problem, start: FloatArray, sizes: FloatArray, weights: FloatArray, evaluations: int
 ) -> FloatArray:
-    root = np.sqrt(weights)[:, None, None] * problem.whitening()
+    root = np.sqrt(weights)[:, None, None] * problem.whitening
 
     def residuals(chosen: FloatArray) -> FloatArray:
         return np.asarray(np.einsum("kij,kj->ki", root, problem.residuals(chosen))).ravel()
@@ -122,7 +122,7 @@ def _squares(problem: Problem, chosen: FloatArray) -> float:
 
 def _distances(problem: Problem, chosen: FloatArray) -> FloatArray:
     """Mahalanobis distances (K,)."""
-    whitened = np.einsum("kij,kj->ki", problem.whitening(), problem.residuals(chosen))
+    whitened = np.einsum("kij,kj->ki", problem.whitening, problem.residuals(chosen))
     return np.asarray(np.maximum(np.linalg.norm(whitened, axis=1), 1e-12))
 
 

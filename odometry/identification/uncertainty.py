@@ -11,7 +11,7 @@ from odometry.identification.windows import Windows
 
 def residual_scale(problem: Problem, solution: Solution) -> float:
     """Root mean square of the whitened residuals: 1 where the stated noise explains them."""
-    whitened = np.einsum("kij,kj->ki", problem.whitening(), problem.residuals(solution.chosen))
+    whitened = np.einsum("kij,kj->ki", problem.whitening, problem.residuals(solution.chosen))
     freedom = max(3 * float(solution.weights.sum()) - len(solution.chosen), 1.0)
     return float(np.sqrt(np.sum(solution.weights[:, None] * whitened**2) / freedom))
 
@@ -32,7 +32,7 @@ def parameter_covariance(problem: Problem, solution: Solution, sizes: FloatArray
     """
     windows, weights = problem.windows, solution.weights
     variances = problem.variances * min(1.0, residual_scale(problem, solution)) ** 2
-    whitening = problem.whitening()
+    whitening = problem.whitening
     inverse = whitening.swapaxes(1, 2) @ whitening
     jacobian = problem.jacobian(solution.chosen) * sizes
     gradients = weights[:, None, None] * jacobian.swapaxes(1, 2) @ inverse

@@ -11,8 +11,9 @@ from odometry.geometry import se2
 from odometry.identification.config import WindowConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.record import Record, record_of
-from odometry.models.inputs import Inputs
-from odometry.run import Run, run_names
+from odometry.models.inputs import Inputs, joined
+from odometry.run import Run
+from odometry.runs import run_names
 
 STANDING_M = 1e-3  # less wheel travel than this says nothing of a model
 
@@ -98,7 +99,7 @@ def windows_of(runs: Sequence[Run], config: WindowConfig) -> Windows:
     samples = np.cumsum([0, *(len(part.steps_s) for part in parts[:-1])])
     poses = np.cumsum([0, *(1 + part.last_pose.max(initial=-1) for part in parts[:-1])])
     return Windows(
-        _joined([part.inputs for part in parts]),
+        joined([part.inputs for part in parts]),
         np.concatenate([part.steps_s for part in parts]),
         np.concatenate([part.first + n for part, n in zip(parts, samples, strict=True)]),
         np.concatenate([part.last + n for part, n in zip(parts, samples, strict=True)]),
@@ -154,17 +155,6 @@ def _windows_of_stretch(measure: FloatArray, horizon: float, config: WindowConfi
     if config.shortest * horizon <= length < horizon:
         return np.array([[0, len(measure) - 1]])
     return spatial_horizons(measure, horizon, config.stride * horizon)
-
-
-def _joined(parts: Sequence[Inputs]) -> Inputs:
-    accelerations = [part.accelerations_m_s2 for part in parts]
-    known = [values for values in accelerations if values is not None]
-    return Inputs(
-        np.concatenate([part.tread_speeds_m_s for part in parts]),
-        np.concatenate([part.roll_rad for part in parts]),
-        np.concatenate([part.pitch_rad for part in parts]),
-        np.concatenate(known) if len(known) == len(parts) else None,
-    )
 
 
 def _no_window(runs: Sequence[Run], config: WindowConfig) -> str:

@@ -1,10 +1,12 @@
 """What a kinematic model is told: tread speeds, attitude, accelerations."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
-from odometry.arrays import FloatArray, IntArray
+from odometry.arrays import AnyArray, FloatArray, IntArray
 
 
 def _level() -> FloatArray:
@@ -24,12 +26,24 @@ class Inputs:
     accelerations_m_s2 : (..., 2) or None
         accel_x, accel_y as an accelerometer at the robot's origin reads them, gravity included;
         None where they were not recorded.
+    time_s : (...) or None
+        Run time: since the first stamp of odometry.csv.
+    terrain : (...) of str or None
+        Name of the ground.
+    heading_rad : (...) or None
+        Measured yaw, interpolated and not wrapped; None without measured poses.
+    wheel_angles_rad : (..., 2) or None
+        Turned since the start, left and right; None where the wheel radius is not stated.
     """
 
     tread_speeds_m_s: FloatArray
     roll_rad: FloatArray = field(default_factory=_level)
     pitch_rad: FloatArray = field(default_factory=_level)
     accelerations_m_s2: FloatArray | None = None
+    time_s: FloatArray | None = None
+    terrain: AnyArray | None = None
+    heading_rad: FloatArray | None = None
+    wheel_angles_rad: FloatArray | None = None
 
     def __post_init__(self) -> None:
         speeds = np.asarray(self.tread_speeds_m_s)
@@ -57,9 +71,17 @@ class Inputs:
 
     def rows(self, chosen: slice | IntArray) -> "Inputs":
         """Some samples of a stack (N, ...)."""
-        return Inputs(
-            self.tread_speeds_m_s[chosen],
-            self.roll_rad[chosen],
-            self.pitch_rad[chosen],
-            None if self.accelerations_m_s2 is None else self.accelerations_m_s2[chosen],
-        )
+        named: dict[str, Any] = {
+            name: None if values is None else values[chosen] for name, values in vars(self).items()
+        }
+        return Inputs(**named)
+
+
+def joined(parts: Sequence[Inputs]) -> Inputs:
+    """Stacks (N, ...) end to end; what one of them lacks, the whole lacks."""
+    stacks = {name: [getattr(part, name) for part in parts] for name in vars(parts[0])}
+    named: dict[str, Any] = {
+        name: None if any(values is None for values in stack) else np.concatenate(stack)
+        for name, stack in stacks.items()
+    }
+    return Inputs(**named)

@@ -4,6 +4,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.gaps import fill_gaps, level_where_missing
+from odometry.grounds import terrains_of
 from odometry.models.inputs import Inputs
 from odometry.run import Run
 
@@ -16,7 +17,16 @@ def inputs_of(run: Run) -> Inputs:
     were.
     """
     speeds = run.odometry.stack("v_left", "v_right")
-    return Inputs(speeds, *attitude_of(run), _accelerations(run))
+    stamps_s = run.odometry.stamps_s
+    return Inputs(
+        speeds,
+        *attitude_of(run),
+        _accelerations(run),
+        stamps_s - stamps_s[0],
+        terrains_of(run),
+        _heading(run),
+        _wheel_angles(run),
+    )
 
 
 def attitude_of(run: Run) -> tuple[FloatArray, FloatArray]:
@@ -34,3 +44,23 @@ def _accelerations(run: Run) -> FloatArray | None:
     if len(recorded) < len(columns):
         return None
     return np.stack([fill_gaps(run.odometry.stamps_s, column) for column in recorded], axis=-1)
+
+
+def _heading(run: Run) -> FloatArray | None:
+    if run.pose is None:
+        return None
+    measured = np.isfinite(run.pose["yaw"])
+    if not measured.any():
+        return None
+    yaw = np.unwrap(run.pose["yaw"][measured])
+    return np.interp(run.odometry.stamps_s, run.pose.stamps_s[measured], yaw)
+
+
+def _wheel_angles(run: Run) -> FloatArray | None:
+    radius = run.robot.wheel_radius
+    if radius is None:
+        return None
+    speeds = run.odometry.stack("v_left", "v_right")
+    steps_s = np.diff(run.odometry.stamps_s)[:, None]
+    travel_m = np.concatenate([np.zeros((1, 2)), np.cumsum(speeds[:-1] * steps_s, axis=0)])
+    return np.asarray(travel_m / radius)

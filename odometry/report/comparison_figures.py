@@ -181,7 +181,7 @@ def _commanded(judgements: list[Judgement]) -> tuple[FloatArray, FloatArray]:
     differences = np.concatenate(
         [j.mean_speeds_m_s[:, 1] - j.mean_speeds_m_s[:, 0] for j in judged]
     )
-    turns = np.concatenate([j.turns_rad / j.windows.travel_m for j in judged])
+    turns = np.concatenate([j.windows.measured[:, 2] / j.windows.travel_m for j in judged])
     return differences, np.degrees(turns)
 
 

@@ -9,16 +9,18 @@ import csv
 
 import numpy as np
 
-from odometry.comparison.judged import judge, judged_windows
-from odometry.comparison.parts import parts_by_ground, with_named_ground
+from odometry.comparison.judged import judged_windows
+from odometry.comparison.parts import parts_by_ground
+from odometry.grounds import with_named_ground
 from odometry.identification.config import WindowConfig
+from odometry.identification.window_errors import window_errors
 from odometry.models.catalogue import MODELS
 from odometry.run import Run
 
 
 def mean_errors(judged, model, **values):
     model = MODELS[model]
-    errors = judge(model, model.pack(values), judged)
+    errors = window_errors(model, model.pack(values), judged.windows)
     return [errors.translation_per_m.mean(), np.degrees(errors.rotation_per_m.mean())]
 
 

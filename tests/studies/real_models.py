@@ -34,12 +34,13 @@ from odometry.comparison.comparison import Comparison
 from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.differences import Difference, between
 from odometry.comparison.files import write_comparison
-from odometry.comparison.judged import judge, judged_windows
+from odometry.comparison.judged import judged_windows
 from odometry.comparison.predictor import Predictor
 from odometry.comparison.split import Split, left_out
 from odometry.comparison.summary import QUANTITIES, Place, Summary
 from odometry.errors import OdometryError
 from odometry.identification.config import SolverConfig
+from odometry.identification.window_errors import window_errors
 from odometry.io.files import atomic_write
 from odometry.models.catalogue import MODELS
 from odometry.report.comparison_page import write_comparison_report
@@ -117,7 +118,7 @@ def score(candidate: Candidate, inner: Sequence[Split], config: ComparisonConfig
             predictor = candidate.on(split, config)
             for part in split.judged:
                 judged = judged_windows(part, config.horizons_m[0], config.training)
-                errors = judge(predictor.model, predictor.packed, judged)
+                errors = window_errors(predictor.model, predictor.packed, judged.windows)
                 translation.append(errors.translation_per_m)
                 rotation.append(errors.rotation_per_m)
         except OdometryError:

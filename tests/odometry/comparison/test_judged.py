@@ -6,10 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.comparison.judged import judge, judged_windows
-from odometry.comparison.parts import parts_by_ground, windows_of_parts, with_named_ground
+from odometry.comparison.judged import judged_windows
+from odometry.comparison.parts import parts_by_ground, windows_of_parts
+from odometry.grounds import with_named_ground
 from odometry.identification.config import WindowConfig
 from odometry.identification.errors import IdentificationError
+from odometry.identification.window_errors import window_errors
 from odometry.models.catalogue import MODELS
 from odometry.run import Run
 
@@ -60,7 +62,7 @@ def test_errors_are_those_of_a_plain_loop(tmp_path, bench, horizon_m):
     run = Run.read(bench.write(tmp_path / "run", speeds, icrs=bench.skewed, noise_m=0.02))
     model = MODELS["icr"]
     judged = judged_windows(whole(run), horizon_m, WindowConfig())
-    errors = judge(model, model.pack(bench.symmetric), judged)
+    errors = window_errors(model, model.pack(bench.symmetric), judged.windows)
     expected = loop_errors(run, bench.symmetric, horizon_m, bench)
     assert len(judged) == len(expected[0]) > 5
     np.testing.assert_allclose(errors.translation_per_m, expected[0], rtol=0, atol=1e-5)
@@ -72,9 +74,9 @@ def test_a_robot_that_spins_turns_by_more_than_half_a_circle(tmp_path, bench):
     speeds = np.tile([-0.5, 0.5], (500, 1))
     run = Run.read(bench.write(tmp_path / "run", speeds, noise_m=0.0))
     judged = judged_windows(whole(run), 4.0, WindowConfig())
-    np.testing.assert_allclose(judged.turns_rad, 10.0, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(judged.windows.measured[:, 2], 10.0, rtol=0, atol=1e-6)
     ideal = MODELS["differential_drive"]
-    errors = judge(ideal, ideal.pack({"track_width": bench.track_width}), judged)
+    errors = window_errors(ideal, ideal.pack({"track_width": bench.track_width}), judged.windows)
     np.testing.assert_allclose(errors.rotation_per_m, 4.0 - 2.5, rtol=0, atol=1e-6)
 
 

@@ -3,33 +3,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.comparison.parts import (
-    halves,
-    parts_by_ground,
-    terrains_of,
-    windows_of_parts,
-    with_named_ground,
-)
+from odometry.comparison.parts import halves, parts_by_ground, windows_of_parts
+from odometry.grounds import with_named_ground
 from odometry.identification.config import WindowConfig
 from odometry.identification.errors import IdentificationError
-from odometry.run import Run, run_names
+from odometry.run import Run
 
 ROWS = "t,v_left,v_right,terrain\n0,1,1,\n1,1,1,ice\n2,3,3,ice\n3,0,0,unknown\n4,1,1,ice\n"
 POSES = "t,x,y,yaw\n-1,0,0,0\n0,1,0,0\n1,2,0,0\n2.5,3,0,0\n4,4,0,0\n9,5,0,0\n"
-
-
-@pytest.mark.parametrize(("given", "expected"), [(None, "ground"), ("sand", "sand")])
-def test_every_ground_gets_a_name(make_run, given, expected):
-    run = with_named_ground(Run.read(make_run(odometry=ROWS)), given)
-    assert run.terrain == expected
-    assert terrains_of(run).tolist() == [expected, "ice", "ice", expected, "ice"]
-    assert list(parts_by_ground(run, "a")) == [expected, "ice"]
-
-
-def test_the_name_in_the_run_goes_before_the_given_one(make_run):
-    settings = '[robot]\ntrack_width = 0.4\n[run]\nterrain = "snow"\n'
-    run = with_named_ground(Run.read(make_run(settings=settings)), "sand")
-    assert terrains_of(run).tolist() == ["snow"] * 3
 
 
 def test_a_part_holds_its_rows_and_the_poses_within_them(make_run):
@@ -71,10 +52,3 @@ def test_windows_keep_to_the_ground_of_the_part(bench, tmp_path):
         assert inside.all()
     with pytest.raises(IdentificationError, match="no window lies wholly on 'ice' in r"):
         windows_of_parts([parts["ice"]], WindowConfig(horizon_m=5.0, shortest=1.0))
-
-
-def test_runs_of_one_name_are_told_apart_by_their_folders(bench, tmp_path):
-    speeds = np.full((4, 2), 0.5)
-    folders = [tmp_path / "a" / "run", tmp_path / "b" / "run", tmp_path / "other"]
-    runs = [Run.read(bench.write(folder, speeds)) for folder in folders]
-    assert run_names(runs) == [str(folders[0]), str(folders[1]), "other"]

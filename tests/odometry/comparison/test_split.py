@@ -9,9 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from odometry.comparison.judged import judged_windows
-from odometry.comparison.parts import windows_of_parts, with_named_ground
+from odometry.comparison.parts import windows_of_parts
 from odometry.comparison.split import of_all, robot_labels, splits
 from odometry.errors import RunFolderError
+from odometry.grounds import with_named_ground
 from odometry.identification.config import WindowConfig
 from odometry.run import Robot, Run
 from odometry.table import Table

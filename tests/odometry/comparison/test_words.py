@@ -6,10 +6,10 @@ import pytest
 from odometry.comparison.bootstrap import Interval
 from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.differences import Difference, between, differences
-from odometry.comparison.judged import Errors
 from odometry.comparison.judgement import Judgement, Shortfall
 from odometry.comparison.summary import Place, summarise
 from odometry.comparison.words import sentences
+from odometry.identification.window_errors import WindowErrors
 
 PLACE = Place("rover", "grass", 2.0)
 
@@ -21,7 +21,7 @@ class Counted(list):
 def judgement(run, **models):
     """Errors by model: translation in m per m, rotation in degrees per m ten times that."""
     errors = {
-        name: Errors(np.array(values), np.radians(10 * np.array(values)))
+        name: WindowErrors(np.array(values), np.radians(10 * np.array(values)))
         for name, values in models.items()
     }
     count = len(next(iter(models.values())))

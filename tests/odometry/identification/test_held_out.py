@@ -6,7 +6,8 @@ import pytest
 
 from odometry.identification.config import SolverConfig, WindowConfig
 from odometry.identification.fit import fit
-from odometry.identification.held_out import by_halves, by_runs, held_out_errors, window_errors
+from odometry.identification.held_out import by_halves, by_runs, held_out_errors
+from odometry.identification.window_errors import window_errors
 from odometry.identification.windows import windows_of
 from odometry.models.icr import Icr
 from odometry.run import Run

@@ -9,8 +9,8 @@ from odometry.identification.config import SolverConfig, WindowConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import fit
 from odometry.identification.fitters import fitter
-from odometry.identification.held_out import window_errors
 from odometry.identification.identify import identify, robot_of
+from odometry.identification.window_errors import window_errors
 from odometry.identification.windows import windows_of
 from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr

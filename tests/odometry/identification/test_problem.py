@@ -68,7 +68,7 @@ def test_yaw_residuals_stay_small_where_a_window_turns_around(synthetic, tmp_pat
 
 def test_whitened_covariances_are_unit_matrices(problem):
     covariances = window_covariances(problem.windows, problem.variances)
-    factors = problem.whitening()
+    factors = problem.whitening
     unit = factors @ covariances @ factors.swapaxes(1, 2)
     np.testing.assert_allclose(unit, np.broadcast_to(np.eye(3), unit.shape), atol=1e-12)
 

@@ -149,7 +149,7 @@ def test_huber_shrugs_off_gross_outliers_and_linear_does_not(winding, synthetic)
     assert len(clean.windows) >= 40
     spoilt, wrong = with_outliers(clean, np.random.default_rng(7))
     truth, sizes = np.array(list(synthetic.icrs.values())), np.array([0.4, 0.4, 0.25, 1, 1])
-    weighted = np.einsum("kij,kjf->kif", clean.whitening(), clean.jacobian(truth)).reshape(-1, 5)
+    weighted = np.einsum("kij,kjf->kif", clean.whitening, clean.jacobian(truth)).reshape(-1, 5)
     sigmas = np.sqrt(np.diag(np.linalg.inv(weighted.T @ weighted)))
     shifts = {}
     for loss in ("huber", "linear"):
@@ -177,7 +177,7 @@ def test_at_a_bound_only_what_lies_beyond_would_be_better(synthetic, tmp_path):
     low, high = problem.bounds()
     assert np.all((low <= solution.chosen) & (solution.chosen <= high))
     np.testing.assert_allclose(solution.chosen[3:], 2.0, rtol=0, atol=1e-6)
-    whitening = problem.whitening()
+    whitening = problem.whitening
     whitened = np.einsum("kij,kj->ki", whitening, problem.residuals(solution.chosen))
     gradient = np.einsum("ki,kif->f", whitened, whitening @ problem.jacobian(solution.chosen))
     assert np.all(gradient[3:] * sizes[3:] < -1e-3 * solution.cost)
@@ -202,6 +202,7 @@ class TwoMinima:
     def bounds(self):
         return np.array([-10.0]), np.array([10.0])
 
+    @property
     def whitening(self):
         return np.broadcast_to(np.eye(3), (4, 3, 3))
 

@@ -1,0 +1,32 @@
+"""The ground of a run, row by row."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from odometry.arrays import AnyArray
+from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
+
+
+def with_named_ground(run: Run, given: str | None) -> Run:
+    """The run with a name for every ground: `given`, or "ground", where nobody names it."""
+    usual = run.terrain if run.terrain not in (None, UNKNOWN) else given or UNNAMED_TERRAIN
+    settings = {**run.settings, "run": {**run.settings.get("run", {}), "terrain": usual}}
+    odometry = run.odometry
+    if "terrain" in odometry:
+        names = odometry["terrain"].astype(object)
+        named = np.where((names == "") | (names == UNKNOWN), usual, names)
+        odometry = replace(odometry, columns={**odometry.columns, "terrain": named})
+    return replace(run, settings=settings, odometry=odometry)
+
+
+def terrains_of(run: Run) -> AnyArray:
+    """Name of the ground (N,) at each row of odometry.csv.
+
+    Its column `terrain` where there is one, else the run's; "unknown" where neither says.
+    """
+    usual = run.terrain or UNKNOWN
+    if "terrain" not in run.odometry:
+        return np.full(len(run.odometry), usual, dtype=object)
+    names = run.odometry["terrain"].astype(object)
+    return np.asarray(np.where(names == "", usual, names))

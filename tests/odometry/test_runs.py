@@ -1,0 +1,27 @@
+from dataclasses import replace
+
+import pytest
+
+from odometry.errors import RunFolderError
+from odometry.run import Run
+from odometry.runs import check_no_run_twice, run_names
+
+
+def test_runs_of_one_name_are_told_apart_by_their_folders(make_run, tmp_path):
+    folders = [tmp_path / "a" / "run", tmp_path / "b" / "run", tmp_path / "other"]
+    run = Run.read(make_run())
+    runs = [replace(run, folder=folder) for folder in folders]
+    assert run_names(runs) == [str(folders[0]), str(folders[1]), "other"]
+
+
+def test_parts_of_one_run_keep_its_name(make_run):
+    run = Run.read(make_run())
+    assert run_names([run, run]) == ["a_run", "a_run"]
+
+
+def test_no_folder_is_there_twice_however_it_is_written(make_run):
+    run = Run.read(make_run())
+    again = replace(run, folder=run.folder / ".." / "a_run")
+    check_no_run_twice([run])
+    with pytest.raises(RunFolderError, match="a_run is given twice"):
+        check_no_run_twice([run, again])
