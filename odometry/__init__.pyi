@@ -7,6 +7,7 @@ from .estimation.icr_ekf import IcrEkf
 from .evaluation.fitness import fitness
 from .evaluation.open_loop import measured_poses, open_loop
 from .evaluation.relative import EvaluationConfig, position_errors, relative_errors
+from .gap.gap import find_gap
 from .identification.identify import identify
 from .io.run_folder import write_run_folder
 from .io.tum import read_spatial_tum, read_tum, write_spatial_tum, write_tum
@@ -40,6 +41,7 @@ __all__ = [
     "compare",
     "dead_reckon",
     "dead_reckon_in_space",
+    "find_gap",
     "fitness",
     "identify",
     "inputs_of",

@@ -1,5 +1,7 @@
 """What a replay has learned, as a parameter set for the next run."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from odometry.estimation.estimate import Estimate, IcrBelief
@@ -12,6 +14,8 @@ MUCH_SURER = 2.0  # times less variance
 
 def learned_parameters(before: ParameterSet, replay: Replay, run_name: str) -> ParameterSet:
     """The parameter set with the ICRs that the filter held when it last left each terrain.
+
+    Effects stay as they were.
 
     Parameters
     ----------
@@ -28,7 +32,8 @@ def learned_parameters(before: ParameterSet, replay: Replay, run_name: str) -> P
         poses = sum(_took_pose(estimate) for estimate in there)
         if poses and not _is_much_surer(before.terrains.get(name), there[-1].belief):
             source = f"learned by terrain-odometry from {poses} poses of {run_name}"
-            terrains[name] = _table(there[-1].belief, source)
+            effects = before.terrains[name].effects if name in before.terrains else ()
+            terrains[name] = replace(_table(there[-1].belief, source), effects=effects)
     return ParameterSet(terrains, before.vehicle)
 
 

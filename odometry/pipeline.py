@@ -90,18 +90,19 @@ class Replay:
         return Trajectory(self.stamps_s, self.means[:, :3])
 
     def odometer(self) -> Trajectory:
-        """The model integrated open loop with the ICRs held at each moment, never corrected."""
-        alphas = np.stack([estimate.alphas for estimate in self.estimates])
-        return self._reckon(self.means[:, 3:], alphas)
+        """The model integrated open loop with the ICRs held at each moment, never corrected.
+
+        The effects of the parameter set are part of the model.
+        """
+        return self._reckon(np.stack([estimate.twist for estimate in self.estimates]))
 
     def differential_drive(self, track_width: float) -> Trajectory:
         """The same integration with an ideal differential drive."""
         icrs = np.array([track_width / 2, -track_width / 2, 0.0])
-        return self._reckon(icrs, np.ones(2))
-
-    def _reckon(self, icrs: FloatArray, alphas: FloatArray) -> Trajectory:
         speeds = np.stack([estimate.tread_speeds_m_s for estimate in self.estimates])
-        twists = icr_twist(icrs, alphas * np.nan_to_num(speeds))
+        return self._reckon(icr_twist(icrs, np.nan_to_num(speeds)))
+
+    def _reckon(self, twists: FloatArray) -> Trajectory:
         return dead_reckon(self.stamps_s, twists, self.means[0, :3])
 
 

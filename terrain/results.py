@@ -74,6 +74,7 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "run": result.run.name,
         "vision": result.watcher is not None,
         "initial_terrain": result.initial_terrain,
+        "effects": result.effects,
         "duration_s": float(result.replay.stamps_s[-1] - result.replay.stamps_s[0]),
         "wheel_travel_m": float(result.run.wheel_travel_m[-1]),
         "reference": result.reference_name or None,

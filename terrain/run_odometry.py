@@ -3,7 +3,11 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+from odometry.effects.catalogue import added_effects
+from odometry.effects.corrected import Added
+from odometry.effects.measured import robot_run, shared_measurement
 from odometry.errors import ParameterError, RunFolderError
+from odometry.estimation.corrections import corrections_of
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.evaluation.score import Score, reference_of, score
 from odometry.learned import learned_parameters
@@ -24,6 +28,7 @@ class RunResult:
     Attributes
     ----------
     run : Run
+        With the poses of the robot: effects on the measurement are undone.
     config : Config
     parameters : ParameterSet
         What was known before the run.
@@ -53,6 +58,15 @@ class RunResult:
     learned: ParameterSet
 
     @property
+    def effects(self) -> dict[str, list[str]]:
+        """Names of the effects that were added, by terrain."""
+        return {
+            name: [str(effect["name"]) for effect in table.effects]
+            for name, table in self.parameters.terrains.items()
+            if table.effects
+        }
+
+    @property
     def has_learned(self) -> bool:
         """Whether `learned` differs from what was known before."""
         before = self.parameters.terrains
@@ -77,7 +91,8 @@ def run_odometry(
     model : TerrainClassifier or path, optional
         Without one there is no vision.
     parameters : ParameterSet or path, optional
-        A terrain without a table starts from a broad prior centred on the track width.
+        A terrain without a table starts from a broad prior centred on the track width. Effects
+        of a table act on that terrain; those on the measurement must be the same everywhere.
     vision : bool
         False keeps one terrain in force throughout.
     terrain : str, optional
@@ -97,7 +112,9 @@ def run_odometry(
     if not isinstance(parameters, ParameterSet):
         parameters = read_parameters(parameters) if parameters else ParameterSet()
     initial = _initial_terrain(run, parameters, terrain)
-    estimator = IcrEkf(run.robot.track_width, parameters, config.filter)
+    corrections = corrections_of(run, parameters)
+    run = robot_run(run, _sensor_effects(parameters))
+    estimator = IcrEkf(run.robot.track_width, parameters, config.filter, corrections)
     watcher = _watcher(run, model, initial, config) if vision and model is not None else None
     result = replay(
         run, estimator, watcher or ConstantTerrain(initial), show_progress=show_progress
@@ -114,6 +131,15 @@ def run_odometry(
         reference,
         _scores(run, result, reference_name, reference, config),
         learned_parameters(parameters, result, run.name),
+    )
+
+
+def _sensor_effects(parameters: ParameterSet) -> tuple[Added, ...]:
+    return shared_measurement(
+        [
+            added_effects(table.effects, f"[terrain.{name}]")
+            for name, table in parameters.terrains.items()
+        ]
     )
 
 

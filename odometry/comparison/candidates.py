@@ -12,6 +12,7 @@ from odometry.comparison.errors import ComparisonError
 from odometry.comparison.parts import windows_of_parts
 from odometry.comparison.predictor import Predictor
 from odometry.comparison.split import Split
+from odometry.effects.tables import model_of
 from odometry.errors import ParameterError
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fitters import fitter
@@ -111,12 +112,9 @@ class GivenParameters(Candidate):
                 f"the set has no terrain {split.ground!r}; it has "
                 f"{', '.join(self.parameters.terrains)}"
             )
-        if table.effects:
-            raise ParameterError("the set has effects, which a comparison does not apply")
-        if table.model not in MODELS:
-            raise ParameterError(f"the model {table.model!r} cannot be computed")
+        where = f"{self.name}: [terrain.{split.ground}]"
         return Predictor(
-            MODELS[table.model],
+            model_of(table, split.judged[0].run.robot, where),
             table.values,
             table.covariance_order,
             table.covariance,

@@ -6,9 +6,10 @@ from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.judged import judged_windows
 from odometry.comparison.judgement import Judgement, Shortfall
 from odometry.comparison.parts import Part
+from odometry.comparison.predicted import predicted_motion
 from odometry.comparison.prepare import Prepared
 from odometry.errors import OdometryError
-from odometry.identification.window_errors import WindowErrors, window_errors
+from odometry.identification.window_errors import WindowErrors, errors_of_motion
 
 
 def judge_all(
@@ -40,7 +41,8 @@ def _judge_part(
         errors: dict[str, WindowErrors] = {}
         for model, predictor in prepared.predictors.items():
             try:
-                errors[model] = window_errors(predictor.model, predictor.packed, judged.windows)
+                motion = predicted_motion(predictor, part.run, judged.windows)
+                errors[model] = errors_of_motion(motion, judged.windows)
             except OdometryError as error:
                 reasons[model] = str(error)
         found.append(

@@ -3,7 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from odometry.arrays import FloatArray
+from odometry.effects.tables import table_of
 from odometry.models.base import KinematicModel
 from odometry.parameters import TerrainParameters
 
@@ -46,7 +49,7 @@ class Predictor:
         """
         if self.undetermined:
             source = f"{self.source}; not determined: {'; '.join(self.undetermined)}"
-            return TerrainParameters(self.model.name, self.values, source=source)
-        return TerrainParameters(
-            self.model.name, self.values, self.covariance_order, self.covariance, self.source
+            return table_of(self.model, self.values, (), np.empty((0, 0)), source)
+        return table_of(
+            self.model, self.values, self.covariance_order, self.covariance, self.source
         )

@@ -8,6 +8,8 @@ from odometry.arrays import FloatArray
 from odometry.comparison.judgement import RunFitness
 from odometry.comparison.parts import Part
 from odometry.comparison.prepare import Prepared
+from odometry.effects.measured import robot_run, shared_measurement
+from odometry.effects.tables import effects_of
 from odometry.errors import OdometryError
 from odometry.evaluation.fitness import fitness
 from odometry.evaluation.open_loop import measured_poses, open_loop
@@ -18,7 +20,8 @@ def run_fitness(prepared: Sequence[Prepared], models: Sequence[str]) -> list[Run
     """Dead-reckon runs from their first poses under each model (Martinez 2024 eq. 13).
 
     A run over several grounds, or of which each half is judged apart, changes parameters on its
-    way. A model that failed on a part of a run has no fitness of it.
+    way. A model that failed on a part of a run has no fitness of it. Where a model has effects on
+    the measurement, it is judged by the poses of the robot.
     """
     parts: dict[str, list[tuple[Part, Prepared]]] = {}
     for each in prepared:
@@ -37,7 +40,9 @@ def run_fitness(prepared: Sequence[Prepared], models: Sequence[str]) -> list[Run
 def _fitness(parts: Sequence[tuple[Part, Prepared]], model: str) -> RunFitness:
     run, name = parts[0][0].run, parts[0][0].name
     twists = _twists(parts, model)
-    result = fitness(open_loop(run, twists), *measured_poses(run))
+    effects = [effects_of(prepared.predictors[model].model) for _, prepared in parts]
+    robot = robot_run(run, shared_measurement(effects))
+    result = fitness(open_loop(robot, twists), *measured_poses(robot))
     return RunFitness(parts[0][1].split.robot, name, model, result)
 
 

@@ -63,6 +63,8 @@ class Estimate:
         Slip factors in force.
     tread_speeds_m_s : (2,)
         Measured tread speeds in force from this stamp on.
+    added_speeds_m_s, added_twist : (2,), (3,)
+        What the effects of the terrain change of these speeds, and of the twist of the ICRs.
     terrain : str
         The terrain in force.
     innovation : Innovation or None
@@ -83,6 +85,8 @@ class Estimate:
     alphas: FloatArray
     tread_speeds_m_s: FloatArray
     terrain: str
+    added_speeds_m_s: FloatArray = field(default_factory=lambda: np.zeros(2))
+    added_twist: FloatArray = field(default_factory=lambda: np.zeros(3))
     innovation: Innovation | None = None
     rejected_in_row: int = 0
     recent: tuple[float, ...] = ()
@@ -95,6 +99,13 @@ class Estimate:
         return IcrBelief(self.mean[3:], self.alphas, self.covariance[3:, 3:])
 
     @property
+    def effective_speeds_m_s(self) -> FloatArray:
+        """Tread speeds (2,) in force after effects and slip."""
+        return np.asarray(self.alphas * (self.tread_speeds_m_s + self.added_speeds_m_s))
+
+    @property
     def twist(self) -> FloatArray:
         """Body twist (3,) at the tread speeds in force; zero where they are not known."""
-        return icr_twist(self.mean[3:], self.alphas * np.nan_to_num(self.tread_speeds_m_s))
+        if not np.all(np.isfinite(self.tread_speeds_m_s)):
+            return np.zeros(3)
+        return np.asarray(icr_twist(self.mean[3:], self.effective_speeds_m_s) + self.added_twist)

@@ -1,12 +1,15 @@
 """Pose and ICR filter: an extended Kalman filter that is told the terrain (Chen 2023, 3.1-3.2)."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TypeGuard
 
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.errors import ParameterError
 from odometry.estimation.config import IcrEkfConfig
+from odometry.estimation.corrections import Correction
 from odometry.estimation.estimate import Estimate, IcrBelief, Innovation
 from odometry.estimation.gaussian import gate_threshold, normalised_squared, project_into
 from odometry.estimation.icr_prior import prior_belief
@@ -29,6 +32,13 @@ class IcrEkf:
     parameters : ParameterSet
         ICRs by terrain.
     config : IcrEkfConfig
+    corrections : Mapping of terrain to Correction
+        What the effects of the parameter set change along the run that is replayed.
+
+    Raises
+    ------
+    ParameterError
+        If a terrain has effects and no correction.
 
     Notes
     -----
@@ -44,10 +54,13 @@ class IcrEkf:
         track_width: float,
         parameters: ParameterSet | None = None,
         config: IcrEkfConfig | None = None,
+        corrections: Mapping[str, Correction] | None = None,
     ) -> None:
         self.track_width = track_width
         self.parameters = parameters or ParameterSet()
         self.config = config or IcrEkfConfig()
+        self.corrections = corrections or {}
+        self._require_corrections()
         c = self.config
         icr_noise = c.icr_noise_widths * track_width
         self._density = np.square([*[c.position_noise] * 2, c.yaw_noise, *[icr_noise] * 3])
@@ -65,7 +78,7 @@ class IcrEkf:
         covariance = np.zeros((6, 6))
         covariance[:3, :3] = self._kalman.R
         covariance[3:, 3:] = belief.covariance
-        return Estimate(
+        estimate = Estimate(
             stamp_s=frame.stamp_s,
             mean=np.concatenate([pose, belief.icrs]),
             covariance=covariance,
@@ -73,21 +86,27 @@ class IcrEkf:
             tread_speeds_m_s=frame.tread_speeds_m_s,
             terrain=terrain,
         )
+        return self._corrected(estimate, frame)
 
     def step(self, estimate: Estimate, frame: Frame, terrain: str) -> Estimate:
         """Predict to the frame's stamp, switch if the terrain is another, update by its pose."""
         estimate = self._predict(estimate, frame)
         if terrain != estimate.terrain:
             estimate = self._switch(estimate, terrain)
+        estimate = self._corrected(estimate, frame)
         return self._update(estimate, frame.pose) if _is_measured(frame.pose) else estimate
 
     def _predict(self, estimate: Estimate, frame: Frame) -> Estimate:
         step_s = frame.stamp_s - estimate.stamp_s
         mean, covariance = estimate.mean, estimate.covariance
         if np.all(np.isfinite(estimate.tread_speeds_m_s)):
-            speeds = estimate.alphas * estimate.tread_speeds_m_s
             mean, covariance = self._kalman.predicted(
-                mean, covariance, speeds, step_s, self._density
+                mean,
+                covariance,
+                estimate.effective_speeds_m_s,
+                estimate.added_twist,
+                step_s=step_s,
+                density=self._density,
             )
         return replace(
             estimate,
@@ -162,6 +181,25 @@ class IcrEkf:
         reset = self._reset_sigma_m**2 * np.eye(3)
         covariance = _with_icr_block(estimate.covariance, reset)
         return replace(estimate, covariance=covariance, recent=(), jumped=True)
+
+    def _corrected(self, estimate: Estimate, frame: Frame) -> Estimate:
+        """The estimate with what effects change from this frame on."""
+        correction, row = self.corrections.get(estimate.terrain), frame.odometry_row
+        if correction is None or row < 0:
+            return replace(estimate, added_speeds_m_s=np.zeros(2), added_twist=np.zeros(3))
+        return replace(
+            estimate,
+            added_speeds_m_s=correction.speeds_m_s[row],
+            added_twist=correction.twists[row],
+        )
+
+    def _require_corrections(self) -> None:
+        for name, table in self.parameters.terrains.items():
+            if table.effects and name not in self.corrections:
+                raise ParameterError(
+                    f"[terrain.{name}]: effects were given; the ICR filter needs what they change "
+                    "along the run (odometry.estimation.corrections)"
+                )
 
     def _prior(self, terrain: str) -> IcrBelief:
         return prior_belief(self.parameters, terrain, self.track_width, self._reset_sigma_m)

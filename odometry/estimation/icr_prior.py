@@ -55,15 +55,13 @@ def _covariance(table: TerrainParameters, reset_sigma_m: float) -> FloatArray:
 
 
 def icr_form(table: TerrainParameters, where: str) -> tuple[FloatArray, FloatArray]:
-    """ICRs (3,) and slip factors (2,) of a model that has constant ones.
+    """ICRs (3,) and slip factors (2,) of a model that has constant ones, its effects left out.
 
     Raises
     ------
     ParameterError
-        If the model has none, or effects are added to it.
+        If the model has none.
     """
-    if table.effects:
-        raise ParameterError(f"{where}: effects were given; the ICR filter takes a plain model")
     values = table.values
     match table.model:
         case "icr":

@@ -25,12 +25,14 @@ class PoseKalman(ExtendedKalmanFilter):  # type: ignore[misc]
         mean: FloatArray,
         covariance: FloatArray,
         speeds: FloatArray,
+        added_twist: FloatArray,
+        *,
         step_s: float,
         density: FloatArray,
     ) -> tuple[FloatArray, FloatArray]:
         """Eq. 7 with the Jacobian of `transition`."""
         self.x, self.P = mean, covariance
-        next_mean, self.F = transition(mean, speeds, step_s)
+        next_mean, self.F = transition(mean, speeds, step_s, added_twist)
         self.Q = process_noise(self.F, density, step_s)
         self.predict(next_mean)
         return self.x, self.P

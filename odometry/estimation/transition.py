@@ -6,9 +6,11 @@ from odometry.arrays import FloatArray
 from odometry.geometry import se2
 from odometry.models.icr import icr_twist, icr_twist_jacobian
 
+STILL = np.zeros(3)
+
 
 def transition(
-    state: FloatArray, tread_speeds: FloatArray, step_s: float
+    state: FloatArray, tread_speeds: FloatArray, step_s: float, added_twist: FloatArray = STILL
 ) -> tuple[FloatArray, FloatArray]:
     """Carry a state along at constant tread speeds.
 
@@ -19,6 +21,8 @@ def transition(
     tread_speeds : (2,)
         Effective tread speeds, left and right [m/s].
     step_s : float
+    added_twist : (3,)
+        What effects add to the body twist of the ICRs.
 
     Returns
     -------
@@ -29,7 +33,7 @@ def transition(
         Its derivative by `state`: I + dT df/dX of eq. 8 in the limit of small steps.
     """
     pose, icrs = state[:3], state[3:]
-    displacement = icr_twist(icrs, tread_speeds) * step_s
+    displacement = (icr_twist(icrs, tread_speeds) + added_twist) * step_s
     next_pose = se2.compose(pose, se2.exp(displacement))
     cosine, sine = np.cos(pose[2]), np.sin(pose[2])
     to_world = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])

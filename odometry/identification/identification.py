@@ -1,8 +1,9 @@
 """What an identification finds."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from odometry.effects.tables import table_of
 from odometry.identification.config import WindowConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
@@ -26,18 +27,20 @@ class Identified:
         has one run or one run does not tell the model.
     ideal : WindowErrors
         Of the ideal differential drive on the same windows.
+    given : Mapping of name to float
+        Parameters that were held at a stated value.
     """
 
     fit: Fit
     held_out: WindowErrors | None
     held_out_by: str
     ideal: WindowErrors
+    given: Mapping[str, float] = field(default_factory=dict)
 
     def to_parameters(self, source: str) -> TerrainParameters:
-        """The table of a parameter set."""
-        return TerrainParameters(
-            self.fit.model.name, self.fit.values, self.fit.names, self.fit.covariance, source
-        )
+        """The table of a parameter set, with the effects that the model has."""
+        fit = self.fit
+        return table_of(fit.model, fit.values, fit.names, fit.covariance, source)
 
 
 @dataclass(frozen=True)

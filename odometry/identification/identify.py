@@ -6,8 +6,12 @@ from dataclasses import replace
 import numpy as np
 from tqdm import tqdm
 
+from odometry.effects.corrected import Added
+from odometry.effects.measured import on_measurement, robot_run
+from odometry.effects.tables import effects_of
 from odometry.errors import ParameterError
 from odometry.grounds import with_named_ground
+from odometry.identification.asked import Asked, Wanted, asked_on
 from odometry.identification.config import SolverConfig, WindowConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
@@ -16,15 +20,14 @@ from odometry.identification.held_out import by_halves, by_runs, held_out_errors
 from odometry.identification.identification import Identification, Identified
 from odometry.identification.window_errors import WindowErrors, window_errors
 from odometry.identification.windows import Windows, windows_of
-from odometry.models.base import KinematicModel
-from odometry.models.catalogue import MODELS, model_named
+from odometry.models.catalogue import MODELS
 from odometry.run import UNKNOWN, Robot, Run
 from odometry.runs import check_no_run_twice
 
 
 def identify(
     runs: Sequence[Run],
-    model: str | KinematicModel,
+    model: Wanted,
     *,
     fixed: Mapping[str, float] | None = None,
     released: Sequence[str] = (),
@@ -39,8 +42,9 @@ def identify(
     ----------
     runs : sequence of Run
         Of one robot, with poses.
-    model : str or KinematicModel
-        A name of the catalogue.
+    model : str, KinematicModel or ParameterSet
+        A name of the catalogue; or a set, of which the models are taken with their effects and
+        with what they know of the robot, and all else is identified anew.
     fixed : Mapping of name to float, optional
         Parameters held at a value.
     released : sequence of str
@@ -56,39 +60,73 @@ def identify(
     IdentificationError
         If the runs are of robots of different width, or too short, or lack poses.
     ParameterError
-        If there is no such model or parameter, or `terrain` is the reserved name.
+        If there is no such model, effect or parameter, a set with several tables lacks a ground,
+        or `terrain` is the reserved name.
     RunFolderError
         If a run is given twice.
     """
-    chosen = model_named(model) if isinstance(model, str) else model
     window_config, solver_config = window_config or WindowConfig(), solver_config or SolverConfig()
     if terrain == UNKNOWN:
         raise ParameterError(f"the terrain name {UNKNOWN!r} is reserved; name another, or none")
     check_no_run_twice(runs)
     robot = robot_of(runs)
-    windows = windows_of([with_named_ground(run, terrain) for run in runs], window_config)
-    fit_to = fitter(
-        chosen,
-        robot,
-        fixed=fixed or {},
-        released=frozenset(released),
-        window_config=window_config,
-        solver_config=solver_config,
-    )
+    named = [with_named_ground(run, terrain) for run in runs]
+    windows = windows_of(named, window_config)
+    asked = {
+        str(name): asked_on(str(name), model, robot) for name in dict.fromkeys(windows.terrain)
+    }
     by_ground = {
-        str(name): windows.where(windows.terrain == name) for name in dict.fromkeys(windows.terrain)
+        name: _windows_on(name, effects_of(of.model), named, windows, window_config)
+        for name, of in asked.items()
     }
     fits = sum(1 + max(2, len(set(here.run))) for here in by_ground.values())
     off = None if show_progress else True
-    with tqdm(total=fits, desc=chosen.name, unit="fit", disable=off) as bar:
-
-        def counted(windows: Windows, near: Mapping[str, float] | None = None) -> Fit:
-            fitted = fit_to(windows, near)
-            bar.update()
-            return fitted
-
-        grounds = {name: _identified(here, counted, robot) for name, here in by_ground.items()}
+    grounds = {}
+    with tqdm(total=fits, unit="fit", disable=off) as bar:
+        for name, here in by_ground.items():
+            bar.set_description(asked[name].model.name)
+            given = _given(asked[name], fixed or {}, released)
+            fit_to = fitter(
+                asked[name].model,
+                robot,
+                fixed=given,
+                released=frozenset(released),
+                window_config=window_config,
+                solver_config=solver_config,
+            )
+            grounds[name] = _identified(here, _counted(fit_to, bar), robot, given)
     return Identification(robot, grounds, window_config)
+
+
+def _given(
+    asked: Asked, fixed: Mapping[str, float], released: Sequence[str]
+) -> Mapping[str, float]:
+    """Parameters that are held: those of `fixed`, then what a set knows of the robot."""
+    known = {name: value for name, value in asked.known.items() if name not in released}
+    return {**known, **fixed}
+
+
+def _windows_on(
+    ground: str,
+    effects: Sequence[Added],
+    runs: Sequence[Run],
+    as_seen: Windows,
+    config: WindowConfig,
+) -> Windows:
+    """Windows on one ground, with the poses of the robot where the sensor reports others."""
+    windows = as_seen
+    if on_measurement(effects):
+        windows = windows_of([robot_run(run, effects) for run in runs], config)
+    return windows.where(windows.terrain == ground)
+
+
+def _counted(fit_to: FitTo, bar: tqdm) -> FitTo:
+    def counted(windows: Windows, near: Mapping[str, float] | None = None) -> Fit:
+        fitted = fit_to(windows, near)
+        bar.update()
+        return fitted
+
+    return counted
 
 
 def robot_of(runs: Sequence[Run]) -> Robot:
@@ -115,10 +153,12 @@ def robot_of(runs: Sequence[Run]) -> Robot:
     return robot
 
 
-def _identified(windows: Windows, fit_to: FitTo, robot: Robot) -> Identified:
+def _identified(
+    windows: Windows, fit_to: FitTo, robot: Robot, given: Mapping[str, float]
+) -> Identified:
     fitted = fit_to(windows)
     ideal = window_errors(MODELS["differential_drive"], np.array([robot.track_width]), windows)
-    return Identified(fitted, *_held_out(windows, fit_to, fitted.values), ideal)
+    return Identified(fitted, *_held_out(windows, fit_to, fitted.values), ideal, given)
 
 
 def _held_out(

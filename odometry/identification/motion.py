@@ -16,8 +16,22 @@ def window_motion(model: KinematicModel, values: FloatArray, windows: Windows) -
     Every step is the exact arc of the twist in force, seen in the level frame (Martinez 2024
     eq. 12 with REP-103's rotation); yaw is not wrapped.
     """
-    displacements = model.twist(values, windows.inputs) * windows.steps_s[:, None]
-    return _between(_paths(_level(se2.exp(displacements), windows.inputs)), windows)
+    twists = model.twist(values, windows.inputs)
+    return _between(level_path(twists, windows.steps_s, windows.inputs), windows)
+
+
+def level_path(twists: FloatArray, steps_s: FloatArray, inputs: Inputs) -> FloatArray:
+    """Poses (N, 3) before each sample, from the origin in the level frame; yaw is not wrapped.
+
+    Parameters
+    ----------
+    twists : (N, 3)
+    steps_s : (N,)
+        How long each is in force.
+    inputs : Inputs
+        Of stack (N,); its roll and pitch count.
+    """
+    return _paths(_level(se2.exp(twists * steps_s[:, None]), inputs))
 
 
 def window_motion_jacobian(

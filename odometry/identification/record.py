@@ -1,6 +1,6 @@
 """A run as an identification sees it: inputs that hold between stamps, and measured poses."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -66,7 +66,7 @@ def record_of(run: Run, config: WindowConfig) -> Record:
     poses, pose_s, windows = poses[inside], pose_s[inside], windows[inside]
     stamps_s = np.unique(np.concatenate([odometry_s, pose_s]))
     rows = np.searchsorted(odometry_s, stamps_s, side="right") - 1
-    inputs = inputs_of(run).rows(rows)
+    inputs = replace(inputs_of(run).rows(rows), time_s=stamps_s - odometry_s[0])
     speed = np.abs(inputs.tread_speeds_m_s).mean(axis=1)
     travel_m = np.concatenate([[0.0], np.cumsum(speed[:-1] * np.diff(stamps_s))])
     samples = np.searchsorted(stamps_s, pose_s)

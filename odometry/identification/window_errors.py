@@ -34,7 +34,12 @@ def window_errors(model: KinematicModel, values: FloatArray, windows: Windows) -
     ParameterError
         If the model needs an input that was not recorded.
     """
-    error = window_motion(model, values, windows) - windows.measured
+    return errors_of_motion(window_motion(model, values, windows), windows)
+
+
+def errors_of_motion(motion: FloatArray, windows: Windows) -> WindowErrors:
+    """Errors of a predicted motion (K, 3) from the start to the end of each window."""
+    error = motion - windows.measured
     return WindowErrors(
         np.hypot(error[:, 0], error[:, 1]) / windows.travel_m,
         np.abs(error[:, 2]) / windows.travel_m,

@@ -52,9 +52,9 @@ class KinematicModel(ABC):
     values (..., P) against inputs (...).
     """
 
-    name: ClassVar[str]
+    name: str
     source: ClassVar[str]
-    parameters: ClassVar[tuple[Parameter, ...]]
+    parameters: tuple[Parameter, ...]
 
     @abstractmethod
     def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:

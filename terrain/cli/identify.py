@@ -21,7 +21,13 @@ if TYPE_CHECKING:
     required=True,
     type=click.Path(file_okay=False, path_type=Path),
 )
-@click.option("--model", required=True, metavar="NAME", help=f"One of {', '.join(MODEL_NAMES)}.")
+@click.option(
+    "--model",
+    required=True,
+    metavar="NAME|SET.toml",
+    help=f"One of {', '.join(MODEL_NAMES)}; or a parameter set, to identify its models anew with "
+    "its effects held.",
+)
 @click.option(
     "--out",
     required=True,
@@ -80,7 +86,7 @@ def identify(
     from odometry.identification.config import SolverConfig
     from odometry.identification.identify import identify as identify_runs
     from odometry.io.files import check_writable
-    from odometry.parameters import write_parameters
+    from odometry.parameters import read_parameters, write_parameters
     from odometry.run import Run
 
     if out.suffix != ".toml":
@@ -88,7 +94,7 @@ def identify(
     check_writable(out.parent)
     found = identify_runs(
         [Run.read(folder) for folder in folders],
-        model,
+        read_parameters(model) if Path(model).suffix == ".toml" else model,
         fixed=assignments(fix),
         released=free,
         terrain=terrain,
@@ -97,27 +103,33 @@ def identify(
         show_progress=True,
     )
     for name, ground in found.grounds.items():
-        _print_ground(name, ground, assignments(fix))
+        _print_ground(name, ground)
     found.require_determined()
-    write_parameters(out, found.to_parameter_set())
+    identified = found.to_parameter_set()
+    write_parameters(out, identified)
     click.echo(f"Wrote {out}")
     named = f" --terrain {terrain}" if terrain else ""
     click.echo(
         f"Next, on a run that is not among these: terrain-odometry compare RUN{named} "
         f"--model {out} --model differential_drive --out comparison"
     )
-    if model in ICR_FORM_MODELS:
+    if all(table.model in ICR_FORM_MODELS for table in identified.terrains.values()):
         click.echo(f"or:   terrain-odometry run RUN --parameters {out} --out results")
 
 
-def _print_ground(name: str, ground: "Identified", given: dict[str, float]) -> None:
+def _print_ground(name: str, ground: "Identified") -> None:
     """Print one ground: parameters, what the fit leaves, errors."""
-    fit = ground.fit
+    from odometry.effects.tables import effects_of
+
+    fit, given = ground.fit, ground.given
     click.echo(
         f"[{name}] {len(fit.windows)} windows of {fit.windows.travel_m.mean():.2f} m; residuals "
         f"{fit.scale:.1f} times the poses' stated noise; "
         f"{fit.agreeing} of {fit.starts} starts agree"
     )
+    for added in effects_of(fit.model):
+        held = ", ".join(f"{key} = {value:.5g}" for key, value in added.by_name.items())
+        click.echo(f"  held: {added.effect.name} ({added.effect.form}): {held}")
     rows = [("parameter", "value", "sigma", "95 % low", "high", "")]
     units = {parameter.name: parameter.unit for parameter in fit.model.parameters}
     for parameter, value in fit.values.items():

@@ -16,6 +16,7 @@ VERBS = {
     "simulate": "Make a run folder from a simulated skid-steer robot.",
     "identify": "Parameters of a kinematic model from recorded runs.",
     "compare": "Held-out errors of several models, side by side.",
+    "gap": "Which effect a model lacks, and the gap closed.",
     "demo": "Train, run and report on the shipped data.",
 }
 

@@ -71,6 +71,8 @@ def run(
     written = write_results(result, out) + write_report(result, out)
     print_errors({result.run.name: result})
     print_sightings(sighting_counts(result))
+    for name, effects in result.effects.items():
+        click.echo(f"Effects on {name}, in every trajectory but the ideal: {', '.join(effects)}")
     print_written(written, out)
     click.echo(f"Next: open {out / 'report.html'}")
     if out / "learned.toml" in written and result.has_learned:

@@ -156,7 +156,7 @@ def test_grounds_within_one_run_have_models_of_their_own(tmp_path, bench, quick)
 
 
 def test_a_model_that_fails_is_a_row_with_its_reason(grass, quick, tmp_path):
-    """`icr_slope` needs tilted ground, a set of ice has no grass, effects are not applied."""
+    """`icr_slope` needs tilted ground, a set of ice has no grass, an effect is not known."""
     models = [
         "icr_symmetric",
         "icr_slope",
@@ -170,7 +170,7 @@ def test_a_model_that_fails_is_a_row_with_its_reason(grass, quick, tmp_path):
     expected = {
         "icr_slope": "0 windows are tilted",
         "ice": "no terrain 'grass'; it has ice",
-        "more": "effects",
+        "more": "effects[0]: effect a/None, expected one of",
     }
     for model, words in expected.items():
         assert rows[model].windows == 0

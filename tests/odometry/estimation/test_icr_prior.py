@@ -71,12 +71,6 @@ def test_a_model_without_constant_icrs_is_refused():
         prior_of(TerrainParameters("radius_of_curvature", values))
 
 
-def test_effects_are_refused():
-    values = {"y_left": 0.4, "y_right": -0.5, "x_icr": 0.1}
-    with pytest.raises(ParameterError, match=r"terrain\.here.*effects"):
-        prior_of(TerrainParameters("icr", values, effects=({"name": "slope"},)))
-
-
 def test_what_a_table_states_of_one_coordinate_is_kept():
     values = {"y_left": 0.4, "y_right": -0.5, "x_icr": 0.1}
     belief = prior_of(TerrainParameters("icr", values, ("y_left",), np.array([[4e-4]])))

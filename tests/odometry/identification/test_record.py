@@ -55,6 +55,12 @@ def test_stamps_are_merged_and_the_row_in_force_is_the_last_before(record):
     assert merged.stretch.tolist() == [0, 0, 0]
 
 
+def test_run_time_is_that_of_every_sample(record):
+    """Since the first stamp of odometry, at poses between its rows too."""
+    merged = record(odometry([5.0, 5.2, 5.4]), pose([5.1, 5.35]))
+    np.testing.assert_allclose(merged.inputs.time_s, [0.0, 0.1, 0.2, 0.35, 0.4], atol=1e-12)
+
+
 def test_attitude_and_accelerations_hold_like_the_speeds(record):
     csv = odometry(
         [0.0, 0.2, 0.4],

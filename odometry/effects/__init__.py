@@ -1,0 +1,1 @@
+"""Effects that can be added to a kinematic model, one file each."""

@@ -1,0 +1,96 @@
+"""Names and forms of the effects, and how a parameter set spells them."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from odometry.effects.actuator_lag import ActuatorLag
+from odometry.effects.base import Effect
+from odometry.effects.contact_forms import InertiaByContact, SlopeByContact
+from odometry.effects.corrected import Added
+from odometry.effects.curvature import Curvature
+from odometry.effects.heading_offset import HeadingOffset
+from odometry.effects.inertia_icr import InertiaByIndices
+from odometry.effects.lateral_skid import LateralSkid
+from odometry.effects.lever_arm import LeverArm
+from odometry.effects.residual import Residual
+from odometry.effects.slope_icr import SlopeByIcr
+from odometry.effects.terrain import Terrain
+from odometry.effects.time_offset import TimeOffset
+from odometry.effects.traction_loss import TractionLoss
+from odometry.effects.wheel_scale import WheelScale
+from odometry.errors import ParameterError
+
+EFFECTS: tuple[type[Effect], ...] = (
+    WheelScale,
+    ActuatorLag,
+    LateralSkid,
+    Curvature,
+    TractionLoss,
+    Terrain,
+    SlopeByIcr,
+    SlopeByContact,
+    InertiaByIndices,
+    InertiaByContact,
+    TimeOffset,
+    LeverArm,
+    HeadingOffset,
+)
+KNOWN: tuple[type[Effect], ...] = (*EFFECTS, Residual)
+BY_FORM = {(effect.name, effect.form): effect for effect in KNOWN}
+
+CONSTANTS = {
+    ("slope_sliding", "icr_slope"): ("half_width", "half_length"),
+    ("slope_sliding", "contact"): ("half_width",),
+    ("inertia", "contact"): ("half_width",),
+    ("inertia", "icr_inertia"): ("mass", "track_width"),
+}
+
+
+def effect_table(added: Added) -> dict[str, Any]:
+    """An effect as a parameter set holds it: complete in itself."""
+    effect = added.effect
+    return {
+        "name": effect.name,
+        "form": effect.form,
+        **effect.settings(),
+        "parameters": {**added.by_name, **effect.constants()},
+    }
+
+
+def added_effects(tables: Sequence[Mapping[str, Any]], where: str) -> tuple[Added, ...]:
+    """The effects of a parameter set.
+
+    Raises
+    ------
+    ParameterError
+        If a name or form is unknown, or a parameter missing.
+    """
+    return tuple(_added(table, f"{where}: effects[{i}]") for i, table in enumerate(tables))
+
+
+def _added(table: Mapping[str, Any], where: str) -> Added:
+    kind = (str(table.get("name")), str(table.get("form")))
+    if kind not in BY_FORM:
+        known = ", ".join(f"{name}/{form}" for name, form in BY_FORM)
+        raise ParameterError(f"{where}: effect {kind[0]}/{kind[1]}, expected one of {known}")
+    values = table.get("parameters")
+    if not isinstance(values, Mapping):
+        raise ParameterError(f"{where}: parameters = {values!r}, expected a table")
+    settings = {
+        key: _frozen(value)
+        for key, value in table.items()
+        if key not in {"name", "form", "parameters", "source"}
+    }
+    constants = {k: v for k, v in values.items() if k in CONSTANTS.get(kind, ())}
+    try:
+        effect = BY_FORM[kind](**settings, **constants)
+    except (TypeError, ParameterError) as error:
+        raise ParameterError(f"{where}: {error}") from error
+    identified = {k: v for k, v in values.items() if k not in constants}
+    return Added(effect, np.asarray(effect.pack(identified, where)))
+
+
+def _frozen(value: Any) -> Any:
+    return tuple(_frozen(item) for item in value) if isinstance(value, list) else value

@@ -1,0 +1,157 @@
+"""Slope sliding and inertia by the force balance of ground contacts.
+
+Not the balance itself is the effect but the change that gravity along the slope, or centrifugal
+force, makes to it: on level ground and slow the base stays as it was calibrated. Both change
+slowly, so that they are computed on means over a fifth of a second, of the recorded
+speeds before any slip: then they do not depend on what else is fitted, and are remembered.
+"""
+
+from abc import abstractmethod
+
+import numpy as np
+
+from odometry.arrays import FloatArray, IntArray
+from odometry.effects.base import Base, EffectParameter, MotionEffect
+from odometry.effects.slope_icr import half_length_m, lacks_tilt
+from odometry.models.contact import GUESSED_HEIGHT, Contact
+from odometry.models.inputs import Inputs
+
+MODEL = Contact()
+MEAN_S = 0.2
+REMEMBERED = 64  # answers
+SLOW = 0.02  # of the speeds: centrifugal force is 0.0004 of its own
+
+
+class _ByContact(MotionEffect):
+    """Shared by both: a balance less the same balance without what is missing.
+
+    Parameters
+    ----------
+    half_width : float, optional
+        Of the contacts [m]; half the track width of the robot where absent.
+    """
+
+    form = "contact"
+    slow = True
+    source = "force balance of this project (odometry.models.contact)"
+
+    def __init__(self, half_width: float | None = None) -> None:
+        self.half_width = half_width
+        self._answers: dict[bytes, FloatArray] = {}
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`."""
+        return (
+            EffectParameter("mu", "", 0.1, 2.0, 0.6, 0.02, None),
+            EffectParameter("height", "m", 0.0, 1.5, 0.15, 0.01, None),
+            EffectParameter("half_length", "m", 0.03, 2.0, 0.25, 0.01, None),
+            EffectParameter("x_cm", "m", -0.3, 0.3, 0.0, 0.01, None),
+            EffectParameter("slip_scale", "m/s", 1e-3, 0.5, 0.03, 0.005, None),
+        )
+
+    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the face
+        """See `Effect.starts`: contacts under the body, slippery and rough."""
+        usual, _ = self.usual(base)
+        return np.array([[mu, *usual[1:]] for mu in (0.4, 0.8)])
+
+    def usual(self, base: Base) -> tuple[FloatArray, FloatArray]:
+        """See `Effect.usual`: from the size of the robot; what motion leaves open stays there."""
+        height, half_length = GUESSED_HEIGHT * base.robot.track_width, half_length_m(base.robot)
+        return (
+            np.array([0.6, height, half_length, 0.0, 0.03]),
+            np.array([0.2, height / 2, half_length / 4, half_length / 5, 0.03]),
+        )
+
+    def balance_values(self, values: FloatArray, base: Base, scale: float = 1.0) -> FloatArray:
+        """Parameters of `Contact`; `scale` is that of the speeds."""
+        mu, height, half_length, x_cm, slip_scale = values
+        half_width = self._half_width_m(base)
+        return np.array(
+            [mu, 1.0, x_cm, 0.0, height, half_length, half_width, 2.0, scale * slip_scale]
+        )
+
+    def constants(self) -> dict[str, float]:
+        """See `Effect.constants`."""
+        return {} if self.half_width is None else {"half_width": self.half_width}
+
+    def _half_width_m(self, base: Base) -> float:
+        return self.half_width or base.robot.track_width / 2
+
+    @abstractmethod
+    def change(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
+        """What it changes of the twist (K, 3) at few inputs (K,)."""
+
+    def twist(
+        self, values: FloatArray, twist: FloatArray, inputs: Inputs, base: Base
+    ) -> FloatArray:
+        """See `MotionEffect.twist`."""
+        first = _first_of_means(inputs)
+        means = Inputs(
+            *(
+                _mean(of, first)
+                for of in (inputs.tread_speeds_m_s, inputs.roll_rad, inputs.pitch_rad)
+            )
+        )
+        counts = np.diff([*first, len(inputs.roll_rad)])
+        return np.asarray(twist + np.repeat(self._remembered(values, means, base), counts, axis=0))
+
+    def _remembered(self, values: FloatArray, means: Inputs, base: Base) -> FloatArray:
+        half_width = np.array([self._half_width_m(base)])
+        stack = (values, half_width, means.tread_speeds_m_s, means.roll_rad, means.pitch_rad)
+        key = b"".join(np.ascontiguousarray(of).tobytes() for of in stack)
+        if key not in self._answers:
+            while len(self._answers) >= REMEMBERED:
+                self._answers.pop(next(iter(self._answers)))
+            self._answers[key] = self.change(values, means, base)
+        return self._answers[key]
+
+
+class SlopeByContact(_ByContact):
+    """What gravity along the slope changes."""
+
+    name = "slope_sliding"
+    equation = "twist + balance(speeds, roll, pitch) - balance(speeds, level)"
+    looks_like = "turns on a slope that slide downhill"
+    needs = "roll and pitch on ground that is not level"
+
+    def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the face
+        """See `Effect.lacks`."""
+        return lacks_tilt(inputs)
+
+    def change(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
+        """See `_ByContact.change`."""
+        balance = self.balance_values(values, base)
+        level = Inputs(inputs.tread_speeds_m_s)
+        return np.asarray(MODEL.twist(balance, inputs) - MODEL.twist(balance, level))
+
+
+class InertiaByContact(_ByContact):
+    """What centrifugal force changes."""
+
+    name = "inertia"
+    equation = "twist + balance(speeds) - balance(slow speeds) / slowness"
+    looks_like = "turns that come out wider or tighter the faster they are driven"
+    needs = "fast turns"
+
+    def change(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
+        """See `_ByContact.change`."""
+        fast = Inputs(inputs.tread_speeds_m_s)
+        slow = Inputs(SLOW * inputs.tread_speeds_m_s)
+        return np.asarray(
+            MODEL.twist(self.balance_values(values, base), fast)
+            - MODEL.twist(self.balance_values(values, base, SLOW), slow) / SLOW
+        )
+
+
+def _first_of_means(inputs: Inputs) -> IntArray:
+    """First sample of each fifth of a second; of each sample where there are no stamps."""
+    if inputs.time_s is None:
+        return np.arange(len(inputs.tread_speeds_m_s))
+    bins = np.floor(inputs.time_s / MEAN_S + 1e-6)
+    return np.flatnonzero(np.diff(bins, prepend=np.nan) != 0)
+
+
+def _mean(values: FloatArray, first: IntArray) -> FloatArray:
+    counts = np.diff([*first, len(values)]).reshape(-1, *[1] * (values.ndim - 1))
+    return np.asarray(np.add.reduceat(values, first, axis=0) / counts)

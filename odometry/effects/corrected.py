@@ -1,0 +1,110 @@
+"""A kinematic model with effects added: the same face as any model."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.effects.base import Base, CommandEffect, Effect, MeasurementEffect, MotionEffect
+from odometry.models.base import KinematicModel
+from odometry.models.inputs import Inputs
+from odometry.run import Robot
+
+RELATIVE_STEP = 1e-6
+
+
+@dataclass(frozen=True)
+class Added:
+    """An effect with values (P,) of its parameters."""
+
+    effect: Effect
+    values: FloatArray
+
+    @property
+    def by_name(self) -> dict[str, float]:
+        """Values by name."""
+        names = [parameter.name for parameter in self.effect.parameters]
+        return {name: float(value) for name, value in zip(names, self.values, strict=True)}
+
+
+class Corrected(KinematicModel):
+    """A base model, its parameters free, with effects on commands and motion held as they are.
+
+    Samples of the inputs must be in time order. Effects on the measurement are no part of a
+    motion; see `odometry.effects.measured`.
+    """
+
+    source = "a model of the catalogue with effects added"
+
+    def __init__(self, base: KinematicModel, robot: Robot, effects: Sequence[Added]) -> None:
+        self.base = base
+        self.robot = robot
+        self.effects = tuple(effects)
+        self.name = "+".join([base.name, *(added.effect.name for added in self.effects)])
+        self.parameters = base.parameters
+
+    def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """See `KinematicModel.twist`; of stack (N,)."""
+        base = Base(self.base, values, self.robot)
+        return corrected_twist(base, self.effects, inputs)
+
+    def parameter_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """See `KinematicModel.parameter_jacobian`; by central differences."""
+        steps = RELATIVE_STEP * np.maximum(1.0, np.abs(values))
+        return np.stack(
+            [
+                (self.twist(values + step, inputs) - self.twist(values - step, inputs))
+                / (2 * step.sum())
+                for step in np.diag(steps)
+            ],
+            axis=-1,
+        )
+
+    def speed_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """See `KinematicModel.speed_jacobian`; that of the base."""
+        return self.base.speed_jacobian(values, inputs)
+
+    def guess(self, robot: Robot) -> dict[str, float]:
+        """See `KinematicModel.guess`; that of the base."""
+        return self.base.guess(robot)
+
+    def check(self, values: FloatArray) -> None:
+        """See `KinematicModel.check`; that of the base."""
+        self.base.check(values)
+
+
+def corrected_twist(base: Base, effects: Sequence[Added], inputs: Inputs) -> FloatArray:
+    """Twist (N, 3) of the base under effects: those on commands first, then those on motion."""
+    inputs = with_true_speeds(effects, inputs)
+    twist = base.model.twist(base.values, inputs)
+    for added in effects:
+        if isinstance(added.effect, MotionEffect):
+            twist = added.effect.twist(added.values, twist, inputs, base)
+    return twist
+
+
+def with_true_speeds(effects: Sequence[Added], inputs: Inputs) -> Inputs:
+    """The inputs with the tread speeds that effects on commands make of the recorded ones."""
+    for added in effects:
+        if isinstance(added.effect, CommandEffect):
+            speeds = added.effect.tread_speeds(added.values, inputs)
+            inputs = replace(inputs, tread_speeds_m_s=speeds)
+    return inputs
+
+
+def delay_s(effects: Sequence[Added]) -> float:
+    """By how much all effects together make the stamps of poses late."""
+    return sum(
+        added.effect.delay_s(added.values)
+        for added in effects
+        if isinstance(added.effect, MeasurementEffect)
+    )
+
+
+def seen_poses(effects: Sequence[Added], poses: FloatArray) -> FloatArray:
+    """Poses (M, 3) as the reference sensor would report those of the robot."""
+    for added in effects:
+        if isinstance(added.effect, MeasurementEffect):
+            poses = added.effect.seen(added.values, poses)
+    return poses

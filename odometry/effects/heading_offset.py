@@ -1,0 +1,29 @@
+"""A reference sensor that is turned against the robot."""
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.effects.base import EffectParameter, MeasurementEffect
+
+
+class HeadingOffset(MeasurementEffect):
+    """The measured yaw is off by a constant angle."""
+
+    name = "heading_offset"
+    form = "constant"
+    equation = "yaw -> yaw + offset"
+    source = "definition"
+    looks_like = "straights on which the robot seems to drift to one side, forward and backward"
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`."""
+        return (EffectParameter("offset", "rad", -3.2, 3.2, 0.0, 0.01),)
+
+    def seen(self, values: FloatArray, poses: FloatArray) -> FloatArray:
+        """See `MeasurementEffect.seen`."""
+        return np.asarray(poses + np.array([0.0, 0.0, values[0]]))
+
+    def robot_poses(self, values: FloatArray, seen: FloatArray) -> FloatArray:
+        """See `MeasurementEffect.robot_poses`."""
+        return np.asarray(seen - np.array([0.0, 0.0, values[0]]))

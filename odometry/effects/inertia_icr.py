@@ -1,0 +1,78 @@
+"""Inertia in fast turns, as ICRs that move with its force."""
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.effects.base import Base, EffectParameter, MotionEffect, slip_factors, tread_icrs
+from odometry.models.icr import icr_twist
+from odometry.models.icr_inertia import IcrInertia
+from odometry.models.inertia_model import G_M_S2
+from odometry.models.inputs import Inputs
+
+MODEL = IcrInertia()
+
+
+class InertiaByIndices(MotionEffect):
+    """The change that the indices of Martinez 2017 make to the base's ICRs.
+
+    Without force zeta, epsilon and eta are those of the base.
+
+    Parameters
+    ----------
+    mass : float
+        Of the robot [kg]; 1 where it is not known: the coefficients are then by force per mass.
+    track_width : float, optional
+        By which eta is measured [m]; that of the robot where absent.
+    """
+
+    name = "inertia"
+    form = "icr_inertia"
+    equation = "zeta, epsilon, eta change with |F| by zeta_1, epsilon_1, eta_1, eta_2 and signs"
+    source = "Martinez 2017 eq. 17-30"
+    looks_like = "turns that come out wider or tighter the faster they are driven"
+    needs = "fast turns; a base model with tread ICRs"
+
+    def __init__(self, mass: float = 1.0, track_width: float | None = None) -> None:
+        self.mass, self.track_width = mass, track_width
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`; `h` acts through a sign alone."""
+        weight = self.mass * G_M_S2
+        return (
+            EffectParameter("zeta_1", "m/N", -20 / weight, 20 / weight, 0.0, 0.02 / weight),
+            EffectParameter("epsilon_1", "m/N", -20 / weight, 20 / weight, 0.0, 0.02 / weight),
+            EffectParameter("eta_1", "1/N", -50 / weight, 50 / weight, 0.0, 0.02 / weight),
+            EffectParameter("eta_2", "1/N^2", -200 / weight**2, 200 / weight**2, 0.0, 0.1 / weight**2),
+            EffectParameter("h", "", 0.2, 3.0, 1.0, 0.05, None),
+        )
+
+    def constants(self) -> dict[str, float]:
+        """See `Effect.constants`."""
+        width = {} if self.track_width is None else {"track_width": self.track_width}
+        return {"mass": self.mass, **width}
+
+    def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the face
+        """See `Effect.lacks`."""
+        return "" if base.model.name == "icr" else "a base model with tread ICRs"
+
+    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the face
+        """No change, for several signs of V_l + H V_r."""
+        return np.array([[0.0, 0.0, 0.0, 0.0, h] for h in (1.0, 0.67, 0.85, 1.2)])
+
+    def twist(
+        self, values: FloatArray, twist: FloatArray, inputs: Inputs, base: Base
+    ) -> FloatArray:
+        """See `MotionEffect.twist`."""
+        icrs, alphas = tread_icrs(base, self.name), slip_factors(base)
+        y_left, y_right, x_icr = icrs
+        width = self.track_width or base.robot.track_width
+        zeta_1, epsilon_1, eta_1, eta_2, h = values
+        coefficients = [
+            *(x_icr, zeta_1, -(y_left + y_right) / 2, epsilon_1),
+            *((y_left - y_right) / width, eta_1, eta_2),
+            *(h, self.mass, 0.0, 0.0, width),
+        ]
+        speeds = alphas * inputs.tread_speeds_m_s
+        moved = MODEL.twist(np.array(coefficients), Inputs(speeds))
+        return np.asarray(twist + moved - icr_twist(icrs, speeds))

@@ -1,0 +1,47 @@
+"""A reference sensor that is not at the robot's origin."""
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.effects.base import EffectParameter, MeasurementEffect
+from odometry.effects.lateral_skid import TOLD_APART
+from odometry.geometry import se2
+
+
+class LeverArm(MeasurementEffect):
+    """The measured position is that of a point ahead and to the left of the origin."""
+
+    name = "lever_arm"
+    form = "constant"
+    equation = "position -> position + R(yaw) (x_arm, y_arm)"
+    source = "definition"
+    looks_like = "sideways motion in turns, and distances that differ in left and right turns"
+    alike: ClassVar[Mapping[str, str]] = {"lateral_skid": TOLD_APART, "terrain": TOLD_APART}
+
+    def same_as(self, values: FloatArray) -> Mapping[str, str]:  # noqa: ARG002 - of the face
+        """See `Effect.same_as`."""
+        return {"lateral_skid": TOLD_APART}
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`."""
+        return (
+            EffectParameter("x_arm", "m", -5.0, 5.0, 0.0, 0.01),
+            EffectParameter("y_arm", "m", -5.0, 5.0, 0.0, 0.01),
+        )
+
+    def seen(self, values: FloatArray, poses: FloatArray) -> FloatArray:
+        """See `MeasurementEffect.seen`."""
+        return _moved(poses, values)
+
+    def robot_poses(self, values: FloatArray, seen: FloatArray) -> FloatArray:
+        """See `MeasurementEffect.robot_poses`."""
+        return _moved(seen, -values)
+
+
+def _moved(poses: FloatArray, arm: FloatArray) -> FloatArray:
+    """Poses (M, 3) with their positions moved by an arm (2,) in the robot frame."""
+    return np.concatenate([se2.transform(poses, arm), poses[:, 2:]], axis=1)

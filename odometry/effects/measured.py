@@ -1,0 +1,68 @@
+"""Effects on the measurement undone: a run whose measured poses are those of the robot."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.effects.base import MeasurementEffect
+from odometry.effects.corrected import Added, delay_s
+from odometry.errors import ParameterError
+from odometry.geometry.angles import wrap
+from odometry.run import Run
+
+POSE_NAMES = ("x", "y", "yaw")
+
+
+def on_measurement(effects: Sequence[Added]) -> tuple[Added, ...]:
+    """Those of the effects that act on the measured pose."""
+    return tuple(added for added in effects if isinstance(added.effect, MeasurementEffect))
+
+
+def shared_measurement(groups: Sequence[Sequence[Added]]) -> tuple[Added, ...]:
+    """The effects on the measurement that all groups have: they are of one sensor.
+
+    Raises
+    ------
+    ParameterError
+        If two groups differ in them.
+    """
+    first, *others = [on_measurement(group) for group in groups] or [()]
+    for other in others:
+        if _words(other) != _words(first):
+            raise ParameterError(
+                f"effects on the measurement: {_words(first)} on one ground, {_words(other)} on "
+                "another; expected those of one sensor"
+            )
+    return first
+
+
+def robot_poses(effects: Sequence[Added], seen: FloatArray) -> FloatArray:
+    """Poses (M, 3) of the robot from those that the sensor reports: the inverse of `seen_poses`."""
+    for added in reversed(effects):
+        if isinstance(added.effect, MeasurementEffect):
+            seen = added.effect.robot_poses(added.values, seen)
+    return seen
+
+
+def robot_run(run: Run, effects: Sequence[Added]) -> Run:
+    """The run with the poses of the robot in place of those that its sensor reports.
+
+    Stamps become those at which the poses were measured: all are moved by the same delay. A run
+    without poses, and one whose sensor has no such effect, is the run itself.
+    """
+    if run.pose is None or not on_measurement(effects):
+        return run
+    poses = robot_poses(effects, run.pose.stack(*POSE_NAMES))
+    poses[:, 2] = wrap(poses[:, 2])
+    columns = {
+        **run.pose.columns,
+        "t": run.pose.stamps_s - delay_s(effects),
+        **dict(zip(POSE_NAMES, np.ascontiguousarray(poses.T), strict=True)),
+    }
+    return replace(run, pose=replace(run.pose, columns=columns))
+
+
+def _words(effects: Sequence[Added]) -> str:
+    return " and ".join(f"{added.effect.name} {added.by_name}" for added in effects) or "none"

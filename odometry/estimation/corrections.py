@@ -1,0 +1,63 @@
+"""What the effects of a parameter set change at each row of odometry.csv, for the ICR filter."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from odometry.arrays import FloatArray
+from odometry.effects.base import Base
+from odometry.effects.corrected import Corrected, corrected_twist, with_true_speeds
+from odometry.effects.tables import model_of
+from odometry.models.run_inputs import inputs_of
+from odometry.parameters import ParameterSet
+from odometry.run import Run
+
+
+@dataclass(frozen=True)
+class Correction:
+    """What the effects of one terrain change along a run.
+
+    Attributes
+    ----------
+    speeds_m_s : (N, 2)
+        True less recorded tread speeds, at each row of odometry.csv.
+    twists : (N, 3)
+        What effects on the motion add to the twist of the base at the true speeds and at the
+        parameters of the set. It stays while a filter learns other ICRs.
+    """
+
+    speeds_m_s: FloatArray
+    twists: FloatArray
+
+
+def corrections_of(run: Run, parameters: ParameterSet) -> Mapping[str, Correction]:
+    """The corrections of every terrain of a parameter set that has effects.
+
+    Parameters
+    ----------
+    run : Run
+        As recorded: effects on the measurement are undone by
+        `odometry.effects.measured.robot_run`.
+    parameters : ParameterSet
+
+    Raises
+    ------
+    ParameterError
+        If an effect is not known, or needs what the base model or the run does not have.
+    """
+    found = {}
+    for name, table in parameters.terrains.items():
+        model = model_of(table, run.robot, f"[terrain.{name}]")
+        if isinstance(model, Corrected):
+            base = Base(model.base, model.base.pack(table.values), run.robot)
+            found[name] = _correction(base, model, run)
+    return found
+
+
+def _correction(base: Base, model: Corrected, run: Run) -> Correction:
+    recorded = inputs_of(run)
+    true = with_true_speeds(model.effects, recorded)
+    plain = base.model.twist(base.values, true)
+    return Correction(
+        true.tread_speeds_m_s - recorded.tread_speeds_m_s,
+        corrected_twist(base, model.effects, recorded) - plain,
+    )

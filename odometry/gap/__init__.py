@@ -1,0 +1,1 @@
+"""Where simulation and measurement disagree, which effect is missing, and the gap closed."""

@@ -1,0 +1,124 @@
+"""The model believed so far: its values, how sure they are, and what noise explains."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.effects.base import Base
+from odometry.gap.config import GapConfig
+from odometry.gap.errors import GapError
+from odometry.gap.noise import Noise, estimated_noise, whitening
+from odometry.gap.scene import Scene, pieces, scene_of, thinned
+from odometry.gap.simulate import residuals
+from odometry.gap.solve import least_squares, with_jacobian
+from odometry.gap.uncertain import Uncertain
+from odometry.models.base import KinematicModel
+from odometry.run import Robot, Run
+
+LEAST_WINDOWS = 20
+ROUNDS = 3  # of values and noise in turn
+ITERATIONS = 8
+STARTS_WITH = Noise(0.02, 0.01, 0.02, 0.02)
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """A base model and the noise that measured motion has beside it.
+
+    Attributes
+    ----------
+    uncertain : Uncertain
+        The base, and which of its numbers are known only as well as `information` says.
+    information : (F, F)
+        Inverse covariance of these.
+    noise : Noise
+    held_back : tuple of (Base, Scene)
+        Stretches of the calibration runs, each with a base identified on all others: the noise
+        floor is the gap of these.
+    """
+
+    uncertain: Uncertain
+    information: FloatArray
+    noise: Noise
+    held_back: tuple[tuple[Base, Scene], ...]
+
+    @property
+    def base(self) -> Base:
+        """The model believed so far."""
+        return self.uncertain.base
+
+
+def calibrated(
+    runs: Sequence[Run],
+    model: KinematicModel,
+    robot: Robot,
+    config: GapConfig,
+    given: Mapping[str, float] | None = None,
+) -> Calibration:
+    """Identify the base on calibration runs, and the noise; or take the given values as they are.
+
+    Raises
+    ------
+    GapError
+        If there are too few windows.
+    """
+    scenes = [thinned(scene_of(run, config), config.most_windows) for run in runs]
+    if sum(map(len, scenes)) < LEAST_WINDOWS:
+        raise GapError(
+            f"{sum(map(len, scenes))} windows of {config.horizon_s:g} s in the calibration runs: "
+            f"too few for a model and a noise floor; expected {LEAST_WINDOWS} or more"
+        )
+    free = np.array([not parameter.known for parameter in model.parameters])
+    uncertain = Uncertain(Base(model, model.pack(model.guess(robot)), robot), free, True)
+    noise = STARTS_WITH
+    for _ in range(ROUNDS):
+        uncertain, _ = _fit(uncertain, scenes, noise)
+        noise = estimated_noise(scenes, [residuals(uncertain.base, (), s) for s in scenes])
+    uncertain, information = _fit(uncertain, scenes, noise)
+    held_back = _held_back(uncertain, scenes, noise, config)
+    if given is None:
+        return Calibration(uncertain, information, noise, held_back)
+    believed = Uncertain(
+        Base(model, model.pack(given), robot), np.zeros_like(free), latency_is_free=False
+    )
+    return Calibration(believed, np.empty((0, 0)), noise, held_back)
+
+
+def _held_back(
+    uncertain: Uncertain, scenes: Sequence[Scene], noise: Noise, config: GapConfig
+) -> tuple[tuple[Base, Scene], ...]:
+    """Every part of the runs with a base identified on the others."""
+    numbers = [pieces(scene, config.part_s) % config.held_back for scene in scenes]
+    held_back = []
+    for part in range(config.held_back):
+        others = [s.where(n != part) for s, n in zip(scenes, numbers, strict=True)]
+        kept = [s.where(n == part) for s, n in zip(scenes, numbers, strict=True)]
+        without, _ = _fit(uncertain, [s for s in others if len(s)], noise)
+        held_back += [(without.base, s) for s in kept if len(s)]
+    return tuple(held_back)
+
+
+def _fit(
+    uncertain: Uncertain, scenes: Sequence[Scene], noise: Noise
+) -> tuple[Uncertain, FloatArray]:
+    """The free numbers that fit best, and their information (F, F)."""
+    whiteners = [whitening(scene, noise) for scene in scenes]
+
+    def rows_at(values: FloatArray) -> FloatArray:
+        base = uncertain.at(values)
+        return np.concatenate(
+            [
+                np.einsum("kij,kj->ki", white, residuals(base, (), scene).reshape(len(scene), -1))
+                for white, scene in zip(whiteners, scenes, strict=True)
+            ],
+            axis=None,
+        )
+
+    bounds, scales = uncertain.bounds, uncertain.scales
+    ended = least_squares(rows_at, uncertain.values, scales, bounds, ITERATIONS)
+    solved = with_jacobian(rows_at, ended, scales, bounds)
+    found = replace(uncertain, base=uncertain.at(solved.values))
+    spread = max(1.0, solved.cost / max(1, len(solved.rows) - len(scales)))
+    return found, solved.jacobian.T @ solved.jacobian / spread

@@ -1,0 +1,102 @@
+"""Which effects may be missing, given what was recorded."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from odometry.effects.actuator_lag import ActuatorLag
+from odometry.effects.base import Effect
+from odometry.effects.contact_forms import InertiaByContact, SlopeByContact
+from odometry.effects.curvature import Curvature
+from odometry.effects.heading_offset import HeadingOffset
+from odometry.effects.inertia_icr import InertiaByIndices
+from odometry.effects.lateral_skid import LateralSkid
+from odometry.effects.lever_arm import LeverArm
+from odometry.effects.residual import ANGLES, HARMONICS, Residual, variables_of
+from odometry.effects.slope_icr import SlopeByIcr, half_length_m
+from odometry.effects.terrain import Terrain, new_labels
+from odometry.effects.time_offset import TimeOffset
+from odometry.effects.traction_loss import TractionLoss
+from odometry.effects.wheel_scale import WheelScale
+from odometry.gap.calibration import Calibration
+from odometry.gap.scene import Scene
+
+LATERAL_M_S2 = 0.3  # less inertia than this is nothing that contact forces are worth trying for
+COMPONENTS = ("v_x", "v_y", "omega")
+KNOTS = 5
+
+
+def quick_effects(scenes: Sequence[Scene], calibration: Calibration) -> tuple[Effect, ...]:
+    """Effects of the catalogue that the measured runs could tell, but those of contact forces."""
+    calibrated = {str(n) for _, s in calibration.held_back for n in np.unique(_labels(s))}
+    labels = tuple(sorted({n for s in scenes for n in new_labels(s.inputs, calibrated)}))
+    longest_s = max(float(scene.time_s[-1]) for scene in scenes)
+    robot = calibration.base.robot
+    every: tuple[Effect, ...] = (
+        WheelScale(),
+        ActuatorLag(),
+        LateralSkid(),
+        Curvature(),
+        TractionLoss(longest_s),
+        Terrain(labels),
+        SlopeByIcr(robot.track_width / 2, half_length_m(robot)),
+        InertiaByIndices(robot.mass or 1.0, robot.track_width),
+        TimeOffset(),
+        LeverArm(),
+        HeadingOffset(),
+    )
+    return tuple(e for e in every if told_by(e, scenes, calibration))
+
+
+def contact_effects(scenes: Sequence[Scene], calibration: Calibration) -> tuple[Effect, ...]:
+    """Effects by the balance of contact forces, where slope or speed ask for them."""
+    found: list[Effect] = []
+    half_width = calibration.base.robot.track_width / 2
+    slope = SlopeByContact(half_width)
+    if told_by(slope, scenes, calibration):
+        found.append(slope)
+    lateral = max(_lateral_m_s2(scene, calibration) for scene in scenes)
+    if lateral > LATERAL_M_S2:
+        found.append(InertiaByContact(half_width))
+    return tuple(found)
+
+
+def unnamed_effects(scenes: Sequence[Scene]) -> tuple[Residual, ...]:
+    """Smooth functions of an angle that no effect of the catalogue depends on."""
+    angles = [a for a in ANGLES if all(a in variables_of(s.inputs) for s in scenes)]
+    return tuple(
+        Residual(angle, all_terms(2 * HARMONICS), by_speed)
+        for angle in angles
+        for by_speed in (False, True)
+    )
+
+
+def smooth_effects(scenes: Sequence[Scene]) -> tuple[Residual, ...]:
+    """Smooth functions of every variable recorded: what is left may depend on any."""
+    found = list(unnamed_effects(scenes))
+    for name, values in variables_of(scenes[0].inputs).items():
+        if name in ANGLES:
+            continue
+        knots = np.unique(np.quantile(values, np.linspace(0.02, 0.98, KNOTS)))
+        if len(knots) == KNOTS and knots[-1] - knots[0] > 1e-3:
+            found.append(Residual(name, all_terms(KNOTS), False, tuple(float(k) for k in knots)))
+    return tuple(found)
+
+
+def all_terms(functions: int) -> tuple[tuple[str, int], ...]:
+    """Every basis function for every component of the twist."""
+    return tuple((component, k) for component in COMPONENTS for k in range(functions))
+
+
+def told_by(effect: Effect, scenes: Sequence[Scene], calibration: Calibration) -> bool:
+    """Whether a run has the data that the effect needs."""
+    return any(not effect.lacks(scene.inputs, calibration.base) for scene in scenes)
+
+
+def _labels(scene: Scene) -> np.ndarray:
+    return np.array([]) if scene.inputs.terrain is None else scene.inputs.terrain.astype(str)
+
+
+def _lateral_m_s2(scene: Scene, calibration: Calibration) -> float:
+    twist = calibration.base.model.twist(calibration.base.values, scene.inputs)
+    return float(np.percentile(np.abs(twist[:, 0] * twist[:, 2]), 95))

@@ -1,0 +1,102 @@
+"""Residuals at the ends of windows, beside what noise and calibration explain of them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from odometry.arrays import FloatArray, IntArray
+from odometry.effects.base import Base
+from odometry.effects.corrected import Added
+from odometry.gap.calibration import Calibration
+from odometry.gap.noise import Noise, covariance_parts
+from odometry.gap.scene import Scene, pieces
+from odometry.gap.simulate import residuals
+
+STEP = 1e-4  # of a base parameter, for a derivative
+RIDGE = 1e-6  # of the information of the calibration: it may leave a direction open
+
+
+@dataclass(frozen=True)
+class Ends:
+    """Residuals at the ends of all windows.
+
+    Attributes
+    ----------
+    motion : (K, 3)
+        Measured less simulated: along, across [m], turn [rad], in the frame of the start.
+    variance : (K, 3)
+        Of noise alone.
+    leeway : (K, 3, F)
+        What one standard deviation of each of F independent errors of the calibration does.
+    pieces : (K,)
+        Number of the piece of the runs in which each lies; pieces are taken as independent.
+    """
+
+    motion: FloatArray
+    variance: FloatArray
+    leeway: FloatArray
+    pieces: IntArray
+
+    @property
+    def squares_m2(self) -> FloatArray:
+        """Squared position errors (K,)."""
+        return np.asarray((self.motion[:, :2] ** 2).sum(axis=1))
+
+    @property
+    def excess_m2(self) -> FloatArray:
+        """Squared position errors (K,) beyond noise and calibration: zero on average without gap.
+
+        What is taken off grows with travel and with the distance from the first pose: a constant
+        floor would take every fast window for a gap.
+        """
+        return np.asarray(self.squares_m2 - self._explained_m2.sum(axis=1))
+
+    @property
+    def deviation_m2(self) -> FloatArray:
+        """Standard deviation (K,) of that, without gap: normal errors, squared."""
+        return np.asarray(np.sqrt(2 * (self._explained_m2**2).sum(axis=1)))
+
+    @property
+    def _explained_m2(self) -> FloatArray:
+        return np.asarray((self.variance + (self.leeway**2).sum(axis=-1))[:, :2])
+
+
+def ends_of(
+    base: Base,
+    effects: Sequence[Added],
+    scenes: Sequence[Scene],
+    calibration: Calibration,
+    part_s: float,
+) -> Ends:
+    """Of all windows of all scenes, in order."""
+    motion = _ends(base, effects, scenes)
+    uncertain = replace(calibration.uncertain, base=base)
+    values = uncertain.values
+    slopes = np.zeros((*motion.shape, len(values)))
+    for place in range(len(values)):
+        stepped = values.copy()
+        stepped[place] += STEP
+        slopes[..., place] = (_ends(uncertain.at(stepped), effects, scenes) - motion) / STEP
+    information = calibration.information + RIDGE * np.eye(slopes.shape[-1])
+    leeway = slopes @ np.linalg.inv(np.linalg.cholesky(information)).T
+    variance = np.concatenate([_variance(scene, calibration.noise) for scene in scenes])
+    return Ends(motion, variance, leeway, _pieces(scenes, part_s))
+
+
+def _ends(base: Base, effects: Sequence[Added], scenes: Sequence[Scene]) -> FloatArray:
+    return np.concatenate([residuals(base, effects, scene)[:, -1] for scene in scenes])
+
+
+def _variance(scene: Scene, noise: Noise) -> FloatArray:
+    last = covariance_parts(scene)[:, :, -3:, -3:]
+    return np.asarray(np.einsum("p,pkii->ki", noise.variances, last))
+
+
+def _pieces(scenes: Sequence[Scene], part_s: float) -> IntArray:
+    numbers, begin = [], 0
+    for scene in scenes:
+        here = pieces(scene, part_s)
+        numbers.append(begin + here)
+        begin += int(here.max(initial=0)) + 1
+    return np.concatenate(numbers)

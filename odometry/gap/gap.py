@@ -1,0 +1,153 @@
+"""Locate the gap, name what is missing, add it, and measure what that closes."""
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+from tqdm import tqdm
+
+from odometry.gap.calibration import calibrated
+from odometry.gap.config import GapConfig
+from odometry.gap.equivalent import equivalents
+from odometry.gap.errors import GapError
+from odometry.gap.fit import Fitter, measured_of
+from odometry.gap.locate import locate
+from odometry.gap.name import Explanation, explained
+from odometry.gap.result import Closing, GapResult, NamedEffect, Rival
+from odometry.gap.scene import Scene, pieces, scene_of, thinned
+from odometry.gap.statistic import floor_of, gap_of
+from odometry.identification.identify import robot_of
+from odometry.models.base import KinematicModel
+from odometry.models.icr import Icr
+from odometry.run import Run
+from odometry.runs import check_no_run_twice
+
+WITHIN_95 = 1.96  # standard deviations
+
+
+def find_gap(
+    measured: Sequence[Run],
+    calibration: Sequence[Run],
+    holdout: Sequence[Run] = (),
+    *,
+    model: KinematicModel | None = None,
+    given: Mapping[str, float] | None = None,
+    config: GapConfig | None = None,
+    show_progress: bool = False,
+) -> GapResult:
+    """Find where a model and measured runs disagree, and which effect is missing.
+
+    Parameters
+    ----------
+    measured : sequence of Run
+        Runs on which the gap shows, with poses.
+    calibration : sequence of Run
+        Runs on which the base is identified (unless `given`), and the noise.
+    holdout : sequence of Run
+        Runs on which the answer is judged; pieces of the measured runs where there are none.
+    model : KinematicModel, optional
+        The base, `icr` when absent.
+    given : Mapping of name to float, optional
+        Parameters of the base, believed as they are.
+    config : GapConfig, optional
+    show_progress : bool
+        Whether to draw a bar on standard error.
+
+    Raises
+    ------
+    GapError
+        If runs are missing or too short.
+    IdentificationError
+        If a run has no poses, or the runs are of different robots.
+    RunFolderError
+        If a run is given twice.
+    """
+    config = config or GapConfig()
+    if not measured or not calibration:
+        raise GapError(
+            f"{len(measured)} measured and {len(calibration)} calibration runs, expected one or "
+            "more of each"
+        )
+    check_no_run_twice([*measured, *calibration, *holdout])
+    robot = robot_of([*calibration, *measured, *holdout])
+    known = calibrated(calibration, model or Icr(), robot, config, given)
+    fitted_scenes, held_scenes = _scenes(measured, holdout, config)
+    floor = floor_of(known.held_back, config.part_s)
+    fitter = Fitter(known, measured_of(fitted_scenes, known, config))
+    with tqdm(desc="candidates", unit="fit", disable=None if show_progress else True) as bar:
+        found = explained(fitter, floor, config, _counting(bar))
+    fit = found.fitted
+    base = fit.base if found.steps else known.base
+    closings = [
+        Closing(
+            gap_of(known.base, (), scenes, config.part_s),
+            gap_of(base, fit.effects, scenes, config.part_s),
+            floor,
+        )
+        for scenes in (fitted_scenes, held_scenes)
+    ]
+    named = _named(found, closings[0].before.value)
+    return GapResult(
+        verdict=found.names[0] if found.names else "none",
+        effects=named,
+        equivalent=equivalents(found),
+        location=locate(known.base, (), fitted_scenes, floor.value, config, calibration=known),
+        measured=closings[0],
+        holdout=closings[1],
+        rivals=tuple(
+            Rival(one.effect.name, one.effect.form, one.evidence, one.gap_after)
+            for one in found.first
+        ),
+        calibration=known,
+        base=base,
+        measured_scenes=tuple(fitted_scenes),
+        holdout_scenes=tuple(held_scenes),
+        horizon_s=config.horizon_s,
+    )
+
+
+def _counting(bar: "tqdm[None]") -> Callable[[], None]:
+    def count() -> None:
+        bar.update()
+
+    return count
+
+
+def _scenes(
+    measured: Sequence[Run], holdout: Sequence[Run], config: GapConfig
+) -> tuple[list[Scene], list[Scene]]:
+    """Scenes to fit and scenes to judge by."""
+    scenes = [scene_of(run, config) for run in measured]
+    if holdout:
+        held = [scene_of(run, config) for run in holdout]
+    else:
+        outs = [pieces(s, config.part_s) % config.held_back == config.held_back - 1 for s in scenes]
+        held = [s.where(out) for s, out in zip(scenes, outs, strict=True) if out.any()]
+        scenes = [s.where(~out) for s, out in zip(scenes, outs, strict=True) if not out.all()]
+        if not held or not scenes:
+            raise GapError(
+                "the measured runs are too short to hold stretches of them back: expected "
+                f"{config.held_back * config.part_s:g} s or more, or --holdout"
+            )
+    return [thinned(scene, config.most_windows) for scene in scenes], held
+
+
+def _named(found: Explanation, before_m: float) -> tuple[NamedEffect, ...]:
+    fit = found.fitted
+    sigmas = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
+    named, place, gap_m = [], 0, before_m
+    for step, added in zip(found.steps, fit.effects, strict=True):
+        spread = WITHIN_95 * sigmas[place : place + len(added.values)]
+        place += len(added.values)
+        lows, highs = np.array([(p.low, p.high) for p in added.effect.parameters]).T
+        named.append(
+            NamedEffect(
+                added,
+                np.maximum(added.values - spread, lows),
+                np.minimum(added.values + spread, highs),
+                gap_m,
+                step.gap_after,
+                step.evidence,
+            )
+        )
+        gap_m = step.gap_after
+    return tuple(named)

@@ -1,0 +1,131 @@
+"""Bounds of variables in words."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+EVERYWHERE = "everywhere"
+
+
+@dataclass(frozen=True)
+class Signed:
+    """A variable whose two signs have words of their own.
+
+    Attributes
+    ----------
+    positive, negative : str
+    more : str
+        Between these and a number.
+    noun, unit : str
+        Unit as it is written.
+    scale : float
+        From the variable's unit to the one written.
+    slight : float
+        Bounds nearer to zero (in the variable's unit) are not worth a number.
+    """
+
+    positive: str
+    negative: str
+    more: str
+    noun: str
+    unit: str
+    scale: float = 1.0
+    slight: float = 0.0
+
+    def words(self, low: float | None, high: float | None) -> str:
+        """Of a lower and an upper bound."""
+        if low is not None and high is not None:
+            if low >= 0:
+                return f"{self.positive} {self._number(low, bare=True)} to {self._number(high)}"
+            if high <= 0:
+                return f"{self.negative} {self._number(high, bare=True)} to {self._number(low)}"
+            written = f"{low * self.scale:.2g} and {high * self.scale:.2g} {self.unit}"
+            return f"{self.noun} between {written}"
+        if low is not None:
+            return self._beyond(low, self.positive, self.negative)
+        return self._beyond(-high, self.negative, self.positive) if high is not None else ""
+
+    def _beyond(self, bound: float, side: str, other: str) -> str:
+        """More than a bound to one side, which is negative on the other side of zero."""
+        if abs(bound) < self.slight:
+            return side
+        beyond = f"{self.more} {self._number(bound)}"
+        return f"{side} {beyond}" if bound > 0 else f"not {other} {beyond}"
+
+    def _number(self, bound: float, *, bare: bool = False) -> str:
+        number = f"{abs(bound) * self.scale:.2g}"
+        return number if bare else f"{number} {self.unit}"
+
+
+@dataclass(frozen=True)
+class Plain:
+    """A variable said by its name."""
+
+    noun: str
+    unit: str
+    scale: float = 1.0
+    above: str = "above"
+    below: str = "below"
+
+    def words(self, low: float | None, high: float | None) -> str:
+        """Of a lower and an upper bound."""
+        if low is not None and high is not None:
+            written = f"{low * self.scale:.3g} and {high * self.scale:.3g} {self.unit}"
+            return f"{self.noun} between {written}"
+        if low is not None:
+            return f"{self.noun} {self.above} {low * self.scale:.3g} {self.unit}"
+        if high is not None:
+            return f"{self.noun} {self.below} {high * self.scale:.3g} {self.unit}"
+        return ""
+
+
+DEGREES = math.degrees(1.0)
+SPOKEN: Mapping[str, Signed | Plain] = {
+    "speed": Plain("speed", "m/s"),
+    "omega": Signed(
+        "turning left", "turning right", "faster than", "yaw rate", "degrees/s", DEGREES, 0.1
+    ),
+    "curvature": Signed(
+        "curving left", "curving right", "more than", "curvature", "per m", 1.0, 0.1
+    ),
+    "roll": Signed(
+        "right side down", "left side down", "more than", "roll", "degrees", DEGREES, 0.01
+    ),
+    "pitch": Signed("nose down", "nose up", "more than", "pitch", "degrees", DEGREES, 0.01),
+    "heading": Plain("heading", "degrees", DEGREES),
+    "lateral_acceleration": Signed(
+        "drawn left", "drawn right", "more than", "lateral acceleration", "m/s²", 1.0, 0.05
+    ),
+    "speed_difference": Plain("difference of tread speeds", "m/s"),
+    "time": Plain("run time", "s", 1.0, "after", "before"),
+    "left_wheel_angle": Plain("angle of the left wheels", "degrees", DEGREES),
+    "right_wheel_angle": Plain("angle of the right wheels", "degrees", DEGREES),
+    "speed_before": Plain("speed before", "m/s"),
+    "speed_change": Signed(
+        "speeding up", "slowing down", "by more than", "change of speed", "m/s", 1.0, 0.05
+    ),
+}
+
+NAMES = {"turn": "direction of turning", "terrain": "terrain"}  # of labels
+
+
+def words_of(bounds: Mapping[str, tuple[float | None, float | None]]) -> str:
+    """All bounds in one phrase."""
+    return ", ".join(_words(name, low, high) for name, (low, high) in bounds.items()) or EVERYWHERE
+
+
+def noun_of(name: str) -> str:
+    """A variable in words."""
+    return SPOKEN[name].noun if name in SPOKEN else NAMES.get(name, name)
+
+
+def shown_unit(name: str) -> tuple[str, float]:
+    """The unit that a person reads, and the factor to it."""
+    return (SPOKEN[name].unit, SPOKEN[name].scale) if name in SPOKEN else ("", 1.0)
+
+
+def _words(name: str, low: float | None, high: float | None) -> str:
+    if "=" in name:
+        label = name.split("=", 1)[1]
+        return f"on {label}" if low is not None else f"not on {label}"
+    return SPOKEN[name].words(low, high)

@@ -1,0 +1,111 @@
+"""What the gap workflow found."""
+
+from dataclasses import dataclass
+
+from odometry.arrays import FloatArray
+from odometry.effects.base import Base
+from odometry.effects.corrected import Added
+from odometry.gap.calibration import Calibration
+from odometry.gap.locate import Location
+from odometry.gap.scene import Scene
+from odometry.gap.statistic import Gap
+
+
+@dataclass(frozen=True)
+class NamedEffect:
+    """An effect in the order added.
+
+    Attributes
+    ----------
+    added : Added
+        With the values of the last fit, of all effects together.
+    low, high : (P,)
+        95 % intervals.
+    gap_before, gap_after : float
+        On the measured runs, without and with it (and those before it) [m].
+    evidence : float
+        Twice the log-likelihood gained on windows not fitted, less the penalty.
+    """
+
+    added: Added
+    low: FloatArray
+    high: FloatArray
+    gap_before: float
+    gap_after: float
+    evidence: float
+
+
+@dataclass(frozen=True)
+class Rival:
+    """A candidate for the first effect."""
+
+    name: str
+    form: str
+    evidence: float
+    gap_after: float
+
+
+@dataclass(frozen=True)
+class Equivalent:
+    """An effect that the data cannot tell from a named one."""
+
+    name: str
+    instead_of: str
+    told_apart_by: str
+
+
+@dataclass(frozen=True)
+class Closing:
+    """A gap before and after, beside what noise explains [m]."""
+
+    before: Gap
+    after: Gap
+    noise_floor: Gap
+
+    @property
+    def share_closed(self) -> float:
+        """Of the excess above the noise floor; NaN where there is none."""
+        excess = self.before.value - self.noise_floor.value
+        return (self.before.value - self.after.value) / excess if excess > 0 else float("nan")
+
+
+@dataclass(frozen=True)
+class GapResult:
+    """Where simulation and measurement disagree, and what was missing.
+
+    Attributes
+    ----------
+    verdict : str
+        Name of the first effect, "none" or "unknown".
+    effects : tuple of NamedEffect
+    equivalent : tuple of Equivalent
+    location : Location
+        Where the gap was before any effect was added.
+    measured, holdout : Closing
+        On the measured runs, fitted; and on those held out.
+    rivals : tuple of Rival
+    calibration : Calibration
+        The model believed so far.
+    base : Base
+        The same, moved within what its calibration leaves open.
+    measured_scenes, holdout_scenes : tuple of Scene
+    horizon_s : float
+    """
+
+    verdict: str
+    effects: tuple[NamedEffect, ...]
+    equivalent: tuple[Equivalent, ...]
+    location: Location
+    measured: Closing
+    holdout: Closing
+    rivals: tuple[Rival, ...]
+    calibration: Calibration
+    base: Base
+    measured_scenes: tuple[Scene, ...]
+    holdout_scenes: tuple[Scene, ...]
+    horizon_s: float
+
+    @property
+    def added(self) -> tuple[Added, ...]:
+        """All effects with their values."""
+        return tuple(effect.added for effect in self.effects)

@@ -1,0 +1,148 @@
+"""A run cut into short windows in which every measured pose counts."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.gap.config import GapConfig
+from odometry.gap.errors import GapError
+from odometry.geometry import se2
+from odometry.grounds import terrains_of
+from odometry.identification.config import WindowConfig
+from odometry.identification.record import record_of
+from odometry.models.inputs import Inputs
+from odometry.run import Run
+
+LEAST_POSES = 3  # of a window
+EDGE_S = 0.5  # of a run: a late or early pose must still lie within its odometry
+UNEVEN = 0.25  # a window may be longer or shorter by this share
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One run, its samples, and K windows of n + 1 measured poses each.
+
+    Attributes
+    ----------
+    run : Run
+    inputs : Inputs
+        Of stack (N,): the stamps of odometry and poses, merged.
+    steps_s : (N,)
+        How long each sample was in force.
+    travel_m : (N,)
+        Wheel travel up to each sample.
+    pose_s : (M,)
+        Run time of each measured pose.
+    poses : (M, 3)
+        Measured x, y, yaw.
+    windows : (K, n + 1)
+        Poses of each window; neighbours share one.
+    """
+
+    run: Run
+    inputs: Inputs
+    steps_s: FloatArray
+    travel_m: FloatArray
+    pose_s: FloatArray
+    poses: FloatArray
+    windows: IntArray
+
+    def __len__(self) -> int:
+        return len(self.windows)
+
+    @property
+    def time_s(self) -> FloatArray:
+        """Run time (N,) of the samples."""
+        time_s = self.inputs.time_s
+        if time_s is None:
+            raise GapError(f"{self.run.folder}: no stamps")
+        return time_s
+
+    @property
+    def start_s(self) -> FloatArray:
+        """Run time (K,) at which each window starts."""
+        return np.asarray(self.pose_s[self.windows[:, 0]])
+
+    @cached_property
+    def measured(self) -> FloatArray:
+        """Measured motion (K, n, 3) in the frame of each window's first pose."""
+        poses = self.poses[self.windows]
+        return se2.between(poses[:, :1], poses[:, 1:])
+
+    @cached_property
+    def tilt(self) -> tuple[FloatArray, FloatArray, FloatArray] | None:
+        """cos(pitch), sin(pitch) sin(roll) and cos(roll) (N,); None on level ground."""
+        roll, pitch = self.inputs.roll_rad, self.inputs.pitch_rad
+        if not (np.any(roll) or np.any(pitch)):
+            return None
+        return np.cos(pitch), np.sin(pitch) * np.sin(roll), np.cos(roll)
+
+    def where(self, chosen: BoolArray) -> "Scene":
+        """The chosen (K,) windows."""
+        return replace(self, windows=self.windows[chosen])
+
+
+def scene_of(run: Run, config: GapConfig) -> Scene:
+    """Cut a run into windows; none straddles a gap or a change of `window`.
+
+    Raises
+    ------
+    GapError
+        If no window of the horizon is in the run.
+    IdentificationError
+        If it has no measured poses.
+    """
+    columns = {name: c for name, c in run.odometry.columns.items() if name != "terrain"}
+    unlabelled = replace(run, odometry=replace(run.odometry, columns=columns))
+    record = record_of(unlabelled, WindowConfig(horizon_s=config.horizon_s))
+    start_s = run.odometry.stamps_s[0]
+    rows = np.searchsorted(run.odometry.stamps_s, record.stamps_s, side="right") - 1
+    time_s = record.stamps_s - start_s
+    inputs = replace(record.inputs, time_s=time_s, terrain=terrains_of(run)[rows])
+    pose_s = time_s[record.pose_samples]
+    windows = _windows(pose_s, record.stretch, time_s[-1], config)
+    if not len(windows):
+        raise GapError(
+            f"{run.folder}: no window of {config.horizon_s:g} s with {LEAST_POSES} measured poses "
+            "without a gap; choose a longer horizon"
+        )
+    return Scene(
+        run,
+        inputs,
+        np.append(np.diff(time_s), 0.0),
+        record.travel_m,
+        pose_s,
+        record.poses,
+        windows,
+    )
+
+
+def _windows(pose_s: FloatArray, stretch: IntArray, end_s: float, config: GapConfig) -> IntArray:
+    period_s = float(np.median(np.diff(pose_s)))
+    steps = max(LEAST_POSES - 1, round(config.horizon_s / period_s))
+    found = []
+    for number in np.unique(stretch):
+        inside = (stretch == number) & (pose_s >= EDGE_S) & (pose_s <= end_s - EDGE_S)
+        poses = np.flatnonzero(inside)
+        starts = np.arange(0, len(poses) - steps, steps)
+        found.append(poses[starts[:, None] + np.arange(steps + 1)])
+    windows = np.concatenate([np.empty((0, steps + 1), dtype=np.int64), *found])
+    lasts_s = pose_s[windows[:, -1]] - pose_s[windows[:, 0]]
+    even = np.abs(lasts_s - steps * period_s) <= UNEVEN * steps * period_s
+    return np.asarray(windows[even])
+
+
+def pieces(scene: Scene, part_s: float) -> IntArray:
+    """Number (K,) of the piece of the run in which each window starts."""
+    return np.asarray(np.floor(scene.start_s / part_s).astype(np.int64))
+
+
+def thinned(scene: Scene, most: int) -> Scene:
+    """At most so many windows, at even distances."""
+    if len(scene) <= most:
+        return scene
+    chosen = np.zeros(len(scene), dtype=np.bool_)
+    chosen[np.linspace(0, len(scene) - 1, most).astype(np.int64)] = True
+    return scene.where(chosen)

@@ -1,0 +1,57 @@
+"""Which model is identified on which ground."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from odometry.effects.tables import model_of
+from odometry.errors import ParameterError
+from odometry.models.base import KinematicModel
+from odometry.models.catalogue import model_named
+from odometry.parameters import ParameterSet, TerrainParameters
+from odometry.run import Robot
+
+Wanted = str | KinematicModel | ParameterSet
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A model to be identified on one ground.
+
+    Attributes
+    ----------
+    model : KinematicModel
+    known : Mapping of name to float
+        Parameters that a set states of what is measured on the robot.
+    """
+
+    model: KinematicModel
+    known: Mapping[str, float] = field(default_factory=dict)
+
+
+def asked_on(ground: str, wanted: Wanted, robot: Robot) -> Asked:
+    """The model for a ground: of a parameter set, that of its table, its effects held.
+
+    A set with one table is for every ground.
+
+    Raises
+    ------
+    ParameterError
+        If there is no such model or effect, or a set with several tables has none of the ground.
+    """
+    if isinstance(wanted, KinematicModel):
+        return Asked(wanted)
+    if isinstance(wanted, str):
+        return Asked(model_named(wanted))
+    name, table = _table(ground, wanted)
+    model = model_of(table, robot, f"[terrain.{name}]")
+    known = {p.name for p in model.parameters if p.known}
+    return Asked(model, {key: value for key, value in table.values.items() if key in known})
+
+
+def _table(ground: str, parameters: ParameterSet) -> tuple[str, TerrainParameters]:
+    terrains = parameters.terrains
+    if len(terrains) == 1:
+        return next(iter(terrains.items()))
+    if ground not in terrains:
+        raise ParameterError(f"the set has no terrain {ground!r}; it has {', '.join(terrains)}")
+    return ground, terrains[ground]

@@ -1,0 +1,152 @@
+"""The tables of a gap's page."""
+
+from odometry.gap.closed import Share
+from odometry.gap.region_words import noun_of
+from odometry.gap.result import Closing, GapResult
+from odometry.gap.words import percent, with_interval
+from odometry.report.html import Grid
+
+
+def closing_grid(result: GapResult, share: Share | None) -> Grid:
+    """The gap before and after."""
+    held = "-" if share is None else percent(share)
+    rows = [
+        ("held out", *_closing(result.holdout), held),
+        ("measured, fitted", *_closing(result.measured), "-"),
+    ]
+    header = ("windows", "before", "after", "noise floor", "excess closed")
+    caption = f"RMS position error over windows of {result.horizon_s:g} s, with 95 % intervals."
+    return Grid(header, rows, caption)
+
+
+def effect_grid(result: GapResult) -> Grid:
+    """The effects in the order added."""
+    rows = [
+        (
+            effect.added.effect.name,
+            effect.added.effect.form.replace("_", " "),
+            effect.added.effect.acts_on,
+            effect.added.effect.equation,
+            effect.added.effect.source,
+            f"{effect.gap_before:.3g}",
+            f"{effect.gap_after:.3g}",
+            f"{effect.evidence:.1f}",
+        )
+        for effect in result.effects
+    ]
+    header = (
+        *("effect", "form", "acts on", "equation", "source"),
+        *("gap before m", "after m", "evidence"),
+    )
+    return Grid(header, rows, "In the order added; gaps on the measured runs.")
+
+
+def parameter_grid(result: GapResult) -> Grid:
+    """Parameters of the effects with intervals."""
+    rows = [
+        (
+            effect.added.effect.name,
+            parameter.name,
+            f"{value:.5g}",
+            f"{low:.5g} to {high:.5g}",
+            parameter.unit or "-",
+        )
+        for effect in result.effects
+        for parameter, value, low, high in zip(
+            effect.added.effect.parameters,
+            effect.added.values,
+            effect.low,
+            effect.high,
+            strict=True,
+        )
+    ]
+    return Grid(("effect", "parameter", "value", "95 % interval", "unit"), rows)
+
+
+def base_grid(result: GapResult) -> Grid:
+    """The base before, and moved within what its calibration leaves open."""
+    before, after = result.calibration.base, result.base
+    rows = [
+        (parameter.name, f"{old:.5g}", f"{new:.5g}", parameter.unit or "-")
+        for parameter, old, new in zip(
+            before.model.parameters, before.values, after.values, strict=True
+        )
+    ]
+    rows.append(("latency", f"{before.latency_s:.5g}", f"{after.latency_s:.5g}", "s"))
+    caption = (
+        f"The model {before.model.name}: as calibrated, and moved within what the calibration "
+        "leaves open when the effects were fitted. Latency: by how much the robot always follows "
+        "its recorded speeds late."
+    )
+    return Grid(("parameter", "calibrated", "with the effects", "unit"), rows, caption)
+
+
+def rival_grid(result: GapResult) -> Grid:
+    """All candidates for the first effect."""
+    rows = [
+        (r.name, r.form.replace("_", " "), f"{r.evidence:.1f}", f"{r.gap_after:.3g}")
+        for r in result.rivals
+    ]
+    caption = "Candidates for the first effect; gaps on the measured runs."
+    return Grid(("candidate", "form", "evidence", "gap after m"), rows, caption)
+
+
+def region_grid(result: GapResult) -> Grid:
+    """Where the excess was."""
+    rows = [
+        (
+            region.words,
+            "; ".join(_bound(n, low, high) for n, (low, high) in region.bounds.items()) or "-",
+            f"{region.excess_m:.3g}",
+            f"{100 * region.share:.0f} %",
+        )
+        for region in result.location.regions
+    ]
+    caption = (
+        "Bounds were drawn on one half of the pieces of the measured runs, and all figures are of "
+        "the other half. Excess: RMS position error less the noise floor; share: of the squared "
+        "errors beyond noise."
+    )
+    return Grid(("where", "bounds (SI)", "excess m", "share"), rows, caption)
+
+
+def predictor_grid(result: GapResult) -> Grid:
+    """Which variables predict the residuals."""
+    rows = [
+        (
+            noun_of(one.name),
+            "yes" if one.discovered else "no",
+            f"{one.p_value:.4f}",
+            f"{one.strength:.2f}",
+            one.predicts if one.strength > 0 else "-",
+        )
+        for one in result.location.predictors
+    ]
+    caption = (
+        "Rank tests over groups of each variable, before any effect was added; false discoveries "
+        "are held at 5 %. Strength: the share of the variance of ranks that it explains, of the "
+        "residual named."
+    )
+    return Grid(("variable", "discovered", "p", "strength", "residual"), rows, caption)
+
+
+def equivalent_grid(result: GapResult) -> Grid:
+    """What the data cannot tell apart."""
+    rows = [(one.instead_of, one.name, one.told_apart_by) for one in result.equivalent]
+    return Grid(("named", "could also be", "told apart by"), rows)
+
+
+def _closing(closing: Closing) -> tuple[str, str, str]:
+    return (
+        with_interval(closing.before),
+        with_interval(closing.after),
+        with_interval(closing.noise_floor),
+    )
+
+
+def _bound(name: str, low: float | None, high: float | None) -> str:
+    if low is None:
+        return f"{name} up to {high:.3g}"
+    if high is None:
+        return f"{name} above {low:.3g}"
+    return f"{name} {low:.3g} to {high:.3g}"

@@ -1,0 +1,116 @@
+"""`terrain-odometry gap`: which effect a model lacks, and the gap closed."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from terrain.cli.options import MODEL_NAMES
+from terrain.cli.results import print_table, print_written
+
+if TYPE_CHECKING:
+    from odometry.gap.result import GapResult
+
+FOLDER = click.Path(file_okay=False, path_type=Path)
+
+
+@click.command()
+@click.argument("folders", metavar="MEASURED...", nargs=-1, required=True, type=FOLDER)
+@click.option(
+    "--calibration",
+    multiple=True,
+    required=True,
+    metavar="RUN",
+    type=FOLDER,
+    help="Run from which the model and the noise are identified; repeat.",
+)
+@click.option(
+    "--holdout",
+    multiple=True,
+    metavar="RUN",
+    type=FOLDER,
+    help="Run on which the answer is judged; else stretches of MEASURED are held back; repeat.",
+)
+@click.option(
+    "--model",
+    default="icr",
+    show_default=True,
+    metavar="NAME|SET.toml",
+    help=f"The model believed so far: {', '.join(MODEL_NAMES)} to identify, or a parameter set "
+    "to take as it is.",
+)
+@click.option("--out", required=True, type=FOLDER, help="Folder for the results.")
+@click.option("--terrain", metavar="NAME", help="Ground of the set to take, where it has several.")
+@click.option(
+    "--horizon-s",
+    type=float,
+    default=2.0,
+    show_default=True,
+    help="Duration of the windows over which the gap is taken [s].",
+)
+def gap(
+    folders: tuple[Path, ...],
+    *,
+    calibration: tuple[Path, ...],
+    holdout: tuple[Path, ...],
+    model: str,
+    out: Path,
+    terrain: str | None,
+    horizon_s: float,
+) -> None:
+    """Find which effect a model lacks on the run folders MEASURED, and add it.
+
+    The answer is the first of: an effect of the catalogue, "none" (noise explains all), or
+    "unknown" (something that no effect explains; a smooth term closes what it can).
+
+    \b
+    Example:
+      terrain-odometry gap hill_1 --calibration yard --holdout hill_2 --out gap
+    """
+    from odometry.gap.believed import believed_model
+    from odometry.gap.config import GapConfig
+    from odometry.gap.files import write_gap
+    from odometry.gap.gap import find_gap
+    from odometry.io.files import check_writable
+    from odometry.report.gap_page import write_gap_report
+    from odometry.run import Run
+
+    if out.resolve() in {one.resolve() for one in (*folders, *calibration, *holdout)}:
+        raise click.UsageError("--out is one of the run folders; choose another folder")
+    check_writable(out)
+    config = GapConfig(horizon_s=horizon_s)
+    measured, known, held = (
+        [Run.read(folder) for folder in group] for group in (folders, calibration, holdout)
+    )
+    base, given = believed_model(model, measured, terrain)
+    result = find_gap(
+        measured, known, held, model=base, given=given, config=config, show_progress=True
+    )
+    written = write_gap(result, out) + write_gap_report(result, out)
+    _print_result(result)
+    print_written(written, out)
+    click.echo(
+        f"Next: open {out / 'report.html'}; the extended model is {out / 'model.toml'}: "
+        f"terrain-odometry compare RUN --model {out / 'model.toml'} --model {base.name} --out DIR"
+    )
+
+
+def _print_result(result: "GapResult") -> None:
+    from odometry.gap.words import sentences
+
+    rows = [("effect", "form", "gap before", "after [m]", "evidence")]
+    rows += [
+        (
+            effect.added.effect.name,
+            effect.added.effect.form,
+            f"{effect.gap_before:.4f}",
+            f"{effect.gap_after:.4f}",
+            f"{effect.evidence:.0f}",
+        )
+        for effect in result.effects
+    ]
+    click.echo(f"Verdict: {result.verdict}")
+    if result.effects:
+        print_table(rows)
+    for sentence in sentences(result):
+        click.echo(sentence)

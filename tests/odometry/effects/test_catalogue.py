@@ -1,0 +1,157 @@
+"""What holds for every effect; a new row is tested the day it is born."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from odometry.effects.base import Base, CommandEffect, MeasurementEffect, MotionEffect
+from odometry.effects.catalogue import BY_FORM, EFFECTS, added_effects, effect_table
+from odometry.effects.corrected import Added, corrected_twist, delay_s, seen_poses
+from odometry.effects.residual import Residual
+from odometry.effects.terrain import Terrain
+from odometry.errors import ParameterError
+from odometry.models.catalogue import MODELS
+from odometry.models.inputs import Inputs
+from odometry.parameters import (
+    ParameterSet,
+    TerrainParameters,
+    read_parameters,
+    write_parameters,
+)
+from odometry.run import Robot
+
+ICRS = {"y_left": 0.4, "y_right": -0.5, "x_icr": 0.1}
+ACTS_ON = {"commands": CommandEffect, "motion": MotionEffect, "measurement": MeasurementEffect}
+ONE_OF_EACH = [
+    *(effect() for effect in EFFECTS if effect is not Terrain),
+    Terrain(("ice", "wet grass")),
+    Residual("heading", (("v_x", 0), ("omega", 3))),
+    Residual("pitch", (("v_y", 1),), True, (-0.1, 0.0, 0.2)),
+]
+each_effect = pytest.mark.parametrize(
+    "effect", ONE_OF_EACH, ids=lambda effect: f"{effect.name}-{effect.form}"
+)
+
+
+def values_of(effect, rng):
+    """Random values near where a search begins, within bounds."""
+    near = [p.start + 3 * p.scale * rng.uniform(-1, 1) for p in effect.parameters]
+    return np.clip(near, [p.low for p in effect.parameters], [p.high for p in effect.parameters])
+
+
+@each_effect
+@given(seed=st.integers(0, 2**32 - 1))
+def test_absent_values_change_nothing(seed, effect):
+    """Each parameter at its `absent` value; those without one anywhere within their bounds."""
+    if all(parameter.absent is None for parameter in effect.parameters):
+        return  # balances of contacts are absent on ground, not by a value: see test_contact_forms
+    rng = np.random.default_rng(seed)
+    anywhere = values_of(effect, rng)
+    values = np.array(
+        [
+            v if p.absent is None else p.absent
+            for p, v in zip(effect.parameters, anywhere, strict=True)
+        ]
+    )
+    icr = np.array([*rng.uniform(0.3, 0.8, 1), *rng.uniform(-0.8, -0.3, 1), 0.1, 0.9, 0.95])
+    base = Base(MODELS["icr"], icr, Robot(0.5))
+    inputs = Inputs(
+        rng.uniform(-1.5, 1.5, (30, 2)),
+        *rng.uniform(-0.2, 0.2, (2, 30)),
+        time_s=np.sort(rng.uniform(0, 9, 30)),
+        terrain=np.where(rng.random(30) < 0.5, "ice", "sand"),
+        heading_rad=rng.uniform(-9, 9, 30),
+    )
+    effects = [Added(effect, values)]
+    np.testing.assert_allclose(
+        corrected_twist(base, effects, inputs), base.model.twist(icr, inputs), atol=1e-9
+    )
+    poses = rng.uniform(-3, 3, (5, 3))
+    np.testing.assert_allclose(seen_poses(effects, poses), poses, atol=1e-15)
+    assert delay_s(effects) == 0
+
+
+@each_effect
+def test_a_parameter_set_gives_every_effect_back(effect, rng, tmp_path):
+    """Through TOML: name, form, settings and values to the last bit."""
+    added = Added(effect, values_of(effect, rng))
+    table = TerrainParameters("icr", ICRS, effects=(effect_table(added),))
+    write_parameters(tmp_path / "set.toml", ParameterSet({"lawn": table}))
+    again = read_parameters(tmp_path / "set.toml").terrains["lawn"].effects
+    (found,) = added_effects(again, "set.toml: [terrain.lawn]")
+    assert type(found.effect) is type(effect)
+    assert found.effect.settings() == effect.settings()
+    assert [p.name for p in found.effect.parameters] == [p.name for p in effect.parameters]
+    np.testing.assert_array_equal(found.values, added.values)
+    assert found.by_name == added.by_name
+
+
+@each_effect
+def test_every_effect_says_what_it_is(effect):
+    assert isinstance(effect, ACTS_ON[effect.acts_on])
+    assert BY_FORM[effect.name, effect.form] is type(effect)
+    for words in (effect.equation, effect.source, effect.looks_like, effect.needs):
+        assert words
+    names = [parameter.name for parameter in effect.parameters]
+    assert len(set(names)) == len(names) > 0
+    for p in effect.parameters:
+        assert p.low <= p.start <= p.high
+        assert p.scale > 0
+        assert p.absent is None or p.low <= p.absent <= p.high
+
+
+@each_effect
+def test_starts_lie_within_bounds(effect, bench, rng):
+    low, high = np.array([(p.low, p.high) for p in effect.parameters]).T
+    starts = effect.starts(bench.drive(rng), bench.base)
+    assert starts.shape[1:] == low.shape
+    assert ((starts >= low) & (starts <= high)).all()
+
+
+def test_those_that_are_mistaken_for_another_name_one_of_the_catalogue():
+    known = {effect.name for effect in EFFECTS}
+    assert {other for effect in EFFECTS for other in effect.alike} <= known
+
+
+def test_the_names_that_the_answer_may_have():
+    """Issue 4: at least these, slope and inertia in two forms each."""
+    names = [effect.name for effect in EFFECTS]
+    assert names.count("slope_sliding") == names.count("inertia") == 2
+    assert set(names) == {
+        *("slope_sliding", "inertia", "curvature", "wheel_scale", "terrain", "traction_loss"),
+        *("lateral_skid", "time_offset", "actuator_lag", "lever_arm", "heading_offset"),
+    }
+
+
+SCALE = {"name": "wheel_scale", "form": "factors", "parameters": {"c_l": 1.0, "c_r": 0.9}}
+
+
+def test_the_source_of_an_effect_may_be_stated():
+    (found,) = added_effects([{**SCALE, "source": "measured with a tape"}], "here")
+    assert found.by_name == SCALE["parameters"]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({**SCALE, "name": "wheels"}, r"wheels/factors, expected one of wheel_scale/factors"),
+        ({**SCALE, "form": "slip"}, r"wheel_scale/slip, expected one of"),
+        ({**SCALE, "name": ["wheel_scale"]}, r"expected one of"),
+        ({}, r"None/None, expected one of"),
+        ({**SCALE, "parameters": 3}, r"parameters = 3, expected a table"),
+        ({**SCALE, "parameters": {"c_l": 1.0}}, r"\['c_l'\], expected \['c_l', 'c_r'\]"),
+        ({**SCALE, "parameters": {"c_l": 1.0, "c_r": 1.0, "c": 1.0}}, r"expected \['c_l', 'c_r'\]"),
+        ({**SCALE, "parameters": {"c_l": 1.0, "c_r": "one"}}, r"c_r = 'one', expected a finite"),
+        ({**SCALE, "parameters": {"c_l": 1.0, "c_r": np.inf}}, r"c_r = inf, expected a finite"),
+        ({**SCALE, "colour": "red"}, r"WheelScale"),
+        ({"name": "unknown", "form": "residual", "parameters": {}}, r"variable"),
+        (
+            {"name": "terrain", "form": "icr_by_label", "labels": "ice", "parameters": {}},
+            r"expected a list of names",
+        ),
+    ],
+)
+def test_what_is_wrong_is_said_with_its_place(wrong, words):
+    with pytest.raises(ParameterError, match=rf"a\.toml: effects\[1\].*{words}"):
+        added_effects([SCALE, wrong], "a.toml")

@@ -1,0 +1,65 @@
+import numpy as np
+import pytest
+
+from odometry.effects.base import Effect
+from odometry.effects.residual import Residual, basis_of, variables_of
+from odometry.errors import ParameterError
+from odometry.models.inputs import Inputs
+
+
+def added(effect, values, inputs):
+    return effect.twist(np.array(values), np.zeros((len(inputs.left), 3)), inputs, None)
+
+
+def test_of_an_angle_it_is_a_fourier_series(bench, rng):
+    inputs = bench.drive(rng)
+    effect = Residual("heading", (("v_x", 0), ("v_y", 1), ("v_y", 2), ("omega", 3)))
+    found = added(effect, [0.1, 0.2, 0.3, 0.4], inputs)
+    heading = inputs.heading_rad
+    expected = [
+        0.1 * np.cos(heading),
+        0.2 * np.sin(heading) + 0.3 * np.cos(2 * heading),
+        0.4 * np.sin(2 * heading),
+    ]
+    np.testing.assert_allclose(found, np.transpose(expected), atol=1e-14)
+
+
+def test_between_knots_it_is_linear_and_beyond_them_level():
+    knots = (-1.0, 0.0, 2.0)
+    basis = basis_of(np.array([-5.0, -1.0, -0.25, 0.0, 1.5, 9.0]), knots)
+    expected = [[1, 0, 0], [1, 0, 0], [0.25, 0.75, 0], [0, 1, 0], [0, 0.25, 0.75], [0, 0, 1]]
+    np.testing.assert_allclose(basis, expected, atol=1e-15)
+
+
+def test_by_speed_it_grows_with_the_treads(bench, rng):
+    inputs = bench.drive(rng)
+    terms = (("omega", 0),)
+    still = added(Residual("pitch", terms, False, (0.0, 1.0)), [0.5], inputs)
+    grown = added(Residual("pitch", terms, True, (0.0, 1.0)), [0.5], inputs)
+    speed = np.abs(inputs.tread_speeds_m_s).mean(axis=1)
+    np.testing.assert_allclose(grown, speed[:, None] * still, atol=1e-15)
+
+
+def test_what_it_may_depend_on(bench, rng):
+    inputs = bench.drive(rng)
+    found = variables_of(inputs)
+    np.testing.assert_allclose(found["speed_difference"], inputs.right - inputs.left)
+    np.testing.assert_allclose(found["speed"], (inputs.left + inputs.right) / 2)
+    np.testing.assert_array_equal(found["right_wheel_angle"], inputs.wheel_angles_rad[:, 1])
+    assert set(variables_of(Inputs(np.zeros((2, 2))))) == {
+        *("speed", "speed_difference", "roll", "pitch")
+    }
+
+
+def test_a_variable_that_was_not_recorded_is_an_error():
+    plain, effect = Inputs(np.zeros((2, 2))), Residual("heading", (("v_x", 0),))
+    assert isinstance(effect, Effect)
+    assert effect.lacks(plain, None) == "heading"
+    with pytest.raises(ParameterError, match="'heading', which was not recorded; there are speed"):
+        added(effect, [0.1], plain)
+
+
+@pytest.mark.parametrize("term", [("v_z", 0), ("v_x", 4), ("v_x",)])
+def test_a_term_that_is_none_is_an_error(term):
+    with pytest.raises(ParameterError, match="has a term"):
+        Residual("heading", (term,))

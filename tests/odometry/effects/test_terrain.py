@@ -1,0 +1,58 @@
+import numpy as np
+import pytest
+
+from odometry.effects.base import Base
+from odometry.effects.corrected import Added, corrected_twist
+from odometry.effects.terrain import Terrain, new_labels
+from odometry.errors import ParameterError
+from odometry.models.catalogue import MODELS
+from odometry.models.icr import icr_twist
+from odometry.models.inputs import Inputs
+
+EFFECT = Added(
+    Terrain(("ice", "mud")), np.array([0.2, -0.1, 0.05, -0.1, 0.02, 0.3, 0.0, 0.0, 0.0, 0.0])
+)
+
+
+def test_each_ground_has_its_own_icrs(bench, rng):
+    inputs = bench.drive(rng)
+    found = corrected_twist(bench.base, [EFFECT], inputs)
+    speeds, icrs, alphas = inputs.tread_speeds_m_s, bench.values[:3], bench.values[3:]
+    on_ice = inputs.terrain == "ice"
+    assert 0 < on_ice.sum() < len(on_ice)
+    expected = np.where(
+        on_ice[:, None],
+        icr_twist(icrs + np.array([0.2, -0.1, 0.05]), (alphas + np.array([-0.1, 0.02])) * speeds),
+        icr_twist(icrs, alphas * speeds),
+    )
+    np.testing.assert_allclose(found, expected, atol=1e-14)
+
+
+def test_its_parameters_are_named_after_the_grounds():
+    names = [parameter.name for parameter in EFFECT.effect.parameters]
+    shifted = ("y_left", "y_right", "x_icr", "alpha_left", "alpha_right")
+    assert names == [f"{name}_{g}" for g in ("ice", "mud") for name in shifted]
+
+
+def test_grounds_that_the_calibration_has_not_seen(bench, rng):
+    inputs = bench.drive(rng)
+    assert new_labels(inputs, {"sand"}) == ("ice",)
+    assert new_labels(inputs, set()) == ("ice", "sand")
+    assert new_labels(Inputs(np.zeros((2, 2)), terrain=np.array(["unknown", ""])), set()) == ()
+    assert new_labels(Inputs(np.zeros(2)), set()) == ()
+
+
+def test_what_it_lacks(bench, rng):
+    inputs = bench.drive(rng)
+    assert EFFECT.effect.lacks(inputs, bench.base) == ""
+    assert "labels" in Terrain().lacks(inputs, bench.base)
+    other = Base(MODELS["icr_symmetric"], np.array([1.0, 0.8]), bench.robot)
+    assert "tread ICRs" in EFFECT.effect.lacks(inputs, other)
+    with pytest.raises(ParameterError, match=r"'terrain' moves tread ICRs.*'icr_symmetric'"):
+        corrected_twist(other, [EFFECT], inputs)
+
+
+@pytest.mark.parametrize("labels", ["ice", (3,)])
+def test_labels_are_a_list_of_names(labels):
+    with pytest.raises(ParameterError, match="expected a list of names"):
+        Terrain(labels)

@@ -1,0 +1,126 @@
+"""Windows of a run: whole, of poses that belong together, and refused where there are none."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.gap.config import GapConfig
+from odometry.gap.errors import GapError
+from odometry.gap.scene import pieces, scene_of, thinned
+from odometry.identification.errors import IdentificationError
+
+TWO_SECONDS = 10  # steps between poses at 5 Hz
+
+
+@pytest.fixture
+def run(make_scene):
+    return make_scene(3, duration_s=60.0).run
+
+
+def with_poses(run, chosen=slice(None), **columns):
+    pose = replace(run.pose, columns={**run.pose.columns, **columns})
+    return replace(run, pose=pose.rows(chosen))
+
+
+def test_windows_follow_one_another_over_the_run(run):
+    scene = scene_of(run, GapConfig())
+    assert scene.windows.shape == (29, TWO_SECONDS + 1)
+    np.testing.assert_array_equal(np.diff(scene.windows, axis=1), 1)
+    np.testing.assert_array_equal(scene.windows[1:, 0], scene.windows[:-1, -1])
+    assert scene.start_s[0] == pytest.approx(0.6)  # the first pose half a second into the run
+    assert scene.pose_s[scene.windows[-1, -1]] <= run.odometry.stamps_s[-1] - 0.5
+
+
+def test_the_measured_motion_is_seen_from_each_windows_first_pose(run):
+    scene = scene_of(run, GapConfig())
+    x, y, yaw = run.pose.stack("x", "y", "yaw").T
+    for k in (0, 13, 28):
+        first = np.searchsorted(run.pose.stamps_s, scene.start_s[k])
+        others = slice(first + 1, first + TWO_SECONDS + 1)
+        moved = (x[others] - x[first] + 1j * (y[others] - y[first])) * np.exp(-1j * yaw[first])
+        expected = np.column_stack([moved.real, moved.imag, yaw[others] - yaw[first]])
+        np.testing.assert_allclose(scene.measured[k], expected, atol=1e-12)
+
+
+def test_another_horizon_makes_other_windows(run):
+    scene = scene_of(run, GapConfig(horizon_s=5.0))
+    assert scene.windows.shape == (11, 26)
+
+
+def test_no_window_straddles_a_gap_between_poses(run):
+    t = run.pose.stamps_s
+    scene = scene_of(with_poses(run, (t < 21.0) | (t > 26.0)), GapConfig())
+    ends_s = scene.pose_s[scene.windows[:, -1]]
+    assert ((ends_s < 21.0) | (scene.start_s > 26.0)).all()
+    assert (ends_s - scene.start_s == pytest.approx(2.0)) is True
+    assert len(scene) == 26
+
+
+def test_no_window_straddles_a_change_of_window(run):
+    t = run.pose.stamps_s
+    for number, straddling in ((np.where(t < 21.0, 1.0, 2.0), 0), (np.ones(len(t)), 1)):
+        scene = scene_of(with_poses(run, window=number), GapConfig())
+        ends_s = scene.pose_s[scene.windows[:, -1]]
+        assert ((ends_s >= 21.0) & (scene.start_s < 21.0)).sum() == straddling
+        assert len(scene) == 29
+
+
+def test_no_window_straddles_a_gap_in_odometry(run):
+    t = run.odometry.stamps_s
+    odometry = run.odometry.rows((t < 21.0) | (t > 23.0))
+    scene = scene_of(replace(run, odometry=odometry), GapConfig())
+    ends_s = scene.pose_s[scene.windows[:, -1]]
+    assert ((ends_s <= 21.0) | (scene.start_s >= 22.8)).all()
+
+
+def test_a_change_of_ground_is_kept_and_cuts_nothing(make_scene):
+    def terrain(t):
+        return np.where(t < 21.3, "stone", "wet grass")
+
+    scene = make_scene(3, duration_s=60.0, terrain=terrain)
+    assert len(scene) == 29
+    np.testing.assert_array_equal(scene.inputs.terrain, terrain(scene.time_s + 1e-9))
+
+
+def test_samples_are_in_force_until_the_next(run):
+    scene = scene_of(run, GapConfig())
+    assert scene.steps_s.sum() == pytest.approx(scene.time_s[-1])
+    speeds = run.odometry.stack("v_left", "v_right")
+    travel_m = (np.abs(speeds[:-1]).mean(axis=1) * np.diff(run.odometry.stamps_s)).sum()
+    assert scene.travel_m[-1] == pytest.approx(travel_m)
+
+
+def test_uneven_windows_are_left_out(run):
+    """Every third pose is missing in part of the run: windows of as many poses are longer."""
+    t = run.pose.stamps_s
+    kept = (t < 20.0) | (t > 40.0) | (np.arange(len(t)) % 3 > 0)
+    scene = scene_of(with_poses(run, kept), GapConfig())
+    lasting_s = scene.pose_s[scene.windows[:, -1]] - scene.start_s
+    assert (np.abs(lasting_s - 2.0) <= 0.5).all()
+    assert len(scene) < 25
+
+
+def test_sparse_poses_make_windows_of_three(run):
+    scene = scene_of(with_poses(run, slice(None, None, 10)), GapConfig())
+    assert scene.windows.shape[1] == 3
+
+
+def test_a_run_shorter_than_a_window_is_refused(run):
+    with pytest.raises(GapError, match=r"no window of 2 s with 3 measured poses.*longer horizon"):
+        scene_of(with_poses(run, run.pose.stamps_s < 2.2), GapConfig())
+
+
+def test_a_run_without_poses_is_refused(run):
+    with pytest.raises(IdentificationError, match=r"run.*pose\.csv"):
+        scene_of(replace(run, pose=None), GapConfig())
+
+
+def test_pieces_and_thinning(run):
+    scene = scene_of(run, GapConfig())
+    np.testing.assert_array_equal(pieces(scene, 10.0), (scene.start_s / 10.0).astype(int))
+    fewer = thinned(scene, 10)
+    assert len(fewer) == 10
+    np.testing.assert_array_equal(fewer.windows[[0, -1]], scene.windows[[0, -1]])
+    assert np.diff(fewer.start_s) == pytest.approx(56.0 / 9, abs=2.0)
+    assert thinned(scene, 29) is scene

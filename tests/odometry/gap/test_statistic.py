@@ -1,0 +1,84 @@
+"""The gap and its interval, beside their definitions."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.gap.scene import pieces
+from odometry.gap.simulate import simulated_poses
+from odometry.gap.statistic import floor_of, gap_of, squared_errors
+from odometry.geometry import se2
+
+
+@pytest.fixture
+def exact(make_scene, known):
+    """Poses are exactly those of the simulation."""
+    scene = make_scene(80, duration_s=100.0)
+    return replace(scene, poses=simulated_poses(known.base, (), scene))
+
+
+def displaced(scene, offsets_m):
+    """The last pose of each window is off by this much; windows then share no pose."""
+    apart = scene.where(np.arange(len(scene)) % 2 == 0)
+    poses = apart.poses.copy()
+    off = np.stack([offsets_m, 0 * offsets_m, 0 * offsets_m], axis=-1)
+    lasts = apart.windows[:, -1]
+    poses[lasts] = se2.compose(poses[lasts], off)
+    return replace(apart, poses=poses)
+
+
+def test_the_gap_is_the_rms_distance_at_the_ends(exact, known, rng):
+    offsets_m = rng.normal(size=(len(exact) + 1) // 2)
+    scene = displaced(exact, offsets_m)
+    errors = squared_errors(known.base, (), scene)
+    np.testing.assert_allclose(errors, offsets_m**2, atol=1e-12)
+    gap = gap_of(known.base, (), [scene], 10.0)
+    assert gap.value == pytest.approx(np.sqrt((offsets_m**2).mean()))
+    assert gap.low < gap.value < gap.high
+
+
+def test_the_gap_of_several_runs_is_that_of_all_their_windows(make_scene, known):
+    scenes = [make_scene(81, duration_s=100.0), make_scene(82, duration_s=30.0)]
+    errors = np.concatenate([squared_errors(known.base, (), scene) for scene in scenes])
+    gap = gap_of(known.base, (), scenes, 10.0)
+    assert gap.value == pytest.approx(np.sqrt(errors.mean()))
+    assert gap == gap_of(known.base, (), scenes, 10.0)
+
+
+def test_equal_errors_leave_no_doubt(exact, known):
+    gap = gap_of(known.base, (), [displaced(exact, np.full((len(exact) + 1) // 2, 0.3))], 10.0)
+    assert (gap.value, gap.low, gap.high) == pytest.approx((0.3, 0.3, 0.3))
+
+
+def test_the_interval_is_that_of_the_mean_of_pieces(make_scene, known):
+    """Beside the normal approximation, for a run of 64 pieces."""
+    scene = make_scene(83, duration_s=640.0)
+    errors = squared_errors(known.base, (), scene)
+    places = pieces(scene, 10.0)
+    means = np.array([errors[places == p].mean() for p in np.unique(places)])
+    sigma = means.std(ddof=1) / np.sqrt(len(means))
+    gap = gap_of(known.base, (), [scene], 10.0)
+    expected = np.sqrt(errors.mean() + 1.96 * sigma * np.array([-1, 1]))
+    half = (expected[1] - expected[0]) / 2
+    assert [gap.low, gap.high] == pytest.approx(expected, abs=0.2 * half)
+
+
+def test_windows_of_one_piece_are_drawn_together(exact, known):
+    """A bad piece of ten seconds widens the interval more than as many bad windows apart."""
+    count = (len(exact) + 1) // 2
+    together = np.where(np.arange(count) < 5, 1.0, 0.01)
+    apart = np.where(np.arange(count) % 5 == 0, 1.0, 0.01)
+    widths = []
+    for offsets_m in (together, apart):
+        gap = gap_of(known.base, (), [displaced(exact, offsets_m)], 20.0)
+        widths.append(gap.high - gap.low)
+    assert widths[0] > 2 * widths[1]
+
+
+def test_each_stretch_of_the_floor_has_its_own_base(exact, known):
+    other = replace(known.base, values=known.base.values * [1, 1, 1, 0.9, 0.9])
+    own = replace(exact, poses=simulated_poses(other, (), exact))
+    exactly = floor_of([(known.base, exact), (other, own)], 10.0)
+    assert exactly.value < 1e-9
+    assert floor_of([(other, exact), (known.base, own)], 10.0).value > 0.03

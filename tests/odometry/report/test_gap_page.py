@@ -1,0 +1,170 @@
+"""The page of a gap: every figure is drawn, every number is that of the result."""
+
+from dataclasses import replace
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+
+from odometry.gap.locate import Location, Predictor
+from odometry.gap.statistic import gap_of, squared_errors
+from odometry.gap.variables import Variable
+from odometry.gap.words import sentences, with_interval
+from odometry.report.gap_figures import rolling_rms
+from odometry.report.gap_map import binned_rms, scale_of
+from odometry.report.gap_page import write_gap_report
+from odometry.report.gap_rollouts import AFTER_NAME, BEFORE_NAME, MEASURED_NAME, rollout, rollouts
+
+
+class Page(HTMLParser):
+    """Tags, all text, and the text of cells."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.texts, self.cells, self.inside = [], [], [], False
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+        self.inside = tag in {"td", "th"}
+
+    def handle_endtag(self, tag):
+        self.inside = False if tag in {"td", "th"} else self.inside
+
+    def handle_data(self, data):
+        self.texts.append(data)
+        self.cells += [data] if self.inside else []
+
+
+@pytest.fixture(scope="module")
+def written(scaled_result, tmp_path_factory):
+    out = tmp_path_factory.mktemp("gap") / "new"
+    return out, write_gap_report(scaled_result, out)
+
+
+@pytest.fixture(scope="module")
+def page(written):
+    return Page((written[0] / "report.html").read_text(encoding="utf-8"))
+
+
+def test_files_are_written_and_named(written):
+    out, files = written
+    names = [str(file.relative_to(out)) for file in files]
+    assert names == [
+        "figures/gap_closing.png",
+        "figures/gap_map.png",
+        "figures/gap_evidence.png",
+        "figures/gap_rollout_1.png",
+        "figures/gap_time.png",
+        "report.html",
+    ]
+    assert all(file.stat().st_size > 5000 for file in files)
+
+
+def test_the_page_stands_alone_and_escapes_names(page, written):
+    images = [attrs for tag, attrs in page.tags if tag == "img"]
+    assert len(images) == 5
+    assert all(image["src"].startswith("data:image/png;base64,") for image in images)
+    assert all(image["alt"] for image in images)
+    assert not [tag for tag, _ in page.tags if tag in {"script", "link", "iframe"}]
+    assert "$hill^ & dale" in "".join(page.texts)
+    assert "$hill^ & dale" not in (written[0] / "report.html").read_text(encoding="utf-8")
+
+
+def test_words_and_tables_are_those_of_the_result(page, scaled_result):
+    lead, *others = sentences(scaled_result)
+    assert lead in page.texts
+    assert " ".join(others) in page.texts
+    for closing in (scaled_result.measured, scaled_result.holdout):
+        for gap in (closing.before, closing.after, closing.noise_floor):
+            assert with_interval(gap) in page.cells
+    for rival in scaled_result.rivals:
+        assert {rival.name, f"{rival.evidence:.1f}", f"{rival.gap_after:.3g}"} <= set(page.cells)
+    for region in scaled_result.location.regions:
+        assert region.words in page.cells
+    assert {"0.79 to 0.82", "a free wheel", "traction_loss", "latency"} <= set(page.cells)
+
+
+def test_the_same_bytes_twice_and_old_figures_go(scaled_result, none_result, written, tmp_path):
+    again = write_gap_report(scaled_result, tmp_path)
+    for old, new in zip(written[1], again, strict=True):
+        assert old.read_bytes() == new.read_bytes()
+    stray = tmp_path / "figures" / "gap_rollout_9.png"
+    stray.write_bytes(b"old")
+    other = tmp_path / "figures" / "mine.png"
+    other.write_bytes(b"mine")
+    write_gap_report(none_result, tmp_path)
+    assert not stray.exists()
+    assert other.exists()
+
+
+def test_results_without_effects_candidates_or_variables(none_result, unknown_result, tmp_path):
+    bare = replace(none_result, rivals=(), location=Location((), (), ()))
+    files = write_gap_report(bare, tmp_path)
+    assert [file.name for file in files] == [
+        "gap_closing.png",
+        "gap_rollout_1.png",
+        "gap_time.png",
+        "report.html",
+    ]
+    assert "What is missing" not in files[-1].read_text(encoding="utf-8")
+    text = write_gap_report(unknown_result, tmp_path)[-1].read_text(encoding="utf-8")
+    assert "no effect of the catalogue explains" in text
+
+
+def test_a_map_over_labels(scaled_result, tmp_path):
+    predictors = (Predictor("turn", "", 0.01, False, 0.1, "size"),)
+    location = Location(predictors, (), ("turn", "heading"))
+    files = write_gap_report(replace(scaled_result, location=location), tmp_path)
+    assert "gap_map.png" in [file.name for file in files]
+    assert "Neither predicts it beyond chance." in files[-1].read_text(encoding="utf-8")
+
+
+def test_rollouts_start_at_the_first_measured_pose(scaled_result):
+    scene = scaled_result.holdout_scenes[0]
+    paths = rollouts(scaled_result, scene)
+    true = paths[MEASURED_NAME].poses
+    for path in paths.values():
+        np.testing.assert_allclose(path.poses[0, :2], true[0, :2], atol=1e-12)
+    away = {n: np.hypot(*(p.poses[-1, :2] - true[-1, :2])) for n, p in paths.items()}
+    assert away[AFTER_NAME] < 0.2 * away[BEFORE_NAME]
+
+
+def test_a_rollout_of_short_windows_is_the_simulation_of_the_gap(scaled_result, known):
+    """Pieces of the path between the poses of windows are what the gap compares."""
+    scene = scaled_result.measured_scenes[0]
+    path = rollout(known.base, (), scene).poses
+    first, last = path[scene.windows[:, 0]], path[scene.windows[:, -1]]
+    start, end = scene.poses[scene.windows[:, 0]], scene.poses[scene.windows[:, -1]]
+
+    def seen_from(pose, other):
+        c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
+        x, y = (other - pose)[:, :2].T
+        return np.column_stack([c * x + s * y, c * y - s * x])
+
+    squares = ((seen_from(start, end) - seen_from(first, last)) ** 2).sum(axis=1)
+    np.testing.assert_allclose(squares, squared_errors(known.base, (), scene), atol=1e-12)
+
+
+def test_the_map_holds_all_windows(scaled_result, known, rng):
+    scenes = scaled_result.holdout_scenes
+    squares = squared_errors(known.base, (), scenes[0])
+    count = len(squares)
+    across = scale_of(Variable("pitch", "rad", "scalar", rng.normal(0, 0.1, count)))
+    up = scale_of(Variable("turn", "", "label", rng.choice(["left", "right"], count)))
+    assert across.title == "pitch [degrees]"
+    assert 5 < across.edges[-1] < 25
+    assert up.labels == ("left", "right")
+    rms = binned_rms(squares, across, up)
+    assert rms.shape == (2, len(across.edges) - 1)
+    counts = np.zeros(rms.shape)
+    np.add.at(counts, (up.bins, across.bins), 1)
+    assert (np.isnan(rms) == (counts == 0)).all()
+    total = np.sqrt(np.nansum(rms**2 * counts) / count)
+    assert total == pytest.approx(gap_of(known.base, (), scenes, 10.0).value)
+
+
+def test_rolling_rms_by_hand():
+    time_s, squares = np.array([0.0, 2.0, 4.0, 30.0]), np.array([1.0, 4.0, 9.0, 16.0])
+    expected = np.sqrt([5 / 2, 14 / 3, 13 / 2, 16.0])
+    np.testing.assert_allclose(rolling_rms(time_s, squares, 4.0), expected)

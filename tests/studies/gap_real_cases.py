@@ -1,0 +1,140 @@
+"""Cases of the gap study on real recordings: which runs calibrate, measure and judge."""
+
+import csv
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from odometry.comparison.parts import halves, parts_by_ground
+from odometry.identification.identify import identify
+from odometry.run import Run
+
+LATE_S = 0.15
+TILE = "husky_tile_20231212_1616_s00"
+STEEP = "warthog_grass_20240729_1446"
+FLAT, LONG = "warthog_grass_20240729_1404", "warthog_grass_20240808_1556"
+ASPHALT = "warthog_asphalt_20240920_0813"
+SLOW_ASPHALT = "warthog_asphalt_slow_20240808_1146_"
+GRAVEL, ICE = "warthog_gravel_20240806_1137_", "warthog_ice_20240730_1630_"
+SAND, MARMOTTE = "warthog_sand_20240925_1413_", "marmotte_boreal_20240125_1215_"
+
+
+@dataclass(frozen=True)
+class Case:
+    """Runs, and what is expected of them."""
+
+    kind: str
+    name: str
+    expected: str
+    calibration: Sequence[Run]
+    measured: Sequence[Run]
+    holdout: Sequence[Run] = ()
+    given: Mapping[str, float] | None = None
+
+
+def recordings(folder: Path) -> dict[str, Run]:
+    """Runs with a pose by name, each with its ground as INDEX.csv names it."""
+    found = {}
+    with (folder / "INDEX.csv").open(newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            run = Run.read(folder / row["run"])
+            ground = row["terrain"].split(" (")[0]
+            if run.pose is not None:
+                found[row["run"]] = replace(
+                    run, settings={**run.settings, "run": {"terrain": ground}}
+                )
+    return found
+
+
+def real(runs: Mapping[str, Run]) -> list[Case]:
+    """Nothing was done to the data."""
+    first, third, fourth = in_parts(runs[TILE])
+    (identified,) = identify([first], "icr", fixed={"x_icr": 0.0}).grounds.values()
+    no_offset = dict(identified.fit.values)
+    sequences = [[runs[f"{MARMOTTE}{name}"]] for name in ("s00", "s02", "s04")]
+    skid = "lateral_skid, x_shift about -0.146 m"
+    return [
+        Case("real", "husky_tile_x_icr_0", skid, [first], [third], [fourth], no_offset),
+        Case("real", "warthog_grass_slope", "slope or none", [runs[LONG]], [runs[STEEP]]),
+        Case(
+            *("real", "warthog_grass_slope_to_flat", "slope or none"),
+            *([runs[LONG]], [runs[STEEP]], [runs[FLAT]]),
+        ),
+        Case("real", "marmotte", "curvature or none", *sequences),
+    ]
+
+
+def withheld(runs: Mapping[str, Run]) -> list[Case]:
+    """A ground, 0.15 s, or the attitude, kept from the base model."""
+    tile, asphalt = in_parts(runs[TILE]), in_parts(runs[ASPHALT])
+    marmotte = tuple(runs[f"{MARMOTTE}{name}"] for name in ("s00", "s02", "s04"))
+    grass = (runs[LONG], runs[STEEP], runs[FLAT])
+    grounds = {
+        "ice": ([f"{ICE}s00"], [f"{ICE}s02", f"{ICE}s04"]),
+        "asphalt_slow": ([f"{SLOW_ASPHALT}s00"], [f"{SLOW_ASPHALT}s02"]),
+        "gravel": ([f"{GRAVEL}s02"], [f"{GRAVEL}s00"]),
+        "sand": ([f"{SAND}s00", f"{SAND}s01"], [f"{SAND}s02"]),
+    }
+    cases = []
+    for ground, names in grounds.items():
+        measured, held = ([runs[name] for name in group] for group in names)
+        seen = ([grass[0]], [grass[1], *measured], [grass[2], *held])
+        cases.append(Case("withheld", f"terrain_{ground}", "terrain", *seen))
+    for name, parts in {
+        "warthog_grass": grass,
+        "marmotte": marmotte,
+        "husky_tile": tile,
+        "warthog_asphalt": asphalt,
+    }.items():
+        known, *unknown = parts
+        shifted = [[late(run)] for run in unknown]
+        expected = f"time_offset, {LATE_S} s"
+        cases.append(Case("withheld", f"delay_{name}", expected, [known], *shifted))
+        usual = [[run] for run in unknown]
+        cases.append(Case("withheld", f"no_delay_{name}", "none", [known], *usual))
+    for name, parts in {"warthog_grass": grass[:2], "marmotte": marmotte}.items():
+        flat = [[without_attitude(run)] for run in parts]
+        cases.append(Case("withheld", f"attitude_{name}", "unknown or none", *flat))
+    return cases
+
+
+def controls(runs: Mapping[str, Run]) -> list[Case]:
+    """Each recording by halves, both ways round."""
+    cases = []
+    for name, run in runs.items():
+        first, second = (cut for cut in in_halves(run))
+        cases.append(Case("control", f"{name} forward", "none", [first], [second]))
+        cases.append(Case("control", f"{name} backward", "none", [second], [first]))
+    return cases
+
+
+def in_halves(run: Run) -> tuple[Run, Run]:
+    """Two runs of one, each with half of the wheel travel."""
+    (whole,) = parts_by_ground(run, run.name).values()
+    first, second = (half.cut() for half in halves(whole))
+    return renamed(first, "first"), renamed(second, "second")
+
+
+def in_parts(run: Run) -> tuple[Run, Run, Run]:
+    """The first half, and both halves of the second."""
+    first, second = in_halves(run)
+    return first, *in_halves(second)
+
+
+def renamed(run: Run, part: str) -> Run:
+    """The same run in a folder of its own: no run may be given twice."""
+    return replace(run, folder=run.folder.with_name(f"{run.folder.name}_{part}"))
+
+
+def late(run: Run) -> Run:
+    """Stamps of the poses later."""
+    if run.pose is None:
+        raise ValueError(f"{run.name} has no pose")
+    columns = {**run.pose.columns, "t": run.pose.stamps_s + LATE_S}
+    return replace(run, pose=replace(run.pose, columns=columns))
+
+
+def without_attitude(run: Run) -> Run:
+    """Roll and pitch as if they had never been recorded."""
+    columns = {n: c for n, c in run.odometry.columns.items() if n not in ("roll", "pitch")}
+    return replace(run, odometry=replace(run.odometry, columns=columns))
