@@ -7,14 +7,15 @@ import numpy as np
 
 from odometry.effects.actuator_lag import ActuatorLag
 from odometry.effects.base import Effect
-from odometry.effects.contact_forms import InertiaByContact, SlopeByContact
 from odometry.effects.corrected import Added
 from odometry.effects.curvature import Curvature
 from odometry.effects.heading_offset import HeadingOffset
+from odometry.effects.inertia_contact import InertiaByContact
 from odometry.effects.inertia_icr import InertiaByIndices
 from odometry.effects.lateral_skid import LateralSkid
 from odometry.effects.lever_arm import LeverArm
 from odometry.effects.residual import Residual
+from odometry.effects.slope_contact import SlopeByContact
 from odometry.effects.slope_icr import SlopeByIcr
 from odometry.effects.terrain import Terrain
 from odometry.effects.time_offset import TimeOffset

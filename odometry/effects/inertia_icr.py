@@ -43,7 +43,9 @@ class InertiaByIndices(MotionEffect):
             EffectParameter("zeta_1", "m/N", -20 / weight, 20 / weight, 0.0, 0.02 / weight),
             EffectParameter("epsilon_1", "m/N", -20 / weight, 20 / weight, 0.0, 0.02 / weight),
             EffectParameter("eta_1", "1/N", -50 / weight, 50 / weight, 0.0, 0.02 / weight),
-            EffectParameter("eta_2", "1/N^2", -200 / weight**2, 200 / weight**2, 0.0, 0.1 / weight**2),
+            EffectParameter(
+                "eta_2", "1/N^2", -200 / weight**2, 200 / weight**2, 0.0, 0.1 / weight**2
+            ),
             EffectParameter("h", "", 0.2, 3.0, 1.0, 0.05, None),
         )
 
@@ -57,8 +59,13 @@ class InertiaByIndices(MotionEffect):
         return "" if base.model.name == "icr" else "a base model with tread ICRs"
 
     def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the face
-        """No change, for several signs of V_l + H V_r."""
-        return np.array([[0.0, 0.0, 0.0, 0.0, h] for h in (1.0, 0.67, 0.85, 1.2)])
+        """No change, for several H; first that of the base.
+
+        The base's v_x is zero where V_l + H V_r = 0 with H = -y_left / y_right.
+        """
+        y_left, y_right, _ = tread_icrs(base, self.name)
+        signs = np.clip([-y_left / y_right, 1.0, 0.67, 0.85, 1.2], 0.2, 3.0)
+        return np.array([[0.0, 0.0, 0.0, 0.0, h] for h in signs])
 
     def twist(
         self, values: FloatArray, twist: FloatArray, inputs: Inputs, base: Base

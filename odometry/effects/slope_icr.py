@@ -61,7 +61,6 @@ class SlopeByIcr(MotionEffect):
         level = Inputs(inputs.tread_speeds_m_s)
         return np.asarray(twist + MODEL.twist(packed, inputs) - MODEL.twist(packed, level))
 
-
     def constants(self) -> dict[str, float]:
         """See `Effect.constants`."""
         stated = {"half_width": self.half_width, "half_length": self.half_length}

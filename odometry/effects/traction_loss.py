@@ -6,7 +6,7 @@ from odometry.arrays import FloatArray
 from odometry.effects.base import Base, EffectParameter, MotionEffect
 from odometry.models.inputs import Inputs
 
-MOMENTS = 16  # from which a search begins
+SPACING_S, MOST_MOMENTS = 3.0, 60  # of the moments from which a search begins
 
 
 class TractionLoss(MotionEffect):
@@ -38,8 +38,9 @@ class TractionLoss(MotionEffect):
     def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the face
         """Moments evenly spread over the run."""
         longest_s = self.longest_s if inputs.time_s is None else float(inputs.time_s.max())
-        moments = longest_s * (np.arange(MOMENTS) + 0.5) / MOMENTS
-        return np.stack([np.ones(MOMENTS), np.ones(MOMENTS), moments], axis=-1)
+        count = int(np.clip(longest_s / SPACING_S, 1, MOST_MOMENTS))
+        moments = longest_s * (np.arange(count) + 0.5) / count
+        return np.stack([np.ones(count), np.ones(count), moments], axis=-1)
 
     def twist(
         self,

@@ -9,8 +9,9 @@ from odometry.gap.calibration import calibrated
 from odometry.gap.config import GapConfig
 from odometry.gap.equivalent import equivalents
 from odometry.gap.errors import GapError
-from odometry.gap.fit import Fitter, measured_of
+from odometry.gap.fit import Fitter
 from odometry.gap.locate import locate
+from odometry.gap.measured import measured_of
 from odometry.gap.name import Explanation, explained
 from odometry.gap.result import Closing, GapResult, NamedEffect, Rival
 from odometry.gap.scene import Scene, pieces, scene_of, thinned

@@ -38,8 +38,8 @@ from odometry.errors import OdometryError
 from odometry.gap.closed import held_out_share
 from odometry.gap.config import GapConfig
 from odometry.gap.files import write_gap
-from odometry.gap.fit import measured_of
 from odometry.gap.gap import find_gap
+from odometry.gap.measured import measured_of
 from odometry.gap.result import GapResult, NamedEffect
 from odometry.gap.words import parameter_words, percent, with_interval
 from odometry.io.files import atomic_write

@@ -45,7 +45,7 @@ def values_of(effect, rng):
 def test_absent_values_change_nothing(seed, effect):
     """Each parameter at its `absent` value; those without one anywhere within their bounds."""
     if all(parameter.absent is None for parameter in effect.parameters):
-        return  # balances of contacts are absent on ground, not by a value: see test_contact_forms
+        return  # balances of contacts are absent on ground, not by a value: see test_contact_change
     rng = np.random.default_rng(seed)
     anywhere = values_of(effect, rng)
     values = np.array(

@@ -156,11 +156,10 @@ def test_grounds_are_tables_of_their_own(none_result, make_scene, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("latency_s", "offset_s", "expected_s"), [(0.05, None, 0.05), (0.05, 0.1, 0.15), (1e-4, 0.1, 0.1)]
+    ("latency_s", "offset_s", "expected_s"),
+    [(0.05, None, 0.05), (0.05, 0.1, 0.15), (1e-4, 0.1, 0.1)],
 )
-def test_the_latency_is_part_of_the_model(
-    none_result, tmp_path, latency_s, offset_s, expected_s
-):
+def test_the_latency_is_part_of_the_model(none_result, tmp_path, latency_s, offset_s, expected_s):
     effects = ()
     if offset_s is not None:
         value = np.array([offset_s])

@@ -1,5 +1,6 @@
 """Fits of effects beside the base, and what they leave on windows not fitted."""
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,8 @@ from odometry.effects.time_offset import TimeOffset
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import judge, penalty
-from odometry.gap.fit import Fitter, Measured, measured_of
+from odometry.gap.fit import Fitter
+from odometry.gap.measured import Measured, measured_of
 from odometry.gap.statistic import gap_of
 from odometry.gap.uncertain import Uncertain
 
@@ -84,7 +86,7 @@ def test_one_newton_step_agrees_with_an_honest_refit(fitter, scenes, open_base):
     honest = np.zeros_like(fit.held_out)
     ends = np.cumsum([0, *map(len, scenes)])
     for fold in range(CONFIG.folds):
-        kept = [measured.folds[a:b] != fold for a, b in zip(ends[:-1], ends[1:], strict=True)]
+        kept = [measured.folds[a:b] != fold for a, b in itertools.pairwise(ends)]
         others = Measured(
             tuple(s.where(k) for s, k in zip(scenes, kept, strict=True)),
             tuple(w[k] for w, k in zip(measured.whiteners, kept, strict=True)),

@@ -3,17 +3,13 @@
 Twenty seeds of every kind, at three levels of noise: `tests/studies/gap_cases.py`.
 """
 
-import json
-
 import pytest
 
-from odometry.gap.files import write_gap
 from odometry.gap.gap import find_gap
-from odometry.parameters import read_parameters
 from odometry.run import Run
 from tests.blind.cases import FORMULA, make_case
 
-PAIRS = ("wheel_scale+time_offset", "traction_loss+actuator_lag")
+PAIRS = ("wheel_scale+time_offset", "time_offset+lever_arm")
 CASES = (
     *((kind, 0) for kind in (*FORMULA, "unknown_pull", "unknown_ripple", *PAIRS)),
     *(("none", 0), ("none", 1), ("contact_slope", 0)),

@@ -1,5 +1,7 @@
 """What noise explains of a window, beside simulated noise."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -26,10 +28,7 @@ def drawn_residuals(scene, window, noise, rng):
     speeds = np.abs(scene.inputs.tread_speeds_m_s).mean(axis=1)
     ends = np.searchsorted(scene.time_s, scene.pose_s[scene.windows[window]])
     travel_m = np.array(
-        [
-            (speeds[a:b] * scene.steps_s[a:b]).sum()
-            for a, b in zip(ends[:-1], ends[1:], strict=True)
-        ]
+        [(speeds[a:b] * scene.steps_s[a:b]).sum() for a, b in itertools.pairwise(ends)]
     )
     steps = np.diff(places) * np.exp(-1j * yaws[:-1])
     turned = np.cumsum(

@@ -80,6 +80,8 @@ def test_a_change_of_ground_is_kept_and_cuts_nothing(make_scene):
 
     scene = make_scene(3, duration_s=60.0, terrain=terrain)
     assert len(scene) == 29
+    ends_s = scene.pose_s[scene.windows[:, -1]]
+    assert ((scene.start_s < 21.3) & (ends_s > 21.3)).sum() == 1
     np.testing.assert_array_equal(scene.inputs.terrain, terrain(scene.time_s + 1e-9))
 
 

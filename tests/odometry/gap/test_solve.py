@@ -28,7 +28,14 @@ def test_linear_residuals_end_at_the_normal_equations(linear):
 
 @pytest.mark.parametrize("seed", range(5))
 def test_within_bounds_it_is_the_bounded_optimum(linear, seed):
-    design, target, rows_at = linear
+    """Of columns that nearly stand in for each other, so that a bound moves the others."""
+    design, target, _ = linear
+    design = design @ (np.eye(4) + 20.0 * np.ones((4, 4)))
+    target = 20.0 * target
+
+    def rows_at(values):
+        return design @ values - target
+
     rng = np.random.default_rng(seed)
     inside = np.linalg.lstsq(design, target)[0]
     low = inside + rng.uniform(-4.0, 2.0, 4)
@@ -54,6 +61,17 @@ def test_what_is_pinned_stays_and_the_others_fit_beside_it(linear):
     np.testing.assert_allclose(found.values[others], expected, atol=1e-6)
     np.testing.assert_allclose(found.jacobian[:, others], design[:, others], atol=1e-6)
     np.testing.assert_array_equal(found.jacobian[:, 1], 0.0)
+
+
+def test_what_is_pinned_is_never_moved():
+    def rows_at(values):
+        assert values[1] == 7.0
+        return np.array([values[0] ** 2, values[1]])
+
+    values, scales = np.array([2.0, 7.0]), np.full(2, 1e-4)
+    bounds = (np.array([0.0, 7.0]), np.array([5.0, 7.0]))
+    found = differences(rows_at, values, rows_at(values), scales, bounds)
+    np.testing.assert_allclose(found, [[4.0, 0.0], [0.0, 0.0]], atol=1e-5)
 
 
 def test_at_a_bound_the_derivative_is_taken_inside_and_what_is_held_has_none():

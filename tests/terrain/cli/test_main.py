@@ -7,7 +7,7 @@ import sys
 import pytest
 
 VERBS = ("train", "classify", "run", "evaluate", "synthesise")
-VERBS += ("simulate", "identify", "compare", "demo")
+VERBS += ("simulate", "identify", "compare", "gap", "demo")
 SLOW = ("numpy", "scipy", "sklearn", "skimage", "cv2", "matplotlib", "filterpy", "pandas")
 
 

@@ -1,4 +1,4 @@
-"""Slope sliding and inertia by the force balance of ground contacts.
+"""What a force changes of the balance of ground contacts: shared by slope sliding and inertia.
 
 Not the balance itself is the effect but the change that gravity along the slope, or centrifugal
 force, makes to it: on level ground and slow the base stays as it was calibrated. Both change
@@ -12,17 +12,16 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.effects.base import Base, EffectParameter, MotionEffect
-from odometry.effects.slope_icr import half_length_m, lacks_tilt
+from odometry.effects.slope_icr import half_length_m
 from odometry.models.contact import GUESSED_HEIGHT, Contact
 from odometry.models.inputs import Inputs
 
 MODEL = Contact()
 MEAN_S = 0.2
 REMEMBERED = 64  # answers
-SLOW = 0.02  # of the speeds: centrifugal force is 0.0004 of its own
 
 
-class _ByContact(MotionEffect):
+class ContactChange(MotionEffect):
     """Shared by both: a balance less the same balance without what is missing.
 
     Parameters
@@ -105,43 +104,6 @@ class _ByContact(MotionEffect):
                 self._answers.pop(next(iter(self._answers)))
             self._answers[key] = self.change(values, means, base)
         return self._answers[key]
-
-
-class SlopeByContact(_ByContact):
-    """What gravity along the slope changes."""
-
-    name = "slope_sliding"
-    equation = "twist + balance(speeds, roll, pitch) - balance(speeds, level)"
-    looks_like = "turns on a slope that slide downhill"
-    needs = "roll and pitch on ground that is not level"
-
-    def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the face
-        """See `Effect.lacks`."""
-        return lacks_tilt(inputs)
-
-    def change(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
-        """See `_ByContact.change`."""
-        balance = self.balance_values(values, base)
-        level = Inputs(inputs.tread_speeds_m_s)
-        return np.asarray(MODEL.twist(balance, inputs) - MODEL.twist(balance, level))
-
-
-class InertiaByContact(_ByContact):
-    """What centrifugal force changes."""
-
-    name = "inertia"
-    equation = "twist + balance(speeds) - balance(slow speeds) / slowness"
-    looks_like = "turns that come out wider or tighter the faster they are driven"
-    needs = "fast turns"
-
-    def change(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
-        """See `_ByContact.change`."""
-        fast = Inputs(inputs.tread_speeds_m_s)
-        slow = Inputs(SLOW * inputs.tread_speeds_m_s)
-        return np.asarray(
-            MODEL.twist(self.balance_values(values, base), fast)
-            - MODEL.twist(self.balance_values(values, base, SLOW), slow) / SLOW
-        )
 
 
 def _first_of_means(inputs: Inputs) -> IntArray:

@@ -1,0 +1,28 @@
+"""Sliding downhill while turning, by the force balance of ground contacts."""
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.effects.base import Base
+from odometry.effects.contact_change import MODEL, ContactChange
+from odometry.effects.slope_icr import lacks_tilt
+from odometry.models.inputs import Inputs
+
+
+class SlopeByContact(ContactChange):
+    """What gravity along the slope changes."""
+
+    name = "slope_sliding"
+    equation = "twist + balance(speeds, roll, pitch) - balance(speeds, level)"
+    looks_like = "turns on a slope that slide downhill"
+    needs = "roll and pitch on ground that is not level"
+
+    def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the face
+        """See `Effect.lacks`."""
+        return lacks_tilt(inputs)
+
+    def change(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
+        """See `ContactChange.change`."""
+        balance = self.balance_values(values, base)
+        level = Inputs(inputs.tread_speeds_m_s)
+        return np.asarray(MODEL.twist(balance, inputs) - MODEL.twist(balance, level))

@@ -1,0 +1,73 @@
+"""Windows of measured runs, whitened by the noise of the calibration."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from odometry.arrays import FloatArray, IntArray
+from odometry.effects.base import Base
+from odometry.effects.corrected import Added
+from odometry.gap.calibration import Calibration
+from odometry.gap.config import GapConfig
+from odometry.gap.noise import whitening
+from odometry.gap.scene import Scene, pieces
+from odometry.gap.simulate import residuals
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Windows of measured runs, whitened by the noise of the calibration.
+
+    Attributes
+    ----------
+    scenes : tuple of Scene
+    whiteners : tuple of (K, 3n, 3n)
+    folds : (K of all,)
+        Which part each window belongs to.
+    pieces : (K of all,)
+        Number of the piece of all runs in which it lies.
+    """
+
+    scenes: tuple[Scene, ...]
+    whiteners: tuple[FloatArray, ...]
+    folds: IntArray
+    pieces: IntArray
+
+    def rows(self, base: Base, effects: Sequence[Added]) -> FloatArray:
+        """Whitened residuals (R,) of all windows, scene by scene."""
+        return np.concatenate(
+            [
+                np.einsum("kij,kj->ki", w, residuals(base, effects, s).reshape(len(s), -1))
+                for w, s in zip(self.whiteners, self.scenes, strict=True)
+            ],
+            axis=None,
+        )
+
+    @cached_property
+    def window_of_row(self) -> IntArray:
+        """Number (R,) of the window of each row."""
+        sizes = [len(s) * [3 * (s.windows.shape[1] - 1)] for s in self.scenes]
+        return np.repeat(np.arange(len(self.folds)), np.concatenate(sizes).astype(np.int64))
+
+    def by_window(self, rows: FloatArray) -> FloatArray:
+        """Chi-squared (K,) of each window."""
+        summed = np.bincount(self.window_of_row, weights=rows**2, minlength=len(self.folds))
+        return np.asarray(summed, dtype=np.float64)
+
+
+def measured_of(scenes: Sequence[Scene], calibration: Calibration, config: GapConfig) -> Measured:
+    """Whiten windows by the noise of a calibration; pieces of the runs are dealt to the folds."""
+    numbers, begin = [], 0
+    for scene in scenes:
+        here = pieces(scene, config.part_s)
+        numbers.append(begin + here)
+        begin += int(here.max(initial=0)) + 1
+    joined = np.concatenate(numbers)
+    return Measured(
+        tuple(scenes),
+        tuple(whitening(scene, calibration.noise) for scene in scenes),
+        joined % config.folds,
+        joined,
+    )
