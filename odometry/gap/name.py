@@ -179,17 +179,23 @@ class _Search:
 
 
 def is_there(fit: Fitted) -> bool:
-    """Whether the last effect of a fit is more than an effect that does nothing."""
+    """Whether the last effect of a fit is more than an effect that does nothing.
+
+    Its parameters are tested together (Wald), those that shape it held: each alone may be
+    uncertain where only a product of them is known.
+    """
     added = fit.effects[-1]
-    count = len(added.values)
-    sigmas = np.sqrt(np.maximum(np.diag(fit.covariance)[-count:], 0.0))
-    return any(
-        parameter.absent is None or abs(value - parameter.absent) > SURE * sigma
-        for parameter, value, sigma in zip(
-            added.effect.parameters, added.values, sigmas, strict=True
-        )
-        if parameter.absent is not None or all(p.absent is None for p in added.effect.parameters)
-    )
+    absent = [parameter.absent for parameter in added.effect.parameters]
+    known = np.array([value is not None for value in absent])
+    if not known.any():
+        return True
+    away = np.array([a - b for a, b in zip(added.values, absent, strict=True) if b is not None])
+    count = len(absent)
+    scales = np.array([parameter.scale for parameter in added.effect.parameters])
+    covariance = fit.covariance[-count:, -count:] / np.outer(scales, scales)
+    information = np.linalg.pinv(covariance, hermitian=True)[np.ix_(known, known)]
+    away = away / scales[known]
+    return bool(away @ information @ away > SURE**2 * known.sum())
 
 
 def _cost(fit: Fitted) -> float:
