@@ -88,7 +88,7 @@ def find_gap(
     ]
     named = _named(found, closings[0].before.value)
     return GapResult(
-        verdict=found.names[0] if found.names else "none",
+        verdict=found.names[0] if found.names else "unknown" if found.unexplained else "none",
         effects=named,
         equivalent=equivalents(found),
         location=locate(known.base, (), fitted_scenes, floor.value, config, calibration=known),

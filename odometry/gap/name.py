@@ -19,6 +19,7 @@ from odometry.gap.sparse import sparse_residual
 from odometry.gap.statistic import Gap, gap_of
 
 LEAST_OF_NOISE = 0.2  # of what noise leaves: a smaller excess of chi-squared is taken as this
+UNEXPLAINED = 1.3  # chi-squared a degree of freedom: more is not noise
 SURE = 3.0  # standard deviations from doing nothing
 MOVED = 50.0  # chi-squared of a base that left its calibration
 CONTACT_SPREAD = 1.1  # chi-squared a degree of freedom that the quick forms must leave
@@ -35,11 +36,14 @@ class Explanation:
     steps : tuple of Judged
     first : tuple of Judged
         All candidates for the first effect, most evidence first.
+    unexplained : bool
+        Whether there is a gap that noise does not explain, and nothing earned a name.
     """
 
     start: Fitted
     steps: tuple[Judged, ...]
     first: tuple[Judged, ...]
+    unexplained: bool = False
 
     @property
     def fitted(self) -> Fitted:
@@ -86,7 +90,7 @@ def explained(
         rest = search.best(named.fitted, smooth_effects(scenes))
         if rest is not None:
             named = Explanation(named.start, (*named.steps, rest), named.first)
-    return named
+    return replace(named, unexplained=not named.steps and search.unexplained())
 
 
 @dataclass(frozen=True)
@@ -147,6 +151,10 @@ class _Search:
         effects = [added.effect for added in one.fitted.effects]
         fit = self.fitter.fit(effects, one.fitted.effects)
         return replace(ranked(self.fitter, before, [fit], self.config)[0], evidence=one.evidence)
+
+    def unexplained(self) -> bool:
+        """Whether the base leaves a gap, and more in chi-squared than noise explains."""
+        return self._excess(self.start) and self.fitter.spread(self.start) > UNEXPLAINED
 
     def _excess(self, before: Fitted) -> bool:
         """Whether the gap is above the interval of the noise floor, or hidden in a moved base."""

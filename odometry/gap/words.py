@@ -53,6 +53,11 @@ def effect_words(effect: NamedEffect) -> str:
 def _verdict(result: GapResult, share: Share | None) -> str:
     model = result.calibration.base.model.name
     if not result.effects:
+        if result.verdict == "unknown":
+            return (
+                f"Something is missing in {model} that neither an effect of the catalogue nor a "
+                "smooth function of what was recorded explains with enough evidence."
+            )
         if _above_floor(result.measured.before, result.measured.noise_floor):
             return (
                 f"Nothing that these runs could show is missing in {model} with enough evidence, "

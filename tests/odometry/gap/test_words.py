@@ -53,6 +53,11 @@ def test_none_admits_a_gap_above_the_floor(none_result):
     assert "noise explains the gap" not in said[0]
 
 
+def test_unknown_without_any_name_says_so(none_result):
+    first, *_ = sentences(replace(none_result, verdict="unknown"))
+    assert first.startswith("Something is missing in icr that neither an effect")
+
+
 def test_unknown_says_what_it_follows_and_what_is_left(unknown_result):
     said = sentences(unknown_result)
     assert said[0].startswith(
