@@ -24,6 +24,8 @@ class GapConfig:
         A name needs this much evidence (twice the gain of log-likelihood, less the penalty).
     least_share : float
         And must close this share of the excess that was there before any effect.
+    first_share : float
+        The first name must close this share of it: the main part of a gap is not small.
     most_effects : int
     most_windows : int
         Where there are more, as many of them at even distances are used to fit.
@@ -35,6 +37,7 @@ class GapConfig:
     held_back: int = 4
     least_evidence: float = 12.0
     least_share: float = 0.02
+    first_share: float = 0.1
     most_effects: int = 3
     most_windows: int = 300
 
@@ -44,6 +47,8 @@ class GapConfig:
             require(0 < value < math.inf, f"{name} = {value}, expected above 0")
         require(self.folds >= 2, f"folds = {self.folds}, expected 2 or more")
         require(self.held_back >= 2, f"held_back = {self.held_back}, expected 2 or more")
-        require(0 <= self.least_share < 1, f"least_share = {self.least_share}, expected 0 to 1")
+        for name in ("least_share", "first_share"):
+            value = getattr(self, name)
+            require(0 <= value < 1, f"{name} = {value}, expected 0 to 1")
         require(self.most_effects >= 1, f"most_effects = {self.most_effects}, expected 1 or more")
         require(self.most_windows >= 20, f"most_windows = {self.most_windows}, expected 20 or more")

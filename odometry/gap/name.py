@@ -176,7 +176,8 @@ class _Search:
         """
         if not self._excess(before) or one.without_best <= self.config.least_evidence:
             return False
-        share, noise = self.config.least_share, len(self.fitter.measured.window_of_row)
+        share = self.config.least_share if before.effects else self.config.first_share
+        noise = len(self.fitter.measured.window_of_row)
         excess_m = max(self._gap(self.start) - self.floor.value, 0.0)
         closed_m = self._gap(before) - one.gap_after
         excess = max(_cost(self.start) - noise, LEAST_OF_NOISE * noise)

@@ -51,16 +51,14 @@ def real(runs: Mapping[str, Run]) -> list[Case]:
     first, third, fourth = in_parts(runs[TILE])
     (identified,) = identify([first], "icr", fixed={"x_icr": 0.0}).grounds.values()
     no_offset = dict(identified.fit.values)
-    sequences = [[runs[f"{MARMOTTE}{name}"]] for name in ("s00", "s02", "s04")]
-    skid = "lateral_skid, x_shift about -0.146 m"
+    steep, flat, long = ([runs[name]] for name in (STEEP, FLAT, LONG))
+    known, measured, held = ([runs[f"{MARMOTTE}{name}"]] for name in ("s00", "s02", "s04"))
+    skid, slope = "lateral_skid, x_shift about -0.146 m", "slope_sliding or none"
     return [
         Case("real", "husky_tile_x_icr_0", skid, [first], [third], [fourth], no_offset),
-        Case("real", "warthog_grass_slope", "slope or none", [runs[LONG]], [runs[STEEP]]),
-        Case(
-            *("real", "warthog_grass_slope_to_flat", "slope or none"),
-            *([runs[LONG]], [runs[STEEP]], [runs[FLAT]]),
-        ),
-        Case("real", "marmotte", "curvature or none", *sequences),
+        Case("real", "warthog_grass_slope", slope, long, steep),
+        Case("real", "warthog_grass_slope_to_flat", slope, long, steep, flat),
+        Case("real", "marmotte", "curvature or none", known, measured, held),
     ]
 
 
@@ -76,33 +74,36 @@ def withheld(runs: Mapping[str, Run]) -> list[Case]:
         "sand": ([f"{SAND}s00", f"{SAND}s01"], [f"{SAND}s02"]),
     }
     cases = []
-    for ground, names in grounds.items():
-        measured, held = ([runs[name] for name in group] for group in names)
-        seen = ([grass[0]], [grass[1], *measured], [grass[2], *held])
-        cases.append(Case("withheld", f"terrain_{ground}", "terrain", *seen))
-    for name, parts in {
+    for ground, (here, there) in grounds.items():
+        measured, held = ([runs[name] for name in names] for names in (here, there))
+        joined = ([grass[1], *measured], [grass[2], *held])
+        cases.append(Case("withheld", f"terrain_{ground}", "terrain", [grass[0]], *joined))
+    recorded = {
         "warthog_grass": grass,
         "marmotte": marmotte,
         "husky_tile": tile,
         "warthog_asphalt": asphalt,
-    }.items():
-        known, *unknown = parts
-        shifted = [[late(run)] for run in unknown]
-        expected = f"time_offset, {LATE_S} s"
-        cases.append(Case("withheld", f"delay_{name}", expected, [known], *shifted))
-        usual = [[run] for run in unknown]
-        cases.append(Case("withheld", f"no_delay_{name}", "none", [known], *usual))
-    for name, parts in {"warthog_grass": grass[:2], "marmotte": marmotte}.items():
-        flat = [[without_attitude(run)] for run in parts]
-        cases.append(Case("withheld", f"attitude_{name}", "unknown or none", *flat))
-    return cases
+    }
+    for name, (known, third, fourth) in recorded.items():
+        shifted = f"time_offset, {LATE_S} s"
+        cases += [
+            Case("withheld", f"delay_{name}", shifted, [known], [late(third)], [late(fourth)]),
+            Case("withheld", f"no_delay_{name}", "none", [known], [third], [fourth]),
+        ]
+    flat = [without_attitude(run) for run in (*grass[:2], *marmotte)]
+    unseen = "unknown or none"
+    return [
+        *cases,
+        Case("withheld", "attitude_warthog_grass", unseen, flat[:1], flat[1:2]),
+        Case("withheld", "attitude_marmotte", unseen, flat[2:3], flat[3:4], flat[4:]),
+    ]
 
 
 def controls(runs: Mapping[str, Run]) -> list[Case]:
     """Each recording by halves, both ways round."""
     cases = []
     for name, run in runs.items():
-        first, second = (cut for cut in in_halves(run))
+        first, second = in_halves(run)
         cases.append(Case("control", f"{name} forward", "none", [first], [second]))
         cases.append(Case("control", f"{name} backward", "none", [second], [first]))
     return cases
