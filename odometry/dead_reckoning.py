@@ -6,7 +6,7 @@ from odometry.arrays import FloatArray
 from odometry.gaps import level_where_missing
 from odometry.geometry import se2, se3
 from odometry.geometry.angles import wrap
-from odometry.geometry.levelled import level_steps, rises
+from odometry.geometry.levelled import level_steps, rises, tilt_of
 from odometry.spatial_trajectory import SpatialTrajectory
 from odometry.trajectory import Trajectory
 
@@ -56,9 +56,9 @@ def dead_reckon_in_space(
     """
     x, y, z, yaw = start
     roll, pitch = (level_where_missing(stamps_s, angle) for angle in (roll_rad, pitch_rad))
-    steps = _steps(stamps_s, twists)
-    plane = _chain(level_steps(steps, roll[:-1], pitch[:-1]), np.array([x, y, yaw]))
-    heights = z + np.append(0.0, np.cumsum(rises(steps, roll[:-1], pitch[:-1])))
+    steps, tilt = _steps(stamps_s, twists), tilt_of(roll[:-1], pitch[:-1])
+    plane = _chain(level_steps(steps, tilt), np.array([x, y, yaw]))
+    heights = z + np.append(0.0, np.cumsum(rises(steps, tilt)))
     rotations = se3.rotation_from_roll_pitch_yaw(np.column_stack([roll, pitch, plane[:, 2]]))
     positions = np.column_stack([plane[:, :2], heights])
     return SpatialTrajectory(np.asarray(stamps_s), se3.pose(positions, rotations))

@@ -5,20 +5,36 @@ another order). A step (dx, dy, angle) lies in the body's own plane: the positio
 and so is the yaw where the ground is a plane. Steps and attitudes broadcast.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from odometry.arrays import FloatArray
 
 
-def level_steps(steps: FloatArray, roll_rad: FloatArray, pitch_rad: FloatArray) -> FloatArray:
+class Tilt(NamedTuple):
+    """Sines and cosines (...) of roll and pitch, less than a quarter turn each."""
+
+    sin_roll: FloatArray
+    cos_roll: FloatArray
+    sin_pitch: FloatArray
+    cos_pitch: FloatArray
+
+
+def tilt_of(roll_rad: FloatArray, pitch_rad: FloatArray) -> Tilt:
+    """Of roll and pitch (...)."""
+    return Tilt(np.sin(roll_rad), np.cos(roll_rad), np.sin(pitch_rad), np.cos(pitch_rad))
+
+
+def level_steps(steps: FloatArray, tilt: Tilt) -> FloatArray:
     """Horizontal part of steps on tilted ground.
 
     Parameters
     ----------
     steps : (..., 3)
         dx, dy [m] in the body frame at the start of the step, angle about the body's z [rad].
-    roll_rad, pitch_rad : (...)
-        Attitude at the start of the step, less than a quarter turn each.
+    tilt : Tilt
+        At the start of the step.
 
     Returns
     -------
@@ -26,38 +42,33 @@ def level_steps(steps: FloatArray, roll_rad: FloatArray, pitch_rad: FloatArray) 
         Along and across [m] in the level frame of the start's yaw, and the change of yaw [rad].
         On level ground the steps themselves, also where they are more than half a turn.
     """
-    dx, dy, angle, roll, pitch = _parts(steps, roll_rad, pitch_rad)
-    # First two columns of Ry(pitch) Rx(roll), for the position and for the turned x axis.
-    sine, cosine, tilt = np.sin(angle), np.cos(angle), np.sin(pitch) * np.sin(roll)
-    yaw = np.arctan2(np.cos(roll) * sine, np.cos(pitch) * cosine + tilt * sine)
-    change = np.mod(yaw - angle + np.pi, 2 * np.pi) - np.pi  # less than half a turn
-    along = np.cos(pitch) * dx + tilt * dy
-    return np.stack([along, np.cos(roll) * dy, angle + change], axis=-1)
+    dx, dy, angle = np.moveaxis(np.asarray(steps), -1, 0)
+    x_turned, y_turned = _turned_axis(angle, tilt)
+    change = np.arctan2(y_turned, x_turned) - angle
+    change -= 2 * np.pi * np.rint(change / (2 * np.pi))  # less than half a turn
+    along = tilt.cos_pitch * dx + tilt.sin_pitch * tilt.sin_roll * dy
+    return np.stack([along, tilt.cos_roll * dy + 0 * along, angle + change], axis=-1)
 
 
-def rises(steps: FloatArray, roll_rad: FloatArray, pitch_rad: FloatArray) -> FloatArray:
+def rises(steps: FloatArray, tilt: Tilt) -> FloatArray:
     """Change of height (...) of steps (..., 3), see `level_steps`."""
-    dx, dy, _, roll, pitch = _parts(steps, roll_rad, pitch_rad)
-    return np.asarray(-np.sin(pitch) * dx + np.cos(pitch) * np.sin(roll) * dy)
+    dx, dy, _ = np.moveaxis(np.asarray(steps), -1, 0)
+    return np.asarray(-tilt.sin_pitch * dx + tilt.cos_pitch * tilt.sin_roll * dy)
 
 
-def level_step_jacobian(
-    steps: FloatArray, roll_rad: FloatArray, pitch_rad: FloatArray
-) -> FloatArray:
+def level_step_jacobian(steps: FloatArray, tilt: Tilt) -> FloatArray:
     """Derivative (..., 3, 3) of `level_steps` by the steps."""
-    _, _, angle, roll, pitch = _parts(steps, roll_rad, pitch_rad)
-    sine, cosine, tilt = np.sin(angle), np.cos(angle), np.sin(pitch) * np.sin(roll)
-    x, y = np.cos(pitch) * cosine + tilt * sine, np.cos(roll) * sine
-    jacobian = np.zeros((*angle.shape, 3, 3))
-    jacobian[..., 0, 0] = np.cos(pitch)
-    jacobian[..., 0, 1] = tilt
-    jacobian[..., 1, 1] = np.cos(roll)
-    jacobian[..., 2, 2] = np.cos(roll) * np.cos(pitch) / (x**2 + y**2)
+    x_turned, y_turned = _turned_axis(np.asarray(steps)[..., 2], tilt)
+    jacobian = np.zeros((*x_turned.shape, 3, 3))
+    jacobian[..., 0, 0] = tilt.cos_pitch
+    jacobian[..., 0, 1] = tilt.sin_pitch * tilt.sin_roll
+    jacobian[..., 1, 1] = tilt.cos_roll
+    jacobian[..., 2, 2] = tilt.cos_roll * tilt.cos_pitch / (x_turned**2 + y_turned**2)
     return jacobian
 
 
-def _parts(
-    steps: FloatArray, roll_rad: FloatArray, pitch_rad: FloatArray
-) -> tuple[FloatArray, ...]:
-    """dx, dy, angle, roll and pitch, all of one shape."""
-    return np.broadcast_arrays(*np.moveaxis(np.asarray(steps), -1, 0), roll_rad, pitch_rad)
+def _turned_axis(angle: FloatArray, tilt: Tilt) -> tuple[FloatArray, FloatArray]:
+    """Horizontal part of the x axis after a turn about the body's z."""
+    sine, cosine = np.sin(angle), np.cos(angle)
+    x = tilt.cos_pitch * cosine + tilt.sin_pitch * tilt.sin_roll * sine
+    return x, tilt.cos_roll * sine

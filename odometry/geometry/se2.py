@@ -5,7 +5,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.geometry.angles import wrap
 
-SMALL_ANGLE = 1e-4  # below it sin(a)/a and (1-cos(a))/a come from their series, exact to 1e-16
+SMALL_ANGLE = 1e-4  # below it slopes of sin(a)/a, (1-cos(a))/a come from series, right to 1e-13
 
 
 def exp(displacement: FloatArray) -> FloatArray:
@@ -67,12 +67,10 @@ def _rotate(x: FloatArray, y: FloatArray, yaw: FloatArray) -> tuple[FloatArray, 
 
 
 def _arc_ratios(angle: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """sin(a)/a and (1 - cos(a))/a."""
-    small = np.abs(angle) < SMALL_ANGLE
-    safe = np.where(small, 1.0, angle)
-    sine_ratio = np.where(small, 1 - angle**2 / 6, np.sin(safe) / safe)
-    cosine_ratio = np.where(small, angle / 2 - angle**3 / 24, 2 * np.sin(safe / 2) ** 2 / safe)
-    return sine_ratio, cosine_ratio
+    """sin(a)/a and (1 - cos(a))/a: the chord leads ahead by half the angle."""
+    half = angle / 2
+    chord = np.sinc(half / np.pi)
+    return chord * np.cos(half), chord**2 * half
 
 
 def exp_jacobian(displacement: FloatArray) -> FloatArray:

@@ -60,18 +60,11 @@ def window_motion_jacobian(
 
 
 def _level(arcs: FloatArray, inputs: Inputs) -> FloatArray:
-    return level_steps(arcs, inputs.roll_rad, inputs.pitch_rad) if _tilted(inputs) else arcs
+    return arcs if inputs.tilt is None else level_steps(arcs, inputs.tilt)
 
 
 def _level_jacobian(arcs: FloatArray, inputs: Inputs) -> FloatArray:
-    if not _tilted(inputs):
-        return np.eye(3)
-    return level_step_jacobian(arcs, inputs.roll_rad, inputs.pitch_rad)
-
-
-def _tilted(inputs: Inputs) -> bool:
-    """On level ground the step is the arc, and half the work is spared."""
-    return bool(np.any(inputs.roll_rad) or np.any(inputs.pitch_rad))
+    return np.eye(3) if inputs.tilt is None else level_step_jacobian(arcs, inputs.tilt)
 
 
 def _product(matrices: FloatArray, jacobian: FloatArray) -> FloatArray:

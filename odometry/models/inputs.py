@@ -1,12 +1,14 @@
 """What a kinematic model is told: tread speeds, attitude, accelerations."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
+from odometry.geometry.levelled import Tilt, tilt_of
 
 
 def _level() -> FloatArray:
@@ -54,6 +56,13 @@ class Inputs:
         object.__setattr__(self, "roll_rad", np.broadcast_to(self.roll_rad, stack))
         object.__setattr__(self, "pitch_rad", np.broadcast_to(self.pitch_rad, stack))
 
+    @cached_property
+    def tilt(self) -> Tilt | None:
+        """Of every sample; None on level ground."""
+        if not (np.any(self.roll_rad) or np.any(self.pitch_rad)):
+            return None
+        return tilt_of(self.roll_rad, self.pitch_rad)
+
     @property
     def left(self) -> FloatArray:
         """v_left (...)."""
@@ -72,16 +81,21 @@ class Inputs:
     def rows(self, chosen: slice | IntArray) -> "Inputs":
         """Some samples of a stack (N, ...)."""
         named: dict[str, Any] = {
-            name: None if values is None else values[chosen] for name, values in vars(self).items()
+            name: None if values is None else values[chosen]
+            for name, values in _given(self).items()
         }
         return Inputs(**named)
 
 
 def joined(parts: Sequence[Inputs]) -> Inputs:
     """Stacks (N, ...) end to end; what one of them lacks, the whole lacks."""
-    stacks = {name: [getattr(part, name) for part in parts] for name in vars(parts[0])}
-    named: dict[str, Any] = {
-        name: None if any(values is None for values in stack) else np.concatenate(stack)
-        for name, stack in stacks.items()
-    }
+    stacks = {name: [_given(part)[name] for part in parts] for name in _given(parts[0])}
+    named: dict[str, Any] = {}
+    for name, stack in stacks.items():
+        known = [values for values in stack if values is not None]
+        named[name] = np.concatenate(known) if len(known) == len(stack) else None
     return Inputs(**named)
+
+
+def _given(inputs: Inputs) -> dict[str, AnyArray | None]:
+    return {one.name: getattr(inputs, one.name) for one in fields(inputs)}

@@ -36,6 +36,23 @@ def test_exp_of_a_quarter_turn_to_the_left():
     )
 
 
+@pytest.mark.parametrize(
+    "angles",
+    [np.logspace(-300, -9, 59), np.logspace(-9, 0, 400), np.linspace(1, 50, 999)],
+    ids=["tiny", "small", "turns"],
+)
+def test_exp_of_small_angles_and_of_turns_is_right_to_rounding(angles):
+    """Beside sin(a)/a and 2 sin(a/2)^2 / a of longer numbers; of turns in units of the length."""
+    angles = np.concatenate([-angles, angles])
+    if np.finfo(np.longdouble).eps > 1e-18:
+        pytest.skip("long numbers of this computer are no longer than others")
+    steps = np.column_stack([np.ones_like(angles), np.zeros_like(angles), angles])
+    longer = angles.astype(np.longdouble)
+    expected = np.column_stack([np.sin(longer), 2 * np.sin(longer / 2) ** 2]) / longer[:, None]
+    rounding = np.where(np.abs(angles[:, None]) > 1, 1.0, np.abs(expected)) * 1e-15
+    assert (np.abs(se2.exp(steps)[:, :2] - expected) <= rounding).all()
+
+
 def test_exp_keeps_whole_turns():
     assert se2.exp(np.array([0, 0, 7.0]))[2] == 7.0
 
