@@ -10,14 +10,15 @@ from odometry.effects.base import Base
 from odometry.gap.config import GapConfig
 from odometry.gap.errors import GapError
 from odometry.gap.noise import Noise, estimated_noise, whitening
-from odometry.gap.scene import Scene, pieces, scene_of, thinned
+from odometry.gap.scene import Scene, numbered_pieces, pieces, scene_of, thinned
 from odometry.gap.simulate import residuals
-from odometry.gap.solve import least_squares, with_jacobian
+from odometry.gap.solve import Solved, least_squares, with_jacobian
 from odometry.gap.uncertain import Uncertain
 from odometry.models.base import KinematicModel
 from odometry.run import Robot, Run
 
 LEAST_WINDOWS = 20
+TOGETHER_S = 10.0  # within which errors are taken as alike
 ROUNDS = 3  # of values and noise in turn
 ITERATIONS = 8
 STARTS_WITH = Noise(0.02, 0.01, 0.02, 0.02)
@@ -120,5 +121,24 @@ def _fit(
     ended = least_squares(rows_at, uncertain.values, scales, bounds, ITERATIONS)
     solved = with_jacobian(rows_at, ended, scales, bounds)
     found = replace(uncertain, base=uncertain.at(solved.values))
-    spread = max(1.0, solved.cost / max(1, len(solved.rows) - len(scales)))
-    return found, solved.jacobian.T @ solved.jacobian / spread
+    return found, _information(solved, scenes)
+
+
+def _information(solved: Solved, scenes: Sequence[Scene]) -> FloatArray:
+    """Inverse covariance (F, F), divided by the design effect of pieces of the runs.
+
+    Errors that last for longer than a window say less than as many independent ones: the scores
+    of pieces scatter by more than the normal matrix says (Liang and Zeger 1986, eq. 9, here one
+    factor for all numbers), or the residuals by more than noise.
+    """
+    normal = solved.jacobian.T @ solved.jacobian
+    freedom = max(1, len(solved.rows) - len(normal))
+    pieces_of = numbered_pieces(scenes, TOGETHER_S)
+    rows = np.concatenate([np.full(len(s), 3 * (s.windows.shape[1] - 1)) for s in scenes])
+    number = np.unique(np.repeat(pieces_of, rows), return_inverse=True)[1]
+    gradients = solved.jacobian * solved.rows[:, None]
+    scores = np.stack([np.bincount(number, weights=column) for column in gradients.T], axis=-1)
+    scatter = scores.T @ scores * len(scores) / max(1, len(scores) - 1)
+    moving = max(1, np.count_nonzero(np.diag(normal)))  # not held at a bound
+    design_effect = np.trace(np.linalg.pinv(normal) @ scatter) / moving
+    return np.asarray(normal / max(1.0, solved.cost / freedom, design_effect))

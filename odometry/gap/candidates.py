@@ -12,7 +12,7 @@ from odometry.effects.inertia_contact import InertiaByContact
 from odometry.effects.inertia_icr import InertiaByIndices
 from odometry.effects.lateral_skid import LateralSkid
 from odometry.effects.lever_arm import LeverArm
-from odometry.effects.residual import ANGLES, HARMONICS, Residual, variables_of
+from odometry.effects.residual import ANGLES, COMPONENTS, HARMONICS, Residual, variables_of
 from odometry.effects.slope_contact import SlopeByContact
 from odometry.effects.slope_icr import SlopeByIcr, half_length_m
 from odometry.effects.terrain import Terrain, new_labels
@@ -23,8 +23,8 @@ from odometry.gap.calibration import Calibration
 from odometry.gap.scene import Scene
 
 LATERAL_M_S2 = 0.3  # less inertia than this is nothing that contact forces are worth trying for
-COMPONENTS = ("v_x", "v_y", "omega")
 KNOTS = 5
+LEAST_RANGE = 1e-3  # of a variable that says anything
 
 
 def quick_effects(scenes: Sequence[Scene], calibration: Calibration) -> tuple[Effect, ...]:
@@ -62,30 +62,25 @@ def contact_effects(scenes: Sequence[Scene], calibration: Calibration) -> tuple[
     return tuple(found)
 
 
-def unnamed_effects(scenes: Sequence[Scene]) -> tuple[Residual, ...]:
+def of_angles(scenes: Sequence[Scene]) -> tuple[Residual, ...]:
     """Smooth functions of an angle that no effect of the catalogue depends on."""
     angles = [a for a in ANGLES if all(a in variables_of(s.inputs) for s in scenes)]
-    return tuple(
-        Residual(angle, all_terms(2 * HARMONICS), by_speed)
-        for angle in angles
-        for by_speed in (False, True)
-    )
+    terms = _every_term(2 * HARMONICS)
+    return tuple(Residual(angle, terms, by_speed) for angle in angles for by_speed in (False, True))
 
 
-def smooth_effects(scenes: Sequence[Scene]) -> tuple[Residual, ...]:
-    """Smooth functions of every variable recorded: what is left may depend on any."""
-    found = list(unnamed_effects(scenes))
+def of_variables(scenes: Sequence[Scene]) -> tuple[Residual, ...]:
+    """Smooth functions of the other variables recorded: what is left may depend on any."""
+    found = []
     for name, values in variables_of(scenes[0].inputs).items():
-        if name in ANGLES:
-            continue
         knots = np.unique(np.quantile(values, np.linspace(0.02, 0.98, KNOTS)))
-        if len(knots) == KNOTS and knots[-1] - knots[0] > 1e-3:
-            found.append(Residual(name, all_terms(KNOTS), False, tuple(float(k) for k in knots)))
+        if name not in ANGLES and len(knots) == KNOTS and knots[-1] - knots[0] > LEAST_RANGE:
+            places = tuple(float(knot) for knot in knots)
+            found.append(Residual(name, _every_term(KNOTS), False, places))
     return tuple(found)
 
 
-def all_terms(functions: int) -> tuple[tuple[str, int], ...]:
-    """Every basis function for every component of the twist."""
+def _every_term(functions: int) -> tuple[tuple[str, int], ...]:
     return tuple((component, k) for component in COMPONENTS for k in range(functions))
 
 

@@ -13,7 +13,7 @@ class GapConfig:
     Attributes
     ----------
     horizon_s : float
-        Duration of a window, over which the gap is an error of position.
+        Duration of a window, over which the gap is an error of position; as near as stamps allow.
     folds : int
         Parts of the measured runs; a candidate is judged on each by a fit to the others.
     part_s : float
@@ -21,7 +21,8 @@ class GapConfig:
     held_back : int
         Without runs to hold out, one piece of so many is held back.
     least_evidence : float
-        A name needs this much evidence (twice the gain of log-likelihood, less the penalty).
+        A name needs this much evidence (twice the gain of log-likelihood, less the penalty), at
+        its lower bound of 95 %.
     least_share : float
         And must close this share of the excess that was there before any effect.
     first_share : float

@@ -4,12 +4,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import t
 
 from odometry.arrays import FloatArray
 from odometry.effects.base import Effect
 from odometry.gap.config import GapConfig
 from odometry.gap.fit import Fitted, Fitter
 from odometry.gap.statistic import gap_of
+
+SURE = 3.0  # standard deviations from doing nothing
 
 
 @dataclass(frozen=True)
@@ -26,8 +29,9 @@ class Judged:
         Of held-out chi-squared, what the base had to move for it included.
     evidence : float
         Twice the log-likelihood gained on windows not fitted, less the penalty.
-    without_best : float
-        The evidence without the piece of the runs that gains most: a gain of one moment is none.
+    least : float
+        Lower bound of the evidence at 95 %: the pieces of the runs are a sample, and a gain of
+        one moment is none.
     gap_after : float
         On the windows fitted [m].
     """
@@ -36,7 +40,7 @@ class Judged:
     fitted: Fitted
     gain: float
     evidence: float
-    without_best: float
+    least: float
     gap_after: float
 
 
@@ -85,17 +89,42 @@ def _judged(
         fit.effects[-1].effect,
         fit,
         gain,
-        gain / spread - paid,
-        (gain - _best_piece(gains, fitter)) / spread - paid,
+        float(gain / spread - paid),
+        float((gain - _uncertain(gains, fitter)) / spread - paid),
         gap_of(fit.base, fit.effects, fitter.measured.scenes, config.part_s).value,
     )
 
 
-def _best_piece(gains: FloatArray, fitter: Fitter) -> float:
-    """Gain of the piece of the runs that gains most."""
-    return float(np.bincount(fitter.measured.pieces, weights=gains).max())
+def _uncertain(gains: FloatArray, fitter: Fitter) -> float:
+    """By how much the sum of gains may be less, at 95 % (Student's t over the pieces)."""
+    _, piece = np.unique(fitter.measured.pieces, return_inverse=True)
+    of_pieces = np.bincount(piece, weights=gains)
+    count = len(of_pieces)
+    if count < 2:
+        return float("inf")
+    return float(t.ppf(0.95, count - 1) * np.sqrt(count) * of_pieces.std(ddof=1))
 
 
 def penalty(freedom: int, fit: Fitted) -> float:
     """For parameters, in units of chi-squared."""
     return float(freedom * np.log(len(fit.held_out)))
+
+
+def is_there(fit: Fitted) -> bool:
+    """Whether the last effect of a fit is more than an effect that does nothing.
+
+    Its parameters are tested together (Wald), those that shape it held: each alone may be
+    uncertain where only a product of them is known.
+    """
+    added = fit.effects[-1]
+    absent = [parameter.absent for parameter in added.effect.parameters]
+    known = np.array([value is not None for value in absent])
+    if not known.any():
+        return True
+    away = np.array([a - b for a, b in zip(added.values, absent, strict=True) if b is not None])
+    count = len(absent)
+    scales = np.array([parameter.scale for parameter in added.effect.parameters])
+    covariance = fit.covariance[-count:, -count:] / np.outer(scales, scales)
+    information = np.linalg.pinv(covariance, hermitian=True)[np.ix_(known, known)]
+    away = away / scales[known]
+    return bool(away @ information @ away > SURE**2 * known.sum())

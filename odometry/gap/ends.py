@@ -9,8 +9,8 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.effects.base import Base
 from odometry.effects.corrected import Added
 from odometry.gap.calibration import Calibration
-from odometry.gap.noise import Noise, covariance_parts
-from odometry.gap.scene import Scene, pieces
+from odometry.gap.noise import end_variance
+from odometry.gap.scene import Scene, numbered_pieces
 from odometry.gap.simulate import residuals
 
 STEP = 1e-4  # of a base parameter, for a derivative
@@ -80,23 +80,9 @@ def ends_of(
         slopes[..., place] = (_ends(uncertain.at(stepped), effects, scenes) - motion) / STEP
     information = calibration.information + RIDGE * np.eye(slopes.shape[-1])
     leeway = slopes @ np.linalg.inv(np.linalg.cholesky(information)).T
-    variance = np.concatenate([_variance(scene, calibration.noise) for scene in scenes])
-    return Ends(motion, variance, leeway, _pieces(scenes, part_s))
+    variance = np.concatenate([end_variance(scene, calibration.noise) for scene in scenes])
+    return Ends(motion, variance, leeway, numbered_pieces(scenes, part_s))
 
 
 def _ends(base: Base, effects: Sequence[Added], scenes: Sequence[Scene]) -> FloatArray:
     return np.concatenate([residuals(base, effects, scene)[:, -1] for scene in scenes])
-
-
-def _variance(scene: Scene, noise: Noise) -> FloatArray:
-    last = covariance_parts(scene)[:, :, -3:, -3:]
-    return np.asarray(np.einsum("p,pkii->ki", noise.variances, last))
-
-
-def _pieces(scenes: Sequence[Scene], part_s: float) -> IntArray:
-    numbers, begin = [], 0
-    for scene in scenes:
-        here = pieces(scene, part_s)
-        numbers.append(begin + here)
-        begin += int(here.max(initial=0)) + 1
-    return np.concatenate(numbers)

@@ -1,6 +1,6 @@
 """Effects that the data cannot separate from those named."""
 
-from odometry.gap.name import Explanation
+from odometry.gap.explanation import Explanation
 from odometry.gap.result import Equivalent
 
 MARGIN = 6.0  # of evidence: less says nothing of which it is

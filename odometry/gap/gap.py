@@ -9,13 +9,14 @@ from odometry.gap.calibration import calibrated
 from odometry.gap.config import GapConfig
 from odometry.gap.equivalent import equivalents
 from odometry.gap.errors import GapError
+from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitter
 from odometry.gap.locate import locate
 from odometry.gap.measured import measured_of
-from odometry.gap.name import Explanation, explained
+from odometry.gap.name import explained
 from odometry.gap.result import Closing, GapResult, NamedEffect, Rival
 from odometry.gap.scene import Scene, pieces, scene_of, thinned
-from odometry.gap.statistic import floor_of, gap_of
+from odometry.gap.statistic import floor_of, floor_there, gap_of
 from odometry.identification.identify import robot_of
 from odometry.models.base import KinematicModel
 from odometry.models.icr import Icr
@@ -75,7 +76,8 @@ def find_gap(
     floor = floor_of(known.held_back, config.part_s)
     fitter = Fitter(known, measured_of(fitted_scenes, known, config))
     with tqdm(desc="candidates", unit="fit", disable=None if show_progress else True) as bar:
-        found = explained(fitter, floor, config, _counting(bar))
+        there = floor_there(floor, known, fitted_scenes)
+        found = explained(fitter, there, config, _counting(bar))
     fit = found.fitted
     base = fit.base if found.steps else known.base
     closings = [

@@ -12,7 +12,7 @@ from odometry.effects.corrected import Added
 from odometry.gap.calibration import Calibration
 from odometry.gap.config import GapConfig
 from odometry.gap.noise import whitening
-from odometry.gap.scene import Scene, pieces
+from odometry.gap.scene import Scene, numbered_pieces
 from odometry.gap.simulate import residuals
 
 
@@ -59,12 +59,7 @@ class Measured:
 
 def measured_of(scenes: Sequence[Scene], calibration: Calibration, config: GapConfig) -> Measured:
     """Whiten windows by the noise of a calibration; pieces of the runs are dealt to the folds."""
-    numbers, begin = [], 0
-    for scene in scenes:
-        here = pieces(scene, config.part_s)
-        numbers.append(begin + here)
-        begin += int(here.max(initial=0)) + 1
-    joined = np.concatenate(numbers)
+    joined = numbered_pieces(scenes, config.part_s)
     return Measured(
         tuple(scenes),
         tuple(whitening(scene, calibration.noise) for scene in scenes),

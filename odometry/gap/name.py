@@ -3,68 +3,25 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from odometry.effects.base import Effect
 from odometry.gap.candidates import (
     contact_effects,
+    of_angles,
+    of_variables,
     quick_effects,
-    smooth_effects,
-    unnamed_effects,
 )
 from odometry.gap.config import GapConfig
-from odometry.gap.contest import Judged, judge, penalty, ranked
+from odometry.gap.contest import Judged, is_there, judge, ranked
+from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitted, Fitter
 from odometry.gap.sparse import sparse_residual
 from odometry.gap.statistic import Gap, gap_of
 
 LEAST_OF_NOISE = 0.2  # of what noise leaves: a smaller excess of chi-squared is taken as this
 UNEXPLAINED = 1.3  # chi-squared a degree of freedom: more is not noise
-SURE = 3.0  # standard deviations from doing nothing
+POOR, MOST = 2.0, 0.5  # chi-squared a degree of freedom left, and share closed, of a poor answer
 MOVED = 50.0  # chi-squared of a base that left its calibration
 CONTACT_SPREAD = 1.1  # chi-squared a degree of freedom that the quick forms must leave
-
-
-@dataclass(frozen=True)
-class Explanation:
-    """Effects in the order added, each as it was judged when it was added.
-
-    Attributes
-    ----------
-    start : Fitted
-        No effect: the base, moved within its calibration.
-    steps : tuple of Judged
-    first : tuple of Judged
-        All candidates for the first effect, most evidence first.
-    unexplained : bool
-        Whether there is a gap that noise does not explain, and nothing earned a name.
-    """
-
-    start: Fitted
-    steps: tuple[Judged, ...]
-    first: tuple[Judged, ...]
-    unexplained: bool = False
-
-    @property
-    def fitted(self) -> Fitted:
-        """With all effects."""
-        return self.steps[-1].fitted if self.steps else self.start
-
-    @property
-    def effects(self) -> tuple[Effect, ...]:
-        """In the order added."""
-        return tuple(step.effect for step in self.steps)
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Of the effects."""
-        return tuple(effect.name for effect in self.effects)
-
-    @property
-    def cost(self) -> float:
-        """Held-out chi-squared, the move of the base and a penalty for freedom included."""
-        fit = self.fitted
-        return float(fit.held_out.sum()) + fit.base_moved + penalty(fit.freedom, fit)
 
 
 def explained(
@@ -75,21 +32,27 @@ def explained(
     First by the catalogue alone. What that leaves is offered to smooth functions of an angle that
     no effect of the catalogue depends on (the heading, the wheels' angles); where one is there,
     it competes with the catalogue from the start, and the better explanation stands. A smooth
-    function of any variable may take what is left at the end.
+    function of any variable may take what is left at the end. Names that leave most of the gap
+    are dropped: what is there is unknown.
     """
     search = _Search(fitter, fitter.fit([]), floor, config, progress)
     scenes = fitter.measured.scenes
     quick = quick_effects(scenes, fitter.calibration)
     named = search.stepwise(quick)
-    angle = search.best(named.fitted, unnamed_effects(scenes))
+    angle = search.best(named.fitted, of_angles(scenes))
     if angle is not None:
         with_angle = search.stepwise((*quick, angle.effect))
         if with_angle.cost < named.cost and "unknown" in with_angle.names:
             named = with_angle
     if "unknown" not in named.names:
-        rest = search.best(named.fitted, smooth_effects(scenes))
+        left = (*of_variables(scenes), *([] if angle is None else [angle.effect]))
+        rest = search.best(named.fitted, left)
         if rest is not None:
-            named = Explanation(named.start, (*named.steps, rest), named.first)
+            named = replace(named, steps=(*named.steps, rest))
+    if search.explains_little(named):
+        alone = search.best(named.start, (*of_angles(scenes), *of_variables(scenes)))
+        named = replace(named, steps=() if alone is None else (alone,))
+    named = search.simplest(named, quick)
     return replace(named, unexplained=not named.steps and search.unexplained())
 
 
@@ -118,6 +81,30 @@ class _Search:
                 break
             steps = (*steps, self._all_free(best, before))
         return Explanation(start, steps, first)
+
+    def simplest(self, found: Explanation, candidates: Sequence[Effect]) -> Explanation:
+        """Effects exchanged for those that do the same with less freedom, where that is better.
+
+        What the first of two effects did not need for itself it may have lent to the second.
+        """
+        for place, added in enumerate(found.fitted.effects):
+            alike = added.effect.same_as(added.values)
+            for other in candidates:
+                simpler = len(other.parameters) < len(added.values)
+                if simpler and other.name in alike and other.name not in found.names:
+                    effects = [*found.effects[:place], other, *found.effects[place + 1 :]]
+                    exchanged = self._in_order(found, effects)
+                    found = exchanged if exchanged.cost < found.cost else found
+        return found
+
+    def _in_order(self, found: Explanation, effects: Sequence[Effect]) -> Explanation:
+        """These effects, judged as they are added one by one."""
+        steps: tuple[Judged, ...] = ()
+        for effect in effects:
+            before = steps[-1].fitted if steps else self.start
+            (one,) = judge(self.fitter, before, [effect], self.config, self.progress)
+            steps = (*steps, self._all_free(one, before))
+        return replace(found, steps=steps)
 
     def best(self, before: Fitted, candidates: Sequence[Effect]) -> Judged | None:
         """The candidate of most evidence, made sparse, if it earns its place."""
@@ -152,9 +139,17 @@ class _Search:
         fit = self.fitter.fit(effects, one.fitted.effects)
         return replace(ranked(self.fitter, before, [fit], self.config)[0], evidence=one.evidence)
 
+    def explains_little(self, found: Explanation) -> bool:
+        """Whether effects leave most of what noise does not explain."""
+        excess = self.start.cost - len(self.fitter.measured.window_of_row)
+        poor = self.fitter.spread(found.fitted) > POOR
+        return bool(poor and self.start.cost - found.fitted.cost < MOST * excess)
+
     def unexplained(self) -> bool:
-        """Whether the base leaves a gap, and more in chi-squared than noise explains."""
-        return self._excess(self.start) and self.fitter.spread(self.start) > UNEXPLAINED
+        """Whether the base leaves a gap, and even moved more chi-squared than noise explains."""
+        believed = replace(self.start, base=self.fitter.calibration.base)
+        over = self._gap(believed) > self.floor.high
+        return over and self.fitter.spread(self.start) > UNEXPLAINED
 
     def _excess(self, before: Fitted) -> bool:
         """Whether the gap is above the interval of the noise floor, or hidden in a moved base."""
@@ -174,38 +169,14 @@ class _Search:
         The excess is that before any effect, of the gap above the noise floor or of chi-squared
         above what noise explains: a better heading is worth as much as a better place.
         """
-        if not self._excess(before) or one.without_best <= self.config.least_evidence:
+        if not self._excess(before) or one.least <= self.config.least_evidence:
             return False
         share = self.config.least_share if before.effects else self.config.first_share
         noise = len(self.fitter.measured.window_of_row)
         excess_m = max(self._gap(self.start) - self.floor.value, 0.0)
         closed_m = self._gap(before) - one.gap_after
-        excess = max(_cost(self.start) - noise, LEAST_OF_NOISE * noise)
-        closed = _cost(before) - _cost(one.fitted)
+        excess = max(self.start.cost - noise, LEAST_OF_NOISE * noise)
+        closed = before.cost - one.fitted.cost
         return is_there(one.fitted) and bool(
             closed_m > share * excess_m > 0 or closed > share * excess
         )
-
-
-def is_there(fit: Fitted) -> bool:
-    """Whether the last effect of a fit is more than an effect that does nothing.
-
-    Its parameters are tested together (Wald), those that shape it held: each alone may be
-    uncertain where only a product of them is known.
-    """
-    added = fit.effects[-1]
-    absent = [parameter.absent for parameter in added.effect.parameters]
-    known = np.array([value is not None for value in absent])
-    if not known.any():
-        return True
-    away = np.array([a - b for a, b in zip(added.values, absent, strict=True) if b is not None])
-    count = len(absent)
-    scales = np.array([parameter.scale for parameter in added.effect.parameters])
-    covariance = fit.covariance[-count:, -count:] / np.outer(scales, scales)
-    information = np.linalg.pinv(covariance, hermitian=True)[np.ix_(known, known)]
-    away = away / scales[known]
-    return bool(away @ information @ away > SURE**2 * known.sum())
-
-
-def _cost(fit: Fitted) -> float:
-    return float(fit.held_out.sum()) + fit.base_moved

@@ -66,6 +66,12 @@ def covariance_parts(scene: Scene) -> FloatArray:
     return np.stack([part.reshape(size) for part in (position, yaw, wander, turn)])
 
 
+def end_variance(scene: Scene, noise: Noise) -> FloatArray:
+    """Variance (K, 3) of the residuals at the end of each window."""
+    last = covariance_parts(scene)[:, :, -3:, -3:]
+    return np.asarray(np.einsum("p,pkii->ki", noise.variances, last))
+
+
 def whitening(scene: Scene, noise: Noise) -> FloatArray:
     """Matrices (K, 3n, 3n) that make the residuals of each window white, of unit variance."""
     covariance = np.einsum("p,pkij->kij", noise.variances, covariance_parts(scene))

@@ -1,5 +1,6 @@
 """A run cut into short windows in which every measured pose counts."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -18,6 +19,7 @@ from odometry.run import Run
 LEAST_POSES = 3  # of a window
 EDGE_S = 0.5  # of a run: a late or early pose must still lie within its odometry
 UNEVEN = 0.25  # a window may be longer or shorter by this share
+FEW = 0.1  # share of the windows that may be lost for having fewer poses than the others
 
 
 @dataclass(frozen=True)
@@ -71,14 +73,6 @@ class Scene:
         poses = self.poses[self.windows]
         return se2.between(poses[:, :1], poses[:, 1:])
 
-    @cached_property
-    def tilt(self) -> tuple[FloatArray, FloatArray, FloatArray] | None:
-        """cos(pitch), sin(pitch) sin(roll) and cos(roll) (N,); None on level ground."""
-        roll, pitch = self.inputs.roll_rad, self.inputs.pitch_rad
-        if not (np.any(roll) or np.any(pitch)):
-            return None
-        return np.cos(pitch), np.sin(pitch) * np.sin(roll), np.cos(roll)
-
     def where(self, chosen: BoolArray) -> "Scene":
         """The chosen (K,) windows."""
         return replace(self, windows=self.windows[chosen])
@@ -120,23 +114,44 @@ def scene_of(run: Run, config: GapConfig) -> Scene:
 
 
 def _windows(pose_s: FloatArray, stretch: IntArray, end_s: float, config: GapConfig) -> IntArray:
-    period_s = float(np.median(np.diff(pose_s)))
-    steps = max(LEAST_POSES - 1, round(config.horizon_s / period_s))
-    found = []
+    """Poses (K, n + 1): n as nine windows in ten have, at even distances where there are more."""
+    spans = []
     for number in np.unique(stretch):
         inside = (stretch == number) & (pose_s >= EDGE_S) & (pose_s <= end_s - EDGE_S)
-        poses = np.flatnonzero(inside)
-        starts = np.arange(0, len(poses) - steps, steps)
-        found.append(poses[starts[:, None] + np.arange(steps + 1)])
-    windows = np.concatenate([np.empty((0, steps + 1), dtype=np.int64), *found])
-    lasts_s = pose_s[windows[:, -1]] - pose_s[windows[:, 0]]
-    even = np.abs(lasts_s - steps * period_s) <= UNEVEN * steps * period_s
-    return np.asarray(windows[even])
+        spans += _spans(pose_s, np.flatnonzero(inside), config.horizon_s)
+    firsts, lasts = np.array(spans, dtype=np.int64).reshape(-1, 2).T
+    if not len(firsts):
+        return np.empty((0, LEAST_POSES), dtype=np.int64)
+    steps = max(LEAST_POSES - 1, int(np.quantile(lasts - firsts, FEW)))
+    kept = lasts - firsts >= steps
+    return np.rint(np.linspace(firsts[kept], lasts[kept], steps + 1, axis=1)).astype(np.int64)
+
+
+def _spans(pose_s: FloatArray, poses: IntArray, horizon_s: float) -> list[tuple[int, int]]:
+    """First and last pose of windows end to end, each as near the horizon as stamps allow."""
+    found, at = [], 0
+    while at < len(poses) - 1:
+        lasts_s = pose_s[poses[at + 1 :]] - pose_s[poses[at]]
+        end = int(np.argmin(np.abs(lasts_s - horizon_s)))
+        if abs(lasts_s[end] - horizon_s) <= UNEVEN * horizon_s:
+            found.append((int(poses[at]), int(poses[at + 1 + end])))
+        at += end + 1
+    return found
 
 
 def pieces(scene: Scene, part_s: float) -> IntArray:
     """Number (K,) of the piece of the run in which each window starts."""
     return np.asarray(np.floor(scene.start_s / part_s).astype(np.int64))
+
+
+def numbered_pieces(scenes: Sequence[Scene], part_s: float) -> IntArray:
+    """The same (K of all,) for several scenes: no two share a number."""
+    numbers, begin = [], 0
+    for scene in scenes:
+        here = pieces(scene, part_s)
+        numbers.append(begin + here)
+        begin += int(here.max(initial=-1)) + 1
+    return np.concatenate(numbers)
 
 
 def thinned(scene: Scene, most: int) -> Scene:

@@ -8,7 +8,9 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base import Base
 from odometry.effects.corrected import Added
-from odometry.gap.scene import Scene, pieces
+from odometry.gap.calibration import Calibration
+from odometry.gap.noise import end_variance
+from odometry.gap.scene import Scene, numbered_pieces
 from odometry.gap.simulate import residuals
 
 RESAMPLES = 1000
@@ -40,15 +42,36 @@ def floor_of(held_back: Sequence[tuple[Base, Scene]], part_s: float) -> Gap:
     return _pooled([(squared_errors(base, (), scene), scene) for base, scene in held_back], part_s)
 
 
+def floor_there(floor: Gap, calibration: Calibration, scenes: Sequence[Scene]) -> Gap:
+    """The noise floor as it would be on other runs: faster ones wander further in a window."""
+    here = _mean_variance([scene for _, scene in calibration.held_back], calibration)
+    ratio = float(np.sqrt(_mean_variance(scenes, calibration) / here))
+    return Gap(ratio * floor.value, ratio * floor.low, ratio * floor.high)
+
+
+def _mean_variance(scenes: Sequence[Scene], calibration: Calibration) -> float:
+    """Of the position at the end of a window [m^2]."""
+    variances = [end_variance(scene, calibration.noise)[:, :2] for scene in scenes]
+    return float(np.concatenate(variances).sum(axis=1).mean())
+
+
 def _pooled(errors: Sequence[tuple[FloatArray, Scene]], part_s: float) -> Gap:
-    sums, counts = [], []
-    for squares, scene in errors:
-        _, place = np.unique(pieces(scene, part_s), return_inverse=True)
-        sums.append(np.bincount(place, weights=squares))
-        counts.append(np.bincount(place))
-    total, number = np.concatenate(sums), np.concatenate(counts)
-    rng = np.random.default_rng(SEED)
-    drawn = rng.integers(len(total), size=(RESAMPLES, len(total)))
-    means = total[drawn].sum(axis=1) / number[drawn].sum(axis=1)
-    low, high = np.sqrt(np.quantile(means, [0.025, 0.975]))
-    return Gap(float(np.sqrt(total.sum() / number.sum())), float(low), float(high))
+    squares = np.concatenate([of for of, _ in errors])
+    scenes, rng = [scene for _, scene in errors], np.random.default_rng(SEED)
+    (drawn,) = drawn_gaps((squares,), scenes, part_s, rng)
+    low, high = np.quantile(drawn, [0.025, 0.975])
+    return Gap(float(np.sqrt(squares.mean())), float(low), float(high))
+
+
+def drawn_gaps(
+    squares_m2: Sequence[FloatArray],
+    scenes: Sequence[Scene],
+    part_s: float,
+    rng: np.random.Generator,
+) -> FloatArray:
+    """Gaps (E, R) of each kind of squared errors (K of all scenes), by the same draws of pieces."""
+    _, piece = np.unique(numbered_pieces(scenes, part_s), return_inverse=True)
+    counts = np.bincount(piece)
+    sums = np.stack([np.bincount(piece, weights=of) for of in squares_m2])
+    drawn = rng.integers(len(counts), size=(RESAMPLES, len(counts)))
+    return np.asarray(np.sqrt(sums[:, drawn].sum(axis=-1) / counts[drawn].sum(axis=-1)))

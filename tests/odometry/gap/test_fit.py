@@ -151,7 +151,7 @@ def test_evidence_is_the_held_out_gain_less_the_penalty(fitter):
     paid = 2 * np.log(len(before.held_out))
     assert penalty(2, before) == pytest.approx(paid)
     assert first.evidence == pytest.approx(gain / spread - paid)
-    assert first.without_best < first.evidence
+    assert first.least < first.evidence
     fit = first.fitted
     gap = gap_of(fit.base, fit.effects, fitter.measured.scenes, CONFIG.part_s)
     assert first.gap_after == gap.value

@@ -7,7 +7,7 @@ import pytest
 
 from odometry.gap.config import GapConfig
 from odometry.gap.errors import GapError
-from odometry.gap.scene import pieces, scene_of, thinned
+from odometry.gap.scene import numbered_pieces, pieces, scene_of, thinned
 from odometry.identification.errors import IdentificationError
 
 TWO_SECONDS = 10  # steps between poses at 5 Hz
@@ -93,21 +93,6 @@ def test_samples_are_in_force_until_the_next(run):
     assert scene.travel_m[-1] == pytest.approx(travel_m)
 
 
-def test_uneven_windows_are_left_out(run):
-    """Every third pose is missing in part of the run: windows of as many poses are longer."""
-    t = run.pose.stamps_s
-    kept = (t < 20.0) | (t > 40.0) | (np.arange(len(t)) % 3 > 0)
-    scene = scene_of(with_poses(run, kept), GapConfig())
-    lasting_s = scene.pose_s[scene.windows[:, -1]] - scene.start_s
-    assert (np.abs(lasting_s - 2.0) <= 0.5).all()
-    assert len(scene) < 25
-
-
-def test_sparse_poses_make_windows_of_three(run):
-    scene = scene_of(with_poses(run, slice(None, None, 10)), GapConfig())
-    assert scene.windows.shape[1] == 3
-
-
 def test_a_run_shorter_than_a_window_is_refused(run):
     with pytest.raises(GapError, match=r"no window of 2 s with 3 measured poses.*longer horizon"):
         scene_of(with_poses(run, run.pose.stamps_s < 2.2), GapConfig())
@@ -126,3 +111,13 @@ def test_pieces_and_thinning(run):
     np.testing.assert_array_equal(fewer.windows[[0, -1]], scene.windows[[0, -1]])
     assert np.diff(fewer.start_s) == pytest.approx(56.0 / 9, abs=2.0)
     assert thinned(scene, 29) is scene
+
+
+def test_pieces_of_several_runs_have_numbers_of_their_own(make_scene):
+    """One number for every pair of a run and a piece of it, also where a run starts late."""
+    scenes = [make_scene(seed, duration_s=60.0) for seed in (3, 4, 5)]
+    scenes[1] = scenes[1].where(scenes[1].start_s > 25.0)
+    found = numbered_pieces(scenes, 10.0)
+    pairs = [(i, p) for i, scene in enumerate(scenes) for p in pieces(scene, 10.0)]
+    assert len(found) == sum(map(len, scenes))
+    assert len(set(zip(found, pairs, strict=True))) == len(set(pairs)) == len(set(found))

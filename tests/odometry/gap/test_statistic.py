@@ -7,7 +7,7 @@ import pytest
 
 from odometry.gap.scene import pieces
 from odometry.gap.simulate import simulated_poses
-from odometry.gap.statistic import floor_of, gap_of, squared_errors
+from odometry.gap.statistic import drawn_gaps, floor_of, gap_of, squared_errors
 from odometry.geometry import se2
 
 
@@ -82,3 +82,23 @@ def test_each_stretch_of_the_floor_has_its_own_base(exact, known):
     exactly = floor_of([(known.base, exact), (other, own)], 10.0)
     assert exactly.value < 1e-9
     assert floor_of([(other, exact), (known.base, own)], 10.0).value > 0.03
+
+
+def test_kinds_of_errors_are_drawn_together(make_scene, rng):
+    """Errors twice as large make every drawn gap twice as large, whatever is drawn."""
+    scenes = [make_scene(81, duration_s=100.0), make_scene(82, duration_s=30.0)]
+    squares = rng.uniform(size=sum(map(len, scenes)))
+    once, twice = drawn_gaps((squares, 4 * squares), scenes, 10.0, rng)
+    np.testing.assert_allclose(twice, 2 * once)
+    assert np.ptp(once) > 0.1
+
+
+def test_two_runs_of_one_piece_are_drawn_as_two(make_scene, rng):
+    """One is right, one is 1 m off: gaps of 0, of both, and of 1 m as a fair coin has them."""
+    scenes = [make_scene(seed, duration_s=15.0) for seed in (81, 82)]
+    squares = np.repeat([0.0, 1.0], [len(scene) for scene in scenes])
+    assert len(scenes[0]) == len(scenes[1])
+    (drawn,) = drawn_gaps((squares,), scenes, 100.0, rng)
+    values, counts = np.unique(np.round(drawn, 12), return_counts=True)
+    np.testing.assert_allclose(values, [0.0, np.sqrt(0.5), 1.0])
+    np.testing.assert_allclose(counts / counts.sum(), [0.25, 0.5, 0.25], atol=0.05)

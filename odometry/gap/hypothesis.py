@@ -1,0 +1,86 @@
+"""A hypothesis: which effects are there, as a least-squares problem in their and the base's values.
+
+Values are in one array: what is uncertain of the base first, then the effects in order.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray
+from odometry.effects.base import Base, Effect, EffectParameter
+from odometry.effects.corrected import Added
+from odometry.gap.calibration import Calibration
+from odometry.gap.measured import Measured
+
+RIDGE = 1e-9
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """Effects beside a base that may move within its calibration."""
+
+    calibration: Calibration
+    measured: Measured
+    effects: tuple[Effect, ...]
+
+    @property
+    def of_base(self) -> int:
+        """How many of the values are those of the base."""
+        return len(self.calibration.uncertain.values)
+
+    @cached_property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """Of all effects."""
+        return tuple(p for effect in self.effects for p in effect.parameters)
+
+    @cached_property
+    def bounds(self) -> tuple[FloatArray, FloatArray]:
+        """Least and largest values (V,)."""
+        low, high = self.calibration.uncertain.bounds
+        return (
+            np.concatenate([low, [p.low for p in self.parameters]]),
+            np.concatenate([high, [p.high for p in self.parameters]]),
+        )
+
+    @cached_property
+    def scales(self) -> FloatArray:
+        """Small changes (V,) that matter."""
+        base = self.calibration.uncertain.scales
+        return np.concatenate([base, [p.scale for p in self.parameters]])
+
+    @cached_property
+    def jumps(self) -> BoolArray:
+        """Values (V,) that shape an effect, which may change by steps as they change."""
+        of_effects = [p.absent is None and not e.slow for e in self.effects for p in e.parameters]
+        return np.array([False] * self.of_base + of_effects, dtype=np.bool_)
+
+    def split(self, values: FloatArray) -> tuple[Base, tuple[Added, ...]]:
+        """The base and the effects at values (V,)."""
+        ends = self.of_base + np.cumsum([len(e.parameters) for e in self.effects])
+        added = tuple(
+            Added(effect, values[end - len(effect.parameters) : end])
+            for effect, end in zip(self.effects, ends, strict=True)
+        )
+        return self.calibration.uncertain.at(values[: self.of_base]), added
+
+    def rows(self, values: FloatArray) -> FloatArray:
+        """Rows of the windows, then those of what is known of the base and usual of effects."""
+        base, added = self.split(values)
+        moved = values[: self.of_base] - self.calibration.uncertain.values
+        unusual = [_unusual(one, self.calibration.base) for one in added]
+        return np.concatenate([self.measured.rows(base, added), self._prior @ moved, *unusual])
+
+    @cached_property
+    def _prior(self) -> FloatArray:
+        """Square root of the calibration's information, that of (F, F)."""
+        if not self.of_base:
+            return np.empty((0, 0))
+        information = self.calibration.information + RIDGE * np.eye(self.of_base)
+        return np.asarray(np.linalg.cholesky(information).T)
+
+
+def _unusual(added: Added, base: Base) -> FloatArray:
+    centre, spread = added.effect.usual(base)
+    return np.asarray((added.values - centre) / spread)

@@ -1,0 +1,38 @@
+"""Chi-squared of windows by a fit to the others, from one fit to all."""
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray
+from odometry.gap.hypothesis import RIDGE, Hypothesis
+from odometry.gap.solve import Solved
+
+DAMPINGS = (1e-6, 1e-3, 1e-1, 1.0, 10.0)
+ROUNDING = 1e-9
+
+
+def held_out(hypothesis: Hypothesis, solved: Solved) -> FloatArray:
+    """Chi-squared (K,) of each fold by the others' fit: one Newton step from the fit to all."""
+    measured = hypothesis.measured
+    fold_of_row = measured.folds[measured.window_of_row]
+    judged = np.zeros(len(measured.folds))
+    for fold in np.unique(measured.folds):
+        out = np.zeros(len(solved.rows), dtype=np.bool_)
+        out[: len(fold_of_row)] = fold_of_row == fold
+        rows = _without(hypothesis, solved, out)
+        inside = measured.folds == fold
+        judged[inside] = measured.by_window(rows[: len(fold_of_row)])[inside]
+    return judged
+
+
+def _without(hypothesis: Hypothesis, solved: Solved, out: BoolArray) -> FloatArray:
+    """All rows by a fit to those that are not `out`: a damped step that makes them fit."""
+    own, others = solved.jacobian[out], solved.jacobian[~out]
+    normal, gradient = others.T @ others, own.T @ solved.rows[out]
+    cost = float(solved.rows[~out] @ solved.rows[~out])
+    for damping in DAMPINGS:
+        damped = normal + damping * np.diag(np.diag(normal)) + RIDGE * np.eye(len(normal))
+        step = np.linalg.solve(damped, gradient)
+        rows = hypothesis.rows(np.clip(solved.values + step, *hypothesis.bounds))
+        if rows[~out] @ rows[~out] <= cost + ROUNDING * max(1.0, float(cost)):
+            return rows
+    return solved.rows

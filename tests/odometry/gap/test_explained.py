@@ -1,0 +1,64 @@
+"""Between none and a name: a gap that noise does not explain, and names that explain too little."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.gap.config import GapConfig
+from odometry.gap.fit import Fitter
+from odometry.gap.measured import measured_of
+from odometry.gap.name import explained
+from odometry.gap.scene import scene_of
+from odometry.gap.statistic import floor_of
+
+CONFIG = GapConfig()
+
+
+@pytest.fixture(scope="module")
+def study(make_scene, known):
+    """What is found on level ground where wheels slip by a factor, and jolts move the robot."""
+
+    def of(factor, jolt):
+        def planted(columns, twist):  # noqa: ARG001 - of the face of effects
+            jolts = np.random.default_rng(5).normal(size=twist.shape)
+            return factor * twist + jolt * jolts * [1, 0, 1]
+
+        run = make_scene(1, planted, top_m_s=0.5).run
+        level = {name: 0.0 * run.odometry[name] for name in ("roll", "pitch")}
+        columns = {**run.odometry.columns, **level}
+        scene = scene_of(replace(run, odometry=replace(run.odometry, columns=columns)), CONFIG)
+        fitter = Fitter(known, measured_of([scene], known, CONFIG))
+        floor = floor_of(known.held_back, CONFIG.part_s)
+        return explained(fitter, floor, CONFIG, lambda: None)
+
+    return of
+
+
+def wheel_scale(found):
+    return next(one for one in found.first if one.effect.name == "wheel_scale")
+
+
+def test_without_a_gap_nothing_is_named_or_unexplained(study):
+    found = study(1.0, 0.0)
+    assert (found.names, found.unexplained) == ((), False)
+
+
+def test_jolts_are_a_gap_that_nothing_explains(study):
+    found = study(1.0, 0.3)
+    assert (found.names, found.unexplained) == ((), True)
+    assert wheel_scale(found).least < CONFIG.least_evidence
+
+
+def test_a_name_that_leaves_most_of_the_gap_is_dropped(study):
+    """Wheels do slip by 15 %, for sure; but seven eighths of the excess are of the jolts."""
+    found = study(0.85, 0.3)
+    assert (found.names, found.unexplained) == ((), True)
+    assert wheel_scale(found).least > CONFIG.least_evidence
+
+
+def test_a_name_that_closes_most_of_the_gap_stands_beside_jolts(study):
+    found = study(0.6, 0.15)
+    assert found.names[0] == "wheel_scale"
+    assert not found.unexplained
+    np.testing.assert_allclose(found.fitted.effects[0].values, 0.6, atol=0.03)
