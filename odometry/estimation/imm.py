@@ -1,0 +1,157 @@
+"""Interacting multiple model estimator (Blom and Bar-Shalom) over any bank of filters.
+
+One state, several models of its motion, of which a Markov chain chooses one at each step. Equation
+numbers are those of Salvi 2024; its eq. 9 prints the last probability where the recursion has the
+predicted one of eq. 5 (Bar-Shalom, Li, Kirubarajan 2001, section 11.6.6).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.estimation.bank import Bank
+from odometry.estimation.errors import EstimationError
+from odometry.estimation.mixture import floored, log_sum, moments
+from odometry.estimation.mode_belief import ModeBelief, ModeInnovations
+
+SUM_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True)
+class Imm:
+    """An interacting multiple model estimator.
+
+    Attributes
+    ----------
+    bank : Bank
+    transition : function
+        Probability (M, M) of being in mode j a step after mode i, from the step [s]:
+        `ModeChain.transition`.
+    state_angles : tuple of int
+        Entries of the state that are angles [rad].
+    floor : float
+        The least probability of a mode, from 0 to below 1 / M: a mode that was ruled out can
+        come back.
+    """
+
+    bank: Bank
+    transition: Callable[[float], FloatArray]
+    state_angles: tuple[int, ...] = ()
+    floor: float = 1e-6
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.floor < 1 / self.bank.modes:
+            raise EstimationError(
+                f"a floor of {self.floor} under each of {self.bank.modes} mode probabilities, "
+                f"expected 0 to below {1 / self.bank.modes:g}"
+            )
+
+    def step(
+        self,
+        belief: ModeBelief,
+        u: FloatArray,
+        z: FloatArray | None,
+        step_s: float,
+        prior: FloatArray | None = None,
+    ) -> ModeBelief:
+        """Belief a step later: `predicted`, then `updated`.
+
+        Parameters
+        ----------
+        belief : ModeBelief
+        u : FloatArray
+            Input that holds over the step, as the bank wants it.
+        z : (m,) or None
+            What is measured at the end of the step; NaN where an entry is not.
+        step_s : float
+        prior : (M,) or None
+            Log-weights of the modes at the end of the step, from another source.
+
+        Raises
+        ------
+        EstimationError
+            If shapes do not agree, a state becomes infinite, or no mode is possible.
+        """
+        return self.updated(self.predicted(belief, u, step_s, prior), z)
+
+    def predicted(
+        self, belief: ModeBelief, u: FloatArray, step_s: float, prior: FloatArray | None = None
+    ) -> ModeBelief:
+        """Belief a step later, before a measurement: eq. 4-7, then each model; see `step`."""
+        log_joint = self._log_transition(belief, step_s) + belief.log_probabilities[:, None]
+        log_predicted = log_sum(log_joint)  # eq. 5
+        weights = _mixing_weights(log_joint, log_predicted)
+        means, covariances = moments(
+            weights, belief.means, belief.covariances, self.state_angles
+        )  # eq. 6-7
+        means, covariances = self.bank.predicted(means, covariances, u, step_s)
+        if prior is not None:
+            log_predicted = _with_prior(log_predicted, prior)
+        return ModeBelief(means, covariances, log_predicted)
+
+    def updated(self, predicted: ModeBelief, z: FloatArray | None) -> ModeBelief:
+        """Belief after a measurement: eq. 8-9; without one, probabilities stay; see `step`."""
+        if z is None or np.isnan(z).all():
+            logs = floored(predicted.log_probabilities, self.floor)
+            return replace(predicted, log_probabilities=logs)
+        if np.isinf(z).any():
+            raise EstimationError(f"a measurement {z}, expected finite numbers, or NaN for none")
+        means, covariances, log_likelihoods, squared = self.bank.updated(
+            predicted.means, predicted.covariances, z
+        )
+        log_weights = predicted.log_probabilities + log_likelihoods  # eq. 9, with eq. 5's c_j
+        if not np.isfinite(log_weights.max()):
+            raise EstimationError(
+                f"log-likelihoods {log_likelihoods.tolist()} of {z}, expected a finite one of a "
+                "possible mode"
+            )
+        return ModeBelief(
+            means,
+            covariances,
+            floored(log_weights, self.floor),
+            ModeInnovations(log_likelihoods, squared),
+        )
+
+    def merged(self, belief: ModeBelief) -> tuple[FloatArray, FloatArray]:
+        """Mean (n,) and covariance (n, n) over all modes: eq. 10-11."""
+        weights = belief.probabilities[None]
+        means, covariances = moments(weights, belief.means, belief.covariances, self.state_angles)
+        return means[0], covariances[0]
+
+    def _log_transition(self, belief: ModeBelief, step_s: float) -> FloatArray:
+        matrix, modes = self.transition(step_s), self.bank.modes
+        if belief.modes != modes or matrix.shape != (modes, modes):
+            raise EstimationError(
+                f"a belief of {belief.modes} modes and a transition matrix of shape "
+                f"{matrix.shape} for a bank of {modes} filters"
+            )
+        if matrix.min() < 0 or np.abs(matrix.sum(axis=1) - 1).max() > SUM_TOLERANCE:
+            raise EstimationError(
+                f"transition matrix {matrix.tolist()}, expected rows (from) that sum to 1"
+            )
+        return np.log(matrix, out=np.full(matrix.shape, -np.inf), where=matrix > 0)
+
+
+def _mixing_weights(log_joint: FloatArray, log_predicted: FloatArray) -> FloatArray:
+    """Eq. 4: weights[j, i] of mode i in the start of filter j.
+
+    A mode that nothing leads to starts where it was.
+    """
+    reached = log_predicted > -np.inf
+    weights = np.exp(log_joint - np.where(reached, log_predicted, 0.0)).T
+    weights[~reached] = np.eye(len(weights))[~reached]
+    return np.asarray(weights)
+
+
+def _with_prior(log_predicted: FloatArray, prior: FloatArray) -> FloatArray:
+    log_weights = np.asarray(prior, dtype=np.float64)
+    if log_weights.shape != log_predicted.shape:
+        raise EstimationError(f"a prior of shape {log_weights.shape} on {len(log_predicted)} modes")
+    combined = log_predicted + log_weights
+    if not np.isfinite(combined.max()):
+        raise EstimationError(
+            f"prior log-weights {log_weights.tolist()}, expected a finite one of a possible mode"
+        )
+    return np.asarray(combined - log_sum(combined))
