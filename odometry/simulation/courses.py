@@ -16,10 +16,11 @@ from odometry.simulation.commands import (
 from odometry.simulation.contact.slope import Ground, Plane, Zones
 from odometry.simulation.contact.steady_state import steady_state
 from odometry.simulation.contact.vehicle import ContactVehicle
+from odometry.simulation.manoeuvre_courses import MANOEUVRES, manoeuvre
 
 STEP_S = 0.02
 CRUISE, TURN = 0.6, 0.8  # mean speed and difference of speeds, as shares of the largest speed
-COURSE_NAMES = ("excitation", "spin", "figure_eight", "tour")
+COURSE_NAMES = ("excitation", "spin", "figure_eight", "tour", *MANOEUVRES)
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +56,7 @@ def make_course(
     Parameters
     ----------
     name : str
-        "excitation", "spin", "figure_eight" or "tour".
+        One of COURSE_NAMES.
     vehicle : ContactVehicle
         Its turning on level ground decides how long turns take.
     duration_s, max_speed_m_s : float
@@ -63,9 +64,19 @@ def make_course(
     slope_rad, uphill_rad : float
         Steepest slope, and the world direction in which the ground rises.
     rng : numpy.random.Generator
-        For the excitation.
+        For the excitation, and the side of an outward spiral.
     """
     plane = Plane(slope_rad, uphill_rad)
+    if name in MANOEUVRES:
+        speeds = manoeuvre(
+            name,
+            vehicle,
+            duration_s=duration_s,
+            step_s=STEP_S,
+            max_speed_m_s=max_speed_m_s,
+            rng=rng,
+        )
+        return Course(speeds, plane)
     if name == "excitation":
         hold = 2.0 + 2 * max_speed_m_s / ACCELERATION_M_S2
         return Course(

@@ -1,7 +1,7 @@
 """A simulated drive as a run folder: what its sensors would have recorded, and the truth."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -9,10 +9,12 @@ import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
 from odometry.io.run_folder import write_run_folder
+from odometry.run import Robot, Run
 from odometry.simulation.contact.drive import ContactDrive
-from odometry.simulation.contact.vehicle import ContactVehicle
 from odometry.simulation.errors import SimulationError
 from odometry.simulation.noise import measured_poses
+from odometry.simulation.settings import named_settings, traction_settings, vehicle_settings
+from odometry.table import Table
 
 
 @dataclass(frozen=True)
@@ -35,10 +37,12 @@ def write_contact_run(
     sensors: ContactSensors,
     rng: np.random.Generator,
     *,
-    terrain: str,
+    terrain: str | None,
     settings: Mapping[str, Any] | None = None,
 ) -> Path:
     """Write one drive as a run folder with odometry, pose and truth.
+
+    Where the traction was given, its name at each stamp is the column `terrain` of the truth.
 
     Parameters
     ----------
@@ -49,8 +53,8 @@ def write_contact_run(
     sensors : ContactSensors
     rng : numpy.random.Generator
         Source of the noise.
-    terrain : str
-        Name of the ground.
+    terrain : str, optional
+        Name of the ground of the whole run, for those who may know it.
     settings : Mapping, optional
         What else made the run, kept in [simulation] of run.toml.
 
@@ -64,6 +68,40 @@ def write_contact_run(
     SimulationError
         If `drive` is a stack, or its stamps are not at the poses' rate.
     """
+    content, tables = recording(drive, sensors, rng, terrain=terrain, settings=settings)
+    write_run_folder(Path(folder), content, tables)
+    return Path(folder)
+
+
+def contact_run(
+    name: str,
+    drive: ContactDrive,
+    sensors: ContactSensors,
+    rng: np.random.Generator,
+    *,
+    terrain: str | None,
+    settings: Mapping[str, Any] | None = None,
+) -> Run:
+    """The run of `write_contact_run` without a folder, its numbers not rounded."""
+    content, columns = recording(drive, sensors, rng, terrain=terrain, settings=settings)
+    known = {field.name for field in fields(Robot)}
+    robot = Robot(**{key: value for key, value in content["robot"].items() if key in known})
+    tables = {
+        kind: Table(Path(name) / f"{kind}.csv", table, np.arange(len(table["t"])) + 2)
+        for kind, table in columns.items()
+    }
+    return Run(Path(name), robot, content, **tables)
+
+
+def recording(
+    drive: ContactDrive,
+    sensors: ContactSensors,
+    rng: np.random.Generator,
+    *,
+    terrain: str | None,
+    settings: Mapping[str, Any] | None,
+) -> tuple[dict[str, Any], dict[str, dict[str, AnyArray]]]:
+    """The content of run.toml and the tables of a run folder; see `write_contact_run`."""
     if drive.poses_world.ndim != 2:
         raise SimulationError(
             f"one drive is a run: poses of shape {drive.poses_world.shape}, expected (N, 6)"
@@ -71,17 +109,24 @@ def write_contact_run(
     tables = {
         "odometry": _odometry(drive, sensors, rng),
         "pose": _pose(drive, sensors, rng),
-        "truth": {"t": drive.stamps_s, **_columns("x y yaw", drive.poses_world[:, [0, 1, 5]])},
+        "truth": _truth(drive),
     }
     made = {
         **(settings or {}),
-        "vehicle": _vehicle(drive.vehicle),
-        "ground": _named(drive.ground),
+        "vehicle": vehicle_settings(drive.vehicle),
+        "ground": named_settings(drive.ground),
         "sensors": asdict(sensors),
     }
-    content = {"robot": dict(drive.vehicle.robot), "run": {"terrain": terrain}, "simulation": made}
-    write_run_folder(Path(folder), content, tables)
-    return Path(folder)
+    if drive.traction:
+        made["traction"] = [traction_settings(piece) for piece in drive.traction]
+    run = {} if terrain is None else {"terrain": terrain}
+    return {"robot": dict(drive.vehicle.robot), "run": run, "simulation": made}, tables
+
+
+def _truth(drive: ContactDrive) -> dict[str, AnyArray]:
+    """x, y, yaw, and the traction in force, at every stamp."""
+    columns = {"t": drive.stamps_s, **_columns("x y yaw", drive.poses_world[:, [0, 1, 5]])}
+    return {**columns, "terrain": np.array(drive.terrains)} if drive.traction else columns
 
 
 def _odometry(
@@ -124,28 +169,6 @@ def _pose(
     poses = measured_poses(rows[:, [0, 1, 5]], sensors.sigma_position_m, sensors.sigma_yaw_rad, rng)
     heights = rows[:, 2] + sensors.sigma_height_m * rng.standard_normal(len(rows))
     return {"t": drive.stamps_s[::stride], **_columns("x y yaw", poses), "z": heights}
-
-
-def _vehicle(vehicle: ContactVehicle) -> dict[str, Any]:
-    """Everything of a vehicle that [robot] does not say."""
-    x, y, height = vehicle.centre_of_mass_m
-    return {
-        "yaw_inertia_kg_m2": vehicle.yaw_inertia_kg_m2,
-        "x_cm": x,
-        "y_cm": y,
-        "height": height,
-        "contact_x_m": vehicle.contact_x_m.tolist(),
-        "friction": vehicle.friction.tolist(),
-        "entry_m": vehicle.entry_m.tolist(),
-        "settling_s": vehicle.settling_s,
-        "law": _named(vehicle.law),
-    }
-
-
-def _named(block: Any) -> dict[str, Any]:
-    """A frozen block with the name of its kind."""
-    content = {k: list(v) if isinstance(v, tuple) else v for k, v in asdict(block).items()}
-    return {"kind": type(block).__name__, **content}
 
 
 def _columns(names: str, values: FloatArray) -> dict[str, AnyArray]:

@@ -24,10 +24,22 @@ import click
 )
 @click.option(
     "--drive",
-    type=click.Choice(["excitation", "spin", "figure_eight", "tour"]),
+    type=click.Choice(
+        [
+            "excitation",
+            "spin",
+            "figure_eight",
+            "tour",
+            "skidpad",
+            "clothoid",
+            "sinusoid",
+            "outward_spiral",
+        ]
+    ),
     default="excitation",
     show_default=True,
-    help="What is driven; a tour crosses three zones of slope.",
+    help="What is driven; a tour crosses three zones of slope, a spiral turns left or right by "
+    "the seed.",
 )
 @click.option(
     "--duration",

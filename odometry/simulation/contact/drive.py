@@ -1,5 +1,6 @@
 """Drives of skid-steer vehicles on contacts: many at once, with the truth of every stamp."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +9,13 @@ from odometry.arrays import FloatArray
 from odometry.simulation.contact.dynamics import MEMORY, POSITION, YAW, YAW_RATE, ContactDynamics
 from odometry.simulation.contact.integrate import LONGEST_STEP_S, rosenbrock_step
 from odometry.simulation.contact.slope import Ground, Plane, gravity
+from odometry.simulation.contact.traction import (
+    Traction,
+    checked,
+    names_at,
+    switch_rows,
+    switched,
+)
 from odometry.simulation.contact.vectors import ComplexArray
 from odometry.simulation.contact.vehicle import ContactVehicle
 from odometry.simulation.errors import SimulationError
@@ -32,6 +40,8 @@ class ContactDrive:
     accelerations_m_s2 : (..., N, 2) array
         accel_x, accel_y of an accelerometer at the origin, gravity included (CONVENTIONS): the
         mean from the stamp before; at the first stamp that of rest.
+    traction : tuple of Traction
+        What was in force, one after another; empty where it was the vehicle's own all along.
     """
 
     vehicle: ContactVehicle
@@ -41,6 +51,12 @@ class ContactDrive:
     poses_world: FloatArray
     twists_body: FloatArray
     accelerations_m_s2: FloatArray
+    traction: tuple[Traction, ...] = ()
+
+    @property
+    def terrains(self) -> tuple[str, ...]:
+        """Name of the traction in force at each stamp; empty where none was given."""
+        return names_at(self.traction, self.stamps_s) if self.traction else ()
 
     def __getitem__(self, index: int | tuple[int, ...]) -> "ContactDrive":
         """One drive of a stack."""
@@ -52,6 +68,7 @@ class ContactDrive:
             self.poses_world[index],
             self.twists_body[index],
             self.accelerations_m_s2[index],
+            tuple(piece[index] for piece in self.traction),
         )
 
 
@@ -61,6 +78,7 @@ def simulate_contact(
     step_s: float,
     *,
     ground: Ground | None = None,
+    traction: Sequence[Traction] = (),
     start_poses: FloatArray | tuple[float, float, float] = (0.0, 0.0, 0.0),
     longest_step_s: float = LONGEST_STEP_S,
 ) -> ContactDrive:
@@ -76,6 +94,8 @@ def simulate_contact(
         Time between stamps [s].
     ground : Ground, optional
         Level when absent.
+    traction : sequence of Traction, optional
+        Friction and law instead of the vehicle's, one piece after another from 0 s on.
     start_poses : (..., 3) array
         x, y [m], yaw [rad] at the first stamp.
     longest_step_s : float
@@ -84,7 +104,7 @@ def simulate_contact(
     Raises
     ------
     SimulationError
-        If the speeds are not as above, or the vehicle tips over or runs away.
+        If the speeds or the traction are not as above, or the vehicle tips over or runs away.
     """
     speeds = np.asarray(tread_speeds_m_s, dtype=np.float64)
     if speeds.ndim < 2 or speeds.shape[-1] != 2 or not np.isfinite(speeds).all():
@@ -95,6 +115,9 @@ def simulate_contact(
     stack, count = speeds.shape[:-2], speeds.shape[-2]
     flat = speeds.reshape(-1, count, 2)
     starts = np.broadcast_to(start_poses, (*stack, 3)).reshape(-1, 3)
+    stamps_s = np.asarray(np.arange(count) * step_s)
+    pieces = checked(traction, vehicle, stack, float(stamps_s[-1]))
+    switches = dict(zip(switch_rows(pieces, stamps_s).tolist(), pieces, strict=True))
     dynamics = ContactDynamics(vehicle, ground)
     state = dynamics.start(starts[:, 0] + 1j * starts[:, 1], starts[:, 2])
     substeps = max(1, int(np.ceil(step_s / longest_step_s - 1e-9)))
@@ -105,6 +128,8 @@ def simulate_contact(
                 f"the drive runs away {k * step_s:.2f} s after its start: speeds too high for the "
                 "turns, or a slope steeper than its friction holds"
             )
+        if k in switches:
+            dynamics, state = switched(dynamics, state, switches[k])
         states[k] = state[:, :MEMORY]
         with np.errstate(over="ignore", invalid="ignore"):
             for _ in range(substeps if k < count - 1 else 0):
@@ -113,11 +138,12 @@ def simulate_contact(
     return ContactDrive(
         vehicle,
         ground,
-        np.asarray(np.arange(count) * step_s),
+        stamps_s,
         speeds,
         poses.reshape(*stack, count, 6),
         twists.reshape(*stack, count, 3),
         accelerations.reshape(*stack, count, 2),
+        pieces,
     )
 
 

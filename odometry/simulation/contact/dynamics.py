@@ -5,11 +5,13 @@ of the origin in the world, yaw, velocity of the centre of mass in body axes, ya
 force that the loads have followed so far, and the memory of each contact.
 """
 
+from copy import copy
 from typing import NamedTuple
 
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.simulation.contact.friction import FrictionLaw
 from odometry.simulation.contact.loads import NormalLoads
 from odometry.simulation.contact.slope import Ground, Tilt, gravity, tilt
 from odometry.simulation.contact.vectors import ComplexArray, cross
@@ -48,6 +50,8 @@ class ContactDynamics:
     ----------
     vehicle : ContactVehicle
     ground : Ground
+    law : FrictionLaw
+        The vehicle's, unless `on` gives another, as with the friction.
     centre_of_mass : complex
         In the contact plane, from the origin.
     arms_m : (n,) complex array
@@ -60,12 +64,18 @@ class ContactDynamics:
         self.centre_of_mass = complex(x, y)
         self.arms_m = vehicle.places_m - self.centre_of_mass
         self._loads = NormalLoads(vehicle.places_m)
-        self._friction = vehicle.friction.ravel()
+        self.law, self._friction, self._lateral = vehicle.law, vehicle.friction.ravel(), 1.0
         self._entry_m = np.tile(vehicle.entry_m, 2)
+
+    def on(self, friction: FloatArray, law: FrictionLaw, lateral_share: float) -> "ContactDynamics":
+        """The same with another friction (B, n), law, and share of the traction sideways."""
+        other = copy(self)
+        other.law, other._friction, other._lateral = law, friction, lateral_share
+        return other
 
     def start(self, positions: ComplexArray, yaws_rad: FloatArray) -> ComplexArray:
         """States (B, S) at rest, under the loads of rest."""
-        memory = self.vehicle.law.states_per_contact * len(self.arms_m)
+        memory = self.law.states_per_contact * len(self.arms_m)
         state = np.zeros((len(positions), MEMORY + memory), dtype=np.complex128)
         state[:, POSITION], state[:, YAW] = positions, yaws_rad
         state[:, FOLLOWED_FORCE] = -self.vehicle.mass_kg * gravity(self.tilt(state))[0]
@@ -95,11 +105,13 @@ class ContactDynamics:
         treads = np.repeat(tread_speeds_m_s, len(self.arms_m) // 2, axis=-1)
         slips = state[:, VELOCITY, None] + 1j * state[:, YAW_RATE, None].real * self.arms_m - treads
         renewal = np.abs(treads) / np.where(treads > 0, *self._entry_m)
-        memory, law = state[:, MEMORY:], self.vehicle.law
+        memory, law = state[:, MEMORY:], self.law
         rates = law.displacement_rate(slips, memory, renewal)
         opposed, factor = law.yielding(slips, memory, rates)
         stiffness = self._friction * loads * factor
-        return Contacts(loads, slips, -stiffness * opposed, rates, stiffness * law.lead)
+        shared: ComplexArray = opposed.real + 1j * (self._lateral * opposed.imag)
+        damping = stiffness * (law.lead * max(1.0, self._lateral))
+        return Contacts(loads, slips, -stiffness * shared, rates, damping)
 
     def rate(
         self, state: ComplexArray, tread_speeds_m_s: FloatArray

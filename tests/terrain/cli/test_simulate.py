@@ -5,6 +5,7 @@ import pytest
 from click.testing import CliRunner
 
 from odometry.run import Run
+from odometry.simulation.courses import COURSE_NAMES
 from odometry.simulation.errors import SimulationError
 from terrain.cli.simulate import simulate
 
@@ -41,11 +42,28 @@ def test_the_seed_changes_the_drive_and_the_same_one_repeats_it(tmp_path):
     assert files[0] == files[1] != files[2]
 
 
-@pytest.mark.parametrize("drive", ["excitation", "figure_eight", "tour"])
+@pytest.mark.parametrize(
+    "drive", ["excitation", "figure_eight", "tour", "skidpad", "clothoid", "sinusoid"]
+)
 def test_every_drive_can_be_driven(tmp_path, drive):
     answer = invoke(tmp_path / "run", "--drive", drive, "--slope", "5")
     assert answer.exit_code == 0, answer.output
     assert len(Run.read(tmp_path / "run").pose) > 30
+
+
+def test_a_spiral_turns_left_or_right_by_the_seed(tmp_path):
+    turned = []
+    for seed in range(6):
+        out = tmp_path / str(seed)
+        answer = invoke(out, "--drive", "outward_spiral", "--seed", str(seed))
+        assert answer.exit_code == 0, answer.output
+        turned.append(np.sign(Run.read(out).truth["yaw"][-1]))
+    assert set(turned) == {-1.0, 1.0}
+
+
+def test_the_choice_of_drives_is_that_of_the_courses():
+    options = {option.name: option for option in simulate.params}
+    assert tuple(options["drive"].type.choices) == COURSE_NAMES
 
 
 def test_a_vehicle_of_ones_own(tmp_path):

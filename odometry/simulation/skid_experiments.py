@@ -1,0 +1,138 @@
+"""The experiments of Salvi 2024 in the contact simulator: grounds and slipping wheels that change.
+
+Large traction changes are of the ground, small ones of the wheels that slip. A drive has no
+randomness of its own; many noisy runs can be recorded of one drive.
+"""
+
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+
+from odometry.run import Run
+from odometry.simulation.contact.drive import ContactDrive, simulate_contact
+from odometry.simulation.contact.traction import Traction
+from odometry.simulation.contact.vehicle import ContactVehicle
+from odometry.simulation.courses import STEP_S, Course, make_course
+from odometry.simulation.record import ContactSensors, contact_run
+from odometry.simulation.skid_traction import ground_traction, wheel_traction
+
+Mode = TypeVar("Mode")
+SENSORS = ContactSensors(
+    pose_rate_hz=10.0,
+    sigma_position_m=0.02,
+    sigma_yaw_rad=float(np.deg2rad(0.5)),
+    sigma_gyro_rad_s=0.02,
+)
+CALIBRATION = ("skidpad", "clothoid", "sinusoid")
+
+
+def terrain_experiment(
+    vehicle: ContactVehicle,
+    sequence: Sequence[tuple[str, float]],
+    course: Course,
+    rng: np.random.Generator,
+    sensors: ContactSensors = SENSORS,
+) -> Run:
+    """A run over grounds one after another; the truth alone names them.
+
+    Parameters
+    ----------
+    vehicle : ContactVehicle
+    sequence : sequence of (terrain, duration_s)
+        Names of GROUNDS. The last one holds to the end of the course.
+    course : Course
+    rng : numpy.random.Generator
+        For the noise of the sensors.
+    sensors : ContactSensors
+    """
+    pieces = [ground_traction(vehicle, name, at) for name, at in _starts(sequence)]
+    return _recorded(vehicle, pieces, course, rng, sensors)
+
+
+def wheel_experiment(
+    vehicle: ContactVehicle,
+    sequence: Sequence[tuple[Collection[str], float]],
+    course: Course,
+    rng: np.random.Generator,
+    sensors: ContactSensors = SENSORS,
+) -> Run:
+    """As `terrain_experiment`, of (slipping wheels, duration_s)."""
+    pieces = [wheel_traction(vehicle, wheels, at) for wheels, at in _starts(sequence)]
+    return _recorded(vehicle, pieces, course, rng, sensors)
+
+
+def calibration_courses(
+    vehicle: ContactVehicle, max_speed_m_s: float, duration_s: float = 60.0
+) -> tuple[Course, ...]:
+    """Skidpad, clothoid and sinusoid on level ground (Salvi 2024, section III)."""
+    return tuple(
+        make_course(
+            name,
+            vehicle,
+            duration_s=duration_s,
+            max_speed_m_s=max_speed_m_s,
+            slope_rad=0.0,
+            uphill_rad=0.0,
+            rng=np.random.default_rng(0),  # none of the three is random
+        )
+        for name in CALIBRATION
+    )
+
+
+def drives_on(
+    vehicle: ContactVehicle, modes: Sequence[Traction], course: Course
+) -> tuple[ContactDrive, ...]:
+    """The same course on each mode; those of one law are driven all at once."""
+    kinds = [(mode.law, mode.lateral_share) for mode in modes]
+    drives: dict[int, ContactDrive] = {}
+    for kind in dict.fromkeys(kinds):
+        rows = [row for row, own in enumerate(kinds) if own == kind]
+        frictions = np.stack([modes[row].friction for row in rows])
+        speeds = np.broadcast_to(
+            course.tread_speeds_m_s, (len(rows), *course.tread_speeds_m_s.shape)
+        )
+        together = replace(modes[rows[0]], friction=frictions)
+        stack = simulate_contact(vehicle, speeds, STEP_S, ground=course.ground, traction=[together])
+        drives |= {
+            row: replace(stack[place], traction=(modes[row],)) for place, row in enumerate(rows)
+        }
+    return tuple(drives[row] for row in range(len(modes)))
+
+
+def calibration_runs(
+    vehicle: ContactVehicle,
+    modes: Sequence[Traction],
+    courses: Sequence[Course],
+    rng: np.random.Generator,
+    sensors: ContactSensors = SENSORS,
+) -> dict[str, tuple[Run, ...]]:
+    """Runs of every mode on every course, by the mode's name, which each run is told."""
+    by_course = [drives_on(vehicle, modes, course) for course in courses]
+    return {
+        mode.name: tuple(
+            contact_run(f"{mode.name}_{number}", drives[row], sensors, rng, terrain=mode.name)
+            for number, drives in enumerate(by_course)
+        )
+        for row, mode in enumerate(modes)
+    }
+
+
+def _starts(sequence: Sequence[tuple[Mode, float]]) -> list[tuple[Mode, float]]:
+    """Each mode with the time at which it begins."""
+    ends = np.cumsum([duration for _, duration in sequence]).tolist()
+    return list(zip([mode for mode, _ in sequence], [0.0, *ends[:-1]], strict=True))
+
+
+def _recorded(
+    vehicle: ContactVehicle,
+    pieces: Sequence[Traction],
+    course: Course,
+    rng: np.random.Generator,
+    sensors: ContactSensors,
+) -> Run:
+    drive = simulate_contact(
+        vehicle, course.tread_speeds_m_s, STEP_S, ground=course.ground, traction=pieces
+    )
+    return contact_run("experiment", drive, sensors, rng, terrain=None)
