@@ -19,7 +19,8 @@ from odometry.gap.statistic import Gap, gap_of
 
 LEAST_OF_NOISE = 0.2  # of what noise leaves: a smaller excess of chi-squared is taken as this
 UNEXPLAINED = 1.3  # chi-squared a degree of freedom: more is not noise
-POOR, MOST = 2.0, 0.5  # chi-squared a degree of freedom left, and share closed, of a poor answer
+POOR = 2.0  # chi-squared a degree of freedom that names leave which may be dropped
+LEAST_CLOSED = 0.25  # share of the excess of chi-squared that they must close
 MOVED = 50.0  # chi-squared of a base that left its calibration
 CONTACT_SPREAD = 1.1  # chi-squared a degree of freedom that the quick forms must leave
 
@@ -32,7 +33,7 @@ def explained(
     First by the catalogue alone. What that leaves is offered to smooth functions of an angle that
     no effect of the catalogue depends on (the heading, the wheels' angles); where one is there,
     it competes with the catalogue from the start, and the better explanation stands. A smooth
-    function of any variable may take what is left at the end. Names that leave most of the gap
+    function of any variable may take what is left at the end. Names that leave nearly all of a gap
     are dropped: what is there is unknown.
     """
     search = _Search(fitter, fitter.fit([]), floor, config, progress)
@@ -140,10 +141,10 @@ class _Search:
         return replace(ranked(self.fitter, before, [fit], self.config)[0], evidence=one.evidence)
 
     def explains_little(self, found: Explanation) -> bool:
-        """Whether effects leave most of what noise does not explain."""
+        """Whether effects leave nearly all of what noise does not explain."""
         excess = self.start.cost - len(self.fitter.measured.window_of_row)
         poor = self.fitter.spread(found.fitted) > POOR
-        return bool(poor and self.start.cost - found.fitted.cost < MOST * excess)
+        return bool(poor and self.start.cost - found.fitted.cost < LEAST_CLOSED * excess)
 
     def unexplained(self) -> bool:
         """Whether the base leaves a gap, and even moved more chi-squared than noise explains."""
