@@ -1,0 +1,82 @@
+"""Which modes answer alike: for how long two must be driven to be told apart."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.modes.traction import TractionModes, twists_of
+from odometry.modes.velocity import VelocityModes
+from odometry.run import Run
+
+SURE = 0.9  # of one of two modes that were as probable before
+LOG_ODDS = float(np.log(SURE / (1 - SURE)))
+SLOW_M_S = 0.01  # below it nothing is told
+TRIED_S = np.geomspace(0.01, 1e4, 601)
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two modes, and the driving that it takes to tell the second from the first [s]."""
+
+    names: tuple[str, str]
+    seconds: float
+
+
+def pairs(modes: VelocityModes | TractionModes, runs: Sequence[Run]) -> tuple[Pair, ...]:
+    """All pairs of modes, the most alike first.
+
+    How long the treads must turn as in the runs until the log-odds of the right mode are expected
+    to be those of SURE, if models and noise are as identified: the Kullback-Leibler divergence of
+    what the modes predict, in the worse direction. Only what has settled counts.
+
+    Parameters
+    ----------
+    modes : VelocityModes or TractionModes
+    runs : sequence of Run
+        Whose tread speeds are driven.
+    """
+    speeds = np.concatenate([run.odometry.stack("v_left", "v_right") for run in runs])
+    step_s = float(np.median(np.concatenate([np.diff(run.odometry.stamps_s) for run in runs])))
+    if isinstance(modes, VelocityModes):
+        seconds = _velocity_seconds(modes, speeds, step_s)
+    else:
+        has_gyro = any("gyro_z" in run.odometry for run in runs)
+        seconds = _traction_seconds(modes, speeds, step_s if has_gyro else np.inf)
+    seconds = np.maximum(seconds, seconds.T)
+    found = [
+        Pair((first, modes.names[j]), float(seconds[i, j]))
+        for i, first in enumerate(modes.names)
+        for j in range(i + 1, len(modes.names))
+    ]
+    return tuple(sorted(found, key=lambda pair: -pair.seconds))
+
+
+def _velocity_seconds(modes: VelocityModes, speeds: FloatArray, step_s: float) -> FloatArray:
+    """For row against column (M, M); each time over which errors last counts once."""
+    gains, variances = modes.steady_gains(), modes.measurement
+    apart = gains[:, None] - gains[None]
+    squares = speeds.T @ speeds / len(speeds)
+    differences = np.einsum("ijqa,ab,ijqb->ijq", apart, squares, apart)
+    ratio = variances[:, None] / variances[None]
+    divergence = (ratio - 1 - np.log(ratio) + differences / variances[None]).sum(axis=-1) / 2
+    alike = divergence <= 0
+    needed = LOG_ODDS * max(modes.errors_last_s, step_s) / np.where(alike, 1.0, divergence)
+    return np.where(alike, np.inf, needed)
+
+
+def _traction_seconds(modes: TractionModes, speeds: FloatArray, gyro_s: float) -> FloatArray:
+    """The same, of a known pose, one measured later, and a yaw rate each `gyro_s` between."""
+    driven = speeds[np.abs(speeds).mean(axis=1) > SLOW_M_S]
+    if not len(driven):
+        return np.full((len(modes.names), len(modes.names)), np.inf)
+    twists = np.stack([twists_of(of, driven, modes.track_width) for of in modes.gains])
+    squares = np.stack([((twists - of) ** 2).mean(axis=1) for of in twists])
+    added = np.abs(driven).mean() * modes.process[[0, 0, 1]]
+    moved = squares[..., None, :] * TRIED_S[:, None] ** 2
+    variances = added * TRIED_S[:, None] + modes.measurement[:3]
+    of_gyro = squares[..., 2:] / modes.measurement[3] * TRIED_S / gyro_s
+    log_odds = ((moved / variances).sum(axis=-1) + of_gyro) / 2
+    told = log_odds >= LOG_ODDS
+    return np.where(told.any(axis=-1), TRIED_S[told.argmax(axis=-1)], np.inf)

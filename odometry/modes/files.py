@@ -1,0 +1,162 @@
+"""The modes of a run as files: a table over time and the numbers."""
+
+import json
+from collections.abc import Mapping
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from odometry.arrays import AnyArray
+from odometry.io.csv_table import write_csv_table
+from odometry.io.files import atomic_write
+from odometry.modes.answers import UNDETERMINED, Detection, confusion
+from odometry.modes.followed import Followed
+from odometry.modes.track import ModeTrack
+from odometry.modes.words import answer_words
+from odometry.run import UNKNOWN
+
+FORMAT = 1  # of result.json
+NUMBERS = ("median_after_s", "right", "wrong", "undetermined", "wrong_of_all")
+COUNTS = ("stretches", "told", "false_switches")
+STATES = {"velocity": ("vx", "wz"), "traction": ("x", "y", "yaw", "wz")}
+
+
+def write_modes(followed: Followed, out: Path) -> list[Path]:
+    """Write modes.csv and result.json, with sight also modes_with_sight.csv.
+
+    Parameters
+    ----------
+    followed : Followed
+    out : Path
+        Made if it is missing; files of an earlier run are replaced one by one.
+
+    Returns
+    -------
+    list of Path
+        The files written.
+    """
+    out = Path(out)
+    written = [out / "modes.csv", out / "result.json"]
+    write_csv_table(written[0], columns_of(followed, followed.motion))
+    sighted = out / "modes_with_sight.csv"
+    if followed.sighted is None:
+        sighted.unlink(missing_ok=True)  # of an earlier run
+    else:
+        seen = {"seen": np.where(followed.seen_labels == UNKNOWN, "", followed.seen_labels)}
+        write_csv_table(sighted, columns_of(followed, followed.sighted) | seen)
+        written.append(sighted)
+    text = json.dumps(content_of(followed), indent=2, allow_nan=False)
+    with atomic_write(written[1]) as part:
+        part.write_text(text + "\n", encoding="utf-8")
+    return written
+
+
+def write_runs(rows: Mapping[str, Followed | str], file: Path) -> Path:
+    """Write a table with a row for each run, by name: its scores, or why it failed."""
+    columns: dict[str, list[Any]] = {"run": list(rows)}
+    columns["failed"] = [row if isinstance(row, str) else "" for row in rows.values()]
+    columns["answer"] = [
+        "" if isinstance(row, str) else answer_words(row, row.motion) for row in rows.values()
+    ]
+    tracks = [{} if isinstance(row, str) else _track(row, row.motion) for row in rows.values()]
+    for name in NUMBERS:
+        values = [track.get(name) for track in tracks]
+        columns[name] = [float("nan") if value is None else float(value) for value in values]
+    for name in COUNTS:
+        columns[name] = [str(track[name]) if track else "" for track in tracks]
+    write_csv_table(file, {name: np.array(column) for name, column in columns.items()})
+    return file
+
+
+def columns_of(followed: Followed, track: ModeTrack) -> dict[str, AnyArray]:
+    """The columns of modes.csv; `label` is empty where the run names nothing."""
+    states = STATES[followed.mode_set.modes.kind]
+    probabilities = zip(track.names, track.probabilities.T, strict=True)
+    return {
+        "t": track.stamps_s,
+        **{f"probability_{name}": column for name, column in probabilities},
+        "answer": followed.answers(track),
+        "label": np.where(track.labels == UNKNOWN, "", track.labels),
+        **dict(zip(states, track.means.T, strict=True)),
+        **{f"sigma_{name}": column for name, column in zip(states, track.sigmas.T, strict=True)},
+    }
+
+
+def content_of(followed: Followed) -> dict[str, Any]:
+    """What result.json holds; a number that is not finite is null."""
+    mode_set, config = followed.mode_set, followed.config
+    sighted = followed.sighted
+    return {
+        "format": FORMAT,
+        "program": f"terrain-odometry {version('terrain-odometry')}",
+        "run": followed.run.name,
+        "kind": mode_set.modes.kind,
+        "names": list(mode_set.names),
+        "settings": {
+            "floor": config.floor,
+            "sure": config.sure,
+            "lasting_s": config.lasting_s,
+            "dwell_s": dict(zip(mode_set.names, mode_set.dwell_s.tolist(), strict=True)),
+            "source": mode_set.source,
+        },
+        "duration_s": float(np.ptp(followed.motion.stamps_s)),
+        "not_judged": list(followed.foreign_labels),
+        "motion": _track(followed, followed.motion),
+        "sight": None if sighted is None else _track(followed, sighted),
+        "disagreements": [
+            {"from_s": from_s, "to_s": to_s, "seen": seen, "felt": felt}
+            for from_s, to_s, seen, felt in followed.disagreements
+        ],
+    }
+
+
+def _track(followed: Followed, track: ModeTrack) -> dict[str, Any]:
+    score = followed.score(track)
+    measured = np.isfinite(followed.signals.measured)
+    squared = track.normalised_squared[np.isfinite(track.normalised_squared)]
+    return {
+        "shares_of_time": followed.shares(track),
+        "detections": [_detection(one) for one in score.detections],
+        "stretches": len(score.detections),
+        "told": len(score.told),
+        "median_after_s": _finite(score.median_after_s),
+        "right": _finite(score.right),
+        "wrong": _finite(score.wrong),
+        "undetermined": _finite(score.undetermined),
+        "wrong_of_all": _finite(score.wrong_of_all),
+        "false_switches": score.false_switches,
+        "confusion_s": _confusion(followed, track),
+        "mean_normalised_innovation_squared": _finite(squared.mean()) if len(squared) else None,
+        "mean_measured_entries": float(measured.sum(axis=1)[measured.any(axis=1)].mean())
+        if measured.any()
+        else None,
+    }
+
+
+def _detection(one: Detection) -> dict[str, Any]:
+    return {
+        "mode": one.mode,
+        "from_s": one.from_s,
+        "to_s": one.to_s,
+        "after_s": _finite(one.after_s),
+        "right": _finite(one.right),
+        "wrong": _finite(one.wrong),
+        "undetermined": _finite(one.undetermined),
+    }
+
+
+def _confusion(followed: Followed, track: ModeTrack) -> Mapping[str, Mapping[str, float]]:
+    """Seconds by true mode and answer; modes that the run does not name are left out."""
+    names = followed.mode_set.names
+    seconds = confusion(track, followed.config.sure, names)
+    return {
+        name: dict(zip((*names, UNDETERMINED), row.tolist(), strict=True))
+        for name, row in zip(names, seconds, strict=True)
+        if row.any()
+    }
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

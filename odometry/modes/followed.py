@@ -1,0 +1,160 @@
+"""A run whose modes were followed, by motion alone and with sight, and how well."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import AnyArray
+from odometry.modes.answers import (
+    UNDETERMINED,
+    Detection,
+    confusion,
+    detections,
+    disagreements,
+    false_switches,
+    named_modes,
+)
+from odometry.modes.mode_set import ModeSet
+from odometry.modes.sight import SeenGround, seen_labels
+from odometry.modes.signals import Signals
+from odometry.modes.track import ModesConfig, ModeTrack, follow
+from odometry.run import UNKNOWN, Run
+
+MOTION, SIGHTED = "motion alone", "motion and sight"
+
+
+@dataclass(frozen=True)
+class Score:
+    """Answers against the modes that the run names.
+
+    Attributes
+    ----------
+    detections : tuple of Detection
+        One for each stretch of a mode.
+    right, wrong, undetermined : float
+        Shares of the time after each detection, over all stretches; NaN where none was told.
+    wrong_of_all : float
+        Share of all the time in stretches of a mode, told or not; NaN where there is none.
+    false_switches : int
+    """
+
+    detections: tuple[Detection, ...]
+    right: float
+    wrong: float
+    undetermined: float
+    wrong_of_all: float
+    false_switches: int
+
+    @property
+    def told(self) -> tuple[Detection, ...]:
+        """Stretches whose mode was named."""
+        return tuple(one for one in self.detections if np.isfinite(one.after_s))
+
+    @property
+    def median_after_s(self) -> float:
+        """Median time to detection over the stretches told, NaN without one."""
+        return float(np.median([one.after_s for one in self.told])) if self.told else float("nan")
+
+
+@dataclass(frozen=True)
+class Followed:
+    """What `follow` made of a run.
+
+    Attributes
+    ----------
+    run : Run
+    mode_set : ModeSet
+    config : ModesConfig
+    signals : Signals
+        That the filters were fed with.
+    motion : ModeTrack
+        By motion alone.
+    sighted : ModeTrack or None
+        By motion and sight; None without sight.
+    seen : tuple of SeenGround
+    """
+
+    run: Run
+    mode_set: ModeSet
+    config: ModesConfig
+    signals: Signals
+    motion: ModeTrack
+    sighted: ModeTrack | None = None
+    seen: tuple[SeenGround, ...] = ()
+
+    @property
+    def tracks(self) -> Mapping[str, ModeTrack]:
+        """By name: MOTION, and SIGHTED where there was sight."""
+        sighted = {} if self.sighted is None else {SIGHTED: self.sighted}
+        return {MOTION: self.motion, **sighted}
+
+    @property
+    def last_track(self) -> ModeTrack:
+        """The one that uses all there is."""
+        return self.sighted or self.motion
+
+    @property
+    def seen_labels(self) -> AnyArray:
+        """What vision says (N,) of the ground below the robot; "unknown" where nothing."""
+        return seen_labels(self.seen, self.motion.stamps_s)
+
+    @property
+    def disagreements(self) -> tuple[tuple[float, float, str, str], ...]:
+        """Lasting ones of sight and feel: from, to [s], seen, felt."""
+        config = self.config
+        return disagreements(self.motion, self.seen_labels, config.sure, config.lasting_s)
+
+    @property
+    def foreign_labels(self) -> tuple[str, ...]:
+        """What the run names and is no mode: it cannot be judged."""
+        return tuple(sorted(set(self.motion.labels.tolist()) - {UNKNOWN, *self.mode_set.names}))
+
+    def answers(self, track: ModeTrack) -> AnyArray:
+        """The mode (N,) named at each stamp, or "undetermined"."""
+        return named_modes(track, self.config.sure)
+
+    def shares(self, track: ModeTrack) -> dict[str, float]:
+        """Share of the time of each answer that was given, the longest first."""
+        answers, lasts_s = self.answers(track), np.append(np.diff(track.stamps_s), 0.0)
+        whole = max(float(lasts_s.sum()), 1e-12)
+        held = {
+            name: float(lasts_s[answers == name].sum()) / whole
+            for name in (*self.mode_set.names, UNDETERMINED)
+        }
+        return dict(sorted(((n, s) for n, s in held.items() if s > 0), key=lambda one: -one[1]))
+
+    def score(self, track: ModeTrack) -> Score:
+        """Answers of a track against the modes that the run names."""
+        found = detections(track, self.config.sure)
+        told = [one for one in found if np.isfinite(one.after_s)]
+        weights = np.array([one.to_s - one.from_s - one.after_s for one in told])
+        shares = np.array([(one.right, one.wrong, one.undetermined) for one in told])
+        means = np.full(3, np.nan)
+        if weights.sum() > 0:
+            means = weights @ shares / weights.sum()
+        right, wrong, open_ = means.tolist()
+        seconds = confusion(track, self.config.sure, track.names)
+        judged = float(seconds.sum())
+        off = judged - float(np.trace(seconds)) - float(seconds[:, -1].sum())
+        of_all = off / judged if judged else float("nan")
+        switches = false_switches(track, self.config.sure)
+        return Score(found, right, wrong, open_, of_all, switches)
+
+
+def followed(
+    run: Run,
+    mode_set: ModeSet,
+    config: ModesConfig | None = None,
+    seen: Sequence[SeenGround] = (),
+    *,
+    show_progress: bool = False,
+) -> Followed:
+    """Follow a run by motion alone, and, where vision saw something, with sight; see `follow`."""
+    config = config or ModesConfig()
+    signals = mode_set.modes.signals(run)
+    motion = follow(run, mode_set, config, show_progress=show_progress)
+    sighted = None
+    if seen:
+        sighted = follow(run, mode_set, config, seen, show_progress=show_progress)
+    return Followed(run, mode_set, config, signals, motion, sighted, tuple(seen))

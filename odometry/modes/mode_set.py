@@ -1,0 +1,160 @@
+"""A set of modes and how long each lasts, as TOML."""
+
+import math
+import tomllib
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomli_w
+
+from odometry.arrays import BoolArray, FloatArray
+from odometry.errors import ParameterError
+from odometry.io.files import atomic_write
+from odometry.modes.traction import TractionModes
+from odometry.modes.velocity import VelocityModes
+
+DWELL_S = 20.0  # of a mode of which nothing else is said
+
+
+IS_OF_SIGN: dict[str, Callable[[FloatArray], BoolArray]] = {
+    "": np.isfinite,
+    "above 0": lambda values: values > 0,
+    "0 or more": lambda values: values >= 0,
+}
+
+
+@dataclass(frozen=True)
+class Key:
+    """A key of a table, the attribute of the modes that it holds, its shape and sign."""
+
+    key: str
+    attribute: str
+    shape: tuple[int, ...]
+    sign: str = ""  # "above 0", "0 or more", or any
+
+
+HEAD = {
+    "velocity": (Key("errors_last_s", "errors_last_s", (), "0 or more"),),
+    "traction": (
+        Key("track_width", "track_width", (), "above 0"),
+        Key("process_variance", "process", (2,), "above 0"),
+        Key("measurement_variance", "measurement", (4,), "above 0"),
+    ),
+}
+MODE = {
+    "velocity": (
+        Key("A", "A", (2, 2)),
+        Key("B", "B", (2, 2)),
+        Key("process_variance", "process", (2,), "above 0"),
+        Key("measurement_variance", "measurement", (2,), "above 0"),
+    ),
+    "traction": (Key("gains", "gains", (2, 3, 2)), Key("lag_s", "lag_s", (), "0 or more")),
+}
+KINDS: dict[str, type[VelocityModes] | type[TractionModes]] = {
+    "velocity": VelocityModes,
+    "traction": TractionModes,
+}
+
+
+@dataclass(frozen=True)
+class ModeSet:
+    """Modes of one kind.
+
+    Attributes
+    ----------
+    modes : VelocityModes or TractionModes
+    dwell_s : (M,)
+        Mean time in each mode [s].
+    source : str
+        Where the numbers come from.
+    """
+
+    modes: VelocityModes | TractionModes
+    dwell_s: FloatArray
+    source: str = ""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the modes."""
+        return self.modes.names
+
+
+def write_mode_set(file: Path, mode_set: ModeSet) -> None:
+    """Write a set of modes: [modes], and a table [mode.NAME] for each."""
+    modes = mode_set.modes
+    head: dict[str, Any] = {"kind": modes.kind, "source": mode_set.source}
+    head |= {one.key: _plain(getattr(modes, one.attribute)) for one in HEAD[modes.kind]}
+    tables = {
+        name: {one.key: _plain(getattr(modes, one.attribute)[row]) for one in MODE[modes.kind]}
+        | {"dwell_s": float(mode_set.dwell_s[row])}
+        for row, name in enumerate(modes.names)
+    }
+    with atomic_write(file) as part:
+        part.write_text(tomli_w.dumps({"modes": head, "mode": tables}), encoding="utf-8")
+
+
+def read_mode_set(file: Path) -> ModeSet:
+    """Read what `write_mode_set` wrote.
+
+    Raises
+    ------
+    ParameterError
+        Naming file, table and key: not TOML, an unknown or missing key, a number that is not
+        finite, a shape or a variance that cannot be.
+    """
+    try:
+        content = tomllib.loads(Path(file).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise ParameterError(f"{file}: cannot be read as TOML: {error}") from error
+    head, tables = content.get("modes"), content.get("mode")
+    if not isinstance(head, dict) or head.get("kind") not in list(KINDS):
+        raise ParameterError(f"{file}: expected [modes] with kind = one of {', '.join(KINDS)}")
+    if not isinstance(tables, dict) or not tables:
+        raise ParameterError(f"{file}: expected a table [mode.NAME] for each mode")
+    kind, where = head["kind"], f"{file}: [modes]"
+    _only(head, {"kind", "source", *(one.key for one in HEAD[kind])}, where)
+    values: dict[str, Any] = {one.attribute: _array(head, one, where) for one in HEAD[kind]}
+    dwell = Key("dwell_s", "dwell_s", (), "above 0")
+    for name, table in tables.items():
+        _only(table, {one.key for one in (*MODE[kind], dwell)}, f"{file}: [mode.{name}]")
+    for one in (*MODE[kind], dwell):
+        of_modes = [_array(table, one, f"{file}: [mode.{name}]") for name, table in tables.items()]
+        values[one.attribute] = np.stack(of_modes)
+    values = {name: of if of.shape else float(of) for name, of in values.items()}
+    dwell_s = values.pop("dwell_s")
+    try:
+        modes = KINDS[kind](names=tuple(tables), **values)
+    except ParameterError as error:
+        raise ParameterError(f"{file}: {error}") from error
+    return ModeSet(modes, dwell_s, str(head.get("source", "")))
+
+
+def _plain(values: FloatArray | float) -> Any:
+    return np.asarray(values).tolist()
+
+
+def _only(table: Any, known: set[str], where: str) -> None:
+    if not isinstance(table, dict):
+        raise ParameterError(f"{where} = {table!r}, expected a table")
+    unknown = sorted(set(table) - known)
+    if unknown:
+        raise ParameterError(f"{where}: unknown key {unknown[0]!r}; known: {sorted(known)}")
+
+
+def _array(table: dict[str, Any], one: Key, where: str) -> FloatArray:
+    if one.key not in table:
+        raise ParameterError(f"{where}: {one.key} is missing")
+    try:
+        values = np.asarray(table[one.key], dtype=np.float64)
+    except (TypeError, ValueError):
+        values = np.full((), math.nan)
+    fits = values.shape == one.shape and np.isfinite(values).all()
+    if not fits or not np.all(IS_OF_SIGN[one.sign](values)):
+        raise ParameterError(
+            f"{where}: {one.key} = {table[one.key]!r}, expected finite numbers"
+            f"{f', {one.sign}' if one.sign else ''}, shape {one.shape}"
+        )
+    return values

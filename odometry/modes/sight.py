@@ -1,0 +1,125 @@
+"""What vision says of the ground, as a prior on the modes."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from odometry.arrays import AnyArray, FloatArray
+from odometry.errors import ParameterError
+from odometry.estimation.markov import ModeChain
+from odometry.io.csv_table import read_csv_table
+from odometry.run import UNKNOWN, Run
+
+NO_LABELS = ("", "nan", UNKNOWN)  # a column without any is one of numbers
+BLIND_LENGTHS = 3.0  # of the robot, after which a sight is of another place
+PULLED_S = 1.0  # within which a mode that vision is sure of comes true, if motion says nothing
+
+
+@dataclass(frozen=True)
+class SeenGround:
+    """A ground that vision saw ahead, from when the robot is on it.
+
+    Attributes
+    ----------
+    stamp_s : float
+        When the robot gets there: the place was ahead when it was seen.
+    label : str
+        A mode, or "unknown": from here on vision says nothing.
+    confidence : float
+        Probability of the label, 0 to 1.
+    """
+
+    stamp_s: float
+    label: str
+    confidence: float
+
+
+def seen_grounds(file: Path, run: Run) -> tuple[SeenGround, ...]:
+    """What `terrain-odometry run` saw along a run: its terrain.csv.
+
+    A label belongs to the place that it was read from: it counts when the wheels have gone there,
+    and no longer when they have gone on by BLIND_LENGTHS of the robot without another sight.
+    Places that overlap one of the same label that counts are not news, and are left out.
+
+    Raises
+    ------
+    RunFolderError
+        If the file is not such a table.
+    """
+    table = read_csv_table(file, required=("t", "label", "confidence", "distance_ahead"))
+    odometry_s, travel_m = run.odometry.stamps_s, run.wheel_travel_m
+    length_m = run.robot.length or run.robot.track_width
+    places_m = np.interp(table.stamps_s, odometry_s, travel_m) + table["distance_ahead"]
+    labels = table["label"].astype(str)
+    told = np.isfinite(places_m) & ~np.isin(labels, NO_LABELS) & (places_m <= travel_m[-1])
+    found: list[SeenGround] = []
+    last_m = -np.inf
+    for row in np.flatnonzero(told)[np.argsort(places_m[told], kind="stable")]:
+        label, gone_m = str(labels[row]), last_m + BLIND_LENGTHS * length_m
+        if found and places_m[row] > gone_m:
+            found.append(SeenGround(_when(run, gone_m), UNKNOWN, 0.0))
+        if found and found[-1].label == label and places_m[row] - last_m < length_m:
+            continue
+        stamp_s, last_m = _when(run, float(places_m[row])), float(places_m[row])
+        found.append(SeenGround(stamp_s, label, float(table["confidence"][row])))
+    if found and last_m + BLIND_LENGTHS * length_m < travel_m[-1]:
+        found.append(SeenGround(_when(run, last_m + BLIND_LENGTHS * length_m), UNKNOWN, 0.0))
+    return tuple(found)
+
+
+def _when(run: Run, place_m: float) -> float:
+    """The stamp at which the wheels have gone so far [s]."""
+    return float(run.odometry.stamps_s[np.searchsorted(run.wheel_travel_m, place_m)])
+
+
+def seen_labels(seen: Sequence[SeenGround], stamps_s: FloatArray) -> AnyArray:
+    """The ground (N,) that vision says the robot is on; "unknown" before the first."""
+    labels = np.array([UNKNOWN, *(one.label for one in seen)], dtype=object)
+    return labels[np.searchsorted([one.stamp_s for one in seen], stamps_s, side="right")]
+
+
+def mode_chains(
+    seen: Sequence[SeenGround], names: Sequence[str], dwell_s: FloatArray
+) -> tuple[ModeChain, ...]:
+    """How modes change before the first sight, and from each sight on.
+
+    Sight is a prior on where modes change to: from the place that was seen on, every other mode
+    leads to the one seen, within PULLED_S where vision is certain, and as before where its
+    confidence is that of chance. So it decides where motion says nothing, and yields to motion
+    that speaks against it for long.
+
+    Returns
+    -------
+    tuple of ModeChain
+        One more than `seen`.
+
+    Raises
+    ------
+    ParameterError
+        If a label is not a mode, or a confidence is not 0 to 1.
+    """
+    usual = ModeChain(dwell_s)
+    return (usual, *(_pulled(usual, one, tuple(names)) for one in seen))
+
+
+def _pulled(usual: ModeChain, one: SeenGround, names: tuple[str, ...]) -> ModeChain:
+    if one.label == UNKNOWN:
+        return usual
+    if one.label not in names:
+        raise ParameterError(
+            f"vision saw {one.label!r} at {one.stamp_s:g} s, which is no mode; expected one of "
+            f"{', '.join(names)}"
+        )
+    if not 0 <= one.confidence <= 1:
+        raise ParameterError(f"confidence {one.confidence} at {one.stamp_s:g} s, expected 0 to 1")
+    if len(names) == 1:
+        return usual
+    chance = 1 / len(names)
+    rates = usual.rates - np.diag(np.diag(usual.rates))
+    certain = max(0.0, (one.confidence - chance) / (1 - chance))
+    rates[:, names.index(one.label)] += certain / PULLED_S
+    np.fill_diagonal(rates, 0.0)
+    leaving = rates.sum(axis=1)
+    return ModeChain(1 / leaving, rates / leaving[:, None])

@@ -1,0 +1,133 @@
+"""What a bank of filters is fed with: inputs that hold from stamp to stamp, and measurements."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import AnyArray, FloatArray
+from odometry.errors import RunFolderError
+from odometry.grounds import terrains_of
+from odometry.run import Run
+from odometry.table import Table
+
+AROUND_S = 0.15  # on either side: over which a speed is read from poses
+
+
+@dataclass(frozen=True)
+class Signals:
+    """Inputs and measurements at N stamps.
+
+    Attributes
+    ----------
+    stamps_s : (N,)
+    tread_speeds_m_s : (N, 2)
+        Left and right, in force from each stamp to the next.
+    measured : (N, m)
+        NaN where an entry was not measured.
+    labels : (N,) of str
+        Ground or mode that the run names, for identification and scoring.
+    """
+
+    stamps_s: FloatArray
+    tread_speeds_m_s: FloatArray
+    measured: FloatArray
+    labels: AnyArray
+
+    def __len__(self) -> int:
+        return len(self.stamps_s)
+
+
+def velocity_signals(run: Run) -> Signals:
+    """Speed and yaw rate (N, 2) at the stamps of odometry.csv.
+
+    The yaw rate is gyro_z, or wz of velocity.csv; the speed is vx of velocity.csv, and else not
+    measured: what wheels say of it is the input.
+
+    Raises
+    ------
+    RunFolderError
+        If the run has no yaw rate.
+    """
+    stamps_s = run.odometry.stamps_s
+    if "gyro_z" in run.odometry:
+        omega = run.odometry["gyro_z"]
+    elif run.velocity is not None and np.isfinite(run.velocity["wz"]).any():
+        omega = _nearest(run.velocity, "wz", stamps_s)
+    else:
+        raise RunFolderError(
+            f"{run.folder}: no yaw rate; expected gyro_z in odometry.csv or wz in velocity.csv"
+        )
+    speed = np.full(len(stamps_s), np.nan)
+    if run.velocity is not None:
+        speed = _nearest(run.velocity, "vx", stamps_s)
+    measured = np.column_stack([speed, omega])
+    return Signals(stamps_s, run.odometry.stack("v_left", "v_right"), measured, terrains_of(run))
+
+
+def pose_signals(run: Run) -> Signals:
+    """Pose and yaw rate (N, 4) at the stamps of odometry.csv and pose.csv, merged.
+
+    The yaw rate is gyro_z, where it was recorded.
+
+    Raises
+    ------
+    RunFolderError
+        If the run has no poses within the time of its odometry.
+    """
+    odometry_s = run.odometry.stamps_s
+    if run.pose is None:
+        raise RunFolderError(f"{run.folder}: no pose.csv; expected measured poses")
+    pose_s = run.pose.stamps_s
+    inside = (pose_s >= odometry_s[0]) & (pose_s <= odometry_s[-1])
+    if not inside.any():
+        raise RunFolderError(f"{run.folder}: no pose lies within the time of odometry.csv")
+    stamps_s = np.union1d(odometry_s, pose_s[inside])
+    rows = np.searchsorted(odometry_s, stamps_s, side="right") - 1
+    measured = np.full((len(stamps_s), 4), np.nan)
+    poses = run.pose.stack("x", "y", "yaw")[inside]
+    measured[np.searchsorted(stamps_s, pose_s[inside]), :3] = poses
+    if "gyro_z" in run.odometry:
+        measured[np.searchsorted(stamps_s, odometry_s), 3] = run.odometry["gyro_z"]
+    speeds = run.odometry.stack("v_left", "v_right")[rows]
+    return Signals(stamps_s, speeds, measured, terrains_of(run)[rows])
+
+
+def forward_speed_m_s(run: Run) -> FloatArray | None:
+    """Measured forward speed (N,) at the stamps of odometry.csv: vx, else from the poses.
+
+    None where neither was measured.
+    """
+    stamps_s = run.odometry.stamps_s
+    if run.velocity is not None and np.isfinite(run.velocity["vx"]).any():
+        rows = np.flatnonzero(np.isfinite(run.velocity["vx"]))
+        return np.interp(stamps_s, run.velocity.stamps_s[rows], run.velocity["vx"][rows])
+    if run.pose is None:
+        return None
+    poses = run.pose.stack("x", "y", "yaw")
+    known = np.isfinite(poses).all(axis=1)
+    pose_s, poses = run.pose.stamps_s[known], poses[known]
+    poses[:, 2] = np.unwrap(poses[:, 2])
+    before, here, after = (
+        np.column_stack([np.interp(stamps_s + shift, pose_s, column) for column in poses.T])
+        for shift in (-AROUND_S, 0.0, AROUND_S)
+    )
+    dx, dy = (after - before)[:, :2].T
+    lasts_s = np.clip(stamps_s + AROUND_S, *pose_s[[0, -1]])
+    lasts_s = lasts_s - np.clip(stamps_s - AROUND_S, *pose_s[[0, -1]])
+    ahead = np.cos(here[:, 2]) * dx + np.sin(here[:, 2]) * dy
+    return np.where(lasts_s > 0, ahead / np.where(lasts_s > 0, lasts_s, 1.0), np.nan)
+
+
+def _nearest(table: Table, column: str, stamps_s: FloatArray) -> FloatArray:
+    """Values (N,) of a column at the nearest of its rows; NaN where that is not the nearest row."""
+    values = np.full(len(stamps_s), np.nan)
+    if column not in table:
+        return values
+    period_s = float(np.median(np.diff(stamps_s))) if len(stamps_s) > 1 else 0.0
+    rows = np.searchsorted(table.stamps_s, stamps_s)
+    for shift in (-1, 0):
+        near = np.clip(rows + shift, 0, len(table) - 1)
+        far_s: FloatArray = np.abs(table.stamps_s[near] - stamps_s)
+        fill = np.flatnonzero(np.isnan(values) & (far_s <= period_s / 2))
+        values[fill] = table[column][near[fill]]
+    return values

@@ -1,0 +1,170 @@
+"""Follow the modes of a run."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from tqdm import tqdm
+
+from odometry.arrays import AnyArray, BoolArray, FloatArray
+from odometry.config import require
+from odometry.estimation.ekf_bank import EkfBank
+from odometry.estimation.imm import Imm
+from odometry.estimation.mode_belief import ModeBelief
+from odometry.modes.mode_set import ModeSet
+from odometry.modes.sight import SeenGround, mode_chains
+from odometry.modes.signals import Signals
+from odometry.modes.tempered import TemperedBank
+from odometry.run import Run
+
+STANDING_M_S = 0.01
+SETTLED_S = 1e4  # after which a chain has forgotten where it began
+
+
+@dataclass(frozen=True)
+class ModesConfig:
+    """Settings of the estimator and of its answers.
+
+    Attributes
+    ----------
+    floor : float
+        Least probability of a mode.
+    sure : float
+        The probability from which a mode is named; below it the answer is "undetermined".
+    lasting_s : float
+        A disagreement of sight and feel that lasts so long is reported.
+    """
+
+    floor: float = 1e-6
+    sure: float = 0.9
+    lasting_s: float = 2.0
+
+    def __post_init__(self) -> None:
+        require(0 <= self.floor < 0.5, f"floor = {self.floor}, expected 0 to below 0.5")
+        require(0.5 < self.sure < 1, f"sure = {self.sure}, expected above 0.5 and below 1")
+        require(self.lasting_s > 0, f"lasting_s = {self.lasting_s}, expected above 0")
+
+
+@dataclass(frozen=True)
+class ModeTrack:
+    """Beliefs at the N stamps of a run.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Of the M modes.
+    stamps_s : (N,)
+    probabilities : (N, M)
+        Of each mode, from what was measured up to the stamp.
+    means, sigmas : (N, n)
+        State over all modes, and its standard deviations.
+    normalised_squared : (N,)
+        Squared normalised innovation of the most probable mode, divided by how many entries were
+        measured: 1 on average; NaN where nothing was.
+    labels : (N,) of str
+        What the run names; "unknown" where it names nothing.
+    """
+
+    names: tuple[str, ...]
+    stamps_s: FloatArray
+    probabilities: FloatArray
+    means: FloatArray
+    sigmas: FloatArray
+    normalised_squared: FloatArray
+    labels: AnyArray
+
+
+def follow(
+    run: Run,
+    mode_set: ModeSet,
+    config: ModesConfig | None = None,
+    seen: Sequence[SeenGround] = (),
+    *,
+    show_progress: bool = False,
+) -> ModeTrack:
+    """Run the interacting multiple model estimator over a run.
+
+    Parameters
+    ----------
+    run : Run
+    mode_set : ModeSet
+    config : ModesConfig, optional
+    seen : sequence of SeenGround
+        What vision saw; without it motion alone decides.
+    show_progress : bool
+
+    Raises
+    ------
+    RunFolderError
+        If the run lacks what the modes are told by.
+    ParameterError
+        If vision saw what is no mode.
+    """
+    signals = mode_set.modes.signals(run)
+    signals = replace(signals, labels=_true_labels(run, signals))
+    return follow_signals(signals, mode_set, config, seen, show_progress=show_progress)
+
+
+def follow_signals(
+    signals: Signals,
+    mode_set: ModeSet,
+    config: ModesConfig | None = None,
+    seen: Sequence[SeenGround] = (),
+    *,
+    show_progress: bool = False,
+) -> ModeTrack:
+    """The same over inputs and measurements."""
+    config = config or ModesConfig()
+    modes, count = mode_set.modes, len(mode_set.names)
+    chains = mode_chains(seen, mode_set.names, mode_set.dwell_s)
+    in_force = np.searchsorted([one.stamp_s for one in seen], signals.stamps_s, side="right")
+    bank = TemperedBank(EkfBank(modes.model(), count), _independent(signals, modes.errors_last_s))
+    estimators = [Imm(bank, one.transition, modes.state_angles, config.floor) for one in chains]
+    measured = np.where(_moving(signals)[:, None], signals.measured, np.nan)
+    first = chains[in_force[0]].transition(SETTLED_S).mean(axis=0)
+    belief = ModeBelief.alike(*modes.start(signals), first)
+    size = len(signals)
+    probabilities = np.empty((size, count))
+    means, sigmas = np.empty((2, size, belief.means.shape[1]))
+    squared = np.full(size, np.nan)
+    steps: Iterable[int] = tqdm(range(size), unit="step", disable=None if show_progress else True)
+    for row in steps:
+        imm = estimators[in_force[row]]
+        if row:
+            belief = imm.step(
+                belief,
+                signals.tread_speeds_m_s[row - 1],
+                measured[row],
+                float(signals.stamps_s[row] - signals.stamps_s[row - 1]),
+            )
+        probabilities[row] = belief.probabilities
+        mean, covariance = imm.merged(belief)
+        means[row], sigmas[row] = mean, np.sqrt(np.diag(covariance))
+        if belief.innovations is not None:
+            of_mode = belief.innovations.normalised_squared[probabilities[row].argmax()]
+            squared[row] = of_mode / np.isfinite(measured[row]).sum()
+    return ModeTrack(
+        mode_set.names, signals.stamps_s, probabilities, means, sigmas, squared, signals.labels
+    )
+
+
+def _moving(signals: Signals) -> BoolArray:
+    """Where (N,) a tread turned before the stamp: who stands learns nothing of the ground."""
+    turning = np.abs(signals.tread_speeds_m_s).max(axis=1) > STANDING_M_S
+    return np.append(False, turning[:-1])
+
+
+def _true_labels(run: Run, signals: Signals) -> AnyArray:
+    """What truth.csv names, else the run: for scoring alone."""
+    if run.truth is None or "terrain" not in run.truth:
+        return signals.labels
+    rows = np.searchsorted(run.truth.stamps_s, signals.stamps_s, side="right") - 1
+    return np.asarray(run.truth["terrain"].astype(object)[np.maximum(rows, 0)])
+
+
+def _independent(signals: Signals, errors_last_s: float) -> float:
+    """Share of a measurement that is news, when errors of the models last."""
+    measured_s = signals.stamps_s[np.isfinite(signals.measured).any(axis=1)]
+    if errors_last_s <= 0 or len(measured_s) < 2:
+        return 1.0
+    return min(1.0, float(np.median(np.diff(measured_s))) / errors_last_s)

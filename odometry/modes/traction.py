@@ -1,0 +1,150 @@
+"""Modes of small traction changes: poses driven by the gains of each mode (Salvi 2024, III-B).
+
+The state is x, y, yaw and the yaw rate. That of the paper is the pose alone; with the yaw rate a
+gyroscope can be heard, and the robot may turn a little later than it was asked to.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.signal import lfilter
+
+from odometry.arrays import FloatArray
+from odometry.estimation.ekf_model import EkfModel
+from odometry.geometry import se2
+from odometry.modes.signals import Signals, pose_signals
+from odometry.run import Run
+
+LEFT_TURN, RIGHT_TURN = 0, 1
+SHORTEST_LAG_S = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class TractionModes:
+    """Body twist of the requested speed u_1 and turn rate u_2, of each mode and turn.
+
+    Eq. 3 has v_x = k u_1 and omega = m u_2. A wheel that slips on one side pulls aside, drives
+    the robot by other shares in left and in right turns, and moves the turning centre: so the
+    gains here are (v_x, v_y, omega) by (u_1, u_2), for each turn. Those of eq. 3 are
+    [[k, 0], [0, 0], [0, m]], the same for both.
+
+    Attributes
+    ----------
+    names : tuple of str
+    gains : (M, 2, 3, 2)
+        For left turns, then for right ones.
+    lag_s : (M,)
+        Time in which the yaw rate follows what is asked for; 0 in eq. 3.
+    track_width : float
+        [m]
+    process : (2,)
+        Variance of the place [m^2] and of the yaw [rad^2] that a metre of wheel travel adds, the
+        same in all modes: else whatever mode was recorded most smoothly wins on every straight.
+    measurement : (4,)
+        Variance of a measured x, y, yaw, and yaw rate. The last holds what lasts of the errors of
+        the modes, too: of what a gyroscope says in a second, its noise is the least.
+    """
+
+    names: tuple[str, ...]
+    gains: FloatArray
+    lag_s: FloatArray
+    track_width: float
+    process: FloatArray
+    measurement: FloatArray
+
+    kind = "traction"
+    errors_last_s = 0.0
+    state_angles: tuple[int, ...] = (2,)
+
+    @property
+    def k(self) -> FloatArray:
+        """Shares (M, 2) of the requested speed, in left and right turns."""
+        return self.gains[:, :, 0, 0]
+
+    @property
+    def m(self) -> FloatArray:
+        """Shares (M, 2) of the requested turn rate."""
+        return self.gains[:, :, 2, 1]
+
+    def signals(self, run: Run) -> Signals:
+        """What of a run the filters use."""
+        return pose_signals(run)
+
+    def start(self, signals: Signals) -> tuple[FloatArray, FloatArray]:
+        """Mean (4,) and covariance (4, 4): the first measured pose, standing."""
+        poses = signals.measured[:, :3]
+        first = poses[np.isfinite(poses).all(axis=1)][0]
+        return np.append(first, 0.0), np.diag(np.append(self.measurement[:3], 0.0))
+
+    def model(self) -> EkfModel:
+        """For a bank of all modes."""
+        return EkfModel(
+            states=4,
+            transition=self._transition,
+            transition_jacobian=self._jacobian,
+            process_noise=self._noise,
+            measurement=lambda x: x,
+            measurement_jacobian=lambda x: np.eye(4),  # noqa: ARG005
+            measurement_covariance=np.diag(self.measurement),
+            state_angles=self.state_angles,
+            measurement_angles=self.state_angles,
+        )
+
+    def _moved(self, x: FloatArray, u: FloatArray, dt: float) -> tuple[FloatArray, FloatArray]:
+        """Displacements (M, 3) of a step, and the yaw rates (M,) after it."""
+        twists = twists_of(self.gains, u, self.track_width)
+        excess = x[:, 3] - twists[:, 2]
+        lasting, integral_s = self._lasting(dt)
+        moved = twists * dt
+        moved[:, 2] += excess * integral_s
+        return moved, twists[:, 2] + excess * lasting
+
+    def _lasting(self, dt: float) -> tuple[FloatArray, FloatArray]:
+        """What is left (M,) of an excess of yaw rate after a step, and its integral [s]."""
+        lag_s = np.maximum(self.lag_s, SHORTEST_LAG_S)
+        lasting = np.exp(-dt / lag_s)
+        return lasting, lag_s * (1 - lasting)
+
+    def _transition(self, x: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Poses along exact arcs of the mean yaw rate of the step."""
+        moved, omega = self._moved(x, u, dt)
+        return np.concatenate([se2.compose(x[:, :3], se2.exp(moved)), omega[:, None]], axis=1)
+
+    def _jacobian(self, x: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """The heading swings the step, and so does the yaw rate (M, 4, 4)."""
+        moved, _ = self._moved(x, u, dt)
+        lasting, integral_s = self._lasting(dt)
+        cosine, sine = np.cos(x[:, 2]), np.sin(x[:, 2])
+        dx, dy, _ = se2.exp(moved).T
+        by_angle = se2.exp_jacobian(moved)[:, :, 2] * integral_s[:, None]
+        jacobian = np.tile(np.eye(4), (len(x), 1, 1))
+        jacobian[:, 0, 2], jacobian[:, 1, 2] = -sine * dx - cosine * dy, cosine * dx - sine * dy
+        jacobian[:, 0, 3] = cosine * by_angle[:, 0] - sine * by_angle[:, 1]
+        jacobian[:, 1, 3] = sine * by_angle[:, 0] + cosine * by_angle[:, 1]
+        jacobian[:, 2, 3], jacobian[:, 3, 3] = by_angle[:, 2], lasting
+        return jacobian
+
+    def _noise(self, x: FloatArray, u: FloatArray, dt: float) -> FloatArray:  # noqa: ARG002
+        """Grows with wheel travel (4, 4)."""
+        place, yaw = np.abs(u).mean() * dt * self.process
+        return np.diag([place, place, yaw, 0.0])
+
+
+def twists_of(gains: FloatArray, tread_speeds_m_s: FloatArray, track_width: float) -> FloatArray:
+    """Twists (..., 3) of gains (..., 2, 3, 2) at tread speeds (..., 2): eq. 3 and its u_1, u_2."""
+    left, right = np.moveaxis(tread_speeds_m_s, -1, 0)
+    speed, turn = (left + right) / 2, (right - left) / track_width
+    requested = np.stack([speed, turn], axis=-1)
+    to_right = (right < left)[..., None, None]
+    of_turn = np.where(to_right, gains[..., RIGHT_TURN, :, :], gains[..., LEFT_TURN, :, :])
+    return np.asarray((of_turn @ requested[..., None])[..., 0])
+
+
+def lagged(values: FloatArray, time_s: FloatArray, lag_s: float) -> FloatArray:
+    """Values (N,) at times (N,), each held to the next, as a first-order lag follows them."""
+    step_s = float(np.median(np.diff(time_s)))
+    even_s = np.arange(time_s[0], time_s[-1] + step_s, step_s)
+    held = values[np.searchsorted(time_s, even_s + 1e-9, side="right") - 1]
+    lasting = np.exp(-step_s / max(lag_s, SHORTEST_LAG_S))
+    followed, _ = lfilter([0.0, 1 - lasting], [1.0, -lasting], held, zi=held[:1])
+    return np.asarray(np.interp(time_s, even_s, followed))

@@ -1,0 +1,94 @@
+"""Modes of large traction changes: linear models of speed and yaw rate (Salvi 2024, III-A)."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from scipy.linalg import expm
+
+from odometry.arrays import FloatArray
+from odometry.errors import ParameterError
+from odometry.estimation.ekf_model import EkfModel
+from odometry.modes.signals import Signals, velocity_signals
+from odometry.run import Run
+
+STEP_RESOLUTION_S = 1e-6
+FIRST_SIGMAS = np.array([0.5, 0.5])  # of speed [m/s] and yaw rate [rad/s] at the start
+
+
+@dataclass(frozen=True, eq=False)
+class VelocityModes:
+    """d(V, omega)/dt = A (V, omega) + B (v_left, v_right), with A and B of each mode (eq. 2).
+
+    The inputs are tread speeds in m/s: B is that of eq. 2 divided by the wheel radius.
+
+    Attributes
+    ----------
+    names : tuple of str
+    A, B : (M, 2, 2)
+    process : (M, 2)
+        Variance of speed and yaw rate that a second adds.
+    measurement : (M, 2)
+        Variance of a measured speed and yaw rate.
+    errors_last_s : float
+        For how long errors of a model are alike: of what is measured within that time, all
+        together counts once.
+    """
+
+    names: tuple[str, ...]
+    A: FloatArray
+    B: FloatArray
+    process: FloatArray
+    measurement: FloatArray
+    errors_last_s: float = 0.0
+
+    kind = "velocity"
+    state_angles: tuple[int, ...] = ()
+
+    def __post_init__(self) -> None:
+        growth = np.linalg.eigvals(self.A).real.max(axis=1)
+        for name, rate in zip(self.names, growth, strict=True):
+            if not rate < 10:
+                raise ParameterError(f"[mode.{name}] A: grows at {rate:g} per second")
+
+    def signals(self, run: Run) -> Signals:
+        """What of a run the filters use."""
+        return velocity_signals(run)
+
+    def start(self, signals: Signals) -> tuple[FloatArray, FloatArray]:
+        """Mean (2,) and covariance (2, 2) at the first stamp: as the wheels turn."""
+        speed = signals.tread_speeds_m_s[0].mean()
+        omega = signals.measured[0, 1]
+        mean = np.array([speed, omega if np.isfinite(omega) else 0.0])
+        return mean, np.diag(FIRST_SIGMAS**2)
+
+    def model(self) -> EkfModel:
+        """For a bank of all modes."""
+        key = np.concatenate([self.A, self.B], axis=-1)
+
+        def exact(step_s: float) -> FloatArray:
+            return _discrete(key.tobytes(), len(key), round(step_s / STEP_RESOLUTION_S))
+
+        return EkfModel(
+            states=2,
+            transition=lambda x, u, dt: (
+                np.einsum("mij,mj->mi", exact(dt)[..., :2], x) + exact(dt)[..., 2:] @ u
+            ),
+            transition_jacobian=lambda x, u, dt: exact(dt)[..., :2],  # noqa: ARG005
+            process_noise=lambda x, u, dt: dt * self.process[:, :, None] * np.eye(2),  # noqa: ARG005
+            measurement=lambda x: x,
+            measurement_jacobian=lambda x: np.eye(2),  # noqa: ARG005
+            measurement_covariance=self.measurement[:, :, None] * np.eye(2),
+        )
+
+    def steady_gains(self) -> FloatArray:
+        """Speed and yaw rate (M, 2, 2) per tread speed, once all has settled: -A^-1 B."""
+        return np.asarray(-np.linalg.solve(self.A, self.B))
+
+
+@lru_cache(maxsize=256)
+def _discrete(models: bytes, modes: int, steps: int) -> FloatArray:
+    """Transition and input matrices (M, 2, 4) of a step at constant input, exactly."""
+    blocks = np.zeros((modes, 4, 4))
+    blocks[:, :2] = np.frombuffer(models).reshape(modes, 2, 4)
+    return np.asarray(expm(blocks * (steps * STEP_RESOLUTION_S))[:, :2])

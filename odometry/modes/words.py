@@ -1,0 +1,99 @@
+"""What was found of the modes of a run in sentences."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from odometry.modes.answers import UNDETERMINED, Detection
+from odometry.modes.followed import SIGHTED, Followed, Score
+from odometry.modes.track import ModeTrack
+
+FEW = 4  # stretches, or answers, that are said one by one
+LEAST_SHARE = 0.005  # less is not said
+
+
+def sentences(followed: Followed) -> tuple[str, ...]:
+    """The answer, then what is to be known of it; the first is for a hurried reader."""
+    return (answer_words(followed, followed.motion), *_more(followed))
+
+
+def answer_words(followed: Followed, track: ModeTrack) -> str:
+    """How soon and how well modes were told; where the run names none, what the answers are."""
+    score = followed.score(track)
+    if not score.detections:
+        shares = list(followed.shares(track).items())
+        said = [f"{name} {percent(share)} of the time" for name, share in shares[:FEW]]
+        others = len(shares) - FEW
+        said += [f"{others} others the rest"] if others > 0 else []
+        return f"{', '.join(said)}."
+    if len(score.detections) > FEW:
+        return _together(score)
+    said = [_stretch(one, _answered(followed, track, one)) for one in score.detections]
+    return f"{'. '.join(said)}."
+
+
+def percent(share: float) -> str:
+    """A share as words."""
+    return "-" if np.isnan(share) else f"{100 * share:.0f} %"
+
+
+def disagreement_words(one: tuple[float, float, str, str]) -> str:
+    """When sight and motion said what."""
+    from_s, to_s, seen, felt = one
+    return f"From {from_s:.1f} s to {to_s:.1f} s sight says {seen}, and motion says {felt}."
+
+
+def _more(followed: Followed) -> Iterator[str]:
+    if followed.sighted is not None:
+        yield f"With sight: {answer_words(followed, followed.sighted)}"
+    for name, track in followed.tracks.items():
+        count = followed.score(track).false_switches
+        if count:
+            times = "once" if count == 1 else f"{count} times"
+            whose = " with sight" if name == SIGHTED else ""
+            yield f"The answer{whose} turned to a wrong mode {times}."
+    if followed.foreign_labels:
+        yield (
+            f"The run names {', '.join(followed.foreign_labels)}, which is no mode: the answers "
+            "there were not judged."
+        )
+    if followed.seen:
+        argued = followed.disagreements
+        yield from map(disagreement_words, argued)
+        if not argued:
+            lasting_s = followed.config.lasting_s
+            yield f"Sight and motion disagree nowhere for {lasting_s:g} s or longer."
+
+
+def _answered(followed: Followed, track: ModeTrack, one: Detection) -> str:
+    """The mode that was answered most in a stretch, where it was, and for how much of it."""
+    inside = (track.stamps_s >= one.from_s) & (track.stamps_s <= one.to_s)
+    names, counts = np.unique(followed.answers(track)[inside].astype(str), return_counts=True)
+    told = names != UNDETERMINED
+    most = int(np.where(told, counts, 0).argmax())
+    share = counts[most] / inside.sum()
+    if not told[most] or share < LEAST_SHARE:
+        return ""
+    return f"; {names[most]} {percent(share)} of that time"
+
+
+def _stretch(one: Detection, answered: str) -> str:
+    if np.isnan(one.after_s):
+        return f"{one.mode}: not told in {one.to_s - one.from_s:.1f} s{answered}"
+    wrong = f", wrong {percent(one.wrong)}" if one.wrong >= LEAST_SHARE else ""
+    return (
+        f"{one.mode}: told after {one.after_s:.1f} s; right {percent(one.right)} of the time after "
+        f"that{wrong}"
+    )
+
+
+def _together(score: Score) -> str:
+    count = f"{len(score.told)} of {len(score.detections)} stretches were told"
+    if not score.told:
+        return f"{count}; wrong {percent(score.wrong_of_all)} of all the time."
+    return (
+        f"{count}, after {score.median_after_s:.1f} s in the median; right "
+        f"{percent(score.right)} of the time after that, wrong {percent(score.wrong)}, "
+        f"undetermined {percent(score.undetermined)}; wrong {percent(score.wrong_of_all)} of all "
+        "the time."
+    )

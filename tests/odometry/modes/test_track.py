@@ -1,0 +1,211 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.errors import ConfigError, ParameterError, RunFolderError
+from odometry.modes.mode_set import ModeSet
+from odometry.modes.sight import SeenGround
+from odometry.modes.signals import Signals
+from odometry.modes.track import ModesConfig, follow, follow_signals
+from odometry.modes.traction import TractionModes
+from odometry.modes.velocity import VelocityModes
+from tests.odometry.modes.mode_drives import (
+    ROBOT,
+    asked_twists,
+    integrated,
+    poses_and_yaw_rates,
+    run_of_tables,
+    table,
+    velocities,
+    velocity_run,
+    wandering,
+)
+
+NAMES = ("ice", "tar")
+STEP_S, SIGMA = 0.02, 0.02
+A = np.array([[[-5.0, 0.0], [0.0, -4.0]], [[-5.0, 0.0], [0.0, -6.0]]])
+SETTLED = np.array([[[0.5, 0.5], [-0.8, 0.8]], [[0.5, 0.5], [-1.2, 1.2]]])
+B = -A @ SETTLED
+NOISE = np.full((2, 2), 1e-3), np.full((2, 2), SIGMA**2)
+SET = ModeSet(VelocityModes(NAMES, A, B, *NOISE), np.full(2, 20.0))
+CHANGE = 1000
+
+
+@pytest.fixture(scope="module")
+def run():
+    """Ice, from 20 s on tar."""
+    labels = np.repeat(NAMES, CHANGE).tolist()
+    by_name = dict(zip(NAMES, A, strict=True)), dict(zip(NAMES, B, strict=True))
+    return velocity_run(np.random.default_rng(3), *by_name, labels, sigmas=(SIGMA, SIGMA))
+
+
+@pytest.fixture(scope="module")
+def straight():
+    """Both grounds answer alike to treads that go together."""
+    rng, size = np.random.default_rng(4), 500
+    treads = np.repeat(wandering(rng, size, STEP_S)[:, :1], 2, axis=1)
+    true = velocities([A[0]] * size, [B[0]] * size, treads, STEP_S)
+    seen = true + SIGMA * rng.normal(size=true.shape)
+    t = STEP_S * np.arange(size)
+    odometry = {"t": t, "v_left": treads[:, 0], "v_right": treads[:, 1], "gyro_z": seen[:, 1]}
+    return run_of_tables(odometry, velocity={"t": t, "vx": seen[:, 0], "wz": seen[:, 1]})
+
+
+def without_labels(run):
+    columns = {name: column for name, column in run.odometry.columns.items() if name != "terrain"}
+    return replace(run, odometry=replace(run.odometry, columns=columns))
+
+
+def test_a_change_of_ground_is_told_within_seconds(run):
+    track = follow(run, SET)
+    sure_of_tar = track.probabilities[:, 1] > 0.9
+    assert np.flatnonzero(track.probabilities[:, 0] > 0.9)[0] * STEP_S < 2.0
+    assert not sure_of_tar[:CHANGE].any()
+    told = np.flatnonzero(sure_of_tar)[0]
+    assert 0 < (told - CHANGE) * STEP_S < 2.0
+    assert (track.probabilities[told:, 1] > 0.5).mean() > 0.95
+    assert track.labels.tolist() == np.repeat(NAMES, CHANGE).tolist()
+
+
+def test_probabilities_sum_to_one_and_keep_their_floor(run):
+    track = follow(run, SET, ModesConfig(floor=0.01))
+    np.testing.assert_allclose(track.probabilities.sum(axis=1), 1.0, atol=1e-12)
+    assert track.probabilities.min() >= 0.01 * (1 - 1e-9)
+    assert follow(run, SET).probabilities.min() < 0.01
+
+
+def test_the_same_input_gives_the_same_bits(run):
+    first, second = follow(run, SET), follow(run, SET)
+    for name in ("probabilities", "means", "sigmas", "normalised_squared"):
+        assert getattr(first, name).tobytes() == getattr(second, name).tobytes()
+
+
+def test_truth_and_labels_are_for_scoring_alone(run):
+    """Every row of the truth names the wrong ground, and holds to the next."""
+    truth = table({"t": np.array([5.0, 20.0]), "terrain": np.array(["tar", "ice"])})
+    expected, bare = follow(run, SET), without_labels(run)
+    for other, labels in (
+        (bare, ["unknown"] * 2 * CHANGE),
+        (replace(run, truth=truth), ["tar"] * CHANGE + ["ice"] * CHANGE),
+        (replace(bare, truth=truth), ["tar"] * CHANGE + ["ice"] * CHANGE),
+    ):
+        track = follow(other, SET)
+        assert track.labels.tolist() == labels
+        assert track.probabilities.tobytes() == expected.probabilities.tobytes()
+        assert track.means.tobytes() == expected.means.tobytes()
+
+
+def test_a_straight_leaves_it_open(straight):
+    assert follow(straight, SET).probabilities.max() < 0.9
+
+
+def test_sight_decides_what_motion_leaves_open(straight):
+    """From the place on where it was seen, and not before; a guess of even odds says nothing."""
+    motion = follow(straight, SET).probabilities
+    for column, name in enumerate(NAMES):
+        sighted = follow(straight, SET, seen=(SeenGround(4.0, name, 0.98),)).probabilities
+        row = round(4.0 / STEP_S)
+        np.testing.assert_array_equal(sighted[:row], motion[:row])
+        assert (sighted[row:, column] > motion[row:, column]).all()
+        assert (sighted[round(8.0 / STEP_S) :, column] > 0.8).all()  # settles at 1.01 of 1.06
+    guessed = follow(straight, SET, seen=(SeenGround(4.0, "tar", 0.5),)).probabilities
+    np.testing.assert_allclose(guessed, motion, atol=1e-12)
+
+
+def test_motion_overrides_sight_that_is_wrong(run):
+    seen = [SeenGround(t, "tar", 0.9) for t in (0.0, 5.0, 10.0)]
+    motion, both = (follow(run, SET, seen=of).probabilities[:CHANGE, 0] for of in ((), seen))
+    assert (both[400:] > 0.5).mean() > 0.9
+    assert (both < motion).mean() > 0.95  # it is heard, though
+
+
+def test_who_stands_learns_from_sight_alone():
+    """Rates from ice to tar and back: 1/20 a second, and 0.8 more for odds of 0.9 from 2 s on."""
+    t = STEP_S * np.arange(500)
+    still = {"t": t, "v_left": 0 * t, "v_right": 0 * t, "gyro_z": 0.3 * np.sin(t)}
+    track = follow(run_of_tables(still), SET, seen=(SeenGround(2.0, "tar", 0.9),))
+    there, back = 0.05 + 0.8, 0.05
+    settled = there / (there + back)
+    left = np.exp(-(there + back) * np.maximum(t - 2.0 + STEP_S, 0.0))
+    np.testing.assert_allclose(track.probabilities[:, 1], settled + (0.5 - settled) * left)
+    assert np.isnan(track.normalised_squared).all()
+
+
+def test_sight_of_what_is_no_mode_is_refused(run):
+    with pytest.raises(ParameterError, match="'mud'"):
+        follow(run, SET, seen=(SeenGround(1.0, "mud", 0.9),))
+
+
+def test_a_run_without_a_yaw_rate_is_refused(run):
+    columns = {name: run.odometry[name] for name in ("t", "v_left", "v_right")}
+    bare = replace(run, velocity=None, odometry=table(columns))
+    with pytest.raises(RunFolderError, match="no yaw rate"):
+        follow(bare, SET)
+
+
+def test_one_mode_is_a_kalman_filter():
+    """Uneven steps, inputs that hold from stamp to stamp, entries and rows not measured."""
+    rng = np.random.default_rng(8)
+    stamps_s = np.cumsum(np.round(rng.uniform(0.01, 0.1, 60), 3))
+    treads, z = rng.normal(size=(60, 2)), rng.normal(size=(60, 2))
+    z[10], z[20, 0], z[30, 1] = np.nan, np.nan, np.nan
+    process, noise = np.array([0.02, 0.05]), np.array([0.3, 0.1])
+    one = VelocityModes(("mud",), A[:1], B[:1], process[None], noise[None])
+    labels = np.full(60, "mud", dtype=object)
+    track = follow_signals(Signals(stamps_s, treads, z, labels), ModeSet(one, np.array([5.0])))
+    mean, P = np.array([treads[0].mean(), z[0, 1]]), 0.25 * np.eye(2)
+    for row in range(1, 60):
+        lasts_s, u = stamps_s[row] - stamps_s[row - 1], treads[row - 1]
+        F = integrated(lambda q: A[0] @ q, np.eye(2), lasts_s, 50)
+        mean = integrated(lambda q, u=u: A[0] @ q + B[0] @ u, mean, lasts_s, 50)
+        P = F @ P @ F.T + lasts_s * np.diag(process)
+        H = np.eye(2)[np.isfinite(z[row])]
+        S = H @ (P + np.diag(noise)) @ H.T
+        left = H @ np.nan_to_num(z[row]) - H @ mean
+        squared = left @ np.linalg.solve(S, left) / len(H) if len(H) else np.nan
+        gain = P @ H.T @ np.linalg.inv(S)
+        mean, P = mean + gain @ left, P - gain @ H @ P
+        np.testing.assert_allclose(track.means[row], mean, atol=1e-7)
+        np.testing.assert_allclose(track.sigmas[row], np.sqrt(np.diag(P)), atol=1e-7)
+        np.testing.assert_allclose(track.normalised_squared[row], squared, rtol=1e-5)
+    assert np.isnan(track.normalised_squared[[0, 10]]).all()
+
+
+def test_errors_that_last_count_once(run):
+    """Measured each 0.02 s, alike for 0.2 s: a tenth of the log-odds. No mode is ever left."""
+    odds = {}
+    for lasts_s in (0.0, 0.01, 0.2):
+        modes = replace(SET.modes, errors_last_s=lasts_s)
+        track = follow(run, ModeSet(modes, np.full(2, np.inf)), ModesConfig(floor=0.0))
+        odds[lasts_s] = np.diff(np.log(track.probabilities[:100]), axis=1)[:, 0]
+    assert np.abs(odds[0.0]).max() > 1.0
+    np.testing.assert_allclose(odds[0.2], odds[0.0] / 10, atol=1e-9)
+    np.testing.assert_allclose(odds[0.01], odds[0.0], atol=1e-9)
+
+
+def test_traction_that_is_lost_is_told_within_seconds():
+    """Poses alone at 10 Hz: from 10 s on half of the turn is lost."""
+    rng, size = np.random.default_rng(6), 1000
+    gains = np.zeros((2, 2, 3, 2))
+    gains[:, :, 0, 0], gains[:, :, 2, 1] = 1.0, np.array([0.8, 0.4])[:, None]
+    noise = np.array([1e-4, 1e-5]), np.array([1e-4, 1e-4, 25e-6, 1.0])
+    modes = TractionModes(("none", "all"), gains, np.full(2, 0.1), ROBOT.track_width, *noise)
+    treads = wandering(rng, size, STEP_S)
+    asked = [asked_twists(of, treads, ROBOT.track_width) for of in gains]
+    states = poses_and_yaw_rates(np.vstack([asked[0][:500], asked[1][500:]]), 0.1, STEP_S)
+    t = STEP_S * np.arange(size)
+    x, y, yaw = (states[::5, :3] + rng.normal(size=(200, 3)) * [0.01, 0.01, 0.005]).T
+    pose = {"t": t[::5], "x": x, "y": y, "yaw": np.angle(np.exp(1j * yaw))}
+    odometry = {"t": t, "v_left": treads[:, 0], "v_right": treads[:, 1]}
+    track = follow(run_of_tables(odometry, pose=pose), ModeSet(modes, np.full(2, 20.0)))
+    told = [np.flatnonzero(track.probabilities[:, mode] > 0.9)[0] for mode in (0, 1)]
+    assert told[0] * STEP_S < 4.0
+    assert 0.0 < (told[1] - 500) * STEP_S < 4.0
+    assert np.hypot(*(track.means[-1, :2] - states[-1, :2])) < 0.03
+
+
+@pytest.mark.parametrize("wrong", [{"floor": 0.5}, {"sure": 0.5}, {"sure": 1.0}, {"lasting_s": 0}])
+def test_settings_that_cannot_be(wrong):
+    with pytest.raises(ConfigError, match=f"{next(iter(wrong))} = "):
+        ModesConfig(**wrong)

@@ -1,0 +1,158 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from odometry.models.inputs import Inputs
+from odometry.models.traction_mode import TractionMode
+from odometry.modes.traction import TractionModes, lagged, twists_of
+from tests.odometry.modes.mode_drives import asked_twists, integrated, run_of_tables
+
+WIDTH = 0.5
+LAGS_S = np.array([0.0, 0.08, 0.3])
+RNG = np.random.default_rng(11)
+GAINS = np.array([[0.9, 0.05], [-0.08, 0.03], [0.2, 0.6]]) + 0.05 * RNG.normal(size=(3, 2, 3, 2))
+MODES = TractionModes(
+    ("none", "left", "all"),
+    GAINS,
+    LAGS_S,
+    WIDTH,
+    np.array([2e-3, 5e-4]),
+    np.array([4e-4, 4e-4, 1e-4, 1e-3]),
+)
+states = arrays(float, (3, 4), elements=st.floats(-3, 3))
+speeds = arrays(float, 2, elements=st.floats(-1.5, 1.5))
+steps_s = st.floats(0.005, 0.3)
+
+
+def finely(state, u, lasts_s, mode, pieces=2000):
+    """Eq. 3 with its gains of this turn, the yaw rate following them with a lag."""
+    v_x, v_y, wanted = asked_twists(GAINS[mode], [u], WIDTH)[0]
+    lag_s = max(LAGS_S[mode], 1e-3)
+
+    def rates(q):
+        c, s = np.cos(q[2]), np.sin(q[2])
+        return np.array([c * v_x - s * v_y, s * v_x + c * v_y, q[3], (wanted - q[3]) / lag_s])
+
+    return integrated(rates, state, lasts_s, pieces)
+
+
+def angle_apart(first, second):
+    return np.angle(np.exp(1j * (first - second)))
+
+
+@pytest.mark.parametrize("u", [(0.4, 0.9), (0.9, 0.4), (-0.6, -0.2), (0.7, 0.7), (-0.5, 0.5)])
+def test_yaw_and_its_rate_are_what_small_steps_make(u):
+    start = np.array([[0.3, -0.2, 3.0, 0.5], [1.0, 2.0, -1.0, -0.7], [0.0, 0.0, 0.4, 0.0]])
+    moved = MODES.model().transition(start, np.array(u), 0.25)
+    for mode in range(3):
+        expected = finely(start[mode], u, 0.25, mode)
+        assert abs(angle_apart(moved[mode, 2], expected[2])) < 1e-8
+        assert moved[mode, 3] == pytest.approx(expected[3], abs=1e-8)
+
+
+@pytest.mark.parametrize("mode", [1, 2])
+def test_the_place_is_of_second_order(mode):
+    """The yaw rate of a step is its mean: half the step, a quarter of the error or less."""
+    move, u = MODES.model().transition, np.array([0.2, 0.9])
+    start = np.tile([0.3, -0.2, 1.0, -1.0], (3, 1))
+    truth = finely(start[mode], u, 0.4, mode)
+    errors = []
+    for steps in (4, 8, 16):
+        state = start
+        for _ in range(steps):
+            state = move(state, u, 0.4 / steps)
+        errors.append(np.hypot(*(state[mode, :2] - truth[:2])))
+    assert errors[0] < 2e-3
+    assert errors[1] < 0.27 * errors[0]
+    assert errors[2] < 0.27 * errors[1]
+
+
+def test_a_settled_turn_is_an_exact_arc():
+    u = np.array([0.2, 0.9])
+    wanted = np.array([asked_twists(of, [u], WIDTH)[0, 2] for of in GAINS])
+    start = np.column_stack([np.zeros((3, 3)), wanted])
+    moved = MODES.model().transition(start, u, 1.0)
+    for mode in range(3):
+        np.testing.assert_allclose(moved[mode], finely(start[mode], u, 1.0, mode), atol=1e-9)
+
+
+@given(states, speeds, steps_s)
+def test_the_jacobian_is_that_of_differences(x, u, step_s):
+    model = MODES.model()
+    columns = []
+    for h in 1e-5 * np.eye(4):
+        ahead, behind = (model.transition(x + s * h, u, step_s) for s in (1, -1))
+        apart = ahead - behind
+        apart[:, 2] = angle_apart(ahead[:, 2], behind[:, 2])
+        columns.append(apart / 2e-5)
+    jacobian = model.transition_jacobian(x, u, step_s)
+    np.testing.assert_allclose(jacobian, np.stack(columns, axis=-1), atol=2e-9)
+
+
+@given(speeds)
+def test_the_sign_of_the_turn_chooses_the_gains(u):
+    """u_2 < 0, the right tread slower, is a right turn."""
+    expected = [asked_twists(of, [u], WIDTH)[0] for of in GAINS]
+    np.testing.assert_allclose(twists_of(GAINS, u, WIDTH), expected, atol=1e-14)
+
+
+def test_gains_by_hand():
+    """u_1 = 2 and u_2 = +-4: rows of the gains times them."""
+    gains = np.array([[[1.0, 0.1], [0.2, 0.3], [0.4, 0.5]], [[6.0, 7.0], [8.0, 9.0], [10.0, 11.0]]])
+    np.testing.assert_allclose(twists_of(gains, np.array([1.0, 3.0]), WIDTH), [2.4, 1.6, 2.8])
+    np.testing.assert_allclose(twists_of(gains, np.array([3.0, 1.0]), WIDTH), [-16, -20, -24])
+
+
+@given(arrays(float, (7, 2), elements=st.floats(-2, 2)), st.floats(0.3, 1.5), st.floats(0.1, 1.5))
+def test_the_papers_gains_are_the_traction_mode(treads, k, m):
+    gains = np.tile([[k, 0.0], [0.0, 0.0], [0.0, m]], (2, 1, 1))
+    of_model = TractionMode().twist(np.array([k, m, WIDTH]), Inputs(treads))
+    np.testing.assert_allclose(twists_of(gains, treads, WIDTH), of_model, atol=1e-13)
+
+
+def test_k_and_m_are_where_eq_3_has_them():
+    gains = np.zeros((1, 2, 3, 2))
+    gains[0, :, 0, 0], gains[0, :, 2, 1] = [0.9, 0.8], [0.5, 0.4]
+    modes = TractionModes(("x",), gains, LAGS_S[:1], WIDTH, MODES.process, MODES.measurement)
+    np.testing.assert_array_equal(modes.k, [[0.9, 0.8]])
+    np.testing.assert_array_equal(modes.m, [[0.5, 0.4]])
+
+
+def test_noise_grows_with_wheel_travel():
+    """0.1 s at 2 m/s backward on the left and 4 m/s on the right is 0.3 m."""
+    noise = MODES.model().process_noise(np.zeros((3, 4)), np.array([-2.0, 4.0]), 0.1)
+    np.testing.assert_allclose(noise, np.diag([6e-4, 6e-4, 1.5e-4, 0.0]))
+
+
+@given(arrays(float, 40, elements=st.floats(-2, 2)), st.sampled_from([0.0, 0.05, 0.4]))
+def test_a_lag_follows_as_a_loop_does(values, lag_s):
+    step_s, followed = 0.02, [values[0]]
+    for value in values[:-1]:
+        lasting = np.exp(-step_s / max(lag_s, 1e-3))
+        followed.append(followed[-1] * lasting + value * (1 - lasting))
+    found = lagged(values, step_s * np.arange(40) + 7.0, lag_s)
+    np.testing.assert_allclose(found, followed, atol=1e-10)
+
+
+def test_a_lag_over_stamps_merged_from_two_clocks():
+    """A step of 1 at 1 s, seen at uneven stamps: 1 - exp(-(t - 1) / lag)."""
+    stamps_s = np.union1d(np.arange(0, 3, 0.02), np.arange(0.007, 3, 0.1))
+    found = lagged((stamps_s >= 1.0).astype(float), stamps_s, 0.3)
+    expected = np.where(stamps_s > 1.0, 1 - np.exp(-(stamps_s - 1.0) / 0.3), 0.0)
+    np.testing.assert_allclose(found, expected, atol=0.02 / 0.3)
+
+
+def test_it_starts_standing_at_the_first_whole_pose():
+    t = np.array([0.0, 0.1, 0.2])
+    pose = {"t": t, "x": np.array([np.nan, 2.0, 3.0]), "y": t, "yaw": t + 1}
+    odometry = {"t": t, "v_left": t, "v_right": t}
+    mean, covariance = MODES.start(MODES.signals(run_of_tables(odometry, pose=pose)))
+    np.testing.assert_allclose(mean, [2.0, 0.1, 1.1, 0.0])
+    np.testing.assert_array_equal(covariance, np.diag([4e-4, 4e-4, 1e-4, 0.0]))
+
+
+def test_the_yaw_is_an_angle_to_the_filters():
+    model = MODES.model()
+    assert model.state_angles == model.measurement_angles == (2,)

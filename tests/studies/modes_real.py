@@ -1,0 +1,155 @@
+"""Which ground a real robot is on, told by its motion alone.
+
+    TERRAIN_ODOMETRY_DATA=... python tests/studies/modes_real.py
+
+Warthog runs on five grounds, joined end to end, and Husky runs with yaw rate and wheels only.
+Modes are identified on other runs (Warthog: each run is held out once), or on the other half where
+a ground has one run (Husky). Tables are shares of the time by true ground (row) and answer.
+"""
+
+import csv
+import os
+import sys
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[2]))
+
+from odometry.modes.answers import UNDETERMINED, confusion
+from odometry.modes.identify_velocity import identify_velocity_modes
+from odometry.modes.mode_set import DWELL_S, ModeSet
+from odometry.modes.signals import Signals
+from odometry.modes.track import ModesConfig, ModeTrack, follow_signals
+from odometry.run import Run
+from odometry.table import Table
+
+BETWEEN_S = 1.0  # of two runs joined
+SURE = ModesConfig().sure
+KINDS: Mapping[str, Mapping[str, bool]] = {
+    "model and noise of each ground": {},
+    "a model of each ground, one noise": {"common_noise": True},
+    "one model, noise of each ground": {"shared": True},
+}
+
+
+def main() -> None:
+    """Print the tables."""
+    folder = Path(os.environ["TERRAIN_ODOMETRY_DATA"]) / "motion"
+    warthog, husky = by_ground(folder, "warthog_"), by_ground(folder, "husky_borealtc_")
+    for models, options in KINDS.items():
+        folds = max(map(len, warthog.values()))
+        tracks = [
+            judged(*left_out(warthog, fold), options=options, name=f"Warthog, fold {fold}")
+            for fold in range(folds)
+        ]
+        print_table(f"Warthog, by held-out run, {models}", tracks)
+        halved = {ground: [halves(run) for run in runs] for ground, runs in husky.items()}
+        tracks = [
+            judged(
+                [pair[known] for of in halved.values() for pair in of],
+                [pair[1 - known] for of in halved.values() for pair in of],
+                options=options,
+                name="Husky",
+            )
+            for known in (0, 1)
+        ]
+        print_table(f"Husky, by halves, {models}", tracks)
+
+
+def by_ground(folder: Path, prefix: str) -> dict[str, list[Run]]:
+    """Runs whose ground INDEX.csv names, by ground."""
+    found = defaultdict(list)
+    with (folder / "INDEX.csv").open(newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            ground = row["terrain"].split(" (")[0]
+            if row["run"].startswith(prefix) and ground != "not stated":
+                run = Run.read(folder / row["run"])
+                found[ground].append(replace(run, settings={"run": {"terrain": ground}}))
+    return dict(found)
+
+
+def left_out(runs: dict[str, list[Run]], fold: int) -> tuple[list[Run], list[Run]]:
+    """Runs to identify on, and the run of each ground that this fold holds out."""
+    known = [run for of in runs.values() for place, run in enumerate(of) if place != fold]
+    return known, [of[fold] for of in runs.values() if fold < len(of)]
+
+
+def judged(
+    known: Sequence[Run], held: Sequence[Run], *, options: Mapping[str, bool], name: str
+) -> ModeTrack:
+    """Modes identified on some runs, followed over others end to end."""
+    modes = identify_velocity_modes(known, **options)
+    if not options:
+        gains = modes.steady_gains()[:, 1] * [-1, 1]
+        lags = -1 / modes.A[:, 1, 1]
+        said = ", ".join(
+            f"{ground} {gain.mean():.3f} ({lag:.2f} s, error {np.sqrt(noise):.3f})"
+            for ground, gain, lag, noise in zip(
+                modes.names, gains, lags, modes.measurement[:, 1], strict=True
+            )
+        )
+        print(f"{name}: yaw rate by tread speed (lag, error): {said}")
+    mode_set = ModeSet(modes, np.full(len(modes.names), DWELL_S))
+    return follow_signals(joined([modes.signals(run) for run in held]), mode_set)
+
+
+def joined(parts: Sequence[Signals]) -> Signals:
+    """Runs end to end: the state jumps between them, which is the hard part of a change."""
+    stamps, begin = [], 0.0
+    for part in parts:
+        stamps.append(part.stamps_s - part.stamps_s[0] + begin)
+        begin = float(stamps[-1][-1]) + BETWEEN_S
+    return Signals(
+        np.concatenate(stamps),
+        np.concatenate([part.tread_speeds_m_s for part in parts]),
+        np.concatenate([part.measured for part in parts]),
+        np.concatenate([part.labels for part in parts]),
+    )
+
+
+def halves(run: Run) -> tuple[Run, Run]:
+    """The first and the second half of a run's time."""
+    middle_s = float(run.odometry.stamps_s[[0, -1]].mean())
+    return tuple(
+        replace(
+            run,
+            folder=run.folder.with_name(f"{run.folder.name}_{name}"),
+            odometry=within(run.odometry, low_s, high_s),
+            velocity=None if run.velocity is None else within(run.velocity, low_s, high_s),
+        )
+        for name, low_s, high_s in (("first", -np.inf, middle_s), ("second", middle_s, np.inf))
+    )
+
+
+def within(table: Table, low_s: float, high_s: float) -> Table:
+    """Rows from one time to another."""
+    first, end = np.searchsorted(table.stamps_s, [low_s, high_s])
+    return table.rows(slice(int(first), int(end)))
+
+
+def print_table(title: str, tracks: Sequence[ModeTrack]) -> None:
+    """Shares of the time, and how the innovations were."""
+    names = tracks[0].names
+    print(f"\n{title}: named with {SURE:.0%} and more | most probable")
+    print(" " * 10, *(f"{name[:9]:>9}" for name in (*names, UNDETERMINED, "", *names)))
+    named = sum(confusion(track, SURE, names) for track in tracks)
+    forced = sum(confusion(track, 0.0, names) for track in tracks)[:, :-1]
+    for name, row, other in zip(names, named, forced, strict=True):
+        cells = [f"{value:9.2f}" for value in row / row.sum()]
+        cells += [" " * 9, *(f"{value:9.2f}" for value in other / other.sum())]
+        print(f"{name:10}", *cells)
+    right, wrong = np.trace(named), named[:, :-1].sum() - np.trace(named)
+    told = named.sum()
+    print(
+        f"of {told:.0f} s: right {right / told:.2f}, wrong {wrong / told:.2f}, open "
+        f"{named[:, -1].sum() / told:.2f}; most probable right {np.trace(forced) / told:.2f}; "
+        f"innovations squared {np.mean([np.nanmean(t.normalised_squared) for t in tracks]):.2f}\n"
+    )
+
+
+if __name__ == "__main__":
+    main()
