@@ -56,6 +56,12 @@ def terrain_colours(names: Iterable[str]) -> dict[str, str]:
     return tints | {UNKNOWN: UNKNOWN_TINT}
 
 
+def mode_colours(names: Iterable[str]) -> dict[str, str]:
+    """Give each mode a colour, in the order given: dark ones first, then tints."""
+    colours = (*(style.colour for style in LINE_STYLES), *TERRAIN_TINTS)
+    return {name: colours[i % len(colours)] for i, name in enumerate(names)}
+
+
 def line_styles(names: Iterable[str]) -> dict[str, LineStyle]:
     """Give each line a style, in the order given; after the last style the first comes again."""
     return {name: LINE_STYLES[i % len(LINE_STYLES)] for i, name in enumerate(names)}

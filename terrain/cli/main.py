@@ -17,6 +17,8 @@ VERBS = {
     "identify": "Parameters of a kinematic model from recorded runs.",
     "compare": "Held-out errors of several models, side by side.",
     "gap": "Which effect a model lacks, and the gap closed.",
+    "identify-modes": "Models of grounds or of slipping wheels, to be told apart in motion.",
+    "modes": "Which ground, or which slipping wheels, the motion speaks for.",
     "demo": "Train, run and report on the shipped data.",
 }
 
@@ -32,8 +34,9 @@ class LazyGroup(click.Group):
         """The verb's command, None where there is no such verb."""
         if cmd_name not in VERBS:
             return None
-        module = importlib.import_module(f"terrain.cli.{cmd_name}")
-        command: click.Command = getattr(module, cmd_name)
+        name = cmd_name.replace("-", "_")
+        module = importlib.import_module(f"terrain.cli.{name}")
+        command: click.Command = getattr(module, name)
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002

@@ -2,9 +2,13 @@
 
 from math import radians
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
+
+if TYPE_CHECKING:
+    from odometry.simulation.contact.traction import Traction
+    from odometry.simulation.contact.vehicle import ContactVehicle
 
 
 @click.command()
@@ -74,6 +78,14 @@ import click
     help="Friction law.  [default: the vehicle's]",
 )
 @click.option(
+    "--traction",
+    multiple=True,
+    metavar="NAME[@SECONDS]",
+    help="A ground (asphalt, grass, crushed_concrete) or the wheels that slip (none, all, or e.g. "
+    "front_left-rear_left), from a time on; repeat. The truth names it, and run.toml where there "
+    "is one.",
+)
+@click.option(
     "--terrain", default="ground", show_default=True, metavar="TERRAIN", help="Name of the ground."
 )
 @click.option(
@@ -94,6 +106,7 @@ def simulate(
     slope_direction: float,
     friction: float | None,
     law: str | None,
+    traction: tuple[str, ...],
     terrain: str,
     seed: int,
 ) -> None:
@@ -107,6 +120,7 @@ def simulate(
     Example:
       terrain-odometry simulate --out train --seed 1
       terrain-odometry simulate --out slope --vehicle j8 --drive tour --slope 5
+      terrain-odometry simulate --out change --drive sinusoid --traction grass --traction asphalt@80
     """
     import numpy as np
 
@@ -117,6 +131,8 @@ def simulate(
     from odometry.simulation.errors import SimulationError
     from odometry.simulation.record import ContactSensors, write_contact_run
 
+    if traction and (friction is not None or law):
+        raise click.UsageError("--traction says friction and law; leave out --friction and --law")
     check_writable(out)
     if out.exists() and any(out.iterdir()):
         raise SimulationError(f"{out} is there already and not empty; choose another folder")
@@ -133,17 +149,51 @@ def simulate(
         uphill_rad=radians(slope_direction),
         rng=np.random.default_rng(streams[0]),
     )
-    truth = simulate_contact(robot, course.tread_speeds_m_s, STEP_S, ground=course.ground)
+    pieces = [_piece(robot, one) for one in traction]
+    truth = simulate_contact(
+        robot, course.tread_speeds_m_s, STEP_S, ground=course.ground, traction=pieces
+    )
+    if pieces:
+        terrain = pieces[0].name
     settings: dict[str, Any] = {"drive": drive, "max_speed_m_s": max_speed, "seed": seed}
     noise = np.random.default_rng(streams[1])
-    write_contact_run(out, truth, ContactSensors(), noise, terrain=terrain, settings=settings)
+    named = None if len(pieces) > 1 else terrain
+    write_contact_run(out, truth, ContactSensors(), noise, terrain=named, settings=settings)
     name = robot.robot.get("name", vehicle)
     click.echo(
         f"Wrote the run {out}: {truth.stamps_s[-1]:.0f} s of {name}, drive {drive}, "
         f"slope {slope:g} degrees."
     )
     click.echo("Next:")
-    click.echo(f"  terrain-odometry identify {out} --model icr --out {terrain}.toml")
+    if len(pieces) > 1:
+        click.echo(f"  terrain-odometry modes {out} --models MODES.toml --out modes")
+    else:
+        click.echo(f"  terrain-odometry identify {out} --model icr --out {terrain}.toml")
+
+
+def _piece(robot: "ContactVehicle", text: str) -> "Traction":
+    """The ground or the slipping wheels of NAME[@SECONDS]."""
+    from odometry.simulation.skid_traction import (
+        GROUNDS,
+        WHEEL_MODES,
+        ground_traction,
+        wheel_mode_name,
+        wheel_traction,
+    )
+
+    name, _, start = text.partition("@")
+    try:
+        from_s = float(start or 0.0)
+    except ValueError:
+        raise click.UsageError(f"--traction {text}: {start!r} is no number of seconds") from None
+    if name in GROUNDS:
+        return ground_traction(robot, name, from_s)
+    wheels = {wheel_mode_name(mode): mode for mode in WHEEL_MODES}
+    if name not in wheels:
+        raise click.UsageError(
+            f"--traction {text}: expected one of {', '.join((*GROUNDS, *wheels))}"
+        )
+    return wheel_traction(robot, wheels[name], from_s)
 
 
 def _vehicle_file(name: str) -> Path:

@@ -93,3 +93,31 @@ def test_a_wrong_vehicle_and_a_full_folder_are_named_before_anything_is_made(tmp
         with pytest.raises(SimulationError, match=message):
             raise answer.exception
     assert not (tmp_path / "run").exists()
+
+
+def test_traction_is_named_by_the_truth_and_by_run_toml_where_it_is_one(tmp_path):
+    answer = invoke(tmp_path / "one", "--traction", "grass")
+    assert answer.exit_code == 0, answer.output
+    one = Run.read(tmp_path / "one")
+    assert one.terrain == "grass"
+    assert set(one.truth["terrain"]) == {"grass"}
+    answer = invoke(tmp_path / "two", "--traction", "none", "--traction", "all@2.0")
+    assert answer.exit_code == 0, answer.output
+    assert "terrain-odometry modes" in answer.output
+    two = Run.read(tmp_path / "two")
+    assert two.terrain is None
+    assert (two.truth["terrain"] == np.where(two.truth.stamps_s < 2.0 - 1e-9, "none", "all")).all()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--traction", "mud"], "--traction mud: expected one of asphalt, grass"),
+        (["--traction", "all@soon"], "'soon' is no number of seconds"),
+        (["--traction", "grass", "--friction", "0.3"], "leave out --friction and --law"),
+    ],
+)
+def test_traction_that_cannot_be_is_told(tmp_path, arguments, message):
+    answer = invoke(tmp_path / "run", *arguments)
+    assert answer.exit_code == 2
+    assert message in " ".join(answer.output.split())

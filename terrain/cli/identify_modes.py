@@ -1,0 +1,168 @@
+"""`terrain-odometry identify-modes`: models of grounds or of slipping wheels from recorded runs."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from terrain.cli.results import print_table
+
+if TYPE_CHECKING:
+    from odometry.modes.alike import Pair
+    from odometry.modes.traction import TractionModes
+    from odometry.modes.velocity import VelocityModes
+
+ALIKE_S = 5.0  # pairs that take longer to be told apart are named
+PAIRS = 4  # so many of them
+
+
+@click.command(name="identify-modes")
+@click.argument(
+    "folders",
+    metavar="RUN...",
+    nargs=-1,
+    required=True,
+    type=click.Path(file_okay=False, path_type=Path),
+)
+@click.option(
+    "--out",
+    required=True,
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Set of modes to write (TOML).",
+)
+@click.option(
+    "--kind",
+    type=click.Choice(["velocity", "traction"]),
+    default="velocity",
+    show_default=True,
+    help="Grounds, told by the yaw rate; or slipping wheels, told by the poses.",
+)
+@click.option("--shared", is_flag=True, help="Velocity: one model, with the noise of each mode.")
+@click.option(
+    "--common-noise",
+    is_flag=True,
+    help="Velocity: one noise for all, so that only the answer to the treads tells modes apart.",
+)
+@click.option("--paper", is_flag=True, help="Traction: one k and m alone, as in Salvi 2024.")
+@click.option(
+    "--dwell",
+    type=click.FloatRange(min=0, min_open=True),
+    default=20.0,
+    show_default=True,
+    help="Mean time in a mode [s].",
+)
+def identify_modes(
+    folders: tuple[Path, ...],
+    *,
+    out: Path,
+    kind: str,
+    shared: bool,
+    common_noise: bool,
+    paper: bool,
+    dwell: float,
+) -> None:
+    """Identify the modes that the run folders RUN name, for `modes` to tell them apart.
+
+    A mode is a name of [run] terrain in run.toml or of the column terrain in odometry.csv: a
+    ground, or the wheels that slip. Every mode needs turns, traction modes to both sides.
+
+    \b
+    Example:
+      terrain-odometry identify-modes grass_1 asphalt_1 --out set.toml
+      terrain-odometry identify-modes none all --kind traction --out set.toml
+    """
+    import numpy as np
+
+    from odometry.io.files import check_writable
+    from odometry.modes.alike import pairs
+    from odometry.modes.identify_traction import identify_traction_modes
+    from odometry.modes.identify_velocity import identify_velocity_modes
+    from odometry.modes.mode_set import ModeSet, write_mode_set
+    from odometry.modes.traction import TractionModes
+    from odometry.run import Run
+
+    for given, option in ((shared, "--shared"), (common_noise, "--common-noise")):
+        if given and kind != "velocity":
+            raise click.UsageError(f"{option} is for --kind velocity")
+    if shared and common_noise:
+        raise click.UsageError(
+            "--shared and --common-noise together leave nothing to tell modes by"
+        )
+    if paper and kind != "traction":
+        raise click.UsageError("--paper is for --kind traction")
+    if out.suffix != ".toml":
+        raise click.UsageError(f"--out {out}: expected a name that ends in .toml")
+    check_writable(out.parent)
+    runs = [Run.read(folder) for folder in folders]
+    modes: VelocityModes | TractionModes
+    if kind == "velocity":
+        modes = identify_velocity_modes(
+            runs, shared=shared, common_noise=common_noise, show_progress=True
+        )
+    else:
+        modes = identify_traction_modes(runs, paper=paper, show_progress=True)
+    if isinstance(modes, TractionModes):
+        _print_traction(modes)
+    else:
+        _print_velocity(modes)
+    _print_alike(pairs(modes, runs))
+    said = ((shared, "shared model"), (common_noise, "common noise"), (paper, "as in Salvi 2024"))
+    variant = "".join(f", {words}" for given, words in said if given)
+    names = ", ".join(dict.fromkeys(run.name for run in runs))
+    source = f"identify-modes of terrain-odometry{variant}: {names}"
+    write_mode_set(out, ModeSet(modes, np.full(len(modes.names), dwell), source))
+    click.echo(f"Wrote {out}")
+    click.echo(f"Next: terrain-odometry modes RUN --models {out} --out modes")
+
+
+def _print_velocity(modes: "VelocityModes") -> None:
+    """Print what steady turns give, how fast, and what the models leave of the measurements."""
+    click.echo(
+        "Steady yaw rate per difference of tread speeds, the effective track, the lag, steady "
+        "speed per speed of both treads, and what the models leave (standard deviations):"
+    )
+    rows: list[tuple[str, ...]] = [
+        ("mode", "rad/m", "track m", "lag s", "speed", "speed m/s", "yaw rate rad/s")
+    ]
+    gains, sigmas = modes.steady_gains(), modes.measurement**0.5
+    for name, gain, lag, sigma in zip(
+        modes.names, gains, -1 / modes.A[:, 1, 1], sigmas, strict=True
+    ):
+        turn = (gain[1, 1] - gain[1, 0]) / 2
+        cells = (turn, 1 / turn if turn else float("inf"), lag, gain[0].sum(), *sigma)
+        rows.append((name, *(f"{cell:.3f}" for cell in cells)))
+    print_table(rows)
+    click.echo(f"Errors of the models last {modes.errors_last_s:.2f} s.")
+
+
+def _print_traction(modes: "TractionModes") -> None:
+    """Print the shares of requested speed and turn rate, and the noise."""
+    click.echo("Shares k of the requested speed and m of the requested turn rate:")
+    rows: list[tuple[str, ...]] = [
+        ("mode", "k left turn", "k right turn", "m left turn", "m right turn")
+    ]
+    for name, k, m in zip(modes.names, modes.k, modes.m, strict=True):
+        rows.append((name, *(f"{share:.3f}" for share in (*k, *m))))
+    print_table(rows)
+    place, yaw = modes.process**0.5
+    click.echo(
+        f"Noise of all modes after a metre of wheel travel: {place:.3f} m, {yaw:.4f} rad; of "
+        f"measured poses: {modes.measurement[0] ** 0.5:.3f} m, "
+        f"{modes.measurement[2] ** 0.5:.4f} rad"
+    )
+
+
+def _print_alike(found: "tuple[Pair, ...]") -> None:
+    """Say which modes answer alike, and how long the hardest to tell apart take."""
+    if not found:
+        click.echo("Note: there is one mode: `modes` needs two or more to tell apart", err=True)
+        return
+    alike = [pair for pair in found if pair.seconds > ALIKE_S]
+    for pair in alike[:PAIRS] or found[:1]:
+        both = " and ".join(pair.names)
+        words = "answer alike" if alike else "are the most alike"
+        digits = 0 if pair.seconds >= 10 else 1
+        time = f"about {pair.seconds:.{digits}f} s" if pair.seconds < 1e4 else "for ever"
+        click.echo(f"{both} {words}: driven as in these runs they take {time} to be told apart.")
+    if len(alike) > PAIRS:
+        click.echo(f"So do {len(alike) - PAIRS} further pairs (more than {ALIKE_S:g} s).")

@@ -1,0 +1,142 @@
+"""`terrain-odometry modes`: which ground, or which slipping wheels, the motion speaks for."""
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from terrain.cli.results import print_written
+
+if TYPE_CHECKING:
+    from odometry.modes.followed import Followed
+    from odometry.modes.mode_set import ModeSet
+    from odometry.modes.track import ModesConfig
+
+FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
+FOLDER = click.Path(file_okay=False, path_type=Path)
+
+
+@click.command()
+@click.argument("folders", metavar="RUN...", nargs=-1, required=True, type=FOLDER)
+@click.option(
+    "--models",
+    required=True,
+    metavar="SET.toml",
+    type=FILE,
+    help="Set of modes made by `identify-modes`.",
+)
+@click.option("--out", required=True, type=FOLDER, help="Folder for the results.")
+@click.option(
+    "--seen",
+    metavar="TERRAIN.csv",
+    type=FILE,
+    help="What vision saw on the one RUN: terrain.csv of `run`.",
+)
+@click.option(
+    "--sure",
+    type=click.FloatRange(0.5, 1.0, min_open=True, max_open=True),
+    default=0.9,
+    show_default=True,
+    help="Probability from which a mode is named; below it is undetermined.",
+)
+def modes(
+    folders: tuple[Path, ...], *, models: Path, out: Path, seen: Path | None, sure: float
+) -> None:
+    """Tell on the run folders RUN, by motion alone, which mode the robot is in.
+
+    Writes the probability of each mode over time, the answers, and how soon and how often they
+    were right where the run says what is true. With --seen, what vision saw is weighed too, and
+    where sight and motion disagree for long is said. Several runs get a folder each; one that
+    cannot be used becomes a row of runs.csv that says why, and the exit code is then 1.
+
+    \b
+    Example:
+      terrain-odometry modes my_run --models set.toml --out modes
+      terrain-odometry modes my_run --models set.toml --seen results/terrain.csv --out modes
+    """
+    from odometry.io.files import check_writable
+    from odometry.modes.mode_set import read_mode_set
+    from odometry.modes.track import ModesConfig
+
+    if seen is not None and len(folders) > 1:
+        raise click.UsageError(f"--seen is of one run; there are {len(folders)}")
+    if out.resolve() in {folder.resolve() for folder in folders}:
+        raise click.UsageError("--out is one of the run folders; choose another folder")
+    check_writable(out)
+    mode_set, config = read_mode_set(models), ModesConfig(sure=sure)
+    if len(folders) == 1:
+        _one(folders[0], mode_set, config, seen, out)
+    else:
+        _several(folders, mode_set, config, out)
+
+
+def _one(
+    folder: Path, mode_set: "ModeSet", config: "ModesConfig", seen: Path | None, out: Path
+) -> None:
+    from odometry.modes.files import write_modes
+    from odometry.modes.words import sentences
+    from odometry.report.modes_page import write_modes_report
+
+    result = _followed(folder, mode_set, config, seen)
+    written = write_modes(result, out) + write_modes_report(result, out)
+    for sentence in sentences(result):
+        click.echo(sentence)
+    print_written(written, out)
+    click.echo(f"Next: open {out / 'report.html'}")
+
+
+def _several(
+    folders: tuple[Path, ...], mode_set: "ModeSet", config: "ModesConfig", out: Path
+) -> None:
+    """A folder for each run, and runs.csv; a run that fails is a row."""
+    from odometry.errors import OdometryError
+    from odometry.modes.files import write_modes, write_runs
+    from odometry.modes.words import sentences
+    from odometry.report.modes_page import write_modes_report
+
+    rows: dict[str, Followed | str] = {}
+    for name, folder in zip(_names(folders), folders, strict=True):
+        try:
+            result = _followed(folder, mode_set, config, None)
+            write_modes(result, out / name)
+            write_modes_report(result, out / name)
+        except OdometryError as error:
+            rows[name] = str(error)
+            click.echo(f"{name}: failed: {error}")
+        else:
+            rows[name] = result
+            click.echo(f"{name}: {sentences(result)[0]}")
+    write_runs(rows, out / "runs.csv")
+    done = [name for name, row in rows.items() if not isinstance(row, str)]
+    click.echo(f"Wrote to {out}: runs.csv, and a folder each of {len(done)} runs")
+    if done:
+        click.echo(f"Next: open {out / done[0] / 'report.html'}")
+    if len(done) < len(rows):
+        sys.exit(1)
+
+
+def _followed(
+    folder: Path, mode_set: "ModeSet", config: "ModesConfig", seen: Path | None
+) -> "Followed":
+    from odometry.errors import RunFolderError
+    from odometry.modes.followed import followed
+    from odometry.modes.sight import seen_grounds
+    from odometry.run import Run
+
+    run = Run.read(folder)
+    grounds = () if seen is None else seen_grounds(seen, run)
+    if seen is not None and not grounds:
+        raise RunFolderError(f"{seen}: vision named no ground that {folder} gets to")
+    return followed(run, mode_set, config, grounds, show_progress=True)
+
+
+def _names(folders: tuple[Path, ...]) -> list[str]:
+    """Names of the folders for their results; one that comes again gets a number."""
+    names: list[str] = []
+    for folder in folders:
+        name, count = folder.resolve().name, 1
+        while (name if count == 1 else f"{name}_{count}") in names:
+            count += 1
+        names.append(name if count == 1 else f"{name}_{count}")
+    return names

@@ -1,0 +1,129 @@
+"""`identify-modes`: from run folders to a set of modes, or a refusal that says why."""
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from odometry.errors import OdometryError
+from odometry.io.run_folder import write_run_folder
+from odometry.modes.mode_set import read_mode_set
+from terrain.cli.identify_modes import identify_modes
+from tests.odometry.modes.mode_examples import run_of
+
+TURNS = {"ice": 1.0, "tar": 1.4}
+
+
+@pytest.fixture
+def make(tmp_path):
+    """A run folder of 30 s that turns by so much on a ground, with what is wanted of it."""
+
+    def write(name, turn, ground, *, gyro=True, poses=True):
+        run = run_of(turn, size=1500, track_width=0.5, rng=np.random.default_rng(len(name)))
+        odometry = dict(run.odometry.columns)
+        if not gyro:
+            del odometry["gyro_z"]
+        tables = {"odometry": odometry} | ({"pose": run.pose.columns} if poses else {})
+        settings = {"robot": {"track_width": 0.5}} | (
+            {"run": {"terrain": ground}} if ground else {}
+        )
+        write_run_folder(tmp_path / name, settings, tables)
+        return str(tmp_path / name)
+
+    return write
+
+
+@pytest.fixture
+def grounds(make):
+    return [make(ground, turn, ground) for ground, turn in TURNS.items()]
+
+
+@pytest.fixture
+def out(tmp_path):
+    return tmp_path / "set.toml"
+
+
+def invoke(*arguments):
+    return CliRunner().invoke(identify_modes, list(map(str, arguments)))
+
+
+def cells(answer, mode):
+    (line,) = [line for line in answer.stdout.splitlines() if line.startswith(f"  {mode} ")]
+    return list(map(float, line.split()[1:]))
+
+
+def test_velocity_modes_are_shown_and_written(grounds, out):
+    answer = invoke(*grounds, "--out", out, "--dwell", 7)
+    assert answer.exit_code == 0, answer.output
+    found = read_mode_set(out)
+    assert found.names == ("ice", "tar")
+    assert found.dwell_s.tolist() == [7.0, 7.0]
+    assert "ice, tar" in found.source
+    for name, turn in TURNS.items():
+        per_metre, track_m, *_ = cells(answer, name)
+        assert per_metre == pytest.approx(turn / 0.5, rel=0.05)
+        assert track_m == pytest.approx(1 / per_metre, abs=2e-3)
+    assert "ice and tar are the most alike: driven as in these runs they take" in answer.stdout
+    assert f"Wrote {out}\nNext: terrain-odometry modes RUN --models {out} --out" in answer.stdout
+
+
+def test_modes_that_answer_alike_are_named(make, out):
+    alike = [make("ice", 1.0, "ice"), make("snow", 1.0, "snow")]
+    answer = invoke(*alike, "--out", out)
+    assert answer.exit_code == 0, answer.output
+    assert "ice and snow answer alike: driven as in these runs they take" in answer.stdout
+
+
+def test_one_mode_is_not_enough(grounds, out):
+    answer = invoke(grounds[0], "--out", out)
+    assert answer.exit_code == 0, answer.output
+    assert "two or more" in answer.stderr
+
+
+def test_shared_modes_have_one_model(grounds, out):
+    answer = invoke(*grounds, "--shared", "--out", out)
+    assert answer.exit_code == 0, answer.output
+    found = read_mode_set(out)
+    np.testing.assert_array_equal(*found.modes.A)
+    np.testing.assert_array_equal(*found.modes.B)
+    assert "shared" in found.source
+    assert cells(answer, "ice")[:4] == cells(answer, "tar")[:4]
+
+
+@pytest.mark.parametrize("paper", [True, False])
+def test_traction_modes_are_shown_and_written(grounds, out, paper):
+    answer = invoke(*grounds, "--kind", "traction", *["--paper"] * paper, "--out", out)
+    assert answer.exit_code == 0, answer.output
+    found = read_mode_set(out)
+    assert found.modes.kind == "traction"
+    for row, (name, turn) in enumerate(TURNS.items()):
+        shown = cells(answer, name)[:4]
+        assert shown == pytest.approx([*found.modes.k[row], *found.modes.m[row]], abs=6e-4)
+        if paper:
+            assert shown == pytest.approx([1.0, 1.0, turn, turn], abs=0.03)
+
+
+def test_an_option_of_the_other_kind_is_a_usage_error(grounds, out):
+    for options in (["--shared", "--kind", "traction"], ["--paper"]):
+        answer = invoke(*grounds, *options, "--out", out)
+        assert answer.exit_code == 2
+        assert f"{options[0]} is for --kind" in answer.stderr
+    assert invoke(*grounds, "--out", out.with_suffix(".txt")).exit_code == 2
+    assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    ("settings", "kind", "message"),
+    [
+        ({"gyro": False}, "velocity", "one: no yaw rate"),
+        ({"poses": False}, "traction", r"one.*pose"),
+        ({"ground": None}, "velocity", "have no ground; expected .run. terrain"),
+        ({"ground": None}, "traction", "names no mode; expected .run. terrain"),
+        ({"ground": "unknown"}, "velocity", "have no ground"),
+    ],
+)
+def test_runs_that_cannot_be_used_are_told(make, out, settings, kind, message):
+    run = make("one", 1.0, **({"ground": "ice"} | settings))
+    answer = invoke(run, "--kind", kind, "--out", out)
+    with pytest.raises(OdometryError, match=message):
+        raise answer.exception
+    assert not out.exists()

@@ -1,0 +1,190 @@
+"""`modes`: from run folders and a set of modes to answers, tables and a page."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from odometry.errors import ParameterError, RunFolderError
+from odometry.io.run_folder import write_run_folder
+from odometry.modes.mode_set import write_mode_set
+from terrain.cli.modes import modes
+from tests.odometry.modes.mode_examples import run_of, traction_set, velocity_set
+
+HALVES = np.repeat(["ice", "tar"], 300)
+SEEN = "t,label,confidence,distance_ahead\n1,ice,0.9,0.5\n6,tar,0.9,0.5\n"
+
+
+@pytest.fixture
+def make(tmp_path):
+    """A run folder, half on ice and half on tar as its truth says."""
+
+    def write(name, *, gyro=True, poses=True, folder=tmp_path):
+        run = run_of(np.where(HALVES == "ice", 1.0, 2.0), size=len(HALVES))
+        odometry = dict(run.odometry.columns)
+        if not gyro:
+            del odometry["gyro_z"]
+        still = np.zeros(len(HALVES))
+        truth = {"t": odometry["t"], "x": still, "y": still, "yaw": still, "terrain": HALVES}
+        tables = {"odometry": odometry, "truth": truth}
+        tables |= {"pose": run.pose.columns} if poses else {}
+        write_run_folder(folder / name, {"robot": {"track_width": 1.0, "length": 0.8}}, tables)
+        return str(folder / name)
+
+    return write
+
+
+@pytest.fixture
+def models(tmp_path):
+    write_mode_set(tmp_path / "set.toml", velocity_set())
+    return str(tmp_path / "set.toml")
+
+
+@pytest.fixture
+def seen(tmp_path):
+    """A file of what vision saw."""
+
+    def write(content=SEEN):
+        (tmp_path / "terrain.csv").write_text(content)
+        return str(tmp_path / "terrain.csv")
+
+    return write
+
+
+@pytest.fixture
+def with_sight(make, models, seen, tmp_path):
+    """What the verb answers to this sight, and where it would write."""
+
+    def run(content):
+        out = tmp_path / "out"
+        arguments = ("--models", models, "--seen", seen(content), "--out", out)
+        return invoke(make("drive"), *arguments), out
+
+    return run
+
+
+def invoke(*arguments):
+    return CliRunner().invoke(modes, list(map(str, arguments)))
+
+
+def files_of(out):
+    return {file.relative_to(out).as_posix() for file in out.rglob("*") if file.is_file()}
+
+
+def test_one_run_is_answered_in_words_and_files(make, models, tmp_path):
+    out = tmp_path / "out"
+    answer = invoke(make("drive"), "--models", models, "--out", out)
+    assert answer.exit_code == 0, answer.output
+    content = json.loads((out / "result.json").read_text())
+    ice, tar = content["motion"]["detections"]
+    words = f"ice: told after {ice['after_s']:.1f} s; right {100 * ice['right']:.0f} % of the time"
+    assert answer.stdout.startswith(words)
+    assert tar["after_s"] < 2.0
+    wrote = answer.stdout.split(f"Wrote to {out}: ")[1].splitlines()[0].split(", ")
+    assert set(wrote) == files_of(out)
+    assert answer.stdout.rstrip().endswith(f"Next: open {out / 'report.html'}")
+
+
+def test_how_sure_one_must_be_is_an_option(make, models, tmp_path):
+    run, shares = make("drive"), []
+    for sure in (0.6, 0.999):
+        invoke(run, "--models", models, "--sure", sure, "--out", tmp_path / "out")
+        content = json.loads((tmp_path / "out" / "result.json").read_text())
+        assert content["settings"]["sure"] == sure
+        shares.append(content["motion"]["shares_of_time"]["undetermined"])
+    assert shares[0] < shares[1]
+    assert invoke(run, "--models", models, "--sure", 0.5, "--out", tmp_path).exit_code == 2
+
+
+def test_what_was_seen_makes_a_second_track(with_sight):
+    answer, out = with_sight(SEEN)
+    assert answer.exit_code == 0, answer.output
+    assert "With sight: ice: told after" in answer.stdout
+    content = json.loads((out / "result.json").read_text())
+    assert content["sight"]["told"] == 2
+    assert "Sight and motion disagree nowhere for 2 s or longer." in answer.stdout
+    assert (out / "modes_with_sight.csv").exists()
+
+
+def test_a_sight_that_lies_is_reported(with_sight):
+    answer, out = with_sight(SEEN.replace("6,tar", "6,ice"))
+    assert answer.exit_code == 0, answer.output
+    assert "sight says ice, and motion says tar." in answer.stdout
+    content = json.loads((out / "result.json").read_text())
+    assert {(one["seen"], one["felt"]) for one in content["disagreements"]} == {("ice", "tar")}
+
+
+def test_several_runs_get_a_folder_each_and_a_failed_one_a_row(make, models, tmp_path):
+    out = tmp_path / "out"
+    good, blind = make("drive"), make("blind", gyro=False)
+    other = make("drive", folder=tmp_path / "elsewhere")
+    answer = invoke(good, blind, other, tmp_path / "absent", "--models", models, "--out", out)
+    assert answer.exit_code == 1
+    assert "blind: failed: " in answer.stdout
+    assert "no yaw rate; expected gyro_z" in answer.stdout
+    with (out / "runs.csv").open(newline="") as stream:
+        rows = {row["run"]: row for row in csv.DictReader(stream)}
+    assert list(rows) == ["drive", "blind", "drive_2", "absent"]
+    assert "no yaw rate" in rows["blind"]["failed"]
+    assert "no such folder" in rows["absent"]["failed"]
+    assert rows["drive"]["told"] == rows["drive_2"]["told"] == "2"
+    for name in ("drive", "drive_2"):
+        assert files_of(out / name) >= {"modes.csv", "result.json", "report.html"}
+    assert not (out / "blind").exists()
+    assert answer.stdout.rstrip().endswith(f"Next: open {out / 'drive' / 'report.html'}")
+
+
+def test_the_same_run_gives_the_same_bytes(make, models, tmp_path):
+    run = make("drive")
+    for name in ("a", "b"):
+        assert invoke(run, "--models", models, "--out", tmp_path / name).exit_code == 0
+    assert files_of(tmp_path / "a") == files_of(tmp_path / "b")
+    for name in files_of(tmp_path / "a"):
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+
+
+def test_traction_modes_need_poses(make, tmp_path):
+    write_mode_set(tmp_path / "set.toml", traction_set())
+    arguments = ("--models", tmp_path / "set.toml", "--out", tmp_path / "out")
+    answer = invoke(make("drive"), *arguments)
+    assert answer.exit_code == 0, answer.output
+    assert "The run names ice, tar, which is no mode" in answer.stdout
+    assert (tmp_path / "out" / "figures" / "path.png").exists()
+    answer = invoke(make("lost", poses=False), *arguments)
+    with pytest.raises(RunFolderError, match=r"lost: no pose\.csv; expected measured poses"):
+        raise answer.exception
+
+
+@pytest.mark.parametrize(
+    ("content", "error", "message"),
+    [
+        (SEEN.replace("tar", "mud"), ParameterError, "'mud' .* is no mode; expected one of ice, t"),
+        (SEEN.replace("0.9", "1.9"), ParameterError, "confidence 1.9"),
+        ("t,label\n0,ice\n", RunFolderError, "'confidence' is missing"),
+        (SEEN.replace("0.5\n", "99\n"), RunFolderError, "named no ground that .*drive gets to"),
+    ],
+)
+def test_a_sight_that_cannot_be_used_is_told(with_sight, content, error, message):
+    answer, out = with_sight(content)
+    with pytest.raises(error, match=message):
+        raise answer.exception
+    assert not out.exists()
+
+
+def test_an_unknown_key_of_the_set_is_told_before_anything_is_written(make, models, tmp_path):
+    text = (tmp_path / "set.toml").read_text()
+    (tmp_path / "set.toml").write_text(text.replace("dwell_s", "dwell", 1))
+    answer = invoke(make("drive"), "--models", models, "--out", tmp_path / "out")
+    with pytest.raises(ParameterError, match=r"set\.toml: \[mode\.ice\]: unknown key 'dwell'"):
+        raise answer.exception
+    assert not (tmp_path / "out").exists()
+
+
+def test_usage_errors(make, models, seen, tmp_path):
+    run, out = make("drive"), tmp_path / "out"
+    two = invoke(run, make("other"), "--models", models, "--seen", seen(), "--out", out)
+    assert (two.exit_code, "--seen is of one run; there are 2" in two.stderr) == (2, True)
+    onto = invoke(run, "--models", models, "--out", run)
+    assert (onto.exit_code, "choose another folder" in onto.stderr) == (2, True)
