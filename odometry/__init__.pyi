@@ -14,6 +14,10 @@ from .io.tum import read_spatial_tum, read_tum, write_spatial_tum, write_tum
 from .models.catalogue import MODELS
 from .models.inputs import Inputs
 from .models.run_inputs import inputs_of
+from .modes.identify_traction import identify_traction_modes
+from .modes.identify_velocity import identify_velocity_modes
+from .modes.mode_set import ModeSet, read_mode_set, write_mode_set
+from .modes.track import ModeTrack, follow_modes
 from .parameters import ParameterSet, TerrainParameters, read_parameters, write_parameters
 from .pipeline import ConstantTerrain, Replay, replay
 from .run import Frame, Robot, Run
@@ -30,6 +34,8 @@ __all__ = [
     "IcrEkf",
     "IcrEkfConfig",
     "Inputs",
+    "ModeSet",
+    "ModeTrack",
     "OdometryError",
     "ParameterSet",
     "Replay",
@@ -43,17 +49,22 @@ __all__ = [
     "dead_reckon_in_space",
     "find_gap",
     "fitness",
+    "follow_modes",
     "identify",
+    "identify_traction_modes",
+    "identify_velocity_modes",
     "inputs_of",
     "measured_poses",
     "open_loop",
     "position_errors",
+    "read_mode_set",
     "read_parameters",
     "read_spatial_tum",
     "read_tum",
     "relative_errors",
     "replay",
     "simulate_contact",
+    "write_mode_set",
     "write_parameters",
     "write_run_folder",
     "write_spatial_tum",

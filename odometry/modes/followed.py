@@ -18,7 +18,7 @@ from odometry.modes.answers import (
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.sight import SeenGround, seen_labels
 from odometry.modes.signals import Signals
-from odometry.modes.track import ModesConfig, ModeTrack, follow
+from odometry.modes.track import ModesConfig, ModeTrack, follow_modes
 from odometry.run import UNKNOWN, Run
 
 MOTION, SIGHTED = "motion alone", "motion and sight"
@@ -59,7 +59,7 @@ class Score:
 
 @dataclass(frozen=True)
 class Followed:
-    """What `follow` made of a run.
+    """What `follow_modes` made of a run.
 
     Attributes
     ----------
@@ -150,11 +150,14 @@ def followed(
     *,
     show_progress: bool = False,
 ) -> Followed:
-    """Follow a run by motion alone, and, where vision saw something, with sight; see `follow`."""
+    """Follow a run by motion alone, and where vision saw something, with sight.
+
+    See `follow_modes`.
+    """
     config = config or ModesConfig()
     signals = mode_set.modes.signals(run)
-    motion = follow(run, mode_set, config, show_progress=show_progress)
+    motion = follow_modes(run, mode_set, config, show_progress=show_progress)
     sighted = None
     if seen:
-        sighted = follow(run, mode_set, config, seen, show_progress=show_progress)
+        sighted = follow_modes(run, mode_set, config, seen, show_progress=show_progress)
     return Followed(run, mode_set, config, signals, motion, sighted, tuple(seen))

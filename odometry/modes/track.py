@@ -74,7 +74,7 @@ class ModeTrack:
     labels: AnyArray
 
 
-def follow(
+def follow_modes(
     run: Run,
     mode_set: ModeSet,
     config: ModesConfig | None = None,

@@ -71,10 +71,17 @@ class TractionModes:
         return pose_signals(run)
 
     def start(self, signals: Signals) -> tuple[FloatArray, FloatArray]:
-        """Mean (4,) and covariance (4, 4): the first measured pose, standing."""
+        """Mean (4,) and covariance (4, 4) at the first stamp: the first measured pose, standing.
+
+        Where that is a later one, the less certain by all that the wheels turned before it.
+        """
         poses = signals.measured[:, :3]
-        first = poses[np.isfinite(poses).all(axis=1)][0]
-        return np.append(first, 0.0), np.diag(np.append(self.measurement[:3], 0.0))
+        first = int(np.isfinite(poses).all(axis=1).argmax())
+        steps_s, (left, right) = np.diff(signals.stamps_s[: first + 1]), signals.tread_speeds_m_s.T
+        travel_m = (np.abs(left) + np.abs(right))[:first] @ steps_s / 2
+        turn_rad = np.abs(right - left)[:first] @ steps_s / self.track_width
+        variances = self.measurement[:3] + np.square([travel_m, travel_m, turn_rad])
+        return np.append(poses[first], 0.0), np.diag(np.append(variances, 0.0))
 
     def model(self) -> EkfModel:
         """For a bank of all modes."""

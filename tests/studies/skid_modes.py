@@ -33,7 +33,7 @@ from odometry.modes.answers import UNDETERMINED, detections, false_switches, nam
 from odometry.modes.identify_traction import identify_traction_modes
 from odometry.modes.identify_velocity import identify_velocity_modes
 from odometry.modes.mode_set import DWELL_S, ModeSet
-from odometry.modes.track import ModesConfig, ModeTrack, follow
+from odometry.modes.track import ModesConfig, ModeTrack, follow_modes
 from odometry.run import Run
 from odometry.simulation.contact.drive import ContactDrive, simulate_contact
 from odometry.simulation.contact.traction import Traction
@@ -176,7 +176,7 @@ def study(experiment: Experiment, seed: int) -> list[dict[str, object]]:
     drive = experiment.drives[seed % len(experiment.drives)]
     rng = np.random.default_rng([seed, len(experiment.modes.names)])
     run = contact_run("experiment", drive, SENSORS, rng, terrain=None)
-    track = follow(run, experiment.modes)
+    track = follow_modes(run, experiment.modes)
     answers, radius_m = named_modes(track, SURE), radii_m(track, drive)
     rows = []
     for one in detections(track, SURE):

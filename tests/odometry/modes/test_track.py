@@ -7,7 +7,7 @@ from odometry.errors import ConfigError, ParameterError, RunFolderError
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.sight import SeenGround
 from odometry.modes.signals import Signals
-from odometry.modes.track import ModesConfig, follow, follow_signals
+from odometry.modes.track import ModesConfig, follow_modes, follow_signals
 from odometry.modes.traction import TractionModes
 from odometry.modes.velocity import VelocityModes
 from tests.odometry.modes.mode_drives import (
@@ -58,7 +58,7 @@ def without_labels(run):
 
 
 def test_a_change_of_ground_is_told_within_seconds(run):
-    track = follow(run, SET)
+    track = follow_modes(run, SET)
     sure_of_tar = track.probabilities[:, 1] > 0.9
     assert np.flatnonzero(track.probabilities[:, 0] > 0.9)[0] * STEP_S < 2.0
     assert not sure_of_tar[:CHANGE].any()
@@ -69,14 +69,14 @@ def test_a_change_of_ground_is_told_within_seconds(run):
 
 
 def test_probabilities_sum_to_one_and_keep_their_floor(run):
-    track = follow(run, SET, ModesConfig(floor=0.01))
+    track = follow_modes(run, SET, ModesConfig(floor=0.01))
     np.testing.assert_allclose(track.probabilities.sum(axis=1), 1.0, atol=1e-12)
     assert track.probabilities.min() >= 0.01 * (1 - 1e-9)
-    assert follow(run, SET).probabilities.min() < 0.01
+    assert follow_modes(run, SET).probabilities.min() < 0.01
 
 
 def test_the_same_input_gives_the_same_bits(run):
-    first, second = follow(run, SET), follow(run, SET)
+    first, second = follow_modes(run, SET), follow_modes(run, SET)
     for name in ("probabilities", "means", "sigmas", "normalised_squared"):
         assert getattr(first, name).tobytes() == getattr(second, name).tobytes()
 
@@ -84,38 +84,38 @@ def test_the_same_input_gives_the_same_bits(run):
 def test_truth_and_labels_are_for_scoring_alone(run):
     """Every row of the truth names the wrong ground, and holds to the next."""
     truth = table({"t": np.array([5.0, 20.0]), "terrain": np.array(["tar", "ice"])})
-    expected, bare = follow(run, SET), without_labels(run)
+    expected, bare = follow_modes(run, SET), without_labels(run)
     for other, labels in (
         (bare, ["unknown"] * 2 * CHANGE),
         (replace(run, truth=truth), ["tar"] * CHANGE + ["ice"] * CHANGE),
         (replace(bare, truth=truth), ["tar"] * CHANGE + ["ice"] * CHANGE),
     ):
-        track = follow(other, SET)
+        track = follow_modes(other, SET)
         assert track.labels.tolist() == labels
         assert track.probabilities.tobytes() == expected.probabilities.tobytes()
         assert track.means.tobytes() == expected.means.tobytes()
 
 
 def test_a_straight_leaves_it_open(straight):
-    assert follow(straight, SET).probabilities.max() < 0.9
+    assert follow_modes(straight, SET).probabilities.max() < 0.9
 
 
 def test_sight_decides_what_motion_leaves_open(straight):
     """From the place on where it was seen, and not before; a guess of even odds says nothing."""
-    motion = follow(straight, SET).probabilities
+    motion = follow_modes(straight, SET).probabilities
     for column, name in enumerate(NAMES):
-        sighted = follow(straight, SET, seen=(SeenGround(4.0, name, 0.98),)).probabilities
+        sighted = follow_modes(straight, SET, seen=(SeenGround(4.0, name, 0.98),)).probabilities
         row = round(4.0 / STEP_S)
         np.testing.assert_array_equal(sighted[:row], motion[:row])
         assert (sighted[row:, column] > motion[row:, column]).all()
         assert (sighted[round(8.0 / STEP_S) :, column] > 0.8).all()  # settles at 1.01 of 1.06
-    guessed = follow(straight, SET, seen=(SeenGround(4.0, "tar", 0.5),)).probabilities
+    guessed = follow_modes(straight, SET, seen=(SeenGround(4.0, "tar", 0.5),)).probabilities
     np.testing.assert_allclose(guessed, motion, atol=1e-12)
 
 
 def test_motion_overrides_sight_that_is_wrong(run):
     seen = [SeenGround(t, "tar", 0.9) for t in (0.0, 5.0, 10.0)]
-    motion, both = (follow(run, SET, seen=of).probabilities[:CHANGE, 0] for of in ((), seen))
+    motion, both = (follow_modes(run, SET, seen=of).probabilities[:CHANGE, 0] for of in ((), seen))
     assert (both[400:] > 0.5).mean() > 0.9
     assert (both < motion).mean() > 0.95  # it is heard, though
 
@@ -124,7 +124,7 @@ def test_who_stands_learns_from_sight_alone():
     """Rates from ice to tar and back: 1/20 a second, and 0.8 more for odds of 0.9 from 2 s on."""
     t = STEP_S * np.arange(500)
     still = {"t": t, "v_left": 0 * t, "v_right": 0 * t, "gyro_z": 0.3 * np.sin(t)}
-    track = follow(run_of_tables(still), SET, seen=(SeenGround(2.0, "tar", 0.9),))
+    track = follow_modes(run_of_tables(still), SET, seen=(SeenGround(2.0, "tar", 0.9),))
     there, back = 0.05 + 0.8, 0.05
     settled = there / (there + back)
     left = np.exp(-(there + back) * np.maximum(t - 2.0 + STEP_S, 0.0))
@@ -134,14 +134,14 @@ def test_who_stands_learns_from_sight_alone():
 
 def test_sight_of_what_is_no_mode_is_refused(run):
     with pytest.raises(ParameterError, match="'mud'"):
-        follow(run, SET, seen=(SeenGround(1.0, "mud", 0.9),))
+        follow_modes(run, SET, seen=(SeenGround(1.0, "mud", 0.9),))
 
 
 def test_a_run_without_a_yaw_rate_is_refused(run):
     columns = {name: run.odometry[name] for name in ("t", "v_left", "v_right")}
     bare = replace(run, velocity=None, odometry=table(columns))
     with pytest.raises(RunFolderError, match="no yaw rate"):
-        follow(bare, SET)
+        follow_modes(bare, SET)
 
 
 def test_one_mode_is_a_kalman_filter():
@@ -177,7 +177,7 @@ def test_errors_that_last_count_once(run):
     odds = {}
     for lasts_s in (0.0, 0.01, 0.2):
         modes = replace(SET.modes, errors_last_s=lasts_s)
-        track = follow(run, ModeSet(modes, np.full(2, np.inf)), ModesConfig(floor=0.0))
+        track = follow_modes(run, ModeSet(modes, np.full(2, np.inf)), ModesConfig(floor=0.0))
         odds[lasts_s] = np.diff(np.log(track.probabilities[:100]), axis=1)[:, 0]
     assert np.abs(odds[0.0]).max() > 1.0
     np.testing.assert_allclose(odds[0.2], odds[0.0] / 10, atol=1e-9)
@@ -198,7 +198,7 @@ def test_traction_that_is_lost_is_told_within_seconds():
     x, y, yaw = (states[::5, :3] + rng.normal(size=(200, 3)) * [0.01, 0.01, 0.005]).T
     pose = {"t": t[::5], "x": x, "y": y, "yaw": np.angle(np.exp(1j * yaw))}
     odometry = {"t": t, "v_left": treads[:, 0], "v_right": treads[:, 1]}
-    track = follow(run_of_tables(odometry, pose=pose), ModeSet(modes, np.full(2, 20.0)))
+    track = follow_modes(run_of_tables(odometry, pose=pose), ModeSet(modes, np.full(2, 20.0)))
     told = [np.flatnonzero(track.probabilities[:, mode] > 0.9)[0] for mode in (0, 1)]
     assert told[0] * STEP_S < 4.0
     assert 0.0 < (told[1] - 500) * STEP_S < 4.0

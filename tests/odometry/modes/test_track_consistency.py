@@ -85,7 +85,7 @@ def filtered(factor=1.0, runs=RUNS):
             nees[run, row - 1] = normalised_squared_errors(mean - states[row], P)
             right[run, row - 1] = belief.probabilities.argmax() == truth[row]
             means.append(mean)
-        if run < 3:  # what is judged here is what `follow` does
+        if run < 3:  # what is judged here is what `follow_modes` does
             track = follow_signals(signals, with_set)
             np.testing.assert_allclose(track.means[1:], means, atol=1e-12)
     return nees, nis, float(right.mean())
