@@ -54,7 +54,7 @@ def pairs(modes: VelocityModes | TractionModes, runs: Sequence[Run]) -> tuple[Pa
 
 
 def _velocity_seconds(modes: VelocityModes, speeds: FloatArray, step_s: float) -> FloatArray:
-    """For row against column (M, M); each time over which errors last counts once."""
+    """For row against column (M, M); no sooner than errors change, each such time counting once."""
     gains, variances = modes.steady_gains(), modes.measurement
     apart = gains[:, None] - gains[None]
     squares = speeds.T @ speeds / len(speeds)
@@ -62,7 +62,8 @@ def _velocity_seconds(modes: VelocityModes, speeds: FloatArray, step_s: float) -
     ratio = variances[:, None] / variances[None]
     divergence = (ratio - 1 - np.log(ratio) + differences / variances[None]).sum(axis=-1) / 2
     alike = divergence <= 0
-    needed = LOG_ODDS * max(modes.errors_last_s, step_s) / np.where(alike, 1.0, divergence)
+    once_s = max(modes.errors_last_s, step_s)
+    needed = once_s * np.maximum(1.0, LOG_ODDS / np.where(alike, 1.0, divergence))
     return np.where(alike, np.inf, needed)
 
 

@@ -79,12 +79,12 @@ def pose_signals(run: Run) -> Signals:
         raise RunFolderError(f"{run.folder}: no pose.csv; expected measured poses")
     pose_s = run.pose.stamps_s
     inside = (pose_s >= odometry_s[0]) & (pose_s <= odometry_s[-1])
-    if not inside.any():
+    poses = run.pose.stack("x", "y", "yaw")[inside]
+    if not np.isfinite(poses).all(axis=1).any():
         raise RunFolderError(f"{run.folder}: no pose lies within the time of odometry.csv")
     stamps_s = np.union1d(odometry_s, pose_s[inside])
     rows = np.searchsorted(odometry_s, stamps_s, side="right") - 1
     measured = np.full((len(stamps_s), 4), np.nan)
-    poses = run.pose.stack("x", "y", "yaw")[inside]
     measured[np.searchsorted(stamps_s, pose_s[inside]), :3] = poses
     if "gyro_z" in run.odometry:
         measured[np.searchsorted(stamps_s, odometry_s), 3] = run.odometry["gyro_z"]

@@ -9,7 +9,8 @@ noise differs from seed to seed (gyro 0.02 rad/s, pose 2 cm and 0.5 degrees at 1
 - grounds: asphalt, grass, crushed concrete, each alone for 30 s (Fig. 3), and 10 s of each, a
   spiral of its own each time (Fig. 4); by treads and gyroscope;
 - wheels: none, the front two, the right two, all (Fig. 5), right two and then all (Fig. 6); by
-  treads, pose and gyroscope; and each of the 16 combinations among all 16.
+  treads, pose and gyroscope; with the (k, m) of the paper alone, too; and each of the 16
+  combinations among all 16.
 
 Every stretch of a mode is a row of FOLDER/stretches.csv. Shares are of the time after the mode was
 first told, or of all of it where it never was. The way is curved where the radius driven is less
@@ -112,6 +113,7 @@ def experiments(vehicle: ContactVehicle, speed: float) -> list[Experiment]:
     ground_set = ModeSet(of_grounds, np.full(len(of_grounds.names), DWELL_S))
     four = [wheel_mode_name(slipping) for slipping in FOUR]
     few = mode_set_of([r for name in four for r in by_wheels[name]])
+    paper = mode_set_of([r for name in four for r in by_wheels[name]], paper=True)
     all_16 = mode_set_of([r for of in by_wheels.values() for r in of])
     switching = [
         replace(ground_traction(vehicle, name), from_s=PART_S * place)
@@ -133,6 +135,15 @@ def experiments(vehicle: ContactVehicle, speed: float) -> list[Experiment]:
             )
             for one in FOUR
         ),
+        *(
+            Experiment(
+                "5 (k, m) alone",
+                speed,
+                paper,
+                spirals(vehicle, speed, [wheel_traction(vehicle, one)], 1),
+            )
+            for one in FOUR
+        ),
         Experiment("6 wheels switch", speed, few, spirals(vehicle, speed, then_all, 2)),
         *(
             Experiment("16 wheels", speed, all_16, spirals(vehicle, speed, [one], 1))
@@ -141,9 +152,9 @@ def experiments(vehicle: ContactVehicle, speed: float) -> list[Experiment]:
     ]
 
 
-def mode_set_of(runs: Sequence[Run]) -> ModeSet:
+def mode_set_of(runs: Sequence[Run], *, paper: bool = False) -> ModeSet:
     """Traction modes of calibration runs."""
-    modes = identify_traction_modes(runs)
+    modes = identify_traction_modes(runs, paper=paper)
     return ModeSet(modes, np.full(len(modes.names), DWELL_S))
 
 

@@ -16,7 +16,9 @@ def test_the_time_of_two_velocity_modes_is_that_of_their_likelihoods():
     modes = replace(modes, errors_last_s=0.3)
     (pair,) = pairs(modes, [run, run])
     assert pair.names == ("ice", "tar")
-    assert pair.seconds == pytest.approx(np.log(9) * 0.3 * 2 * 0.05**2 / apart)
+    assert pair.seconds == pytest.approx(0.3 * max(1.0, np.log(9) * 2 * 0.05**2 / apart))
+    (slower,) = pairs(replace(modes, measurement=20 * modes.measurement), [run])
+    assert slower.seconds == pytest.approx(0.3 * np.log(9) * 2 * 20 * 0.05**2 / apart)
 
 
 def test_modes_of_one_gain_differ_in_their_noise_alone():

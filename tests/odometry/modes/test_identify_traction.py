@@ -65,6 +65,17 @@ def test_noise_of_poses_and_gyroscope_is_found(modes):
     assert np.all(np.sqrt(modes.process) < 0.01)  # nothing wanders
 
 
+def test_wandering_is_found():
+    """Places and yaws that walk at random, by 0.04 m and 0.03 rad a root of a metre of travel."""
+    run, rng = drive(2, "left", size=6000), np.random.default_rng(9)
+    step_m = np.diff(run.wheel_travel_m[::5], prepend=0.0)
+    walked = np.cumsum(np.sqrt(step_m)[:, None] * rng.normal(size=(len(step_m), 3)), axis=0)
+    moved = zip(("x", "y", "yaw"), (walked * [0.04, 0.04, 0.03]).T, strict=True)
+    columns = {**run.pose.columns, **{name: run.pose[name] + by for name, by in moved}}
+    found = identify_traction_modes([replace(run, pose=replace(run.pose, columns=columns))])
+    np.testing.assert_allclose(np.sqrt(found.process), [0.04, 0.03], rtol=0.25)
+
+
 def test_without_a_gyroscope_its_noise_says_next_to_nothing():
     run = drive(2, "left")
     columns = {name: c for name, c in run.odometry.columns.items() if name != "gyro_z"}

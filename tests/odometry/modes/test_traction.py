@@ -4,6 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from odometry.errors import RunFolderError
 from odometry.models.inputs import Inputs
 from odometry.models.traction_mode import TractionMode
 from odometry.modes.traction import TractionModes, lagged, twists_of
@@ -144,13 +145,30 @@ def test_a_lag_over_stamps_merged_from_two_clocks():
     np.testing.assert_allclose(found, expected, atol=0.02 / 0.3)
 
 
-def test_it_starts_standing_at_the_first_whole_pose():
-    t = np.array([0.0, 0.1, 0.2])
-    pose = {"t": t, "x": np.array([np.nan, 2.0, 3.0]), "y": t, "yaw": t + 1}
-    odometry = {"t": t, "v_left": t, "v_right": t}
-    mean, covariance = MODES.start(MODES.signals(run_of_tables(odometry, pose=pose)))
-    np.testing.assert_allclose(mean, [2.0, 0.1, 1.1, 0.0])
+def started(t, x):
+    """Mean and covariance at the start, of treads at 1 and 2 m/s and these poses."""
+    pose = {"t": t, "x": np.array(x), "y": t, "yaw": t + 1}
+    odometry = {"t": t, "v_left": np.ones(len(t)), "v_right": np.full(len(t), 2.0)}
+    return MODES.start(MODES.signals(run_of_tables(odometry, pose=pose)))
+
+
+def test_it_starts_standing_at_the_first_pose():
+    mean, covariance = started(np.array([0.0, 0.1]), [2.0, 3.0])
+    np.testing.assert_allclose(mean, [2.0, 0.0, 1.0, 0.0])
     np.testing.assert_array_equal(covariance, np.diag([4e-4, 4e-4, 1e-4, 0.0]))
+
+
+def test_a_first_pose_that_comes_late_is_less_certain():
+    """The first whole one after 0.4 s: 0.6 m of wheel travel, a turn of 0.8 rad asked for."""
+    mean, covariance = started(np.array([0.0, 0.1, 0.4, 0.5]), [np.nan, np.nan, 2.0, 3.0])
+    np.testing.assert_allclose(mean, [2.0, 0.4, 1.4, 0.0])
+    expected = [4e-4 + 0.36, 4e-4 + 0.36, 1e-4 + 0.64, 0.0]
+    np.testing.assert_allclose(covariance, np.diag(expected))
+
+
+def test_poses_of_which_none_is_whole_are_refused():
+    with pytest.raises(RunFolderError, match="drive: no pose"):
+        started(np.array([0.0, 0.1]), [np.nan, np.nan])
 
 
 def test_the_yaw_is_an_angle_to_the_filters():
