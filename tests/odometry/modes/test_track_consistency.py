@@ -92,7 +92,7 @@ def filtered(factor=1.0, runs=RUNS):
 
 
 def test_nees_and_nis_lie_within_their_bounds():
-    """NEES 2.021, NIS 1.987 of 1.964 to 2.036; of five other seeds nine of ten means were inside.
+    """NEES 2.021, NIS 1.987 of 1.964 to 2.036; of five other seeds eight of ten means were inside.
 
     Of 120 steps 0.95 are expected inside; 0.88 is the 99.9 % bound of independent steps.
     """
