@@ -54,7 +54,6 @@ class Imm:
         u: FloatArray,
         z: FloatArray | None,
         step_s: float,
-        prior: FloatArray | None = None,
     ) -> ModeBelief:
         """Belief a step later: `predicted`, then `updated`.
 
@@ -66,19 +65,15 @@ class Imm:
         z : (m,) or None
             What is measured at the end of the step; NaN where an entry is not.
         step_s : float
-        prior : (M,) or None
-            Log-weights of the modes at the end of the step, from another source.
 
         Raises
         ------
         EstimationError
             If shapes do not agree, a state becomes infinite, or no mode is possible.
         """
-        return self.updated(self.predicted(belief, u, step_s, prior), z)
+        return self.updated(self.predicted(belief, u, step_s), z)
 
-    def predicted(
-        self, belief: ModeBelief, u: FloatArray, step_s: float, prior: FloatArray | None = None
-    ) -> ModeBelief:
+    def predicted(self, belief: ModeBelief, u: FloatArray, step_s: float) -> ModeBelief:
         """Belief a step later, before a measurement: eq. 4-7, then each model; see `step`."""
         log_joint = self._log_transition(belief, step_s) + belief.log_probabilities[:, None]
         log_predicted = log_sum(log_joint)  # eq. 5
@@ -87,8 +82,6 @@ class Imm:
             weights, belief.means, belief.covariances, self.state_angles
         )  # eq. 6-7
         means, covariances = self.bank.predicted(means, covariances, u, step_s)
-        if prior is not None:
-            log_predicted = _with_prior(log_predicted, prior)
         return ModeBelief(means, covariances, log_predicted)
 
     def updated(self, predicted: ModeBelief, z: FloatArray | None) -> ModeBelief:
@@ -143,15 +136,3 @@ def _mixing_weights(log_joint: FloatArray, log_predicted: FloatArray) -> FloatAr
     weights = np.exp(log_joint - np.where(reached, log_predicted, 0.0)).T
     weights[~reached] = np.eye(len(weights))[~reached]
     return np.asarray(weights)
-
-
-def _with_prior(log_predicted: FloatArray, prior: FloatArray) -> FloatArray:
-    log_weights = np.asarray(prior, dtype=np.float64)
-    if log_weights.shape != log_predicted.shape:
-        raise EstimationError(f"a prior of shape {log_weights.shape} on {len(log_predicted)} modes")
-    combined = log_predicted + log_weights
-    if not np.isfinite(combined.max()):
-        raise EstimationError(
-            f"prior log-weights {log_weights.tolist()}, expected a finite one of a possible mode"
-        )
-    return np.asarray(combined - log_sum(combined))

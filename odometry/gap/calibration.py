@@ -11,7 +11,7 @@ from odometry.gap.config import GapConfig
 from odometry.gap.errors import GapError
 from odometry.gap.noise import Noise, estimated_noise, whitening
 from odometry.gap.scene import Scene, numbered_pieces, pieces, scene_of, thinned
-from odometry.gap.simulate import residuals
+from odometry.gap.simulate import residuals, whitened_residuals
 from odometry.gap.solve import Solved, least_squares, with_jacobian
 from odometry.gap.uncertain import Uncertain
 from odometry.models.base import KinematicModel
@@ -108,14 +108,7 @@ def _fit(
     whiteners = [whitening(scene, noise) for scene in scenes]
 
     def rows_at(values: FloatArray) -> FloatArray:
-        base = uncertain.at(values)
-        return np.concatenate(
-            [
-                np.einsum("kij,kj->ki", white, residuals(base, (), scene).reshape(len(scene), -1))
-                for white, scene in zip(whiteners, scenes, strict=True)
-            ],
-            axis=None,
-        )
+        return whitened_residuals(uncertain.at(values), (), scenes, whiteners)
 
     bounds, scales = uncertain.bounds, uncertain.scales
     ended = least_squares(rows_at, uncertain.values, scales, bounds, ITERATIONS)
@@ -134,7 +127,7 @@ def _information(solved: Solved, scenes: Sequence[Scene]) -> FloatArray:
     normal = solved.jacobian.T @ solved.jacobian
     freedom = max(1, len(solved.rows) - len(normal))
     pieces_of = numbered_pieces(scenes, TOGETHER_S)
-    rows = np.concatenate([np.full(len(s), 3 * (s.windows.shape[1] - 1)) for s in scenes])
+    rows = np.concatenate([np.full(len(scene), scene.rows_per_window) for scene in scenes])
     number = np.unique(np.repeat(pieces_of, rows), return_inverse=True)[1]
     gradients = solved.jacobian * solved.rows[:, None]
     scores = np.stack([np.bincount(number, weights=column) for column in gradients.T], axis=-1)

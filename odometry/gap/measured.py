@@ -13,7 +13,7 @@ from odometry.gap.calibration import Calibration
 from odometry.gap.config import GapConfig
 from odometry.gap.noise import whitening
 from odometry.gap.scene import Scene, numbered_pieces
-from odometry.gap.simulate import residuals
+from odometry.gap.simulate import whitened_residuals
 
 
 @dataclass(frozen=True)
@@ -37,19 +37,13 @@ class Measured:
 
     def rows(self, base: Base, effects: Sequence[Added]) -> FloatArray:
         """Whitened residuals (R,) of all windows, scene by scene."""
-        return np.concatenate(
-            [
-                np.einsum("kij,kj->ki", w, residuals(base, effects, s).reshape(len(s), -1))
-                for w, s in zip(self.whiteners, self.scenes, strict=True)
-            ],
-            axis=None,
-        )
+        return whitened_residuals(base, effects, self.scenes, self.whiteners)
 
     @cached_property
     def window_of_row(self) -> IntArray:
         """Number (R,) of the window of each row."""
-        sizes = [len(s) * [3 * (s.windows.shape[1] - 1)] for s in self.scenes]
-        return np.repeat(np.arange(len(self.folds)), np.concatenate(sizes).astype(np.int64))
+        sizes = [np.full(len(scene), scene.rows_per_window) for scene in self.scenes]
+        return np.repeat(np.arange(len(self.folds)), np.concatenate(sizes))
 
     def by_window(self, rows: FloatArray) -> FloatArray:
         """Chi-squared (K,) of each window."""

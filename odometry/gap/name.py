@@ -4,12 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from odometry.effects.base import Effect
-from odometry.gap.candidates import (
-    contact_effects,
-    of_angles,
-    of_variables,
-    quick_effects,
-)
+from odometry.gap.candidates import contact_effects, of_angles, of_variables, quick_effects
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import Judged, is_there, judge, ranked
 from odometry.gap.explanation import Explanation

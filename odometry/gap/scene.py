@@ -67,6 +67,11 @@ class Scene:
         """Run time (K,) at which each window starts."""
         return np.asarray(self.pose_s[self.windows[:, 0]])
 
+    @property
+    def rows_per_window(self) -> int:
+        """Residuals of a window: along, across and turn of each pose but its first."""
+        return 3 * (int(self.windows.shape[1]) - 1)
+
     @cached_property
     def measured(self) -> FloatArray:
         """Measured motion (K, n, 3) in the frame of each window's first pose."""
@@ -114,7 +119,7 @@ def scene_of(run: Run, config: GapConfig) -> Scene:
 
 
 def _windows(pose_s: FloatArray, stretch: IntArray, end_s: float, config: GapConfig) -> IntArray:
-    """Poses (K, n + 1): n as nine windows in ten have, at even distances where there are more."""
+    """Poses (K, n + 1): n as about nine windows in ten have, evenly chosen where there are more."""
     spans = []
     for number in np.unique(stretch):
         inside = (stretch == number) & (pose_s >= EDGE_S) & (pose_s <= end_s - EDGE_S)

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.modes.track import STANDING_M_S, ModesConfig
 from odometry.modes.traction import TractionModes, twists_of
 from odometry.modes.velocity import VelocityModes
 from odometry.run import Run
 
-SURE = 0.9  # of one of two modes that were as probable before
+SURE = ModesConfig.sure  # of one of two modes that were as probable before
 LOG_ODDS = float(np.log(SURE / (1 - SURE)))
-SLOW_M_S = 0.01  # below it nothing is told
 TRIED_S = np.geomspace(0.01, 1e4, 601)
 
 
@@ -69,7 +69,7 @@ def _velocity_seconds(modes: VelocityModes, speeds: FloatArray, step_s: float) -
 
 def _traction_seconds(modes: TractionModes, speeds: FloatArray, gyro_s: float) -> FloatArray:
     """The same, of a known pose, one measured later, and a yaw rate each `gyro_s` between."""
-    driven = speeds[np.abs(speeds).mean(axis=1) > SLOW_M_S]
+    driven = speeds[np.abs(speeds).mean(axis=1) > STANDING_M_S]
     if not len(driven):
         return np.full((len(modes.names), len(modes.names)), np.inf)
     twists = np.stack([twists_of(of, driven, modes.track_width) for of in modes.gains])

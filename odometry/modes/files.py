@@ -114,7 +114,6 @@ def content_of(followed: Followed) -> dict[str, Any]:
 
 def _track(followed: Followed, track: ModeTrack) -> dict[str, Any]:
     score = followed.score(track)
-    measured = np.isfinite(followed.signals.measured)
     squared = track.normalised_squared[np.isfinite(track.normalised_squared)]
     return {
         "shares_of_time": followed.shares(track),
@@ -129,9 +128,6 @@ def _track(followed: Followed, track: ModeTrack) -> dict[str, Any]:
         "false_switches": score.false_switches,
         "confusion_s": _confusion(followed, track),
         "mean_normalised_innovation_squared": _finite(squared.mean()) if len(squared) else None,
-        "mean_measured_entries": float(measured.sum(axis=1)[measured.any(axis=1)].mean())
-        if measured.any()
-        else None,
     }
 
 

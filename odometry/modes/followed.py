@@ -18,7 +18,7 @@ from odometry.modes.answers import (
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.sight import SeenGround, seen_labels
 from odometry.modes.signals import Signals
-from odometry.modes.track import ModesConfig, ModeTrack, follow_modes
+from odometry.modes.track import ModesConfig, ModeTrack, follow_signals, judged_signals
 from odometry.run import UNKNOWN, Run
 
 MOTION, SIGHTED = "motion alone", "motion and sight"
@@ -155,9 +155,9 @@ def followed(
     See `follow_modes`.
     """
     config = config or ModesConfig()
-    signals = mode_set.modes.signals(run)
-    motion = follow_modes(run, mode_set, config, show_progress=show_progress)
+    signals = judged_signals(run, mode_set)
+    motion = follow_signals(signals, mode_set, config, show_progress=show_progress)
     sighted = None
     if seen:
-        sighted = follow_modes(run, mode_set, config, seen, show_progress=show_progress)
+        sighted = follow_signals(signals, mode_set, config, seen, show_progress=show_progress)
     return Followed(run, mode_set, config, signals, motion, sighted, tuple(seen))

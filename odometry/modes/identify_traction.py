@@ -10,8 +10,7 @@ from odometry.arrays import FloatArray
 from odometry.gap.config import GapConfig
 from odometry.gap.noise import estimated_noise
 from odometry.gap.scene import Scene, scene_of
-from odometry.geometry import se2
-from odometry.geometry.angles import wrap
+from odometry.gap.simulate import off_measured, poses_at
 from odometry.grounds import terrains_of
 from odometry.identification.errors import IdentificationError
 from odometry.identification.identify import robot_of
@@ -91,11 +90,7 @@ def residuals(gains: FloatArray, lag_s: float, scene: Scene, track_width: float)
     # the mean over a step: lag d(omega)/dt = asked - omega, integrated
     twists[:-1, 2] -= max(lag_s, SHORTEST_LAG_S) * np.diff(yaw_rates) / np.diff(scene.time_s)
     path = level_path(twists, scene.steps_s, scene.inputs)
-    poses = np.stack([np.interp(scene.pose_s, scene.time_s, column) for column in path.T], axis=-1)
-    poses = poses[scene.windows]
-    difference = scene.measured - se2.between(poses[:, :1], poses[:, 1:])
-    difference[..., 2] = wrap(difference[..., 2])
-    return difference
+    return off_measured(poses_at(path, scene, scene.pose_s), scene)
 
 
 def _fitted(

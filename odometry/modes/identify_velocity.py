@@ -1,20 +1,22 @@
 """Identify velocity modes from runs: least squares of simulated motion, and the noise left."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from tqdm import tqdm
 
+from odometry.arrays import FloatArray
 from odometry.identification.errors import IdentificationError
-from odometry.modes.response import Record, Response, errors_of, fitted_response
+from odometry.modes.response import Record, errors_of, fitted_response
 from odometry.modes.signals import forward_speed_m_s, velocity_signals
 from odometry.modes.stretches import stretches_by_label
 from odometry.modes.velocity import VelocityModes
 from odometry.run import UNKNOWN, Run
 
 LEAST_S = 10.0  # of a ground
-SPEED, OMEGA, LEFT, RIGHT = range(4)
-FOLLOWS_HZ, FOLLOWS_SIGMA = 10.0, 0.05  # a speed that only the wheels tell: rate, error [m/s]
+SPEED, OMEGA = range(2)  # rows of A and B, columns of a record
+FOLLOWS_SIGMA = 0.05  # error [m/s] of a speed that only the wheels tell
+FOLLOWING = 10.0 * np.array([[-1.0, 0.0, 0.5, 0.5], [0.0] * 4])  # which follows them in 0.1 s
 CORRECTED_S = 2.0  # within which measurements correct the state of a model that is a little off
 
 
@@ -49,52 +51,48 @@ def identify_velocity_modes(
     RunFolderError
         If a run has no yaw rate.
     """
+    speeds = [forward_speed_m_s(run) for run in runs]
     records: dict[str, list[Record]] = {}
-    bar: Iterable[Run] = tqdm(runs, unit="run", disable=None if show_progress else True)
-    for run in bar:
-        for label, record in _records(run):
+    pairs = zip(runs, speeds, strict=True)
+    bar = tqdm(pairs, unit="run", total=len(runs), disable=None if show_progress else True)
+    for run, speed in bar:
+        for label, record in _records(run, speed):
             records.setdefault(label, []).append(record)
+    _check(records)
     names = tuple(sorted(records))
-    for name in names:
-        lasts_s = sum(record.lasts_s for record in records[name])
+    pooled = [record for name in names for record in records[name]]
+    measured_rows = (OMEGA,) if any(speed is None for speed in speeds) else (SPEED, OMEGA)
+    blocks = np.tile(FOLLOWING, (len(names), 1, 1))
+    measurement = np.full((len(names), 2), FOLLOWS_SIGMA**2)
+    lasting_s = []
+    for place, name in enumerate(names):
+        for row in measured_rows:
+            response = fitted_response(pooled if shared else records[name], row)
+            errors = errors_of(records[name], row, response)
+            blocks[place, row] = response.row_of(row)
+            measurement[place, row] = errors.variance
+            lasting_s.append(errors.power / errors.variance)
+    if common_noise:
+        measurement[:] = np.median(measurement, axis=0)
+    process = measurement * np.median([record.step_s for record in pooled]) / CORRECTED_S**2
+    errors_last_s = float(np.median(lasting_s))
+    return VelocityModes(
+        names, blocks[..., :2], blocks[..., 2:], process, measurement, errors_last_s
+    )
+
+
+def _check(records: Mapping[str, Sequence[Record]]) -> None:
+    for name, of in records.items():
+        lasts_s = sum(record.lasts_s for record in of)
         if lasts_s < LEAST_S:
             raise IdentificationError(
                 f"{name}: {lasts_s:.1f} s recorded, expected {LEAST_S:g} s or more"
             )
-    pooled = [record for name in names for record in records[name]]
-    speed_is_measured = all(forward_speed_m_s(run) is not None for run in runs)
-    blocks = np.zeros((len(names), 2, 4))
-    measurement = np.full((len(names), 2), FOLLOWS_SIGMA**2)
-    lasting_s = []
-    for place, name in enumerate(names):
-        of = records[name]
-        for row in (SPEED, OMEGA):
-            if row == SPEED and not speed_is_measured:
-                response = Response(FOLLOWS_HZ, np.array([0.0, 0.5, 0.5]) * FOLLOWS_HZ)
-            else:
-                response = fitted_response(pooled if shared else of, row)
-                errors = errors_of(of, row, response)
-                measurement[place, row] = errors.variance
-                lasting_s.append(errors.power / errors.variance)
-            blocks[place, row] = response.row_of(row)
-    if common_noise:
-        measurement[:] = np.median(measurement, axis=0)
-    step_s = float(np.median([record.step_s for record in pooled]))
-    process = measurement * step_s / CORRECTED_S**2
-    return VelocityModes(
-        names,
-        blocks[..., :2],
-        blocks[..., 2:],
-        process,
-        measurement,
-        float(np.median(lasting_s)),
-    )
 
 
-def _records(run: Run) -> Iterable[tuple[str, Record]]:
-    """Stretches of each ground at even times."""
+def _records(run: Run, speed: FloatArray | None) -> Iterable[tuple[str, Record]]:
+    """Stretches of each ground at even times; speed (N,) as measured."""
     signals = velocity_signals(run)
-    speed = forward_speed_m_s(run)
     if speed is None:
         speed = signals.tread_speeds_m_s.mean(axis=1)
     table = np.column_stack([speed, signals.measured[:, 1], signals.tread_speeds_m_s])

@@ -119,7 +119,7 @@ def forward_speed_m_s(run: Run) -> FloatArray | None:
 
 
 def _nearest(table: Table, column: str, stamps_s: FloatArray) -> FloatArray:
-    """Values (N,) of a column at the nearest of its rows; NaN where that is not the nearest row."""
+    """Values (N,) of a column at its nearest rows; NaN where none is within half a period."""
     values = np.full(len(stamps_s), np.nan)
     if column not in table:
         return values

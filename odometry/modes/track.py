@@ -100,9 +100,17 @@ def follow_modes(
     ParameterError
         If vision saw what is no mode.
     """
-    signals = mode_set.modes.signals(run)
-    signals = replace(signals, labels=_true_labels(run, signals))
+    signals = judged_signals(run, mode_set)
     return follow_signals(signals, mode_set, config, seen, show_progress=show_progress)
+
+
+def judged_signals(run: Run, mode_set: ModeSet) -> Signals:
+    """What of a run the filters use, labelled by truth.csv where it names modes: for scoring."""
+    signals = mode_set.modes.signals(run)
+    if run.truth is None or "terrain" not in run.truth:
+        return signals
+    rows = np.searchsorted(run.truth.stamps_s, signals.stamps_s, side="right") - 1
+    return replace(signals, labels=run.truth["terrain"].astype(object)[np.maximum(rows, 0)])
 
 
 def follow_signals(
@@ -152,14 +160,6 @@ def _moving(signals: Signals) -> BoolArray:
     """Where (N,) a tread turned before the stamp: who stands learns nothing of the ground."""
     turning = np.abs(signals.tread_speeds_m_s).max(axis=1) > STANDING_M_S
     return np.append(False, turning[:-1])
-
-
-def _true_labels(run: Run, signals: Signals) -> AnyArray:
-    """What truth.csv names, else the run: for scoring alone."""
-    if run.truth is None or "terrain" not in run.truth:
-        return signals.labels
-    rows = np.searchsorted(run.truth.stamps_s, signals.stamps_s, side="right") - 1
-    return np.asarray(run.truth["terrain"].astype(object)[np.maximum(rows, 0)])
 
 
 def _independent(signals: Signals, errors_last_s: float) -> float:

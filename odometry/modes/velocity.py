@@ -13,6 +13,7 @@ from odometry.modes.signals import Signals, velocity_signals
 from odometry.run import Run
 
 STEP_RESOLUTION_S = 1e-6
+FASTEST_GROWTH_HZ = 10.0  # of a model that is no slip of the pen
 FIRST_SIGMAS = np.array([0.5, 0.5])  # of speed [m/s] and yaw rate [rad/s] at the start
 
 
@@ -48,7 +49,7 @@ class VelocityModes:
     def __post_init__(self) -> None:
         growth = np.linalg.eigvals(self.A).real.max(axis=1)
         for name, rate in zip(self.names, growth, strict=True):
-            if not rate < 10:
+            if not rate < FASTEST_GROWTH_HZ:
                 raise ParameterError(f"[mode.{name}] A: grows at {rate:g} per second")
 
     def signals(self, run: Run) -> Signals:

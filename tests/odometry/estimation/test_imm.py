@@ -126,8 +126,8 @@ def test_a_step_is_prediction_and_update():
 def test_input_stays():
     imm = Imm(EkfBank(pose_model(np.ones(2), np.ones(2)), 2), lambda _: np.array(EVEN), (2,))
     parts = np.array([[0, 0, 3.1], [0, 0, -3.1]]), np.tile(np.eye(3), (2, 1, 1)), np.log([0.4, 0.6])
-    z, prior = np.array([0.1, np.nan, 3.0]), np.array([0.0, 1.0])
-    copies = [np.array(each) for each in (*parts, z, prior)]
-    imm.step(ModeBelief(*parts), np.ones(2), z, 0.1, prior)
-    for one, copy in zip((*parts, z, prior), copies, strict=True):
+    z = np.array([0.1, np.nan, 3.0])
+    copies = [np.array(each) for each in (*parts, z)]
+    imm.step(ModeBelief(*parts), np.ones(2), z, 0.1)
+    for one, copy in zip((*parts, z), copies, strict=True):
         np.testing.assert_array_equal(one, copy)

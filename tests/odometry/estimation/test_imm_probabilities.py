@@ -76,21 +76,3 @@ def test_a_mode_that_nothing_leads_to_keeps_to_itself(floor):
     start = replace(belief, log_probabilities=np.log([0.5, 0.5]))
     predicted = imm.predicted(start, NOTHING, 0.1)
     assert predicted.means[1] == pytest.approx(belief.means[1] + 0.1)
-
-
-def test_a_prior_multiplies_the_predicted_probabilities():
-    imm, belief = two_rates(LEANING)
-    for z in (None, np.zeros(1)):
-        plain = imm.step(belief, NOTHING, z, 0.1)
-        leant = imm.step(belief, NOTHING, z, 0.1, np.log([1.0, 5.0]))
-        odds = leant.probabilities / plain.probabilities
-        assert odds[1] / odds[0] == pytest.approx(5)
-        np.testing.assert_array_equal(leant.means, plain.means)
-        same = imm.step(belief, NOTHING, z, 0.1, np.array([-700.0, -700.0]))
-        np.testing.assert_allclose(same.probabilities, plain.probabilities, rtol=1e-9)
-
-
-def test_a_prior_that_excludes_a_mode_leaves_it_the_floor():
-    imm, belief = two_rates(EVEN)
-    after = imm.step(belief, NOTHING, np.full(1, 0.2), 0.1, np.array([0.0, -np.inf]))
-    np.testing.assert_allclose(after.probabilities, [1 - 1e-6, 1e-6], rtol=1e-9)

@@ -151,7 +151,6 @@ def test_the_numbers_are_those_of_the_score_and_none_is_nan(halves, tmp_path):
     assert content["motion"]["right"] == pytest.approx(score.right)
     assert content["motion"]["confusion_s"].keys() == {"ice", "tar"}
     assert content["motion"]["mean_normalised_innovation_squared"] > 0
-    assert content["motion"]["mean_measured_entries"] == 1.0
     assert content["sight"] is None
     never = by_hand(["", ""], ["a", "a"])
     write_modes(never, tmp_path)
