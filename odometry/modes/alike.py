@@ -55,7 +55,7 @@ def pairs(modes: VelocityModes | TractionModes, runs: Sequence[Run]) -> tuple[Pa
 
 def _velocity_seconds(modes: VelocityModes, speeds: FloatArray, step_s: float) -> FloatArray:
     """For row against column (M, M); no sooner than errors change, each such time counting once."""
-    gains, variances = modes.steady_gains(), modes.measurement
+    gains, variances = modes.steady_gains(), modes.measurement_variance
     apart = gains[:, None] - gains[None]
     squares = speeds.T @ speeds / len(speeds)
     differences = np.einsum("ijqa,ab,ijqb->ijq", apart, squares, apart)
@@ -74,10 +74,10 @@ def _traction_seconds(modes: TractionModes, speeds: FloatArray, gyro_s: float) -
         return np.full((len(modes.names), len(modes.names)), np.inf)
     twists = np.stack([twists_of(of, driven, modes.track_width) for of in modes.gains])
     squares = np.stack([((twists - of) ** 2).mean(axis=1) for of in twists])
-    added = np.abs(driven).mean() * modes.process[[0, 0, 1]]
+    added = np.abs(driven).mean() * modes.process_variance[[0, 0, 1]]
     moved = squares[..., None, :] * TRIED_S[:, None] ** 2
-    variances = added * TRIED_S[:, None] + modes.measurement[:3]
-    of_gyro = squares[..., 2:] / modes.measurement[3] * TRIED_S / gyro_s
+    variances = added * TRIED_S[:, None] + modes.measurement_variance[:3]
+    of_gyro = squares[..., 2:] / modes.measurement_variance[3] * TRIED_S / gyro_s
     log_odds = ((moved / variances).sum(axis=-1) + of_gyro) / 2
     told = log_odds >= LOG_ODDS
     return np.where(told.any(axis=-1), TRIED_S[told.argmax(axis=-1)], np.inf)

@@ -17,8 +17,6 @@ from odometry.modes.traction import TractionModes
 from odometry.modes.velocity import VelocityModes
 
 DWELL_S = 20.0  # of a mode of which nothing else is said
-
-
 IS_OF_SIGN: dict[str, Callable[[FloatArray], BoolArray]] = {
     "": np.isfinite,
     "above 0": lambda values: values > 0,
@@ -28,30 +26,29 @@ IS_OF_SIGN: dict[str, Callable[[FloatArray], BoolArray]] = {
 
 @dataclass(frozen=True)
 class Key:
-    """A key of a table, the attribute of the modes that it holds, its shape and sign."""
+    """A key of a table, which is an attribute of the modes; its shape and sign."""
 
-    key: str
-    attribute: str
+    name: str
     shape: tuple[int, ...]
     sign: str = ""  # "above 0", "0 or more", or any
 
 
 HEAD = {
-    "velocity": (Key("errors_last_s", "errors_last_s", (), "0 or more"),),
+    "velocity": (Key("errors_last_s", (), "0 or more"),),
     "traction": (
-        Key("track_width", "track_width", (), "above 0"),
-        Key("process_variance", "process", (2,), "above 0"),
-        Key("measurement_variance", "measurement", (4,), "above 0"),
+        Key("track_width", (), "above 0"),
+        Key("process_variance", (2,), "above 0"),
+        Key("measurement_variance", (4,), "above 0"),
     ),
 }
 MODE = {
     "velocity": (
-        Key("A", "A", (2, 2)),
-        Key("B", "B", (2, 2)),
-        Key("process_variance", "process", (2,), "above 0"),
-        Key("measurement_variance", "measurement", (2,), "above 0"),
+        Key("A", (2, 2)),
+        Key("B", (2, 2)),
+        Key("process_variance", (2,), "above 0"),
+        Key("measurement_variance", (2,), "above 0"),
     ),
-    "traction": (Key("gains", "gains", (2, 3, 2)), Key("lag_s", "lag_s", (), "0 or more")),
+    "traction": (Key("gains", (2, 3, 2)), Key("lag_s", (), "0 or more")),
 }
 KINDS: dict[str, type[VelocityModes] | type[TractionModes]] = {
     "velocity": VelocityModes,
@@ -86,9 +83,9 @@ def write_mode_set(file: Path, mode_set: ModeSet) -> None:
     """Write a set of modes: [modes], and a table [mode.NAME] for each."""
     modes = mode_set.modes
     head: dict[str, Any] = {"kind": modes.kind, "source": mode_set.source}
-    head |= {one.key: _plain(getattr(modes, one.attribute)) for one in HEAD[modes.kind]}
+    head |= {one.name: _plain(getattr(modes, one.name)) for one in HEAD[modes.kind]}
     tables = {
-        name: {one.key: _plain(getattr(modes, one.attribute)[row]) for one in MODE[modes.kind]}
+        name: {one.name: _plain(getattr(modes, one.name)[row]) for one in MODE[modes.kind]}
         | {"dwell_s": float(mode_set.dwell_s[row])}
         for row, name in enumerate(modes.names)
     }
@@ -115,14 +112,14 @@ def read_mode_set(file: Path) -> ModeSet:
     if not isinstance(tables, dict) or not tables:
         raise ParameterError(f"{file}: expected a table [mode.NAME] for each mode")
     kind, where = head["kind"], f"{file}: [modes]"
-    _only(head, {"kind", "source", *(one.key for one in HEAD[kind])}, where)
-    values: dict[str, Any] = {one.attribute: _array(head, one, where) for one in HEAD[kind]}
-    dwell = Key("dwell_s", "dwell_s", (), "above 0")
+    _only(head, {"kind", "source", *(one.name for one in HEAD[kind])}, where)
+    values: dict[str, Any] = {one.name: _array(head, one, where) for one in HEAD[kind]}
+    dwell = Key("dwell_s", (), "above 0")
     for name, table in tables.items():
-        _only(table, {one.key for one in (*MODE[kind], dwell)}, f"{file}: [mode.{name}]")
+        _only(table, {one.name for one in (*MODE[kind], dwell)}, f"{file}: [mode.{name}]")
     for one in (*MODE[kind], dwell):
         of_modes = [_array(table, one, f"{file}: [mode.{name}]") for name, table in tables.items()]
-        values[one.attribute] = np.stack(of_modes)
+        values[one.name] = np.stack(of_modes)
     values = {name: of if of.shape else float(of) for name, of in values.items()}
     dwell_s = values.pop("dwell_s")
     try:
@@ -145,16 +142,16 @@ def _only(table: Any, known: set[str], where: str) -> None:
 
 
 def _array(table: dict[str, Any], one: Key, where: str) -> FloatArray:
-    if one.key not in table:
-        raise ParameterError(f"{where}: {one.key} is missing")
+    if one.name not in table:
+        raise ParameterError(f"{where}: {one.name} is missing")
     try:
-        values = np.asarray(table[one.key], dtype=np.float64)
+        values = np.asarray(table[one.name], dtype=np.float64)
     except (TypeError, ValueError):
         values = np.full((), math.nan)
     fits = values.shape == one.shape and np.isfinite(values).all()
     if not fits or not np.all(IS_OF_SIGN[one.sign](values)):
         raise ParameterError(
-            f"{where}: {one.key} = {table[one.key]!r}, expected finite numbers"
+            f"{where}: {one.name} = {table[one.name]!r}, expected finite numbers"
             f"{f', {one.sign}' if one.sign else ''}, shape {one.shape}"
         )
     return values

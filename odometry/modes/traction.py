@@ -37,10 +37,10 @@ class TractionModes:
         Time in which the yaw rate follows what is asked for; 0 in eq. 3.
     track_width : float
         [m]
-    process : (2,)
+    process_variance : (2,)
         Variance of the place [m^2] and of the yaw [rad^2] that a metre of wheel travel adds, the
         same in all modes: else whatever mode was recorded most smoothly wins on every straight.
-    measurement : (4,)
+    measurement_variance : (4,)
         Variance of a measured x, y, yaw, and yaw rate. The last holds what lasts of the errors of
         the modes, too: of what a gyroscope says in a second, its noise is the least.
     """
@@ -49,8 +49,8 @@ class TractionModes:
     gains: FloatArray
     lag_s: FloatArray
     track_width: float
-    process: FloatArray
-    measurement: FloatArray
+    process_variance: FloatArray
+    measurement_variance: FloatArray
 
     kind = "traction"
     errors_last_s = 0.0
@@ -80,7 +80,7 @@ class TractionModes:
         steps_s, (left, right) = np.diff(signals.stamps_s[: first + 1]), signals.tread_speeds_m_s.T
         travel_m = (np.abs(left) + np.abs(right))[:first] @ steps_s / 2
         turn_rad = np.abs(right - left)[:first] @ steps_s / self.track_width
-        variances = self.measurement[:3] + np.square([travel_m, travel_m, turn_rad])
+        variances = self.measurement_variance[:3] + np.square([travel_m, travel_m, turn_rad])
         return np.append(poses[first], 0.0), np.diag(np.append(variances, 0.0))
 
     def model(self) -> EkfModel:
@@ -92,7 +92,7 @@ class TractionModes:
             process_noise=self._noise,
             measurement=lambda x: x,
             measurement_jacobian=lambda x: np.eye(4),  # noqa: ARG005
-            measurement_covariance=np.diag(self.measurement),
+            measurement_covariance=np.diag(self.measurement_variance),
             state_angles=self.state_angles,
             measurement_angles=self.state_angles,
         )
@@ -133,7 +133,7 @@ class TractionModes:
 
     def _noise(self, x: FloatArray, u: FloatArray, dt: float) -> FloatArray:  # noqa: ARG002
         """Grows with wheel travel (4, 4)."""
-        place, yaw = np.abs(u).mean() * dt * self.process
+        place, yaw = np.abs(u).mean() * dt * self.process_variance
         return np.diag([place, place, yaw, 0.0])
 
 

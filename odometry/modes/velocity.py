@@ -27,9 +27,9 @@ class VelocityModes:
     ----------
     names : tuple of str
     A, B : (M, 2, 2)
-    process : (M, 2)
+    process_variance : (M, 2)
         Variance of speed and yaw rate that a second adds.
-    measurement : (M, 2)
+    measurement_variance : (M, 2)
         Variance of a measured speed and yaw rate.
     errors_last_s : float
         For how long errors of a model are alike: of what is measured within that time, all
@@ -39,8 +39,8 @@ class VelocityModes:
     names: tuple[str, ...]
     A: FloatArray
     B: FloatArray
-    process: FloatArray
-    measurement: FloatArray
+    process_variance: FloatArray
+    measurement_variance: FloatArray
     errors_last_s: float = 0.0
 
     kind = "velocity"
@@ -76,10 +76,10 @@ class VelocityModes:
                 np.einsum("mij,mj->mi", exact(dt)[..., :2], x) + exact(dt)[..., 2:] @ u
             ),
             transition_jacobian=lambda x, u, dt: exact(dt)[..., :2],  # noqa: ARG005
-            process_noise=lambda x, u, dt: dt * self.process[:, :, None] * np.eye(2),  # noqa: ARG005
+            process_noise=lambda x, u, dt: dt * self.process_variance[:, :, None] * np.eye(2),  # noqa: ARG005
             measurement=lambda x: x,
             measurement_jacobian=lambda x: np.eye(2),  # noqa: ARG005
-            measurement_covariance=self.measurement[:, :, None] * np.eye(2),
+            measurement_covariance=self.measurement_variance[:, :, None] * np.eye(2),
         )
 
     def steady_gains(self) -> FloatArray:

@@ -124,7 +124,7 @@ def _print_velocity(modes: "VelocityModes") -> None:
     rows: list[tuple[str, ...]] = [
         ("mode", "rad/m", "track m", "lag s", "speed", "speed m/s", "yaw rate rad/s")
     ]
-    gains, sigmas = modes.steady_gains(), modes.measurement**0.5
+    gains, sigmas = modes.steady_gains(), modes.measurement_variance**0.5
     for name, gain, lag, sigma in zip(
         modes.names, gains, -1 / modes.A[:, 1, 1], sigmas, strict=True
     ):
@@ -144,11 +144,11 @@ def _print_traction(modes: "TractionModes") -> None:
     for name, k, m in zip(modes.names, modes.k, modes.m, strict=True):
         rows.append((name, *(f"{share:.3f}" for share in (*k, *m))))
     print_table(rows)
-    place, yaw = modes.process**0.5
+    place, yaw = modes.process_variance**0.5
     click.echo(
         f"Noise of all modes after a metre of wheel travel: {place:.3f} m, {yaw:.4f} rad; of "
-        f"measured poses: {modes.measurement[0] ** 0.5:.3f} m, "
-        f"{modes.measurement[2] ** 0.5:.4f} rad"
+        f"measured poses: {modes.measurement_variance[0] ** 0.5:.3f} m, "
+        f"{modes.measurement_variance[2] ** 0.5:.4f} rad"
     )
 
 

@@ -89,7 +89,7 @@ def judged(
         said = ", ".join(
             f"{ground} {gain.mean():.3f} ({lag:.2f} s, error {np.sqrt(noise):.3f})"
             for ground, gain, lag, noise in zip(
-                modes.names, gains, lags, modes.measurement[:, 1], strict=True
+                modes.names, gains, lags, modes.measurement_variance[:, 1], strict=True
             )
         )
         print(f"{name}: yaw rate by tread speed (lag, error): {said}")

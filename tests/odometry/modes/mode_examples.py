@@ -40,7 +40,7 @@ def velocity_set(turns=(1.0, 2.0), names=("ice", "tar"), sigma=0.05):
 
 def traction_set(turns=(0.5, 0.8), names=("none", "all")):
     """Modes that turn by so much of what was requested."""
-    (shape,) = (one.shape for one in MODE["traction"] if one.key == "gains")
+    (shape,) = (one.shape for one in MODE["traction"] if one.name == "gains")
     gains = np.zeros((len(turns), *shape))
     gains[:, :, 0, 0] = 1.0
     gains[:, :, 2, 1] = np.array(turns)[:, None]
@@ -49,8 +49,8 @@ def traction_set(turns=(0.5, 0.8), names=("none", "all")):
         gains=gains,
         lag_s=np.zeros(len(turns)),
         track_width=0.5,
-        process=np.array([1e-4, 1e-4]),
-        measurement=np.array([4e-4, 4e-4, 1e-4, 1e-3]),
+        process_variance=np.array([1e-4, 1e-4]),
+        measurement_variance=np.array([4e-4, 4e-4, 1e-4, 1e-3]),
     )
     return ModeSet(modes, np.full(len(turns), 20.0), "by hand")
 

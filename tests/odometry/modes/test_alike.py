@@ -17,7 +17,7 @@ def test_the_time_of_two_velocity_modes_is_that_of_their_likelihoods():
     (pair,) = pairs(modes, [run, run])
     assert pair.names == ("ice", "tar")
     assert pair.seconds == pytest.approx(0.3 * max(1.0, np.log(9) * 2 * 0.05**2 / apart))
-    (slower,) = pairs(replace(modes, measurement=20 * modes.measurement), [run])
+    (slower,) = pairs(replace(modes, measurement_variance=20 * modes.measurement_variance), [run])
     assert slower.seconds == pytest.approx(0.3 * np.log(9) * 2 * 20 * 0.05**2 / apart)
 
 
@@ -25,7 +25,7 @@ def test_modes_of_one_gain_differ_in_their_noise_alone():
     modes = velocity_set((1.0, 1.0)).modes
     (same,) = pairs(modes, [run_of(1.0)])
     assert np.isinf(same.seconds)
-    noisier = replace(modes, measurement=np.array([[0.01, 0.01], [0.01, 0.02]]))
+    noisier = replace(modes, measurement_variance=np.array([[0.01, 0.01], [0.01, 0.02]]))
     (pair,) = pairs(noisier, [run_of(1.0)])
     worse = min(2 - 1 - np.log(2), 0.5 - 1 + np.log(2)) / 2
     assert pair.seconds == pytest.approx(np.log(9) * 0.02 / worse)

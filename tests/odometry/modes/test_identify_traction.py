@@ -59,10 +59,10 @@ def test_the_lag_does_not_depend_on_how_often_wheels_are_read(step_s, size):
 
 
 def test_noise_of_poses_and_gyroscope_is_found(modes):
-    sigmas = np.sqrt(modes.measurement)
+    sigmas = np.sqrt(modes.measurement_variance)
     np.testing.assert_allclose(sigmas[:3], [0.01, 0.01, 0.005], rtol=0.15)
     assert 0.018 < sigmas[3] < 0.06  # 0.02, and what gains that err a little leave for long
-    assert np.all(np.sqrt(modes.process) < 0.01)  # nothing wanders
+    assert np.all(np.sqrt(modes.process_variance) < 0.01)  # nothing wanders
 
 
 def test_wandering_is_found():
@@ -73,14 +73,14 @@ def test_wandering_is_found():
     moved = zip(("x", "y", "yaw"), (walked * [0.04, 0.04, 0.03]).T, strict=True)
     columns = {**run.pose.columns, **{name: run.pose[name] + by for name, by in moved}}
     found = identify_traction_modes([replace(run, pose=replace(run.pose, columns=columns))])
-    np.testing.assert_allclose(np.sqrt(found.process), [0.04, 0.03], rtol=0.25)
+    np.testing.assert_allclose(np.sqrt(found.process_variance), [0.04, 0.03], rtol=0.25)
 
 
 def test_without_a_gyroscope_its_noise_says_next_to_nothing():
     run = drive(2, "left")
     columns = {name: c for name, c in run.odometry.columns.items() if name != "gyro_z"}
     found = identify_traction_modes([replace(run, odometry=replace(run.odometry, columns=columns))])
-    assert found.measurement[3] == NOT_MEASURED
+    assert found.measurement_variance[3] == NOT_MEASURED
     np.testing.assert_allclose(found.gains[0], GAINS["left"], atol=0.03)
 
 

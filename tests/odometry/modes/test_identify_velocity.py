@@ -61,8 +61,10 @@ def test_rates_and_cross_gains_are_found(modes):
 
 
 def test_noise_that_is_white_is_found_and_does_not_last(modes):
-    np.testing.assert_allclose(modes.measurement, SIGMA**2, rtol=0.1)
-    np.testing.assert_allclose(modes.process, modes.measurement * STEP_S / CORRECTED_S**2)
+    np.testing.assert_allclose(modes.measurement_variance, SIGMA**2, rtol=0.1)
+    np.testing.assert_allclose(
+        modes.process_variance, modes.measurement_variance * STEP_S / CORRECTED_S**2
+    )
     assert modes.errors_last_s == pytest.approx(STEP_S, rel=0.5)
 
 
@@ -80,15 +82,17 @@ def test_one_a_and_b_for_all_and_noise_of_each(grounds):
         np.testing.assert_array_equal(blocks, np.tile(blocks[:1], (3, 1, 1)))
     turns = found.steady_gains()[0, 1]
     assert np.all((np.abs(turns) > 0.6) & (np.abs(turns) < 1.5))
-    assert found.measurement[:, 1].argmin() == NAMES.index("mud")
-    assert found.measurement[0, 1] > 5 * found.measurement[1, 1] > 5 * SIGMA**2
+    assert found.measurement_variance[:, 1].argmin() == NAMES.index("mud")
+    assert found.measurement_variance[0, 1] > 5 * found.measurement_variance[1, 1] > 5 * SIGMA**2
 
 
 def test_one_noise_for_all(grounds, modes):
     rough = drive(8, ["tar"] * SIZE, sigmas=(0.1, 0.2))
     found = identify_velocity_modes([*grounds[:2], rough], common_noise=True)
-    np.testing.assert_array_equal(found.measurement, np.tile(found.measurement[:1], (3, 1)))
-    np.testing.assert_allclose(found.measurement, SIGMA**2, rtol=0.1)
+    np.testing.assert_array_equal(
+        found.measurement_variance, np.tile(found.measurement_variance[:1], (3, 1))
+    )
+    np.testing.assert_allclose(found.measurement_variance, SIGMA**2, rtol=0.1)
     np.testing.assert_array_equal(found.A[:2], modes.A[:2])
 
 

@@ -24,9 +24,9 @@ def mode_sets(draw):
         shape = (*many, *one.shape)
         return draw(arrays(np.float64, shape, elements=positive if one.sign else finite))
 
-    values = {one.attribute: drawn(one) for one in HEAD[kind]}
+    values = {one.name: drawn(one) for one in HEAD[kind]}
     values = {name: of if of.shape else float(of) for name, of in values.items()}
-    values |= {one.attribute: drawn(one, len(names)) for one in MODE[kind]}
+    values |= {one.name: drawn(one, len(names)) for one in MODE[kind]}
     if kind == "velocity":
         values["A"] -= 3e6 * np.eye(2)  # that decays
     dwell_s = draw(arrays(np.float64, len(names), elements=positive))

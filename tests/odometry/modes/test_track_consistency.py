@@ -78,7 +78,7 @@ def filtered(factor=1.0, runs=RUNS):
         for row in range(1, STEPS + 1):
             predicted = imm.predicted(belief, signals.tread_speeds_m_s[row - 1], STEP_S)
             mean, P = imm.merged(predicted)
-            R = np.diag(predicted.probabilities @ modes.measurement)
+            R = np.diag(predicted.probabilities @ modes.measurement_variance)
             nis[run, row - 1] = normalised_squared_errors(signals.measured[row] - mean, P + R)
             belief = imm.updated(predicted, signals.measured[row])
             mean, P = imm.merged(belief)

@@ -116,7 +116,9 @@ def test_the_papers_gains_are_the_traction_mode(treads, k, m):
 def test_k_and_m_are_where_eq_3_has_them():
     gains = np.zeros((1, 2, 3, 2))
     gains[0, :, 0, 0], gains[0, :, 2, 1] = [0.9, 0.8], [0.5, 0.4]
-    modes = TractionModes(("x",), gains, LAGS_S[:1], WIDTH, MODES.process, MODES.measurement)
+    modes = TractionModes(
+        ("x",), gains, LAGS_S[:1], WIDTH, MODES.process_variance, MODES.measurement_variance
+    )
     np.testing.assert_array_equal(modes.k, [[0.9, 0.8]])
     np.testing.assert_array_equal(modes.m, [[0.5, 0.4]])
 
