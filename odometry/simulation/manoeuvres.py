@@ -22,14 +22,28 @@ def skidpad(
     radius_m: float,
     speeds_m_s: Sequence[float],
 ) -> FloatArray:
-    """Turns of one radius, to the left and to the right at each speed, for equal times."""
+    """Turns of one radius from rest to rest, to the left and to the right at each speed.
+
+    All have equal times: who starts in a turn slips by more than who turns steadily.
+
+    Raises
+    ------
+    SimulationError
+        If the duration does not suffice to reach the speeds.
+    """
     half = width_m / 2 / radius_m
-    each_s = duration_s / 2 / len(speeds_m_s)
-    turns = [
-        (each_s, speed * (1 - side * half), speed * (1 + side * half))
-        for speed in speeds_m_s
-        for side in (1, -1)
-    ]
+    ramps_s = [speed * (1 + half) / ACCELERATION_M_S2 for speed in speeds_m_s]
+    turn_s, least_s = duration_s / 2 / len(ramps_s), 2 * max(ramps_s)
+    if turn_s < least_s:
+        raise SimulationError(
+            f"a skidpad of {duration_s:g} s: expected {2 * len(ramps_s) * least_s:.3g} s or more "
+            f"for {2 * len(ramps_s)} turns from rest to rest"
+        )
+    turns = []
+    for speed, ramp_s in zip(speeds_m_s, ramps_s, strict=True):
+        for side in (1, -1):
+            left, right = speed * (1 - side * half), speed * (1 + side * half)
+            turns += [(turn_s - ramp_s, left, right), (ramp_s, 0.0, 0.0)]
     return segments(turns, step_s)
 
 

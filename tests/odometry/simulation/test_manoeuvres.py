@@ -30,16 +30,22 @@ def test_manoeuvres_start_and_end_at_rest_and_do_not_jump(name):
     assert np.abs(speeds).max() > 0.5
 
 
-def test_a_skidpad_has_one_radius_at_every_speed_and_from_its_start():
+def test_a_skidpad_has_one_radius_at_every_speed_from_rest_to_rest():
     speeds = PROGRAMMES["skidpad"]
-    turned = curvature(speeds) * 1.5
-    ends = [15.0, 30.0, 45.0, 60.0]
-    held = [slice(round((end - 13) / STEP), round(end / STEP)) for end in ends]
-    for rows, speed, side in zip(held, (0.4, 0.4, 0.8, 0.8), (1, -1, 1, -1), strict=True):
-        np.testing.assert_allclose(turned[rows], side)
-        np.testing.assert_allclose(speeds[rows].mean(axis=1), speed)
-    np.testing.assert_allclose(turned[2:500], 1.0)
-    np.testing.assert_allclose(turned[3002:-2], -1.0)
+    turned, mean = curvature(speeds) * 1.5, speeds.mean(axis=1)
+    for number, (speed, side) in enumerate(((0.4, 1), (0.4, -1), (0.8, 1), (0.8, -1))):
+        rows = slice(round(15 * number / STEP), round(15 * (number + 1) / STEP))
+        np.testing.assert_allclose(mean[rows][[0, -1]], 0.0, atol=0.02)
+        np.testing.assert_allclose(turned[rows][mean[rows] > 0.02], side)
+        assert (np.abs(mean[rows] - speed) < 1e-9).mean() > 0.8
+
+
+def test_a_skidpad_too_short_for_its_speeds_is_refused():
+    """0.8 (1 + 1.1 / 3) m/s at 1 m/s2, twice, four times over."""
+    settings = {"width_m": WIDTH, "radius_m": 1.5, "speeds_m_s": (0.4, 0.8)}
+    with pytest.raises(SimulationError, match=r"skidpad of 8 s: expected 8\.75 s or more for 4"):
+        skidpad(8.0, STEP, **settings)
+    assert len(skidpad(8.75, STEP, **settings)) > 400
 
 
 def test_the_curvature_of_a_clothoid_is_linear_in_the_way():

@@ -46,7 +46,7 @@ def test_the_seed_changes_the_drive_and_the_same_one_repeats_it(tmp_path):
     "drive", ["excitation", "figure_eight", "tour", "skidpad", "clothoid", "sinusoid"]
 )
 def test_every_drive_can_be_driven(tmp_path, drive):
-    answer = invoke(tmp_path / "run", "--drive", drive, "--slope", "5")
+    answer = invoke(tmp_path / "run", "--drive", drive, "--slope", "5", "--duration", "12")
     assert answer.exit_code == 0, answer.output
     assert len(Run.read(tmp_path / "run").pose) > 30
 
