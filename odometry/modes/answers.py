@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.arrays import AnyArray, FloatArray
+from odometry.arrays import AnyArray, BoolArray, FloatArray
 from odometry.modes.track import ModeTrack
 from odometry.run import UNKNOWN
 
@@ -41,6 +41,16 @@ def named_modes(track: ModeTrack, sure: float) -> AnyArray:
     most = track.probabilities.argmax(axis=1)
     names = np.array(track.names, dtype=object)[most]
     return np.where(track.probabilities.max(axis=1) >= sure, names, UNDETERMINED)
+
+
+def candidates(track: ModeTrack, sure: float) -> BoolArray:
+    """The fewest modes (N, M) at each stamp that have a probability of `sure` together."""
+    order = np.argsort(-track.probabilities, axis=1, kind="stable")
+    summed = np.cumsum(np.take_along_axis(track.probabilities, order, axis=1), axis=1)
+    before = np.concatenate([np.zeros((len(summed), 1)), summed[:, :-1]], axis=1)
+    chosen = np.empty(track.probabilities.shape, dtype=np.bool_)
+    np.put_along_axis(chosen, order, before < sure, axis=1)
+    return chosen
 
 
 def detections(track: ModeTrack, sure: float) -> tuple[Detection, ...]:

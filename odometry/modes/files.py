@@ -78,6 +78,7 @@ def columns_of(followed: Followed, track: ModeTrack) -> dict[str, AnyArray]:
         "t": track.stamps_s,
         **{f"probability_{name}": column for name, column in probabilities},
         "answer": followed.answers(track),
+        "candidates": followed.candidates(track),
         "label": np.where(track.labels == UNKNOWN, "", track.labels),
         **dict(zip(states, track.means.T, strict=True)),
         **{f"sigma_{name}": column for name, column in zip(states, track.sigmas.T, strict=True)},
@@ -117,6 +118,10 @@ def _track(followed: Followed, track: ModeTrack) -> dict[str, Any]:
     squared = track.normalised_squared[np.isfinite(track.normalised_squared)]
     return {
         "shares_of_time": followed.shares(track),
+        "undetermined_between": [
+            {"modes": list(names), "share": share}
+            for names, share in followed.left_open(track).items()
+        ],
         "detections": [_detection(one) for one in score.detections],
         "stretches": len(score.detections),
         "told": len(score.told),

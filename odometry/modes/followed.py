@@ -9,6 +9,7 @@ from odometry.arrays import AnyArray
 from odometry.modes.answers import (
     UNDETERMINED,
     Detection,
+    candidates,
     confusion,
     detections,
     disagreements,
@@ -123,6 +124,28 @@ class Followed:
             for name in (*self.mode_set.names, UNDETERMINED)
         }
         return dict(sorted(((n, s) for n, s in held.items() if s > 0), key=lambda one: -one[1]))
+
+    def candidates(self, track: ModeTrack) -> AnyArray:
+        """Names (N,) of the fewest modes that it may be at each stamp, with " or " between."""
+        sets, of = np.unique(candidates(track, self.config.sure), axis=0, return_inverse=True)
+        names = np.array(track.names)
+        return np.array([" or ".join(names[one]) for one in sets], dtype=object)[of.ravel()]
+
+    def left_open(self, track: ModeTrack) -> dict[tuple[str, ...], float]:
+        """Share of the undetermined time of each set of modes it may be, the longest first."""
+        open_ = self.answers(track) == UNDETERMINED
+        lasts_s = np.append(np.diff(track.stamps_s), 0.0)[open_]
+        if not lasts_s.any():
+            return {}
+        sets, of = np.unique(
+            candidates(track, self.config.sure)[open_], axis=0, return_inverse=True
+        )
+        shares = np.bincount(of.ravel(), weights=lasts_s) / lasts_s.sum()
+        names = np.array(track.names)
+        return {
+            tuple(names[sets[place]].tolist()): float(shares[place])
+            for place in np.argsort(-shares, kind="stable")
+        }
 
     def score(self, track: ModeTrack) -> Score:
         """Answers of a track against the modes that the run names."""

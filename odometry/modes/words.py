@@ -10,6 +10,7 @@ from odometry.modes.track import ModeTrack
 
 FEW = 4  # stretches, or answers, that are said one by one
 LEAST_SHARE = 0.005  # less is not said
+LEAST_OPEN = 0.1  # of the undetermined time: sets of modes that are said
 
 
 def sentences(followed: Followed) -> tuple[str, ...]:
@@ -44,6 +45,7 @@ def disagreement_words(one: tuple[float, float, str, str]) -> str:
 
 
 def _more(followed: Followed) -> Iterator[str]:
+    yield from _open_words(followed)
     if followed.sighted is not None:
         yield f"With sight: {answer_words(followed, followed.sighted)}"
     for name, track in followed.tracks.items():
@@ -63,6 +65,18 @@ def _more(followed: Followed) -> Iterator[str]:
         if not argued:
             lasting_s = followed.config.lasting_s
             yield f"Sight and motion disagree nowhere for {lasting_s:g} s or longer."
+
+
+def _open_words(followed: Followed) -> Iterator[str]:
+    """Between which modes the answer by motion lies while it is undetermined."""
+    sets = followed.left_open(followed.motion)
+    said = [
+        f"{' or '.join(names)} {percent(share)} of that time"
+        for names, share in list(sets.items())[:FEW]
+        if len(names) < len(followed.mode_set.names) and share >= LEAST_OPEN
+    ]
+    if said:
+        yield f"While undetermined, it is {', '.join(said)}."
 
 
 def _answered(followed: Followed, track: ModeTrack, one: Detection) -> str:

@@ -1,12 +1,16 @@
 """What probabilities say: each number is counted by hand."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
 from odometry.modes.answers import (
     UNDETERMINED,
+    candidates,
     confusion,
     detections,
     disagreements,
@@ -91,3 +95,29 @@ def test_a_disagreement_ends_where_they_agree_or_name_others():
         (3.0, 3.5, "a", "c"),
     )
     assert disagreements(motion, np.full(8, "unknown", dtype=object), 0.9, 0.5) == ()
+
+
+@pytest.mark.parametrize(
+    ("probabilities", "chosen"),
+    [
+        ([0.95, 0.03, 0.02], [True, False, False]),
+        ([0.5, 0.1, 0.4], [True, False, True]),
+        ([0.05, 0.46, 0.49], [False, True, True]),
+        ([0.4, 0.3, 0.3], [True, True, True]),
+        ([0.02, 0.9, 0.08], [False, True, False]),
+    ],
+)
+def test_the_fewest_modes_that_are_sure_together(probabilities, chosen):
+    known = replace(track(["a"], ["a"]), probabilities=np.array([probabilities]))
+    assert candidates(known, 0.9).tolist() == [chosen]
+
+
+@given(arrays(float, (5, 4), elements=st.floats(1e-6, 1.0)), st.floats(0.51, 0.99))
+def test_candidates_are_sure_and_none_of_them_can_be_spared(weights, sure):
+    probabilities = weights / weights.sum(axis=1, keepdims=True)
+    known = replace(track(["a"] * 5, ["a"] * 5), probabilities=probabilities)
+    chosen = candidates(known, sure)
+    for row, of in zip(probabilities, chosen, strict=True):
+        assert row[of].sum() >= sure - 1e-12
+        assert row[of].sum() - row[of].min() < sure + 1e-12
+        assert row[of].min() >= max(row[~of], default=0.0)

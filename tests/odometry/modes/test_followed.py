@@ -41,6 +41,28 @@ def test_modes_that_were_driven_are_told(halves):
     assert halves.last_track is halves.motion
 
 
+def test_modes_between_which_the_answer_lies_are_named():
+    """Three modes for 0.5 s each stamp: b or c for 2 s of the 3 s that are open, any for 1 s."""
+    known = track(["a", "", "", "", "", "", "", "a"], ["a"] * 8, names=("a", "b", "c"))
+    known.probabilities[1:5] = [0.02, 0.5, 0.48]
+    of_three = velocity_set((1.0, 2.0, 3.0), names=("a", "b", "c"))
+    run = run_of(1.0, size=8)
+    made = Followed(run, of_three, ModesConfig(), of_three.modes.signals(run), known)
+    assert made.left_open(known) == {
+        ("b", "c"): pytest.approx(2 / 3),
+        ("a", "b", "c"): pytest.approx(1 / 3),
+    }
+    assert made.candidates(known).tolist() == ["a", *["b or c"] * 4, *["a or b or c"] * 2, "a"]
+    assert "While undetermined, it is b or c 67 % of that time." in sentences(made)
+    (first, second) = content_of(made)["motion"]["undetermined_between"]
+    assert (first["modes"], second["modes"]) == (["b", "c"], ["a", "b", "c"])
+
+
+def test_who_was_always_told_left_nothing_open():
+    told = by_hand(["a"] * 5, ["a"] * 5)
+    assert told.left_open(told.motion) == {}
+
+
 def test_sight_at_the_start_decides_before_motion_does():
     """The run begins with the shares that the chain has in the long run."""
     leaves, pulled = 1 / 20.0, 0.98 / PULLED_S
@@ -131,7 +153,7 @@ def test_a_row_for_each_stamp(halves, tmp_path):
     assert sorted(file.name for file in written) == ["modes.csv", "result.json"]
     rows = rows_of(tmp_path / "modes.csv")
     assert list(rows[0]) == [
-        *("t", "probability_ice", "probability_tar", "answer", "label"),
+        *("t", "probability_ice", "probability_tar", "answer", "candidates", "label"),
         *("vx", "wz", "sigma_vx", "sigma_wz"),
     ]
     assert len(rows) == len(halves.motion.stamps_s)
