@@ -39,6 +39,7 @@ HEAD = {
         Key("track_width", (), "above 0"),
         Key("process_variance", (2,), "above 0"),
         Key("measurement_variance", (4,), "above 0"),
+        Key("variance_growth", (), "0 or more"),
     ),
 }
 MODE = {
@@ -48,7 +49,7 @@ MODE = {
         Key("process_variance", (2,), "above 0"),
         Key("measurement_variance", (2,), "above 0"),
     ),
-    "traction": (Key("gains", (2, 3, 2)), Key("lag_s", (), "0 or more")),
+    "traction": (Key("gains", (2, 3, 5)), Key("lag_s", (), "0 or more")),
 }
 KINDS: dict[str, type[VelocityModes] | type[TractionModes]] = {
     "velocity": VelocityModes,

@@ -98,10 +98,18 @@ def errors_of(records: Sequence[Record], row: int, response: Response) -> Errors
 
 def block_powers(errors: FloatArray, step_s: float) -> FloatArray:
     """Power at low frequency (K,): squared means over blocks of seconds, times their duration."""
-    size = max(1, round(BLOCK_S / step_s))
-    count = len(errors) // size
-    means = errors[: count * size].reshape(count, size).mean(axis=1)
-    return np.asarray(size * step_s * means**2)
+    return np.asarray(_block_size(step_s) * step_s * block_means(errors, step_s) ** 2)
+
+
+def block_means(values: FloatArray, step_s: float) -> FloatArray:
+    """Means (K,) of values (N,) over blocks of seconds."""
+    size = _block_size(step_s)
+    count = len(values) // size
+    return np.asarray(values[: count * size].reshape(count, size).mean(axis=1))
+
+
+def _block_size(step_s: float) -> int:
+    return max(1, round(BLOCK_S / step_s))
 
 
 def _projected(records: Sequence[Record], row: int, rate_hz: float) -> tuple[FloatArray, float]:

@@ -11,6 +11,8 @@ from odometry.run import Run
 from odometry.table import Table
 
 AROUND_S = 0.15  # on either side: over which a speed is read from poses
+STANDING_M_S = 0.01  # of a tread, or less
+BEFORE_S = 0.2  # over which treads speed up
 
 
 @dataclass(frozen=True)
@@ -35,6 +37,11 @@ class Signals:
 
     def __len__(self) -> int:
         return len(self.stamps_s)
+
+    @property
+    def accelerations_m_s2(self) -> FloatArray:
+        """How fast (N,) the speed of that tread changed that changed more."""
+        return accelerations_m_s2(self.stamps_s, self.tread_speeds_m_s)
 
 
 def velocity_signals(run: Run) -> Signals:
@@ -90,6 +97,13 @@ def pose_signals(run: Run) -> Signals:
         measured[np.searchsorted(stamps_s, odometry_s), 3] = run.odometry["gyro_z"]
     speeds = run.odometry.stack("v_left", "v_right")[rows]
     return Signals(stamps_s, speeds, measured, terrains_of(run)[rows])
+
+
+def accelerations_m_s2(stamps_s: FloatArray, tread_speeds_m_s: FloatArray) -> FloatArray:
+    """How fast (N,) the speed of that tread (N, 2) changed that changed more, over BEFORE_S."""
+    rows = np.searchsorted(stamps_s, stamps_s - BEFORE_S + 1e-6, side="right") - 1
+    changes = np.abs(tread_speeds_m_s - tread_speeds_m_s[np.maximum(rows, 0)]).max(axis=1)
+    return np.asarray(changes / BEFORE_S)
 
 
 def forward_speed_m_s(run: Run) -> FloatArray | None:

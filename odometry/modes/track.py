@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from tqdm import tqdm
@@ -13,11 +14,10 @@ from odometry.estimation.imm import Imm
 from odometry.estimation.mode_belief import ModeBelief
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.sight import SeenGround, mode_chains
-from odometry.modes.signals import Signals
+from odometry.modes.signals import STANDING_M_S, Signals
 from odometry.modes.tempered import TemperedBank
 from odometry.run import Run
 
-STANDING_M_S = 0.01
 SETTLED_S = 1e4  # after which a chain has forgotten where it began
 
 
@@ -57,7 +57,8 @@ class ModeTrack:
     probabilities : (N, M)
         Of each mode, from what was measured up to the stamp.
     means, sigmas : (N, n)
-        State over all modes, and its standard deviations.
+        State over all modes, and its standard deviations. Errors of models that last are in
+        these: what filters take for noise of each measurement would average out.
     normalised_squared : (N,)
         Squared normalised innovation of the most probable mode, divided by how many entries were
         measured: 1 on average; NaN where nothing was.
@@ -126,18 +127,26 @@ def follow_signals(
     modes, count = mode_set.modes, len(mode_set.names)
     chains = mode_chains(seen, mode_set.names, mode_set.dwell_s)
     in_force = np.searchsorted([one.stamp_s for one in seen], signals.stamps_s, side="right")
-    bank = TemperedBank(EkfBank(modes.model(), count), _independent(signals, modes.errors_last_s))
-    estimators = [Imm(bank, one.transition, modes.state_angles, config.floor) for one in chains]
+    independent = _independent(signals, modes.errors_last_s)
+    mean, covariance = modes.start(signals)
+    lasting = (1 - independent) * np.broadcast_to(modes.measurement_variance, (count, len(mean)))
+
+    @lru_cache(maxsize=16)
+    def estimator(chain: int, roughness: float) -> Imm:
+        bank = TemperedBank(EkfBank(modes.model(roughness), count), independent)
+        return Imm(bank, chains[chain].transition, modes.state_angles, config.floor)
+
+    roughness = modes.roughness(signals)
     measured = np.where(_moving(signals)[:, None], signals.measured, np.nan)
     first = chains[in_force[0]].transition(SETTLED_S).mean(axis=0)
-    belief = ModeBelief.alike(*modes.start(signals), first)
+    belief = ModeBelief.alike(mean, covariance, first)
     size = len(signals)
     probabilities = np.empty((size, count))
-    means, sigmas = np.empty((2, size, belief.means.shape[1]))
+    means, sigmas = np.empty((2, size, len(mean)))
     squared = np.full(size, np.nan)
     steps: Iterable[int] = tqdm(range(size), unit="step", disable=None if show_progress else True)
     for row in steps:
-        imm = estimators[in_force[row]]
+        imm = estimator(int(in_force[row]), float(roughness[max(row - 1, 0)]))
         if row:
             belief = imm.step(
                 belief,
@@ -147,7 +156,8 @@ def follow_signals(
             )
         probabilities[row] = belief.probabilities
         mean, covariance = imm.merged(belief)
-        means[row], sigmas[row] = mean, np.sqrt(np.diag(covariance))
+        variances = np.diag(covariance) + probabilities[row] @ lasting
+        means[row], sigmas[row] = mean, np.sqrt(variances)
         if belief.innovations is not None:
             of_mode = belief.innovations.normalised_squared[probabilities[row].argmax()]
             squared[row] = of_mode / np.isfinite(measured[row]).sum()

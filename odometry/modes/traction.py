@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import lfilter
 
-from odometry.arrays import FloatArray
+from odometry.arrays import FloatArray, IntArray
 from odometry.estimation.ekf_model import EkfModel
 from odometry.geometry import se2
 from odometry.modes.signals import Signals, pose_signals
@@ -24,15 +24,16 @@ class TractionModes:
     """Body twist of the requested speed u_1 and turn rate u_2, of each mode and turn.
 
     Eq. 3 has v_x = k u_1 and omega = m u_2. A wheel that slips on one side pulls aside, drives
-    the robot by other shares in left and in right turns, and moves the turning centre: so the
-    gains here are (v_x, v_y, omega) by (u_1, u_2), for each turn. Those of eq. 3 are
-    [[k, 0], [0, 0], [0, m]], the same for both.
+    the robot by other shares in left and in right turns, and moves the turning centre, in a tight
+    turn more than in a wide one, and in a fast turn more than in a slow one: so the gains here are
+    (v_x, v_y, omega) by (u_1, ..., u_5) of `requested`, for each turn. Those of eq. 3 are k of v_x
+    by u_1 and m of omega by u_2, the same for both, and 0.
 
     Attributes
     ----------
     names : tuple of str
-    gains : (M, 2, 3, 2)
-        For left turns, then for right ones.
+    gains : (M, 2, 3, 5)
+        For left turns, then for right ones; the turning centre is on that side.
     lag_s : (M,)
         Time in which the yaw rate follows what is asked for; 0 in eq. 3.
     track_width : float
@@ -42,7 +43,11 @@ class TractionModes:
         same in all modes: else whatever mode was recorded most smoothly wins on every straight.
     measurement_variance : (4,)
         Variance of a measured x, y, yaw, and yaw rate. The last holds what lasts of the errors of
-        the modes, too: of what a gyroscope says in a second, its noise is the least.
+        the modes, too, for a gyroscope read as often as in the runs identified from: of what it
+        says in a second, its own noise is the least.
+    variance_growth : float
+        By what part variances grow for each (m/s^2)^2 of acceleration of a tread: who speeds up in
+        a turn slips by more than the gains say.
     """
 
     names: tuple[str, ...]
@@ -51,6 +56,7 @@ class TractionModes:
     track_width: float
     process_variance: FloatArray
     measurement_variance: FloatArray
+    variance_growth: float = 0.0
 
     kind = "traction"
     errors_last_s = 0.0
@@ -58,17 +64,21 @@ class TractionModes:
 
     @property
     def k(self) -> FloatArray:
-        """Shares (M, 2) of the requested speed, in left and right turns."""
+        """Shares (M, 2) of the requested speed in wide turns, to the left and to the right."""
         return self.gains[:, :, 0, 0]
 
     @property
     def m(self) -> FloatArray:
-        """Shares (M, 2) of the requested turn rate."""
-        return self.gains[:, :, 2, 1]
+        """Shares (M, 2) of the requested turn rate in wide slow turns, where u_4 is w."""
+        return self.gains[:, :, 2, 1] + self.track_width * self.gains[:, :, 2, 3]
 
     def signals(self, run: Run) -> Signals:
         """What of a run the filters use."""
         return pose_signals(run)
+
+    def roughness(self, signals: Signals) -> FloatArray:
+        """By what part (N,) variances are larger from each stamp to the next."""
+        return self.variance_growth * signals.accelerations_m_s2**2
 
     def start(self, signals: Signals) -> tuple[FloatArray, FloatArray]:
         """Mean (4,) and covariance (4, 4) at the first stamp: the first measured pose, standing.
@@ -83,16 +93,22 @@ class TractionModes:
         variances = self.measurement_variance[:3] + np.square([travel_m, travel_m, turn_rad])
         return np.append(poses[first], 0.0), np.diag(np.append(variances, 0.0))
 
-    def model(self) -> EkfModel:
-        """For a bank of all modes."""
+    def model(self, roughness: float = 0.0) -> EkfModel:
+        """For a bank of all modes; variances but those of measured poses are larger by a part."""
+        larger = 1 + roughness
+
+        def process_noise(x: FloatArray, u: FloatArray, dt: float) -> FloatArray:  # noqa: ARG001
+            place, yaw = larger * np.abs(u).mean() * dt * self.process_variance
+            return np.diag([place, place, yaw, 0.0])
+
         return EkfModel(
             states=4,
             transition=self._transition,
             transition_jacobian=self._jacobian,
-            process_noise=self._noise,
+            process_noise=process_noise,
             measurement=lambda x: x,
             measurement_jacobian=lambda x: np.eye(4),  # noqa: ARG005
-            measurement_covariance=np.diag(self.measurement_variance),
+            measurement_covariance=np.diag(self.measurement_variance * [1, 1, 1, larger]),
             state_angles=self.state_angles,
             measurement_angles=self.state_angles,
         )
@@ -131,27 +147,46 @@ class TractionModes:
         jacobian[:, 2, 3], jacobian[:, 3, 3] = by_angle[:, 2], lasting
         return jacobian
 
-    def _noise(self, x: FloatArray, u: FloatArray, dt: float) -> FloatArray:  # noqa: ARG002
-        """Grows with wheel travel (4, 4)."""
-        place, yaw = np.abs(u).mean() * dt * self.process_variance
-        return np.diag([place, place, yaw, 0.0])
+
+def requested(tread_speeds_m_s: FloatArray, track_width: float) -> FloatArray:
+    """Speed u_1 [m/s] and turn rate u_2 [rad/s] of eq. 3, u_3, u_4 [m/s], u_5 [m^2/s^3] (..., 5).
+
+    Where inertia does not count, the motion of all treads twice as fast is twice the motion, and
+    backward it is the same: what is not linear in u_1 and u_2 depends on the tightness
+    r = u_2 track_width / u_1 of the turn. Two such terms are u_3 = u_1 r^2 / (1 + r^2), and
+    u_4 = u_1 r / (1 + r^2), which makes wide turns differ from those on the spot, where both are 0.
+
+    Inertia asks for the lateral acceleration u_1 u_2 from the ground. Contacts that roll slip aside
+    in proportion to force and speed, so that u_5 = u_1 (u_1 u_2): the less friction, the more.
+    """
+    left, right = np.moveaxis(tread_speeds_m_s, -1, 0)
+    speed, difference = (left + right) / 2, right - left
+    size = speed**2 + difference**2
+    share = speed * difference / np.where(size > 0, size, 1.0)
+    turn = difference / track_width
+    terms = [speed, turn, difference * share, speed * share, speed**2 * turn]
+    return np.stack(terms, axis=-1)
+
+
+def turns_of(tread_speeds_m_s: FloatArray) -> IntArray:
+    """LEFT_TURN or RIGHT_TURN (...), by the side of the turning centre: also backward."""
+    left, right = np.moveaxis(tread_speeds_m_s, -1, 0)
+    return np.where((left + right) * (right - left) < 0, RIGHT_TURN, LEFT_TURN)
 
 
 def twists_of(gains: FloatArray, tread_speeds_m_s: FloatArray, track_width: float) -> FloatArray:
-    """Twists (..., 3) of gains (..., 2, 3, 2) at tread speeds (..., 2): eq. 3 and its u_1, u_2."""
-    left, right = np.moveaxis(tread_speeds_m_s, -1, 0)
-    speed, turn = (left + right) / 2, (right - left) / track_width
-    requested = np.stack([speed, turn], axis=-1)
-    to_right = (right < left)[..., None, None]
+    """Twists (..., 3) of gains (..., 2, 3, 5) at tread speeds (..., 2)."""
+    to_right = (turns_of(tread_speeds_m_s) == RIGHT_TURN)[..., None, None]
     of_turn = np.where(to_right, gains[..., RIGHT_TURN, :, :], gains[..., LEFT_TURN, :, :])
-    return np.asarray((of_turn @ requested[..., None])[..., 0])
+    return np.asarray((of_turn @ requested(tread_speeds_m_s, track_width)[..., None])[..., 0])
 
 
 def lagged(values: FloatArray, time_s: FloatArray, lag_s: float) -> FloatArray:
     """Values (N,) at times (N,), each held to the next, as a first-order lag follows them."""
-    step_s = float(np.median(np.diff(time_s)))
-    even_s = np.arange(time_s[0], time_s[-1] + step_s, step_s)
-    held = values[np.searchsorted(time_s, even_s + 1e-9, side="right") - 1]
+    since_s = time_s - time_s[0]
+    steps = max(1, round(float(since_s[-1] / np.median(np.diff(since_s)))))
+    even_s, step_s = np.linspace(0.0, since_s[-1], steps + 1, retstep=True)
+    held = values[np.searchsorted(since_s, even_s + 1e-3 * step_s, side="right") - 1]
     lasting = np.exp(-step_s / max(lag_s, SHORTEST_LAG_S))
     followed, _ = lfilter([0.0, 1 - lasting], [1.0, -lasting], held, zi=held[:1])
-    return np.asarray(np.interp(time_s, even_s, followed))
+    return np.asarray(np.interp(since_s, even_s, followed))

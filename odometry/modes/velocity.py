@@ -56,6 +56,10 @@ class VelocityModes:
         """What of a run the filters use."""
         return velocity_signals(run)
 
+    def roughness(self, signals: Signals) -> FloatArray:
+        """None (N,): these are the same at every stamp."""
+        return np.zeros(len(signals))
+
     def start(self, signals: Signals) -> tuple[FloatArray, FloatArray]:
         """Mean (2,) and covariance (2, 2) at the first stamp: as the wheels turn."""
         speed = signals.tread_speeds_m_s[0].mean()
@@ -63,7 +67,7 @@ class VelocityModes:
         mean = np.array([speed, omega if np.isfinite(omega) else 0.0])
         return mean, np.diag(FIRST_SIGMAS**2)
 
-    def model(self) -> EkfModel:
+    def model(self, roughness: float = 0.0) -> EkfModel:  # noqa: ARG002
         """For a bank of all modes."""
         key = np.concatenate([self.A, self.B], axis=-1)
 

@@ -54,13 +54,25 @@ def poses_and_yaw_rates(asked, lag_s, step_s):
 
 
 def asked_twists(gains, treads, track_width):
-    """Twists (N, 3) by gains (2, 3, 2) of left and right turns, row by row."""
+    """Twists (N, 3) by gains (2, 3, 5) of left and right turns, row by row.
+
+    In terms of the angle whose tangent is the tightness of the turn.
+    """
     rows = []
     for left, right in treads:
-        of_turn = gains[1] if right < left else gains[0]
-        speed, turn = (left + right) / 2, (right - left) / track_width
-        rows.append([a * speed + b * turn for a, b in of_turn])
+        speed, difference = (left + right) / 2, right - left
+        of_turn = gains[1] if speed * difference < 0 else gains[0]
+        angle = np.arctan2(difference, speed)
+        turn = difference / track_width
+        terms = [speed, turn, speed * np.sin(angle) ** 2, difference * np.cos(angle) ** 2]
+        terms.append(speed * (speed * turn))
+        rows.append([sum(g * u for g, u in zip(row, terms, strict=True)) for row in of_turn])
     return np.array(rows)
+
+
+def gains_of(shared, *of_turns):
+    """Gains (2, 3, 5): what u_1 and u_2 move, and what u_3 to u_5 do in left and right turns."""
+    return np.stack([np.array([*shared, *of]).T for of in of_turns])
 
 
 def table(columns):

@@ -8,6 +8,7 @@ from odometry.modes.mode_set import ModeSet
 from odometry.modes.sight import SeenGround
 from odometry.modes.signals import Signals
 from odometry.modes.track import ModesConfig, follow_modes, follow_signals
+from odometry.modes.traction import TractionModes
 from odometry.modes.velocity import VelocityModes
 from tests.odometry.modes.mode_drives import (
     integrated,
@@ -69,6 +70,49 @@ def test_probabilities_sum_to_one_and_keep_their_floor(run):
     np.testing.assert_allclose(track.probabilities.sum(axis=1), 1.0, atol=1e-12)
     assert track.probabilities.min() >= 0.01 * (1 - 1e-9)
     assert follow_modes(run, SET).probabilities.min() < 0.01
+
+
+def test_errors_that_last_are_in_the_sigmas(run):
+    """All of the variance but the share of one measurement in the time that errors last."""
+    plain = follow_modes(run, SET)
+    modes = replace(SET.modes, errors_last_s=10 * STEP_S)
+    lasting = follow_modes(run, replace(SET, modes=modes))
+    added = lasting.sigmas[:CHANGE] ** 2 - plain.sigmas[:CHANGE] ** 2
+    expected = 0.9 * modes.measurement_variance[0]  # but where modes are in doubt
+    np.testing.assert_allclose(np.median(added, axis=0), expected, rtol=0.03)
+
+
+def test_errors_that_last_are_those_of_the_probable_mode(run):
+    """On tar, which errs three times as much as ice."""
+    variances = SIGMA**2 * np.array([[1.0, 1.0], [9.0, 9.0]])
+    modes = replace(SET.modes, measurement_variance=variances, errors_last_s=10 * STEP_S)
+    track = follow_modes(run, replace(SET, modes=modes))
+    on_tar = track.probabilities[:, 1] > 0.97
+    assert on_tar.sum() > 100
+    assert track.sigmas[on_tar].min() ** 2 > 0.85 * 9.0 * SIGMA**2
+
+
+def test_a_rough_stretch_says_less():
+    """The same turn, told while the treads are steady and left open while they are not."""
+    gains = np.zeros((2, 2, 3, 5))
+    gains[:, :, 0, 0], gains[:, :, 2, 1] = 1.0, np.array([0.8, 0.7])[:, None]
+    noise = np.array([1e-6, 1e-6]), np.array([1e-4, 1e-4, 1e-4, 0.02**2])
+    t = STEP_S * np.arange(100)
+    signals = Signals(
+        t,
+        np.column_stack([0.1 + t, 0.6 + t]),
+        np.column_stack([np.full((100, 3), np.nan), np.full(100, 0.8)]),
+        np.full(100, "steady", dtype=object),
+    )
+    signals.measured[:40, 3] = np.nan
+    signals.measured[0, :3] = 0.0
+    most = []
+    for growth in (0.0, 1000.0):
+        modes = TractionModes(NAMES, gains, np.zeros(2), 0.5, *noise, variance_growth=growth)
+        track = follow_signals(signals, ModeSet(modes, np.full(2, 20.0)))
+        most.append(track.probabilities[50, 0])
+    assert most[0] > 0.99
+    assert most[1] < 0.6
 
 
 def test_the_same_input_gives_the_same_bits(run):

@@ -22,7 +22,7 @@ STEP_S, CHANGE = 0.02, 500
 def losing_traction():
     """Poses alone at 10 Hz: from 10 s on half of the turn is lost. Run, modes, last place."""
     rng, size = np.random.default_rng(6), 2 * CHANGE
-    gains = np.zeros((2, 2, 3, 2))
+    gains = np.zeros((2, 2, 3, 5))
     gains[:, :, 0, 0], gains[:, :, 2, 1] = 1.0, np.array([0.8, 0.4])[:, None]
     noise = np.array([1e-4, 1e-5]), np.array([1e-4, 1e-4, 25e-6, 1.0])
     modes = TractionModes(("none", "all"), gains, np.full(2, 0.1), ROBOT.track_width, *noise)

@@ -7,13 +7,22 @@ from hypothesis.extra.numpy import arrays
 from odometry.errors import RunFolderError
 from odometry.models.inputs import Inputs
 from odometry.models.traction_mode import TractionMode
-from odometry.modes.traction import TractionModes, lagged, twists_of
+from odometry.modes.traction import (
+    LEFT_TURN,
+    RIGHT_TURN,
+    TractionModes,
+    lagged,
+    requested,
+    turns_of,
+    twists_of,
+)
 from tests.odometry.modes.mode_drives import asked_twists, integrated, run_of_tables
 
 WIDTH = 0.5
 LAGS_S = np.array([0.0, 0.08, 0.3])
 RNG = np.random.default_rng(11)
-GAINS = np.array([[0.9, 0.05], [-0.08, 0.03], [0.2, 0.6]]) + 0.05 * RNG.normal(size=(3, 2, 3, 2))
+GAINS = np.array([[0.9, 0.05, 0, 0, 0], [-0.08, 0.03, 0, 0, 0], [0.2, 0.6, 0, 0, 0]])
+GAINS = GAINS + 0.05 * RNG.normal(size=(3, 2, 3, 5))
 MODES = TractionModes(
     ("none", "left", "all"),
     GAINS,
@@ -21,6 +30,7 @@ MODES = TractionModes(
     WIDTH,
     np.array([2e-3, 5e-4]),
     np.array([4e-4, 4e-4, 1e-4, 1e-3]),
+    variance_growth=2.0,
 )
 states = arrays(float, (3, 4), elements=st.floats(-3, 3))
 speeds = arrays(float, 2, elements=st.floats(-1.5, 1.5))
@@ -93,28 +103,69 @@ def test_the_jacobian_is_that_of_differences(x, u, step_s):
 
 
 @given(speeds)
-def test_the_sign_of_the_turn_chooses_the_gains(u):
-    """u_2 < 0, the right tread slower, is a right turn."""
+def test_the_side_of_the_turning_centre_chooses_the_gains(u):
     expected = [asked_twists(of, [u], WIDTH)[0] for of in GAINS]
     np.testing.assert_allclose(twists_of(GAINS, u, WIDTH), expected, atol=1e-14)
 
 
+def test_what_was_requested_by_hand():
+    """u_1 = 3, w = 4, h^2 = 25; to the left, to the right, the first backward, on the spot."""
+    left, turn = [1.0, 5.0], 4 / WIDTH
+    square, wide, aside = 3 * 16 / 25, 4 * 9 / 25, 9 * turn
+    for treads, expected, side in [
+        (left, [3, turn, square, wide, aside], LEFT_TURN),
+        (left[::-1], [3, -turn, square, -wide, -aside], RIGHT_TURN),
+        ([-1.0, -5.0], [-3, -turn, -square, -wide, -aside], LEFT_TURN),
+        ([-5.0, -1.0], [-3, turn, -square, wide, aside], RIGHT_TURN),
+        ([-2.0, 2.0], [0, turn, 0, 0, 0], LEFT_TURN),
+        ([0.0, 0.0], [0, 0, 0, 0, 0], LEFT_TURN),
+    ]:
+        np.testing.assert_allclose(requested(np.array(treads), WIDTH), expected, atol=1e-12)
+        assert turns_of(np.array(treads)) == side
+
+
+@given(speeds, st.floats(0.1, 5))
+def test_all_but_what_inertia_adds_grows_with_the_treads_and_goes_back(u, factor):
+    gains = GAINS * [1, 1, 1, 1, 0]
+    once = twists_of(gains, u, WIDTH)
+    np.testing.assert_allclose(twists_of(gains, factor * u, WIDTH), factor * once, atol=1e-12)
+    np.testing.assert_allclose(twists_of(gains, -u, WIDTH), -once, atol=1e-12)
+
+
+@pytest.mark.parametrize("at", [(0.8, 0.8), (-0.8, -0.8), (-0.5, 0.5), (0.5, -0.5), (0.0, 0.0)])
+def test_twists_do_not_jump_where_a_left_turn_becomes_a_right_one(at):
+    """Where the turns share what u_1 and u_2 move: on straights, and on the spot."""
+    gains = GAINS.copy()
+    gains[:, 1, :, :2] = gains[:, 0, :, :2]
+    around = np.array(at) + 1e-7 * np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])
+    assert set(turns_of(around).tolist()) == {LEFT_TURN, RIGHT_TURN}
+    twists = twists_of(gains[0], around, WIDTH)
+    np.testing.assert_allclose(twists, np.broadcast_to(twists[0], twists.shape), atol=1e-6)
+
+
 def test_gains_by_hand():
-    """u_1 = 2 and u_2 = +-4: rows of the gains times them."""
-    gains = np.array([[[1.0, 0.1], [0.2, 0.3], [0.4, 0.5]], [[6.0, 7.0], [8.0, 9.0], [10.0, 11.0]]])
-    np.testing.assert_allclose(twists_of(gains, np.array([1.0, 3.0]), WIDTH), [2.4, 1.6, 2.8])
+    """u_1 = 2, u_2 = +-4 and w = +-2: rows of the gains times u_1 and u_2, then the others."""
+    gains = np.zeros((2, 3, 5))
+    gains[..., :2] = np.arange(12).reshape(2, 3, 2)
+    np.testing.assert_allclose(twists_of(gains, np.array([1.0, 3.0]), WIDTH), [4, 16, 28])
     np.testing.assert_allclose(twists_of(gains, np.array([3.0, 1.0]), WIDTH), [-16, -20, -24])
+    gains[0, :, 2:] = np.arange(9).reshape(3, 3)
+    square, wide, aside = 2 * 4 / 8, 2 * 4 / 8, 4 * 4
+    expected = [4 + wide + 2 * aside, 16 + 3 * square + 4 * wide + 5 * aside]
+    expected.append(28 + 6 * square + 7 * wide + 8 * aside)
+    np.testing.assert_allclose(twists_of(gains, np.array([1.0, 3.0]), WIDTH), expected)
 
 
 @given(arrays(float, (7, 2), elements=st.floats(-2, 2)), st.floats(0.3, 1.5), st.floats(0.1, 1.5))
 def test_the_papers_gains_are_the_traction_mode(treads, k, m):
-    gains = np.tile([[k, 0.0], [0.0, 0.0], [0.0, m]], (2, 1, 1))
+    gains = np.zeros((2, 3, 5))
+    gains[:, 0, 0], gains[:, 2, 1] = k, m
     of_model = TractionMode().twist(np.array([k, m, WIDTH]), Inputs(treads))
     np.testing.assert_allclose(twists_of(gains, treads, WIDTH), of_model, atol=1e-13)
 
 
 def test_k_and_m_are_where_eq_3_has_them():
-    gains = np.zeros((1, 2, 3, 2))
+    gains = np.zeros((1, 2, 3, 5))
     gains[0, :, 0, 0], gains[0, :, 2, 1] = [0.9, 0.8], [0.5, 0.4]
     modes = TractionModes(
         ("x",), gains, LAGS_S[:1], WIDTH, MODES.process_variance, MODES.measurement_variance
@@ -123,10 +174,41 @@ def test_k_and_m_are_where_eq_3_has_them():
     np.testing.assert_array_equal(modes.m, [[0.5, 0.4]])
 
 
+@pytest.mark.parametrize("speed", [1e-3, -1e-3])
+def test_m_is_the_share_of_wide_slow_turns(speed):
+    for side, turn in ((1, LEFT_TURN), (-1, RIGHT_TURN)):
+        treads = speed * np.array([1 - 1e-4 * side, 1 + 1e-4 * side])
+        straight = twists_of(MODES.gains, np.full(2, speed), WIDTH)[:, 2]
+        asked = 2e-4 * side * speed / WIDTH
+        share = (twists_of(MODES.gains, treads, WIDTH)[:, 2] - straight) / asked
+        if turn == RIGHT_TURN:  # straight is a left turn, whose gain of u_1 is its own here
+            share += (MODES.gains[:, 0, 2, 0] - MODES.gains[:, 1, 2, 0]) * speed / asked
+        np.testing.assert_allclose(share, MODES.m[:, turn], atol=1e-3)
+
+
 def test_noise_grows_with_wheel_travel():
     """0.1 s at 2 m/s backward on the left and 4 m/s on the right is 0.3 m."""
     noise = MODES.model().process_noise(np.zeros((3, 4)), np.array([-2.0, 4.0]), 0.1)
     np.testing.assert_allclose(noise, np.diag([6e-4, 6e-4, 1.5e-4, 0.0]))
+
+
+def test_rough_treads_add_to_all_noise_but_that_of_poses():
+    model = MODES.model(0.5)
+    noise = model.process_noise(np.zeros((3, 4)), np.array([-2.0, 4.0]), 0.1)
+    np.testing.assert_allclose(noise, np.diag([9e-4, 9e-4, 2.25e-4, 0.0]))
+    np.testing.assert_allclose(model.measurement_covariance, np.diag([4e-4, 4e-4, 1e-4, 1.5e-3]))
+
+
+def test_treads_are_rough_while_they_speed_up_by_the_square():
+    """0.5 m/s^2 on the left, 2 on the right, at first since less than 0.2 s; 2 for each square."""
+    t = 0.1 * np.arange(30)
+    odometry = {"t": t, "v_left": 0.5 * t, "v_right": -2.0 * t}
+    pose = {"t": t + 0.05, "x": t, "y": t, "yaw": t}
+    signals = MODES.signals(run_of_tables(odometry, pose=pose))
+    assert len(signals) == 59
+    settled = MODES.roughness(signals)[5:]
+    np.testing.assert_allclose(settled, 2.0 * 2.0**2)
+    assert MODES.roughness(signals)[0] == 0.0
 
 
 @given(arrays(float, 40, elements=st.floats(-2, 2)), st.sampled_from([0.0, 0.05, 0.4]))

@@ -1,65 +1,127 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from odometry.modes.response import BLOCK_S
-from odometry.modes.yaw_rate_noise import NOT_MEASURED, yaw_rate_variance
-from tests.odometry.modes.mode_drives import ROBOT, asked_twists, run_of_tables, wandering
+from odometry.modes.yaw_rate_noise import (
+    LASTING_S,
+    NOT_MEASURED,
+    YawRateErrors,
+    YawRateNoise,
+    estimated_yaw_rate_noise,
+    yaw_rate_errors,
+)
+from tests.odometry.modes.mode_drives import ROBOT, asked_twists, gains_of, run_of_tables, wandering
 
 STEP_S = 0.02
-GAINS = {
-    "ice": np.array([[[1.0, 0.0], [0.0, 0.0], [0.1, 0.5]], [[1.0, 0.0], [0.0, 0.0], [0.0, 0.7]]]),
-    "tar": np.array([[[1.0, 0.0], [0.0, 0.0], [0.0, 0.9]], [[1.0, 0.0], [0.0, 0.0], [0.2, 0.8]]]),
-}
-LAG_S = 0.0
-FITS = [(GAINS["ice"], LAG_S), (GAINS["tar"], LAG_S)]
+LEFT, RIGHT = np.zeros((2, 3, 3))
+RIGHT[0], RIGHT[1] = [0.0, 0.1, 0.2], [0.0, 0.0, 0.2]
+GAINS = gains_of([[1.0, 0.0, 0.05], [0.0, 0.0, 0.5]], LEFT, RIGHT)
 
 
-def drive(rng, labels, errors, *, gyro=True):
-    """What the modes of the labels ask for, a stamp late as a lag of nothing is, and errors."""
-    treads = wandering(rng, len(labels), STEP_S)
-    asked = np.empty(len(labels))
-    for name in set(labels):
-        gains, rows = GAINS[name], np.asarray(labels) == name
-        late = np.append(treads[rows][:1], treads[rows][:-1], axis=0)
-        asked[rows] = asked_twists(gains, late, ROBOT.track_width)[:, 2]
-    columns = {"t": STEP_S * np.arange(len(labels)), "v_left": treads[:, 0]}
-    columns |= {"v_right": treads[:, 1], "terrain": np.array(labels, dtype=object)}
-    return run_of_tables(columns | ({"gyro_z": asked + errors} if gyro else {}))
+def stretch(errors, accelerations=0.0):
+    return YawRateErrors(STEP_S, errors, np.broadcast_to(accelerations, errors.shape))
 
 
-def variance(*runs):
-    return yaw_rate_variance(runs, ("ice", "tar"), FITS, ROBOT.track_width)
+def drive(rng, size, errors, *, gyro=True):
+    """What the gains ask for, a stamp late as a lag of nothing is, and errors."""
+    treads = wandering(rng, size, STEP_S)
+    late = np.append(treads[:1], treads[:-1], axis=0)
+    columns = {"t": STEP_S * np.arange(size), "v_left": treads[:, 0], "v_right": treads[:, 1]}
+    if gyro:
+        columns["gyro_z"] = asked_twists(GAINS, late, ROBOT.track_width)[:, 2] + errors
+    return run_of_tables(columns)
+
+
+def test_errors_are_what_the_gains_leave(rng):
+    errors = rng.normal(size=3000)
+    errors[7] = np.nan
+    run = drive(rng, 3000, errors)
+    (found,) = yaw_rate_errors([(run, np.arange(3000))], GAINS, 0.0)
+    np.testing.assert_allclose(found.errors, np.delete(errors, 7), atol=1e-9)
+    assert found.step_s == pytest.approx(STEP_S)
+    assert found.accelerations_m_s2.shape == (2999,)
+    assert found.accelerations_m_s2.min() == 0.0  # held for a second each
+
+
+def test_who_stands_errs_not(rng):
+    run = drive(rng, 300, np.arange(300.0))
+    still = {name: run.odometry[name] * (np.arange(300) >= 100) for name in ("v_left", "v_right")}
+    run = replace(run, odometry=replace(run.odometry, columns=run.odometry.columns | still))
+    (found,) = yaw_rate_errors([(run, np.arange(300))], GAINS, 0.0)
+    assert len(found.errors) == 200
+    still = {name: np.zeros(300) for name in ("v_left", "v_right")}
+    run = replace(run, odometry=replace(run.odometry, columns=run.odometry.columns | still))
+    assert yaw_rate_errors([(run, np.arange(300))], GAINS, 0.0) == []
+
+
+def test_a_gyroscope_read_less_often_than_the_treads(rng):
+    errors = np.where(np.arange(3000) % 10 == 0, 0.1, np.nan)
+    (found,) = yaw_rate_errors([(drive(rng, 3000, errors), np.arange(3000))], GAINS, 0.0)
+    assert found.step_s == pytest.approx(10 * STEP_S)
+    variance = estimated_yaw_rate_noise([found]).variance
+    assert variance == pytest.approx(0.1**2 * LASTING_S / (10 * STEP_S))
+
+
+def test_stamps_may_be_those_of_a_clock(rng):
+    run = drive(rng, 3000, 0.01 * rng.normal(size=3000))
+    late = replace(run.odometry, columns=run.odometry.columns | {"t": run.odometry["t"] + 1.7e9})
+    (plain,), (clock,) = (
+        yaw_rate_errors([(of, np.arange(3000))], GAINS, 0.1)
+        for of in (run, replace(run, odometry=late))
+    )
+    np.testing.assert_allclose(clock.errors, plain.errors, atol=1e-4)
+
+
+def test_a_part_of_a_run_alone(rng):
+    rows = np.arange(100, 400)
+    (found,) = yaw_rate_errors([(drive(rng, 500, np.arange(500.0)), rows)], GAINS, 0.0)
+    np.testing.assert_allclose(found.errors[1:], rows[1:], atol=1e-9)
+
+
+def test_without_a_gyroscope_or_a_step_there_are_none(rng):
+    run, without = (drive(rng, 100, 0.0, gyro=gyro) for gyro in (True, False))
+    assert yaw_rate_errors([(without, np.arange(100)), (run, np.array([3]))], GAINS, 0.0) == []
+    assert estimated_yaw_rate_noise([]) == YawRateNoise(NOT_MEASURED)
 
 
 def test_white_noise_is_what_it_is(rng):
-    labels = ["ice"] * 20_000 + ["tar"] * 20_000
-    found = variance(drive(rng, labels, 0.05 * rng.normal(size=len(labels))))
-    blocks = len(labels) * STEP_S / BLOCK_S
-    assert found == pytest.approx(0.05**2, rel=4 * np.sqrt(2 / blocks))
+    found = estimated_yaw_rate_noise([stretch(0.05 * rng.normal(size=40_000))])
+    of_block = 0.05**2 * STEP_S / BLOCK_S  # of the square of a mean, which a chance leaves
+    blocks = 40_000 * STEP_S / BLOCK_S
+    chance = 4 * of_block * np.sqrt(2 / blocks) * LASTING_S / STEP_S
+    assert found.variance == pytest.approx(0.05**2, abs=chance + 0.05 * 0.05**2)
 
 
-def test_an_error_that_lasts_counts_for_as_many_samples(rng):
-    """A bias over blocks of n samples is as white noise of n times its square."""
-    found = variance(drive(rng, ["tar"] * 5000, 0.1))
-    assert found == pytest.approx(0.1**2 * BLOCK_S / STEP_S, rel=1e-3)
+def test_an_error_that_is_always_there_counts_for_as_long_as_a_turn():
+    """A bias is as white noise of as many times its square as there are samples in a turn."""
+    found = estimated_yaw_rate_noise([stretch(np.full(5000, 0.1))])
+    assert found == YawRateNoise(pytest.approx(0.1**2 * LASTING_S / STEP_S))
 
 
-def test_what_was_not_measured_is_left_out(rng):
-    errors = np.full(5000, 0.1)
-    errors[::7] = np.nan
-    assert variance(drive(rng, ["ice"] * 5000, errors)) == pytest.approx(1.0, rel=1e-3)
+def test_both_together(rng):
+    white = 0.02 * rng.normal(size=20_000)
+    found = estimated_yaw_rate_noise([stretch(0.01 + white)])
+    expected = 0.02**2 + 0.01**2 * LASTING_S / STEP_S
+    assert found.variance == pytest.approx(expected, rel=0.2)
 
 
-def test_runs_without_a_gyroscope_are_left_out(rng):
-    with_one, without = (drive(rng, ["ice"] * 2000, 0.1, gyro=gyro) for gyro in (True, False))
-    assert variance(without, with_one) == variance(with_one)
-    assert variance(without) == NOT_MEASURED
+def test_it_grows_with_the_square_of_acceleration():
+    """0.01 rad/s at rest of the treads' speeds, 0.03 while they change by 0.5 m/s^2."""
+    calm, rough = (stretch(np.full(5000, e), a) for e, a in ((0.01, 0.0), (0.03, 0.5)))
+    found = estimated_yaw_rate_noise([calm, rough])
+    assert found.variance == pytest.approx(0.01**2 * LASTING_S / STEP_S)
+    assert found.growth == pytest.approx(8 / 0.5**2)  # nine times the square
+    np.testing.assert_allclose(found.variances(np.array([0.0, 0.5])) / found.variance, [1.0, 9.0])
 
 
-def test_too_short_for_a_block_says_nothing(rng):
-    assert variance(drive(rng, ["ice"] * 50, 0.1)) == NOT_MEASURED
+def test_what_falls_with_acceleration_does_not_grow():
+    found = estimated_yaw_rate_noise(
+        [stretch(np.full(5000, e), a) for e, a in ((0.03, 0.0), (0.01, 0.5))]
+    )
+    assert found.growth == 0.0
 
 
-def test_a_stretch_of_one_stamp_is_too_short(rng):
-    labels = ["ice"] * 2000 + ["tar"] + ["ice"] * 2000
-    assert variance(drive(rng, labels, 0.1)) == pytest.approx(1.0, rel=1e-2)
+def test_too_short_for_a_block_says_nothing():
+    assert estimated_yaw_rate_noise([stretch(np.full(50, 0.1))]) == YawRateNoise(NOT_MEASURED)
