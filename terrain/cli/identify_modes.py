@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 ALIKE_S = 5.0  # pairs that take longer to be told apart are named
 PAIRS = 4  # so many of them
+SLOW_TIGHT_TURNS_M_S = ((0.05, 0.15), (0.15, 0.05))  # to the left, to the right
 
 
 @click.command(name="identify-modes")
@@ -137,18 +138,35 @@ def _print_velocity(modes: "VelocityModes") -> None:
 
 def _print_traction(modes: "TractionModes") -> None:
     """Print the shares of requested speed and turn rate, and the noise."""
-    click.echo("Shares k of the requested speed and m of the requested turn rate:")
+    import numpy as np
+
+    from odometry.modes.traction import requested, twists_of
+
+    click.echo(
+        "Share k of the requested speed, shares m of the requested turn rate in wide and in tight "
+        "slow turns (tight: one tread three times as fast as the other), and the lag of turns:"
+    )
     rows: list[tuple[str, ...]] = [
-        ("mode", "k left turn", "k right turn", "m left turn", "m right turn")
+        ("mode", "k", "m left", "m right", "m left tight", "m right tight", "lag s")
     ]
-    for name, k, m in zip(modes.names, modes.k, modes.m, strict=True):
-        rows.append((name, *(f"{share:.3f}" for share in (*k, *m))))
+    width = modes.track_width
+    tight = [
+        twists_of(modes.gains, treads, width)[:, 2] / requested(treads, width)[1]
+        for treads in np.array(SLOW_TIGHT_TURNS_M_S)
+    ]
+    shares = np.column_stack([modes.k[:, 0], modes.m, *tight, modes.lag_s])
+    rows += [
+        (name, *(f"{share:.3f}" for share in of))
+        for name, of in zip(modes.names, shares, strict=True)
+    ]
     print_table(rows)
     place, yaw = modes.process_variance**0.5
     click.echo(
         f"Noise of all modes after a metre of wheel travel: {place:.3f} m, {yaw:.4f} rad; of "
         f"measured poses: {modes.measurement_variance[0] ** 0.5:.3f} m, "
-        f"{modes.measurement_variance[2] ** 0.5:.4f} rad"
+        f"{modes.measurement_variance[2] ** 0.5:.4f} rad; of yaw rates: "
+        f"{modes.measurement_variance[3] ** 0.5:.3f} rad/s. While the treads speed up by 1 m/s2 "
+        f"it is {(1 + modes.variance_growth) ** 0.5:.1f} times as large."
     )
 
 

@@ -8,6 +8,7 @@ from odometry.errors import OdometryError
 from odometry.io.run_folder import write_run_folder
 from odometry.modes.mode_set import read_mode_set
 from terrain.cli.identify_modes import identify_modes
+from tests.odometry.modes.mode_drives import asked_twists
 from tests.odometry.modes.mode_examples import run_of
 
 TURNS = {"ice": 1.0, "tar": 1.4}
@@ -96,10 +97,15 @@ def test_traction_modes_are_shown_and_written(grounds, out, paper):
     found = read_mode_set(out)
     assert found.modes.kind == "traction"
     for row, (name, turn) in enumerate(TURNS.items()):
-        shown = cells(answer, name)[:4]
-        assert shown == pytest.approx([*found.modes.k[row], *found.modes.m[row]], abs=6e-4)
+        k, *shares, lag_s = cells(answer, name)[:6]
+        assert k == pytest.approx(found.modes.k[row, 0], abs=6e-4)
+        assert shares[:2] == pytest.approx(found.modes.m[row], abs=6e-4)
+        width = found.modes.track_width
+        slow = asked_twists(found.modes.gains[row], [(0.05, 0.15), (0.15, 0.05)], width)[:, 2]
+        assert shares[2:] == pytest.approx(slow / [0.1, -0.1] * width, abs=6e-4)
+        assert lag_s == pytest.approx(found.modes.lag_s[row], abs=6e-4)
         if paper:
-            assert shown == pytest.approx([1.0, 1.0, turn, turn], abs=0.03)
+            assert [k, *shares] == pytest.approx([1.0, *[turn] * 4], abs=0.03)
 
 
 def test_an_option_of_the_other_kind_is_a_usage_error(grounds, out):
