@@ -5,6 +5,7 @@
 Warthog runs on five grounds, joined end to end, and Husky runs with yaw rate and wheels only.
 Modes are identified on other runs (Warthog: each run is held out once), or on the other half where
 a ground has one run (Husky). Tables are shares of the time by true ground (row) and answer.
+Traction modes are followed on each Warthog run alone: poses of one do not go on in the next.
 """
 
 import csv
@@ -19,11 +20,13 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
+from odometry.arrays import FloatArray
 from odometry.modes.answers import UNDETERMINED, confusion
+from odometry.modes.identify_traction import identify_traction_modes
 from odometry.modes.identify_velocity import identify_velocity_modes
 from odometry.modes.mode_set import DWELL_S, ModeSet
 from odometry.modes.signals import Signals
-from odometry.modes.track import ModesConfig, ModeTrack, follow_signals
+from odometry.modes.track import ModesConfig, ModeTrack, follow_modes, follow_signals
 from odometry.run import Run
 from odometry.table import Table
 
@@ -46,7 +49,9 @@ def main() -> None:
             judged(*left_out(warthog, fold), options=options, name=f"Warthog, fold {fold}")
             for fold in range(folds)
         ]
-        print_table(f"Warthog, by held-out run, {models}", tracks)
+        print_table(f"Warthog, by held-out run, {models}", [track for track, _ in tracks])
+        off = np.concatenate([of for _, of in tracks])
+        print(f"yaw rates within two sigma of the state: {(off < 2).mean():.2f}\n")
         halved = {ground: [halves(run) for run in runs] for ground, runs in husky.items()}
         tracks = [
             judged(
@@ -57,7 +62,13 @@ def main() -> None:
             )
             for known in (0, 1)
         ]
-        print_table(f"Husky, by halves, {models}", tracks)
+        print_table(f"Husky, by halves, {models}", [track for track, _ in tracks])
+    by_poses = [
+        track
+        for fold in range(max(map(len, warthog.values())))
+        for track in judged_by_poses(*left_out(warthog, fold))
+    ]
+    print_table("Warthog, by held-out run, traction modes", by_poses)
 
 
 def by_ground(folder: Path, prefix: str) -> dict[str, list[Run]]:
@@ -80,8 +91,8 @@ def left_out(runs: dict[str, list[Run]], fold: int) -> tuple[list[Run], list[Run
 
 def judged(
     known: Sequence[Run], held: Sequence[Run], *, options: Mapping[str, bool], name: str
-) -> ModeTrack:
-    """Modes identified on some runs, followed over others end to end."""
+) -> tuple[ModeTrack, FloatArray]:
+    """Modes identified on some runs, followed over others; how far yaw rates are off in sigmas."""
     modes = identify_velocity_modes(known, **options)
     if not options:
         gains = modes.steady_gains()[:, 1] * [-1, 1]
@@ -94,7 +105,17 @@ def judged(
         )
         print(f"{name}: yaw rate by tread speed (lag, error): {said}")
     mode_set = ModeSet(modes, np.full(len(modes.names), DWELL_S))
-    return follow_signals(joined([modes.signals(run) for run in held]), mode_set)
+    signals = joined([modes.signals(run) for run in held])
+    track = follow_signals(signals, mode_set)
+    off = np.abs(signals.measured[:, 1] - track.means[:, 1]) / track.sigmas[:, 1]
+    return track, off[np.isfinite(off)]
+
+
+def judged_by_poses(known: Sequence[Run], held: Sequence[Run]) -> list[ModeTrack]:
+    """Traction modes identified on some runs, followed over each of the others."""
+    modes = identify_traction_modes(known)
+    mode_set = ModeSet(modes, np.full(len(modes.names), DWELL_S))
+    return [follow_modes(run, mode_set) for run in held]
 
 
 def joined(parts: Sequence[Signals]) -> Signals:

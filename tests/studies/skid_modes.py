@@ -8,9 +8,9 @@ noise differs from seed to seed (gyro 0.02 rad/s, pose 2 cm and 0.5 degrees at 1
 
 - grounds: asphalt, grass, crushed concrete, each alone for 30 s (Fig. 3), and 10 s of each, a
   spiral of its own each time (Fig. 4); by treads and gyroscope;
-- wheels: none, the front two, the right two, all (Fig. 5), right two and then all (Fig. 6); by
-  treads, pose and gyroscope; with the (k, m) of the paper alone, too; and each of the 16
-  combinations among all 16.
+- wheels: none, the front two, the right two, all (Fig. 5), right two and then all (Fig. 6), at
+  1, 1.5 and 2 m/s; by treads, pose and gyroscope; with the (k, m) of the paper alone, too; and
+  each of the 16 combinations among all 16.
 
 Every stretch of a mode is a row of FOLDER/stretches.csv. Shares are of the time after the mode was
 first told, or of all of it where it never was. The way is curved where the radius driven is less
@@ -48,7 +48,6 @@ from odometry.simulation.skid_traction import (
     GROUNDS,
     WHEEL_MODES,
     ground_traction,
-    wheel_mode_name,
     wheel_traction,
 )
 
@@ -59,7 +58,7 @@ SURE = ModesConfig().sure
 RIGHT = ("front_right", "rear_right")
 FRONT = ("front_left", "front_right")
 FOUR = ((), FRONT, RIGHT, ("front_left", "front_right", "rear_left", "rear_right"))
-SPEEDS_M_S = (1.0,)
+SPEED_M_S, FASTER_M_S = 1.0, (1.5, 2.0)
 COLUMNS = (
     *("figure", "speed", "seed", "mode", "detected_after", "false_switches"),
     *("right_curved", "wrong_curved", "right_straight", "wrong_straight", "open_straight", "nis"),
@@ -85,7 +84,9 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("skid_modes"))
     arguments = parser.parse_args()
     vehicle = read_contact_vehicle(VEHICLE)
-    made = [one for speed in SPEEDS_M_S for one in experiments(vehicle, speed)]
+    made = experiments(vehicle, SPEED_M_S)
+    for speed in FASTER_M_S:
+        made += four_wheel_experiments(vehicle, speed)
     wanted = [one for one in made if any(word in one.figure for word in arguments.only)]
     tasks = [(one, seed) for one in wanted for seed in range(arguments.seeds)]
     studied = Parallel(n_jobs=arguments.jobs, return_as="generator")
@@ -105,23 +106,14 @@ def experiments(vehicle: ContactVehicle, speed: float) -> list[Experiment]:
     """All experiments at one largest tread speed."""
     grounds = [ground_traction(vehicle, name) for name in GROUNDS]
     wheels = [wheel_traction(vehicle, slipping) for slipping in WHEEL_MODES]
-    courses = calibration_courses(vehicle, speed)
-    rng = np.random.default_rng(0)
-    by_ground = calibration_runs(vehicle, grounds, courses, rng)
-    by_wheels = calibration_runs(vehicle, wheels, courses, rng)
-    of_grounds = identify_velocity_modes([r for of in by_ground.values() for r in of])
+    of_grounds = identify_velocity_modes(calibrated(vehicle, grounds, speed))
     ground_set = ModeSet(of_grounds, np.full(len(of_grounds.names), DWELL_S))
-    four = [wheel_mode_name(slipping) for slipping in FOUR]
-    few = mode_set_of([r for name in four for r in by_wheels[name]])
-    paper = mode_set_of([r for name in four for r in by_wheels[name]], paper=True)
-    all_16 = mode_set_of([r for of in by_wheels.values() for r in of])
+    of_four = calibrated(vehicle, [wheel_traction(vehicle, one) for one in FOUR], speed)
+    paper = mode_set_of(of_four, paper=True)
+    all_16 = mode_set_of(calibrated(vehicle, wheels, speed))
     switching = [
         replace(ground_traction(vehicle, name), from_s=PART_S * place)
         for place, name in enumerate(("crushed_concrete", "grass", "asphalt"))
-    ]
-    then_all = [
-        wheel_traction(vehicle, RIGHT),
-        wheel_traction(vehicle, FOUR[-1], PART_S),
     ]
     return [
         *(
@@ -129,12 +121,7 @@ def experiments(vehicle: ContactVehicle, speed: float) -> list[Experiment]:
             for one in grounds
         ),
         Experiment("4 grounds switch", speed, ground_set, spirals(vehicle, speed, switching, 3)),
-        *(
-            Experiment(
-                "5 wheels", speed, few, spirals(vehicle, speed, [wheel_traction(vehicle, one)], 1)
-            )
-            for one in FOUR
-        ),
+        *four_wheel_experiments(vehicle, speed),
         *(
             Experiment(
                 "5 (k, m) alone",
@@ -144,12 +131,32 @@ def experiments(vehicle: ContactVehicle, speed: float) -> list[Experiment]:
             )
             for one in FOUR
         ),
-        Experiment("6 wheels switch", speed, few, spirals(vehicle, speed, then_all, 2)),
         *(
             Experiment("16 wheels", speed, all_16, spirals(vehicle, speed, [one], 1))
             for one in wheels
         ),
     ]
+
+
+def four_wheel_experiments(vehicle: ContactVehicle, speed: float) -> list[Experiment]:
+    """Those of the four sets of wheels of Fig. 5 and 6."""
+    tractions = [wheel_traction(vehicle, slipping) for slipping in FOUR]
+    few = mode_set_of(calibrated(vehicle, tractions, speed))
+    then_all = [wheel_traction(vehicle, RIGHT), wheel_traction(vehicle, FOUR[-1], PART_S)]
+    return [
+        *(
+            Experiment("5 wheels", speed, few, spirals(vehicle, speed, [one], 1))
+            for one in tractions
+        ),
+        Experiment("6 wheels switch", speed, few, spirals(vehicle, speed, then_all, 2)),
+    ]
+
+
+def calibrated(vehicle: ContactVehicle, tractions: Sequence[Traction], speed: float) -> list[Run]:
+    """Noisy runs of the calibration courses in every mode."""
+    courses = calibration_courses(vehicle, speed)
+    runs = calibration_runs(vehicle, tractions, courses, np.random.default_rng(0))
+    return [run for of in runs.values() for run in of]
 
 
 def mode_set_of(runs: Sequence[Run], *, paper: bool = False) -> ModeSet:
