@@ -79,7 +79,9 @@ def identify_traction_modes(
         lag_s=np.array([fit.lag_s for fit in fits.values()]),
         track_width=width,
         # a speed that is off for T moves a place by T of it: its square by a metre grows with T
-        process_variance=np.array([wander, turn]) * LASTING_S / horizon_s
+        process_variance=np.array(
+            [wander * LASTING_S / horizon_s, turn * LASTING_S / horizon_s, of_yaw_rate.lasting]
+        )
         + _left_open(fits, scenes),
         measurement_variance=np.array([position, position, yaw, of_yaw_rate.variance]),
         variance_growth=of_yaw_rate.growth,
@@ -87,16 +89,16 @@ def identify_traction_modes(
 
 
 def _left_open(fits: dict[str, TractionFit], scenes: dict[str, list[Scene]]) -> FloatArray:
-    """What gains that are not exact add to place and yaw (2,) by a metre of wheel travel.
+    """What gains that are not exact add to place and yaw by a metre, and to the yaw rate (3,).
 
     To a place in each direction as much as along or aside, whichever is more.
     """
-    added, travel_m = np.zeros(2), 0.0
+    summed, travel_m, lasts_s = np.zeros(2), 0.0, 0.0
     for name, fit in fits.items():
         for scene in scenes[name]:
             steps_s = np.where(inside(scene), scene.steps_s, 0.0)
             variances = fit.twist_variances(scene)
-            each = np.column_stack([variances[:, :2].max(axis=1), variances[:, 2]])
-            added += LASTING_S * steps_s @ each
+            summed += steps_s @ np.column_stack([variances[:, :2].max(axis=1), variances[:, 2]])
             travel_m += float(steps_s @ np.abs(scene.inputs.tread_speeds_m_s).mean(axis=1))
-    return added / travel_m
+            lasts_s += float(steps_s.sum())
+    return np.append(summed * LASTING_S / travel_m, summed[1] / lasts_s)

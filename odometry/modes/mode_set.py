@@ -37,7 +37,7 @@ HEAD = {
     "velocity": (Key("errors_last_s", (), "0 or more"),),
     "traction": (
         Key("track_width", (), "above 0"),
-        Key("process_variance", (2,), "above 0"),
+        Key("process_variance", (3,), "above 0"),
         Key("measurement_variance", (4,), "above 0"),
         Key("variance_growth", (), "0 or more"),
     ),

@@ -38,9 +38,10 @@ class TractionModes:
         Time in which the yaw rate follows what is asked for; 0 in eq. 3.
     track_width : float
         [m]
-    process_variance : (2,)
-        Variance of the place [m^2] and of the yaw [rad^2] that a metre of wheel travel adds, the
-        same in all modes: else whatever mode was recorded most smoothly wins on every straight.
+    process_variance : (3,)
+        Variance of the place [m^2] and of the yaw [rad^2] that a metre of wheel travel adds, and of
+        the yaw rate about what the gains say [rad^2/s^2]; the same in all modes: else whatever mode
+        was recorded most smoothly wins on every straight.
     measurement_variance : (4,)
         Variance of a measured x, y, yaw, and yaw rate. The last holds what lasts of the errors of
         the modes, too, for a gyroscope read as often as in the runs identified from: of what it
@@ -98,8 +99,11 @@ class TractionModes:
         larger = 1 + roughness
 
         def process_noise(x: FloatArray, u: FloatArray, dt: float) -> FloatArray:  # noqa: ARG001
-            place, yaw = larger * np.abs(u).mean() * dt * self.process_variance
-            return np.diag([place, place, yaw, 0.0])
+            place, yaw = larger * np.abs(u).mean() * dt * self.process_variance[:2]
+            lasting, _ = self._lasting(dt)
+            noise = np.tile(np.diag([place, place, yaw, 0.0]), (len(lasting), 1, 1))
+            noise[:, 3, 3] = self.process_variance[2] * (1 - lasting**2)
+            return noise
 
         return EkfModel(
             states=4,

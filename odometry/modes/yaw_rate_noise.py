@@ -43,10 +43,13 @@ class YawRateNoise:
         [rad^2/s^2]
     growth : float
         Part of it that is added for each (m/s^2)^2.
+    lasting : float
+        Variance of what lasts of the errors [rad^2/s^2].
     """
 
     variance: float
     growth: float = 0.0
+    lasting: float = 0.0
 
     def variances(self, accelerations_m_s2: FloatArray) -> FloatArray:
         """At accelerations (N,) of the treads."""
@@ -90,4 +93,4 @@ def estimated_yaw_rate_noise(stretches: Sequence[YawRateErrors]) -> YawRateNoise
     (steady, growing), _ = nnls(np.column_stack([np.ones(len(by)), by]), squares)
     lasting = max(float(steady) - white * step_s / BLOCK_S, 0.0)
     variance = max(white + lasting * LASTING_S / step_s, LEAST_VARIANCE)
-    return YawRateNoise(variance, float(growing) * LASTING_S / step_s / variance)
+    return YawRateNoise(variance, float(growing) * LASTING_S / step_s / variance, lasting)

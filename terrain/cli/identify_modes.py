@@ -160,7 +160,7 @@ def _print_traction(modes: "TractionModes") -> None:
         for name, of in zip(modes.names, shares, strict=True)
     ]
     print_table(rows)
-    place, yaw = modes.process_variance**0.5
+    place, yaw, _ = modes.process_variance**0.5
     click.echo(
         f"Noise of all modes after a metre of wheel travel: {place:.3f} m, {yaw:.4f} rad; of "
         f"measured poses: {modes.measurement_variance[0] ** 0.5:.3f} m, "

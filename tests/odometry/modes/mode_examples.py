@@ -49,7 +49,7 @@ def traction_set(turns=(0.5, 0.8), names=("none", "all")):
         gains=gains,
         lag_s=np.zeros(len(turns)),
         track_width=0.5,
-        process_variance=np.array([1e-4, 1e-4]),
+        process_variance=np.array([1e-4, 1e-4, 1e-8]),
         measurement_variance=np.array([4e-4, 4e-4, 1e-4, 1e-3]),
     )
     return ModeSet(modes, np.full(len(turns), 20.0), "by hand")

@@ -96,7 +96,7 @@ def test_a_rough_stretch_says_less():
     """The same turn, told while the treads are steady and left open while they are not."""
     gains = np.zeros((2, 2, 3, 5))
     gains[:, :, 0, 0], gains[:, :, 2, 1] = 1.0, np.array([0.8, 0.7])[:, None]
-    noise = np.array([1e-6, 1e-6]), np.array([1e-4, 1e-4, 1e-4, 0.02**2])
+    noise = np.array([1e-6, 1e-6, 1e-8]), np.array([1e-4, 1e-4, 1e-4, 0.02**2])
     t = STEP_S * np.arange(100)
     signals = Signals(
         t,

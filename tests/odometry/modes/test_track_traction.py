@@ -24,7 +24,7 @@ def losing_traction():
     rng, size = np.random.default_rng(6), 2 * CHANGE
     gains = np.zeros((2, 2, 3, 5))
     gains[:, :, 0, 0], gains[:, :, 2, 1] = 1.0, np.array([0.8, 0.4])[:, None]
-    noise = np.array([1e-4, 1e-5]), np.array([1e-4, 1e-4, 25e-6, 1.0])
+    noise = np.array([1e-4, 1e-5, 1e-8]), np.array([1e-4, 1e-4, 25e-6, 1.0])
     modes = TractionModes(("none", "all"), gains, np.full(2, 0.1), ROBOT.track_width, *noise)
     treads = wandering(rng, size, STEP_S)
     asked = [asked_twists(of, treads, ROBOT.track_width) for of in gains]

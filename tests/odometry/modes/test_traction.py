@@ -28,7 +28,7 @@ MODES = TractionModes(
     GAINS,
     LAGS_S,
     WIDTH,
-    np.array([2e-3, 5e-4]),
+    np.array([2e-3, 5e-4, 1e-4]),
     np.array([4e-4, 4e-4, 1e-4, 1e-3]),
     variance_growth=2.0,
 )
@@ -186,17 +186,33 @@ def test_m_is_the_share_of_wide_slow_turns(speed):
         np.testing.assert_allclose(share, MODES.m[:, turn], atol=1e-3)
 
 
+def travel_noise(model):
+    """Of place and yaw after 0.1 s at 2 m/s backward on the left and 4 m/s on the right: 0.3 m."""
+    noise = model.process_noise(np.zeros((3, 4)), np.array([-2.0, 4.0]), 0.1)
+    np.testing.assert_array_equal(noise, noise * np.eye(4))
+    return np.diagonal(noise[:, :3, :3], axis1=1, axis2=2)
+
+
 def test_noise_grows_with_wheel_travel():
-    """0.1 s at 2 m/s backward on the left and 4 m/s on the right is 0.3 m."""
-    noise = MODES.model().process_noise(np.zeros((3, 4)), np.array([-2.0, 4.0]), 0.1)
-    np.testing.assert_allclose(noise, np.diag([6e-4, 6e-4, 1.5e-4, 0.0]))
+    np.testing.assert_allclose(travel_noise(MODES.model()), [[6e-4, 6e-4, 1.5e-4]] * 3)
+
+
+@pytest.mark.parametrize("step_s", [0.01, 0.05])
+def test_in_the_long_run_the_yaw_rate_is_off_by_its_variance(step_s):
+    model, u = MODES.model(), np.array([0.3, 0.5])
+    variances = np.zeros(3)
+    for _ in range(1000):
+        noise = model.process_noise(np.zeros((3, 4)), u, step_s)
+        jacobian = model.transition_jacobian(np.zeros((3, 4)), u, step_s)
+        variances = jacobian[:, 3, 3] ** 2 * variances + noise[:, 3, 3]
+    np.testing.assert_allclose(variances, 1e-4)
 
 
 def test_rough_treads_add_to_all_noise_but_that_of_poses():
     model = MODES.model(0.5)
-    noise = model.process_noise(np.zeros((3, 4)), np.array([-2.0, 4.0]), 0.1)
-    np.testing.assert_allclose(noise, np.diag([9e-4, 9e-4, 2.25e-4, 0.0]))
-    np.testing.assert_allclose(model.measurement_covariance, np.diag([4e-4, 4e-4, 1e-4, 1.5e-3]))
+    np.testing.assert_allclose(travel_noise(model), [[9e-4, 9e-4, 2.25e-4]] * 3)
+    expected = np.diag([4e-4, 4e-4, 1e-4, 1.5e-3])
+    np.testing.assert_allclose(model.measurement_covariance, expected)
 
 
 def test_treads_are_rough_while_they_speed_up_by_the_square():

@@ -97,7 +97,8 @@ def test_white_noise_is_what_it_is(rng):
 def test_an_error_that_is_always_there_counts_for_as_long_as_a_turn():
     """A bias is as white noise of as many times its square as there are samples in a turn."""
     found = estimated_yaw_rate_noise([stretch(np.full(5000, 0.1))])
-    assert found == YawRateNoise(pytest.approx(0.1**2 * LASTING_S / STEP_S))
+    assert found.variance == pytest.approx(0.1**2 * LASTING_S / STEP_S)
+    assert (found.growth, found.lasting) == (0.0, pytest.approx(0.1**2))
 
 
 def test_both_together(rng):
