@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.arrays import AnyArray
+from odometry.arrays import AnyArray, IntArray
 from odometry.modes.answers import (
     UNDETERMINED,
     Detection,
@@ -127,25 +127,24 @@ class Followed:
 
     def candidates(self, track: ModeTrack) -> AnyArray:
         """Names (N,) of the fewest modes that it may be at each stamp, with " or " between."""
-        sets, of = np.unique(candidates(track, self.config.sure), axis=0, return_inverse=True)
-        names = np.array(track.names)
-        return np.array([" or ".join(names[one]) for one in sets], dtype=object)[of.ravel()]
+        sets, places = self._candidate_sets(track)
+        return np.array([" or ".join(names) for names in sets], dtype=object)[places]
 
     def left_open(self, track: ModeTrack) -> dict[tuple[str, ...], float]:
         """Share of the undetermined time of each set of modes it may be, the longest first."""
-        open_ = self.answers(track) == UNDETERMINED
-        lasts_s = np.append(np.diff(track.stamps_s), 0.0)[open_]
-        if not lasts_s.any():
-            return {}
-        sets, of = np.unique(
-            candidates(track, self.config.sure)[open_], axis=0, return_inverse=True
-        )
-        shares = np.bincount(of.ravel(), weights=lasts_s) / lasts_s.sum()
+        sets, places = self._candidate_sets(track)
+        undetermined = self.answers(track) == UNDETERMINED
+        lasts_s = np.append(np.diff(track.stamps_s), 0.0) * undetermined
+        held_s = np.bincount(places, weights=lasts_s)
+        longest = [place for place in np.argsort(-held_s, kind="stable") if held_s[place] > 0]
+        return {sets[place]: float(held_s[place] / held_s.sum()) for place in longest}
+
+    def _candidate_sets(self, track: ModeTrack) -> tuple[list[tuple[str, ...]], IntArray]:
+        """The sets of modes that it may be, and the place (N,) of each stamp's among them."""
+        chosen = candidates(track, self.config.sure)
+        sets, places = np.unique(chosen, axis=0, return_inverse=True)
         names = np.array(track.names)
-        return {
-            tuple(names[sets[place]].tolist()): float(shares[place])
-            for place in np.argsort(-shares, kind="stable")
-        }
+        return [tuple(names[one].tolist()) for one in sets], places.ravel()
 
     def score(self, track: ModeTrack) -> Score:
         """Answers of a track against the modes that the run names."""

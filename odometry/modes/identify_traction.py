@@ -9,14 +9,13 @@ from odometry.arrays import FloatArray
 from odometry.gap.noise import FIRST_GUESS, Noise, estimated_noise
 from odometry.gap.scene import Scene
 from odometry.identification.identify import robot_of
-from odometry.modes.mode_windows import inside, scenes_by_mode, stretches_by_mode
+from odometry.modes.mode_windows import heard_by_mode, inside, scenes_by_mode
 from odometry.modes.traction import TractionModes
 from odometry.modes.traction_fit import TractionFit, fitted, residuals
 from odometry.modes.yaw_rate_noise import (
     LASTING_S,
     YawRateNoise,
     estimated_yaw_rate_noise,
-    yaw_rate_errors,
 )
 from odometry.run import Run
 
@@ -51,13 +50,13 @@ def identify_traction_modes(
     """
     width = robot_of(runs).track_width
     horizon_s, scenes = scenes_by_mode(runs, paper=paper)
-    stretches = stretches_by_mode(runs)
+    heard = heard_by_mode(runs)
     noise, of_yaw_rate = Noise(*np.sqrt(FIRST_GUESS).tolist()), FIRST_YAW_RATE_NOISE
     bar = tqdm(total=ROUNDS * len(scenes), unit="fit", disable=None if show_progress else True)
     for _ in range(ROUNDS):
         fits: dict[str, TractionFit] = {}
         for name, of in scenes.items():
-            fits[name] = fitted(of, stretches[name], noise, of_yaw_rate, paper=paper)
+            fits[name] = fitted(of, heard[name], noise, of_yaw_rate, paper=paper)
             bar.update()
         pairs = [
             (scene, residuals(fit.gains, fit.lag_s, scene))
@@ -66,9 +65,9 @@ def identify_traction_modes(
         ]
         noise = estimated_noise([scene for scene, _ in pairs], [left for _, left in pairs])
         errors = [
-            one
+            (one, one.errors(fit.gains, fit.lag_s))
             for name, fit in fits.items()
-            for one in yaw_rate_errors(stretches[name], fit.gains, fit.lag_s)
+            for one in heard[name]
         ]
         of_yaw_rate = estimated_yaw_rate_noise(errors)
     bar.close()

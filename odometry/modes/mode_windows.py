@@ -1,11 +1,11 @@
-"""The windows of runs from which each traction mode is identified."""
+"""The windows of runs, and the stretches heard, from which a traction mode is identified."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from odometry.arrays import BoolArray, IntArray
+from odometry.arrays import BoolArray
 from odometry.gap.config import GapConfig
 from odometry.gap.errors import GapError
 from odometry.gap.scene import Scene, scene_of, thinned
@@ -14,6 +14,7 @@ from odometry.identification.errors import IdentificationError
 from odometry.modes.signals import STANDING_M_S
 from odometry.modes.stretches import stretches_by_label
 from odometry.modes.traction import LEFT_TURN, RIGHT_TURN, turns_of
+from odometry.modes.yaw_rate_noise import Heard, heard_of
 from odometry.run import UNKNOWN, Run
 
 HORIZONS_S = (4.0, 2.0)  # of windows, the second where poses are chained for less than the first
@@ -61,12 +62,13 @@ def _fewer_poses(scene: Scene) -> Scene:
     return replace(scene, windows=scene.windows[:, kept])
 
 
-def stretches_by_mode(runs: Sequence[Run]) -> dict[str, list[tuple[Run, IntArray]]]:
-    """Runs and rows of each mode."""
-    found: dict[str, list[tuple[Run, IntArray]]] = {}
+def heard_by_mode(runs: Sequence[Run]) -> dict[str, list[Heard]]:
+    """Stretches of each mode that a gyroscope heard."""
+    found: dict[str, list[Heard]] = {}
     for run in runs:
         for name, rows in stretches_by_label(run.odometry.stamps_s, terrains_of(run)):
-            found.setdefault(name, []).append((run, rows))
+            heard = heard_of(run, rows)
+            found.setdefault(name, []).extend([] if heard is None else [heard])
     return found
 
 

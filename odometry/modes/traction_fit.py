@@ -13,8 +13,7 @@ from odometry.gap.simulate import off_measured, poses_at
 from odometry.identification.motion import level_path
 from odometry.models.icr import GUESSED_WIDTHS
 from odometry.modes.traction import SHORTEST_LAG_S, lagged, requested, turns_of, twists_of
-from odometry.modes.yaw_rate_noise import YawRateNoise, yaw_rate_errors
-from odometry.run import Run
+from odometry.modes.yaw_rate_noise import Heard, YawRateNoise
 
 FIRST_LAG_S = 0.05
 USUAL = 0.3  # deviation of each gain from eq. 3: what the runs leave open stays near
@@ -50,13 +49,13 @@ class TractionFit:
 
 def fitted(
     scenes: Sequence[Scene],
-    runs_of_mode: Sequence[tuple[Run, IntArray]],
+    heard: Sequence[Heard],
     noise: Noise,
     yaw_rate_noise: YawRateNoise,
     *,
     paper: bool = False,
 ) -> TractionFit:
-    """Gains and lag, 0 with `paper`, of the windows of scenes and the stretches of runs."""
+    """Gains and lag, 0 with `paper`, of the windows of scenes and what a gyroscope heard."""
     parameter = _parameters(paper=paper)
     whiteners = [whitening(scene, noise) for scene in scenes]
 
@@ -71,8 +70,8 @@ def fitted(
             for white, scene in zip(whiteners, scenes, strict=True)
         ]
         yaw_rates = [
-            one.errors / np.sqrt(yaw_rate_noise.variances(one.accelerations_m_s2))
-            for one in yaw_rate_errors(runs_of_mode, gains, lag_s)
+            one.errors(gains, lag_s) / np.sqrt(yaw_rate_noise.variances(one.accelerations_m_s2))
+            for one in heard
         ]
         prior = (values - first)[:-1] / USUAL
         return np.concatenate([*poses, *yaw_rates, prior], axis=None)

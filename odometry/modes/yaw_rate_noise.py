@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import nnls
 
-from odometry.arrays import FloatArray, IntArray
+from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.modes.response import BLOCK_S, LEAST_VARIANCE, block_means
 from odometry.modes.signals import STANDING_M_S, accelerations_m_s2
 from odometry.modes.traction import lagged, twists_of
@@ -17,20 +17,37 @@ NOT_MEASURED = 1.0  # [rad^2/s^2] where no run has a gyroscope: it says next to 
 
 
 @dataclass(frozen=True)
-class YawRateErrors:
-    """Measured less predicted yaw rates of a stretch of one mode, and what the treads did.
+class Heard:
+    """A stretch of one mode that a gyroscope heard.
 
     Attributes
     ----------
-    step_s : float
-    errors : (N,)
+    stamps_s : (N,)
+    tread_speeds_m_s : (N, 2)
+    yaw_rates : (N,)
         [rad/s]
-    accelerations_m_s2 : (N,)
+    driving : (N,)
+        Whether a yaw rate was measured while a tread turned; K are.
+    step_s : float
+        Between these.
+    accelerations_m_s2 : (K,)
+        Of the treads.
+    track_width : float
+        [m]
     """
 
+    stamps_s: FloatArray
+    tread_speeds_m_s: FloatArray
+    yaw_rates: FloatArray
+    driving: BoolArray
     step_s: float
-    errors: FloatArray
     accelerations_m_s2: FloatArray
+    track_width: float
+
+    def errors(self, gains: FloatArray, lag_s: float) -> FloatArray:
+        """Measured less predicted yaw rates (K,) while driving."""
+        asked = twists_of(gains, self.tread_speeds_m_s, self.track_width)[:, 2]
+        return (self.yaw_rates - lagged(asked, self.stamps_s, lag_s))[self.driving]
 
 
 @dataclass(frozen=True)
@@ -56,40 +73,36 @@ class YawRateNoise:
         return self.variance * (1 + self.growth * accelerations_m_s2**2)
 
 
-def yaw_rate_errors(
-    stretches: Sequence[tuple[Run, IntArray]], gains: FloatArray, lag_s: float
-) -> list[YawRateErrors]:
-    """Errors while driving, over rows of runs, each without a gap, that have a gyroscope."""
-    found = []
-    for run, rows in stretches:
-        if "gyro_z" not in run.odometry or len(rows) < 2:
-            continue
-        stamps_s = run.odometry.stamps_s[rows]
-        speeds = run.odometry.stack("v_left", "v_right")[rows]
-        asked = twists_of(gains, speeds, run.robot.track_width)[:, 2]
-        errors = run.odometry["gyro_z"][rows] - lagged(asked, stamps_s, lag_s)
-        accelerations = accelerations_m_s2(stamps_s, speeds)
-        known = np.isfinite(errors) & (np.abs(speeds).max(axis=1) > STANDING_M_S)
-        if known.sum() > 1:
-            step_s = float(np.median(np.diff(stamps_s[known])))
-            found.append(YawRateErrors(step_s, errors[known], accelerations[known]))
-    return found
+def heard_of(run: Run, rows: IntArray) -> Heard | None:
+    """Rows of a run without a gap; None without a gyroscope, or where it did not drive."""
+    if "gyro_z" not in run.odometry:
+        return None
+    stamps_s = run.odometry.stamps_s[rows]
+    speeds = run.odometry.stack("v_left", "v_right")[rows]
+    yaw_rates = run.odometry["gyro_z"][rows]
+    driving = np.isfinite(yaw_rates) & (np.abs(speeds).max(axis=1) > STANDING_M_S)
+    if driving.sum() < 2:
+        return None
+    step_s = float(np.median(np.diff(stamps_s[driving])))
+    accelerations = accelerations_m_s2(stamps_s, speeds)[driving]
+    width = run.robot.track_width
+    return Heard(stamps_s, speeds, yaw_rates, driving, step_s, accelerations, width)
 
 
-def estimated_yaw_rate_noise(stretches: Sequence[YawRateErrors]) -> YawRateNoise:
-    """White noise with as much power as the errors have that last.
+def estimated_yaw_rate_noise(stretches: Sequence[tuple[Heard, FloatArray]]) -> YawRateNoise:
+    """White noise with as much power as the errors (K,) of stretches have that last.
 
     Taken as noise of the variance that they have at each sample, fifty samples a second would say
     too much.
     """
-    whole = [one for one in stretches if len(one.errors) * one.step_s >= BLOCK_S]
+    whole = [(one, errors) for one, errors in stretches if len(errors) * one.step_s >= BLOCK_S]
     if not whole:
         return YawRateNoise(NOT_MEASURED)
-    step_s = float(np.median([one.step_s for one in whole]))
+    step_s = float(np.median([one.step_s for one, _ in whole]))
     # neighbours differ by white noise alone
-    white = float(np.concatenate([np.diff(one.errors) ** 2 for one in whole]).mean() / 2)
-    squares = np.concatenate([block_means(one.errors, one.step_s) ** 2 for one in whole])
-    by = np.concatenate([block_means(one.accelerations_m_s2**2, one.step_s) for one in whole])
+    white = float(np.concatenate([np.diff(errors) ** 2 for _, errors in whole]).mean() / 2)
+    squares = np.concatenate([block_means(errors, one.step_s) ** 2 for one, errors in whole])
+    by = np.concatenate([block_means(one.accelerations_m_s2**2, one.step_s) for one, _ in whole])
     (steady, growing), _ = nnls(np.column_stack([np.ones(len(by)), by]), squares)
     lasting = max(float(steady) - white * step_s / BLOCK_S, 0.0)
     variance = max(white + lasting * LASTING_S / step_s, LEAST_VARIANCE)

@@ -7,7 +7,7 @@ from odometry.gap.errors import GapError
 from odometry.gap.noise import Noise
 from odometry.identification.errors import IdentificationError
 from odometry.modes.identify_traction import identify_traction_modes
-from odometry.modes.mode_windows import MOST_POSES, scenes_by_mode, stretches_by_mode
+from odometry.modes.mode_windows import MOST_POSES, heard_by_mode, scenes_by_mode
 from odometry.modes.traction_fit import fitted
 from odometry.modes.yaw_rate_noise import LASTING_S, NOT_MEASURED, YawRateNoise
 from tests.odometry.modes.mode_drives import (
@@ -106,8 +106,8 @@ def test_what_gains_leave_open_is_as_large_as_their_errors():
     ratios = []
     for seed in range(6):
         run = drive(seed, "left", size=2000)
-        (scene,), stretches = scenes_by_mode([run])[1]["left"], stretches_by_mode([run])["left"]
-        fit = fitted([scene], stretches, Noise(0.01, 0.005, 1e-4, 1e-5), YawRateNoise(0.02**2))
+        (scene,), heard = scenes_by_mode([run])[1]["left"], heard_by_mode([run])["left"]
+        fit = fitted([scene], heard, Noise(0.01, 0.005, 1e-4, 1e-5), YawRateNoise(0.02**2))
         squares = off(fit.gains, "left", run) ** 2
         treads = replace(scene.inputs, tread_speeds_m_s=run.odometry.stack("v_left", "v_right"))
         variances = fit.twist_variances(replace(scene, inputs=treads))
