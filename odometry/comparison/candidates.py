@@ -16,10 +16,10 @@ from odometry.effects.tables import model_of
 from odometry.errors import ParameterError
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fitters import fitter
-from odometry.identification.windows import Windows
 from odometry.models.base import KinematicModel
 from odometry.models.catalogue import MODELS
 from odometry.parameters import ParameterSet, read_parameters
+from odometry.windows.windows import Windows
 
 AS_GIVEN = "taken as it is; it may have been identified on these very runs"
 

@@ -15,9 +15,9 @@ from odometry.comparison.split import of_all, splits
 from odometry.comparison.summary import Place
 from odometry.errors import OdometryError
 from odometry.grounds import with_named_ground
-from odometry.identification.record import record_of
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.run import Run
+from odometry.windows.record import record_of
 
 DEFAULT_MODELS = ("differential_drive", "icr_symmetric", "icr")
 

@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 from odometry.config import require
-from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.identification.config import SolverConfig
+from odometry.windows.config import WindowConfig
 
 ROTATION_HORIZON_M = 1.0  # over which Baril 2020 Fig. 7 shows what commands lead to
 CURVE_HORIZONS_M = (0.5, ROTATION_HORIZON_M, 2.0, 5.0, 10.0)  # of Baril 2020 Fig. 4

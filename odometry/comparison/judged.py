@@ -6,9 +6,9 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.comparison.parts import Part, windows_of_parts
-from odometry.identification.config import WindowConfig
-from odometry.identification.windows import Windows
 from odometry.run import Run
+from odometry.windows.config import WindowConfig
+from odometry.windows.windows import Windows
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ def judged_windows(part: Part, horizon_m: float, training: WindowConfig) -> Judg
 
     Raises
     ------
-    IdentificationError
+    WindowError
         If there is no such window.
     """
     config = replace(training, horizon_m=horizon_m, horizon_s=0.0, stride=1.0, shortest=1.0)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from odometry.comparison.judged import JudgedWindows
 from odometry.evaluation.fitness import Fitness
-from odometry.identification.window_errors import WindowErrors
+from odometry.windows.window_errors import WindowErrors
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from odometry.comparison.parts import Part
 from odometry.comparison.predicted import predicted_motion
 from odometry.comparison.prepare import Prepared
 from odometry.errors import OdometryError
-from odometry.identification.window_errors import WindowErrors, errors_of_motion
+from odometry.windows.window_errors import WindowErrors, errors_of_motion
 
 
 def judge_all(

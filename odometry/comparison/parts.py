@@ -7,10 +7,10 @@ import numpy as np
 
 from odometry.arrays import BoolArray
 from odometry.grounds import terrains_of
-from odometry.identification.config import WindowConfig
-from odometry.identification.errors import IdentificationError
-from odometry.identification.windows import Windows, windows_of
 from odometry.run import Run
+from odometry.windows.config import WindowConfig
+from odometry.windows.errors import WindowError
+from odometry.windows.windows import Windows, windows_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,13 +73,13 @@ def windows_of_parts(parts: Sequence[Part], config: WindowConfig) -> Windows:
 
     Raises
     ------
-    IdentificationError
+    WindowError
         If there is none.
     """
     windows = windows_of([part.cut() for part in parts], config)
     here = windows.terrain == parts[0].ground
     if not here.any():
-        raise IdentificationError(
+        raise WindowError(
             f"no window lies wholly on {parts[0].ground!r} in "
             f"{', '.join(part.name for part in parts)}; choose a shorter horizon"
         )

@@ -10,10 +10,10 @@ from odometry.effects.corrected import Added, delay_s, seen_poses
 from odometry.effects.tables import effects_of
 from odometry.evaluation.open_loop import measured_poses
 from odometry.geometry import se2
-from odometry.identification.motion import level_path, window_motion
-from odometry.identification.windows import Windows
 from odometry.models.run_inputs import inputs_of
 from odometry.run import Run
+from odometry.windows.motion import level_path, window_motion
+from odometry.windows.windows import Windows
 
 
 def predicted_motion(predictor: Predictor, run: Run, windows: Windows) -> FloatArray:

@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.comparison.judgement import Judgement, Shortfall
-from odometry.identification.window_errors import WindowErrors
+from odometry.windows.window_errors import WindowErrors
 
 # Quantity to unit. Angles are degrees in everything that a comparison states.
 QUANTITIES = {"translation": "m per m", "rotation": "degrees per m"}

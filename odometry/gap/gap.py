@@ -58,7 +58,7 @@ def find_gap(
     ------
     GapError
         If runs are missing or too short.
-    IdentificationError
+    WindowError
         If a run has no poses, or the runs are of different robots.
     RunFolderError
         If a run is given twice.

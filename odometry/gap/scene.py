@@ -11,10 +11,10 @@ from odometry.gap.config import GapConfig
 from odometry.gap.errors import GapError
 from odometry.geometry import se2
 from odometry.grounds import terrains_of
-from odometry.identification.config import WindowConfig
-from odometry.identification.record import record_of
 from odometry.models.inputs import Inputs
 from odometry.run import Run
+from odometry.windows.config import WindowConfig
+from odometry.windows.record import record_of
 
 LEAST_POSES = 3  # of a window
 EDGE_S = 0.5  # of a run: a late or early pose must still lie within its odometry
@@ -90,7 +90,7 @@ def scene_of(run: Run, config: GapConfig) -> Scene:
     ------
     GapError
         If no window of the horizon is in the run.
-    IdentificationError
+    WindowError
         If it has no measured poses.
     """
     columns = {name: c for name, c in run.odometry.columns.items() if name != "terrain"}

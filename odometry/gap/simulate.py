@@ -10,7 +10,7 @@ from odometry.effects.corrected import Added, corrected_twist, delay_s, seen_pos
 from odometry.gap.scene import Scene
 from odometry.geometry import se2
 from odometry.geometry.angles import wrap
-from odometry.identification.motion import level_path
+from odometry.windows.motion import level_path
 
 
 def simulated_poses(base: Base, effects: Sequence[Added], scene: Scene) -> FloatArray:

@@ -1,48 +1,8 @@
-"""Settings of an identification."""
+"""How parameters are searched."""
 
-import math
 from dataclasses import dataclass
 
 from odometry.config import require
-
-
-@dataclass(frozen=True)
-class WindowConfig:
-    """How runs are cut into windows, and how well their poses are measured.
-
-    Attributes
-    ----------
-    horizon_m : float
-        Training horizon h_t of Baril 2020: wheel travel of a window.
-    horizon_s : float
-        Duration of a window instead; 0 cuts by wheel travel.
-    stride : float
-        From the start of one window to the start of the next, in horizons; 1 makes distinct
-        segments, as Baril 2020 has them.
-    shortest : float
-        A stretch shorter than a horizon still makes a window if it has this share of it.
-    pose_gap_s : float
-        Longest time between two poses that is no gap; five usual periods where that is longer.
-    position_sigma_m, yaw_sigma_rad : float
-        Standard deviations of a measured pose: they state the covariance of the loss.
-    """
-
-    horizon_m: float = 2.0
-    horizon_s: float = 0.0
-    stride: float = 1.0
-    shortest: float = 0.1
-    pose_gap_s: float = 0.5
-    position_sigma_m: float = 0.02
-    yaw_sigma_rad: float = 0.01
-
-    def __post_init__(self) -> None:
-        for name in ("horizon_m", "stride", "pose_gap_s", "position_sigma_m", "yaw_sigma_rad"):
-            value = getattr(self, name)
-            require(0 < value < math.inf, f"{name} = {value}, expected above 0")
-        require(
-            0 <= self.horizon_s < math.inf, f"horizon_s = {self.horizon_s}, expected 0 or above"
-        )
-        require(0 < self.shortest <= 1, f"shortest = {self.shortest}, expected 0 to 1")
 
 
 @dataclass(frozen=True)

@@ -8,16 +8,17 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray
 from odometry.errors import ParameterError
 from odometry.identification.by_trial import try_values
-from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.excitation import Undetermined, ordinary_sizes, undetermined
-from odometry.identification.noise import pose_variances
 from odometry.identification.problem import Problem
 from odometry.identification.solve import Solution, solve
 from odometry.identification.uncertainty import parameter_covariance, residual_scale
-from odometry.identification.windows import Windows
 from odometry.models.base import KinematicModel
 from odometry.run import Robot
+from odometry.windows.config import WindowConfig
+from odometry.windows.noise import pose_variances
+from odometry.windows.windows import Windows
 
 
 @dataclass(frozen=True)

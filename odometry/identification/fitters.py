@@ -3,12 +3,13 @@
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
-from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.identification.config import SolverConfig
 from odometry.identification.fit import Fit, fit
 from odometry.identification.slopes import fit_in_two_stages
-from odometry.identification.windows import Windows
 from odometry.models.base import KinematicModel
 from odometry.run import Robot
+from odometry.windows.config import WindowConfig
+from odometry.windows.windows import Windows
 
 
 class FitTo(Protocol):

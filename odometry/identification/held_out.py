@@ -7,8 +7,8 @@ import numpy as np
 from odometry.arrays import IntArray
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
-from odometry.identification.window_errors import WindowErrors, window_errors
-from odometry.identification.windows import Windows
+from odometry.windows.window_errors import WindowErrors, window_errors
+from odometry.windows.windows import Windows
 
 
 def by_runs(windows: Windows) -> IntArray:

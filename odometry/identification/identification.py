@@ -4,12 +4,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from odometry.effects.tables import table_of
-from odometry.identification.config import WindowConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
-from odometry.identification.window_errors import WindowErrors
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.run import Robot
+from odometry.windows.config import WindowConfig
+from odometry.windows.window_errors import WindowErrors
 
 
 @dataclass(frozen=True)

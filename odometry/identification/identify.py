@@ -12,17 +12,18 @@ from odometry.effects.tables import effects_of
 from odometry.errors import ParameterError
 from odometry.grounds import with_named_ground
 from odometry.identification.asked import Asked, Wanted, asked_on
-from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
 from odometry.identification.fitters import FitTo, fitter
 from odometry.identification.held_out import by_halves, by_runs, held_out_errors
 from odometry.identification.identification import Identification, Identified
-from odometry.identification.window_errors import WindowErrors, window_errors
-from odometry.identification.windows import Windows, windows_of
 from odometry.models.catalogue import MODELS
 from odometry.run import UNKNOWN, Robot, Run
 from odometry.runs import check_no_run_twice
+from odometry.windows.config import WindowConfig
+from odometry.windows.window_errors import WindowErrors, window_errors
+from odometry.windows.windows import Windows, windows_of
 
 
 def identify(

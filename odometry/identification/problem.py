@@ -6,10 +6,10 @@ from functools import cached_property
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.identification.motion import window_motion, window_motion_jacobian
-from odometry.identification.noise import window_covariances
-from odometry.identification.windows import Windows
 from odometry.models.base import KinematicModel
+from odometry.windows.motion import window_motion, window_motion_jacobian
+from odometry.windows.noise import window_covariances
+from odometry.windows.windows import Windows
 
 
 @dataclass(frozen=True)

@@ -6,17 +6,18 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit, fit
-from odometry.identification.noise import pose_variances
 from odometry.identification.problem import Problem
 from odometry.identification.solve import Solution
 from odometry.identification.uncertainty import residual_scale
-from odometry.identification.windows import Windows
 from odometry.models.base import KinematicModel
 from odometry.models.icr import Icr
 from odometry.run import Robot
+from odometry.windows.config import WindowConfig
+from odometry.windows.noise import pose_variances
+from odometry.windows.windows import Windows
 
 FLAT_RAD = np.radians(1.5)  # ground tilted less than this is flat
 SLOPE_NAMES = ("lambda_1", "lambda_2")

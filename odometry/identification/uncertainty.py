@@ -3,10 +3,10 @@
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.identification.noise import score_covariance, window_covariances
 from odometry.identification.problem import Problem
 from odometry.identification.solve import Solution
-from odometry.identification.windows import Windows
+from odometry.windows.noise import score_covariance, window_covariances
+from odometry.windows.windows import Windows
 
 
 def residual_scale(problem: Problem, solution: Solution) -> float:

@@ -16,6 +16,7 @@ from odometry.modes.stretches import stretches_by_label
 from odometry.modes.traction import LEFT_TURN, RIGHT_TURN, turns_of
 from odometry.modes.yaw_rate_noise import Heard, heard_of
 from odometry.run import UNKNOWN, Run
+from odometry.windows.errors import WindowError
 
 HORIZONS_S = (4.0, 2.0)  # of windows, the second where poses are chained for less than the first
 LEAST_S = 10.0  # of driving in each mode, in windows, and of its turns to each side
@@ -30,7 +31,7 @@ def scenes_by_mode(
     for horizon_s in HORIZONS_S[:-1]:
         try:
             return horizon_s, _windows(runs, horizon_s, paper=paper)
-        except (GapError, IdentificationError):
+        except (GapError, WindowError):
             continue
     return HORIZONS_S[-1], _windows(runs, HORIZONS_S[-1], paper=paper)
 

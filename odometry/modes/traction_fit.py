@@ -10,10 +10,10 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.gap.noise import Noise, whitening
 from odometry.gap.scene import Scene
 from odometry.gap.simulate import off_measured, poses_at
-from odometry.identification.motion import level_path
 from odometry.models.icr import GUESSED_WIDTHS
 from odometry.modes.traction import SHORTEST_LAG_S, lagged, requested, turns_of, twists_of
 from odometry.modes.yaw_rate_noise import Heard, YawRateNoise
+from odometry.windows.motion import level_path
 
 FIRST_LAG_S = 0.05
 USUAL = 0.3  # deviation of each gain from eq. 3: what the runs leave open stays near

@@ -10,7 +10,7 @@ from terrain.cli.results import print_table, print_written
 
 if TYPE_CHECKING:
     from odometry.comparison.comparison import Comparison
-    from odometry.identification.config import WindowConfig
+    from odometry.windows.config import WindowConfig
 
 FOLDER = click.Path(file_okay=False, path_type=Path)
 

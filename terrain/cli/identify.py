@@ -9,8 +9,8 @@ from terrain.cli.options import MODEL_NAMES, assignments, window_options
 from terrain.cli.results import print_table
 
 if TYPE_CHECKING:
-    from odometry.identification.config import WindowConfig
     from odometry.identification.identification import Identified
+    from odometry.windows.config import WindowConfig
 
 
 @click.command()

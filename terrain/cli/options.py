@@ -70,7 +70,7 @@ def window_options(command: Callable[..., None]) -> Callable[..., None]:
         yaw_sigma: float,
         **others: Any,
     ) -> None:
-        from odometry.identification.config import WindowConfig
+        from odometry.windows.config import WindowConfig
 
         windows = WindowConfig(
             horizon_m=horizon_m,

@@ -13,16 +13,17 @@ import numpy as np
 import pytest
 
 from odometry.dead_reckoning import dead_reckon
-from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.identification.config import SolverConfig
 from odometry.identification.excitation import ordinary_sizes
-from odometry.identification.noise import pose_variances
 from odometry.identification.problem import Problem
 from odometry.identification.solve import solve
-from odometry.identification.windows import windows_of
 from odometry.io.run_folder import write_run_folder
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
 from odometry.run import Run
+from odometry.windows.config import WindowConfig
+from odometry.windows.noise import pose_variances
+from odometry.windows.windows import windows_of
 
 HOUR_S, RATE_HZ = 3600.0, 20.0
 TRUE = {"y_left": 0.45, "y_right": -0.38, "x_icr": 0.04, "alpha_left": 0.96, "alpha_right": 0.93}

@@ -12,10 +12,10 @@ import numpy as np
 from odometry.comparison.judged import judged_windows
 from odometry.comparison.parts import parts_by_ground
 from odometry.grounds import with_named_ground
-from odometry.identification.config import WindowConfig
-from odometry.identification.window_errors import window_errors
 from odometry.models.catalogue import MODELS
 from odometry.run import Run
+from odometry.windows.config import WindowConfig
+from odometry.windows.window_errors import window_errors
 
 
 def mean_errors(judged, model, **values):

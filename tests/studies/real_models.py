@@ -40,11 +40,11 @@ from odometry.comparison.split import Split, left_out
 from odometry.comparison.summary import QUANTITIES, Place, Summary
 from odometry.errors import OdometryError
 from odometry.identification.config import SolverConfig
-from odometry.identification.window_errors import window_errors
 from odometry.io.files import atomic_write
 from odometry.models.catalogue import MODELS
 from odometry.report.comparison_page import write_comparison_report
 from odometry.run import Run
+from odometry.windows.window_errors import window_errors
 
 BASELINE = "icr"
 NAMES = (

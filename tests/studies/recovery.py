@@ -18,14 +18,15 @@ import numpy as np
 from scipy.stats import binomtest
 
 from odometry.dead_reckoning import dead_reckon_in_space
-from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.identification.config import SolverConfig
 from odometry.identification.fitters import fitter
 from odometry.identification.identify import identify
-from odometry.identification.windows import windows_of
 from odometry.io.run_folder import write_run_folder
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
 from odometry.run import Run
+from odometry.windows.config import WindowConfig
+from odometry.windows.windows import windows_of
 
 POSITION_M, YAW_RAD = 0.01, np.radians(0.3)
 ICR = {"y_left": 0.45, "y_right": -0.38, "x_icr": 0.04, "alpha_left": 0.96, "alpha_right": 0.93}

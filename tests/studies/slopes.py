@@ -20,10 +20,9 @@ import matplotlib.pyplot as plt
 
 from odometry.evaluation.fitness import fitness
 from odometry.evaluation.open_loop import measured_poses, open_loop
-from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.identification.config import SolverConfig
 from odometry.identification.fit import Fit, fit
 from odometry.identification.identify import identify
-from odometry.identification.windows import windows_of
 from odometry.models.catalogue import MODELS
 from odometry.models.icr_slope import IcrSlope
 from odometry.models.inputs import Inputs
@@ -35,6 +34,8 @@ from odometry.simulation.contact.slope import Plane
 from odometry.simulation.contact.vehicle import read_contact_vehicle
 from odometry.simulation.courses import STEP_S, make_course, slope_paths
 from odometry.simulation.record import ContactSensors, write_contact_run
+from odometry.windows.config import WindowConfig
+from odometry.windows.windows import windows_of
 
 DATA = Path(__file__).parents[2] / "data"
 PRINTED = {"spin": (1.005, 0.081), "figure_eight": (0.781, 0.310), "three_zones": (8.821, 6.438)}

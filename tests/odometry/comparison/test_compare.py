@@ -11,10 +11,11 @@ from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.differences import between
 from odometry.comparison.errors import ComparisonError
 from odometry.errors import ConfigError, ParameterError
-from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.identification.config import SolverConfig
 from odometry.models.catalogue import MODELS
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
 from odometry.run import Run
+from odometry.windows.config import WindowConfig
 
 WIDTH = {"alpha": 1.0, "b_hat": 0.8}
 

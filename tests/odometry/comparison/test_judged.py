@@ -9,11 +9,11 @@ import pytest
 from odometry.comparison.judged import judged_windows
 from odometry.comparison.parts import parts_by_ground, windows_of_parts
 from odometry.grounds import with_named_ground
-from odometry.identification.config import WindowConfig
-from odometry.identification.errors import IdentificationError
-from odometry.identification.window_errors import window_errors
 from odometry.models.catalogue import MODELS
 from odometry.run import Run
+from odometry.windows.config import WindowConfig
+from odometry.windows.errors import WindowError
+from odometry.windows.window_errors import window_errors
 
 
 def whole(run):
@@ -109,7 +109,7 @@ def test_training_windows_do_not_straddle_joints(tmp_path, bench):
 
 def test_a_run_shorter_than_the_horizon_says_so(tmp_path, bench):
     run = Run.read(bench.write(tmp_path / "run", np.full((40, 2), 0.5)))
-    with pytest.raises(IdentificationError, match="no window of 2 m"):
+    with pytest.raises(WindowError, match="no window of 2 m"):
         judged_windows(whole(run), 2.0, WindowConfig())
 
 

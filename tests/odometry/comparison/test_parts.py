@@ -5,9 +5,9 @@ import pytest
 
 from odometry.comparison.parts import halves, parts_by_ground, windows_of_parts
 from odometry.grounds import with_named_ground
-from odometry.identification.config import WindowConfig
-from odometry.identification.errors import IdentificationError
 from odometry.run import Run
+from odometry.windows.config import WindowConfig
+from odometry.windows.errors import WindowError
 
 ROWS = "t,v_left,v_right,terrain\n0,1,1,\n1,1,1,ice\n2,3,3,ice\n3,0,0,unknown\n4,1,1,ice\n"
 POSES = "t,x,y,yaw\n-1,0,0,0\n0,1,0,0\n1,2,0,0\n2.5,3,0,0\n4,4,0,0\n9,5,0,0\n"
@@ -50,5 +50,5 @@ def test_windows_keep_to_the_ground_of_the_part(bench, tmp_path):
         assert set(windows.terrain) == {ground}
         inside = (windows.start_s >= 11.0) == (ground == "ice")
         assert inside.all()
-    with pytest.raises(IdentificationError, match="no window lies wholly on 'ice' in r"):
+    with pytest.raises(WindowError, match="no window lies wholly on 'ice' in r"):
         windows_of_parts([parts["ice"]], WindowConfig(horizon_m=5.0, shortest=1.0))

@@ -13,9 +13,9 @@ from odometry.comparison.parts import windows_of_parts
 from odometry.comparison.split import of_all, robot_labels, splits
 from odometry.errors import RunFolderError
 from odometry.grounds import with_named_ground
-from odometry.identification.config import WindowConfig
 from odometry.run import Robot, Run
 from odometry.table import Table
+from odometry.windows.config import WindowConfig
 
 GROUNDS = st.lists(st.sampled_from(["ice", "mud", ""]), min_size=4, max_size=12)
 ROBOTS = st.sampled_from([Robot(0.5, "a"), Robot(0.5, "b"), Robot(0.6, "a")])

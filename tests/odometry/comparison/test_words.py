@@ -9,7 +9,7 @@ from odometry.comparison.differences import Difference, between, differences
 from odometry.comparison.judgement import Judgement, Shortfall
 from odometry.comparison.summary import Place, summarise
 from odometry.comparison.words import sentences
-from odometry.identification.window_errors import WindowErrors
+from odometry.windows.window_errors import WindowErrors
 
 PLACE = Place("rover", "grass", 2.0)
 

@@ -8,7 +8,7 @@ import pytest
 from odometry.gap.config import GapConfig
 from odometry.gap.errors import GapError
 from odometry.gap.scene import numbered_pieces, pieces, scene_of, thinned
-from odometry.identification.errors import IdentificationError
+from odometry.windows.errors import WindowError
 
 TWO_SECONDS = 10  # steps between poses at 5 Hz
 
@@ -99,7 +99,7 @@ def test_a_run_shorter_than_a_window_is_refused(run):
 
 
 def test_a_run_without_poses_is_refused(run):
-    with pytest.raises(IdentificationError, match=r"run.*pose\.csv"):
+    with pytest.raises(WindowError, match=r"run.*pose\.csv"):
         scene_of(replace(run, pose=None), GapConfig())
 
 

@@ -9,7 +9,7 @@ import pytest
 from odometry.effects.tables import effects_of
 from odometry.errors import ParameterError
 from odometry.identification.asked import asked_on
-from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.identification.config import SolverConfig
 from odometry.identification.identify import identify
 from odometry.models.catalogue import MODELS
 from odometry.parameters import (
@@ -19,6 +19,7 @@ from odometry.parameters import (
     write_parameters,
 )
 from odometry.run import Robot, Run
+from odometry.windows.config import WindowConfig
 
 ONE_START = SolverConfig(starts=1)
 OLD = {"y_left": 0.6, "y_right": -0.6, "x_icr": 0.0}

@@ -4,14 +4,15 @@ import numpy as np
 import pytest
 
 from odometry.identification.by_trial import try_values
-from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.identification.config import SolverConfig
 from odometry.identification.excitation import ordinary_sizes
 from odometry.identification.fit import fit
-from odometry.identification.noise import pose_variances
 from odometry.identification.problem import Problem
 from odometry.identification.solve import solve
-from odometry.identification.windows import windows_of
 from odometry.models.catalogue import MODELS
+from odometry.windows.config import WindowConfig
+from odometry.windows.noise import pose_variances
+from odometry.windows.windows import windows_of
 
 MODEL = MODELS["icr_inertia"]
 PLACE = [parameter.name for parameter in MODEL.parameters].index("h")

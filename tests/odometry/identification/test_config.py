@@ -3,7 +3,8 @@ import math
 import pytest
 
 from odometry.errors import ConfigError
-from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.identification.config import SolverConfig
+from odometry.windows.config import WindowConfig
 
 
 @pytest.mark.parametrize(

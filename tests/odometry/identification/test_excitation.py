@@ -1,13 +1,14 @@
 import numpy as np
 import pytest
 
-from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.identification.config import SolverConfig
 from odometry.identification.excitation import Undetermined, ordinary_sizes, undetermined
 from odometry.identification.fit import fit
-from odometry.identification.windows import windows_of
 from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr
 from odometry.run import Robot, Run
+from odometry.windows.config import WindowConfig
+from odometry.windows.windows import windows_of
 
 ROBOT = Robot(0.6, length=0.9, width=0.7, wheel_radius=0.15, mass=50.0)
 

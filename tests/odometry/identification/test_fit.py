@@ -2,14 +2,15 @@ import numpy as np
 import pytest
 
 from odometry.errors import ParameterError
-from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import fit
-from odometry.identification.motion import window_motion
-from odometry.identification.windows import windows_of
 from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr
 from odometry.run import Run
+from odometry.windows.config import WindowConfig
+from odometry.windows.motion import window_motion
+from odometry.windows.windows import windows_of
 
 
 @pytest.fixture(scope="module")

@@ -4,13 +4,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.identification.config import SolverConfig
 from odometry.identification.fit import fit
 from odometry.identification.held_out import by_halves, by_runs, held_out_errors
-from odometry.identification.window_errors import window_errors
-from odometry.identification.windows import windows_of
 from odometry.models.icr import Icr
 from odometry.run import Run
+from odometry.windows.config import WindowConfig
+from odometry.windows.window_errors import window_errors
+from odometry.windows.windows import windows_of
 
 WIDE = {"y_left": 0.7, "y_right": -0.6, "x_icr": 0.0, "alpha_left": 0.8, "alpha_right": 0.9}
 CONFIG = WindowConfig()

@@ -5,18 +5,19 @@ import numpy as np
 import pytest
 
 from odometry.errors import ParameterError
-from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import fit
 from odometry.identification.fitters import fitter
 from odometry.identification.identify import identify, robot_of
-from odometry.identification.window_errors import window_errors
-from odometry.identification.windows import windows_of
 from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr
 from odometry.models.inputs import Inputs
 from odometry.parameters import read_parameters, write_parameters
 from odometry.run import Run
+from odometry.windows.config import WindowConfig
+from odometry.windows.window_errors import window_errors
+from odometry.windows.windows import windows_of
 
 ONE_START = SolverConfig(starts=1)
 ICE = {"y_left": 0.7, "y_right": -0.6, "x_icr": -0.05, "alpha_left": 0.8, "alpha_right": 0.9}

@@ -1,13 +1,13 @@
 import numpy as np
 import pytest
 
-from odometry.identification.config import WindowConfig
-from odometry.identification.noise import pose_variances, window_covariances
 from odometry.identification.problem import Problem
-from odometry.identification.windows import windows_of
 from odometry.models.icr import Icr
 from odometry.models.radius_of_curvature import RadiusOfCurvature
 from odometry.run import Run
+from odometry.windows.config import WindowConfig
+from odometry.windows.noise import pose_variances, window_covariances
+from odometry.windows.windows import windows_of
 
 FREE = np.array([True, False, True, False, True])
 

@@ -10,16 +10,17 @@ import pytest
 from scipy.stats import chi2
 
 from odometry.errors import ParameterError
-from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import fit
-from odometry.identification.noise import pose_variances
 from odometry.identification.problem import Problem
 from odometry.identification.slopes import fit_in_two_stages, mean_tilt_rad
 from odometry.identification.solve import solve
-from odometry.identification.windows import windows_of
 from odometry.models.icr_slope import IcrSlope
 from odometry.run import Run
+from odometry.windows.config import WindowConfig
+from odometry.windows.noise import pose_variances
+from odometry.windows.windows import windows_of
 
 NAMES = ("y_left", "y_right", "x_icr", "alpha_left", "alpha_right", "lambda_1", "lambda_2")
 TILT_RAD = 0.15

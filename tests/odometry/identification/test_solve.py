@@ -7,13 +7,14 @@ import pytest
 from scipy.optimize import minimize
 from scipy.stats import chi2
 
-from odometry.identification.config import SolverConfig, WindowConfig
-from odometry.identification.noise import pose_variances
+from odometry.identification.config import SolverConfig
 from odometry.identification.problem import Problem
 from odometry.identification.solve import solve
-from odometry.identification.windows import windows_of
 from odometry.models.icr import Icr
 from odometry.run import Run
+from odometry.windows.config import WindowConfig
+from odometry.windows.noise import pose_variances
+from odometry.windows.windows import windows_of
 
 NAMES = ("y_left", "y_right", "x_icr")
 FREE = np.array([True, True, True, False, False])

@@ -11,15 +11,16 @@ import numpy as np
 import pytest
 from scipy.stats import binom, chi2
 
-from odometry.identification.config import SolverConfig, WindowConfig
+from odometry.identification.config import SolverConfig
 from odometry.identification.fit import fit
-from odometry.identification.noise import pose_variances, window_covariances
 from odometry.identification.problem import Problem
 from odometry.identification.solve import Solution
 from odometry.identification.uncertainty import parameter_covariance, residual_scale
-from odometry.identification.windows import windows_of
 from odometry.models.icr import Icr
 from odometry.run import Run
+from odometry.windows.config import WindowConfig
+from odometry.windows.noise import pose_variances, window_covariances
+from odometry.windows.windows import windows_of
 
 SEEDS = range(40)
 RARE = 1e-3

@@ -4,8 +4,8 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from odometry.identification.config import WindowConfig
 from odometry.models.catalogue import MODELS
+from odometry.windows.config import WindowConfig
 from terrain.cli.options import MODEL_NAMES, assignments, window_options
 
 

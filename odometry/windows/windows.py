@@ -8,12 +8,12 @@ import numpy as np
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.evaluation.horizons import spatial_horizons
 from odometry.geometry import se2
-from odometry.identification.config import WindowConfig
-from odometry.identification.errors import IdentificationError
-from odometry.identification.record import Record, record_of
 from odometry.models.inputs import Inputs, joined
 from odometry.run import Run
 from odometry.runs import run_names
+from odometry.windows.config import WindowConfig
+from odometry.windows.errors import WindowError
+from odometry.windows.record import Record, record_of
 
 STANDING_M = 1e-3  # less wheel travel than this says nothing of a model
 
@@ -85,17 +85,17 @@ def windows_of(runs: Sequence[Run], config: WindowConfig) -> Windows:
 
     Raises
     ------
-    IdentificationError
+    WindowError
         If a run has no measured poses, or there is no window in any of them.
     """
     if not runs:
-        raise IdentificationError("no run was given; expected one or more")
+        raise WindowError("no run was given; expected one or more")
     parts = [
         _windows_of_record(record_of(run, config), name, config)
         for run, name in zip(runs, run_names(runs), strict=True)
     ]
     if not sum(map(len, parts)):
-        raise IdentificationError(_no_window(runs, config))
+        raise WindowError(_no_window(runs, config))
     samples = np.cumsum([0, *(len(part.steps_s) for part in parts[:-1])])
     poses = np.cumsum([0, *(1 + part.last_pose.max(initial=-1) for part in parts[:-1])])
     return Windows(

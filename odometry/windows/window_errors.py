@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.identification.motion import window_motion
-from odometry.identification.windows import Windows
 from odometry.models.base import KinematicModel
+from odometry.windows.motion import window_motion
+from odometry.windows.windows import Windows
 
 
 @dataclass(frozen=True)

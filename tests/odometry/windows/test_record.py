@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from odometry.identification.config import WindowConfig
-from odometry.identification.errors import IdentificationError
-from odometry.identification.record import record_of
 from odometry.run import UNKNOWN, Run
+from odometry.windows.config import WindowConfig
+from odometry.windows.errors import WindowError
+from odometry.windows.record import record_of
 
 CONFIG = WindowConfig(pose_gap_s=0.5)
 SETTINGS = "[robot]\ntrack_width = 0.4\n"
@@ -185,11 +185,11 @@ def test_poses_outside_the_time_of_odometry_are_left_out(record):
 )
 def test_fewer_than_two_poses_name_folder_and_count(make_run, pose_csv, count):
     folder = make_run(odometry=odometry([0.0, 0.1, 0.2]), pose=pose_csv)
-    with pytest.raises(IdentificationError, match=rf"a_run: {count} measured poses .*pose\.csv"):
+    with pytest.raises(WindowError, match=rf"a_run: {count} measured poses .*pose\.csv"):
         record_of(Run.read(folder), CONFIG)
 
 
 def test_one_row_of_odometry_is_too_few(make_run):
     folder = make_run(odometry=odometry([0.0]), pose=pose([0.0, 0.1]))
-    with pytest.raises(IdentificationError, match="1 measured poses"):
+    with pytest.raises(WindowError, match="1 measured poses"):
         record_of(Run.read(folder), CONFIG)

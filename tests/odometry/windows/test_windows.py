@@ -7,13 +7,13 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from odometry.identification.config import WindowConfig
-from odometry.identification.errors import IdentificationError
-from odometry.identification.motion import window_motion, window_motion_jacobian
-from odometry.identification.windows import windows_of
 from odometry.models.icr import Icr
 from odometry.run import Robot, Run
 from odometry.table import Table
+from odometry.windows.config import WindowConfig
+from odometry.windows.errors import WindowError
+from odometry.windows.motion import window_motion, window_motion_jacobian
+from odometry.windows.windows import windows_of
 
 VALUES = np.array([0.45, -0.36, 0.06, 0.97, 0.93])
 POSE_GAP_S = 0.5
@@ -102,7 +102,7 @@ def stretches_of(run):
 def windows_or_skip(runs, config):
     try:
         return windows_of(runs, config)
-    except IdentificationError:
+    except WindowError:
         assume(condition=False)
 
 
@@ -243,12 +243,12 @@ def test_accelerations_are_told_only_where_every_run_has_them(winding):
 )
 def test_no_window_tells_what_was_wanted_and_what_there_is(winding, settings, words):
     longest = travel_between(winding, 0, np.inf)
-    with pytest.raises(IdentificationError, match=f"no window of {words} in winding") as caught:
+    with pytest.raises(WindowError, match=f"no window of {words} in winding") as caught:
         windows_of([winding], WindowConfig(**settings))
     assert f"{longest:.2f} m" in str(caught.value)
 
 
 def test_a_run_without_poses_is_named(winding):
     blind = replace(winding, folder=Path("blind"), pose=None)
-    with pytest.raises(IdentificationError, match=r"blind: 0 measured poses .*pose\.csv"):
+    with pytest.raises(WindowError, match=r"blind: 0 measured poses .*pose\.csv"):
         windows_of([winding, blind], WindowConfig())

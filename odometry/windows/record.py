@@ -6,11 +6,11 @@ import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.grounds import terrains_of
-from odometry.identification.config import WindowConfig
-from odometry.identification.errors import IdentificationError
 from odometry.models.inputs import Inputs
 from odometry.models.run_inputs import inputs_of
 from odometry.run import Run
+from odometry.windows.config import WindowConfig
+from odometry.windows.errors import WindowError
 
 GAP_PERIODS = 5.0  # stamps farther apart than this many usual periods are a gap
 
@@ -52,14 +52,14 @@ def record_of(run: Run, config: WindowConfig) -> Record:
 
     Raises
     ------
-    IdentificationError
+    WindowError
         If the run has no two measured poses within the time of its odometry.
     """
     odometry_s = run.odometry.stamps_s
     poses, pose_s, windows = _measured_poses(run)
     inside = (pose_s >= odometry_s[0]) & (pose_s <= odometry_s[-1])
     if inside.sum() < 2:
-        raise IdentificationError(
+        raise WindowError(
             f"{run.folder}: {int(inside.sum())} measured poses within the time of odometry.csv, "
             "expected two or more: an identification needs pose.csv"
         )

@@ -7,14 +7,14 @@ sqrt((S_ii S_jj + S_ij^2) / n); five of them are allowed.
 import numpy as np
 import pytest
 
-from odometry.identification.config import WindowConfig
-from odometry.identification.noise import (
+from odometry.windows.config import WindowConfig
+from odometry.windows.noise import (
     by_pose_noise,
     pose_variances,
     score_covariance,
     window_covariances,
 )
-from odometry.identification.windows import windows_of
+from odometry.windows.windows import windows_of
 
 DRAWS = 20_000
 CONFIG = WindowConfig(stride=0.5, position_sigma_m=0.01, yaw_sigma_rad=0.005)

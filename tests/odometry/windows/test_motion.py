@@ -3,14 +3,14 @@ import pytest
 from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
-from odometry.identification.config import WindowConfig
 from odometry.identification.excitation import ordinary_sizes
-from odometry.identification.motion import window_motion, window_motion_jacobian
-from odometry.identification.windows import Windows, windows_of
 from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr
 from odometry.models.inputs import Inputs
 from odometry.run import Robot, Run
+from odometry.windows.config import WindowConfig
+from odometry.windows.motion import window_motion, window_motion_jacobian
+from odometry.windows.windows import Windows, windows_of
 
 STEP = 1e-5  # of a parameter's ordinary size; truncation and rounding are both below 1e-8
 COUNTED = {"contacts"}  # a whole number has no derivative

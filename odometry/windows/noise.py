@@ -7,8 +7,8 @@ the end, each in that pose's own frame: [-I, (m_y, -m_x)'; 0, -1] and [R(m_yaw),
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.identification.config import WindowConfig
-from odometry.identification.windows import Windows
+from odometry.windows.config import WindowConfig
+from odometry.windows.windows import Windows
 
 
 def pose_variances(config: WindowConfig) -> FloatArray:

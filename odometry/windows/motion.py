@@ -5,9 +5,9 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.geometry import se2
 from odometry.geometry.levelled import level_step_jacobian, level_steps
-from odometry.identification.windows import Windows
 from odometry.models.base import KinematicModel
 from odometry.models.inputs import Inputs
+from odometry.windows.windows import Windows
 
 
 def window_motion(model: KinematicModel, values: FloatArray, windows: Windows) -> FloatArray:

@@ -1,0 +1,7 @@
+"""What cutting a recording into windows raises."""
+
+from odometry.errors import OdometryError
+
+
+class WindowError(OdometryError):
+    """A recording that cannot be cut into the windows that are asked for."""

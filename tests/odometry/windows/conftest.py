@@ -1,0 +1,3 @@
+from tests.odometry.window_drives import inertial, stated, synthetic, winding
+
+__all__ = ["inertial", "stated", "synthetic", "winding"]
