@@ -66,7 +66,7 @@ class Run:
         run.toml as it stands, unknown tables included.
     odometry : Table
         t, v_left, v_right and what else was recorded.
-    pose, velocity, images, truth : Table or None
+    pose, velocity, images, truth, imu : Table or None
         None where the folder has no such file. `truth` is for scoring alone.
     """
 
@@ -78,6 +78,7 @@ class Run:
     velocity: Table | None = None
     images: Table | None = None
     truth: Table | None = None
+    imu: Table | None = None
 
     @classmethod
     def read(cls, folder: str | Path) -> "Run":

@@ -1,7 +1,7 @@
 """A time-stamped table: the columns of one CSV file of a run folder."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -22,11 +22,14 @@ class Table:
         Numbers as float64, names as str. Not measured is NaN, or an empty name.
     lines : (N,)
         Line of the file on which each row stands, header = 1.
+    repeated_lines : (R,)
+        Lines that were dropped: each repeated the stamp of the row before it.
     """
 
     file: Path
     columns: Mapping[str, AnyArray]
     lines: IntArray
+    repeated_lines: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
 
     def __len__(self) -> int:
         return len(self.columns["t"])
@@ -53,4 +56,4 @@ class Table:
     def rows(self, chosen: slice) -> "Table":
         """The same table with only the chosen rows."""
         columns = {name: column[chosen] for name, column in self.columns.items()}
-        return Table(self.file, columns, self.lines[chosen])
+        return replace(self, columns=columns, lines=self.lines[chosen])

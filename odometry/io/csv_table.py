@@ -20,9 +20,14 @@ NUMBER_COLUMNS = frozenset(
         "v_right",
         "roll",
         "pitch",
+        "gyro_x",
+        "gyro_y",
         "gyro_z",
         "accel_x",
         "accel_y",
+        "accel_z",
+        "current_left",
+        "current_right",
         "x",
         "y",
         "yaw",
@@ -40,6 +45,8 @@ NUMBER_COLUMNS = frozenset(
 
 def read_csv_table(file: Path, required: Iterable[str], complete: Iterable[str] = ()) -> Table:
     """Read a CSV file whose columns are found by name, in any order.
+
+    A row that repeats the stamp of the row before it is dropped; `Table.repeated_lines` has it.
 
     Parameters
     ----------
@@ -72,8 +79,10 @@ def read_csv_table(file: Path, required: Iterable[str], complete: Iterable[str] 
             columns[name] = _numbers(cells, file, lines, name, may_miss=name not in complete)
         else:
             columns[name] = _numbers_or_names(cells)
-    _check_increasing(columns["t"], file, lines)
-    return Table(file, columns, np.array(lines))
+    _check_not_back(columns["t"], file, lines)
+    repeated = np.diff(columns["t"], prepend=-math.inf) == 0
+    kept = {name: column[~repeated] for name, column in columns.items()}
+    return Table(file, kept, np.array(lines)[~repeated], np.array(lines)[repeated])
 
 
 def write_csv_table(file: Path, columns: Mapping[str, AnyArray], decimals: int = 9) -> None:
@@ -138,13 +147,14 @@ def _numbers_or_names(cells: list[str]) -> AnyArray:
         return np.array(cells)
 
 
-def _check_increasing(stamps_s: AnyArray, file: Path, lines: list[int]) -> None:
-    backwards = np.flatnonzero(np.diff(stamps_s) <= 0)
+def _check_not_back(stamps_s: AnyArray, file: Path, lines: list[int]) -> None:
+    backwards = np.flatnonzero(np.diff(stamps_s) < 0)
     if backwards.size:
         row = int(backwards[0])
         raise RunFolderError(
             f"{file}: row {lines[row + 1]}, column 't': {float(stamps_s[row + 1])!r} after "
-            f"{float(stamps_s[row])!r}; stamps must increase strictly"
+            f"{float(stamps_s[row])!r}; stamps may not go back ({backwards.size} of "
+            f"{len(stamps_s)} rows do)"
         )
 
 

@@ -20,6 +20,7 @@ FILES = {
     "velocity": (False, ("t", "vx", "vy", "wz"), ("t",)),
     "images": (False, ("t", "file"), ("t",)),
     "truth": (False, ("t", "x", "y", "yaw"), ("t", "x", "y", "yaw")),
+    "imu": (False, ("t",), ("t",)),
 }
 
 

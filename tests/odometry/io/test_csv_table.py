@@ -75,7 +75,6 @@ def test_spellings_that_other_programs_write(read, content):
         ("t\n1\n", ["'x'"]),
         ("", ["header"]),
         ("\n\n", ["header"]),
-        ("t,x\n1,2\n1,2\n", ["row 3", "t"]),
         ("t,x\n1,2\n2,2\n1.5,2\n", ["row 4", "t", "1.5"]),
         ("t,x\n1,2\n,2\n", ["row 3", "t"]),
         ("t,x\nnan,2\n", ["row 2", "t"]),
@@ -99,6 +98,12 @@ def test_what_is_wrong_is_named(read, content, words):
 
 def test_row_numbers_are_lines_of_the_file_even_after_blank_lines(read):
     assert_refused(read, "t,x\n1,2\n\n3,x\n", "row 4")
+
+
+def test_a_row_that_repeats_the_stamp_before_it_is_dropped(read):
+    table = read("t,x\n1,2\n1,3\n2,4\n2,5\n2,6\n3,7\n")
+    assert (table["t"].tolist(), table["x"].tolist()) == ([1, 2, 3], [2, 4, 7])
+    assert (table.lines.tolist(), table.repeated_lines.tolist()) == ([2, 4, 7], [3, 5, 6])
 
 
 def test_a_column_that_must_be_complete_has_no_empty_cell(read):

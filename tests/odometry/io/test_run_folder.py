@@ -16,7 +16,7 @@ BAD_TABLES = [
     ("odometry", "t,v_left,v_right\n", ["odometry.csv"]),
     ("odometry", "t,v_left,v_right,roll\n0,1,1,up\n", ["odometry.csv", "row 2", "roll", "up"]),
     ("pose", "t,x,y\n0,1,1\n", ["pose.csv", "yaw"]),
-    ("pose", "t,x,y,yaw\n0,1,1,0\n0,1,1,0\n", ["pose.csv", "row 3", "t"]),
+    ("pose", "t,x,y,yaw\n0.1,1,1,0\n0,1,1,0\n", ["pose.csv", "row 3", "t"]),
     ("velocity", "t,vx,vy\n0,1,1\n", ["velocity.csv", "wz"]),
     ("images", "t\n0\n", ["images.csv", "file"]),
     ("images", "t,file\n0,\n", ["images.csv", "row 2", "file"]),
