@@ -1,3 +1,5 @@
+from .checks.finding import CheckReport, Finding
+from .checks.recording import check_recording
 from .comparison.compare import compare
 from .dead_reckoning import dead_reckon, dead_reckon_in_space
 from .errors import OdometryError
@@ -27,9 +29,11 @@ from .trajectory import Trajectory
 
 __all__ = [
     "MODELS",
+    "CheckReport",
     "ConstantTerrain",
     "Estimate",
     "EvaluationConfig",
+    "Finding",
     "Frame",
     "IcrEkf",
     "IcrEkfConfig",
@@ -44,6 +48,7 @@ __all__ = [
     "SpatialTrajectory",
     "TerrainParameters",
     "Trajectory",
+    "check_recording",
     "compare",
     "dead_reckon",
     "dead_reckon_in_space",

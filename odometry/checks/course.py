@@ -1,0 +1,89 @@
+"""Whether the yaw of pose.csv points where its positions go."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from odometry.checks.evidence import Evidence
+from odometry.checks.finding import Finding, Level
+from odometry.checks.heading import Heading
+from odometry.checks.turning import Sense, gyroscope_sense, pose_sense
+
+OFF_RAD = np.radians(15)  # a lateral ICR or a sensor that is turned a little is no fault
+LEAST_FORWARDS = 0.5
+
+
+def course(evidence: Evidence) -> Iterator[Finding]:
+    """Yaw in degrees, yaw off by a constant, positions mirrored."""
+    if evidence.yaw_in_degrees:
+        yaw = evidence.run.pose["yaw"] if evidence.run.pose is not None else np.empty(0)
+        yield _finding(
+            "yaw_in_degrees",
+            f"yaw of pose.csv goes from {np.nanmin(yaw):.1f} to {np.nanmax(yaw):.1f}; its turns "
+            "and its course fit only when read as degrees",
+            "Yaw is in degrees",
+            "Convert yaw to radians",
+        )
+    heading = evidence.heading
+    if heading is None:
+        return
+    if heading.reading == "radians":
+        yield from _offset(evidence, heading)
+    elif _turns_agree(evidence):
+        yield _finding(
+            "positions_mirrored",
+            "the course of pose.csv turns against its own yaw, which agrees with the other "
+            f"sensors (concentration {heading.concentration:.2f})",
+            "The positions are mirrored: x and y are swapped (north before east), or one of them "
+            "has the wrong sign",
+            "Exchange x and y, or negate y",
+        )
+
+
+def _turns_agree(evidence: Evidence) -> bool:
+    """Whether measured turns are those of the gyroscope, else of the treads."""
+    by_gyroscope = evidence.pose_turn_by_gyroscope
+    if by_gyroscope is not None and by_gyroscope.correlation > 0.5 and by_gyroscope.certain():
+        if gyroscope_sense(evidence) is not Sense.OPPOSITE:
+            return by_gyroscope.slope > 0
+    return pose_sense(evidence) is Sense.AGREES
+
+
+def _offset(evidence: Evidence, heading: Heading) -> Iterator[Finding]:
+    offset, degrees = heading.offset_rad, float(np.degrees(heading.offset_rad))
+    if abs(offset) < OFF_RAD or heading.forwards < LEAST_FORWARDS:
+        return
+    seen = (
+        f"the course of pose.csv lies {degrees:.0f} degrees from its yaw while the treads drive "
+        f"forwards ({heading.windows} windows, concentration {heading.concentration:.2f})"
+    )
+    if abs(abs(degrees) - 180) < 20:
+        if pose_sense(evidence) is Sense.OPPOSITE:
+            return  # both treads reversed: said with the turns
+        yield _finding(
+            "yaw_backwards",
+            seen,
+            "Yaw is off by 180 degrees (sensor mounted backwards), or the treads are swapped and "
+            "both have the wrong sign: these look alike",
+            "Add pi to yaw, or mend the treads",
+        )
+    elif abs(abs(degrees) - 90) < 20:
+        yield _finding(
+            "yaw_off_by_90",
+            seen,
+            f"Yaw is off by {round(degrees / 90) * 90:.0f} degrees (another axis is called "
+            "forward, or yaw counts from another axis)",
+            f"Add {np.sign(degrees) * np.pi / 2:+.4f} rad to yaw",
+        )
+    else:
+        yield _finding(
+            "yaw_offset",
+            seen,
+            f"Yaw is off by {degrees:.0f} degrees: the sensor is turned on the robot, or yaw "
+            "counts from another axis than x (a compass not corrected, grid against true north)",
+            f"Add {offset:+.4f} rad to yaw, or let `gap` name a heading_offset",
+        )
+
+
+def _finding(name: str, seen: str, cause: str, remedy: str) -> Finding:
+    return Finding(name, Level.WARNING, seen, cause, remedy)

@@ -1,0 +1,220 @@
+"""What a recording says of itself: the same motion as treads, gyroscope and poses have it."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray
+from odometry.checks.heading import CONSISTENT, Heading, along_m, headings
+from odometry.checks.motion import Integrals, Motion, integrals, motion_between
+from odometry.checks.relation import Relation, relation
+from odometry.checks.spikes import without_spikes
+from odometry.run import Run
+
+MOVING = 0.1  # share of the ordinary fastest speed above which the robot moves
+DEGREES_RAD_S = 7.0  # no robot turns faster: the gyroscope is in degrees per second
+CLEARLY = 0.3  # difference of concentrations or squared correlations that decides
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """A run, and relations between its sensors. All properties are made once, when asked for."""
+
+    run: Run
+
+    @cached_property
+    def stamps_s(self) -> FloatArray:
+        """Stamps (N,) of odometry.csv."""
+        return self.run.odometry.stamps_s
+
+    @cached_property
+    def period_s(self) -> float:
+        """Usual period of odometry.csv."""
+        return float(np.median(np.diff(self.stamps_s))) if len(self.stamps_s) > 1 else 0.0
+
+    @cached_property
+    def duration_s(self) -> float:
+        """Time from the first to the last row of odometry.csv."""
+        return float(self.stamps_s[-1] - self.stamps_s[0])
+
+    @cached_property
+    def speeds_m_s(self) -> FloatArray:
+        """Tread speeds (N, 2) without spikes."""
+        odometry = self.run.odometry
+        return np.stack([without_spikes(odometry[n]) for n in ("v_left", "v_right")], axis=-1)
+
+    @cached_property
+    def fastest_m_s(self) -> float:
+        """Ordinary fastest tread speed: 99 in 100 are slower."""
+        return float(np.quantile(np.abs(self.speeds_m_s).max(axis=1), 0.99))
+
+    @cached_property
+    def moving(self) -> BoolArray:
+        """Rows (N,) of odometry.csv at which a tread moves."""
+        return np.asarray(np.abs(self.speeds_m_s).max(axis=1) > MOVING * self.fastest_m_s)
+
+    @cached_property
+    def yaw_rate(self) -> tuple[FloatArray, FloatArray] | None:
+        """Stamps (G,) and yaw rates (G,) of the gyroscope, spikes left out."""
+        for table in (self.run.imu, self.run.odometry):
+            if table is not None and "gyro_z" in table:
+                measured = np.isfinite(table["gyro_z"])
+                if measured.sum() > 1:
+                    stamps_s = table.stamps_s[measured]
+                    return stamps_s, without_spikes(table["gyro_z"][measured])
+        return None
+
+    @cached_property
+    def gyroscope_file(self) -> str:
+        """The file in which the yaw rate stands."""
+        in_imu = self.run.imu is not None and "gyro_z" in self.run.imu
+        return "imu.csv" if in_imu else "odometry.csv"
+
+    @cached_property
+    def positions_measured(self) -> BoolArray | None:
+        """Rows (M,) of pose.csv with x and y; None where fewer than ten have them."""
+        if self.run.pose is None:
+            return None
+        measured = np.isfinite(self.run.pose.stack("x", "y")).all(axis=1)
+        return measured if measured.sum() >= 10 else None
+
+    @cached_property
+    def yaw_measured(self) -> bool:
+        """Whether most measured positions have a yaw."""
+        if self.positions_measured is None or self.run.pose is None:
+            return False
+        return bool(np.isfinite(self.run.pose["yaw"][self.positions_measured]).mean() > 0.5)
+
+    @cached_property
+    def integrals(self) -> Integrals:
+        """Tread travel and gyroscope heading."""
+        return integrals(self.run, self.speeds_m_s, self.yaw_rate)
+
+    @cached_property
+    def _raw_motion(self) -> Motion:
+        return motion_between(self.run, self.integrals, self._poses_used)
+
+    @cached_property
+    def uniform(self) -> Motion:
+        """Windows of a second over the whole of odometry.csv, without poses."""
+        return motion_between(self.run, self.integrals, None)
+
+    @cached_property
+    def _poses_used(self) -> BoolArray | None:
+        used = self.positions_measured
+        if used is None or self.run.pose is None:
+            return None
+        return used & np.isfinite(self.run.pose["yaw"]) if self.yaw_measured else used
+
+    @cached_property
+    def yaw_in_degrees(self) -> bool:
+        """Whether the column yaw holds degrees: its course, or its turns, fit only then."""
+        if not self.yaw_measured:
+            return False
+        raw, read = self._raw_motion, self._raw_motion.with_yaw(np.radians)
+        readings = headings(raw, self._turn_rad(read))
+        plain, degrees = (
+            max((readings[n].concentration for n in names if n in readings), default=0.0)
+            for names in (("radians", "radians, reversed"), ("degrees", "degrees, reversed"))
+        )
+        if max(plain, degrees) >= CONSISTENT and abs(plain - degrees) > CLEARLY:
+            return degrees > plain
+        turns = raw.gyroscope_rad if self.yaw_rate is not None else raw.difference_m
+        as_radians, as_degrees = (relation(m.turn_rad, turns) for m in (raw, read))
+        if as_radians is None or as_degrees is None:
+            return False
+        return as_degrees.correlation**2 > as_radians.correlation**2 + CLEARLY
+
+    @cached_property
+    def motion(self) -> Motion:
+        """Windows of about a second, between poses where there are any; yaw in radians."""
+        raw = self._raw_motion
+        return raw.with_yaw(np.radians) if self.yaw_in_degrees else raw
+
+    @cached_property
+    def heading(self) -> Heading | None:
+        """How yaw and course belong together; None where they do not, or it cannot be told."""
+        found = headings(self.motion, self._turn_rad(self.motion))
+        if not found:
+            return None
+        plain, reversed_ = found["radians"], found["radians, reversed"]
+        best = max(plain, reversed_, key=lambda heading: heading.concentration)
+        clear = abs(plain.concentration - reversed_.concentration) > CLEARLY
+        return best if best.concentration >= CONSISTENT and clear else None
+
+    @cached_property
+    def best_concentration(self) -> float | None:
+        """How well course and yaw agree by the best reading of yaw; None where few windows tell."""
+        found = headings(self.motion, self._turn_rad(self.motion))
+        return max((heading.concentration for heading in found.values()), default=None)
+
+    @cached_property
+    def forward_m(self) -> FloatArray:
+        """Measured displacement (K,) along the robot's axis, NaN where heading is not known.
+
+        The axis is that of the course, so that a yaw off by 90 degrees does not matter; its sign
+        is that of the yaw.
+        """
+        if self.heading is None:
+            return np.full(len(self.motion), np.nan)
+        return along_m(self.motion, self.heading)
+
+    def _turn_rad(self, motion: Motion) -> FloatArray:
+        """Turn (K,) in rad, by the gyroscope where there is one, whatever its unit."""
+        if self.yaw_rate is None:
+            return motion.turn_rad
+        turn = motion.gyroscope_rad
+        in_degrees = np.nanquantile(np.abs(self.yaw_rate[1]), 0.99) > DEGREES_RAD_S
+        return np.asarray(np.radians(turn)) if in_degrees else turn
+
+    @cached_property
+    def forward_by_treads(self) -> Relation | None:
+        """Measured forward displacement from the travel of the left and of the right tread."""
+        m = self.motion
+        return relation(self.forward_m, m.left_m, m.right_m)
+
+    @cached_property
+    def forward_by_mean(self) -> Relation | None:
+        """Measured forward displacement from the mean travel of the treads."""
+        return relation(self.forward_m, self.motion.mean_m)
+
+    @cached_property
+    def distance_by_mean(self) -> Relation | None:
+        """Distance between positions from the mean travel, both without sign, for lack of yaw."""
+        m = self.motion
+        turning = np.abs(m.difference_m) > np.abs(m.mean_m)
+        return relation(np.where(turning, np.nan, m.distance_m), np.abs(m.mean_m))
+
+    @cached_property
+    def gyroscope_by_treads(self) -> Relation | None:
+        """Turn by the gyroscope from the travel of the left and of the right tread."""
+        m = self.uniform
+        return relation(m.gyroscope_rad, m.left_m, m.right_m)
+
+    @cached_property
+    def gyroscope_by_difference(self) -> Relation | None:
+        """Turn by the gyroscope from the difference of the treads' travel: one over a width."""
+        m = self.uniform
+        return relation(m.gyroscope_rad, m.difference_m, m.lasts_s)
+
+    @cached_property
+    def pose_turn_by_treads(self) -> Relation | None:
+        """Measured turn from the travel of the left and of the right tread."""
+        m = self.motion
+        return relation(m.turn_rad, m.left_m, m.right_m)
+
+    @cached_property
+    def pose_turn_by_difference(self) -> Relation | None:
+        """Measured turn from the difference of the treads' travel."""
+        return relation(self.motion.turn_rad, self.motion.difference_m)
+
+    @cached_property
+    def pose_turn_by_gyroscope(self) -> Relation | None:
+        """Measured turn from that of the gyroscope, and its bias."""
+        m = self.motion
+        return relation(m.turn_rad, m.gyroscope_rad, m.lasts_s)
+
+    def run_time_s(self, stamp_s: float) -> float:
+        """Time from the first row of odometry.csv."""
+        return float(stamp_s - self.stamps_s[0])

@@ -1,0 +1,128 @@
+"""Bias, range and axis of the gyroscope."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.checks.evidence import Evidence
+from odometry.checks.finding import Finding, Level
+from odometry.checks.spans import constant_spans
+from odometry.checks.spikes import spikes
+
+LEAST_BIAS_RAD_S = 0.003
+LARGE_BIAS_RAD_S = 0.1
+CERTAIN = 4.0
+STATIONARY_M_S = 0.005
+LEAST_STATIONARY_S = 2.0
+CLIPPED = 0.01  # share of rows at the very largest rate
+DEAD_S = 2.0
+
+
+def gyroscope(evidence: Evidence) -> Iterator[Finding]:
+    """A bias (a note), clipping, dead stretches, corrupt samples."""
+    if evidence.yaw_rate is None:
+        return
+    yield from _bias(evidence)
+    yield from _clipped(evidence)
+    yield from _dead(evidence)
+    yield from _absurd(evidence)
+
+
+def _bias(evidence: Evidence) -> Iterator[Finding]:
+    found = stationary_bias(evidence) or _bias_by_poses(evidence)
+    if found is None:
+        return
+    bias, sigma, how = found
+    if abs(bias) < LEAST_BIAS_RAD_S or abs(bias) < CERTAIN * sigma:
+        return
+    large = abs(bias) > LARGE_BIAS_RAD_S
+    yield Finding(
+        "gyroscope_bias",
+        Level.WARNING if large else Level.NOTE,
+        f"gyro_z reads {bias:+.4f} +- {sigma:.4f} rad/s {how}",
+        "The gyroscope has a bias" + (" far above what is usual (units, or not at rest)" if large else ""),
+        "Subtract it where the yaw rate is used; let the robot stand for some seconds to measure it",
+    )
+
+
+def stationary_bias(evidence: Evidence) -> tuple[float, float, str] | None:
+    """Bias [rad/s], its standard deviation, and from what: while both treads stand still."""
+    assert evidence.yaw_rate is not None  # noqa: S101 - the caller has looked
+    stamps_s, rates = evidence.yaw_rate
+    still = np.abs(evidence.run.odometry.stack("v_left", "v_right")).max(axis=1) < STATIONARY_M_S
+    rows = np.clip(np.searchsorted(evidence.stamps_s, stamps_s, side="right") - 1, 0, None)
+    settled = still & np.roll(still, 1) & np.roll(still, int(round(0.5 / max(evidence.period_s, 1e-3))))
+    at_rest = rates[settled[rows]]
+    lasts_s = len(at_rest) * float(np.median(np.diff(stamps_s)))
+    if lasts_s < LEAST_STATIONARY_S or len(at_rest) < 20:
+        return None
+    middle = float(np.median(at_rest))
+    spread = 1.4826 * float(np.median(np.abs(at_rest - middle)))
+    if spread > 0.05:
+        return None
+    return middle, 4 * spread / np.sqrt(len(at_rest)), f"while stationary ({lasts_s:.1f} s)"
+
+
+def _bias_by_poses(evidence: Evidence) -> tuple[float, float, str] | None:
+    found = evidence.pose_turn_by_gyroscope
+    if found is None or found.correlation < 0.9 or not 0.8 < found.slope < 1.25:
+        return None
+    return -float(found.coefficients[1]), 2 * float(found.sigmas[1]), "more than measured yaw turns"
+
+
+def _clipped(evidence: Evidence) -> Iterator[Finding]:
+    assert evidence.yaw_rate is not None  # noqa: S101 - the caller has looked
+    rates = evidence.yaw_rate[1]
+    largest = float(np.abs(rates).max())
+    at_top = np.abs(np.abs(rates) - largest) < 1e-9
+    if largest > 0 and at_top.mean() > CLIPPED and at_top.sum() > 10:
+        yield Finding(
+            "gyroscope_clipped",
+            Level.WARNING,
+            f"{100 * at_top.mean():.1f} % of gyro_z are exactly +-{largest:.4g} rad/s",
+            "The gyroscope is clipped (saturates): its full-scale range is too small",
+            "Choose a larger range; do not use these rows",
+        )
+
+
+def _dead(evidence: Evidence) -> Iterator[Finding]:
+    assert evidence.yaw_rate is not None  # noqa: S101 - the caller has looked
+    stamps_s, rates = evidence.yaw_rate
+    spans = constant_spans(stamps_s, rates, DEAD_S)
+    odd = [span for span in spans if _turns_by_treads(evidence, span)]
+    if not odd:
+        return
+    lasts_s = sum(end_s - begin_s for begin_s, end_s in odd)
+    yield Finding(
+        "gyroscope_dead",
+        Level.WARNING,
+        f"gyro_z repeats one value for {lasts_s:.1f} s while the treads turn the robot",
+        "The gyroscope is stuck or was lost",
+        "Leave gyro_z empty there",
+        tuple((evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in odd),
+    )
+
+
+def _turns_by_treads(evidence: Evidence, span: FloatArray) -> bool:
+    turned = np.diff(evidence.integrals.right_m(span) - evidence.integrals.left_m(span))[0]
+    return bool(abs(turned) > 0.1 * evidence.fastest_m_s * (span[1] - span[0]))
+
+
+def _absurd(evidence: Evidence) -> Iterator[Finding]:
+    for table, file in ((evidence.run.imu, "imu.csv"), (evidence.run.odometry, "odometry.csv")):
+        if table is None or "gyro_z" not in table:
+            continue
+        values = table["gyro_z"][np.isfinite(table["gyro_z"])]
+        odd = spikes(values)
+        far = odd & (np.abs(values) > 3 * np.quantile(np.abs(values), 0.99) + 1.0)
+        if far.any():
+            yield Finding(
+                "absurd_yaw_rate",
+                Level.WARNING,
+                f"{int(far.sum())} samples of gyro_z of {file} jump out and back, up to "
+                f"{values[far][np.argmax(np.abs(values[far]))]:.4g} rad/s",
+                "Single corrupt samples of the gyroscope (outliers, spikes)",
+                "Remove these rows",
+            )
+        return

@@ -1,0 +1,135 @@
+"""By how much one sensor is late against another: correlation of yaw rates."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+
+Signal = Callable[[FloatArray], FloatArray]
+GRID_S = 0.05
+LEAST_CORRELATION = 0.7
+RIVAL = 0.9  # a second peak as high as this share of the first: the motion is periodic
+PIECES = 8
+LEAST_PIECE_S = 8.0
+
+
+@dataclass(frozen=True)
+class Lag:
+    """How much later a signal is than another.
+
+    Attributes
+    ----------
+    seconds, sigma_s : float
+        Mean over pieces of the recording, and the standard deviation of that mean.
+    drift, drift_sigma : float
+        Seconds per second by which the lag grows.
+    correlation : float
+        Of the two rates at that lag, median over pieces.
+    pieces : int
+    """
+
+    seconds: float
+    sigma_s: float
+    drift: float
+    drift_sigma: float
+    correlation: float
+    pieces: int
+
+
+def lag_between(
+    late: Signal, early: Signal, start_s: float, end_s: float, width_s: float, most_s: float
+) -> Lag | None:
+    """The lag of `late` behind `early`, from pieces of the time between two stamps.
+
+    Both are integrals (headings); their rates are differences over the same width, so that the
+    filter shifts neither. None where fewer than three pieces have a clear peak.
+
+    Parameters
+    ----------
+    late, early : callable of stamps (K,) to (K,)
+    start_s, end_s : float
+    width_s : float
+        Over which a rate is taken: not less than the period of the slower sensor.
+    most_s : float
+        Largest lag searched for, to both sides.
+    """
+    count = int(np.clip((end_s - start_s) / LEAST_PIECE_S, 1, PIECES))
+    edges_s = np.linspace(start_s, end_s, count + 1)
+    lags, middles, correlations = [], [], []
+    for begin_s, stop_s in zip(edges_s[:-1], edges_s[1:], strict=True):
+        found = _peak(late, early, begin_s, stop_s, width_s, most_s)
+        if found is not None:
+            lags.append(found[0])
+            correlations.append(found[1])
+            middles.append((begin_s + stop_s) / 2)
+    if len(lags) < 3:
+        return None
+    return _summarised(np.array(lags), np.array(middles), np.array(correlations))
+
+
+def _peak(
+    late: Signal, early: Signal, begin_s: float, stop_s: float, width_s: float, most_s: float
+) -> tuple[float, float] | None:
+    """Lag and correlation at the peak; None where the peak is low, at the edge or not alone."""
+    at_s = np.arange(begin_s, stop_s, GRID_S)
+    reference = _rate(late, at_s, width_s)
+    lags = np.arange(-most_s, most_s + GRID_S / 2, GRID_S)
+    reach = round(most_s / GRID_S)
+    around_s = begin_s + GRID_S * np.arange(-reach, len(at_s) + reach)
+    other = _rate(early, around_s, width_s)
+    known = np.isfinite(reference)
+    if known.sum() < LEAST_PIECE_S / GRID_S / 2:
+        return None
+    correlations = np.array(
+        [_correlation(reference, other[2 * reach - k : 2 * reach - k + len(at_s)]) for k in
+         range(2 * reach + 1)]
+    )
+    best = int(np.nanargmax(correlations)) if np.isfinite(correlations).any() else 0
+    if not 0 < best < 2 * reach or correlations[best] < LEAST_CORRELATION:
+        return None
+    if _rival(correlations, best) > RIVAL * correlations[best]:
+        return None
+    left, top, right = correlations[best - 1 : best + 2]
+    bend = left - 2 * top + right
+    shift = 0.5 * (left - right) / bend if np.isfinite(bend) and bend < 0 else 0.0
+    return float(lags[best] + shift * GRID_S), float(top)
+
+
+def _rival(correlations: FloatArray, best: int) -> float:
+    """The highest other local maximum."""
+    inner = correlations[1:-1]
+    peak = (inner >= correlations[:-2]) & (inner >= correlations[2:])
+    peak[max(best - 1, 0)] = False
+    return float(np.nanmax(np.where(peak, inner, -1.0)))
+
+
+def _rate(heading: Signal, at_s: FloatArray, width_s: float) -> FloatArray:
+    return (heading(at_s + width_s / 2) - heading(at_s - width_s / 2)) / width_s
+
+
+def _correlation(a: FloatArray, b: FloatArray) -> float:
+    known = np.isfinite(a) & np.isfinite(b)
+    if known.sum() < LEAST_PIECE_S / GRID_S / 2:
+        return float("nan")
+    a, b = a[known] - a[known].mean(), b[known] - b[known].mean()
+    size = float(np.sqrt(np.sum(a**2) * np.sum(b**2)))
+    return float(np.sum(a * b) / size) if size > 1e-9 else float("nan")
+
+
+def _summarised(lags: FloatArray, middles: FloatArray, correlations: FloatArray) -> Lag:
+    """Median lag, and a line through the pieces by the medians of slopes (Theil and Sen)."""
+    i, j = np.triu_indices(len(lags), 1)
+    drift = float(np.median((lags[j] - lags[i]) / (middles[j] - middles[i])))
+    left = lags - np.median(lags) - drift * (middles - np.median(middles))
+    spread = 1.4826 * float(np.median(np.abs(left - np.median(left)))) + GRID_S / 10
+    span = float(np.sqrt(np.sum((middles - middles.mean()) ** 2)))
+    return Lag(
+        float(np.median(lags)),
+        1.25 * spread / np.sqrt(len(lags)),
+        drift,
+        1.25 * spread / span,
+        float(np.median(correlations)),
+        len(lags),
+    )

@@ -1,0 +1,182 @@
+"""What treads, gyroscope and poses say of the motion between the same stamps."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.run import Run
+
+WINDOW_S = 0.5  # long against the jitter of stamps, short against a turn
+LONGEST = 3.0  # windows longer than this many times WINDOW_S, or the usual pose period, are left out
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Motion over K windows, raw: as the files say it, in their units.
+
+    Attributes
+    ----------
+    start_s, end_s : (K,)
+        Stamps.
+    left_m, right_m : (K,)
+        Tread travel; of speeds without spikes.
+    gyroscope_rad : (K,)
+        Integral of the yaw rate, NaN where it was not recorded.
+    moved_m : (K, 2)
+        Measured x, y at the end less at the start, NaN without poses.
+    yaw_rad : (K, 2)
+        Measured yaw at the start and at the end, as it stands in the file.
+    """
+
+    start_s: FloatArray
+    end_s: FloatArray
+    left_m: FloatArray
+    right_m: FloatArray
+    gyroscope_rad: FloatArray
+    moved_m: FloatArray
+    yaw_rad: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.start_s)
+
+    @property
+    def lasts_s(self) -> FloatArray:
+        """Duration (K,)."""
+        return self.end_s - self.start_s
+
+    @property
+    def mean_m(self) -> FloatArray:
+        """Mean travel (K,) of both treads."""
+        return (self.left_m + self.right_m) / 2
+
+    @property
+    def difference_m(self) -> FloatArray:
+        """Travel (K,) of the right tread less that of the left."""
+        return self.right_m - self.left_m
+
+    @property
+    def distance_m(self) -> FloatArray:
+        """Distance (K,) between the measured positions."""
+        return np.asarray(np.hypot(self.moved_m[:, 0], self.moved_m[:, 1]))
+
+    @property
+    def turn_rad(self) -> FloatArray:
+        """Measured turn (K,), the shorter way round."""
+        raw = self.yaw_rad[:, 1] - self.yaw_rad[:, 0]
+        return np.asarray((raw + np.pi) % (2 * np.pi) - np.pi)
+
+    def with_yaw(self, read: Callable[[FloatArray], FloatArray]) -> "Motion":
+        """The same with another reading of the measured yaw."""
+        return replace(self, yaw_rad=read(self.yaw_rad))
+
+    @property
+    def course_rad(self) -> FloatArray:
+        """Direction (K,) of the measured displacement in the frame of the poses."""
+        return np.asarray(np.arctan2(self.moved_m[:, 1], self.moved_m[:, 0]))
+
+
+@dataclass(frozen=True)
+class Integrals:
+    """Tread travel and gyroscope heading as functions of the stamp.
+
+    Attributes
+    ----------
+    left_m, right_m, gyroscope_rad : callable of stamps (K,) to (K,)
+        The last one gives NaN where no gyroscope was recorded.
+    """
+
+    left_m: Callable[[FloatArray], FloatArray]
+    right_m: Callable[[FloatArray], FloatArray]
+    gyroscope_rad: Callable[[FloatArray], FloatArray]
+
+
+def integrals(
+    run: Run, speeds_m_s: FloatArray, yaw_rate: tuple[FloatArray, FloatArray] | None
+) -> Integrals:
+    """Integrals of held values.
+
+    Parameters
+    ----------
+    run : Run
+    speeds_m_s : (N, 2)
+        Tread speeds without spikes, at the stamps of odometry.csv.
+    yaw_rate : (stamps (G,), rad/s (G,)) or None
+    """
+    stamps_s = run.odometry.stamps_s
+    return Integrals(
+        _held(stamps_s, speeds_m_s[:, 0]),
+        _held(stamps_s, speeds_m_s[:, 1]),
+        _held(*yaw_rate) if yaw_rate is not None else lambda s: np.full(len(s), np.nan),
+    )
+
+
+def motion_between(run: Run, of: Integrals, poses_used: BoolArray | None) -> Motion:
+    """Cut a run into windows of about a second, between measured poses where there are any.
+
+    Parameters
+    ----------
+    run : Run
+    of : Integrals
+    poses_used : (M,) or None
+        Which rows of pose.csv count.
+    """
+    odometry_s = run.odometry.stamps_s
+    if run.pose is not None and poses_used is not None and poses_used.sum() >= 2:
+        pose_s = run.pose.stamps_s
+        inside = poses_used & (pose_s >= odometry_s[0]) & (pose_s <= odometry_s[-1])
+        rows = _spaced(pose_s, np.flatnonzero(inside))
+        if len(rows) >= 2:
+            return _between_poses(run, of, rows)
+    edges_s = np.arange(odometry_s[0], odometry_s[-1], WINDOW_S)
+    nothing = np.full((max(len(edges_s) - 1, 0), 2), np.nan)
+    return _window(edges_s[:-1], edges_s[1:], of, nothing, nothing)
+
+
+def _between_poses(run: Run, of: Integrals, rows: IntArray) -> Motion:
+    assert run.pose is not None  # noqa: S101 - for the type checker: the caller has looked
+    first, last = rows[:-1], rows[1:]
+    pose_s = run.pose.stamps_s
+    lasts_s = pose_s[last] - pose_s[first]
+    near = lasts_s <= LONGEST * max(WINDOW_S, float(np.median(np.diff(pose_s))))
+    if "window" in run.pose:
+        near &= run.pose["window"][first] == run.pose["window"][last]
+    first, last = first[near], last[near]
+    positions, yaw = run.pose.stack("x", "y"), run.pose["yaw"]
+    return _window(
+        pose_s[first],
+        pose_s[last],
+        of,
+        positions[last] - positions[first],
+        np.stack([yaw[first], yaw[last]], axis=-1),
+    )
+
+
+def _window(
+    start_s: FloatArray, end_s: FloatArray, of: Integrals, moved: FloatArray, yaw: FloatArray
+) -> Motion:
+    left, right, gyroscope = (
+        integral(end_s) - integral(start_s)
+        for integral in (of.left_m, of.right_m, of.gyroscope_rad)
+    )
+    return Motion(start_s, end_s, left, right, gyroscope, moved, yaw)
+
+
+def _spaced(pose_s: FloatArray, rows: IntArray) -> IntArray:
+    """Rows at least WINDOW_S apart."""
+    chosen: list[int] = []
+    for row in rows:
+        if not chosen or pose_s[row] - pose_s[chosen[-1]] >= WINDOW_S - 1e-6:
+            chosen.append(int(row))
+    return np.array(chosen, dtype=np.int64)
+
+
+def _held(stamps_s: FloatArray, values: FloatArray) -> Callable[[FloatArray], FloatArray]:
+    """Integral of values that hold until the next stamp; NaN outside of the stamps."""
+    known = np.isfinite(values)
+    stamps_s, values = stamps_s[known], values[known]
+    if len(stamps_s) < 2:
+        return lambda at_s: np.full(len(at_s), np.nan)
+    summed = np.concatenate([[0.0], np.cumsum(values[:-1] * np.diff(stamps_s))])
+    return lambda at_s: np.asarray(np.interp(at_s, stamps_s, summed, left=np.nan, right=np.nan))

@@ -1,0 +1,87 @@
+"""Check a recording before anything is fitted to it."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+
+from odometry.checks.agreement import agreement, yaw_against_course
+from odometry.checks.attitude import attitude
+from odometry.checks.course import course
+from odometry.checks.evidence import Evidence
+from odometry.checks.finding import CheckReport, Finding, Level, in_order
+from odometry.checks.gyroscope import gyroscope
+from odometry.checks.poses import poses
+from odometry.checks.stamps import stamps, unreadable_stamps
+from odometry.checks.timing import timing
+from odometry.checks.treads import treads
+from odometry.checks.turning import turning
+from odometry.checks.units import units
+from odometry.errors import RunFolderError
+from odometry.run import Run
+
+Check = Callable[[Evidence], Iterator[Finding]]
+
+# In this order findings of one level are told: a cause stands before what follows from it.
+CHECKS: tuple[Check, ...] = (
+    treads,
+    course,
+    turning,
+    units,
+    poses,
+    agreement,
+    yaw_against_course,
+    timing,
+    gyroscope,
+    attitude,
+    stamps,
+)
+LEAST_ROWS = 10
+
+
+def check_recording(run: Run | str | Path) -> CheckReport:
+    """What is odd about a recording: likeliest cause and remedy, most important first.
+
+    Treads, gyroscope and poses measure one motion three times. Each relation between two of them
+    (turn by turn, distance by distance, yaw by course, lag) is estimated robustly, and a sensor
+    that is alone against two others is the likeliest to be wrong. What cannot be distinguished is
+    said to be so.
+
+    Parameters
+    ----------
+    run : Run or path of a run folder
+        A folder that cannot be read is a finding, not an error.
+    """
+    if not isinstance(run, Run):
+        try:
+            run = Run.read(run)
+        except RunFolderError as error:
+            return CheckReport(Path(str(run)), (_unreadable(error),))
+    refused = tuple(unreadable_stamps(run))
+    if any(finding.level is Level.REFUSED for finding in refused):
+        return CheckReport(run.folder, refused)
+    if len(run.odometry) < LEAST_ROWS:
+        return CheckReport(run.folder, refused, ("fewer than ten rows of odometry.csv",))
+    evidence = Evidence(run)
+    with np.errstate(over="ignore", invalid="ignore"):
+        found = [*refused, *(finding for check in CHECKS for finding in check(evidence))]
+    return CheckReport(run.folder, in_order(found), tuple(_skipped(evidence)))
+
+
+def _unreadable(error: RunFolderError) -> Finding:
+    return Finding(
+        "unreadable",
+        Level.REFUSED,
+        str(error),
+        "A file of the run folder is not as the format says",
+        "Mend the file at the place that is named",
+    )
+
+
+def _skipped(evidence: Evidence) -> Iterator[str]:
+    if evidence.positions_measured is None:
+        yield "no measured poses: distances, yaw and delays were not checked against them"
+    elif not evidence.yaw_measured:
+        yield "poses without yaw: headings were not checked against them"
+    if evidence.yaw_rate is None:
+        yield "no gyroscope: turns were not checked against it"

@@ -1,0 +1,92 @@
+"""Robust linear relations between two measurements of the same motion."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray
+
+ROUNDS = 8
+CUTOFF = 3.0  # standard deviations, estimated by the median, beyond which a window is left out
+LEAST_WINDOWS = 8  # below, nothing is said
+
+
+@dataclass(frozen=True)
+class Relation:
+    """`target = columns @ coefficients`, by least squares trimmed of outliers.
+
+    Attributes
+    ----------
+    coefficients, sigmas : (P,)
+    correlation : float
+        Of target and fit, over the windows kept.
+    kept : (K,)
+        Windows that are no outliers; False also where something was not measured.
+    measured : int
+        Windows in which everything was measured.
+    residuals : (K,)
+        NaN where not measured.
+    """
+
+    coefficients: FloatArray
+    sigmas: FloatArray
+    correlation: float
+    kept: BoolArray
+    measured: int
+    residuals: FloatArray
+
+    @property
+    def slope(self) -> float:
+        """The first coefficient."""
+        return float(self.coefficients[0])
+
+    @property
+    def slope_sigma(self) -> float:
+        """Its standard deviation."""
+        return float(self.sigmas[0])
+
+    def certain(self, place: int = 0, times: float = 5.0) -> bool:
+        """Whether a coefficient differs from zero by so many standard deviations."""
+        return bool(abs(self.coefficients[place]) > times * self.sigmas[place])
+
+
+def relation(target: FloatArray, *columns: FloatArray) -> Relation | None:
+    """Fit `target` (K,) by columns (K,) each; None where too little was measured or moves.
+
+    Outliers are left out by their distance from the fit in units of 1.4826 times the median of
+    absolute residuals (least trimmed squares by repeated weighting, Rousseeuw and Leroy 1987).
+    """
+    design = np.stack(columns, axis=-1)
+    measured = np.isfinite(target) & np.isfinite(design).all(axis=1)
+    if measured.sum() < LEAST_WINDOWS or np.linalg.matrix_rank(design[measured]) < len(columns):
+        return None
+    kept = measured.copy()
+    coefficients = np.zeros(len(columns))
+    for _ in range(ROUNDS):
+        coefficients = np.linalg.lstsq(design[kept], target[kept], rcond=None)[0]
+        residuals = target - design @ coefficients
+        scale = 1.4826 * np.median(np.abs(residuals[measured]))
+        before, kept = kept, measured & (np.abs(residuals) <= CUTOFF * scale + 1e-12)
+        if kept.sum() < LEAST_WINDOWS or np.linalg.matrix_rank(design[kept]) < len(columns):
+            kept = before
+            break
+        if (kept == before).all():
+            break
+    residuals = target - design @ coefficients
+    variance = np.sum(residuals[kept] ** 2) / max(int(kept.sum()) - len(columns), 1)
+    curvature = design[kept].T @ design[kept]
+    sigmas = np.sqrt(np.maximum(variance * np.diag(np.linalg.pinv(curvature)), 0.0))
+    return Relation(
+        coefficients,
+        sigmas,
+        _correlation(target[kept], (design @ coefficients)[kept]),
+        kept,
+        int(measured.sum()),
+        residuals,
+    )
+
+
+def _correlation(a: FloatArray, b: FloatArray) -> float:
+    """Correlation about zero: the motion of a robot has a natural zero."""
+    size = float(np.sqrt(np.sum(a**2) * np.sum(b**2)))
+    return float(np.sum(a * b) / size) if size > 0 else 0.0

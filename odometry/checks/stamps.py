@@ -1,0 +1,136 @@
+"""Units of stamps, files of different times, gaps, and rows that were dropped."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.checks.evidence import Evidence
+from odometry.checks.finding import Finding, Level
+from odometry.run import Run
+from odometry.table import Table
+
+LONGEST_PERIOD_S = 20.0  # no recording of poses or images is slower
+LONGEST_ODOMETRY_PERIOD_S = 2.5  # nor one of treads
+SHORTEST_PERIOD_S = 2e-5  # nor faster
+EPOCH_S = 1e8  # stamps above count from 1970 (1e8 s is in 1973)
+USUAL_PERIODS_S = (0.002, 2.0)
+STAMP_UNITS = (("nanoseconds", 1e9), ("microseconds", 1e6), ("milliseconds", 1e3))
+
+
+def tables_of(run: Run) -> dict[str, Table]:
+    """The tables of a run by the names of their files."""
+    tables = {
+        "odometry.csv": run.odometry,
+        "imu.csv": run.imu,
+        "pose.csv": run.pose,
+        "velocity.csv": run.velocity,
+        "images.csv": run.images,
+        "truth.csv": run.truth,
+    }
+    return {name: table for name, table in tables.items() if table is not None}
+
+
+def unreadable_stamps(run: Run) -> Iterator[Finding]:
+    """Stamps that are no seconds, and files that share no time with odometry.csv."""
+    tables = tables_of(run)
+    odometry_s = run.odometry.stamps_s
+    if len(odometry_s) < 2:
+        yield _refused(
+            "one_row", "odometry.csv has one row", "The recording is empty", "Record anew"
+        )
+        return
+    for name, table in tables.items():
+        unit = _stamp_unit(name, table.stamps_s)
+        if unit:
+            period = float(np.median(np.diff(table.stamps_s)))
+            yield _refused(
+                "stamp_unit",
+                f"stamps of {name} are {period:.6g} apart in the median, and end "
+                f"{table.stamps_s[-1] - table.stamps_s[0]:.6g} after they begin",
+                f"Stamps are in {unit}, not seconds",
+                "Convert the column t to seconds",
+            )
+    if any(_stamp_unit(name, table.stamps_s) for name, table in tables.items()):
+        return
+    for name, table in tables.items():
+        if name != "odometry.csv":
+            yield from _apart(name, table.stamps_s, odometry_s)
+
+
+def _stamp_unit(name: str, stamps_s: FloatArray) -> str:
+    """The unit of stamps that cannot be seconds; "" where they may be."""
+    if len(stamps_s) < 3:
+        epoch = float(np.abs(stamps_s).max())
+        return next((name for name, factor in STAMP_UNITS if epoch > 1e10 * factor / 1e3), "")
+    period = float(np.median(np.diff(stamps_s)))
+    odometry = name in ("odometry.csv", "imu.csv")
+    longest_s = LONGEST_ODOMETRY_PERIOD_S if odometry else LONGEST_PERIOD_S
+    if SHORTEST_PERIOD_S <= period <= longest_s:
+        return ""
+    if period < SHORTEST_PERIOD_S:
+        return "a unit longer than seconds (hours, days)"
+    low, high = USUAL_PERIODS_S
+    fitting = [name for name, factor in STAMP_UNITS if low <= period / factor <= high]
+    return " or ".join(fitting) or "another unit"
+
+
+def _apart(name: str, stamps_s: FloatArray, odometry_s: FloatArray) -> Iterator[Finding]:
+    begin_s, end_s = float(odometry_s[0]), float(odometry_s[-1])
+    inside = float(np.mean((stamps_s >= begin_s) & (stamps_s <= end_s)))
+    if inside == 0:
+        offset_s = float(stamps_s[0] - begin_s)
+        hours = offset_s / 3600
+        if abs(hours) > 0.2 and abs(hours - round(hours * 4) / 4) < 0.02 and abs(hours) < 15:
+            cause = f"A time zone: the clocks differ by {hours:.2f} hours"
+        elif (begin_s > EPOCH_S) != (float(stamps_s[0]) > EPOCH_S):
+            cause = "One clock counts from 1970 (epoch), the other from the start"
+        else:
+            cause = f"{name} is of another recording, or its clock was set differently"
+        yield _refused(
+            "files_apart",
+            f"{name} covers {stamps_s[0]:.3f} to {stamps_s[-1]:.3f} s, odometry.csv {begin_s:.3f} "
+            f"to {end_s:.3f} s: no row in common time",
+            cause,
+            f"Shift the stamps of {name} (they start {offset_s:+.3f} s after odometry.csv), or "
+            "leave the file out",
+        )
+    elif inside < 0.5:
+        yield Finding(
+            "files_apart",
+            Level.WARNING,
+            f"only {100 * inside:.0f} % of the rows of {name} lie within the time of odometry.csv",
+            f"odometry.csv was cut, or {name} is of another recording or clock",
+            "Compare the first and the last stamps of the files",
+        )
+
+
+def stamps(evidence: Evidence) -> Iterator[Finding]:
+    """Notes on stamps: rows dropped, epoch stamps."""
+    for name, table in tables_of(evidence.run).items():
+        dropped = table.repeated_lines
+        if len(dropped):
+            share = len(dropped) / (len(dropped) + len(table))
+            first = ", ".join(map(str, dropped[:3])) + (" ..." if len(dropped) > 3 else "")
+            yield Finding(
+                "repeated_stamps",
+                Level.WARNING if share > 0.2 else Level.NOTE,
+                f"{len(dropped)} rows of {name} repeat the stamp of the row before ({100 * share:.2g} "
+                f"%; row {first}) and were dropped",
+                "The logger wrote a stamp twice"
+                if share <= 0.2
+                else "Stamps have too few digits, or two recordings were merged",
+                "Nothing to do" if share <= 0.2 else "Write stamps with more digits",
+            )
+    if evidence.stamps_s[0] > EPOCH_S:
+        yield Finding(
+            "epoch_stamps",
+            Level.NOTE,
+            f"stamps start at {evidence.stamps_s[0]:.0f} s",
+            "Stamps count from 1970 (epoch)",
+            "Nothing to do",
+        )
+
+
+def _refused(name: str, seen: str, cause: str, remedy: str) -> Finding:
+    return Finding(name, Level.REFUSED, seen, cause, remedy)

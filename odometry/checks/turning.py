@@ -1,0 +1,187 @@
+"""Which sensors agree on the side to which the robot turns, and which do not."""
+
+from collections.abc import Iterator
+from enum import Enum
+
+import numpy as np
+
+from odometry.checks.evidence import CLEARLY, Evidence
+from odometry.checks.finding import Finding, Level
+from odometry.checks.relation import Relation
+
+LEAST_TURN_RAD = 1.0  # summed turns below which nothing is said
+UNRELATED = 0.3  # correlation below which two sensors do not speak of the same turns
+
+
+class Sense(Enum):
+    """How turns of a sensor come from the two treads."""
+
+    AGREES = "agrees"
+    OPPOSITE = "opposite"
+    LEFT_REVERSED = "left tread reversed"
+    RIGHT_REVERSED = "right tread reversed"
+    UNRELATED = "unrelated"
+    UNKNOWN = "unknown"
+
+
+SIGNS = {
+    (-1, 1): Sense.AGREES,
+    (1, -1): Sense.OPPOSITE,
+    (1, 1): Sense.LEFT_REVERSED,
+    (-1, -1): Sense.RIGHT_REVERSED,
+}
+
+
+def sense(by_treads: Relation | None, by_difference: Relation | None, turned_rad: float) -> Sense:
+    """Read the signs of `turn = a left + b right`; uncertain ones are no evidence."""
+    if by_treads is None or not turned_rad > LEAST_TURN_RAD:
+        return Sense.UNKNOWN
+    if by_treads.correlation < UNRELATED:
+        return Sense.UNRELATED
+    if by_treads.certain(0) and by_treads.certain(1):
+        left, right = np.sign(by_treads.coefficients).astype(int)
+        shares = np.abs(by_treads.coefficients)
+        alone = by_difference is None or (
+            by_treads.correlation**2 - by_difference.correlation**2 > CLEARLY
+        )
+        if shares.min() > 0.2 * shares.max() and (left != right or alone):
+            return SIGNS[int(left), int(right)]
+    if by_difference is not None and by_difference.certain() and by_difference.correlation > 0.5:
+        return Sense.AGREES if by_difference.slope > 0 else Sense.OPPOSITE
+    return Sense.UNKNOWN
+
+
+def gyroscope_sense(evidence: Evidence) -> Sense:
+    """How the gyroscope's turns come from the treads."""
+    turned = float(np.nansum(np.abs(evidence.uniform.gyroscope_rad)))
+    return sense(evidence.gyroscope_by_treads, evidence.gyroscope_by_difference, turned)
+
+
+def pose_sense(evidence: Evidence) -> Sense:
+    """How measured turns come from the treads."""
+    turned = float(np.nansum(np.abs(evidence.motion.turn_rad)))
+    return sense(evidence.pose_turn_by_treads, evidence.pose_turn_by_difference, turned)
+
+
+def turning(evidence: Evidence) -> Iterator[Finding]:
+    """Signs of treads, gyroscope and yaw: whoever is alone against the others is wrong."""
+    gyroscope, pose = gyroscope_sense(evidence), pose_sense(evidence)
+    known = [s for s in (gyroscope, pose) if s is not Sense.UNKNOWN]
+    if not known or all(s is Sense.AGREES for s in known):
+        return
+    for tread in (Sense.LEFT_REVERSED, Sense.RIGHT_REVERSED):
+        if set(known) == {tread}:
+            yield _one_tread(evidence, tread)
+            return
+    if set(known) == {Sense.OPPOSITE}:
+        yield _all_opposite(evidence, gyroscope, pose)
+    elif gyroscope is Sense.OPPOSITE and pose is Sense.AGREES:
+        yield _finding(
+            "gyroscope_reversed",
+            f"gyro_z turns against treads and measured yaw ({_correlations(evidence)})",
+            "The gyroscope has the wrong sign (z down, or mounted upside down)",
+            f"Negate gyro_z of {evidence.gyroscope_file}",
+        )
+    elif pose is Sense.OPPOSITE and gyroscope is Sense.AGREES:
+        yield _pose_opposite(evidence, "treads and gyroscope agree", alone=True)
+
+
+def _all_opposite(evidence: Evidence, gyroscope: Sense, pose: Sense) -> Finding:
+    forward = _forward_sign(evidence)
+    if pose is Sense.UNKNOWN:
+        return _finding(
+            "treads_or_gyroscope_reversed",
+            f"gyro_z turns against the treads ({_correlations(evidence)})",
+            "Left and right treads are swapped, or the gyroscope has the wrong sign, or both "
+            "treads have it: without poses these cannot be distinguished",
+            "Drive one left turn by hand and see which column is wrong",
+        )
+    if gyroscope is Sense.UNKNOWN and not (evidence.heading and _reading_is_plain(evidence)):
+        return _pose_opposite(evidence, "there is no gyroscope to say more", alone=False)
+    if forward < 0:
+        return _finding(
+            "treads_both_reversed",
+            "measured motion is against both treads, in turns and along the way "
+            f"({_correlations(evidence)})",
+            "Both treads have the wrong sign",
+            "Negate v_left and v_right",
+        )
+    more = (
+        "; or x, y and yaw are in a frame with z down (NED)" if gyroscope is Sense.UNKNOWN else ""
+    )
+    return _finding(
+        "treads_swapped",
+        f"measured turns are against the treads ({_correlations(evidence)}), motion along the way "
+        "is not",
+        f"Left and right treads are swapped{more}",
+        "Exchange v_left and v_right",
+    )
+
+
+def _pose_opposite(evidence: Evidence, others: str, *, alone: bool) -> Finding:
+    if evidence.heading is not None and not _reading_is_plain(evidence):
+        return _yaw_reversed(evidence, others)
+    if evidence.heading is None:
+        cause = "The yaw of pose.csv is reversed, or all of it is in a frame with z down (NED)"
+    else:
+        cause = (
+            "pose.csv is in a frame with z down (NED, or x and y swapped and yaw with them): "
+            "its yaw and its course agree with each other"
+        )
+    if not alone:
+        cause += ", or left and right treads are swapped: these cannot be distinguished"
+    return _finding(
+        "pose_mirrored",
+        f"yaw of pose.csv turns against the treads ({_correlations(evidence)}; {others})",
+        cause,
+        "Write pose.csv with x forward, y left, z up and yaw counter-clockwise",
+    )
+
+
+def _yaw_reversed(evidence: Evidence, others: str) -> Finding:
+    assert evidence.heading is not None  # noqa: S101 - the caller has looked
+    offset = float(np.degrees(evidence.heading.offset_rad))
+    compass = abs(abs(offset) - 90) < 20
+    cause = "yaw is a compass bearing (clockwise from north)" if compass else "yaw is clockwise"
+    return _finding(
+        "yaw_reversed",
+        f"course and yaw of pose.csv agree only with the sign of yaw reversed (concentration "
+        f"{evidence.heading.concentration:.2f}, offset {offset:.0f} degrees; {others})",
+        f"Yaw is reversed: {cause}",
+        "Convert: yaw = pi/2 - bearing" if compass else "Negate yaw",
+    )
+
+
+def _one_tread(evidence: Evidence, tread: Sense) -> Finding:
+    side = "left" if tread is Sense.LEFT_REVERSED else "right"
+    return _finding(
+        f"tread_{side}_reversed",
+        f"turns grow with the sum of the tread speeds ({_correlations(evidence)})",
+        f"The {side} tread has the wrong sign",
+        f"Negate v_{side}",
+    )
+
+
+def _forward_sign(evidence: Evidence) -> int:
+    found = evidence.forward_by_mean
+    return int(np.sign(found.slope)) if found is not None and found.certain() else 0
+
+
+def _reading_is_plain(evidence: Evidence) -> bool:
+    return evidence.heading is not None and evidence.heading.reading == "radians"
+
+
+def _correlations(evidence: Evidence) -> str:
+    words = []
+    for name, found in (
+        ("gyroscope", evidence.gyroscope_by_treads),
+        ("yaw", evidence.pose_turn_by_treads),
+    ):
+        if found is not None:
+            left, right = found.coefficients
+            words.append(f"turn of {name} = {left:+.2f} left {right:+.2f} right [rad/m]")
+    return ", ".join(words)
+
+
+def _finding(name: str, seen: str, cause: str, remedy: str) -> Finding:
+    return Finding(name, Level.WARNING, seen, cause, remedy)

@@ -1,0 +1,270 @@
+"""Units of tread speeds, positions and yaw rate, and the track width."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.checks.evidence import Evidence
+from odometry.checks.finding import Finding, Level
+from odometry.checks.turning import Sense, gyroscope_sense, pose_sense
+
+# Robots that were measured move 0.75 to 1.05 times as far as their treads where the terrain holds,
+# and turn as if 1.0 to 3.1 times as wide; on ice 0.24 to 0.4 times as far, on snow 10 times as wide.
+FORWARD = (0.55, 1.2)
+WIDTH = (0.9, 4.0)
+VERY_TIGHT = 0.97  # the same for turns alone, in which tracks and snow slip by a nearly constant share
+TIGHT = 0.9  # correlation from which a factor is a unit and no slip
+SLIDING = 0.6  # concentration of course less yaw below which the robot slides sideways
+LEAST_WINDOWS = 15  # from which a factor without heading can be called constant
+PLAUSIBLE_M_S = 10.0  # no skid-steer robot is faster
+ORDINARY_FORWARD, ORDINARY_WIDTH = 0.93, 1.8
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit in place of the right one: the file holds `factor` times the SI value."""
+
+    words: str
+    factor: float
+
+
+def tread_units(wheel_radius_m: float | None) -> tuple[Unit, ...]:
+    """Units in which tread speeds are logged; those of wheels need a radius."""
+    linear = (
+        Unit("mm/s", 1000.0),
+        Unit("cm/s", 100.0),
+        Unit("km/h", 3.6),
+        Unit("miles per hour", 2.23694),
+        Unit("feet per second", 3.28084),
+    )
+    if wheel_radius_m is None:
+        return linear
+    turn = 2 * np.pi * wheel_radius_m
+    return (
+        Unit(f"rad/s (of wheels of {wheel_radius_m:g} m radius)", 1 / wheel_radius_m),
+        Unit(f"RPM (of wheels of {wheel_radius_m:g} m radius)", 60 / turn),
+        Unit("revolutions per second", 1 / turn),
+        Unit("degrees per second", 360 / turn),
+        *linear,
+    )
+
+
+POSITION_UNITS = (
+    Unit("mm", 1000.0),
+    Unit("cm", 100.0),
+    Unit("km", 0.001),
+    Unit("feet", 3.28084),
+    Unit("inches", 39.3701),
+    Unit("degrees of latitude and longitude", 1 / 111_320.0),
+)
+
+
+def units(evidence: Evidence) -> Iterator[Finding]:
+    """Factors between sensors that are units, and a track width that nothing agrees with."""
+    forward, forward_tight = _forward_factor(evidence)
+    width, turn_tight, gyroscope_factor = _width_factor(evidence)
+    if gyroscope_factor:
+        yield _gyroscope_unit(evidence, gyroscope_factor)
+    if forward is not None and not FORWARD[0] <= forward <= FORWARD[1]:
+        yield _along(evidence, forward, forward_tight, width)
+    elif width is not None and not WIDTH[0] <= width <= WIDTH[1]:
+        yield _across(evidence, forward, width, turn_tight)
+    elif evidence.fastest_m_s > PLAUSIBLE_M_S and forward is None:
+        yield _too_fast(evidence)
+    elif (stated := _track_against_body(evidence)) is not None:
+        yield stated
+
+
+def _forward_factor(evidence: Evidence) -> tuple[float | None, bool]:
+    """Measured displacement per mean tread travel, and whether it is constant."""
+    found = evidence.forward_by_mean
+    if found is not None and found.certain():
+        return abs(found.slope), found.correlation > TIGHT
+    distance = evidence.distance_by_mean
+    sliding = (evidence.best_concentration or 1.0) < SLIDING
+    if distance is not None and distance.certain():
+        tight = distance.correlation > TIGHT and distance.measured >= LEAST_WINDOWS
+        return abs(distance.slope), tight and not sliding
+    return None, False
+
+
+def _width_factor(evidence: Evidence) -> tuple[float | None, bool, float | None]:
+    """Effective width in track widths, whether it is constant, and the factor of the gyroscope."""
+    track = evidence.run.robot.track_width
+    gyroscope, pose = evidence.gyroscope_by_difference, evidence.pose_turn_by_difference
+    factor = _gyroscope_factor(evidence)
+    for found, of, scale in (
+        (gyroscope, gyroscope_sense(evidence), factor or 1.0),
+        (pose, pose_sense(evidence), 1.0),
+    ):
+        if found is not None and found.certain() and of in (Sense.AGREES, Sense.OPPOSITE):
+            return scale / (abs(found.slope) * track), found.correlation > TIGHT, factor
+    return None, False, factor
+
+
+def _gyroscope_factor(evidence: Evidence) -> float | None:
+    """By what the gyroscope is too large; None where it is in rad/s or nobody can say."""
+    by_gyroscope = evidence.pose_turn_by_gyroscope
+    if by_gyroscope is not None and by_gyroscope.certain() and by_gyroscope.correlation > TIGHT:
+        factor = 1 / abs(by_gyroscope.slope)
+        return factor if not 0.7 < factor < 1.4 else None
+    found, rate = evidence.gyroscope_by_difference, evidence.yaw_rate
+    if evidence.yaw_measured or found is None or rate is None or not found.certain():
+        return None
+    width = 1 / (abs(found.slope) * evidence.run.robot.track_width)
+    degrees = width < 0.2 and float(np.quantile(np.abs(rate[1]), 0.99)) > 4.0
+    return 180 / np.pi if degrees else None
+
+
+def _gyroscope_unit(evidence: Evidence, factor: float) -> Finding:
+    degrees = abs(np.log(factor * np.pi / 180)) < 0.3
+    cause = (
+        "The gyroscope is in degrees per second"
+        if degrees
+        else "The gyroscope has a wrong scale (another unit or full-scale range)"
+    )
+    return Finding(
+        "gyroscope_unit",
+        Level.WARNING,
+        f"gyro_z of {evidence.gyroscope_file} is {factor:.3g} times the turn rate that poses or "
+        "treads have",
+        cause,
+        "Convert gyro_z to rad/s",
+    )
+
+
+def _along(evidence: Evidence, forward: float, tight: bool, width: float | None) -> Finding:
+    """Robot and treads move at different speeds along the way."""
+    seen = f"the robot moves {forward:.3g} m for each m of tread travel"
+    if width is not None:
+        seen += f", and turns as if {width:.3g} track widths wide"
+    tread = _matching(
+        tread_units(evidence.run.robot.wheel_radius), lambda unit: forward * unit.factor
+    )
+    position = _matching(POSITION_UNITS, lambda unit: forward / unit.factor)
+    tread_fits = tread is not None and (
+        width is None or 0.95 <= width / tread.factor <= WIDTH[1]
+    )
+    if tread is not None and tread_fits and (tight or tread.factor > 20):
+        return _tread_unit(seen, tread, evidence)
+    if position is not None and (width is None or WIDTH[0] <= width <= WIDTH[1]):
+        return Finding(
+            "position_unit",
+            Level.WARNING,
+            seen,
+            f"Positions of pose.csv are in {position.words}, not metres",
+            "Convert x and y to local metres",
+        )
+    if not tight or (forward < FORWARD[0] and width is not None and width > ORDINARY_WIDTH):
+        return Finding(
+            "slip",
+            Level.WARNING,
+            f"{seen}; the factor is {'constant' if tight else 'not constant'}",
+            "Heavy slip (ice, snow, a robot that is stuck) where terrain allows it, else a wrong "
+            "scale of treads or positions: these cannot be distinguished",
+            "Judge by what the robot drove on; parameters are of this run alone",
+        )
+    return Finding(
+        "scale",
+        Level.WARNING,
+        f"{seen}; the factor is constant",
+        f"Tread speeds are {1 / forward * ORDINARY_FORWARD:.2g} times too large (wheel radius or "
+        "diameter, gear ratio, unit), or positions are scaled",
+        "Compare a straight stretch with a tape measure, and mend the wheel radius",
+    )
+
+
+def _across(
+    evidence: Evidence, forward: float | None, width: float, tight: bool
+) -> Finding:
+    """The robot turns as if of another width, while nothing speaks against the way along."""
+    track = evidence.run.robot.track_width
+    seen = (
+        f"the robot turns as if {width * track:.3g} m wide, {width:.3g} times the track_width of "
+        f"{track:g} m"
+    )
+    body = evidence.run.robot.width
+    if forward is None and evidence.fastest_m_s > PLAUSIBLE_M_S:
+        return _too_fast(evidence)
+    tread = _matching(
+        tread_units(evidence.run.robot.wheel_radius), lambda unit: ORDINARY_WIDTH * unit.factor / width
+    )
+    body_fits = body is not None and 0.5 * body <= track <= 1.1 * body
+    very_tight = _turn_correlation(evidence) > VERY_TIGHT
+    if forward is None and very_tight and width > WIDTH[1] and tread is not None and body_fits:
+        return _tread_unit(
+            f"{seen}; there are no positions to say more", tread, evidence, sure=False
+        )
+    if width > WIDTH[1] and (forward is None or not tight) and body_fits:
+        return Finding(
+            "slip_in_turns",
+            Level.WARNING,
+            seen,
+            "Heavy slip in turns (snow), or tread speeds in another unit (rad/s, km/h), or a wrong "
+            "track_width: these cannot be distinguished here",
+            "Judge by what the robot drove on; add poses to distinguish them",
+        )
+    unit = " (mm?)" if width < 0.01 else ""
+    return Finding(
+        "track_width",
+        Level.WARNING,
+        seen,
+        f"track_width of run.toml is wrong{unit}; a skid-steer robot turns as if 1 to 3 track "
+        "widths wide",
+        "Measure the distance between the middles of the left and the right treads, in metres",
+    )
+
+
+def _turn_correlation(evidence: Evidence) -> float:
+    """Of the gyroscope's turns with the difference of the treads."""
+    found = evidence.gyroscope_by_difference or evidence.pose_turn_by_difference
+    return found.correlation if found is not None else 0.0
+
+
+def _too_fast(evidence: Evidence) -> Finding:
+    radius = evidence.run.robot.wheel_radius
+    fitting = [
+        unit
+        for unit in tread_units(radius)
+        if 0.2 <= evidence.fastest_m_s / unit.factor <= 5.0 and unit.factor > 1
+    ]
+    words = " or ".join(unit.words for unit in fitting) or "another unit than m/s"
+    return Finding(
+        "tread_unit",
+        Level.WARNING,
+        f"treads run at up to {evidence.fastest_m_s:.4g} m/s, and no positions say how far the "
+        "robot moved",
+        f"Tread speeds are in {words}",
+        "Convert v_left and v_right to m/s: wheel rate times radius",
+    )
+
+
+def _tread_unit(seen: str, unit: Unit, evidence: Evidence, *, sure: bool = True) -> Finding:
+    others = "" if sure else "; or heavy slip in turns (snow), or a wrong track_width"
+    return Finding(
+        "tread_unit",
+        Level.WARNING,
+        f"{seen}; treads run at up to {evidence.fastest_m_s:.4g} m/s",
+        f"Tread speeds are in {unit.words}, not m/s{others}",
+        "Convert v_left and v_right to m/s: wheel rate times radius",
+    )
+
+
+def _matching(candidates: tuple[Unit, ...], ratio: Callable[[Unit], float]) -> Unit | None:
+    """The unit that brings a ratio nearest to the ordinary one, if near enough."""
+    near = min(candidates, key=lambda unit: abs(np.log(ratio(unit) / ORDINARY_FORWARD)))
+    return near if 0.7 <= ratio(near) <= 1.15 else None
+
+
+def _track_against_body(evidence: Evidence) -> Finding | None:
+    robot = evidence.run.robot
+    if robot.width is None or 0.4 * robot.width <= robot.track_width <= 1.1 * robot.width:
+        return None
+    return Finding(
+        "track_width",
+        Level.WARNING,
+        f"track_width is {robot.track_width:g} m, and the robot is {robot.width:g} m wide",
+        "track_width or width of run.toml is wrong",
+        "Measure the distance between the middles of the left and the right treads, in metres",
+    )
