@@ -2,8 +2,6 @@
 
 from collections.abc import Iterator
 
-import numpy as np
-
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.relation import Relation
@@ -17,13 +15,15 @@ def agreement(evidence: Evidence) -> Iterator[Finding]:
     """Turns of treads, gyroscope and poses that have little to do with each other."""
     gyroscope, pose = gyroscope_sense(evidence), pose_sense(evidence)
     by_gyroscope = evidence.pose_turn_by_gyroscope
-    together = by_gyroscope is not None and abs(by_gyroscope.correlation) > POOR
+    together = by_gyroscope is not None and by_gyroscope.explained > POOR
     unrelated = Sense.UNRELATED
     if pose is unrelated and gyroscope is unrelated and together:
         yield _finding(
             "treads_unrelated",
             f"turns by gyroscope and poses agree (correlation {by_gyroscope.correlation:.2f}), the "
-            "treads' do not" if by_gyroscope else "",
+            "treads' do not"
+            if by_gyroscope
+            else "",
             "odometry.csv is of another recording or another clock, columns are exchanged "
             "(v_left and v_right may hold speed and turn rate), or the treads slip all the time",
             "Plot the three yaw rates: check --picture",
@@ -32,7 +32,9 @@ def agreement(evidence: Evidence) -> Iterator[Finding]:
         yield _finding(
             "poses_unrelated",
             f"turns of pose.csv have nothing to do with those of the treads (correlation "
-            f"{evidence.pose_turn_by_treads.correlation:.2f})" if evidence.pose_turn_by_treads else "",
+            f"{evidence.pose_turn_by_treads.correlation:.2f})"
+            if evidence.pose_turn_by_treads
+            else "",
             "pose.csv is of another recording or another clock, or its yaw is something else (a "
             "component of a quaternion, another axis)",
             "Plot the three yaw rates: check --picture",

@@ -22,9 +22,7 @@ def attitude(evidence: Evidence) -> Iterator[Finding]:
     angles = {name: angle for name, angle in angles.items() if np.isfinite(angle).any()}
     if not angles:
         return
-    steep = {
-        name: float(np.nanquantile(np.abs(angle), 0.95)) for name, angle in angles.items()
-    }
+    steep = {name: float(np.nanquantile(np.abs(angle), 0.95)) for name, angle in angles.items()}
     worst = max(steep, key=lambda name: steep[name])
     if steep[worst] > STEEP_RAD:
         yield Finding(
@@ -39,9 +37,7 @@ def attitude(evidence: Evidence) -> Iterator[Finding]:
         yield from _against_gravity(evidence, angles["roll"], angles["pitch"])
 
 
-def _against_gravity(
-    evidence: Evidence, roll: FloatArray, pitch: FloatArray
-) -> Iterator[Finding]:
+def _against_gravity(evidence: Evidence, roll: FloatArray, pitch: FloatArray) -> Iterator[Finding]:
     """accel_x = -g sin(pitch), accel_y = g cos(pitch) sin(roll), less what the motion adds."""
     odometry = evidence.run.odometry
     forward = evidence.speeds_m_s.mean(axis=1)

@@ -8,12 +8,14 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.heading import CONSISTENT, Heading, along_m, headings
 from odometry.checks.motion import Integrals, Motion, integrals, motion_between
+from odometry.checks.pose_cleaning import pose_outliers
 from odometry.checks.relation import Relation, relation
 from odometry.checks.spikes import without_spikes
 from odometry.run import Run
 
 MOVING = 0.1  # share of the ordinary fastest speed above which the robot moves
 DEGREES_RAD_S = 7.0  # no robot turns faster: the gyroscope is in degrees per second
+MOST_OUTLIERS = 0.3  # share of the poses: where more are far from the others, none can be left out
 CLEARLY = 0.3  # difference of concentrations or squared correlations that decides
 
 
@@ -80,6 +82,16 @@ class Evidence:
         return measured if measured.sum() >= 10 else None
 
     @cached_property
+    def pose_outliers(self) -> BoolArray:
+        """Rows (M,) of pose.csv whose position leaves the way and comes back."""
+        if self.positions_measured is None or self.run.pose is None:
+            return np.zeros(0, dtype=np.bool_)
+        found = np.zeros(len(self.positions_measured), dtype=np.bool_)
+        rows = np.flatnonzero(self.positions_measured)
+        found[rows[pose_outliers(self.run.pose.stack("x", "y")[rows])]] = True
+        return found
+
+    @cached_property
     def yaw_measured(self) -> bool:
         """Whether most measured positions have a yaw."""
         if self.positions_measured is None or self.run.pose is None:
@@ -105,6 +117,8 @@ class Evidence:
         used = self.positions_measured
         if used is None or self.run.pose is None:
             return None
+        if self.pose_outliers.mean() < MOST_OUTLIERS:
+            used = used & ~self.pose_outliers
         return used & np.isfinite(self.run.pose["yaw"]) if self.yaw_measured else used
 
     @cached_property
@@ -185,6 +199,14 @@ class Evidence:
         m = self.motion
         turning = np.abs(m.difference_m) > np.abs(m.mean_m)
         return relation(np.where(turning, np.nan, m.distance_m), np.abs(m.mean_m))
+
+    @cached_property
+    def metres_per_metre(self) -> float | None:
+        """Measured distance per mean tread travel, without sign; None where it is not known."""
+        for found in (self.forward_by_mean, self.distance_by_mean):
+            if found is not None and found.certain():
+                return abs(found.slope)
+        return None
 
     @cached_property
     def gyroscope_by_treads(self) -> Relation | None:

@@ -41,7 +41,8 @@ def _bias(evidence: Evidence) -> Iterator[Finding]:
         "gyroscope_bias",
         Level.WARNING if large else Level.NOTE,
         f"gyro_z reads {bias:+.4f} +- {sigma:.4f} rad/s {how}",
-        "The gyroscope has a bias" + (" far above what is usual (units, or not at rest)" if large else ""),
+        "The gyroscope has a bias"
+        + (" far above what is usual (units, or not at rest)" if large else ""),
         "Subtract it where the yaw rate is used; let the robot stand for some seconds to measure it",
     )
 
@@ -52,7 +53,9 @@ def stationary_bias(evidence: Evidence) -> tuple[float, float, str] | None:
     stamps_s, rates = evidence.yaw_rate
     still = np.abs(evidence.run.odometry.stack("v_left", "v_right")).max(axis=1) < STATIONARY_M_S
     rows = np.clip(np.searchsorted(evidence.stamps_s, stamps_s, side="right") - 1, 0, None)
-    settled = still & np.roll(still, 1) & np.roll(still, int(round(0.5 / max(evidence.period_s, 1e-3))))
+    settled = (
+        still & np.roll(still, 1) & np.roll(still, int(round(0.5 / max(evidence.period_s, 1e-3))))
+    )
     at_rest = rates[settled[rows]]
     lasts_s = len(at_rest) * float(np.median(np.diff(stamps_s)))
     if lasts_s < LEAST_STATIONARY_S or len(at_rest) < 20:

@@ -83,8 +83,10 @@ def _peak(
     if known.sum() < LEAST_PIECE_S / GRID_S / 2:
         return None
     correlations = np.array(
-        [_correlation(reference, other[2 * reach - k : 2 * reach - k + len(at_s)]) for k in
-         range(2 * reach + 1)]
+        [
+            _correlation(reference, other[2 * reach - k : 2 * reach - k + len(at_s)])
+            for k in range(2 * reach + 1)
+        ]
     )
     best = int(np.nanargmax(correlations)) if np.isfinite(correlations).any() else 0
     if not 0 < best < 2 * reach or correlations[best] < LEAST_CORRELATION:

@@ -9,7 +9,9 @@ from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.run import Run
 
 WINDOW_S = 0.5  # long against the jitter of stamps, short against a turn
-LONGEST = 3.0  # windows longer than this many times WINDOW_S, or the usual pose period, are left out
+LONGEST = (
+    3.0  # windows longer than this many times WINDOW_S, or the usual pose period, are left out
+)
 
 
 @dataclass(frozen=True)

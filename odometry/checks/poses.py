@@ -4,24 +4,27 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
-from odometry.checks.spans import constant_spans, runs_of
+from odometry.checks.heading import READINGS
+from odometry.checks.spans import constant_spans, runs_of, within
 
 FROZEN_S = 1.5
 REPEATED = 0.3  # share of poses equal to the one before while the treads move
-FASTER = 2.0  # times what the treads say, from which a step is a jump
 LEAST_JUMP_M = 0.4
-AROUND_S = 0.7  # of a jump, within which jitter of stamps is over
-OUTLIERS = 0.05  # share of poses that go out and back, from which it is a warning
+JUMP_TIMES = 7.0  # the usual change of the difference to dead reckoning over the same time
+JITTER_S = 0.4  # by which poses that came in bursts were late
+NEAR_S, FAR_S = 0.25, 1.25  # of a jump: between them its two sides are compared
+OUTLIERS = 0.01  # share of poses that go out and back, from which it is a warning
 
 
 def poses(evidence: Evidence) -> Iterator[Finding]:
     """Frozen and repeated poses, jumps and outliers."""
     if evidence.positions_measured is None or evidence.run.pose is None:
         return
-    rows = np.flatnonzero(evidence.positions_measured)
+    yield from _outliers(evidence)
+    rows = np.flatnonzero(evidence.positions_measured & ~evidence.pose_outliers)
     stamps_s = evidence.run.pose.stamps_s[rows]
     positions = evidence.run.pose.stack("x", "y")[rows]
     travel_m = _travel(evidence, stamps_s)
@@ -29,7 +32,8 @@ def poses(evidence: Evidence) -> Iterator[Finding]:
     yield from frozen
     if not frozen:
         yield from _repeated(evidence, positions, travel_m)
-    yield from _jumps(evidence, stamps_s, positions, travel_m)
+    spans_s = [span for finding in frozen for span in finding.spans_s]
+    yield from _jumps(evidence, rows, travel_m, np.array(spans_s).reshape(-1, 2))
 
 
 def _travel(evidence: Evidence, stamps_s: FloatArray) -> FloatArray:
@@ -63,9 +67,7 @@ def _frozen(
     )
 
 
-def _repeated(
-    evidence: Evidence, positions: FloatArray, travel_m: FloatArray
-) -> Iterator[Finding]:
+def _repeated(evidence: Evidence, positions: FloatArray, travel_m: FloatArray) -> Iterator[Finding]:
     moving = np.diff(travel_m) > 0.2 * np.quantile(np.diff(travel_m), 0.9)
     same = (np.diff(positions, axis=0) == 0).all(axis=1)
     if moving.sum() < 20:
@@ -84,106 +86,115 @@ def _repeated(
         )
 
 
+def _outliers(evidence: Evidence) -> Iterator[Finding]:
+    pose, found = evidence.run.pose, np.flatnonzero(evidence.pose_outliers)
+    if pose is None or not len(found):
+        return
+    measured = np.flatnonzero(evidence.positions_measured)
+    beside = measured[np.clip(np.searchsorted(measured, found) - 3, 0, None)]
+    away = np.hypot(*(pose.stack("x", "y")[found] - pose.stack("x", "y")[beside]).T)
+    share = len(found) / len(measured)
+    yield Finding(
+        "pose_outliers",
+        Level.WARNING if share > OUTLIERS or len(found) > 5 else Level.NOTE,
+        f"{len(found)} poses ({100 * share:.2g} %) lie up to {away.max():.3g} m away from their "
+        "neighbours and come back",
+        "Outliers of the reference (multipath, a wrong match)",
+        "Leave these poses empty; the filter's gate refuses them and fits weigh them down",
+        tuple((evidence.run_time_s(s),) * 2 for s in pose.stamps_s[found]),
+    )
+
+
 def _jumps(
-    evidence: Evidence, stamps_s: FloatArray, positions: FloatArray, travel_m: FloatArray
+    evidence: Evidence, rows: IntArray, travel_m: FloatArray, frozen_s: FloatArray
 ) -> Iterator[Finding]:
-    steps = np.diff(positions, axis=0)
-    far = np.hypot(*steps.T)
-    scale = _scale(far, travel_m)
+    """Steps of the difference between the poses and dead reckoning along their own yaw."""
+    if evidence.run.pose is None:
+        return
+    stamps_s = evidence.run.pose.stamps_s[rows]
+    positions = evidence.run.pose.stack("x", "y")[rows]
+    scale = evidence.metres_per_metre
     if scale is None:
         return
-    allowed = np.maximum(FASTER * scale * np.diff(travel_m), LEAST_JUMP_M * scale)
-    usual = float(np.quantile(np.maximum(far - scale * np.diff(travel_m), 0.0), 0.9))
-    step_s = np.diff(stamps_s)
-    same_window = _same_window(evidence)
-    odd = (far > allowed + 6 * usual) & same_window & (step_s < 5 * np.median(step_s) + 1.0)
-    odd[odd] = _stays(stamps_s, positions, travel_m * scale, np.flatnonzero(odd))
-    if not odd.any():
+    off = _without_window_changes(evidence, rows, positions - _reckoned(evidence, rows, scale))
+    step = _step_sizes(stamps_s, off)
+    speed = np.gradient(travel_m, stamps_s)
+    known = np.isfinite(step) & ~within(stamps_s - evidence.stamps_s[0], _widened(frozen_s))
+    if known.sum() < 20:
         return
-    back = _comes_back(steps, odd)
-    jumps = np.flatnonzero(odd & ~back)
-    outliers = np.flatnonzero(odd & back)
-    if len(jumps):
-        yield _jump_finding(evidence, stamps_s, far, jumps)
-    if len(outliers):
-        share = len(outliers) / 2 / len(positions)
-        yield Finding(
-            "pose_outliers",
-            Level.WARNING,
-            f"{(len(outliers) + 1) // 2} poses lie up to {far[outliers].max():.3g} m away from their "
-            f"neighbours and come back ({100 * share:.2g} % of the poses)",
-            "Outliers of the reference (multipath, a wrong match)",
-            "Leave these poses empty; the filter's gate refuses them and fits weigh them down",
-            tuple((evidence.run_time_s(s), evidence.run_time_s(s)) for s in stamps_s[outliers]),
-        )
-
-
-def _jump_finding(
-    evidence: Evidence, stamps_s: FloatArray, far: FloatArray, jumps: FloatArray
-) -> Finding:
+    moving = known & (speed > 0.2 * evidence.fastest_m_s)
+    usual = 1.4826 * float(np.median(step[moving if moving.sum() > 20 else known]))
+    jitter_m = JITTER_S * speed * scale
+    odd = known & (step > np.maximum(JUMP_TIMES * usual, LEAST_JUMP_M * scale + jitter_m))
+    peaks = [begin + int(np.argmax(step[begin:end])) for begin, end in runs_of(odd)]
+    if not peaks:
+        return
     places = ", ".join(
-        f"{far[i]:.3g} m at {evidence.run_time_s(stamps_s[i + 1]):.1f} s" for i in jumps[:3]
+        f"{step[i]:.3g} m at {evidence.run_time_s(stamps_s[i]):.1f} s" for i in peaks[:3]
     )
-    return Finding(
+    yield Finding(
         "pose_jumps",
         Level.WARNING,
-        f"{len(jumps)} steps between poses are farther than the treads can go, and stay: {places}"
-        + (" ..." if len(jumps) > 3 else ""),
+        f"poses jump {len(peaks)} times against what treads and yaw say, and stay: {places}"
+        + (" ..." if len(peaks) > 3 else "")
+        + f" (usual: {usual:.2g} m)",
         "Poses jump: the reference was relocalised, or its map or fix changed",
         "Number the stretches between jumps in a column `window`, or cut with --from and --to",
-        tuple((evidence.run_time_s(s),) * 2 for s in stamps_s[jumps + 1]),
+        tuple((evidence.run_time_s(stamps_s[i]),) * 2 for i in peaks),
     )
 
 
-def _scale(far: FloatArray, travel_m: FloatArray) -> float | None:
-    """Units of position per metre of tread travel; None where the treads hardly move."""
-    driven = np.diff(travel_m)
-    moving = driven > 0.5 * np.quantile(driven, 0.9)
-    if moving.sum() < 10 or driven.sum() <= 0:
-        return None
-    return max(float(np.median(far[moving] / driven[moving])), 1e-9)
+def _reckoned(evidence: Evidence, rows: IntArray, scale: float) -> FloatArray:
+    """Positions (M, 2) by mean tread travel along the measured yaw; zeros where yaw is unknown."""
+    pose, heading = evidence.run.pose, evidence.heading
+    if pose is None or heading is None:
+        return np.zeros((len(rows), 2))
+    yaw = pose["yaw"][rows]
+    yaw = READINGS[heading.reading](np.radians(yaw) if evidence.yaw_in_degrees else yaw)
+    yaw = np.unwrap(np.nan_to_num(yaw)) + heading.offset_rad
+    of = evidence.integrals
+    stamps_s = np.clip(pose.stamps_s[rows], evidence.stamps_s[0], evidence.stamps_s[-1])
+    travel_m = (of.left_m(stamps_s) + of.right_m(stamps_s)) / 2
+    steps = scale * np.diff(travel_m)
+    middle = (yaw[1:] + yaw[:-1]) / 2
+    return np.concatenate(
+        [
+            np.zeros((1, 2)),
+            np.cumsum(np.stack([steps * np.cos(middle), steps * np.sin(middle)], -1), 0),
+        ]
+    )
 
 
-def _same_window(evidence: Evidence) -> BoolArray:
-    pose = evidence.run.pose
-    rows = evidence.positions_measured
-    if pose is None or rows is None or "window" not in pose:
-        count = 0 if rows is None else int(rows.sum())
-        return np.ones(max(count - 1, 0), dtype=np.bool_)
-    return np.asarray(np.diff(np.nan_to_num(pose["window"][rows])) == 0)
+def _step_sizes(stamps_s: FloatArray, off: FloatArray) -> FloatArray:
+    """Distance (M,) between the medians of `off` (M, 2) shortly before and after each pose.
 
-
-def _stays(
-    stamps_s: FloatArray, positions: FloatArray, travel_m: FloatArray, steps: IntArray
-) -> BoolArray:
-    """Whether a step is no jitter of stamps: poses some time around it are too far apart as well.
-
-    Late poses come in bursts, whose steps are large and whose sum is right.
+    Medians bear jitter of stamps. NaN next to the ends and to gaps.
     """
-    before = np.searchsorted(stamps_s, stamps_s[steps] - AROUND_S, side="right") - 1
-    after = np.searchsorted(stamps_s, stamps_s[steps + 1] + AROUND_S)
-    before, after = np.clip(before, 0, None), np.clip(after, None, len(stamps_s) - 1)
-    step_m = np.hypot(*(positions[steps + 1] - positions[steps]).T)
-    there = np.minimum(
-        np.hypot(*(positions[after] - positions[steps]).T) - (travel_m[after] - travel_m[steps]),
-        np.hypot(*(positions[steps + 1] - positions[before]).T)
-        - (travel_m[steps + 1] - travel_m[before]),
-    )
-    near = step_m - (travel_m[steps + 1] - travel_m[steps])
-    gained = np.hypot(*(positions[after] - positions[before]).T)
-    allowed = travel_m[after] - travel_m[before]
-    out_and_back = there < 0.3 * near
-    return np.asarray((gained - allowed > 0.4 * near) | (out_and_back & (near > 2 * allowed)))
+    period_s = float(np.median(np.diff(stamps_s)))
+    near_s, far_s = NEAR_S, max(FAR_S, NEAR_S + 3 * period_s)
+    edges = [
+        np.searchsorted(stamps_s, stamps_s + shift_s)
+        for shift_s in (-far_s, -near_s, near_s, far_s)
+    ]
+    found = np.full(len(stamps_s), np.nan)
+    for i in range(len(stamps_s)):
+        a, b, c, d = (int(edge[i]) for edge in edges)
+        if b - a >= 2 and d - c >= 2:
+            found[i] = np.hypot(*(np.median(off[c:d], axis=0) - np.median(off[a:b], axis=0)))
+    return found
 
 
-def _comes_back(steps: FloatArray, odd: BoolArray) -> BoolArray:
-    """Whether each step (M - 1,) is undone by another odd one among the next five, or undoes one."""
-    back = np.zeros(len(odd), dtype=np.bool_)
-    rows = np.flatnonzero(odd)
-    for i in rows:
-        for j in rows[(rows > i) & (rows <= i + 5)]:
-            net = float(np.hypot(*steps[i : j + 1].sum(axis=0)))
-            if net < 0.4 * float(np.hypot(*steps[i])):
-                back[[i, j]] = True
-                break
-    return back
+def _without_window_changes(
+    evidence: Evidence, rows: IntArray, positions: FloatArray
+) -> FloatArray:
+    """Positions (M, 2) with the steps at changes of `window` taken out: these may jump."""
+    pose = evidence.run.pose
+    if pose is None or "window" not in pose:
+        return positions
+    steps = np.diff(positions, axis=0)
+    steps[np.diff(np.nan_to_num(pose["window"][rows])) != 0] = 0.0
+    return np.concatenate([positions[:1], positions[0] + np.cumsum(steps, axis=0)])
+
+
+def _widened(spans_s: FloatArray) -> FloatArray:
+    return spans_s + np.array([-2 * FAR_S, 2 * FAR_S])

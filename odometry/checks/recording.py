@@ -7,6 +7,7 @@ import numpy as np
 
 from odometry.checks.agreement import agreement, yaw_against_course
 from odometry.checks.attitude import attitude
+from odometry.checks.consequences import without_consequences
 from odometry.checks.course import course
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import CheckReport, Finding, Level, in_order
@@ -24,14 +25,14 @@ Check = Callable[[Evidence], Iterator[Finding]]
 
 # In this order findings of one level are told: a cause stands before what follows from it.
 CHECKS: tuple[Check, ...] = (
-    treads,
-    course,
-    turning,
-    units,
-    poses,
     agreement,
     yaw_against_course,
+    turning,
+    course,
+    units,
+    treads,
     timing,
+    poses,
     gyroscope,
     attitude,
     stamps,
@@ -65,7 +66,7 @@ def check_recording(run: Run | str | Path) -> CheckReport:
     evidence = Evidence(run)
     with np.errstate(over="ignore", invalid="ignore"):
         found = [*refused, *(finding for check in CHECKS for finding in check(evidence))]
-    return CheckReport(run.folder, in_order(found), tuple(_skipped(evidence)))
+    return CheckReport(run.folder, in_order(without_consequences(found)), tuple(_skipped(evidence)))
 
 
 def _unreadable(error: RunFolderError) -> Finding:

@@ -26,6 +26,8 @@ class Relation:
         Windows in which everything was measured.
     residuals : (K,)
         NaN where not measured.
+    explained : float
+        Share of the squares of the target that the fit explains, outliers included.
     """
 
     coefficients: FloatArray
@@ -34,6 +36,7 @@ class Relation:
     kept: BoolArray
     measured: int
     residuals: FloatArray
+    explained: float
 
     @property
     def slope(self) -> float:
@@ -83,6 +86,7 @@ def relation(target: FloatArray, *columns: FloatArray) -> Relation | None:
         kept,
         int(measured.sum()),
         residuals,
+        1 - float(np.sum(residuals[measured] ** 2) / max(np.sum(target[measured] ** 2), 1e-300)),
     )
 
 

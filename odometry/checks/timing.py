@@ -9,7 +9,9 @@ from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.lag import Lag, Signal, lag_between
 
-LEAST_LAG_S = 0.13  # good lidar poses were found up to 0.11 s early after constant delays were removed
+LEAST_LAG_S = (
+    0.13  # good lidar poses were found up to 0.11 s early after constant delays were removed
+)
 CERTAIN = 4.0  # standard deviations
 MOST_LAG_S = 2.0
 CLOCK = 0.03  # relative difference of clocks that is searched for
@@ -67,9 +69,7 @@ def _lag(evidence: Evidence, late: Signal, early: Signal) -> Lag | None:
     return lag_between(late, early, start_s, end_s, width_s, min(wide_s, 20.0)) or found
 
 
-def _drifting(
-    evidence: Evidence, lags: dict[tuple[str, str], Lag]
-) -> dict[tuple[str, str], Lag]:
+def _drifting(evidence: Evidence, lags: dict[tuple[str, str], Lag]) -> dict[tuple[str, str], Lag]:
     """Pairs of different clocks whose lag grows; treads share theirs with what is in their file."""
     pairs = {pair: lag for pair, lag in lags.items() if _drifts(evidence, lag)}
     if evidence.gyroscope_file == "odometry.csv":
@@ -111,9 +111,7 @@ def _clocks(evidence: Evidence, drifting: dict[tuple[str, str], Lag]) -> Iterato
     )
 
 
-def _late(
-    lags: dict[tuple[str, str], Lag], late: dict[tuple[str, str], Lag]
-) -> Iterator[Finding]:
+def _late(lags: dict[tuple[str, str], Lag], late: dict[tuple[str, str], Lag]) -> Iterator[Finding]:
     by_gyroscope, by_treads = late.get(("pose", "gyroscope")), late.get(("pose", "treads"))
     wheels = late.get(("treads", "gyroscope"))
     if by_gyroscope and wheels and not by_treads and ("pose", "treads") in lags:
@@ -130,9 +128,7 @@ def _late(
 
 
 def _reversed(lag: Lag) -> Lag:
-    return Lag(
-        -lag.seconds, lag.sigma_s, -lag.drift, lag.drift_sigma, lag.correlation, lag.pieces
-    )
+    return Lag(-lag.seconds, lag.sigma_s, -lag.drift, lag.drift_sigma, lag.correlation, lag.pieces)
 
 
 def _file(sensor: str) -> str:

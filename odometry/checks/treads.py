@@ -15,7 +15,7 @@ from odometry.checks.spikes import spikes
 STUCK_S = 2.0
 COARSE = 0.1  # a step of the readings as a share of the ordinary fastest speed
 OTHER_MOVES = 0.05  # of the ordinary fastest speed, by which the other tread changes meanwhile
-CONTRADICTED = 3.0  # times the usual residual
+CONTRADICTED = 5.0  # times the usual residual
 LEAST_CHANGES = 30  # of a tread speed, and as a share of the rows: else it is a held command
 CHANGING = 0.02
 SATURATED = 0.05  # share of rows at the very largest value
@@ -47,7 +47,9 @@ def _absurd(evidence: Evidence) -> Iterator[Finding]:
             f"ordinary fastest; they move the odometer by {travel_m.sum():.3g} m",
             "Single corrupt samples (an outlier or spike: a counter that overflowed, a lost byte)",
             "Remove these rows: the speed before them holds meanwhile",
-            tuple((evidence.run_time_s(s), evidence.run_time_s(s)) for s in evidence.stamps_s[rows]),
+            tuple(
+                (evidence.run_time_s(s), evidence.run_time_s(s)) for s in evidence.stamps_s[rows]
+            ),
         )
 
 
@@ -90,7 +92,7 @@ def _contradicted(evidence: Evidence, span: FloatArray, side: int) -> bool:
         fit = relation(np.where(outside, target, np.nan), motion.left_m, motion.right_m)
         if fit is None or fit.correlation < 0.8:
             continue
-        usual = float(np.quantile(np.abs(fit.residuals[outside & np.isfinite(target)]), 0.9))
+        usual = float(np.median(np.abs(fit.residuals[outside & np.isfinite(target)])))
         size = float(np.quantile(np.abs(target[np.isfinite(target)]), 0.9))
         treads = np.stack([motion.left_m[inside], motion.right_m[inside]], axis=-1)
         here = target[inside] - treads @ fit.coefficients

@@ -10,7 +10,9 @@ from odometry.checks.finding import Finding, Level
 from odometry.checks.relation import Relation
 
 LEAST_TURN_RAD = 1.0  # summed turns below which nothing is said
-UNRELATED = 0.3  # correlation below which two sensors do not speak of the same turns
+UNRELATED = (
+    0.2  # share of the turns explained below which two sensors do not speak of the same turns
+)
 
 
 class Sense(Enum):
@@ -36,14 +38,12 @@ def sense(by_treads: Relation | None, by_difference: Relation | None, turned_rad
     """Read the signs of `turn = a left + b right`; uncertain ones are no evidence."""
     if by_treads is None or not turned_rad > LEAST_TURN_RAD:
         return Sense.UNKNOWN
-    if by_treads.correlation < UNRELATED:
+    if by_treads.explained < UNRELATED:
         return Sense.UNRELATED
     if by_treads.certain(0) and by_treads.certain(1):
         left, right = np.sign(by_treads.coefficients).astype(int)
         shares = np.abs(by_treads.coefficients)
-        alone = by_difference is None or (
-            by_treads.correlation**2 - by_difference.correlation**2 > CLEARLY
-        )
+        alone = by_difference is None or (by_treads.explained - by_difference.explained > CLEARLY)
         if shares.min() > 0.2 * shares.max() and (left != right or alone):
             return SIGNS[int(left), int(right)]
     if by_difference is not None and by_difference.certain() and by_difference.correlation > 0.5:

@@ -13,9 +13,10 @@ from odometry.checks.turning import Sense, gyroscope_sense, pose_sense
 # and turn as if 1.0 to 3.1 times as wide; on ice 0.24 to 0.4 times as far, on snow 10 times as wide.
 FORWARD = (0.55, 1.2)
 WIDTH = (0.9, 4.0)
-VERY_TIGHT = 0.97  # the same for turns alone, in which tracks and snow slip by a nearly constant share
+VERY_TIGHT = 0.85  # share of the turns explained from which a factor of turns alone may be a unit
 TIGHT = 0.9  # correlation from which a factor is a unit and no slip
 SLIDING = 0.6  # concentration of course less yaw below which the robot slides sideways
+EXTREME = 8.0  # a factor that no slip explains
 LEAST_WINDOWS = 15  # from which a factor without heading can be called constant
 PLAUSIBLE_M_S = 10.0  # no skid-steer robot is faster
 ORDINARY_FORWARD, ORDINARY_WIDTH = 0.93, 1.8
@@ -68,7 +69,7 @@ def units(evidence: Evidence) -> Iterator[Finding]:
         yield _gyroscope_unit(evidence, gyroscope_factor)
     if forward is not None and not FORWARD[0] <= forward <= FORWARD[1]:
         yield _along(evidence, forward, forward_tight, width)
-    elif width is not None and not WIDTH[0] <= width <= WIDTH[1]:
+    if width is not None and not WIDTH[0] <= width <= WIDTH[1]:
         yield _across(evidence, forward, width, turn_tight)
     elif evidence.fastest_m_s > PLAUSIBLE_M_S and forward is None:
         yield _too_fast(evidence)
@@ -106,7 +107,7 @@ def _width_factor(evidence: Evidence) -> tuple[float | None, bool, float | None]
 def _gyroscope_factor(evidence: Evidence) -> float | None:
     """By what the gyroscope is too large; None where it is in rad/s or nobody can say."""
     by_gyroscope = evidence.pose_turn_by_gyroscope
-    if by_gyroscope is not None and by_gyroscope.certain() and by_gyroscope.correlation > TIGHT:
+    if by_gyroscope is not None and by_gyroscope.certain() and by_gyroscope.explained > TIGHT:
         factor = 1 / abs(by_gyroscope.slope)
         return factor if not 0.7 < factor < 1.4 else None
     found, rate = evidence.gyroscope_by_difference, evidence.yaw_rate
@@ -143,12 +144,15 @@ def _along(evidence: Evidence, forward: float, tight: bool, width: float | None)
         tread_units(evidence.run.robot.wheel_radius), lambda unit: forward * unit.factor
     )
     position = _matching(POSITION_UNITS, lambda unit: forward / unit.factor)
-    tread_fits = tread is not None and (
-        width is None or 0.95 <= width / tread.factor <= WIDTH[1]
-    )
-    if tread is not None and tread_fits and (tight or tread.factor > 20):
+    tread_fits = tread is not None and (width is None or 0.95 <= width / tread.factor <= WIDTH[1])
+    extreme = not 1 / EXTREME < forward < EXTREME
+    if tread is not None and tread_fits and (tight or extreme):
         return _tread_unit(seen, tread, evidence)
-    if position is not None and (width is None or WIDTH[0] <= width <= WIDTH[1]):
+    if (
+        position is not None
+        and (tight or extreme)
+        and (width is None or WIDTH[0] <= width <= WIDTH[1])
+    ):
         return Finding(
             "position_unit",
             Level.WARNING,
@@ -175,9 +179,7 @@ def _along(evidence: Evidence, forward: float, tight: bool, width: float | None)
     )
 
 
-def _across(
-    evidence: Evidence, forward: float | None, width: float, tight: bool
-) -> Finding:
+def _across(evidence: Evidence, forward: float | None, width: float, tight: bool) -> Finding:
     """The robot turns as if of another width, while nothing speaks against the way along."""
     track = evidence.run.robot.track_width
     seen = (
@@ -188,10 +190,11 @@ def _across(
     if forward is None and evidence.fastest_m_s > PLAUSIBLE_M_S:
         return _too_fast(evidence)
     tread = _matching(
-        tread_units(evidence.run.robot.wheel_radius), lambda unit: ORDINARY_WIDTH * unit.factor / width
+        tread_units(evidence.run.robot.wheel_radius),
+        lambda unit: ORDINARY_WIDTH * unit.factor / width,
     )
     body_fits = body is not None and 0.5 * body <= track <= 1.1 * body
-    very_tight = _turn_correlation(evidence) > VERY_TIGHT
+    very_tight = _turns_explained(evidence) > VERY_TIGHT
     if forward is None and very_tight and width > WIDTH[1] and tread is not None and body_fits:
         return _tread_unit(
             f"{seen}; there are no positions to say more", tread, evidence, sure=False
@@ -216,10 +219,10 @@ def _across(
     )
 
 
-def _turn_correlation(evidence: Evidence) -> float:
-    """Of the gyroscope's turns with the difference of the treads."""
+def _turns_explained(evidence: Evidence) -> float:
+    """Share of the turns that the difference of the treads explains."""
     found = evidence.gyroscope_by_difference or evidence.pose_turn_by_difference
-    return found.correlation if found is not None else 0.0
+    return found.explained if found is not None else 0.0
 
 
 def _too_fast(evidence: Evidence) -> Finding:

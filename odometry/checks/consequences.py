@@ -1,0 +1,43 @@
+"""Findings that follow from another one, and are not told beside it."""
+
+from collections.abc import Sequence
+
+from odometry.checks.finding import Finding
+
+POSES = frozenset({"pose_late", "pose_jumps", "clocks_apart", "slip", "scale", "position_unit"})
+YAW = frozenset({"yaw_backwards", "yaw_off_by_90", "yaw_offset", "yaw_unrelated"})
+TREADS = frozenset({"slip", "slip_in_turns", "scale", "tread_unit", "position_unit", "track_width"})
+
+# Cause: what follows from it.
+CONSEQUENCES: dict[str, frozenset[str]] = {
+    "treads_still": TREADS | POSES,
+    "treads_unrelated": TREADS | YAW | {"pose_late", "treads_late", "clocks_apart"},
+    "poses_unrelated": (POSES - {"clocks_apart"})
+    | YAW
+    | {"position_unit", "pose_mirrored", "positions_mirrored"},
+    "yaw_unrelated": YAW | {"pose_late", "poses_unrelated"},
+    "gyroscope_unrelated": frozenset({"gyroscope_unit", "gyroscope_bias", "treads_late"}),
+    "tread_left_reversed": TREADS | YAW | POSES | {"treads_both_reversed"},
+    "tread_right_reversed": TREADS | YAW | POSES | {"treads_both_reversed"},
+    "treads_both_reversed": YAW,
+    "clocks_apart": frozenset(
+        {"gyroscope_unit", "pose_late", "treads_late", "pose_jumps", "poses_unrelated"}
+    ),
+    "stuck_encoder": frozenset(
+        {"slip", "slip_in_turns", "scale", "pose_jumps", "treads_unrelated", "gyroscope_unrelated"}
+    ),
+    "gyroscope_clipped": frozenset({"gyroscope_unit", "gyroscope_dead", "gyroscope_bias"}),
+    "gyroscope_dead": frozenset({"gyroscope_unit"}),
+    "tread_unit": frozenset({"track_width", "slip_in_turns", "slip"}),
+    "slip": frozenset({"pose_late", "treads_late"}),
+    "slip_in_turns": frozenset({"treads_late"}),
+    "frozen_poses": frozenset({"pose_jumps", "pose_late"}),
+    "coarse_speeds": frozenset({"stuck_encoder"}),
+}
+
+
+def without_consequences(findings: Sequence[Finding]) -> list[Finding]:
+    """The findings of which none explains another."""
+    names = {finding.name for finding in findings}
+    told = {follows for name in names for follows in CONSEQUENCES.get(name, ())}
+    return [finding for finding in findings if finding.name not in told]
