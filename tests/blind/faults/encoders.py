@@ -8,8 +8,8 @@ import numpy as np
 from tests.blind.faults.fault import (
     Fault,
     UnsuitableError,
+    about,
     distance,
-    either,
     pick_stretch,
 )
 
@@ -133,9 +133,9 @@ def leave_cells_empty(recording, rng):
 # fmt: off
 FAULTS = (
     Fault("tread_left_stuck", "warning", "The left encoder is stuck for a part of the run.",
-          either(["left"], STUCK), partial(stick, "v_left"), GOOD, named=True),
+          about(["left"], STUCK), partial(stick, "v_left"), GOOD, named=True),
     Fault("tread_right_stuck", "warning", "The right encoder is stuck for a part of the run.",
-          either(["right"], STUCK), partial(stick, "v_right"), GOOD, named=True),
+          about(["right"], STUCK), partial(stick, "v_right"), GOOD, named=True),
     Fault("tread_absurd_sample", "warning", "A single sample no robot can drive.",
           ("single", "spike", "sample", "outlier", "glitch", "absurd", "corrupt", "one row",
            "transmission"), put_absurd, named=True),
@@ -147,8 +147,8 @@ FAULTS = (
           ("smooth", "filter", "lag", "late", "delay", "low-pass"), smooth, GOOD,
           ("treads_late",)),
     Fault("treads_late", "warning", "The tread speeds are late.",
-          either(["tread", "wheel", "odometry", "encoder"], ["late", "delay", "lag", "behind",
-          "latency", "offset"]), delay, GOOD),
+          about(("tread", "wheel", "odometry", "encoder"), ("late", "delay", "lag", "behind",
+          "latenc", "clock", r"time\b", "stamp")), delay, GOOD),
     Fault("treads_drop_out", "warning", "Lost messages read as zero speed.",
           ("drop", "lost", "zero", "intermit", "missing"), drop_out, GOOD),
     Fault("treads_zero_while_moving", "warning", "The robot moves while the wheels read zero.",

@@ -24,8 +24,9 @@ class Fault:
     truth : str
         The cause, in one sentence.
     words : tuple of str
-        Alternatives. An alternative is right when each of its words begins a word of the cause
-        (a word is a regular expression; capitals do not matter).
+        Alternatives. An alternative is right when each of its words begins a word of the cause,
+        or of what was seen where the word is marked by @ (a word is a regular expression;
+        capitals do not matter).
     draw : callable
         Recording and Generator to the faulty Recording.
     needs : frozenset of str
@@ -34,6 +35,8 @@ class Fault:
         Faults that nothing in the files can tell from this one.
     named : bool
         The issue names it.
+    harmless : bool
+        A warning would be wrong: the check repairs it.
     """
 
     key: str
@@ -44,6 +47,7 @@ class Fault:
     needs: frozenset[str] = frozenset()
     equal: tuple[str, ...] = ()
     named: bool = False
+    harmless: bool = False
 
 
 def either(*groups):
@@ -51,12 +55,19 @@ def either(*groups):
     return tuple(" ".join(words) for words in product(*groups))
 
 
-def says(text, words):
-    """Whether a text has all the words of at least one alternative."""
-    return any(
-        all(re.search(rf"(?<![a-z0-9]){word}", text.lower()) for word in alternative.split())
-        for alternative in words
-    )
+def about(subjects, words):
+    """Alternatives of one word, of a cause about one of the subjects."""
+    return either([f"@{subject}" for subject in subjects], words)
+
+
+def says(seen, cause, words):
+    """Whether a cause has all the words of at least one alternative."""
+
+    def has(word):
+        text = f"{seen} {cause}" if word.startswith("@") else cause
+        return re.search(rf"(?<![a-z0-9]){word.removeprefix('@')}", text.lower())
+
+    return any(all(has(word) for word in alternative.split()) for alternative in words)
 
 
 def pick_stretch(rng, stamps_s, shares, starts, suits):
@@ -77,6 +88,11 @@ def held(stamps_s, known_s, values):
     """Values at the last stamp known before each stamp."""
     rows = np.searchsorted(known_s, stamps_s, side="right") - 1
     return values[np.clip(rows, 0, len(known_s) - 1)]
+
+
+def integral(stamps_s, values):
+    """Integral up to each stamp of values that hold until the next."""
+    return np.r_[0.0, np.cumsum(values[:-1] * np.diff(stamps_s))]
 
 
 def distance(table, mask):

@@ -4,11 +4,12 @@ import math
 
 import numpy as np
 
-from tests.blind.faults.fault import Fault, UnsuitableError, either, pick_stretch
+from tests.blind.faults.fault import Fault, UnsuitableError, about, pick_stretch
 
 GOOD = frozenset({"good pose", "gyro"})
 IMU = frozenset({"imu"})
 TILT = frozenset({"tilt"})
+GYRO = ("gyro", "imu", "inertial")
 SIGN = ("sign", "revers", "clockwise", "upside", "invert", "opposite", "negat")
 
 
@@ -120,12 +121,12 @@ def imu_on_its_side(recording, rng):
 
 # fmt: off
 FAULTS = (
-    Fault("gyro_bias", "note", "The gyroscope has a bias.", ("bias", "offset"), add_bias, GOOD,
-          named=True),
+    Fault("gyro_bias", "note", "The gyroscope has a bias.", about(GYRO, ("bias", "offset")),
+          add_bias, GOOD, named=True, harmless=True),
     Fault("gyro_in_degrees", "warning", "The gyroscope is in degrees a second.",
           ("degree", "deg"), _times(180 / math.pi), GOOD, named=True),
-    Fault("gyro_reversed", "warning", "The gyroscope's z points down.", (*SIGN, "down"),
-          _times(-1.0), GOOD, named=True),
+    Fault("gyro_reversed", "warning", "The gyroscope's z points down.",
+          about(GYRO, (*SIGN, "down")), _times(-1.0), GOOD, named=True),
     Fault("gyro_of_another_range", "warning", "The gyroscope's scale is 2 or 4 times off.",
           ("scale", "range", "gain", "sensitiv", "factor", "unit"), other_range, GOOD),
     Fault("gyro_of_another_axis", "warning", "gyro_z is a horizontal axis.",
@@ -134,26 +135,27 @@ FAULTS = (
     Fault("gyro_clipped", "warning", "The gyroscope is clipped at its range.",
           ("clip", "satur", "range", "limit", "cut"), clip, GOOD),
     Fault("gyro_frozen", "warning", "The gyroscope holds one value for a part of the run.",
-          ("frozen", "froze", "stuck", "hold", "held", "constant", "stop", "hang"), freeze, GOOD),
+          about(GYRO, ("frozen", "froze", "stuck", "hold", "held", "constant", "stop", "hang")),
+          freeze, GOOD),
     Fault("gyro_always_zero", "warning", "The gyroscope was never read.",
-          ("zero", "never", "not connect", "constant", "dead", "not measured", "placeholder",
-           "frozen", "stuck"), _times(0.0), GOOD),
+          about(GYRO, ("zero", "never", "not connect", "constant", "dead", "not measured",
+          "placeholder", "frozen", "stuck")), _times(0.0), GOOD),
     Fault("gyro_on_another_clock", "warning", "The gyroscope is late or early.",
-          either(["gyro", "imu"], ["late", "early", "delay", "lag", "behind", "ahead", "offset",
-          "clock", "latency"]), delay, GOOD),
+          about(GYRO, ("late", "early", "delay", "lag", "behind", "ahead", "clock", "latenc",
+          r"time\b", "stamp")), delay, GOOD),
     Fault("gyro_spike", "warning", "One sample of the gyroscope is absurd.",
-          ("spike", "single", "sample", "outlier", "glitch", "absurd", "corrupt", "one row",
-           "transmission"), put_spike, frozenset({"gyro"})),
+          about(GYRO, ("spike", "single", "sample", "outlier", "glitch", "absurd", "corrupt",
+          "one row", "transmission")), put_spike, frozenset({"gyro"})),
     Fault("pitch_reversed", "warning", "Pitch is positive nose up.",
-          either(["pitch"], [*SIGN, "nose"]), negate_pitch, TILT, named=True),
+          about(["pitch"], (*SIGN, "nose")), negate_pitch, TILT, named=True),
     Fault("roll_reversed", "warning", "Roll is positive left side down.",
-          either(["roll"], [*SIGN, "side"]), negate_roll, TILT, named=True),
+          about(["roll"], (*SIGN, "side")), negate_roll, TILT, named=True),
     Fault("roll_pitch_swapped", "warning", "Roll and pitch are exchanged.",
           ("swap", "exchang", "interchang", "axes", "mixed"), swap_roll_pitch, TILT),
     Fault("attitude_in_degrees", "warning", "Roll and pitch are in degrees.", ("degree", "deg"),
           attitude_in_degrees, frozenset({"attitude"})),
     Fault("imu_gyro_in_degrees", "warning", "imu.csv has degrees a second.", ("degree", "deg"),
-          imu_gyro_in_degrees, IMU),
+          imu_gyro_in_degrees, frozenset({"imu and turns"})),
     Fault("imu_accelerations_in_g", "warning", "Accelerations are in g.",
           (r"g\b", "gravit", "unit", "9.8"), accelerations_in_g, IMU),
     Fault("imu_upside_down", "warning", "The IMU hangs upside down.",

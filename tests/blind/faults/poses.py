@@ -1,13 +1,13 @@
-"""Faults of poses all along the run: units, axes and frames."""
+"""Faults of poses all along the run: units, direction of yaw, place on the robot."""
 
 import math
 
 import numpy as np
 
-from tests.blind.faults.fault import Fault, UnsuitableError
+from tests.blind.faults.fault import Fault, UnsuitableError, about
 
 GOOD = frozenset({"good pose", "gyro"})
-EARTH_M = 6_371_000.0
+YAW = ("yaw", "heading", "pose", "orientation", "world")
 TURN = ("revers", "sign", "clockwise", "compass", "bearing", "north", "opposite", "negat", "ned")
 OFFSET = ("offset", "rotat", "mount", "misalign", "turned", "off by", "frame", "axis", "axes")
 
@@ -38,26 +38,12 @@ def yaw_off(recording, rng):
     return posed(recording, yaw=recording["pose"]["yaw"] + rng.choice([-1, 1]) * offset)
 
 
-def north_east_down(recording, rng):  # noqa: ARG001
-    pose = recording["pose"]
-    down = {"z": -pose["z"]} if "z" in pose else {}
-    return posed(recording, x=pose["y"], y=pose["x"], yaw=math.pi / 2 - pose["yaw"], **down)
-
-
-def mirrored(recording, rng):  # noqa: ARG001
-    return posed(recording, y=-recording["pose"]["y"], yaw=-recording["pose"]["yaw"])
-
-
 def compass(recording, rng):  # noqa: ARG001
     return posed(recording, yaw=(math.pi / 2 - recording["pose"]["yaw"]) % (2 * math.pi))
 
 
 def compass_degrees(recording, rng):  # noqa: ARG001
     return posed(recording, yaw=(90 - np.rad2deg(recording["pose"]["yaw"])) % 360)
-
-
-def swap_x_y(recording, rng):  # noqa: ARG001
-    return posed(recording, x=recording["pose"]["y"], y=recording["pose"]["x"])
 
 
 def _scaled(factor):
@@ -71,58 +57,6 @@ def _scaled(factor):
 def free_scale(recording, rng):
     """One camera's SLAM: a scale of its own, 3 to 8 times off either way."""
     return _scaled(rng.uniform(3, 8) ** rng.choice([-1, 1]))(recording, rng)
-
-
-def on_earth(recording, rng):
-    """Latitude and longitude [rad] of the poses, and height [m]."""
-    latitude, longitude = rng.uniform(0.5, 1.1), rng.uniform(-2.0, 2.5)
-    north, east = recording["pose"]["y"] / EARTH_M, recording["pose"]["x"] / EARTH_M
-    return latitude + north, longitude + east / math.cos(latitude)
-
-
-def latitude_longitude(recording, rng):
-    latitude, longitude = np.rad2deg(on_earth(recording, rng))
-    if rng.random() < 0.5:
-        return posed(recording, x=latitude, y=longitude)
-    return posed(recording, x=longitude, y=latitude)
-
-
-def earth_centred(recording, rng):
-    latitude, longitude = on_earth(recording, rng)
-    return posed(
-        recording,
-        x=EARTH_M * np.cos(latitude) * np.cos(longitude),
-        y=EARTH_M * np.cos(latitude) * np.sin(longitude),
-        z=EARTH_M * np.sin(latitude),
-    )
-
-
-def utm(recording, rng):
-    pose = recording["pose"]
-    east, north = rng.uniform(2e5, 8e5), rng.uniform(4e6, 7e6)
-    return posed(recording, x=pose["x"] + east, y=pose["y"] + north)
-
-
-def utm_with_local_yaw(recording, rng):
-    """UTM positions; the yaw still counts from where the robot started."""
-    pose, turn = recording["pose"], rng.choice([-1, 1]) * rng.uniform(0.4, 2.7)
-    x, y = pose["x"], pose["y"]
-    turned = posed(
-        recording,
-        x=x * math.cos(turn) - y * math.sin(turn),
-        y=x * math.sin(turn) + y * math.cos(turn),
-    )
-    return utm(turned, rng)
-
-
-def utm_in_single_precision(recording, rng):
-    result = utm(recording, rng)
-    pose = result["pose"]
-    return posed(
-        result,
-        x=pose["x"].astype(np.float32).astype(float),
-        y=pose["y"].astype(np.float32).astype(float),
-    )
 
 
 def at_the_sensor(recording, rng):
@@ -160,24 +94,19 @@ METRES = ("unit", "scale")
 FAULTS = (
     Fault("pose_yaw_in_degrees", "warning", "Yaw is in degrees.", ("degree", "deg"),
           yaw_in_degrees, GOOD, named=True),
-    Fault("pose_yaw_reversed", "warning", "Yaw counts clockwise.", TURN, yaw_reversed, GOOD,
-          named=True),
+    Fault("pose_yaw_reversed", "warning", "Yaw counts clockwise.", about(YAW, TURN),
+          yaw_reversed, GOOD, named=True),
     Fault("pose_yaw_off_90", "warning", "Yaw is 90 degrees off the robot's x.",
           ("90", "quarter", "right angle"), yaw_off_90, GOOD, named=True),
     Fault("pose_yaw_off_180", "warning", "Yaw points to the rear.",
           ("180", "rear", "backward", "half turn", "opposite"), yaw_off_180, GOOD,
           ("front_is_rear",)),
-    Fault("pose_yaw_off", "warning", "Yaw has an offset of its own.", OFFSET, yaw_off, GOOD),
-    Fault("pose_ned", "warning", "North-east-down axes.", ("ned", "north", "mirror", "left-handed",
-          "down"), north_east_down, GOOD, ("pose_mirrored",), named=True),
-    Fault("pose_mirrored", "warning", "Left and right of the world are mirrored.",
-          ("mirror", "left-handed", "ned", "down"), mirrored, GOOD),
+    Fault("pose_yaw_off", "warning", "Yaw has an offset of its own.", about(YAW, OFFSET),
+          yaw_off, GOOD),
     Fault("pose_yaw_is_compass", "warning", "Yaw is a compass bearing, clockwise from north.",
-          TURN, compass, GOOD),
+          about(YAW, TURN), compass, GOOD),
     Fault("pose_yaw_is_compass_degrees", "warning", "Yaw is a compass bearing in degrees.",
           ("compass", "bearing", "degree"), compass_degrees, GOOD),
-    Fault("pose_x_y_swapped", "warning", "x and y are exchanged, yaw is not.",
-          ("swap", "exchang", "interchang", "mirror", "x y", "left-handed"), swap_x_y, GOOD),
     Fault("pose_in_mm", "warning", "Positions in millimetres.", ("mm", "millimet"),
           _scaled(1000.0), GOOD, named=True),
     Fault("pose_in_cm", "warning", "Positions in centimetres.", ("cm", "centimet"),
@@ -188,27 +117,15 @@ FAULTS = (
           _scaled(0.001), GOOD),
     Fault("pose_scale_free", "warning", "Positions have a scale of their own.", METRES, free_scale,
           GOOD, ("pose_in_feet", "treads_in_rad_s", "treads_in_km_h")),
-    Fault("pose_in_latitude_longitude", "warning", "Positions are latitude and longitude.",
-          ("lat", "lon", "degree", "geograph"), latitude_longitude, GOOD, named=True),
-    Fault("pose_earth_centred", "warning", "Positions count from the centre of the Earth.",
-          ("ecef", "earth", "geocentric"), earth_centred, GOOD),
-    Fault("pose_utm_against_local_truth", "warning", "Poses in UTM, truth in a local frame.",
-          ("utm", "frame", "origin", "truth", "local", "map"), utm, frozenset({"truth"}),
-          named=True),
-    Fault("pose_utm_with_local_yaw", "warning", "UTM positions with the yaw of a local frame.",
-          OFFSET, utm_with_local_yaw, GOOD, ("pose_yaw_off", "pose_yaw_off_90")),
-    Fault("pose_in_single_precision", "warning", "UTM positions kept in 32 bits: 0.03 to 0.5 m.",
-          ("single", "32", "float", "precision", "resolution", "quanti", "round", "step", "digit"),
-          utm_in_single_precision, GOOD),
     Fault("pose_at_a_far_sensor", "warning", "Poses are of a sensor far from the centre.",
-          ("lever", "antenna", "sensor", "mount", "offset", "centre", "arm"), at_the_sensor,
+          ("lever", "antenna", "sensor", "mount", "centre", "arm"), at_the_sensor,
           GOOD),
     Fault("pose_yaw_is_quaternion_z", "warning", "Yaw holds the z of the quaternion.",
           ("quaternion",), quaternion_z, GOOD),
     Fault("pose_yaw_is_course", "warning", "Yaw is the direction of travel.",
           ("course", "direction of travel", "travel", "track", "ground track"), course, GOOD),
     Fault("pose_yaw_constant", "warning", "Yaw was never measured.",
-          ("constant", "never", "not measured", "empty", "fixed", "default", "zero", "placeholder",
-           "frozen"), constant_yaw, GOOD),
+          about(YAW[:4], ("constant", "never", "not measured", "empty", "fixed", "default", "zero",
+          "placeholder", "frozen")), constant_yaw, GOOD),
 )
 # fmt: on

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-from tests.blind.faults.fault import Fault, either
+from tests.blind.faults.fault import Fault, about
 
 GOOD = frozenset({"good pose", "gyro"})
 TRACK = ("track_width", "track width", "width")
@@ -65,7 +65,7 @@ def misspell(recording, rng):
 # fmt: off
 FAULTS = (
     Fault("track_width_ten_times", "warning", "track_width is ten times too large or too small.",
-          either(TRACK, ["ten", "10", "decimal", "point", "cm", "unit", "times"]), ten_times, GOOD,
+          about(TRACK, ["ten", "10", "decimal", "point", "cm", "unit", "times"]), ten_times, GOOD,
           named=True),
     Fault("track_width_in_mm", "warning", "track_width is in millimetres.", ("mm", "millimet"),
           in_mm, named=True),

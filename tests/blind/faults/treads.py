@@ -4,7 +4,9 @@ import math
 
 import numpy as np
 
-from tests.blind.faults.fault import Fault, UnsuitableError, either
+from tests.blind.faults.bases import other_segments
+from tests.blind.faults.fault import Fault, UnsuitableError, about
+from tests.blind.faults.recordings import read_table
 
 GOOD = frozenset({"good pose", "gyro"})
 RADIUS = GOOD | {"radius"}
@@ -114,8 +116,12 @@ def never_turn(recording, rng):  # noqa: ARG001
 
 
 def of_another_run(recording, rng):
-    """Odometry reversed in time: what another drive of the same robot would look like."""
+    """Odometry of another drive: of the same recording's next segments, or this backwards."""
     table = recording["odometry"]
+    others = other_segments(recording)
+    if others:
+        table = read_table(others[rng.integers(len(others))] / "odometry.csv")
+        return recording.with_table("odometry", table)
     if len(table["t"]) < 400:
         raise UnsuitableError
     roll = int(len(table["t"]) * rng.uniform(0.3, 0.7))
@@ -158,13 +164,14 @@ FAULTS = (
     Fault("treads_swapped", "warning", "Left and right are exchanged.", SWAP, swap, GOOD,
           named=True),
     Fault("turn_reversed_without_pose", "warning", "Treads exchanged; no pose to judge the gyro.",
-          (*SWAP, *SIGN), swap, frozenset({"turn by gyro only"})),
+          (*SWAP, *SIGN), swap, frozenset({"turns by gyro only"})),
     Fault("treads_both_negative", "warning", "Both treads have the wrong sign.",
-          SIGN, _times(-1.0), GOOD, named=True),
+          about(("tread", "wheel", "encoder", "both", "motor"), SIGN), _times(-1.0), GOOD,
+          named=True),
     Fault("tread_left_negative", "warning", "The left tread has the wrong sign.",
-          either(["left"], SIGN), negate_left, GOOD, named=True),
+          about(["left"], SIGN), negate_left, GOOD, named=True),
     Fault("tread_right_negative", "warning", "The right tread has the wrong sign.",
-          either(["right"], SIGN), negate_right, GOOD, named=True),
+          about(["right"], SIGN), negate_right, GOOD, named=True),
     Fault("front_is_rear", "warning", "The drive takes the rear for the front.",
           ("front", "rear", "180", *SIGN), swap_and_negate, GOOD, ("pose_yaw_off_180",)),
     Fault("treads_are_twist", "warning", "The columns hold forward speed and yaw rate.",
