@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-from tests.blind.faults.fault import Fault, about
+from tests.blind.faults.fault import Fault, about, integral
 
 GOOD = frozenset({"good pose", "gyro"})
 TRACK = ("track_width", "track width", "width")
@@ -27,9 +27,16 @@ def in_mm(recording, rng):  # noqa: ARG001
 
 
 def far(recording, rng):
-    """0.25 to 0.4 or 3 to 5 times: skid steering widens by 1.4 to 2, never so much."""
-    factor = rng.uniform(0.25, 0.4) if rng.random() < 0.5 else rng.uniform(3.0, 5.0)
-    return with_width(recording, recording.robot["track_width"] * factor)
+    """So that the turns imply 3.5 to 7, or 0.2 to 0.6, of it: skid steering widens by 1 to 2.6."""
+    table = recording["odometry"]
+    grid = np.arange(table["t"][0], table["t"][-1], 1.0)
+    difference, turned = (
+        np.diff(np.interp(grid, table["t"], integral(table["t"], values)))
+        for values in (table["v_right"] - table["v_left"], table["gyro_z"])
+    )
+    implied_m = difference @ difference / (difference @ turned)
+    ratio = rng.uniform(3.5, 7.0) if rng.random() < 0.5 else rng.uniform(0.2, 0.6)
+    return with_width(recording, round(implied_m / ratio, 4))
 
 
 def negative(recording, rng):

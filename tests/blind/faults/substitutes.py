@@ -51,7 +51,8 @@ def of_another_run(recording, rng):
     roll = int(len(pose["t"]) * rng.uniform(0.3, 0.7))
     names = [name for name in pose if name not in ("t", "window")]
     t = pose["t"]
-    other = {name: np.interp(t[0] + t[-1] - t, t, pose[name]) for name in names}
+    whole = pose | {"yaw": np.unwrap(pose["yaw"])}
+    other = {name: np.interp(t[0] + t[-1] - t, t, whole[name]) for name in names}
     after = np.arange(len(t)) >= roll
     return posed(
         recording,
@@ -64,8 +65,9 @@ def interpolate(recording, rng):
     pose = recording["pose"]
     fixes = np.unique(np.r_[0 : len(pose["t"]) : rng.integers(10, 21), len(pose["t"]) - 1])
     names = [name for name in pose if name not in ("t", "window")]
+    whole = pose | {"yaw": np.unwrap(pose["yaw"])}
     return posed(
-        recording, **{n: np.interp(pose["t"], pose["t"][fixes], pose[n][fixes]) for n in names}
+        recording, **{n: np.interp(pose["t"], pose["t"][fixes], whole[n][fixes]) for n in names}
     )
 
 
@@ -109,7 +111,7 @@ FAULTS = (
           repeat_updates, GOOD),
     Fault("poses_interpolated", "note", "Straight lines join poses of 0.5 to 1 Hz.",
           ("interpol", "straight line", "resampl", "between fixes", "linear"), interpolate, GOOD),
-    Fault("pose_noisy", "warning", "Positions have a noise of 0.5 to 2 m.",
+    Fault("pose_noisy", "note", "Positions have a noise of 0.5 to 2 m.",
           ("nois", "scatter", "outlier", "gnss", "gps", "jitter", "uncertain", "correction"),
           smear, GOOD),
     Fault("pose_is_wheel_odometry", "warning", "Poses are the robot's own wheel odometry.",

@@ -1,6 +1,7 @@
 """Faults by their figures, read again with another reader."""
 
 import math
+import tomllib
 
 import numpy as np
 import pytest
@@ -169,3 +170,12 @@ def test_rows_that_are_lost_leave_the_rest(case):
     gap = np.diff(faulty["t"]).max()
     assert 3.0 <= gap <= 20.2
     assert np.sum(np.diff(faulty["t"]) > 1) == 1
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_far_track_width_is_beyond_what_skidding_explains(bases, tmp_path, seed):
+    """Both Warthogs turn as if 1.68 to 1.75 times as wide as their 1.08 m."""
+    make_case(FAULTS["track_width_far"], bases[:2], seed, tmp_path / "run")
+    width_m = tomllib.loads((tmp_path / "run" / "run.toml").read_text())["robot"]["track_width"]
+    ratio = 1.08 * 1.7 / width_m
+    assert 0.19 < ratio < 0.62 or 3.4 < ratio < 7.3
