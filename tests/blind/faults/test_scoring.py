@@ -2,9 +2,8 @@
 
 import pytest
 
-from tests.blind.faults import scoring
 from tests.blind.faults.bases import Base
-from tests.studies.wilson import interval
+from tests.studies import check_scoring as scoring
 
 RIGHT = ("yaw_unit", "warning", "yaw of +170", "Yaw is in degrees.")
 WRONG = ("late", "warning", "0.2 s", "The poses are late.")
@@ -71,5 +70,5 @@ def test_a_fault_without_a_place_is_told(tmp_path):
 
 def test_wilson_intervals():
     """Values of Newcombe 1998 (method 3): 81 of 263, and 0 of 20."""
-    assert interval(81, 263) == pytest.approx((0.2553, 0.3662), abs=5e-5)
-    assert interval(0, 20) == pytest.approx((0.0, 0.1611), abs=5e-5)
+    assert scoring.interval(81, 263) == pytest.approx((0.2553, 0.3662), abs=5e-5)
+    assert scoring.interval(0, 20) == pytest.approx((0.0, 0.1611), abs=5e-5)
