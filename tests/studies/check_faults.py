@@ -24,8 +24,7 @@ from pathlib import Path
 
 from tests.blind.faults.bases import real_bases, simulated_bases
 from tests.blind.faults.catalogue import FAULTS
-from tests.blind.faults.scoring import clean_tasks, judge, judge_clean
-from tests.studies.wilson import interval
+from tests.studies.check_scoring import clean_tasks, interval, judge, judge_clean
 
 
 def share(good, count):

@@ -1,7 +1,7 @@
 """Clean recordings in legal variants: none of them may raise a warning.
 
-Real recordings whose references are poor stand apart (`DOUBTFUL`): a warning there may be true,
-and is shown with what was seen, not counted as a false alarm.
+Other real recordings stand apart (`is_clean`): their references are poor, a warning there may be
+true, and is shown with what was seen, not counted as a false alarm.
 """
 
 from dataclasses import dataclass

@@ -95,6 +95,14 @@ def integral(stamps_s, values):
     return np.r_[0.0, np.cumsum(values[:-1] * np.diff(stamps_s))]
 
 
+def gyro_bias(recording):
+    """What the gyroscope of odometry.csv turns too much on average, by the poses [rad/s]."""
+    table, pose = recording["odometry"], recording["pose"]
+    turned = np.interp(pose["t"][[0, -1]], table["t"], integral(table["t"], table["gyro_z"]))
+    yaw = np.unwrap(pose["yaw"])[[0, -1]]
+    return float((np.diff(turned) - np.diff(yaw))[0] / np.ptp(pose["t"]))
+
+
 def distance(table, mask):
     """Wheel travel [m] of the rows of a mask, and its turning of treads (difference) [m]."""
     steps = np.diff(table["t"], append=table["t"][-1])[mask]

@@ -5,7 +5,7 @@ import math
 import cv2
 import numpy as np
 
-from tests.blind.faults.fault import held
+from tests.blind.faults.fault import gyro_bias, held
 
 
 def as_it_is(recording, rng):  # noqa: ARG001
@@ -55,6 +55,9 @@ def more_columns(recording, rng):
 def long_start(recording, rng):
     """One to four minutes at rest before the drive, with the noise of a robot at rest."""
     wait, result = rng.uniform(60, 240), recording
+    at_rest = {"v_left": 0.0, "v_right": 0.0}
+    if "gyro_z" in recording["odometry"]:
+        at_rest["gyro_z"] = gyro_bias(recording)
     for name, table in recording.tables.items():
         t, quiet = table["t"], {}
         step = np.median(np.diff(t))
@@ -65,7 +68,7 @@ def long_start(recording, rng):
             elif column == "window" or values.dtype == object:
                 quiet[column] = np.concatenate([np.repeat(values[:1], len(early)), values])
             else:
-                first = 0.0 if column in ("v_left", "v_right", "gyro_z") else values[0]
+                first = at_rest.get(column, values[0])
                 noise = 0.0 if column.startswith("v_") else 0.002
                 quiet[column] = np.r_[first + rng.normal(0, noise, len(early)), values]
         result = result.with_table(name, quiet)

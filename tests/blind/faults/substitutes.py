@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from tests.blind.faults.bases import other_segments
-from tests.blind.faults.fault import Fault, held, pick_stretch
+from tests.blind.faults.fault import Fault, gyro_bias, held, pick_stretch
 from tests.blind.faults.recordings import read_table
 from tests.blind.faults.references import posed, wheel_travel
 
@@ -100,7 +100,7 @@ def stick_in_place(recording, rng):
         },
     )
     stands = held(table["t"], pose["t"], mask.astype(float)) > 0
-    quiet = rng.normal(0, 0.005, len(table["t"]))
+    quiet = rng.normal(gyro_bias(recording), 0.005, len(table["t"]))
     return result.with_columns("odometry", gyro_z=np.where(stands, quiet, table["gyro_z"]))
 
 

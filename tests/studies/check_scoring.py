@@ -1,5 +1,6 @@
 """What the check says of faulty and of clean recordings, judged."""
 
+import math
 import signal
 import tempfile
 import traceback
@@ -128,3 +129,13 @@ def clean_tasks(bases, seeds):
             ):
                 for seed in range(1 if as_it_is else seeds):
                     yield variant, base, seed
+
+
+def interval(good, count, z=1.959964):
+    """Bounds of the 95 % interval of a share of `good` in `count` (Wilson 1927)."""
+    if count == 0:
+        return 0.0, 1.0
+    p, s = good / count, z * z / count
+    middle = (p + s / 2) / (1 + s)
+    half = math.sqrt(p * (1 - p) * s + s * s / 4) / (1 + s)
+    return max(0.0, middle - half), min(1.0, middle + half)
