@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.checks.heading import CONSISTENT, Heading, along_m, headings
+from odometry.checks.heading import CONSISTENT, Heading, across_m, along_m, headings
 from odometry.checks.motion import Integrals, Motion, integrals, motion_between
 from odometry.checks.pose_cleaning import pose_outliers
 from odometry.checks.relation import Relation, relation
@@ -105,7 +105,7 @@ class Evidence:
 
     @cached_property
     def _raw_motion(self) -> Motion:
-        return motion_between(self.run, self.integrals, self._poses_used)
+        return motion_between(self.run, self.integrals, self.poses_used)
 
     @cached_property
     def uniform(self) -> Motion:
@@ -113,12 +113,22 @@ class Evidence:
         return motion_between(self.run, self.integrals, None)
 
     @cached_property
-    def _poses_used(self) -> BoolArray | None:
+    def _new_poses(self) -> BoolArray:
+        """Rows (M,) of pose.csv that differ from the row before: the others repeat it."""
+        if self.run.pose is None:
+            return np.zeros(0, dtype=np.bool_)
+        values = self.run.pose.stack("x", "y", "yaw")
+        same = (np.diff(values, axis=0) == 0) | np.isnan(values[1:])
+        return np.concatenate([[True], ~same.all(axis=1)])
+
+    @cached_property
+    def poses_used(self) -> BoolArray | None:
         used = self.positions_measured
         if used is None or self.run.pose is None:
             return None
         if self.pose_outliers.mean() < MOST_OUTLIERS:
             used = used & ~self.pose_outliers
+        used = used & self._new_poses
         return used & np.isfinite(self.run.pose["yaw"]) if self.yaw_measured else used
 
     @cached_property
@@ -181,6 +191,13 @@ class Evidence:
         turn = motion.gyroscope_rad
         in_degrees = np.nanquantile(np.abs(self.yaw_rate[1]), 0.99) > DEGREES_RAD_S
         return np.asarray(np.radians(turn)) if in_degrees else turn
+
+    @cached_property
+    def sideways_m(self) -> FloatArray:
+        """Measured displacement (K,) to the left of the robot's axis, NaN where not known."""
+        if self.heading is None:
+            return np.full(len(self.motion), np.nan)
+        return across_m(self.motion, self.heading)
 
     @cached_property
     def forward_by_treads(self) -> Relation | None:

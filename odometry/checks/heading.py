@@ -81,9 +81,18 @@ def _far_and_straight(motion: Motion, turn_rad: FloatArray) -> BoolArray | None:
 
 def along_m(motion: Motion, heading: Heading) -> FloatArray:
     """Measured displacement (K,) along the axis of the robot that is nearest to its yaw."""
+    return np.asarray(motion.distance_m * np.cos(_off_axis(motion, heading)))
+
+
+def across_m(motion: Motion, heading: Heading) -> FloatArray:
+    """Measured displacement (K,) to the left of that axis."""
+    return np.asarray(motion.distance_m * np.sin(_off_axis(motion, heading)))
+
+
+def _off_axis(motion: Motion, heading: Heading) -> FloatArray:
     middle = _middle(READINGS[heading.reading](motion.yaw_rad))
     axis = (heading.offset_rad + np.pi / 2) % np.pi - np.pi / 2
-    return np.asarray(motion.distance_m * np.cos(motion.course_rad - middle - axis))
+    return np.asarray(motion.course_rad - middle - axis)
 
 
 def _middle(yaw: FloatArray) -> FloatArray:

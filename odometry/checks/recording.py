@@ -12,12 +12,16 @@ from odometry.checks.course import course
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import CheckReport, Finding, Level, in_order
 from odometry.checks.gyroscope import gyroscope
+from odometry.checks.pose_values import pose_values
 from odometry.checks.poses import poses
+from odometry.checks.settings import settings
+from odometry.checks.sides import sides
 from odometry.checks.stamps import stamps, unreadable_stamps
 from odometry.checks.timing import timing
 from odometry.checks.treads import treads
 from odometry.checks.turning import turning
 from odometry.checks.units import units
+from odometry.checks.unreadable import unreadable
 from odometry.errors import RunFolderError
 from odometry.run import Run
 
@@ -25,16 +29,19 @@ Check = Callable[[Evidence], Iterator[Finding]]
 
 # In this order findings of one level are told: a cause stands before what follows from it.
 CHECKS: tuple[Check, ...] = (
+    pose_values,
     agreement,
     yaw_against_course,
     turning,
     course,
     units,
+    sides,
     treads,
     timing,
     poses,
     gyroscope,
     attitude,
+    settings,
     stamps,
 )
 LEAST_ROWS = 10
@@ -57,7 +64,7 @@ def check_recording(run: Run | str | Path) -> CheckReport:
         try:
             run = Run.read(run)
         except RunFolderError as error:
-            return CheckReport(Path(str(run)), (_unreadable(error),))
+            return CheckReport(Path(str(run)), (unreadable(error),))
     refused = tuple(unreadable_stamps(run))
     if any(finding.level is Level.REFUSED for finding in refused):
         return CheckReport(run.folder, refused)
@@ -67,16 +74,6 @@ def check_recording(run: Run | str | Path) -> CheckReport:
     with np.errstate(over="ignore", invalid="ignore"):
         found = [*refused, *(finding for check in CHECKS for finding in check(evidence))]
     return CheckReport(run.folder, in_order(without_consequences(found)), tuple(_skipped(evidence)))
-
-
-def _unreadable(error: RunFolderError) -> Finding:
-    return Finding(
-        "unreadable",
-        Level.REFUSED,
-        str(error),
-        "A file of the run folder is not as the format says",
-        "Mend the file at the place that is named",
-    )
 
 
 def _skipped(evidence: Evidence) -> Iterator[str]:

@@ -43,9 +43,9 @@ def _headings(evidence: Evidence) -> dict[str, Signal]:
     if evidence.yaw_rate is not None:
         found["gyroscope"] = of.gyroscope_rad
     found["treads"] = lambda at_s: of.right_m(at_s) - of.left_m(at_s)
-    if evidence.yaw_measured and evidence.run.pose is not None:
+    if evidence.yaw_measured and evidence.run.pose is not None and evidence.poses_used is not None:
         yaw = evidence.run.pose["yaw"]
-        known = np.isfinite(yaw)
+        known = np.isfinite(yaw) & evidence.poses_used
         stamps_s = evidence.run.pose.stamps_s[known]
         heading = np.unwrap(np.radians(yaw[known]) if evidence.yaw_in_degrees else yaw[known])
         found["pose"] = lambda at_s: _between(at_s, stamps_s, heading)

@@ -38,7 +38,8 @@ def sense(by_treads: Relation | None, by_difference: Relation | None, turned_rad
     """Read the signs of `turn = a left + b right`; uncertain ones are no evidence."""
     if by_treads is None or not turned_rad > LEAST_TURN_RAD:
         return Sense.UNKNOWN
-    if by_treads.explained < UNRELATED:
+    kept = by_treads.kept.sum() / by_treads.measured
+    if by_treads.explained < UNRELATED and (by_treads.correlation < 0.5 or kept < 0.5):
         return Sense.UNRELATED
     if by_treads.certain(0) and by_treads.certain(1):
         left, right = np.sign(by_treads.coefficients).astype(int)

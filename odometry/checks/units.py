@@ -30,9 +30,10 @@ class Unit:
     factor: float
 
 
-def tread_units(wheel_radius_m: float | None) -> tuple[Unit, ...]:
+def tread_units(wheel_radius_m: float | None, period_s: float = 0.0) -> tuple[Unit, ...]:
     """Units in which tread speeds are logged; those of wheels need a radius."""
     linear = (
+        Unit("metres a row (increments of an odometer, not speeds)", period_s or 1e-9),
         Unit("mm/s", 1000.0),
         Unit("cm/s", 100.0),
         Unit("km/h", 3.6),
@@ -141,11 +142,15 @@ def _along(evidence: Evidence, forward: float, tight: bool, width: float | None)
     if width is not None:
         seen += f", and turns as if {width:.3g} track widths wide"
     tread = _matching(
-        tread_units(evidence.run.robot.wheel_radius), lambda unit: forward * unit.factor
+        tread_units(evidence.run.robot.wheel_radius, evidence.period_s),
+        lambda unit: forward * unit.factor,
     )
     position = _matching(POSITION_UNITS, lambda unit: forward / unit.factor)
     tread_fits = tread is not None and (width is None or 0.95 <= width / tread.factor <= WIDTH[1])
     extreme = not 1 / EXTREME < forward < EXTREME
+    if tread is None and forward * EXTREME < 1 and width is not None and width > EXTREME:
+        tread = Unit("encoder ticks or motor RPM (before the gearbox)", 1 / forward)
+        tread_fits = True
     if tread is not None and tread_fits and (tight or extreme):
         return _tread_unit(seen, tread, evidence)
     if (
@@ -190,7 +195,7 @@ def _across(evidence: Evidence, forward: float | None, width: float, tight: bool
     if forward is None and evidence.fastest_m_s > PLAUSIBLE_M_S:
         return _too_fast(evidence)
     tread = _matching(
-        tread_units(evidence.run.robot.wheel_radius),
+        tread_units(evidence.run.robot.wheel_radius, evidence.period_s),
         lambda unit: ORDINARY_WIDTH * unit.factor / width,
     )
     body_fits = body is not None and 0.5 * body <= track <= 1.1 * body
@@ -208,7 +213,7 @@ def _across(evidence: Evidence, forward: float | None, width: float, tight: bool
             "track_width: these cannot be distinguished here",
             "Judge by what the robot drove on; add poses to distinguish them",
         )
-    unit = " (mm?)" if width < 0.01 else ""
+    unit = " (mm?)" if width < 0.01 else _tenfold(width / ORDINARY_WIDTH)
     return Finding(
         "track_width",
         Level.WARNING,
@@ -217,6 +222,19 @@ def _across(evidence: Evidence, forward: float | None, width: float, tight: bool
         "widths wide",
         "Measure the distance between the middles of the left and the right treads, in metres",
     )
+
+
+def _tenfold(factor: float) -> str:
+    """Words for a factor near a power of ten."""
+    for power, words in (
+        (10.0, "ten times too small"),
+        (0.1, "ten times too large"),
+        (100.0, "in another unit"),
+        (0.01, "in cm"),
+    ):
+        if 0.5 < factor / power < 2:
+            return f", likely {words}"
+    return ""
 
 
 def _turns_explained(evidence: Evidence) -> float:

@@ -1,0 +1,184 @@
+"""What the numbers of pose.csv show by themselves: frames, rounding, filling, noise."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from odometry.arrays import FloatArray, IntArray
+from odometry.checks.evidence import Evidence
+from odometry.checks.finding import Finding, Level
+
+EARTH_M = (6.2e6, 6.5e6)  # distance from the centre of the earth
+MAP_M = 1e5  # coordinates above are of a map of the country (UTM)
+COARSE_M = 0.02
+INTERPOLATED = 0.5  # share of second differences that are nothing
+NOISY_M = 0.15
+SAME_RAD = 0.003  # yaw and course this near are one thing written twice
+COPIED = 0.9999  # share of the turn explained from which poses are computed from the treads
+
+
+def pose_values(evidence: Evidence) -> Iterator[Finding]:
+    """Map and earth frames, coarse, interpolated and noisy positions, a yaw that is no heading."""
+    pose, used = evidence.run.pose, evidence.poses_used
+    if pose is None or used is None or used.sum() < 20:
+        return
+    rows = np.flatnonzero(used)
+    positions, stamps_s = pose.stack("x", "y")[rows], pose.stamps_s[rows]
+    yield from _frame(evidence, positions)
+    yield from _coarse(positions)
+    yield from _interpolated(stamps_s, positions)
+    yield from _noisy(evidence, stamps_s, positions)
+    if evidence.yaw_measured:
+        yield from _yaw_constant(evidence, rows)
+        yield from _yaw_is_course(evidence, rows, positions)
+        yield from _wheel_odometry(evidence)
+
+
+def _frame(evidence: Evidence, positions: FloatArray) -> Iterator[Finding]:
+    pose, truth = evidence.run.pose, evidence.run.truth
+    middle = np.median(positions, axis=0)
+    far = float(np.hypot(*middle))
+    height = 0.0
+    if pose is not None and "z" in pose and np.isfinite(pose["z"]).any():
+        height = float(np.nanmedian(pose["z"]))
+    if EARTH_M[0] < float(np.hypot(far, height)) < EARTH_M[1] and (
+        abs(height) > 1e5 or np.abs(middle).min() > 1e6
+    ):
+        yield _finding(
+            "earth_centred",
+            f"positions lie {np.hypot(far, height):.4g} m from their origin",
+            "Positions are earth-centred (ECEF), not of a local plane",
+            "Convert to local metres east and north",
+        )
+    elif far > MAP_M:
+        level = Level.NOTE
+        more = ""
+        if truth is not None:
+            apart = float(np.hypot(*(middle - np.median(truth.stack("x", "y"), axis=0))))
+            if apart > 1e3:
+                level = Level.WARNING
+                more = f", {apart:.4g} m from truth.csv, which is in a local frame"
+        yield Finding(
+            "map_frame",
+            level,
+            f"positions lie around ({middle[0]:.6g}, {middle[1]:.6g}) m{more}",
+            "Positions are of a map (UTM or national grid), not local",
+            "Subtract the first position; mind that grid north is not true north",
+        )
+
+
+def _coarse(positions: FloatArray) -> Iterator[Finding]:
+    steps = [step for column in positions.T if (step := _grid(column)) is not None]
+    if steps and max(steps) > COARSE_M:
+        yield _finding(
+            "coarse_positions",
+            f"positions come in steps of {max(steps):.3g} m",
+            "Positions are rounded: single precision (float32) of large coordinates, or too few "
+            "digits in the log",
+            "Write positions in double precision, relative to the start",
+        )
+
+
+def _grid(values: FloatArray) -> float | None:
+    """The step of which all values are multiples, apart from a constant; None without one."""
+    changes = np.abs(np.diff(values))
+    changes = changes[changes > 1e-9 * max(1.0, float(np.abs(values).max()))]
+    if len(changes) < 20:
+        return None
+    step = float(changes.min())
+    counts = changes / step
+    whole = np.abs(counts - np.round(counts)) < 0.02
+    small = changes < 10 * step
+    return step if whole[small].mean() > 0.98 and small.mean() > 0.3 else None
+
+
+def _interpolated(stamps_s: FloatArray, positions: FloatArray) -> Iterator[Finding]:
+    velocity = np.diff(positions, axis=0) / np.diff(stamps_s)[:, None]
+    speed = np.hypot(*velocity.T)
+    moving = (speed[1:] > 0.1 * np.quantile(speed, 0.9)) & (speed[:-1] > 0)
+    if moving.sum() < 20:
+        return
+    change = np.hypot(*np.diff(velocity, axis=0).T)[moving]
+    share = float(np.mean(change < 1e-3 * speed[1:][moving]))
+    if share > INTERPOLATED:
+        yield Finding(
+            "interpolated_poses",
+            Level.NOTE,
+            f"{100 * share:.0f} % of the poses lie exactly on the line between their neighbours",
+            "Poses are interpolated (resampled) between fewer measured ones",
+            "Keep the measured ones: interpolated poses share their noise and look better than they are",
+        )
+
+
+def _noisy(evidence: Evidence, stamps_s: FloatArray, positions: FloatArray) -> Iterator[Finding]:
+    """Noise by second differences of neighbours, which smooth driving hardly has."""
+    second = positions[2:] - 2 * positions[1:-1] + positions[:-2]
+    sigma = 1.4826 * float(np.median(np.abs(second))) / np.sqrt(6.0)
+    step_m = evidence.fastest_m_s * float(np.median(np.diff(stamps_s)))
+    if sigma > NOISY_M and sigma > 0.3 * step_m:
+        yield Finding(
+            "noisy_positions",
+            Level.NOTE,
+            f"positions scatter by {sigma:.2f} m from one to the next",
+            "Positions are noisy (single-point GNSS)",
+            f"State it: --position-sigma {sigma:.2f}, and choose a longer horizon",
+        )
+
+
+def _yaw_constant(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
+    assert evidence.run.pose is not None  # noqa: S101 - the caller has looked
+    yaw = evidence.run.pose["yaw"][rows]
+    turned = float(np.nansum(np.abs(evidence.uniform.gyroscope_rad)))
+    if evidence.yaw_rate is None:
+        turned = float(np.sum(np.abs(evidence.uniform.difference_m))) / (
+            3 * evidence.run.robot.track_width
+        )
+    if np.ptp(yaw) < 1e-3 and turned > 2.0:
+        yield _finding(
+            "yaw_constant",
+            f"yaw of pose.csv stays {yaw[0]:.4g} while the robot turns by {turned:.1f} rad in all",
+            "Yaw was not measured: it is constant, a placeholder",
+            "Leave yaw empty: positions alone are used then",
+        )
+
+
+def _yaw_is_course(evidence: Evidence, rows: IntArray, positions: FloatArray) -> Iterator[Finding]:
+    """The direction from one position to the next, written as yaw: not where the robot points."""
+    assert evidence.run.pose is not None  # noqa: S101 - the caller has looked
+    yaw = evidence.run.pose["yaw"][rows]
+    steps = np.diff(positions, axis=0)
+    moving = np.hypot(*steps.T) > 0.3 * np.quantile(np.hypot(*steps.T), 0.9)
+    if moving.sum() < 20:
+        return
+    course = np.arctan2(steps[:, 1], steps[:, 0])[moving]
+    for at in (yaw[:-1][moving], yaw[1:][moving]):
+        off = np.abs(np.angle(np.exp(1j * (course - at))))
+        if float(np.quantile(off, 0.7)) < SAME_RAD and np.ptp(yaw) > 0.5:
+            yield _finding(
+                "yaw_is_course",
+                f"yaw of pose.csv is the direction between neighbouring positions to within "
+                f"{np.quantile(off, 0.7):.1g} rad",
+                "Yaw is the course over ground, computed from positions: not the heading (wrong "
+                "backwards, on the spot and where the robot slides)",
+                "Leave yaw empty: positions alone are used then",
+            )
+            return
+
+
+def _wheel_odometry(evidence: Evidence) -> Iterator[Finding]:
+    found = evidence.pose_turn_by_difference
+    if found is None or found.explained < COPIED:
+        return
+    factor = found.slope * evidence.run.robot.track_width
+    if abs(factor - 1) < 0.02:
+        yield _finding(
+            "poses_are_wheel_odometry",
+            f"turns of pose.csv are those of the treads over track_width to {factor:.4f} "
+            f"({100 * found.explained:.3f} % explained)",
+            "pose.csv is wheel odometry itself, computed from these treads: no independent reference",
+            "Use a measured reference (GNSS, SLAM, motion capture)",
+        )
+
+
+def _finding(name: str, seen: str, cause: str, remedy: str) -> Finding:
+    return Finding(name, Level.WARNING, seen, cause, remedy)

@@ -1,0 +1,120 @@
+"""Odd values of run.toml: sensors' places, names of terrain, and accelerations of the IMU."""
+
+from collections.abc import Iterator
+from difflib import SequenceMatcher
+
+import numpy as np
+
+from odometry.checks.evidence import Evidence
+from odometry.checks.finding import Finding, Level
+
+FARTHEST_M = 10.0  # a sensor on a robot is nearer
+ALIKE = 0.75  # of two names
+RARE = 0.2
+GRAVITY_M_S2 = 9.81
+
+
+def settings(evidence: Evidence) -> Iterator[Finding]:
+    """Places and attitudes of sensors, the axes of the IMU by gravity, names of terrain."""
+    yield from _sensors(evidence)
+    yield from _gravity(evidence)
+    yield from _terrain_names(evidence)
+
+
+def _sensors(evidence: Evidence) -> Iterator[Finding]:
+    sensors = evidence.run.settings.get("sensors", {})
+    pose, imu = _numbers(sensors, "pose"), _numbers(sensors, "imu")
+    if pose is not None and np.abs(pose).max() > FARTHEST_M:
+        yield Finding(
+            "sensor_place",
+            Level.WARNING,
+            f"[sensors] pose = {pose.tolist()} m",
+            "The place of the sensor is in mm or cm, not metres",
+            "Write it in metres, in the robot frame",
+        )
+    if imu is not None and np.abs(imu).max() > 2 * np.pi:
+        yield Finding(
+            "sensor_attitude",
+            Level.WARNING,
+            f"[sensors] imu = {imu.tolist()} rad",
+            "The attitude of the sensor is in degrees",
+            "Write roll, pitch and yaw in radians",
+        )
+
+
+def _numbers(table: object, name: str) -> np.ndarray | None:
+    values = table.get(name) if isinstance(table, dict) else None
+    if not isinstance(values, list) or not all(isinstance(v, int | float) for v in values):
+        return None
+    return np.array(values, dtype=np.float64) if values else None
+
+
+def _gravity(evidence: Evidence) -> Iterator[Finding]:
+    imu = evidence.run.imu
+    names = ("accel_x", "accel_y", "accel_z")
+    if imu is None or not all(name in imu for name in names):
+        return
+    x, y, z = (float(np.nanmedian(imu[name])) for name in names)
+    size = float(np.linalg.norm([x, y, z]))
+    seen = f"accelerations of imu.csv are ({x:.2f}, {y:.2f}, {z:.2f}) in the median"
+    stated = _numbers(evidence.run.settings.get("sensors", {}), "imu") is not None
+    if 0.8 < size < 1.2:
+        yield _imu("imu_unit", seen, "Accelerations are in g, not m/s2", "Multiply by 9.81")
+    elif size < 0.5:
+        yield _imu(
+            "imu_unit",
+            seen,
+            "Accelerations have no gravity in them (it was removed), or another unit",
+            "Record raw accelerations in m/s2",
+        )
+    elif not 8.0 < size < 12.0:
+        yield _imu("imu_unit", seen, "Accelerations are in another unit", "Convert them to m/s2")
+    elif z < -0.7 * size and not stated:
+        yield _imu(
+            "imu_mount",
+            seen,
+            "The IMU is mounted upside down (z down): gyro_z has the wrong sign, too",
+            "State its attitude in [sensors] imu, or negate y and z",
+        )
+    elif abs(z) < 0.7 * size and not stated:
+        axis = "x" if abs(x) > abs(y) else "y"
+        yield _imu(
+            "imu_mount",
+            seen,
+            f"The IMU is mounted on its side: its axis {axis} is vertical, so gyro_z is not the "
+            "yaw rate",
+            "State its attitude in [sensors] imu",
+        )
+
+
+def _imu(name: str, seen: str, cause: str, remedy: str) -> Finding:
+    return Finding(name, Level.WARNING, seen, cause, remedy)
+
+
+def _terrain_names(evidence: Evidence) -> Iterator[Finding]:
+    names: dict[str, int] = {}
+    for table in (evidence.run.odometry, evidence.run.images):
+        if table is not None and "terrain" in table:
+            found, counts = np.unique(np.asarray(table["terrain"], dtype=str), return_counts=True)
+            for name, count in zip(found, counts, strict=True):
+                names[str(name)] = names.get(str(name), 0) + int(count)
+    if evidence.run.terrain:
+        names.setdefault(evidence.run.terrain, 0)
+    ordered = sorted((name for name in names if name), key=lambda name: -names[name])
+    for place, rare in enumerate(ordered):
+        for usual in ordered[:place]:
+            alike = SequenceMatcher(None, rare.lower().strip(), usual.lower().strip()).ratio()
+            if (
+                alike >= ALIKE
+                and names[rare] <= RARE * max(names[usual], 1)
+                or (rare.lower().strip() == usual.lower().strip())
+            ):
+                yield Finding(
+                    "terrain_names",
+                    Level.NOTE,
+                    f"terrain {rare!r} ({names[rare]} rows) is written like {usual!r} "
+                    f"({names[usual]} rows)",
+                    "One terrain has two spellings: a name is misspelt",
+                    "Write one name for one terrain",
+                )
+                break

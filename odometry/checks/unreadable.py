@@ -1,0 +1,94 @@
+"""Why a run folder cannot be read: the likeliest cause of each kind of error."""
+
+import re
+
+from odometry.checks.finding import Finding, Level
+from odometry.errors import RunFolderError
+
+# The first pattern that fits the message: (pattern, cause, remedy).
+CAUSES = (
+    (
+        r"stamps may not go back",
+        "Rows are not in the order of time: a file was written twice or joined of two, rows were "
+        "sorted by another column, or the clock was set back while recording",
+        "Sort the rows by t, or cut the file where the clock jumps",
+    ),
+    (
+        r"column 't': '[^']*\d[-:/T ][^']*' is not a number",
+        "Stamps are dates or times of day (text), not seconds",
+        "Convert the column t to seconds",
+    ),
+    (
+        r"'[^']*;[^']*'|'[^']*\\t[^']*'|the header has 1 columns|header has [^,]*;",
+        "Cells are separated by semicolons or tabs, not commas",
+        "Write the file with commas, and a point in numbers",
+    ),
+    (
+        r"the column '-?[\d.]+' stands there twice|the header has -?\d+\.\d+|header has -?[\d.]+,",
+        "The header line is missing: the first line holds numbers, not names of columns",
+        "Write the names of the columns in the first line",
+    ),
+    (
+        r"the column '.*' is missing",
+        "The columns have other names than the format gives them, or the header is missing",
+        "Rename the columns: t, v_left, v_right in odometry.csv; t, x, y, yaw in pose.csv",
+    ),
+    (
+        r"'-?inf(inity)?', expected a finite number|e\+?\d{3}', expected a finite",
+        "A value is infinite: a division by zero or an overflow in what wrote the file",
+        "Remove the row, or find what wrote it",
+    ),
+    (
+        r"'(nan)?', expected a finite number",
+        "Cells are empty (not measured, or lost) where every row needs a number",
+        "Remove these rows: a tread speed holds until the next row",
+    ),
+    (
+        r"\\x00|NUL|\x00|row \d+: 1 cells, but the header has",
+        "The file ends in zeros or was cut: the recorder was switched off or the disk was full",
+        "Remove the last rows",
+    ),
+    (
+        r"row \d+: \d+ cells, but the header has",
+        "The last row was cut while it was written (the recording was stopped), or a row has a "
+        "cell too many",
+        "Remove the row",
+    ),
+    (
+        r"there are no rows below the header",
+        "The file is empty: nothing was recorded",
+        "Remove the file where it is optional, or record anew",
+    ),
+    (
+        r"\[robot\] track_width = -|\[robot\] track_width = 0|expected a positive number",
+        "A size of the robot is negative or zero: a sign, or a placeholder that was never filled in",
+        "Measure it, in metres",
+    ),
+    (
+        r"is not a file in|is absolute|outside",
+        "Image files are missing, were moved, or are named by a path of another computer",
+        "Name images by paths inside the run folder",
+    ),
+    (
+        r"utf-8|decode",
+        "The file is not text, or text of another encoding (UTF-16 of a spreadsheet?)",
+        "Save it as UTF-8",
+    ),
+    (r"missing; a run folder needs|no such folder", "This is no run folder", "Name a run folder"),
+    (r"as TOML", "run.toml is not TOML", "Mend run.toml at the place that is named"),
+)
+
+
+def unreadable(error: RunFolderError) -> Finding:
+    """The finding for a folder that cannot be read."""
+    message = str(error)
+    for pattern, cause, remedy in CAUSES:
+        if re.search(pattern, message):
+            return Finding("unreadable", Level.REFUSED, message, cause, remedy)
+    return Finding(
+        "unreadable",
+        Level.REFUSED,
+        message,
+        "A file of the run folder is not as the format says",
+        "Mend the file at the place that is named",
+    )
