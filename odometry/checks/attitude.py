@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.relation import Relation, relation
@@ -49,6 +49,9 @@ def _against_gravity(evidence: Evidence, roll: FloatArray, pitch: FloatArray) ->
     )
     smooth = [_smoothed(evidence, values) for values in (*expected, *measured)]
     slow = np.abs(_smoothed(evidence, forward * turn_rate)) < 0.3
+    if (swapped := _swapped(smooth, slow)) is not None:
+        yield swapped
+        return
     names = ("pitch", "roll")
     for i, name in enumerate(names):
         wanted, seen = smooth[i], smooth[2 + i]
@@ -56,10 +59,31 @@ def _against_gravity(evidence: Evidence, roll: FloatArray, pitch: FloatArray) ->
         if spread < GRAVITY_M_S2 * LEAST_SPREAD_RAD:
             continue
         fit = relation(np.where(slow, seen, np.nan), wanted, np.ones(len(wanted)))
-        yield from _slope(evidence, name, fit)
+        yield from _slope(name, fit)
 
 
-def _slope(evidence: Evidence, name: str, fit: Relation | None) -> Iterator[Finding]:
+def _swapped(smooth: list[FloatArray], slow: BoolArray) -> Finding | None:
+    """Whether accel_x follows roll and accel_y pitch, and not the other way round."""
+    by_pitch, by_roll, x, y = smooth
+    ones = np.ones(len(x))
+    explained = []
+    for expected, measured in ((by_pitch, x), (by_roll, y), (by_roll, x), (by_pitch, y)):
+        fit = relation(np.where(slow, measured - np.median(measured), np.nan), expected, ones)
+        explained.append(0.0 if fit is None else fit.correlation * (abs(fit.slope) > 0.5))
+    straight, crossed = min(explained[:2]), min(explained[2:])
+    if crossed < 0.8 or max(explained[:2]) > 0.5:
+        return None
+    return Finding(
+        "attitude_swapped",
+        Level.WARNING,
+        f"accel_x follows roll and accel_y pitch (correlations {explained[2]:.2f} and "
+        f"{explained[3]:.2f}, straight {straight:.2f})",
+        "Roll and pitch are swapped, or the IMU is turned by 90 degrees about its z axis",
+        "Exchange roll and pitch, or state the attitude of the IMU in [sensors]",
+    )
+
+
+def _slope(name: str, fit: Relation | None) -> Iterator[Finding]:
     if fit is None or not fit.certain(0, 8.0):
         return
     axis = "accel_x" if name == "pitch" else "accel_y"

@@ -10,6 +10,20 @@ TREADS = frozenset({"slip", "slip_in_turns", "scale", "tread_unit", "position_un
 
 # Cause: what follows from it.
 CONSEQUENCES: dict[str, frozenset[str]] = {
+    "latitude_longitude": POSES | YAW | {"positions_mirrored", "yaw_reversed", "coarse_positions"},
+    "earth_centred": POSES | YAW | {"positions_mirrored", "yaw_reversed", "pose_mirrored"},
+    "yaw_constant": YAW | {"pose_late", "poses_unrelated", "gyroscope_unit", "clocks_apart"},
+    "yaw_is_course": YAW | {"pose_late", "poses_unrelated", "gyroscope_unit", "yaw_jumps"},
+    "poses_are_wheel_odometry": frozenset({"gyroscope_unit", "track_width", "pose_late"}),
+    "noisy_positions": POSES | YAW | {"tread_unit", "yaw_jumps", "far_sensor", "pose_outliers"},
+    "treads_are_twist": TREADS | POSES | {"treads_unequal", "tread_left_reversed"},
+    "treads_unequal": frozenset({"pose_jumps", "tread_offset"}),
+    "saturated_speed": frozenset({"stuck_encoder", "pose_jumps", "slip", "scale", "treads_frozen"}),
+    "treads_frozen": frozenset({"pose_jumps", "slip", "odometry_gap"}),
+    "odometry_gap": frozenset({"pose_jumps"}),
+    "clock_set": frozenset({"pose_jumps"}),
+    "imu_mount": frozenset({"gyroscope_reversed", "gyroscope_unrelated"}),
+    "pose_restarts": frozenset({"pose_jumps"}),
     "treads_still": TREADS | POSES,
     "treads_unrelated": TREADS | YAW | {"pose_late", "treads_late", "clocks_apart"},
     "poses_unrelated": (POSES - {"clocks_apart"})

@@ -108,8 +108,13 @@ def _dead(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _turns_by_treads(evidence: Evidence, span: FloatArray) -> bool:
-    turned = np.diff(evidence.integrals.right_m(span) - evidence.integrals.left_m(span))[0]
-    return bool(abs(turned) > 0.1 * evidence.fastest_m_s * (span[1] - span[0]))
+    """Whether the treads turn the robot, to whichever side, within a span."""
+    m = evidence.uniform
+    inside = (m.start_s >= span[0] - 1e-6) & (m.end_s <= span[1] + 1e-6)
+    if not inside.any():
+        return False
+    turned = float(np.mean(np.abs(m.difference_m[inside])) / np.mean(m.lasts_s[inside]))
+    return turned > 0.1 * evidence.fastest_m_s
 
 
 def _absurd(evidence: Evidence) -> Iterator[Finding]:

@@ -8,12 +8,15 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.heading import READINGS
+from odometry.checks.relation import relation
 from odometry.checks.spans import constant_spans, runs_of, within
 
 FROZEN_S = 1.5
 REPEATED = 0.3  # share of poses equal to the one before while the treads move
 LEAST_JUMP_M = 0.4
 JUMP_TIMES = 7.0  # the usual change of the difference to dead reckoning over the same time
+LEAST_YAW_JUMP_RAD = np.radians(12)
+LEAST_ARM_M = 0.6
 JITTER_S = 0.4  # by which poses that came in bursts were late
 NEAR_S, FAR_S = 0.25, 1.25  # of a jump: between them its two sides are compared
 OUTLIERS = 0.01  # share of poses that go out and back, from which it is a warning
@@ -33,6 +36,8 @@ def poses(evidence: Evidence) -> Iterator[Finding]:
     if not frozen:
         yield from _repeated(evidence, positions, travel_m)
     spans_s = [span for finding in frozen for span in finding.spans_s]
+    yield from _yaw_jumps(evidence, rows)
+    yield from _lever_arm(evidence)
     yield from _jumps(evidence, rows, travel_m, np.array(spans_s).reshape(-1, 2))
 
 
@@ -142,6 +147,67 @@ def _jumps(
         "Number the stretches between jumps in a column `window`, or cut with --from and --to",
         tuple((evidence.run_time_s(stamps_s[i]),) * 2 for i in peaks),
     )
+
+
+def _yaw_jumps(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
+    """Steps of the measured yaw against the gyroscope."""
+    pose = evidence.run.pose
+    if pose is None or not evidence.yaw_measured or evidence.yaw_rate is None:
+        return
+    by_gyroscope = evidence.pose_turn_by_gyroscope
+    if by_gyroscope is None or by_gyroscope.correlation < 0.9:
+        return
+    stamps_s = np.clip(pose.stamps_s[rows], evidence.stamps_s[0], evidence.stamps_s[-1])
+    yaw = np.radians(pose["yaw"][rows]) if evidence.yaw_in_degrees else pose["yaw"][rows]
+    heading = evidence.integrals.gyroscope_rad(stamps_s) * by_gyroscope.slope
+    known = np.isfinite(yaw) & np.isfinite(heading)
+    stamps_s, off = stamps_s[known], np.unwrap((yaw - heading)[known])
+    step = _step_sizes(stamps_s, np.stack([off, np.zeros_like(off)], axis=-1))
+    measured = np.isfinite(step)
+    if measured.sum() < 20:
+        return
+    usual = 1.4826 * float(np.median(step[measured]))
+    rate = np.abs(np.gradient(heading[known], stamps_s))
+    odd = measured & (step > np.maximum(JUMP_TIMES * usual, LEAST_YAW_JUMP_RAD + JITTER_S * rate))
+    peaks = [begin + int(np.argmax(step[begin:end])) for begin, end in runs_of(odd)]
+    if not peaks:
+        return
+    yield Finding(
+        "yaw_jumps",
+        Level.WARNING,
+        f"yaw of pose.csv jumps {len(peaks)} times against the gyroscope, and stays: "
+        + ", ".join(
+            f"{np.degrees(step[i]):.0f} degrees at {evidence.run_time_s(stamps_s[i]):.1f} s"
+            for i in peaks[:3]
+        ),
+        "Yaw jumps: the heading of the reference was corrected or lost (magnetometer, dual antenna)",
+        "Number the stretches between jumps in a column `window`, or cut with --from and --to",
+        tuple((evidence.run_time_s(stamps_s[i]),) * 2 for i in peaks),
+    )
+
+
+def _lever_arm(evidence: Evidence) -> Iterator[Finding]:
+    """A sensor far from the centre swings sideways, or forwards, with every turn."""
+    m = evidence.motion
+    turn = m.gyroscope_rad if evidence.yaw_rate is not None else m.turn_rad
+    sideways = relation(evidence.sideways_m, turn)
+    forward = relation(evidence.forward_m, m.mean_m, turn)
+    if sideways is None or forward is None:
+        return
+    x_m, y_m = sideways.slope, -float(forward.coefficients[1])
+    sure = sideways.certain(0, 8.0), forward.certain(1, 8.0)
+    far = max(abs(x_m) * sure[0], abs(y_m) * sure[1])
+    limit_m = max(LEAST_ARM_M, (evidence.run.robot.length or 1.0) / 2)
+    if far > limit_m:
+        yield Finding(
+            "far_sensor",
+            Level.WARNING,
+            f"measured positions swing with the turns as if {x_m:+.2f} m ahead and {y_m:+.2f} m to "
+            f"the left of the centre of the treads, more than {limit_m:.2f} m",
+            "The sensor is mounted far from the centre (a lever arm), or the frame of the poses is "
+            "not that of the robot",
+            f"State its place: [sensors] pose = [{x_m:.2f}, {y_m:.2f}, 0.0]",
+        )
 
 
 def _reckoned(evidence: Evidence, rows: IntArray, scale: float) -> FloatArray:

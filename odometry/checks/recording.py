@@ -11,6 +11,7 @@ from odometry.checks.consequences import without_consequences
 from odometry.checks.course import course
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import CheckReport, Finding, Level, in_order
+from odometry.checks.gaps import gaps
 from odometry.checks.gyroscope import gyroscope
 from odometry.checks.pose_values import pose_values
 from odometry.checks.poses import poses
@@ -37,6 +38,7 @@ CHECKS: tuple[Check, ...] = (
     units,
     sides,
     treads,
+    gaps,
     timing,
     poses,
     gyroscope,

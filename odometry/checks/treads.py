@@ -17,6 +17,7 @@ COARSE = 0.1  # a step of the readings as a share of the ordinary fastest speed
 OTHER_MOVES = 0.05  # of the ordinary fastest speed, by which the other tread changes meanwhile
 CONTRADICTED = 5.0  # times the usual residual
 LEAST_CHANGES = 30  # of a tread speed, and as a share of the rows: else it is a held command
+DROPPED = 0.001  # share of samples that are lost, from which it is a warning
 CHANGING = 0.02
 SATURATED = 0.05  # share of rows at the very largest value
 
@@ -27,6 +28,8 @@ def treads(evidence: Evidence) -> Iterator[Finding]:
     yield from _stuck(evidence)
     yield from _coarse(evidence)
     yield from _saturated(evidence)
+    yield from _dropped(evidence)
+    yield from _both_still(evidence)
     yield from _idle(evidence)
 
 
@@ -160,6 +163,70 @@ def _saturated(evidence: Evidence) -> Iterator[Finding]:
                 "the command and not what the wheels did",
                 "Log measured wheel speeds over their whole range",
             )
+
+
+def _dropped(evidence: Evidence) -> Iterator[Finding]:
+    """Single zeros amid motion."""
+    counts, spans = {}, []
+    for name in ("v_left", "v_right"):
+        values = evidence.run.odometry[name]
+        zero = (np.abs(values[1:-1]) < 1e-9) & (np.abs(values[:-2]) > 0.1 * evidence.fastest_m_s)
+        zero &= np.abs(values[2:]) > 0.1 * evidence.fastest_m_s
+        zero &= np.sign(values[:-2]) == np.sign(values[2:])
+        counts[name] = int(zero.sum())
+        spans += [evidence.run_time_s(s) for s in evidence.stamps_s[1:-1][zero]]
+    total = sum(counts.values())
+    if total:
+        share = total / (2 * len(evidence.stamps_s))
+        yield Finding(
+            "dropped_speeds",
+            Level.WARNING if total > 5 and share > DROPPED else Level.NOTE,
+            f"{total} samples of tread speed are zero between two of full speed (v_left "
+            f"{counts['v_left']}, v_right {counts['v_right']})",
+            "Samples drop out: zeros are written where a message was lost",
+            "Remove these rows: the speed before them holds meanwhile",
+            tuple((span, span) for span in sorted(spans)),
+        )
+
+
+def _both_still(evidence: Evidence) -> Iterator[Finding]:
+    """Both treads keep their values exactly while gyroscope or poses say that motion changes."""
+    spans = constant_spans(evidence.stamps_s, evidence.speeds_m_s, STUCK_S)
+    odd = [span for span in spans if _differs(evidence, span)]
+    if not odd:
+        return
+    lasts_s = sum(end_s - begin_s for begin_s, end_s in odd)
+    row = int(np.searchsorted(evidence.stamps_s, odd[0][0]))
+    left, right = evidence.speeds_m_s[row]
+    yield Finding(
+        "treads_frozen",
+        Level.WARNING,
+        f"both treads stay at ({left:.3g}, {right:.3g}) m/s for {lasts_s:.1f} s (first at "
+        f"{evidence.run_time_s(odd[0][0]):.1f} s) while gyroscope or poses say that the robot moves "
+        "differently",
+        "Odometry is lost: the log repeats its last value or zeros (a motor driver or bus that "
+        "stopped); or the robot was pushed, carried or slid",
+        "Cut the recording with --from and --to",
+        tuple((evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in odd),
+    )
+
+
+def _differs(evidence: Evidence, span: FloatArray) -> bool:
+    """Whether the measured motion in a span changes, or differs from that of the held speeds."""
+    for motion, target in _targets(evidence):
+        inside = (motion.start_s >= span[0]) & (motion.end_s <= span[1]) & np.isfinite(target)
+        known = np.isfinite(target)
+        if inside.sum() < 3:
+            continue
+        fit = relation(np.where(inside, np.nan, target), motion.left_m, motion.right_m)
+        if fit is None or fit.explained < 0.7:
+            continue
+        size = float(np.quantile(np.abs(target[known]), 0.9))
+        usual = float(np.median(np.abs(fit.residuals[known & ~inside])))
+        off = np.abs(fit.residuals[inside])
+        if float(np.median(off)) > max(2 * CONTRADICTED * usual, 0.3 * size):
+            return True
+    return False
 
 
 def _idle(evidence: Evidence) -> Iterator[Finding]:

@@ -159,7 +159,7 @@ def _along(evidence: Evidence, forward: float, tight: bool, width: float | None)
         and (width is None or WIDTH[0] <= width <= WIDTH[1])
     ):
         return Finding(
-            "position_unit",
+            "latitude_longitude" if position.factor < 1e-4 else "position_unit",
             Level.WARNING,
             seen,
             f"Positions of pose.csv are in {position.words}, not metres",
