@@ -13,6 +13,12 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "latitude_longitude": POSES | YAW | {"positions_mirrored", "yaw_reversed", "coarse_positions"},
     "earth_centred": POSES | YAW | {"positions_mirrored", "yaw_reversed", "pose_mirrored"},
     "yaw_constant": YAW | {"pose_late", "poses_unrelated", "gyroscope_unit", "clocks_apart"},
+    "yaw_is_quaternion": YAW
+    | {"yaw_jumps", "pose_late", "gyroscope_unit", "track_width", "poses_unrelated", "clocks_apart"}
+    | {"yaw_reversed", "yaw_in_degrees", "pose_mirrored", "positions_mirrored"},
+    "repeated_poses": POSES
+    | YAW
+    | {"yaw_in_degrees", "gyroscope_unit", "track_width", "tread_unit"},
     "yaw_is_course": YAW | {"pose_late", "poses_unrelated", "gyroscope_unit", "yaw_jumps"},
     "poses_are_wheel_odometry": frozenset({"gyroscope_unit", "track_width", "pose_late"}),
     "noisy_positions": POSES | YAW | {"tread_unit", "yaw_jumps", "far_sensor", "pose_outliers"},
@@ -40,7 +46,9 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "stuck_encoder": frozenset(
         {"slip", "slip_in_turns", "scale", "pose_jumps", "treads_unrelated", "gyroscope_unrelated"}
     ),
-    "gyroscope_clipped": frozenset({"gyroscope_unit", "gyroscope_dead", "gyroscope_bias"}),
+    "gyroscope_clipped": frozenset(
+        {"yaw_jumps", "gyroscope_unit", "gyroscope_dead", "gyroscope_bias"}
+    ),
     "gyroscope_dead": frozenset({"gyroscope_unit"}),
     "tread_unit": frozenset({"track_width", "slip_in_turns", "slip"}),
     "slip": frozenset({"pose_late", "treads_late"}),

@@ -104,7 +104,8 @@ class Evidence:
         return integrals(self.run, self.speeds_m_s, self.yaw_rate)
 
     @cached_property
-    def _raw_motion(self) -> Motion:
+    def raw_motion(self) -> Motion:
+        """Windows of about half a second, between new poses where there are any; yaw as it stands."""
         return motion_between(self.run, self.integrals, self.poses_used)
 
     @cached_property
@@ -123,6 +124,7 @@ class Evidence:
 
     @cached_property
     def poses_used(self) -> BoolArray | None:
+        """Rows (M,) of pose.csv that are new and no outliers; None without poses."""
         used = self.positions_measured
         if used is None or self.run.pose is None:
             return None
@@ -136,8 +138,8 @@ class Evidence:
         """Whether the column yaw holds degrees: its course, or its turns, fit only then."""
         if not self.yaw_measured:
             return False
-        raw, read = self._raw_motion, self._raw_motion.with_yaw(np.radians)
-        readings = headings(raw, self._turn_rad(read))
+        raw, read = self.raw_motion, self.raw_motion.with_yaw(np.radians)
+        readings = headings(raw, self.turn_rad(read))
         plain, degrees = (
             max((readings[n].concentration for n in names if n in readings), default=0.0)
             for names in (("radians", "radians, reversed"), ("degrees", "degrees, reversed"))
@@ -153,13 +155,13 @@ class Evidence:
     @cached_property
     def motion(self) -> Motion:
         """Windows of about a second, between poses where there are any; yaw in radians."""
-        raw = self._raw_motion
+        raw = self.raw_motion
         return raw.with_yaw(np.radians) if self.yaw_in_degrees else raw
 
     @cached_property
     def heading(self) -> Heading | None:
         """How yaw and course belong together; None where they do not, or it cannot be told."""
-        found = headings(self.motion, self._turn_rad(self.motion))
+        found = headings(self.motion, self.turn_rad(self.motion))
         if not found:
             return None
         plain, reversed_ = found["radians"], found["radians, reversed"]
@@ -170,7 +172,7 @@ class Evidence:
     @cached_property
     def best_concentration(self) -> float | None:
         """How well course and yaw agree by the best reading of yaw; None where few windows tell."""
-        found = headings(self.motion, self._turn_rad(self.motion))
+        found = headings(self.motion, self.turn_rad(self.motion))
         return max((heading.concentration for heading in found.values()), default=None)
 
     @cached_property
@@ -184,7 +186,7 @@ class Evidence:
             return np.full(len(self.motion), np.nan)
         return along_m(self.motion, self.heading)
 
-    def _turn_rad(self, motion: Motion) -> FloatArray:
+    def turn_rad(self, motion: Motion) -> FloatArray:
         """Turn (K,) in rad, by the gyroscope where there is one, whatever its unit."""
         if self.yaw_rate is None:
             return motion.turn_rad

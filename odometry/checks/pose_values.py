@@ -7,6 +7,7 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
+from odometry.checks.heading import headings
 
 EARTH_M = (6.2e6, 6.5e6)  # distance from the centre of the earth
 MAP_M = 1e5  # coordinates above are of a map of the country (UTM)
@@ -30,7 +31,9 @@ def pose_values(evidence: Evidence) -> Iterator[Finding]:
     yield from _noisy(evidence, stamps_s, positions)
     if evidence.yaw_measured:
         yield from _yaw_constant(evidence, rows)
-        yield from _yaw_is_course(evidence, rows, positions)
+        every = np.flatnonzero(np.isfinite(pose.stack("x", "y", "yaw")).all(axis=1))
+        yield from _yaw_is_course(evidence, every, pose.stack("x", "y")[every])
+        yield from _quaternion(evidence)
         yield from _wheel_odometry(evidence)
 
 
@@ -113,7 +116,10 @@ def _interpolated(stamps_s: FloatArray, positions: FloatArray) -> Iterator[Findi
 def _noisy(evidence: Evidence, stamps_s: FloatArray, positions: FloatArray) -> Iterator[Finding]:
     """Noise by second differences of neighbours, which smooth driving hardly has."""
     second = positions[2:] - 2 * positions[1:-1] + positions[:-2]
-    sigma = 1.4826 * float(np.median(np.abs(second))) / np.sqrt(6.0)
+    scale = evidence.metres_per_metre or 1.0
+    sigma = 1.4826 * float(np.median(np.abs(second))) / np.sqrt(6.0) / min(max(scale, 1e-9), 1e9)
+    if 0.2 < scale < 5.0:
+        sigma *= scale
     step_m = evidence.fastest_m_s * float(np.median(np.diff(stamps_s)))
     if sigma > NOISY_M and sigma > 0.3 * step_m:
         yield Finding(
@@ -150,19 +156,44 @@ def _yaw_is_course(evidence: Evidence, rows: IntArray, positions: FloatArray) ->
     moving = np.hypot(*steps.T) > 0.3 * np.quantile(np.hypot(*steps.T), 0.9)
     if moving.sum() < 20:
         return
-    course = np.arctan2(steps[:, 1], steps[:, 0])[moving]
-    for at in (yaw[:-1][moving], yaw[1:][moving]):
+    central = positions[2:] - positions[:-2]
+    courses = (
+        (np.arctan2(steps[:, 1], steps[:, 0])[moving], yaw[:-1][moving]),
+        (np.arctan2(steps[:, 1], steps[:, 0])[moving], yaw[1:][moving]),
+        (np.arctan2(central[:, 1], central[:, 0])[moving[1:]], yaw[1:-1][moving[1:]]),
+    )
+    for course, at in courses:
         off = np.abs(np.angle(np.exp(1j * (course - at))))
-        if float(np.quantile(off, 0.7)) < SAME_RAD and np.ptp(yaw) > 0.5:
+        if float(np.median(off)) < SAME_RAD and np.ptp(yaw) > 0.5:
             yield _finding(
                 "yaw_is_course",
                 f"yaw of pose.csv is the direction between neighbouring positions to within "
-                f"{np.quantile(off, 0.7):.1g} rad",
+                f"{np.median(off):.1g} rad",
                 "Yaw is the course over ground, computed from positions: not the heading (wrong "
                 "backwards, on the spot and where the robot slides)",
                 "Leave yaw empty: positions alone are used then",
             )
             return
+
+
+def _quaternion(evidence: Evidence) -> Iterator[Finding]:
+    """The z of a quaternion in place of yaw: its sine of half the heading fits the course."""
+    raw = evidence.raw_motion
+    if not np.nanmax(np.abs(raw.yaw_rad)) <= 1.0001 or np.nanmax(np.abs(raw.yaw_rad)) < 0.3:
+        return
+    read = raw.with_yaw(lambda z: 2 * np.arcsin(np.clip(z, -1.0, 1.0)))
+    plain, half = (headings(m, evidence.turn_rad(m)).get("radians") for m in (raw, read))
+    if plain is None or half is None or half.concentration < plain.concentration + 0.1:
+        return
+    if half.concentration < 0.8:
+        return
+    yield _finding(
+        "yaw_is_quaternion",
+        f"yaw of pose.csv lies within -1 and 1, and twice its arc sine agrees with the course "
+        f"(concentration {half.concentration:.2f}, as it stands {plain.concentration:.2f})",
+        "Yaw holds a component (z) of a quaternion, not an angle",
+        "Convert: yaw = atan2(2 (w z + x y), 1 - 2 (y^2 + z^2))",
+    )
 
 
 def _wheel_odometry(evidence: Evidence) -> Iterator[Finding]:

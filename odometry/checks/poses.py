@@ -12,10 +12,11 @@ from odometry.checks.relation import relation
 from odometry.checks.spans import constant_spans, runs_of, within
 
 FROZEN_S = 1.5
+OFTEN = 10  # stretches of repeated poses, from which the log repeats by habit
 REPEATED = 0.3  # share of poses equal to the one before while the treads move
 LEAST_JUMP_M = 0.4
 JUMP_TIMES = 7.0  # the usual change of the difference to dead reckoning over the same time
-LEAST_YAW_JUMP_RAD = np.radians(12)
+LEAST_YAW_JUMP_RAD = np.radians(20)
 LEAST_ARM_M = 0.6
 JITTER_S = 0.4  # by which poses that came in bursts were late
 NEAR_S, FAR_S = 0.25, 1.25  # of a jump: between them its two sides are compared
@@ -31,10 +32,9 @@ def poses(evidence: Evidence) -> Iterator[Finding]:
     stamps_s = evidence.run.pose.stamps_s[rows]
     positions = evidence.run.pose.stack("x", "y")[rows]
     travel_m = _travel(evidence, stamps_s)
+    repeated = list(_repeated(positions, travel_m))
     frozen = list(_frozen(evidence, stamps_s, positions, travel_m))
-    yield from frozen
-    if not frozen:
-        yield from _repeated(evidence, positions, travel_m)
+    yield from repeated or frozen
     spans_s = [span for finding in frozen for span in finding.spans_s]
     yield from _yaw_jumps(evidence, rows)
     yield from _lever_arm(evidence)
@@ -72,13 +72,15 @@ def _frozen(
     )
 
 
-def _repeated(evidence: Evidence, positions: FloatArray, travel_m: FloatArray) -> Iterator[Finding]:
+def _repeated(positions: FloatArray, travel_m: FloatArray) -> Iterator[Finding]:
+    """Many poses that repeat the one before, again and again: no single loss of the reference."""
     moving = np.diff(travel_m) > 0.2 * np.quantile(np.diff(travel_m), 0.9)
     same = (np.diff(positions, axis=0) == 0).all(axis=1)
     if moving.sum() < 20:
         return
     share = float(same[moving].mean())
-    if share > REPEATED:
+    stretches = len(runs_of(same & moving))
+    if share > REPEATED and stretches > OFTEN:
         longest = int(np.max(np.diff(runs_of(same), axis=1)))
         yield Finding(
             "repeated_poses",
@@ -132,6 +134,21 @@ def _jumps(
     jitter_m = JITTER_S * speed * scale
     odd = known & (step > np.maximum(JUMP_TIMES * usual, LEAST_JUMP_M * scale + jitter_m))
     peaks = [begin + int(np.argmax(step[begin:end])) for begin, end in runs_of(odd)]
+    if not peaks:
+        return
+    reckoned = _reckoned(evidence, rows, scale)
+    stood = [i for i in peaks if _stood(stamps_s, positions, reckoned, i)]
+    peaks = [i for i in peaks if i not in stood]
+    if stood:
+        yield Finding(
+            "slip_episodes",
+            Level.NOTE,
+            f"{len(stood)} times the treads drive on while the poses hardly move (first by "
+            f"{step[stood[0]]:.2f} m at {evidence.run_time_s(stamps_s[stood[0]]):.1f} s)",
+            "The robot is stuck or slips while its wheels spin, or poses are frozen for a moment",
+            "Judge by what the robot drove on; cut with --from and --to",
+            tuple((evidence.run_time_s(stamps_s[i]),) * 2 for i in stood),
+        )
     if not peaks:
         return
     places = ", ".join(
@@ -248,6 +265,14 @@ def _step_sizes(stamps_s: FloatArray, off: FloatArray) -> FloatArray:
         if b - a >= 2 and d - c >= 2:
             found[i] = np.hypot(*(np.median(off[c:d], axis=0) - np.median(off[a:b], axis=0)))
     return found
+
+
+def _stood(stamps_s: FloatArray, positions: FloatArray, reckoned: FloatArray, at: int) -> bool:
+    """Whether around a row the poses moved far less than dead reckoning, and not against it."""
+    first, last = np.searchsorted(stamps_s, [stamps_s[at] - FAR_S, stamps_s[at] + FAR_S])
+    last = min(int(last), len(stamps_s) - 1)
+    moved, driven = positions[last] - positions[first], reckoned[last] - reckoned[first]
+    return bool(np.hypot(*moved) < 0.4 * np.hypot(*driven))
 
 
 def _without_window_changes(

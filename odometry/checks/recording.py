@@ -30,6 +30,7 @@ Check = Callable[[Evidence], Iterator[Finding]]
 
 # In this order findings of one level are told: a cause stands before what follows from it.
 CHECKS: tuple[Check, ...] = (
+    stamps,
     pose_values,
     agreement,
     yaw_against_course,
@@ -44,7 +45,6 @@ CHECKS: tuple[Check, ...] = (
     gyroscope,
     attitude,
     settings,
-    stamps,
 )
 LEAST_ROWS = 10
 

@@ -8,9 +8,12 @@ from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.relation import Relation, relation
 
-UNEQUAL = 1.5  # ratio of the two treads' shares; real recordings had up to 1.25 where terrain holds
+UNEQUAL = (
+    1.15  # ratio of the treads' shares in turns; real ones have 0.94 to 1.07 where terrain holds
+)
 LEAST_OFFSET_M_S = 0.03
-TIMES = 8.0  # standard deviations
+TIMES = 5.0  # standard deviations
+HELD = 0.9  # share of the turns explained where terrain holds
 TWIST = 0.15  # share of the turn that may come from the other column
 
 
@@ -20,10 +23,10 @@ def sides(evidence: Evidence) -> Iterator[Finding]:
     forward = evidence.forward_by_treads
     twist = list(_twist(turn, forward))
     yield from twist
-    if twist or turn is None or turn.explained < 0.8:
+    if twist or turn is None:
         return
-    yield from _unequal(turn, forward)
-    yield from _offset(evidence)
+    offset = list(_offset(evidence))
+    yield from offset or _unequal(turn, forward)
 
 
 def _twist(turn: Relation | None, forward: Relation | None) -> Iterator[Finding]:
@@ -53,25 +56,24 @@ def _only(forward: Relation, speed: int, rate: int) -> bool:
 
 
 def _unequal(turn: Relation, forward: Relation | None) -> Iterator[Finding]:
-    if not (turn.certain(0, TIMES) and turn.certain(1, TIMES)):
+    if turn.explained < HELD or not (turn.certain(0, TIMES) and turn.certain(1, TIMES)):
         return
     left, right = np.abs(turn.coefficients)
     ratio = float(left / right)
-    if forward is not None and forward.certain(0, TIMES) and forward.certain(1, TIMES):
-        other = float(abs(forward.coefficients[0] / forward.coefficients[1]))
-        if not min(ratio, other) > 1.25 and not max(ratio, other) < 0.8:
-            return
     if 1 / UNEQUAL < ratio < UNEQUAL:
         return
+    if forward is not None and forward.certain(0, TIMES) and forward.certain(1, TIMES):
+        other = float(abs(forward.coefficients[0] / forward.coefficients[1]))
+        if (other - 1) * (ratio - 1) < 0:
+            return
     side = "right" if ratio > 1 else "left"
-    factor = max(ratio, 1 / ratio)
     yield Finding(
         "treads_unequal",
         Level.WARNING,
         f"a metre of the left tread turns the robot by {left:.3g} rad, one of the right by "
         f"{right:.3g} rad",
-        f"One side has another scale: the {side} tread reads {factor:.3g} times too much against "
-        "the other (unit, wheel radius, gear, ticks of one side)",
+        f"One side has another scale: the {side} tread reads {max(ratio, 1 / ratio):.3g} times too "
+        "much against the other (unit, wheel radius, gear, ticks of one side, a flat tyre)",
         "Compare both sides on a straight drive",
     )
 
@@ -79,23 +81,25 @@ def _unequal(turn: Relation, forward: Relation | None) -> Iterator[Finding]:
 def _offset(evidence: Evidence) -> Iterator[Finding]:
     """A constant added to one tread: it drives while the robot stands."""
     m = evidence.motion
-    forward = relation(evidence.forward_m, m.left_m, m.right_m, m.lasts_s)
-    if forward is None or not forward.certain(2, TIMES) or forward.explained < 0.8:
-        return
-    offset = float(forward.coefficients[2] / np.mean(np.abs(forward.coefficients[:2])))
     turn = relation(m.turn_rad, m.left_m, m.right_m, m.lasts_s)
-    if abs(offset) < LEAST_OFFSET_M_S or turn is None or not turn.certain(2, TIMES):
+    if turn is None or not turn.certain(2, TIMES) or turn.explained < HELD:
         return
-    width = float(np.mean(np.abs(turn.coefficients[:2])))
-    of_turn = float(turn.coefficients[2] / width)
-    if not 0.5 < abs(of_turn / offset) < 2.0:
+    offset = float(turn.coefficients[2] / np.mean(np.abs(turn.coefficients[:2])))
+    if abs(offset) < LEAST_OFFSET_M_S:
         return
-    side = "left" if np.sign(of_turn) == -np.sign(offset) else "right"
+    forward = relation(evidence.forward_m, m.left_m, m.right_m, m.lasts_s)
+    along = 0.0
+    if forward is not None and forward.certain(2, 3.0):
+        along = float(forward.coefficients[2])
+    tread = "The left or the right tread has"
+    if along:
+        tread = f"The {'left' if (along < 0) == (offset > 0) else 'right'} tread has"
     yield Finding(
         "tread_offset",
         Level.WARNING,
-        f"the robot moves {forward.coefficients[2]:+.3f} m/s and turns "
-        f"{turn.coefficients[2]:+.3f} rad/s besides what the treads say",
-        f"The {side} tread has an offset of {-offset:+.3f} m/s: it reads a constant too much",
-        f"Subtract it from v_{side}: it should read 0 where the robot stands",
+        f"the robot turns {turn.coefficients[2]:+.3f} rad/s and moves {along:+.3f} m/s besides what "
+        "the treads say",
+        f"{tread} an offset of about {abs(offset):.3f} m/s: it reads a constant besides its speed, a "
+        "zero that was never set",
+        "Subtract what it reads where the robot stands",
     )

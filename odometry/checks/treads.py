@@ -13,6 +13,7 @@ from odometry.checks.spans import constant_spans, within
 from odometry.checks.spikes import spikes
 
 STUCK_S = 2.0
+BOTH_STUCK_S = 1.0
 COARSE = 0.1  # a step of the readings as a share of the ordinary fastest speed
 OTHER_MOVES = 0.05  # of the ordinary fastest speed, by which the other tread changes meanwhile
 CONTRADICTED = 5.0  # times the usual residual
@@ -24,6 +25,7 @@ SATURATED = 0.05  # share of rows at the very largest value
 
 def treads(evidence: Evidence) -> Iterator[Finding]:
     """Absurd samples, stuck encoders, coarse steps, saturation, missing motion."""
+    yield from _counters(evidence)
     yield from _absurd(evidence)
     yield from _stuck(evidence)
     yield from _coarse(evidence)
@@ -31,6 +33,31 @@ def treads(evidence: Evidence) -> Iterator[Finding]:
     yield from _dropped(evidence)
     yield from _both_still(evidence)
     yield from _idle(evidence)
+
+
+def _counters(evidence: Evidence) -> Iterator[Finding]:
+    """Columns whose changes, not whose values, are the motion."""
+    for motion, target in _targets(evidence):
+        rows = [
+            np.clip(np.searchsorted(evidence.stamps_s, at_s, side="right") - 1, 0, None)
+            for at_s in (motion.start_s, motion.end_s)
+        ]
+        left, right = (evidence.run.odometry[n] for n in ("v_left", "v_right"))
+        changed = relation(target, left[rows[1]] - left[rows[0]], right[rows[1]] - right[rows[0]])
+        plain = relation(target, motion.left_m, motion.right_m)
+        if changed is None or changed.explained < 0.8:
+            continue
+        if plain is None or plain.explained < 0.5:
+            yield Finding(
+                "treads_are_counters",
+                Level.WARNING,
+                f"changes of v_left and v_right explain {100 * changed.explained:.0f} % of the "
+                "motion, their values do not",
+                "The columns hold counters: positions or angles of the wheels (accumulated odometer, "
+                "encoder ticks), not speeds",
+                "Differentiate them by t, and convert to m/s",
+            )
+            return
 
 
 def _absurd(evidence: Evidence) -> Iterator[Finding]:
@@ -191,7 +218,7 @@ def _dropped(evidence: Evidence) -> Iterator[Finding]:
 
 def _both_still(evidence: Evidence) -> Iterator[Finding]:
     """Both treads keep their values exactly while gyroscope or poses say that motion changes."""
-    spans = constant_spans(evidence.stamps_s, evidence.speeds_m_s, STUCK_S)
+    spans = constant_spans(evidence.stamps_s, evidence.speeds_m_s, BOTH_STUCK_S)
     odd = [span for span in spans if _differs(evidence, span)]
     if not odd:
         return
@@ -216,7 +243,7 @@ def _differs(evidence: Evidence, span: FloatArray) -> bool:
     for motion, target in _targets(evidence):
         inside = (motion.start_s >= span[0]) & (motion.end_s <= span[1]) & np.isfinite(target)
         known = np.isfinite(target)
-        if inside.sum() < 3:
+        if inside.sum() < 1:
             continue
         fit = relation(np.where(inside, np.nan, target), motion.left_m, motion.right_m)
         if fit is None or fit.explained < 0.7:

@@ -17,6 +17,7 @@ VERY_TIGHT = 0.85  # share of the turns explained from which a factor of turns a
 TIGHT = 0.9  # correlation from which a factor is a unit and no slip
 SLIDING = 0.6  # concentration of course less yaw below which the robot slides sideways
 EXTREME = 8.0  # a factor that no slip explains
+HALF = 0.5  # share of the turns explained from which they have a width
 LEAST_WINDOWS = 15  # from which a factor without heading can be called constant
 PLAUSIBLE_M_S = 10.0  # no skid-steer robot is faster
 ORDINARY_FORWARD, ORDINARY_WIDTH = 0.93, 1.8
@@ -100,7 +101,8 @@ def _width_factor(evidence: Evidence) -> tuple[float | None, bool, float | None]
         (gyroscope, gyroscope_sense(evidence), factor or 1.0),
         (pose, pose_sense(evidence), 1.0),
     ):
-        if found is not None and found.certain() and of in (Sense.AGREES, Sense.OPPOSITE):
+        known = found is not None and found.certain() and found.explained > HALF
+        if found is not None and known and of in (Sense.AGREES, Sense.OPPOSITE):
             return scale / (abs(found.slope) * track), found.correlation > TIGHT, factor
     return None, False, factor
 
@@ -263,6 +265,18 @@ def _too_fast(evidence: Evidence) -> Finding:
 
 def _tread_unit(seen: str, unit: Unit, evidence: Evidence, *, sure: bool = True) -> Finding:
     others = "" if sure else "; or heavy slip in turns (snow), or a wrong track_width"
+    if 1 / 4 < unit.factor < 4:
+        alike = [
+            other.words
+            for other in tread_units(evidence.run.robot.wheel_radius, evidence.period_s)
+            if other is not unit and 0.8 < other.factor / unit.factor < 1.25
+        ]
+        half = "half" if unit.factor < 1 else "twice"
+        others += "".join(f", or {words}" for words in alike)
+        others += (
+            f"; or scaled by {unit.factor:.2g} (wheel diameter for radius gives {half} the speed; gear "
+            "ratio): these cannot be distinguished"
+        )
     return Finding(
         "tread_unit",
         Level.WARNING,
@@ -275,7 +289,8 @@ def _tread_unit(seen: str, unit: Unit, evidence: Evidence, *, sure: bool = True)
 def _matching(candidates: tuple[Unit, ...], ratio: Callable[[Unit], float]) -> Unit | None:
     """The unit that brings a ratio nearest to the ordinary one, if near enough."""
     near = min(candidates, key=lambda unit: abs(np.log(ratio(unit) / ORDINARY_FORWARD)))
-    return near if 0.7 <= ratio(near) <= 1.15 else None
+    low, high = (0.45, 1.6) if not 1 / 50 < near.factor < 50 else (0.7, 1.15)
+    return near if low <= ratio(near) <= high else None
 
 
 def _track_against_body(evidence: Evidence) -> Finding | None:
