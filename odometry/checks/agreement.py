@@ -43,10 +43,11 @@ def agreement(evidence: Evidence) -> Iterator[Finding]:
         agreed = pose in (Sense.AGREES, Sense.OPPOSITE)
         yield _finding(
             "gyroscope_unrelated",
-            f"gyro_z has little to do with the turns of {'treads and poses' if agreed else 'the treads'}",
+            "gyro_z has little to do with the turns of "
+            + ("treads and poses" if agreed else "the treads"),
             "gyro_z is of another axis (z is not up), another recording or another clock"
             + ("" if agreed else "; or the treads slip all the time"),
-            "State the axes of the sensor in [sensors] imu, and plot the yaw rates: check --picture",
+            "State the axes of the sensor in [sensors] imu; check --picture shows the yaw rates",
         )
 
 

@@ -43,9 +43,9 @@ def course(evidence: Evidence) -> Iterator[Finding]:
 def _turns_agree(evidence: Evidence) -> bool:
     """Whether measured turns are those of the gyroscope, else of the treads."""
     by_gyroscope = evidence.pose_turn_by_gyroscope
-    if by_gyroscope is not None and by_gyroscope.correlation > 0.5 and by_gyroscope.certain():
-        if gyroscope_sense(evidence) is not Sense.OPPOSITE:
-            return by_gyroscope.slope > 0
+    known = by_gyroscope is not None and by_gyroscope.correlation > 0.5 and by_gyroscope.certain()
+    if by_gyroscope is not None and known and gyroscope_sense(evidence) is not Sense.OPPOSITE:
+        return by_gyroscope.slope > 0
     return pose_sense(evidence) is Sense.AGREES
 
 

@@ -79,7 +79,7 @@ class Evidence:
         if self.run.pose is None:
             return None
         measured = np.isfinite(self.run.pose.stack("x", "y")).all(axis=1)
-        return measured if measured.sum() >= 10 else None
+        return np.asarray(measured) if measured.sum() >= 10 else None
 
     @cached_property
     def pose_outliers(self) -> BoolArray:
@@ -105,7 +105,7 @@ class Evidence:
 
     @cached_property
     def raw_motion(self) -> Motion:
-        """Windows of about half a second, between new poses where there are any; yaw as it stands."""
+        """Windows of half a second, between new poses where there are any; yaw as it stands."""
         return motion_between(self.run, self.integrals, self.poses_used)
 
     @cached_property

@@ -18,13 +18,13 @@ def gaps(evidence: Evidence) -> Iterator[Finding]:
     stamps_s = evidence.stamps_s
     lasts_s = np.diff(stamps_s)
     long = np.flatnonzero(lasts_s > max(LONG_S, LONG_PERIODS * evidence.period_s))
-    found = [(row, _what(evidence, row)) for row in long]
+    found = [(row, _what(evidence, row)) for row in long.tolist()]
     if len(long) > OFTEN and float(lasts_s[long].sum()) > 0.2 * evidence.duration_s:
         yield Finding(
             "uneven_stamps",
             Level.WARNING,
-            f"rows of odometry.csv come in {len(long)} bursts, {lasts_s[long].max():.2f} s apart at "
-            f"most, while the usual period is {evidence.period_s:.3f} s",
+            f"rows of odometry.csv come in {len(long)} bursts, {lasts_s[long].max():.2f} s apart "
+            f"at most, while the usual period is {evidence.period_s:.3f} s",
             "Stamps are those of arrival: rows were sent in bursts (buffered), not when they were "
             "measured",
             "Use the stamps of the sensor (header time), or spread the rows evenly",
@@ -63,7 +63,7 @@ def gaps(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _what(evidence: Evidence, row: int) -> str:
-    """ "lost", "clock", or "held": a speed that holds, as a log of changes has it."""
+    """Say "lost", "clock" (it was set), or "held": a speed that holds in a log of changes."""
     begin_s, end_s = evidence.stamps_s[row], evidence.stamps_s[row + 1]
     speeds = evidence.speeds_m_s[row]
     moved = _moved_m(evidence, begin_s, end_s)

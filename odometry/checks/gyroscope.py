@@ -43,7 +43,7 @@ def _bias(evidence: Evidence) -> Iterator[Finding]:
         f"gyro_z reads {bias:+.4f} +- {sigma:.4f} rad/s {how}",
         "The gyroscope has a bias"
         + (" far above what is usual (units, or not at rest)" if large else ""),
-        "Subtract it where the yaw rate is used; let the robot stand for some seconds to measure it",
+        "Subtract it where the yaw rate is used; some seconds at rest measure it",
     )
 
 
@@ -53,9 +53,7 @@ def stationary_bias(evidence: Evidence) -> tuple[float, float, str] | None:
     stamps_s, rates = evidence.yaw_rate
     still = np.abs(evidence.run.odometry.stack("v_left", "v_right")).max(axis=1) < STATIONARY_M_S
     rows = np.clip(np.searchsorted(evidence.stamps_s, stamps_s, side="right") - 1, 0, None)
-    settled = (
-        still & np.roll(still, 1) & np.roll(still, int(round(0.5 / max(evidence.period_s, 1e-3))))
-    )
+    settled = still & np.roll(still, 1) & np.roll(still, round(0.5 / max(evidence.period_s, 1e-3)))
     at_rest = rates[settled[rows]]
     lasts_s = len(at_rest) * float(np.median(np.diff(stamps_s)))
     if lasts_s < LEAST_STATIONARY_S or len(at_rest) < 20:

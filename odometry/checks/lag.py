@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -39,7 +40,7 @@ class Lag:
 
 
 def lag_between(
-    late: Signal, early: Signal, start_s: float, end_s: float, width_s: float, most_s: float
+    late: Signal, early: Signal, span_s: tuple[float, float], width_s: float, most_s: float
 ) -> Lag | None:
     """The lag of `late` behind `early`, from pieces of the time between two stamps.
 
@@ -49,17 +50,18 @@ def lag_between(
     Parameters
     ----------
     late, early : callable of stamps (K,) to (K,)
-    start_s, end_s : float
+    span_s : (float, float)
+        Stamps.
     width_s : float
         Over which a rate is taken: not less than the period of the slower sensor.
     most_s : float
         Largest lag searched for, to both sides.
     """
-    count = int(np.clip((end_s - start_s) / LEAST_PIECE_S, 1, PIECES))
-    edges_s = np.linspace(start_s, end_s, count + 1)
+    count = int(np.clip((span_s[1] - span_s[0]) / LEAST_PIECE_S, 1, PIECES))
+    edges_s = np.linspace(span_s[0], span_s[1], count + 1)
     lags, middles, correlations = [], [], []
-    for begin_s, stop_s in zip(edges_s[:-1], edges_s[1:], strict=True):
-        found = _peak(late, early, begin_s, stop_s, width_s, most_s)
+    for begin_s, stop_s in pairwise(edges_s.tolist()):
+        found = _peak(late, early, (begin_s, stop_s), width_s, most_s)
         if found is not None:
             lags.append(found[0])
             correlations.append(found[1])
@@ -70,14 +72,15 @@ def lag_between(
 
 
 def _peak(
-    late: Signal, early: Signal, begin_s: float, stop_s: float, width_s: float, most_s: float
+    late: Signal, early: Signal, span_s: tuple[float, float], width_s: float, most_s: float
 ) -> tuple[float, float] | None:
     """Lag and correlation at the peak; None where the peak is low, at the edge or not alone."""
+    begin_s, stop_s = span_s
     at_s = np.arange(begin_s, stop_s, GRID_S)
     reference = _rate(late, at_s, width_s)
     lags = np.arange(-most_s, most_s + GRID_S / 2, GRID_S)
     reach = round(most_s / GRID_S)
-    around_s = begin_s + GRID_S * np.arange(-reach, len(at_s) + reach)
+    around_s = np.asarray(begin_s + GRID_S * np.arange(-reach, len(at_s) + reach), dtype=float)
     other = _rate(early, around_s, width_s)
     known = np.isfinite(reference)
     if known.sum() < LEAST_PIECE_S / GRID_S / 2:

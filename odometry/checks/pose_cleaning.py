@@ -36,5 +36,5 @@ def pose_outliers(positions: FloatArray) -> BoolArray:
 
 
 def _unit(step: float) -> float:
-    """A metre in the unit of the positions, as far as their steps tell: mm and degrees are legal here."""
+    """A metre in the unit of the positions, as far as their steps tell: it may be wrong."""
     return 1.0 if 1e-3 < step < 10 else step

@@ -109,7 +109,7 @@ def _interpolated(stamps_s: FloatArray, positions: FloatArray) -> Iterator[Findi
             Level.NOTE,
             f"{100 * share:.0f} % of the poses lie exactly on the line between their neighbours",
             "Poses are interpolated (resampled) between fewer measured ones",
-            "Keep the measured ones: interpolated poses share their noise and look better than they are",
+            "Keep the measured ones: the others share their noise and look too good",
         )
 
 
@@ -206,7 +206,7 @@ def _wheel_odometry(evidence: Evidence) -> Iterator[Finding]:
             "poses_are_wheel_odometry",
             f"turns of pose.csv are those of the treads over track_width to {factor:.4f} "
             f"({100 * found.explained:.3f} % explained)",
-            "pose.csv is wheel odometry itself, computed from these treads: no independent reference",
+            "pose.csv is wheel odometry itself, computed from these treads: no reference",
             "Use a measured reference (GNSS, SLAM, motion capture)",
         )
 

@@ -4,22 +4,17 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from odometry.arrays import FloatArray, IntArray
+from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
-from odometry.checks.heading import READINGS
+from odometry.checks.pose_jumps import jumps, yaw_jumps
 from odometry.checks.relation import relation
-from odometry.checks.spans import constant_spans, runs_of, within
+from odometry.checks.spans import constant_spans, runs_of
 
 FROZEN_S = 1.5
 OFTEN = 10  # stretches of repeated poses, from which the log repeats by habit
 REPEATED = 0.3  # share of poses equal to the one before while the treads move
-LEAST_JUMP_M = 0.4
-JUMP_TIMES = 7.0  # the usual change of the difference to dead reckoning over the same time
-LEAST_YAW_JUMP_RAD = np.radians(20)
 LEAST_ARM_M = 0.6
-JITTER_S = 0.4  # by which poses that came in bursts were late
-NEAR_S, FAR_S = 0.25, 1.25  # of a jump: between them its two sides are compared
 OUTLIERS = 0.01  # share of poses that go out and back, from which it is a warning
 
 
@@ -36,9 +31,9 @@ def poses(evidence: Evidence) -> Iterator[Finding]:
     frozen = list(_frozen(evidence, stamps_s, positions, travel_m))
     yield from repeated or frozen
     spans_s = [span for finding in frozen for span in finding.spans_s]
-    yield from _yaw_jumps(evidence, rows)
+    yield from yaw_jumps(evidence, rows)
     yield from _lever_arm(evidence)
-    yield from _jumps(evidence, rows, travel_m, np.array(spans_s).reshape(-1, 2))
+    yield from jumps(evidence, rows, travel_m, np.array(spans_s).reshape(-1, 2))
 
 
 def _travel(evidence: Evidence, stamps_s: FloatArray) -> FloatArray:
@@ -95,7 +90,7 @@ def _repeated(positions: FloatArray, travel_m: FloatArray) -> Iterator[Finding]:
 
 def _outliers(evidence: Evidence) -> Iterator[Finding]:
     pose, found = evidence.run.pose, np.flatnonzero(evidence.pose_outliers)
-    if pose is None or not len(found):
+    if pose is None or evidence.positions_measured is None or not len(found):
         return
     measured = np.flatnonzero(evidence.positions_measured)
     beside = measured[np.clip(np.searchsorted(measured, found) - 3, 0, None)]
@@ -109,97 +104,6 @@ def _outliers(evidence: Evidence) -> Iterator[Finding]:
         "Outliers of the reference (multipath, a wrong match)",
         "Leave these poses empty; the filter's gate refuses them and fits weigh them down",
         tuple((evidence.run_time_s(s),) * 2 for s in pose.stamps_s[found]),
-    )
-
-
-def _jumps(
-    evidence: Evidence, rows: IntArray, travel_m: FloatArray, frozen_s: FloatArray
-) -> Iterator[Finding]:
-    """Steps of the difference between the poses and dead reckoning along their own yaw."""
-    if evidence.run.pose is None:
-        return
-    stamps_s = evidence.run.pose.stamps_s[rows]
-    positions = evidence.run.pose.stack("x", "y")[rows]
-    scale = evidence.metres_per_metre
-    if scale is None:
-        return
-    off = _without_window_changes(evidence, rows, positions - _reckoned(evidence, rows, scale))
-    step = _step_sizes(stamps_s, off)
-    speed = np.gradient(travel_m, stamps_s)
-    known = np.isfinite(step) & ~within(stamps_s - evidence.stamps_s[0], _widened(frozen_s))
-    if known.sum() < 20:
-        return
-    moving = known & (speed > 0.2 * evidence.fastest_m_s)
-    usual = 1.4826 * float(np.median(step[moving if moving.sum() > 20 else known]))
-    jitter_m = JITTER_S * speed * scale
-    odd = known & (step > np.maximum(JUMP_TIMES * usual, LEAST_JUMP_M * scale + jitter_m))
-    peaks = [begin + int(np.argmax(step[begin:end])) for begin, end in runs_of(odd)]
-    if not peaks:
-        return
-    reckoned = _reckoned(evidence, rows, scale)
-    stood = [i for i in peaks if _stood(stamps_s, positions, reckoned, i)]
-    peaks = [i for i in peaks if i not in stood]
-    if stood:
-        yield Finding(
-            "slip_episodes",
-            Level.NOTE,
-            f"{len(stood)} times the treads drive on while the poses hardly move (first by "
-            f"{step[stood[0]]:.2f} m at {evidence.run_time_s(stamps_s[stood[0]]):.1f} s)",
-            "The robot is stuck or slips while its wheels spin, or poses are frozen for a moment",
-            "Judge by what the robot drove on; cut with --from and --to",
-            tuple((evidence.run_time_s(stamps_s[i]),) * 2 for i in stood),
-        )
-    if not peaks:
-        return
-    places = ", ".join(
-        f"{step[i]:.3g} m at {evidence.run_time_s(stamps_s[i]):.1f} s" for i in peaks[:3]
-    )
-    yield Finding(
-        "pose_jumps",
-        Level.WARNING,
-        f"poses jump {len(peaks)} times against what treads and yaw say, and stay: {places}"
-        + (" ..." if len(peaks) > 3 else "")
-        + f" (usual: {usual:.2g} m)",
-        "Poses jump: the reference was relocalised, or its map or fix changed",
-        "Number the stretches between jumps in a column `window`, or cut with --from and --to",
-        tuple((evidence.run_time_s(stamps_s[i]),) * 2 for i in peaks),
-    )
-
-
-def _yaw_jumps(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
-    """Steps of the measured yaw against the gyroscope."""
-    pose = evidence.run.pose
-    if pose is None or not evidence.yaw_measured or evidence.yaw_rate is None:
-        return
-    by_gyroscope = evidence.pose_turn_by_gyroscope
-    if by_gyroscope is None or by_gyroscope.correlation < 0.9:
-        return
-    stamps_s = np.clip(pose.stamps_s[rows], evidence.stamps_s[0], evidence.stamps_s[-1])
-    yaw = np.radians(pose["yaw"][rows]) if evidence.yaw_in_degrees else pose["yaw"][rows]
-    heading = evidence.integrals.gyroscope_rad(stamps_s) * by_gyroscope.slope
-    known = np.isfinite(yaw) & np.isfinite(heading)
-    stamps_s, off = stamps_s[known], np.unwrap((yaw - heading)[known])
-    step = _step_sizes(stamps_s, np.stack([off, np.zeros_like(off)], axis=-1))
-    measured = np.isfinite(step)
-    if measured.sum() < 20:
-        return
-    usual = 1.4826 * float(np.median(step[measured]))
-    rate = np.abs(np.gradient(heading[known], stamps_s))
-    odd = measured & (step > np.maximum(JUMP_TIMES * usual, LEAST_YAW_JUMP_RAD + JITTER_S * rate))
-    peaks = [begin + int(np.argmax(step[begin:end])) for begin, end in runs_of(odd)]
-    if not peaks:
-        return
-    yield Finding(
-        "yaw_jumps",
-        Level.WARNING,
-        f"yaw of pose.csv jumps {len(peaks)} times against the gyroscope, and stays: "
-        + ", ".join(
-            f"{np.degrees(step[i]):.0f} degrees at {evidence.run_time_s(stamps_s[i]):.1f} s"
-            for i in peaks[:3]
-        ),
-        "Yaw jumps: the heading of the reference was corrected or lost (magnetometer, dual antenna)",
-        "Number the stretches between jumps in a column `window`, or cut with --from and --to",
-        tuple((evidence.run_time_s(stamps_s[i]),) * 2 for i in peaks),
     )
 
 
@@ -225,67 +129,3 @@ def _lever_arm(evidence: Evidence) -> Iterator[Finding]:
             "not that of the robot",
             f"State its place: [sensors] pose = [{x_m:.2f}, {y_m:.2f}, 0.0]",
         )
-
-
-def _reckoned(evidence: Evidence, rows: IntArray, scale: float) -> FloatArray:
-    """Positions (M, 2) by mean tread travel along the measured yaw; zeros where yaw is unknown."""
-    pose, heading = evidence.run.pose, evidence.heading
-    if pose is None or heading is None:
-        return np.zeros((len(rows), 2))
-    yaw = pose["yaw"][rows]
-    yaw = READINGS[heading.reading](np.radians(yaw) if evidence.yaw_in_degrees else yaw)
-    yaw = np.unwrap(np.nan_to_num(yaw)) + heading.offset_rad
-    of = evidence.integrals
-    stamps_s = np.clip(pose.stamps_s[rows], evidence.stamps_s[0], evidence.stamps_s[-1])
-    travel_m = (of.left_m(stamps_s) + of.right_m(stamps_s)) / 2
-    steps = scale * np.diff(travel_m)
-    middle = (yaw[1:] + yaw[:-1]) / 2
-    return np.concatenate(
-        [
-            np.zeros((1, 2)),
-            np.cumsum(np.stack([steps * np.cos(middle), steps * np.sin(middle)], -1), 0),
-        ]
-    )
-
-
-def _step_sizes(stamps_s: FloatArray, off: FloatArray) -> FloatArray:
-    """Distance (M,) between the medians of `off` (M, 2) shortly before and after each pose.
-
-    Medians bear jitter of stamps. NaN next to the ends and to gaps.
-    """
-    period_s = float(np.median(np.diff(stamps_s)))
-    near_s, far_s = NEAR_S, max(FAR_S, NEAR_S + 3 * period_s)
-    edges = [
-        np.searchsorted(stamps_s, stamps_s + shift_s)
-        for shift_s in (-far_s, -near_s, near_s, far_s)
-    ]
-    found = np.full(len(stamps_s), np.nan)
-    for i in range(len(stamps_s)):
-        a, b, c, d = (int(edge[i]) for edge in edges)
-        if b - a >= 2 and d - c >= 2:
-            found[i] = np.hypot(*(np.median(off[c:d], axis=0) - np.median(off[a:b], axis=0)))
-    return found
-
-
-def _stood(stamps_s: FloatArray, positions: FloatArray, reckoned: FloatArray, at: int) -> bool:
-    """Whether around a row the poses moved far less than dead reckoning, and not against it."""
-    first, last = np.searchsorted(stamps_s, [stamps_s[at] - FAR_S, stamps_s[at] + FAR_S])
-    last = min(int(last), len(stamps_s) - 1)
-    moved, driven = positions[last] - positions[first], reckoned[last] - reckoned[first]
-    return bool(np.hypot(*moved) < 0.4 * np.hypot(*driven))
-
-
-def _without_window_changes(
-    evidence: Evidence, rows: IntArray, positions: FloatArray
-) -> FloatArray:
-    """Positions (M, 2) with the steps at changes of `window` taken out: these may jump."""
-    pose = evidence.run.pose
-    if pose is None or "window" not in pose:
-        return positions
-    steps = np.diff(positions, axis=0)
-    steps[np.diff(np.nan_to_num(pose["window"][rows])) != 0] = 0.0
-    return np.concatenate([positions[:1], positions[0] + np.cumsum(steps, axis=0)])
-
-
-def _widened(spans_s: FloatArray) -> FloatArray:
-    return spans_s + np.array([-2 * FAR_S, 2 * FAR_S])

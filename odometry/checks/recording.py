@@ -19,6 +19,7 @@ from odometry.checks.settings import settings
 from odometry.checks.sides import sides
 from odometry.checks.stamps import stamps, unreadable_stamps
 from odometry.checks.timing import timing
+from odometry.checks.tread_motion import tread_motion
 from odometry.checks.treads import treads
 from odometry.checks.turning import turning
 from odometry.checks.units import units
@@ -38,6 +39,7 @@ CHECKS: tuple[Check, ...] = (
     course,
     units,
     sides,
+    tread_motion,
     treads,
     gaps,
     timing,

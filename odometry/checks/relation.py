@@ -64,9 +64,9 @@ def relation(target: FloatArray, *columns: FloatArray) -> Relation | None:
     if measured.sum() < LEAST_WINDOWS or np.linalg.matrix_rank(design[measured]) < len(columns):
         return None
     kept = measured.copy()
-    coefficients = np.zeros(len(columns))
+    coefficients: FloatArray = np.zeros(len(columns))
     for _ in range(ROUNDS):
-        coefficients = np.linalg.lstsq(design[kept], target[kept], rcond=None)[0]
+        coefficients = np.asarray(np.linalg.lstsq(design[kept], target[kept], rcond=None)[0], float)
         residuals = target - design @ coefficients
         scale = 1.4826 * np.median(np.abs(residuals[measured]))
         before, kept = kept, measured & (np.abs(residuals) <= CUTOFF * scale + 1e-12)

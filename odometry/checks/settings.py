@@ -104,10 +104,8 @@ def _terrain_names(evidence: Evidence) -> Iterator[Finding]:
     for place, rare in enumerate(ordered):
         for usual in ordered[:place]:
             alike = SequenceMatcher(None, rare.lower().strip(), usual.lower().strip()).ratio()
-            if (
-                alike >= ALIKE
-                and names[rare] <= RARE * max(names[usual], 1)
-                or (rare.lower().strip() == usual.lower().strip())
+            if (alike >= ALIKE and names[rare] <= RARE * max(names[usual], 1)) or (
+                rare.lower().strip() == usual.lower().strip()
             ):
                 yield Finding(
                     "terrain_names",

@@ -44,15 +44,15 @@ def _twist(turn: Relation | None, forward: Relation | None) -> Iterator[Finding]
             Level.WARNING,
             f"turns come from {names[1]} alone ({of_rate:.2f} rad for each unit of it, "
             f"{of_speed:.2f} for {names[0]})",
-            f"The columns hold the twist: {names[0]} is the forward speed v and {names[1]} the turn "
-            "rate omega, not the speeds of two treads; or the other tread's column repeats the mean",
+            f"The columns hold the twist: {names[0]} is the forward speed v, {names[1]} the turn rate "
+            "omega, not the speeds of two treads; or one tread's column repeats the mean",
             "Convert: v_left = v - omega * width / 2, v_right = v + omega * width / 2",
         )
         return
 
 
 def _only(forward: Relation, speed: int, rate: int) -> bool:
-    return abs(forward.coefficients[rate]) < 0.3 * abs(forward.coefficients[speed])
+    return bool(abs(forward.coefficients[rate]) < 0.3 * abs(forward.coefficients[speed]))
 
 
 def _unequal(turn: Relation, forward: Relation | None) -> Iterator[Finding]:
@@ -97,9 +97,9 @@ def _offset(evidence: Evidence) -> Iterator[Finding]:
     yield Finding(
         "tread_offset",
         Level.WARNING,
-        f"the robot turns {turn.coefficients[2]:+.3f} rad/s and moves {along:+.3f} m/s besides what "
-        "the treads say",
-        f"{tread} an offset of about {abs(offset):.3f} m/s: it reads a constant besides its speed, a "
-        "zero that was never set",
+        f"the robot turns {turn.coefficients[2]:+.3f} rad/s and moves {along:+.3f} m/s besides "
+        "what the treads say",
+        f"{tread} an offset of about {abs(offset):.3f} m/s: it reads a constant besides its speed, "
+        "a zero that was never set",
         "Subtract what it reads where the robot stands",
     )

@@ -115,8 +115,8 @@ def stamps(evidence: Evidence) -> Iterator[Finding]:
             yield Finding(
                 "repeated_stamps",
                 Level.WARNING if share > 0.2 else Level.NOTE,
-                f"{len(dropped)} rows of {name} repeat the stamp of the row before ({100 * share:.2g} "
-                f"%; row {first}) and were dropped",
+                f"{len(dropped)} rows of {name} repeat the stamp of the row before "
+                f"({100 * share:.2g} %; row {first}) and were dropped",
                 "The logger wrote a stamp twice"
                 if share <= 0.2
                 else "Stamps have too few digits, or two recordings were merged",

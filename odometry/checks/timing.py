@@ -62,11 +62,11 @@ def _lag(evidence: Evidence, late: Signal, early: Signal) -> Lag | None:
     if evidence.run.pose is not None and len(evidence.run.pose) > 1:
         period_s = float(np.median(np.diff(evidence.run.pose.stamps_s)))
     width_s = max(0.5, 2 * period_s, 2 * evidence.period_s)
-    found = lag_between(late, early, start_s, end_s, width_s, MOST_LAG_S)
+    found = lag_between(late, early, (start_s, end_s), width_s, MOST_LAG_S)
     if found is not None and found.pieces >= 5:
         return found
     wide_s = MOST_LAG_S + CLOCK * (end_s - start_s)
-    return lag_between(late, early, start_s, end_s, width_s, min(wide_s, 20.0)) or found
+    return lag_between(late, early, (start_s, end_s), width_s, min(wide_s, 20.0)) or found
 
 
 def _drifting(evidence: Evidence, lags: dict[tuple[str, str], Lag]) -> dict[tuple[str, str], Lag]:
@@ -75,10 +75,14 @@ def _drifting(evidence: Evidence, lags: dict[tuple[str, str], Lag]) -> dict[tupl
     if evidence.gyroscope_file == "odometry.csv":
         pairs.pop(("treads", "gyroscope"), None)
     by_gyroscope, by_treads = (lags.get(("pose", other)) for other in ("gyroscope", "treads"))
-    if by_gyroscope and by_treads and evidence.gyroscope_file == "odometry.csv":
-        if not 0.5 < by_treads.drift / by_gyroscope.drift < 2.0:
-            return {}
+    one_clock = evidence.gyroscope_file == "odometry.csv"
+    if by_gyroscope and by_treads and one_clock and _differ(by_treads.drift, by_gyroscope.drift):
+        return {}
     return pairs
+
+
+def _differ(first: float, second: float) -> bool:
+    return not 0.5 < first / second < 2.0
 
 
 def _drifts(evidence: Evidence, lag: Lag) -> bool:

@@ -1,16 +1,23 @@
 """Units of tread speeds, positions and yaw rate, and the track width."""
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
 
 import numpy as np
 
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.turning import Sense, gyroscope_sense, pose_sense
+from odometry.checks.unit_tables import (
+    ORDINARY_FORWARD,
+    POSITION_UNITS,
+    Unit,
+    matching,
+    tread_units,
+)
 
 # Robots that were measured move 0.75 to 1.05 times as far as their treads where the terrain holds,
-# and turn as if 1.0 to 3.1 times as wide; on ice 0.24 to 0.4 times as far, on snow 10 times as wide.
+# and turn as if 1.0 to 3.1 times as wide; on ice 0.24 to 0.4 times as far, on snow 10 times
+# as wide.
 FORWARD = (0.55, 1.2)
 WIDTH = (0.9, 4.0)
 VERY_TIGHT = 0.85  # share of the turns explained from which a factor of turns alone may be a unit
@@ -20,47 +27,7 @@ EXTREME = 8.0  # a factor that no slip explains
 HALF = 0.5  # share of the turns explained from which they have a width
 LEAST_WINDOWS = 15  # from which a factor without heading can be called constant
 PLAUSIBLE_M_S = 10.0  # no skid-steer robot is faster
-ORDINARY_FORWARD, ORDINARY_WIDTH = 0.93, 1.8
-
-
-@dataclass(frozen=True)
-class Unit:
-    """A unit in place of the right one: the file holds `factor` times the SI value."""
-
-    words: str
-    factor: float
-
-
-def tread_units(wheel_radius_m: float | None, period_s: float = 0.0) -> tuple[Unit, ...]:
-    """Units in which tread speeds are logged; those of wheels need a radius."""
-    linear = (
-        Unit("metres a row (increments of an odometer, not speeds)", period_s or 1e-9),
-        Unit("mm/s", 1000.0),
-        Unit("cm/s", 100.0),
-        Unit("km/h", 3.6),
-        Unit("miles per hour", 2.23694),
-        Unit("feet per second", 3.28084),
-    )
-    if wheel_radius_m is None:
-        return linear
-    turn = 2 * np.pi * wheel_radius_m
-    return (
-        Unit(f"rad/s (of wheels of {wheel_radius_m:g} m radius)", 1 / wheel_radius_m),
-        Unit(f"RPM (of wheels of {wheel_radius_m:g} m radius)", 60 / turn),
-        Unit("revolutions per second", 1 / turn),
-        Unit("degrees per second", 360 / turn),
-        *linear,
-    )
-
-
-POSITION_UNITS = (
-    Unit("mm", 1000.0),
-    Unit("cm", 100.0),
-    Unit("km", 0.001),
-    Unit("feet", 3.28084),
-    Unit("inches", 39.3701),
-    Unit("degrees of latitude and longitude", 1 / 111_320.0),
-)
+ORDINARY_WIDTH = 1.8
 
 
 def units(evidence: Evidence) -> Iterator[Finding]:
@@ -143,11 +110,11 @@ def _along(evidence: Evidence, forward: float, tight: bool, width: float | None)
     seen = f"the robot moves {forward:.3g} m for each m of tread travel"
     if width is not None:
         seen += f", and turns as if {width:.3g} track widths wide"
-    tread = _matching(
+    tread = matching(
         tread_units(evidence.run.robot.wheel_radius, evidence.period_s),
         lambda unit: forward * unit.factor,
     )
-    position = _matching(POSITION_UNITS, lambda unit: forward / unit.factor)
+    position = matching(POSITION_UNITS, lambda unit: forward / unit.factor)
     tread_fits = tread is not None and (width is None or 0.95 <= width / tread.factor <= WIDTH[1])
     extreme = not 1 / EXTREME < forward < EXTREME
     if tread is None and forward * EXTREME < 1 and width is not None and width > EXTREME:
@@ -196,7 +163,7 @@ def _across(evidence: Evidence, forward: float | None, width: float, tight: bool
     body = evidence.run.robot.width
     if forward is None and evidence.fastest_m_s > PLAUSIBLE_M_S:
         return _too_fast(evidence)
-    tread = _matching(
+    tread = matching(
         tread_units(evidence.run.robot.wheel_radius, evidence.period_s),
         lambda unit: ORDINARY_WIDTH * unit.factor / width,
     )
@@ -274,8 +241,8 @@ def _tread_unit(seen: str, unit: Unit, evidence: Evidence, *, sure: bool = True)
         half = "half" if unit.factor < 1 else "twice"
         others += "".join(f", or {words}" for words in alike)
         others += (
-            f"; or scaled by {unit.factor:.2g} (wheel diameter for radius gives {half} the speed; gear "
-            "ratio): these cannot be distinguished"
+            f"; or scaled by {unit.factor:.2g} (wheel diameter for radius gives {half} the speed; "
+            "gear ratio): these cannot be distinguished"
         )
     return Finding(
         "tread_unit",
@@ -284,13 +251,6 @@ def _tread_unit(seen: str, unit: Unit, evidence: Evidence, *, sure: bool = True)
         f"Tread speeds are in {unit.words}, not m/s{others}",
         "Convert v_left and v_right to m/s: wheel rate times radius",
     )
-
-
-def _matching(candidates: tuple[Unit, ...], ratio: Callable[[Unit], float]) -> Unit | None:
-    """The unit that brings a ratio nearest to the ordinary one, if near enough."""
-    near = min(candidates, key=lambda unit: abs(np.log(ratio(unit) / ORDINARY_FORWARD)))
-    low, high = (0.45, 1.6) if not 1 / 50 < near.factor < 50 else (0.7, 1.15)
-    return near if low <= ratio(near) <= high else None
 
 
 def _track_against_body(evidence: Evidence) -> Finding | None:

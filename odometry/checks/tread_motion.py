@@ -1,0 +1,145 @@
+"""Treads whose values do not go with the motion that gyroscope and poses measure."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.checks.evidence import Evidence
+from odometry.checks.finding import Finding, Level
+from odometry.checks.motion import Motion
+from odometry.checks.relation import relation
+from odometry.checks.spans import constant_spans, within
+
+STUCK_S = 2.0
+BOTH_STUCK_S = 1.0
+OTHER_MOVES = 0.05  # of the ordinary fastest speed, by which the other tread changes meanwhile
+CONTRADICTED = 5.0  # times the usual residual
+
+
+def tread_motion(evidence: Evidence) -> Iterator[Finding]:
+    """Counters in place of speeds, stuck encoders, odometry that is lost."""
+    yield from _counters(evidence)
+    yield from _stuck(evidence)
+    yield from _both_still(evidence)
+
+
+def _stuck(evidence: Evidence) -> Iterator[Finding]:
+    """A tread that keeps one value while its motion goes on by gyroscope or poses."""
+    for side, name in enumerate(("v_left", "v_right")):
+        speeds = evidence.speeds_m_s
+        spans = constant_spans(evidence.stamps_s, speeds[:, side], STUCK_S)
+        contradicted = [span for span in spans if _contradicted(evidence, span, side)]
+        if not contradicted:
+            continue
+        lasts_s = sum(end_s - begin_s for begin_s, end_s in contradicted)
+        row = int(np.searchsorted(evidence.stamps_s, contradicted[0][0]))
+        yield Finding(
+            "stuck_encoder",
+            Level.WARNING,
+            f"{name} stays at {speeds[row, side]:.4g} m/s for {lasts_s:.1f} s (from "
+            f"{evidence.run_time_s(contradicted[0][0]):.1f} s of run time) while gyroscope or "
+            "poses say that this tread goes on differently",
+            f"The encoder of the {name.removeprefix('v_')} tread is stuck or was lost",
+            "Cut the recording with --from and --to, or leave it out",
+            tuple((evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in contradicted),
+        )
+
+
+def _contradicted(evidence: Evidence, span: FloatArray, side: int) -> bool:
+    """Whether turns or the way along in a span are far from what the treads say elsewhere.
+
+    Where both treads keep their values, a command that is held looks alike: that is no evidence.
+    """
+    begin_s, end_s = span
+    rows = within(evidence.stamps_s, span[None])
+    if np.ptp(evidence.speeds_m_s[rows, 1 - side]) < OTHER_MOVES * evidence.fastest_m_s:
+        return False
+    for motion, target in _targets(evidence):
+        inside = (motion.start_s >= begin_s) & (motion.end_s <= end_s)
+        outside = ~within((motion.start_s + motion.end_s) / 2, span[None])
+        if inside.sum() < 2:
+            continue
+        fit = relation(np.where(outside, target, np.nan), motion.left_m, motion.right_m)
+        if fit is None or fit.correlation < 0.8:
+            continue
+        usual = float(np.median(np.abs(fit.residuals[outside & np.isfinite(target)])))
+        size = float(np.quantile(np.abs(target[np.isfinite(target)]), 0.9))
+        treads = np.stack([motion.left_m[inside], motion.right_m[inside]], axis=-1)
+        here = target[inside] - treads @ fit.coefficients
+        if np.nanmedian(np.abs(here)) > max(CONTRADICTED * usual, 0.2 * size):
+            return True
+    return False
+
+
+def _both_still(evidence: Evidence) -> Iterator[Finding]:
+    """Both treads keep their values exactly while gyroscope or poses say that motion changes."""
+    spans = constant_spans(evidence.stamps_s, evidence.speeds_m_s, BOTH_STUCK_S)
+    odd = [span for span in spans if _differs(evidence, span)]
+    if not odd:
+        return
+    lasts_s = sum(end_s - begin_s for begin_s, end_s in odd)
+    row = int(np.searchsorted(evidence.stamps_s, odd[0][0]))
+    left, right = evidence.speeds_m_s[row]
+    yield Finding(
+        "treads_frozen",
+        Level.WARNING,
+        f"both treads stay at ({left:.3g}, {right:.3g}) m/s for {lasts_s:.1f} s (first at "
+        f"{evidence.run_time_s(odd[0][0]):.1f} s) while gyroscope or poses say that the robot "
+        "moves differently",
+        "Odometry is lost: the log repeats its last value or zeros (a motor driver or bus that "
+        "stopped); or the robot was pushed, carried or slid",
+        "Cut the recording with --from and --to",
+        tuple((evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in odd),
+    )
+
+
+def _differs(evidence: Evidence, span: FloatArray) -> bool:
+    """Whether the measured motion in a span changes, or differs from that of the held speeds."""
+    for motion, target in _targets(evidence):
+        inside = (motion.start_s >= span[0]) & (motion.end_s <= span[1]) & np.isfinite(target)
+        known = np.isfinite(target)
+        if inside.sum() < 1:
+            continue
+        fit = relation(np.where(inside, np.nan, target), motion.left_m, motion.right_m)
+        if fit is None or fit.explained < 0.7:
+            continue
+        size = float(np.quantile(np.abs(target[known]), 0.9))
+        usual = float(np.median(np.abs(fit.residuals[known & ~inside])))
+        off = np.abs(fit.residuals[inside])
+        if float(np.median(off)) > max(2 * CONTRADICTED * usual, 0.3 * size):
+            return True
+    return False
+
+
+def _targets(evidence: Evidence) -> Iterator[tuple[Motion, FloatArray]]:
+    if evidence.yaw_rate is not None:
+        yield evidence.uniform, evidence.uniform.gyroscope_rad
+    if evidence.yaw_measured:
+        yield evidence.motion, evidence.motion.turn_rad
+        yield evidence.motion, evidence.forward_m
+
+
+def _counters(evidence: Evidence) -> Iterator[Finding]:
+    """Columns whose changes, not whose values, are the motion."""
+    for motion, target in _targets(evidence):
+        rows = [
+            np.clip(np.searchsorted(evidence.stamps_s, at_s, side="right") - 1, 0, None)
+            for at_s in (motion.start_s, motion.end_s)
+        ]
+        left, right = (evidence.run.odometry[n] for n in ("v_left", "v_right"))
+        changed = relation(target, left[rows[1]] - left[rows[0]], right[rows[1]] - right[rows[0]])
+        plain = relation(target, motion.left_m, motion.right_m)
+        if changed is None or changed.explained < 0.8:
+            continue
+        if plain is None or plain.explained < 0.5:
+            yield Finding(
+                "treads_are_counters",
+                Level.WARNING,
+                f"changes of v_left and v_right explain {100 * changed.explained:.0f} % of the "
+                "motion, their values do not",
+                "The columns hold counters: positions or angles of the wheels (an odometer, "
+                "encoder ticks), not speeds",
+                "Differentiate them by t, and convert to m/s",
+            )
+            return
