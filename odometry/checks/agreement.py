@@ -35,8 +35,8 @@ def agreement(evidence: Evidence) -> Iterator[Finding]:
             f"{evidence.pose_turn_by_treads.correlation:.2f})"
             if evidence.pose_turn_by_treads
             else "",
-            "pose.csv is of another recording or another clock, or its yaw is something else (a "
-            "component of a quaternion, another axis)",
+            "pose.csv is of another recording or another clock, or its yaw is no heading (the "
+            "course over ground, a component of a quaternion, another axis)",
             "Plot the three yaw rates: check --picture",
         )
     elif gyroscope is unrelated and _moves(evidence.gyroscope_by_treads) and not together:

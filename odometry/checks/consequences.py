@@ -20,12 +20,22 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     | YAW
     | {"yaw_in_degrees", "gyroscope_unit", "track_width", "tread_unit"},
     "yaw_is_course": YAW | {"pose_late", "poses_unrelated", "gyroscope_unit", "yaw_jumps"},
-    "poses_are_wheel_odometry": frozenset({"gyroscope_unit", "track_width", "pose_late"}),
+    "poses_are_wheel_odometry": frozenset(
+        {"gyroscope_unit", "track_width", "pose_late", "yaw_is_course", "yaw_jumps"}
+    ),
     "noisy_positions": POSES | YAW | {"tread_unit", "yaw_jumps", "far_sensor", "pose_outliers"},
     "treads_are_twist": TREADS | POSES | {"treads_unequal", "tread_left_reversed"},
-    "treads_unequal": frozenset({"pose_jumps", "tread_offset"}),
-    "saturated_speed": frozenset({"stuck_encoder", "pose_jumps", "slip", "scale", "treads_frozen"}),
-    "treads_frozen": frozenset({"pose_jumps", "slip", "odometry_gap"}),
+    "treads_unequal": frozenset({"pose_jumps"}),
+    "treads_are_counters": TREADS
+    | POSES
+    | YAW
+    | {"treads_unrelated", "absurd_speed", "tread_left_reversed", "tread_right_reversed"}
+    | {"treads_swapped", "gyroscope_unrelated", "pose_mirrored", "treads_both_reversed"},
+    "tread_offset": frozenset({"treads_unequal", "gyroscope_bias", "pose_jumps"}),
+    "uneven_stamps": frozenset({"odometry_gap"}),
+    "saturated_speed": frozenset({"stuck_encoder", "pose_jumps", "treads_frozen"})
+    | {"treads_unequal", "tread_offset", "slip", "scale"},
+    "treads_frozen": frozenset({"pose_jumps", "slip", "odometry_gap", "turns_at_rest"}),
     "odometry_gap": frozenset({"pose_jumps"}),
     "clock_set": frozenset({"pose_jumps"}),
     "imu_mount": frozenset({"gyroscope_reversed", "gyroscope_unrelated"}),
@@ -45,11 +55,14 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     ),
     "stuck_encoder": frozenset(
         {"slip", "slip_in_turns", "scale", "pose_jumps", "treads_unrelated", "gyroscope_unrelated"}
+        | {"tread_offset", "treads_unequal"}
     ),
     "gyroscope_clipped": frozenset(
         {"yaw_jumps", "gyroscope_unit", "gyroscope_dead", "gyroscope_bias"}
     ),
-    "gyroscope_dead": frozenset({"gyroscope_unit"}),
+    "gyroscope_dead": frozenset({"gyroscope_unit", "yaw_jumps", "stuck_encoder"}),
+    "interpolated_poses": frozenset({"clocks_apart"}),
+    "turns_at_rest": frozenset({"gyroscope_bias", "tread_offset"}),
     "tread_unit": frozenset({"track_width", "slip_in_turns", "slip"}),
     "slip": frozenset({"pose_late", "treads_late"}),
     "slip_in_turns": frozenset({"treads_late"}),

@@ -16,7 +16,7 @@ CERTAIN = 4.0
 STATIONARY_M_S = 0.005
 LEAST_STATIONARY_S = 2.0
 CLIPPED = 0.01  # share of rows at the very largest rate
-DEAD_S = 2.0
+DEAD_S = 1.0
 
 
 def gyroscope(evidence: Evidence) -> Iterator[Finding]:
@@ -37,6 +37,9 @@ def _bias(evidence: Evidence) -> Iterator[Finding]:
     if abs(bias) < LEAST_BIAS_RAD_S or abs(bias) < CERTAIN * sigma:
         return
     large = abs(bias) > LARGE_BIAS_RAD_S
+    if large and how.startswith("while stationary"):
+        yield _turns_at_rest(bias, how)
+        return
     yield Finding(
         "gyroscope_bias",
         Level.WARNING if large else Level.NOTE,
@@ -44,6 +47,17 @@ def _bias(evidence: Evidence) -> Iterator[Finding]:
         "The gyroscope has a bias"
         + (" far above what is usual (units, or not at rest)" if large else ""),
         "Subtract it where the yaw rate is used; some seconds at rest measure it",
+    )
+
+
+def _turns_at_rest(rate_rad_s: float, how: str) -> Finding:
+    return Finding(
+        "turns_at_rest",
+        Level.WARNING,
+        f"gyro_z reads {rate_rad_s:+.3f} rad/s in the median {how} by the treads",
+        "The treads read zero while the robot moves (odometry is lost, the robot is carried or "
+        "pushed), or the gyroscope has a bias far above what is usual",
+        "Leave these stretches out: --from and --to",
     )
 
 

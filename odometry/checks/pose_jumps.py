@@ -14,6 +14,7 @@ LEAST_JUMP_M = 0.4
 JUMP_TIMES = 7.0  # the usual change of the difference to dead reckoning over the same time
 LEAST_YAW_JUMP_RAD = np.radians(20)
 JITTER_S = 0.4  # by which poses that came in bursts were late
+LOST_S = 0.3  # around a jump, in which treads that read zero are its cause
 NEAR_S, FAR_S = 0.25, 1.25  # of a jump: between them its two sides are compared
 
 
@@ -30,7 +31,7 @@ def jumps(
         return
     off = _without_window_changes(evidence, rows, positions - _reckoned(evidence, rows, scale))
     step = _step_sizes(stamps_s, off)
-    speed = np.gradient(travel_m, stamps_s)
+    speed = _rate(travel_m, stamps_s)
     known = np.isfinite(step) & ~within(stamps_s - evidence.stamps_s[0], _widened(frozen_s))
     if known.sum() < 20:
         return
@@ -53,6 +54,19 @@ def jumps(
             "The robot is stuck or slips while its wheels spin, or poses are frozen for a moment",
             "Judge by what the robot drove on; cut with --from and --to",
             tuple((evidence.run_time_s(stamps_s[i]),) * 2 for i in stood),
+        )
+    lost = [i for i in peaks if _lost_treads(evidence, stamps_s[i])]
+    peaks = [i for i in peaks if i not in lost]
+    if lost:
+        yield Finding(
+            "treads_frozen",
+            Level.WARNING,
+            f"poses move by up to {step[lost].max():.2f} m while both treads read zero ({len(lost)} "
+            f"times, first at {evidence.run_time_s(stamps_s[lost[0]]):.1f} s)",
+            "Odometry is lost: the log writes zeros (a motor driver or bus that stopped); or the "
+            "robot was pushed, carried or slid, or poses jump",
+            "Cut the recording with --from and --to",
+            tuple((evidence.run_time_s(stamps_s[i]),) * 2 for i in lost),
         )
     if not peaks:
         return
@@ -89,7 +103,7 @@ def yaw_jumps(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
     if measured.sum() < 20:
         return
     usual = 1.4826 * float(np.median(step[measured]))
-    rate = np.abs(np.gradient(heading[known], stamps_s))
+    rate = np.abs(_rate(heading[known], stamps_s))
     odd = measured & (step > np.maximum(JUMP_TIMES * usual, LEAST_YAW_JUMP_RAD + JITTER_S * rate))
     peaks = [begin + int(np.argmax(step[begin:end])) for begin, end in runs_of(odd)]
     if not peaks:
@@ -170,3 +184,15 @@ def _stood(stamps_s: FloatArray, positions: FloatArray, reckoned: FloatArray, at
 
 def _widened(spans_s: FloatArray) -> FloatArray:
     return np.asarray(spans_s + np.array([-2 * FAR_S, 2 * FAR_S]))
+
+
+def _rate(values: FloatArray, stamps_s: FloatArray) -> FloatArray:
+    """Change (M,) of values to the next row for each second."""
+    rates = np.diff(values) / np.maximum(np.diff(stamps_s), 1e-3)
+    return np.append(rates, rates[-1:])
+
+
+def _lost_treads(evidence: Evidence, at_s: float) -> bool:
+    """Whether both treads read exactly zero around a stamp."""
+    near = np.abs(evidence.stamps_s - at_s) < LOST_S
+    return bool(near.any() and (evidence.speeds_m_s[near] == 0).all(axis=1).mean() > 0.6)

@@ -117,9 +117,8 @@ def _noisy(evidence: Evidence, stamps_s: FloatArray, positions: FloatArray) -> I
     """Noise by second differences of neighbours, which smooth driving hardly has."""
     second = positions[2:] - 2 * positions[1:-1] + positions[:-2]
     scale = evidence.metres_per_metre or 1.0
-    sigma = 1.4826 * float(np.median(np.abs(second))) / np.sqrt(6.0) / min(max(scale, 1e-9), 1e9)
-    if 0.2 < scale < 5.0:
-        sigma *= scale
+    unit = scale if not 1 / 30 < scale < 30 else 1.0
+    sigma = 1.4826 * float(np.median(np.abs(second))) / np.sqrt(6.0) / unit
     step_m = evidence.fastest_m_s * float(np.median(np.diff(stamps_s)))
     if sigma > NOISY_M and sigma > 0.3 * step_m:
         yield Finding(

@@ -6,6 +6,7 @@ import numpy as np
 
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
+from odometry.checks.motion import Motion
 from odometry.checks.relation import Relation, relation
 
 UNEQUAL = (
@@ -44,8 +45,8 @@ def _twist(turn: Relation | None, forward: Relation | None) -> Iterator[Finding]
             Level.WARNING,
             f"turns come from {names[1]} alone ({of_rate:.2f} rad for each unit of it, "
             f"{of_speed:.2f} for {names[0]})",
-            f"The columns hold the twist: {names[0]} is the forward speed v, {names[1]} the turn rate "
-            "omega, not the speeds of two treads; or one tread's column repeats the mean",
+            f"The columns hold the twist: {names[0]} is the forward speed v, {names[1]} the turn "
+            "rate omega, not the speeds of two treads; or one tread's column repeats the mean",
             "Convert: v_left = v - omega * width / 2, v_right = v + omega * width / 2",
         )
         return
@@ -81,6 +82,8 @@ def _unequal(turn: Relation, forward: Relation | None) -> Iterator[Finding]:
 def _offset(evidence: Evidence) -> Iterator[Finding]:
     """A constant added to one tread: it drives while the robot stands."""
     m = evidence.motion
+    if _reads_zero(evidence) or not _turns_both_ways(m):
+        return
     turn = relation(m.turn_rad, m.left_m, m.right_m, m.lasts_s)
     if turn is None or not turn.certain(2, TIMES) or turn.explained < HELD:
         return
@@ -103,3 +106,16 @@ def _offset(evidence: Evidence) -> Iterator[Finding]:
         "a zero that was never set",
         "Subtract what it reads where the robot stands",
     )
+
+
+def _reads_zero(evidence: Evidence) -> bool:
+    """Whether both treads read exactly zero at times: then neither has an offset."""
+    still = (evidence.speeds_m_s == 0).all(axis=1)
+    return bool(still.sum() * evidence.period_s > 1.0)
+
+
+def _turns_both_ways(motion: Motion) -> bool:
+    """Whether left and right turns are there: else an offset cannot be told from a wrong width."""
+    turns = motion.difference_m[np.abs(motion.difference_m) > 0.05 * np.abs(motion.mean_m)]
+    left = float(np.mean(turns > 0)) if len(turns) else 0.0
+    return 0.15 < left < 0.85
