@@ -7,21 +7,64 @@ from pathlib import Path
 
 import numpy as np
 
+from odometry.arrays import FloatArray
 from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.errors import ComparisonError
-from odometry.comparison.parts import windows_of_parts
-from odometry.comparison.predictor import Predictor
-from odometry.comparison.split import Split
-from odometry.effects.tables import model_of
+from odometry.comparison.split import Split, windows_of_parts
+from odometry.effects.tables import model_of, table_of
 from odometry.errors import ParameterError
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fitters import fitter
 from odometry.models.base import KinematicModel
 from odometry.models.catalogue import MODELS
-from odometry.parameters import ParameterSet, read_parameters
+from odometry.parameters import ParameterSet, TerrainParameters, read_parameters
 from odometry.windows.windows import Windows
 
 AS_GIVEN = "taken as it is; it may have been identified on these very runs"
+
+
+@dataclass(frozen=True)
+class Predictor:
+    """A model with parameters, ready to be evaluated.
+
+    Attributes
+    ----------
+    model : KinematicModel
+    values : Mapping of name to float
+    covariance_order : tuple of str
+        The identified parameters.
+    covariance : (F, F)
+    source : str
+    undetermined : tuple of str
+        What the windows left open; the model can be evaluated all the same.
+    notes : tuple of str
+        What else a reader should know of the identification.
+    """
+
+    model: KinematicModel
+    values: Mapping[str, float]
+    covariance_order: tuple[str, ...]
+    covariance: FloatArray
+    source: str
+    undetermined: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    @property
+    def packed(self) -> FloatArray:
+        """Parameters (P,) in the order of the model."""
+        return self.model.pack(self.values)
+
+    def to_parameters(self) -> TerrainParameters:
+        """The table of a parameter set.
+
+        What was left open stands in its source, and no covariance is stated then.
+        """
+        if self.undetermined:
+            source = f"{self.source}; not determined: {'; '.join(self.undetermined)}"
+            return table_of(self.model, self.values, (), np.empty((0, 0)), source)
+        return table_of(
+            self.model, self.values, self.covariance_order, self.covariance, self.source
+        )
 
 
 class Candidate(ABC):
@@ -34,7 +77,7 @@ class Candidate(ABC):
 
     @abstractmethod
     def on(self, split: Split, config: ComparisonConfig) -> Predictor:
-        """The model that may be judged on a split.
+        """The model that may be evaluated on the held-out parts of a split.
 
         Raises
         ------
@@ -45,7 +88,7 @@ class Candidate(ABC):
 
 @dataclass(frozen=True)
 class IdentifiedModel(Candidate):
-    """A model of the catalogue, identified on what a split lets it see.
+    """A model of the catalogue, identified on the training parts of a split.
 
     Attributes
     ----------
@@ -67,13 +110,13 @@ class IdentifiedModel(Candidate):
 
     def on(self, split: Split, config: ComparisonConfig) -> Predictor:
         """See `Candidate.on`."""
-        robot = split.judged[0].run.robot
+        robot = split.held_out[0].run.robot
         if all(parameter.known for parameter in self.model.parameters):
             values = self.model.guess(robot)
             return Predictor(self.model, values, (), np.empty((0, 0)), "known of the robot")
-        if not split.seen:
+        if not split.training:
             raise IdentificationError("no run of --train is of this robot on this ground")
-        windows = _thinned(windows_of_parts(split.seen, config.training), self.most_windows)
+        windows = _thinned(windows_of_parts(split.training, config.training), self.most_windows)
         fit = fitter(
             self.model,
             robot,
@@ -86,7 +129,7 @@ class IdentifiedModel(Candidate):
             fit.values,
             fit.names,
             fit.covariance,
-            f"identified by terrain-odometry from {len(windows)} windows of {split.words}",
+            f"identified by terrain-odometry from {len(windows)} windows of {split.training_names}",
             tuple(open_.words() for open_ in fit.undetermined),
             tuple(f"{name} ended at the edge of its search range" for name in fit.at_bound),
         )
@@ -106,15 +149,15 @@ class GivenParameters(Candidate):
 
     def on(self, split: Split, config: ComparisonConfig) -> Predictor:  # noqa: ARG002 - its face
         """See `Candidate.on`."""
-        table = self.parameters.terrains.get(split.ground)
+        table = self.parameters.terrains.get(split.terrain)
         if table is None:
             raise ParameterError(
-                f"the set has no terrain {split.ground!r}; it has "
+                f"the set has no terrain {split.terrain!r}; it has "
                 f"{', '.join(self.parameters.terrains)}"
             )
-        where = f"{self.name}: [terrain.{split.ground}]"
+        where = f"{self.name}: [terrain.{split.terrain}]"
         return Predictor(
-            model_of(table, split.judged[0].run.robot, where),
+            model_of(table, split.held_out[0].run.robot, where),
             table.values,
             table.covariance_order,
             table.covariance,

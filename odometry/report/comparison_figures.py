@@ -7,10 +7,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from odometry.arrays import FloatArray
-from odometry.comparison.comparison import Comparison
 from odometry.comparison.config import ROTATION_HORIZON_M
+from odometry.comparison.evaluation import Evaluation
 from odometry.comparison.files import file_name
-from odometry.comparison.judgement import Judgement
+from odometry.comparison.result import Comparison
 from odometry.comparison.summary import QUANTITIES, Place, values_of
 from odometry.report.commanded_rotation import (
     commanded_rotation,
@@ -28,9 +28,9 @@ _PANELS, _PANEL_IN = 3, 2.3  # of the figure of turns
 
 
 def distribution_picture(comparison: Comparison, place: Place, folder: Path) -> Picture | None:
-    """Violins of both errors, one row a model; None where no model was judged."""
-    judgements = comparison.judgements_at(place)
-    errors = {q: pooled_errors(judgements, comparison.models, q) for q in QUANTITIES}
+    """Violins of both errors, one row a model; None where no model was evaluated."""
+    evaluations = comparison.evaluations_at(place)
+    errors = {q: pooled_errors(evaluations, comparison.models, q) for q in QUANTITIES}
     names = list(errors["translation"])
     if not names:
         return None
@@ -102,10 +102,10 @@ def horizon_picture(
 
 def rotation_picture(comparison: Comparison, robot: str, folder: Path) -> Picture | None:
     """Measured turns over one metre by commanded difference; None without such windows."""
-    grounds: dict[str, list[Judgement]] = {}
-    for each in comparison.judgements:
+    grounds: dict[str, list[Evaluation]] = {}
+    for each in comparison.evaluations:
         if each.robot == robot and each.horizon_m == ROTATION_HORIZON_M:
-            grounds.setdefault(each.ground, []).append(each)
+            grounds.setdefault(each.terrain, []).append(each)
     if not grounds:
         return None
     commanded = {ground: _commanded(of_ground) for ground, of_ground in grounds.items()}
@@ -146,12 +146,12 @@ def rotation_picture(comparison: Comparison, robot: str, folder: Path) -> Pictur
 
 
 def pooled_errors(
-    judgements: tuple[Judgement, ...], models: tuple[str, ...], quantity: str
+    evaluations: tuple[Evaluation, ...], models: tuple[str, ...], quantity: str
 ) -> dict[str, FloatArray]:
-    """All errors by model, of those that were judged."""
+    """All errors by model, of those that were evaluated."""
     found: dict[str, FloatArray] = {}
     for model in models:
-        values = [values_of(j.errors[model], quantity) for j in judgements if model in j.errors]
+        values = [values_of(j.errors[model], quantity) for j in evaluations if model in j.errors]
         if values:
             found[model] = np.concatenate(values)
     return found
@@ -175,13 +175,12 @@ def horizon_curves(
     return medians, ranges
 
 
-def _commanded(judgements: list[Judgement]) -> tuple[FloatArray, FloatArray]:
+def _commanded(evaluations: list[Evaluation]) -> tuple[FloatArray, FloatArray]:
     """Commanded differences and measured turns (degrees per m) of all windows."""
-    judged = [judgement.judged for judgement in judgements]
     differences = np.concatenate(
-        [j.mean_speeds_m_s[:, 1] - j.mean_speeds_m_s[:, 0] for j in judged]
+        [j.mean_speeds_m_s[:, 1] - j.mean_speeds_m_s[:, 0] for j in evaluations]
     )
-    turns = np.concatenate([j.windows.measured[:, 2] / j.windows.travel_m for j in judged])
+    turns = np.concatenate([j.windows.measured[:, 2] / j.windows.travel_m for j in evaluations])
     return differences, np.degrees(turns)
 
 
@@ -189,4 +188,4 @@ def picture_name(comparison: Comparison, place: Place) -> str:
     """Of the files of a place: with the horizon where there are several."""
     several = len(comparison.config.horizons_m) > 1
     horizon = f"_{place.horizon_m:g}m".replace(".", "p") if several else ""
-    return file_name(place.robot, place.ground) + horizon
+    return file_name(place.robot, place.terrain) + horizon

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from odometry.comparison.comparison import Comparison
+from odometry.comparison.result import Comparison
 from odometry.comparison.summary import Place
 from odometry.report.comparison_figures import (
     distribution_picture,
@@ -15,7 +15,7 @@ from odometry.report.comparison_tables import (
     error_grid,
     fitness_grid,
     parameter_grid,
-    seen_grid,
+    quartile_grid,
     settings_grid,
     split_grid,
 )
@@ -50,12 +50,12 @@ def write_comparison_report(comparison: Comparison, out: str | Path) -> list[Pat
         The files written, the page last. Figures of an earlier comparison are removed.
     """
     folder = Path(out) / "figures"
-    robots = dict.fromkeys(robot for robot, _ in comparison.robots_and_grounds)
+    robots = dict.fromkeys(robot for robot, _ in comparison.robots_and_terrains)
     sections = [
         Section("How to read this", [Paragraph(HOW)]),
         Section("All errors", [error_grid(comparison), *_left_out(comparison)]),
         *(_place(comparison, place, folder) for place in comparison.places),
-        *(_horizons(comparison, *pair, folder) for pair in comparison.robots_and_grounds),
+        *(_horizons(comparison, *pair, folder) for pair in comparison.robots_and_terrains),
         *(_rotation(comparison, robot, folder) for robot in robots),
         Section("Whole runs", [fitness_grid(comparison)]),
         Section("Parameters", [parameter_grid(comparison)]),
@@ -78,9 +78,9 @@ def lead(comparison: Comparison) -> str:
         return said[0] if said else "No model could be judged."
     least: dict[str, int] = {}
     for place in comparison.places:
-        judged = [summary for summary in comparison.summaries_at(place) if summary.complete]
-        if judged:
-            best = min(judged, key=lambda summary: summary.means["translation"]).model
+        complete = [summary for summary in comparison.summaries_at(place) if summary.complete]
+        if complete:
+            best = min(complete, key=lambda summary: summary.means["translation"]).model
             least[best] = least.get(best, 0) + 1
     counts = ", ".join(f"{model} {count} times" for model, count in least.items())
     return f"Least mean translation error at {len(comparison.places)} places: {counts or 'none'}."
@@ -88,17 +88,20 @@ def lead(comparison: Comparison) -> str:
 
 def _place(comparison: Comparison, place: Place, folder: Path) -> Section:
     """Everything about one robot and ground over one horizon."""
-    judgements = comparison.judgements_at(place)
+    evaluations = comparison.evaluations_at(place)
     name = picture_name(comparison, place)
     pictures = (
         distribution_picture(comparison, place, folder),
-        speed_plane_picture(judgements, comparison.models, folder / f"speed_plane_{name}.png"),
+        speed_plane_picture(evaluations, comparison.models, folder / f"speed_plane_{name}.png"),
     )
     found = comparison.differences_at(place)
-    blocks: list[Block] = [Listing(comparison.sentences_at(place)), seen_grid(comparison, place)]
+    blocks: list[Block] = [
+        Listing(comparison.sentences_at(place)),
+        quartile_grid(comparison, place),
+    ]
     blocks += [picture for picture in pictures if picture is not None]
     blocks += [difference_grid(found)] if found else []
-    blocks += [split_grid(comparison, place)] if judgements else []
+    blocks += [split_grid(comparison, place)] if evaluations else []
     return Section(place.title, blocks)
 
 

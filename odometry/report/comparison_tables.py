@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from odometry.comparison.comparison import Comparison
-from odometry.comparison.differences import Difference
+from odometry.comparison.result import Comparison
+from odometry.comparison.statistics import Difference
 from odometry.comparison.summary import Place, Summary
 from odometry.report.html import Grid
 
@@ -15,7 +15,7 @@ def error_grid(comparison: Comparison) -> Grid:
     rows = [
         (
             place.robot,
-            place.ground,
+            place.terrain,
             f"{place.horizon_m:g}",
             summary.model,
             str(summary.windows),
@@ -32,8 +32,8 @@ def error_grid(comparison: Comparison) -> Grid:
     return Grid(header, rows, "Held-out errors per metre of wheel travel.")
 
 
-def seen_grid(comparison: Comparison, place: Place) -> Grid:
-    """Quartiles of both errors, on which windows, and what had been seen."""
+def quartile_grid(comparison: Comparison, place: Place) -> Grid:
+    """Quartiles of both errors, on which windows, and remarks."""
     rows = [
         (
             summary.model,
@@ -49,10 +49,10 @@ def seen_grid(comparison: Comparison, place: Place) -> Grid:
 
 
 def split_grid(comparison: Comparison, place: Place) -> Grid:
-    """Which runs were judged by models that had seen what."""
+    """Which runs were held out from models that were identified on which."""
     rows = dict.fromkeys(
-        (judgement.run, judgement.seen, str(len(judgement.judged)))
-        for judgement in comparison.judgements_at(place)
+        (evaluation.run, evaluation.training_runs, str(len(evaluation.windows)))
+        for evaluation in comparison.evaluations_at(place)
     )
     return Grid(("judged run", "identified on", "windows"), list(rows), "The split.")
 

@@ -9,7 +9,7 @@ from terrain.cli.options import MODEL_NAMES, window_options
 from terrain.cli.results import print_table, print_written
 
 if TYPE_CHECKING:
-    from odometry.comparison.comparison import Comparison
+    from odometry.comparison.result import Comparison
     from odometry.windows.config import WindowConfig
 
 FOLDER = click.Path(file_okay=False, path_type=Path)
@@ -118,15 +118,15 @@ def _print_errors(comparison: "Comparison") -> None:
             cells = ["-" if mean is None else f"{mean:.4f}" for mean in means]
             remark = "see below" if comparison.remarks_at(place, summary) else ""
             over = f"{place.horizon_m:g} m"
-            where = (place.robot, place.ground, over, summary.model, str(summary.windows))
+            where = (place.robot, place.terrain, over, summary.model, str(summary.windows))
             rows.append((*where, *cells, remark))
     click.echo("Mean held-out errors, per metre of wheel travel:")
     print_table(rows)
     click.echo("Each run was judged by models identified on:")
-    for prepared in comparison.prepared:
-        split = prepared.split
-        judged = ", ".join(part.name for part in split.judged)
-        click.echo(f"  {split.robot} on {split.ground}: {judged}: {split.words}")
+    for models in comparison.split_models:
+        split = models.split
+        held_out = ", ".join(part.name for part in split.held_out)
+        click.echo(f"  {split.robot} on {split.terrain}: {held_out}: {split.training_names}")
     for place in comparison.places:
         click.echo(f"{place.title}:")
         for summary in comparison.summaries_at(place):

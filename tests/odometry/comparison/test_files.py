@@ -70,7 +70,7 @@ def test_the_splits_and_settings_are_written_down(written, compared):
         (["run_1"], "run_0"),
     ]
     used = content["splits"][0]["models"]["icr_symmetric"]["parameters"]
-    assert used == dict(compared.prepared[0].predictors["icr_symmetric"].values)
+    assert used == dict(compared.split_models[0].predictors["icr_symmetric"].values)
     assert content["settings"]["training"]["horizon_m"] == 2.0
     assert content["settings"]["draws"] == 400
     assert len(content["fitness"]) == 4

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from odometry.comparison.differences import Difference, between
+from odometry.comparison.statistics import Difference, between
 from odometry.comparison.summary import QUANTITIES, Place, Summary
 
 EFFECTIVE_WIDTH = "icr_symmetric"
@@ -19,7 +19,7 @@ def sentences(place: Place, summaries: Sequence[Summary], found: Sequence[Differ
     found : sequence of Difference
         Of the place.
     """
-    where = f"on {place.ground}"
+    where = f"on {place.terrain}"
     complete = {summary.model: summary for summary in summaries if summary.complete}
     said = []
     for quantity in QUANTITIES:

@@ -4,28 +4,29 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from odometry.comparison.config import ComparisonConfig
-from odometry.comparison.differences import Difference
-from odometry.comparison.judgement import Judgement, RunFitness, Shortfall
-from odometry.comparison.prepare import Prepared
+from odometry.comparison.evaluation import Evaluation, NotEvaluated
+from odometry.comparison.fitting import SplitModels
+from odometry.comparison.sentences import sentences
+from odometry.comparison.statistics import Difference
 from odometry.comparison.summary import Place, Summary, summarise
-from odometry.comparison.words import sentences
+from odometry.comparison.whole_runs import RunFitness
 from odometry.parameters import ParameterSet
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """Models judged on what they have not seen.
+    """Models and their errors on windows that they were not identified on.
 
     Attributes
     ----------
     models : tuple of str
-    prepared : tuple of Prepared
+    split_models : tuple of SplitModels
         The models of each split.
-    judgements : tuple of Judgement
+    evaluations : tuple of Evaluation
         Over all horizons.
-    shortfalls : tuple of Shortfall
+    not_evaluated : tuple of NotEvaluated
     left_out : Mapping of folder to str
-        Runs that cannot be judged, and why.
+        Runs that cannot be evaluated, and why.
     differences : tuple of Difference
         Over the horizons that were asked for.
     fitness : tuple of RunFitness
@@ -35,9 +36,9 @@ class Comparison:
     """
 
     models: tuple[str, ...]
-    prepared: tuple[Prepared, ...]
-    judgements: tuple[Judgement, ...]
-    shortfalls: tuple[Shortfall, ...]
+    split_models: tuple[SplitModels, ...]
+    evaluations: tuple[Evaluation, ...]
+    not_evaluated: tuple[NotEvaluated, ...]
     left_out: Mapping[str, str]
     differences: tuple[Difference, ...]
     fitness: tuple[RunFitness, ...]
@@ -45,39 +46,41 @@ class Comparison:
     config: ComparisonConfig
 
     @property
-    def robots_and_grounds(self) -> tuple[tuple[str, str], ...]:
+    def robots_and_terrains(self) -> tuple[tuple[str, str], ...]:
         """In the order of the runs."""
-        return tuple(dict.fromkeys((each.split.robot, each.split.ground) for each in self.prepared))
+        return tuple(
+            dict.fromkeys((each.split.robot, each.split.terrain) for each in self.split_models)
+        )
 
     @property
     def places(self) -> tuple[Place, ...]:
-        """Robots and grounds over the horizons that were asked for."""
+        """Robots and terrains over the horizons that were asked for."""
         return tuple(
-            Place(robot, ground, horizon_m)
-            for robot, ground in self.robots_and_grounds
+            Place(robot, terrain, horizon_m)
+            for robot, terrain in self.robots_and_terrains
             for horizon_m in self.config.horizons_m
         )
 
-    def judgements_at(self, place: Place) -> tuple[Judgement, ...]:
-        """Judgements of one place."""
-        return tuple(judgement for judgement in self.judgements if place.holds(judgement))
+    def evaluations_at(self, place: Place) -> tuple[Evaluation, ...]:
+        """Evaluations of one place."""
+        return tuple(evaluation for evaluation in self.evaluations if place.holds(evaluation))
 
     def differences_at(self, place: Place) -> tuple[Difference, ...]:
         """Differences at one place."""
         return tuple(each for each in self.differences if each.place == place)
 
     def summaries_at(self, place: Place) -> tuple[Summary, ...]:
-        """One summary a model; its `windows` is 0 where it was not judged."""
-        judgements = self.judgements_at(place)
-        return tuple(summarise(place, judgements, self.shortfalls, m) for m in self.models)
+        """One summary a model; its `windows` is 0 where it was not evaluated."""
+        evaluations = self.evaluations_at(place)
+        return tuple(summarise(place, evaluations, self.not_evaluated, m) for m in self.models)
 
     def remarks_at(self, place: Place, summary: Summary) -> tuple[str, ...]:
-        """Why a model was not judged on some run, what was left open, and what else to know."""
+        """Why a model was not evaluated on some run, what was left open, and what else to know."""
         fits = [
-            prepared.predictors[summary.model]
-            for prepared in self.prepared
-            if (prepared.split.robot, prepared.split.ground) == (place.robot, place.ground)
-            and summary.model in prepared.predictors
+            each.predictors[summary.model]
+            for each in self.split_models
+            if (each.split.robot, each.split.terrain) == (place.robot, place.terrain)
+            and summary.model in each.predictors
         ]
         open_ = [fit.undetermined for fit in fits if fit.undetermined]
         left_open = [

@@ -1,20 +1,19 @@
-"""The models of every split, identified on what it lets them see."""
+"""The models of every split, identified on its training parts."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from tqdm import tqdm
 
-from odometry.comparison.candidates import Candidate
+from odometry.comparison.candidates import Candidate, Predictor
 from odometry.comparison.config import ComparisonConfig
-from odometry.comparison.predictor import Predictor
 from odometry.comparison.split import Split
 from odometry.errors import OdometryError
 
 
 @dataclass(frozen=True)
-class Prepared:
-    """Models that may be judged on one split.
+class SplitModels:
+    """Models that may be evaluated on the held-out parts of one split.
 
     Attributes
     ----------
@@ -29,13 +28,13 @@ class Prepared:
     reasons: Mapping[str, str]
 
 
-def prepare(
+def fit_models(
     planned: Sequence[Split],
     candidates: Sequence[Candidate],
     config: ComparisonConfig,
     *,
     show_progress: bool,
-) -> tuple[Prepared, ...]:
+) -> tuple[SplitModels, ...]:
     """Identify every candidate for every split; one that fails becomes a reason."""
     found = []
     steps = len(planned) * len(candidates)
@@ -45,11 +44,11 @@ def prepare(
         for split in planned:
             predictors, reasons = {}, {}
             for candidate in candidates:
-                bar.set_postfix_str(f"{candidate.label} on {split.ground}", refresh=False)
+                bar.set_postfix_str(f"{candidate.label} on {split.terrain}", refresh=False)
                 try:
                     predictors[candidate.label] = candidate.on(split, config)
                 except OdometryError as error:
                     reasons[candidate.label] = str(error)
                 bar.update()
-            found.append(Prepared(split, predictors, reasons))
+            found.append(SplitModels(split, predictors, reasons))
     return tuple(found)
