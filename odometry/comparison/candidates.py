@@ -76,8 +76,17 @@ class Candidate(ABC):
         """Its name in tables and figures."""
 
     @abstractmethod
-    def on(self, split: Split, config: ComparisonConfig) -> Predictor:
+    def on(
+        self, split: Split, config: ComparisonConfig, near: Mapping[str, float] | None = None
+    ) -> Predictor:
         """The model that may be evaluated on the held-out parts of a split.
+
+        Parameters
+        ----------
+        split : Split
+        config : ComparisonConfig
+        near : Mapping of name to float, optional
+            Where the one search starts that is then made; without it, there are several.
 
         Raises
         ------
@@ -108,7 +117,9 @@ class IdentifiedModel(Candidate):
         """The model's name."""
         return self.model.name
 
-    def on(self, split: Split, config: ComparisonConfig) -> Predictor:
+    def on(
+        self, split: Split, config: ComparisonConfig, near: Mapping[str, float] | None = None
+    ) -> Predictor:
         """See `Candidate.on`."""
         robot = split.held_out[0].run.robot
         if all(parameter.known for parameter in self.model.parameters):
@@ -123,7 +134,7 @@ class IdentifiedModel(Candidate):
             fixed=self.fixed,
             window_config=config.training,
             solver_config=config.solver,
-        )(windows)
+        )(windows, near)
         return Predictor(
             self.model,
             fit.values,
@@ -147,7 +158,12 @@ class GivenParameters(Candidate):
         """The given name."""
         return self.name
 
-    def on(self, split: Split, config: ComparisonConfig) -> Predictor:  # noqa: ARG002 - its face
+    def on(
+        self,
+        split: Split,
+        config: ComparisonConfig,  # noqa: ARG002 - as every candidate
+        near: Mapping[str, float] | None = None,  # noqa: ARG002
+    ) -> Predictor:
         """See `Candidate.on`."""
         table = self.parameters.terrains.get(split.terrain)
         if table is None:

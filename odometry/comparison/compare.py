@@ -66,15 +66,15 @@ def compare(
             "\n  ".join(["no run to compare on", *(left_out | not_used).values()])
         )
     planned = splits(usable, known)
-    split_models = fit_models(planned, candidates, config, show_progress=show_progress)
+    identified = [each for each in candidates if isinstance(each, IdentifiedModel)]
+    on_all = fit_models(
+        of_all(planned), () if known else identified, config, show_progress=show_progress
+    )
+    split_models = fit_models(
+        planned, candidates, config, fitted_to_all=on_all, show_progress=show_progress
+    )
     evaluations, not_evaluated = evaluate_all(split_models, config)
     names = tuple(candidate.label for candidate in candidates)
-    identified = [each for each in candidates if isinstance(each, IdentifiedModel)]
-    on_all = (
-        split_models
-        if known
-        else fit_models(of_all(planned), identified, config, show_progress=show_progress)
-    )
     return Comparison(
         models=names,
         split_models=split_models,
@@ -83,7 +83,9 @@ def compare(
         left_out=left_out | not_used,
         differences=tuple(_differences(split_models, evaluations, names, config)),
         fitness=tuple(run_fitness(split_models, names)),
-        parameters=_parameter_sets(on_all, [each.label for each in identified]),
+        parameters=_parameter_sets(
+            split_models if known else on_all, [each.label for each in identified]
+        ),
         config=config,
     )
 

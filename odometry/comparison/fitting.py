@@ -33,9 +33,26 @@ def fit_models(
     candidates: Sequence[Candidate],
     config: ComparisonConfig,
     *,
+    fitted_to_all: Sequence["SplitModels"] = (),
     show_progress: bool,
 ) -> tuple[SplitModels, ...]:
-    """Identify every candidate for every split; one that fails becomes a reason."""
+    """Identify every candidate for every split; one that fails becomes a reason.
+
+    Parameters
+    ----------
+    planned : sequence of Split
+    candidates : sequence of Candidate
+    config : ComparisonConfig
+    fitted_to_all : sequence of SplitModels
+        Models of the same robots and terrains, identified on all runs: their values are where
+        the search for each split starts, and nothing else of them is used.
+    show_progress : bool
+    """
+    near = {
+        (each.split.robot, each.split.terrain, model): predictor.values
+        for each in fitted_to_all
+        for model, predictor in each.predictors.items()
+    }
     found = []
     steps = len(planned) * len(candidates)
     with tqdm(
@@ -46,7 +63,9 @@ def fit_models(
             for candidate in candidates:
                 bar.set_postfix_str(f"{candidate.label} on {split.terrain}", refresh=False)
                 try:
-                    predictors[candidate.label] = candidate.on(split, config)
+                    predictors[candidate.label] = candidate.on(
+                        split, config, near.get((split.robot, split.terrain, candidate.label))
+                    )
                 except OdometryError as error:
                     reasons[candidate.label] = str(error)
                 bar.update()

@@ -13,6 +13,8 @@ from odometry.windows.config import WindowConfig
 from odometry.windows.errors import WindowError
 from odometry.windows.windows import Windows, windows_of
 
+MOST_FOLDS = 10  # so that the cost of a comparison is linear in the number of runs
+
 
 @dataclass(frozen=True, eq=False)
 class Part:
@@ -129,8 +131,8 @@ def splits(runs: Sequence[Run], train: Sequence[Run] = ()) -> tuple[Split, ...]:
     """Split runs by robot and terrain.
 
     With `train`, models are identified on those of its runs that are of the same robot and
-    terrain. Else each run is held out in turn and models are identified on the other runs; where
-    a terrain has one run, each half of it is held out in turn.
+    terrain. Else the runs are held out in turn (see `folds`) and models are identified on the
+    others.
 
     Parameters
     ----------
@@ -153,12 +155,17 @@ def splits(runs: Sequence[Run], train: Sequence[Run] = ()) -> tuple[Split, ...]:
             known = tuple(training.get((robot, terrain), ()))
             found.append(Split(robot, terrain, tuple(parts), known, _names(known)))
         else:
-            found += leave_one_out(robot, terrain, parts)
+            found += folds(robot, terrain, parts)
     return tuple(found)
 
 
-def leave_one_out(robot: str, terrain: str, parts: Sequence[Part]) -> list[Split]:
-    """Each part held out in turn; the halves of the only part in turn."""
+def folds(robot: str, terrain: str, parts: Sequence[Part]) -> list[Split]:
+    """Each part held out in turn; the halves of the only part in turn.
+
+    More than ten parts are put into ten groups, and each group is held out in turn. Neighbours
+    are in one group: runs that are given one after the other were often recorded so, and are
+    alike.
+    """
     if len(parts) == 1:
         first, second = halves(parts[0])
         return [
@@ -166,9 +173,10 @@ def leave_one_out(robot: str, terrain: str, parts: Sequence[Part]) -> list[Split
             Split(robot, terrain, (second,), (first,), "the first half of the run"),
         ]
     found = []
-    for part in parts:
-        others = tuple(other for other in parts if other is not part)
-        found.append(Split(robot, terrain, (part,), others, _names(others)))
+    for group in np.array_split(np.arange(len(parts)), min(len(parts), MOST_FOLDS)):
+        held_out = tuple(parts[group[0] : group[-1] + 1])
+        others = (*parts[: group[0]], *parts[group[-1] + 1 :])
+        found.append(Split(robot, terrain, held_out, others, _names(others)))
     return found
 
 

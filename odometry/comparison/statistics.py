@@ -53,12 +53,13 @@ def mean_interval(
     of_runs = [values[runs == run] for run in dict.fromkeys(runs)]
     sizes = np.array([len(of_run) for of_run in of_runs])
     drawn = rng.integers(len(of_runs), size=(draws, len(of_runs)))
-    means = np.empty(drawn.shape)
-    for number, of_run in enumerate(of_runs):
-        here = drawn == number
-        means[here] = _block_means(of_run, block, int(here.sum()), rng)
+    means = np.empty(drawn.size)
+    counts = np.bincount(drawn.ravel(), minlength=len(of_runs))
+    places = np.split(np.argsort(drawn, axis=None, kind="stable"), np.cumsum(counts)[:-1])
+    for of_run, here in zip(of_runs, places, strict=True):
+        means[here] = _block_means(of_run, block, len(here), rng)
     weights = sizes[drawn]
-    totals = np.sum(weights * means, axis=1) / np.sum(weights, axis=1)
+    totals = np.sum(weights * means.reshape(drawn.shape), axis=1) / np.sum(weights, axis=1)
     low, high = np.percentile(totals, COVERED)
     return Interval(float(values.mean()), float(low), float(high))
 

@@ -20,7 +20,7 @@ import argparse
 import csv
 import os
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -34,7 +34,7 @@ from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.evaluation import evaluation_windows
 from odometry.comparison.files import write_comparison
 from odometry.comparison.result import Comparison
-from odometry.comparison.split import Split, leave_one_out
+from odometry.comparison.split import Split, folds
 from odometry.comparison.statistics import Difference, between
 from odometry.comparison.summary import QUANTITIES, Place, Summary
 from odometry.errors import OdometryError
@@ -65,11 +65,13 @@ class Remembered(Candidate):
     def label(self) -> str:
         return self.candidate.label
 
-    def on(self, split: Split, config: ComparisonConfig) -> Predictor:
+    def on(
+        self, split: Split, config: ComparisonConfig, near: Mapping[str, float] | None = None
+    ) -> Predictor:
         key = tuple((part.name, part.start, part.stop) for part in split.training)
         if key not in self.known:
             try:
-                self.known[key] = self.candidate.on(split, config)
+                self.known[key] = self.candidate.on(split, config, near)
             except OdometryError as error:
                 self.known[key] = error
         found = self.known[key]
@@ -99,13 +101,15 @@ class Least(Candidate):
     def label(self) -> str:
         return self.name
 
-    def on(self, split: Split, config: ComparisonConfig) -> Predictor:
-        inner = leave_one_out(split.robot, split.terrain, split.training)
+    def on(
+        self, split: Split, config: ComparisonConfig, near: Mapping[str, float] | None = None
+    ) -> Predictor:
+        inner = folds(split.robot, split.terrain, split.training)
         scores = {each.label: score(each, inner, config) for each in self.candidates}
         ratios = {label: errors / scores[BASELINE] for label, errors in scores.items()}
         allowed = [c for c in self.candidates if ratios[c.label].max() <= self.most_ratio]
         best = min(allowed, key=lambda each: ratios[each.label].sum())
-        predictor = best.on(split, config)
+        predictor = best.on(split, config, near)
         return replace(predictor, source=f"chosen: {best.label}; {predictor.source}")
 
 

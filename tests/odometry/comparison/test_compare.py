@@ -131,6 +131,17 @@ def test_the_only_run_of_a_terrain_is_evaluated_by_halves(grass, quick):
     assert len(comparison.fitness) == 1
 
 
+def test_a_fit_to_all_runs_tells_where_to_search_and_nothing_else(grass, quick):
+    """The models of each split are those that a search from far finds."""
+    near = compare(grass, ["icr"], config=replace(quick, solver=SolverConfig(starts=4)))
+    for models in near.split_models:
+        alone = IdentifiedModel(MODELS["icr"]).on(models.split, near.config)
+        found = models.predictors["icr"]
+        assert found.values == pytest.approx(dict(alone.values), abs=1e-5)
+        np.testing.assert_allclose(found.covariance, alone.covariance, rtol=1e-3)
+        assert found.values != near.parameters["rover", "icr"].terrains["grass"].values
+
+
 def test_models_are_identified_on_training_runs_and_evaluated_on_the_others(grass, quick):
     comparison = compare(grass[:2], ["icr_symmetric"], train=grass[2:], config=quick)
     assert {(j.run, j.training_runs) for j in comparison.evaluations} == {

@@ -9,7 +9,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from odometry.comparison.evaluation import evaluation_windows
-from odometry.comparison.split import halves, of_all, parts_by_terrain, splits, windows_of_parts
+from odometry.comparison.split import (
+    Part,
+    folds,
+    halves,
+    of_all,
+    parts_by_terrain,
+    splits,
+    windows_of_parts,
+)
 from odometry.errors import RunFolderError
 from odometry.grounds import with_named_ground
 from odometry.run import Robot, Run
@@ -166,3 +174,17 @@ def test_windows_keep_to_the_ground_of_the_part(bench, tmp_path):
         assert inside.all()
     with pytest.raises(WindowError, match="no window lies wholly on 'ice' in r"):
         windows_of_parts([parts["ice"]], WindowConfig(horizon_m=5.0, shortest=1.0))
+
+
+@pytest.mark.parametrize(
+    ("count", "sizes"), [(2, [1, 1]), (10, [1] * 10), (11, [2] + [1] * 9), (23, [3] * 3 + [2] * 7)]
+)
+def test_at_most_ten_groups_of_neighbours_are_held_out(count, sizes):
+    """Every part is held out once, and the training parts are all the others in order."""
+    run = Run(Path("/runs/0"), Robot(0.5, "a"), {}, table(t=np.arange(2.0)))
+    parts = [Part(run, str(number), "ice", 0, 2) for number in range(count)]
+    found = folds("a", "ice", parts)
+    assert [len(split.held_out) for split in found] == sizes
+    assert [part for split in found for part in split.held_out] == parts
+    for split in found:
+        assert list(split.training) == [part for part in parts if part not in split.held_out]
