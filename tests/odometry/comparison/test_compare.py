@@ -85,7 +85,7 @@ def test_fitness_is_that_of_a_plain_loop_over_the_whole_run(compared, grass, ben
             errors.append(at - measured[i // 2])
         at = bench.advance(at, left, right, ideal, bench.step_s)
     errors = np.array(errors)
-    errors[:, 2] = np.arctan2(np.sin(errors[:, 2]), np.cos(errors[:, 2]))
+    errors[:, 2] = np.unwrap(errors[:, 2])
     (found,) = [
         f.fitness for f in compared.fitness if (f.run, f.model) == ("run_0", "differential_drive")
     ]

@@ -6,10 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from odometry.comparison.compare import compare
+from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.evaluation import Evaluation, evaluation_windows
 from odometry.comparison.split import parts_by_terrain, windows_of_parts
+from odometry.dead_reckoning import dead_reckon
+from odometry.evaluation.relative import EvaluationConfig
+from odometry.evaluation.score import reference_of, score
 from odometry.grounds import with_named_ground
 from odometry.models.catalogue import MODELS
+from odometry.models.run_inputs import inputs_of
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.errors import WindowError
@@ -121,3 +127,28 @@ def test_horizons_of_training_do_not_reach_the_evaluation_windows(tmp_path, benc
         evaluation_windows(whole(run), 2.0, c) for c in (seconds, WindowConfig())
     )
     np.testing.assert_array_equal(by_seconds.start_s, by_metres.start_s)
+
+
+def test_a_score_of_the_same_windows_has_the_same_errors(tmp_path, bench):
+    """The ideal drive of a robot that spins twice as fast: more than half a turn off in 5 m."""
+    icrs = bench.symmetric | {"y_left": 0.12, "y_right": -0.12}
+    runs = [
+        Run.read(bench.write(tmp_path / f"{i}", bench.varied(rng, 60.0), icrs=icrs))
+        for i, rng in enumerate(map(np.random.default_rng, (8, 9)))
+    ]
+    config = ComparisonConfig(horizons_m=(5.0,), draws=100)
+    found = compare(runs, ["differential_drive"], config=config)
+    (evaluation,) = [e for e in found.evaluations if (e.run, e.horizon_m) == ("0", 5.0)]
+    rotation = np.degrees(evaluation.errors["differential_drive"].rotation_per_m)
+    assert rotation.max() * 5 > 180
+    run, ideal = runs[0], MODELS["differential_drive"]
+    twists = ideal.twist(ideal.pack({"track_width": bench.track_width}), inputs_of(run))
+    odometer = dead_reckon(run.odometry.stamps_s, twists, np.zeros(3))
+    scored = score(run, odometer, reference_of(run)[1], EvaluationConfig(5.0, stride_m=5.0))
+    assert scored.windows == len(evaluation.windows)
+    np.testing.assert_allclose(
+        scored.rotation_deg_per_m, np.percentile(rotation, [25, 50, 75]), rtol=1e-6
+    )
+    assert scored.mean_rotation_deg_per_m == pytest.approx(rotation.mean(), rel=1e-6)
+    translation = evaluation.errors["differential_drive"].translation_per_m
+    assert scored.mean_translation_per_m == pytest.approx(translation.mean(), rel=1e-4)
