@@ -117,6 +117,7 @@ def _summary(summary: Summary) -> dict[str, Any]:
         **{
             name: {
                 "mean": summary.means.get(quantity),
+                "median": summary.medians.get(quantity),
                 "quartiles": summary.quartiles[quantity].tolist() if summary.windows else None,
             }
             for quantity, name in (

@@ -66,6 +66,11 @@ class Summary:
     quartiles: dict[str, FloatArray]
     reasons: tuple[str, ...]
 
+    @property
+    def medians(self) -> dict[str, float]:
+        """By quantity: what outliers among the measured poses hardly change."""
+        return {quantity: float(values[1]) for quantity, values in self.quartiles.items()}
+
 
 def values_of(errors: WindowErrors, quantity: str) -> FloatArray:
     """Errors (K,) in the unit of `QUANTITIES`."""

@@ -127,8 +127,8 @@ def settings_grid(comparison: Comparison) -> Grid:
 def _mean_and_median(summary: Summary, quantity: str, decimals: int) -> tuple[str, str]:
     if not summary.windows:
         return "-", "-"
-    median = summary.quartiles[quantity][1]
-    return f"{summary.means[quantity]:.{decimals}f}", f"{median:.{decimals}f}"
+    numbers = (summary.means[quantity], summary.medians[quantity])
+    return f"{numbers[0]:.{decimals}f}", f"{numbers[1]:.{decimals}f}"
 
 
 def _quartiles(summary: Summary, quantity: str, decimals: int) -> str:

@@ -110,17 +110,24 @@ def compare(
 def _print_errors(comparison: "Comparison") -> None:
     """Print one row a place and model, what they had seen, and what the numbers say."""
     rows: list[tuple[str, ...]] = [
-        ("robot", "ground", "over", "model", "windows", "m per m", "deg per m", "")
+        (
+            *("robot", "terrain", "over", "model", "windows"),
+            *("m per m: mean", "median", "deg per m: mean", "median", ""),
+        )
     ]
     for place in comparison.places:
         for summary in comparison.summaries_at(place):
-            means = (summary.means.get("translation"), summary.means.get("rotation"))
-            cells = ["-" if mean is None else f"{mean:.4f}" for mean in means]
+            errors = (
+                statistic.get(quantity)
+                for quantity in ("translation", "rotation")
+                for statistic in (summary.means, summary.medians)
+            )
+            cells = ["-" if error is None else f"{error:.4f}" for error in errors]
             remark = "see below" if comparison.remarks_at(place, summary) else ""
             over = f"{place.horizon_m:g} m"
             where = (place.robot, place.terrain, over, summary.model, str(summary.windows))
             rows.append((*where, *cells, remark))
-    click.echo("Mean held-out errors, per metre of wheel travel:")
+    click.echo("Held-out errors, per metre of wheel travel:")
     print_table(rows)
     click.echo("Each run was judged by models identified on:")
     for models in comparison.split_models:

@@ -58,7 +58,7 @@ def test_every_window_of_every_model_is_a_row_and_the_means_are_theirs(written):
 def test_a_model_that_failed_has_no_numbers_but_a_reason(written):
     content = json.loads((written[0] / "comparison.json").read_text())
     (slope,) = [m for m in content["places"][0]["models"] if m["model"] == "icr_slope"]
-    assert slope["translation_m_per_m"] == {"mean": None, "quartiles": None}
+    assert slope["translation_m_per_m"] == {"mean": None, "median": None, "quartiles": None}
     assert "tilted" in slope["reasons"][0]
     assert all("tilted" in split["failed"]["icr_slope"] for split in content["splits"])
 

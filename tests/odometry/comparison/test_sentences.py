@@ -32,6 +32,7 @@ def test_summaries_pool_the_windows_of_all_runs():
     summary = summarise(PLACE, evaluations, [], "icr")
     assert (summary.runs, summary.windows, summary.complete) == (("a", "b"), 5, True)
     assert summary.means == pytest.approx({"translation": 0.38, "rotation": 3.8})
+    assert summary.medians == pytest.approx({"translation": 0.3, "rotation": 3.0})
     np.testing.assert_allclose(summary.quartiles["translation"], [0.2, 0.3, 0.4])
     np.testing.assert_allclose(summary.quartiles["rotation"], [2, 3, 4])
 

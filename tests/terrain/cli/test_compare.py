@@ -57,7 +57,9 @@ def test_a_row_for_each_model_then_what_it_means(runs, tmp_path):
         ][:1]
         assert row[:5] == ["rover", "grass", "2", "m", model["model"]]
         assert float(row[6]) == pytest.approx(model["translation_m_per_m"]["mean"], abs=5e-5)
-        assert float(row[7]) == pytest.approx(model["rotation_deg_per_m"]["mean"], abs=5e-5)
+        assert float(row[7]) == pytest.approx(model["translation_m_per_m"]["median"], abs=5e-5)
+        assert float(row[8]) == pytest.approx(model["rotation_deg_per_m"]["mean"], abs=5e-5)
+        assert float(row[9]) == pytest.approx(model["rotation_deg_per_m"]["median"], abs=5e-5)
     assert "rover on grass: run_0: run_1" in answer.stdout
     assert "icr_symmetric errs least on grass in translation" in answer.stdout
     assert answer.stdout.rstrip().endswith(f"Next: open {out / 'report.html'}")
