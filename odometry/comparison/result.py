@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.evaluation import Evaluation, NotEvaluated
 from odometry.comparison.fitting import SplitModels
-from odometry.comparison.sentences import sentences
+from odometry.comparison.sentences import contradictions, sentences
 from odometry.comparison.statistics import Difference
 from odometry.comparison.summary import Place, Summary, summarise
 from odometry.comparison.whole_runs import RunFitness
@@ -91,6 +91,16 @@ class Comparison:
         notes = dict.fromkeys(note for fit in fits for note in fit.notes)
         return (*summary.reasons, *left_open, *notes)
 
+    def fitness_at(self, place: Place) -> tuple[RunFitness, ...]:
+        """Of the runs that were evaluated at one place."""
+        runs = {evaluation.run for evaluation in self.evaluations_at(place)}
+        return tuple(f for f in self.fitness if f.robot == place.robot and f.run in runs)
+
     def sentences_at(self, place: Place) -> list[str]:
         """What the numbers of one place say."""
-        return sentences(place, self.summaries_at(place), self.differences_at(place))
+        summaries = self.summaries_at(place)
+        return sentences(place, summaries, self.differences_at(place), self.fitness_at(place))
+
+    def contradictions_at(self, place: Place) -> list[str]:
+        """Those of `sentences_at` that contradict the order of the mean window errors."""
+        return contradictions(place, self.summaries_at(place), self.fitness_at(place))

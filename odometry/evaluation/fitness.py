@@ -1,5 +1,6 @@
 """Fitness of a dead-reckoned trajectory (Martinez 2024 eq. 13, Table II)."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,6 +43,11 @@ class Fitness:
     def total(self) -> float:
         """J of Martinez 2024 eq. 13; smaller is better."""
         return self.poses * self.mean
+
+
+def pooled_fitness(of_runs: Sequence[Fitness]) -> float:
+    """J / N over the poses of several runs."""
+    return sum(each.total for each in of_runs) / sum(each.poses for each in of_runs)
 
 
 def fitness(

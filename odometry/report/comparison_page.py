@@ -72,10 +72,12 @@ def write_comparison_report(comparison: Comparison, out: str | Path) -> list[Pat
 
 
 def lead(comparison: Comparison) -> str:
-    """The one sentence that a hurried reader should see."""
+    """What a hurried reader should see: the best model, and what contradicts that."""
     if len(comparison.places) == 1:
         said = comparison.sentences_at(comparison.places[0])
-        return said[0] if said else "No model could be judged."
+        contradicted = comparison.contradictions_at(comparison.places[0])
+        others = [each for each in contradicted if each != said[0]]
+        return " ".join([*said[:1], *others]) or "No model could be evaluated."
     least: dict[str, int] = {}
     for place in comparison.places:
         complete = [summary for summary in comparison.summaries_at(place) if summary.complete]
@@ -83,7 +85,11 @@ def lead(comparison: Comparison) -> str:
             best = min(complete, key=lambda summary: summary.means["translation"]).model
             least[best] = least.get(best, 0) + 1
     counts = ", ".join(f"{model} {count} times" for model, count in least.items())
-    return f"Least mean translation error at {len(comparison.places)} places: {counts or 'none'}."
+    places = len(comparison.places)
+    count = sum(bool(comparison.contradictions_at(place)) for place in comparison.places)
+    return f"Least mean translation error at {places} places: {counts or 'none'}." + (
+        f" At {count} of them medians or whole runs say otherwise; see there." if count else ""
+    )
 
 
 def _place(comparison: Comparison, place: Place, folder: Path) -> Section:

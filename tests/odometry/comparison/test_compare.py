@@ -30,7 +30,7 @@ def compared(grass, quick):
     return compare(grass, config=quick)
 
 
-def test_models_that_are_the_same_cannot_be_told_apart_and_a_wrong_one_is(
+def test_models_that_are_the_same_cannot_be_distinguished_and_a_wrong_one_is(
     grass, quick, bench, tmp_path
 ):
     """A robot whose ICRs are symmetric: `icr` and `icr_symmetric` predict the same motion."""
@@ -48,7 +48,7 @@ def test_models_that_are_the_same_cannot_be_told_apart_and_a_wrong_one_is(
         assert between(of_quantity, "icr", "wrong").interval.high < 0
     lines = comparison.sentences_at(comparison.places[0])
     assert "wrong" not in " ".join(lines)
-    assert sum("cannot be told apart" in line for line in lines) == 2
+    assert sum("cannot be distinguished" in line for line in lines) == 2
     for summary in comparison.summaries_at(comparison.places[0]):
         (remark,) = comparison.remarks_at(comparison.places[0], summary)
         assert "may have been identified on these very runs" in remark

@@ -5,9 +5,11 @@ import pytest
 
 from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.evaluation import Evaluation, NotEvaluated
-from odometry.comparison.sentences import sentences
+from odometry.comparison.sentences import contradictions, sentences
 from odometry.comparison.statistics import Difference, Interval, between, differences
 from odometry.comparison.summary import Place, summarise
+from odometry.comparison.whole_runs import RunFitness
+from odometry.evaluation.fitness import Fitness
 from odometry.windows.window_errors import WindowErrors
 
 PLACE = Place("rover", "grass", 2.0)
@@ -111,7 +113,7 @@ def said(errors, found):
     return sentences(PLACE, summaries, both)
 
 
-def test_models_that_cannot_be_told_apart_are_named_with_numbers():
+def test_models_that_cannot_be_distinguished_are_named_with_numbers():
     lines = said(
         {"icr_symmetric": 0.02, "icr": 0.0196, "ideal": 0.1},
         {
@@ -122,7 +124,7 @@ def test_models_that_cannot_be_told_apart_are_named_with_numbers():
     )
     assert lines[:2] == [
         "icr errs least on grass in translation, 0.0196 m per m.",
-        "icr cannot be told apart on grass in translation from icr_symmetric "
+        "icr cannot be distinguished on grass in translation from icr_symmetric "
         "(difference -0.0004 [-0.0017, 0.0010] m per m).",
     ]
     assert lines[-1] == (
@@ -151,3 +153,48 @@ def test_a_model_that_was_not_evaluated_everywhere_is_not_ranked():
     lines = sentences(PLACE, summaries, [difference("icr", "width", -0.1, -0.2, -0.05)])
     assert lines[0].startswith("icr errs least")
     assert lines[-1] == "part is not in this comparison on grass: b: too few windows."
+
+
+def summaries_of(**errors):
+    one = evaluation("a", **errors)
+    return [summarise(PLACE, [one], [], name) for name in errors]
+
+
+def test_mean_and_median_that_disagree_are_both_told():
+    """A few windows with outliers: icr is better in most windows, and worse by the mean."""
+    found = summaries_of(icr=[0.02, 0.02, 0.02, 0.9], width=[0.06, 0.06, 0.06, 0.5])
+    (translation, rotation) = contradictions(PLACE, found, [])
+    assert translation == (
+        "Mean and median disagree on grass in translation: width errs less than icr by the mean "
+        "(0.1700 against 0.2400 m per m) and more by the median (0.0600 against 0.0200): a few "
+        "windows with large errors decide the means."
+    )
+    assert "rotation: width errs less" in rotation
+
+
+def test_medians_that_are_all_but_equal_do_not_disagree():
+    found = summaries_of(icr=[0.0199, 0.0199, 0.9], width=[0.02, 0.02, 0.5])
+    assert contradictions(PLACE, found, []) == []
+
+
+def fit_of(run, model, metres2):
+    return RunFitness("rover", run, model, Fitness(10, 0, metres2, 0.0, 0.0, 0.0))
+
+
+def test_a_model_that_wins_over_windows_and_loses_on_whole_runs():
+    found = summaries_of(icr=[0.02] * 4, ideal=[0.3] * 4)
+    fitness = [fit_of("a", "icr", 9.0), fit_of("a", "ideal", 1.0)]
+    fitness += [fit_of("b", "icr", 1.0), fit_of("b", "ideal", 2.0)]
+    assert contradictions(PLACE, found, fitness) == [
+        "On whole runs on grass icr errs more than ideal (J/N 5 against 1.5; more on 1 of 2 "
+        "runs), although it errs less over 2 m."
+    ]
+    assert contradictions(PLACE, found, fitness[2:]) == []
+    assert contradictions(PLACE, found, fitness[:1]) == []  # nothing of the other
+
+
+def test_contradictions_follow_the_best_models():
+    found = summaries_of(icr=[0.02] * 4, ideal=[0.3] * 4)
+    fitness = [fit_of("a", "icr", 9.0), fit_of("a", "ideal", 1.0)]
+    lines = sentences(PLACE, found, [], fitness)
+    assert lines[2:] == contradictions(PLACE, found, fitness)

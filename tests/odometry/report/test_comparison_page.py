@@ -113,6 +113,23 @@ def test_the_lead_counts_where_a_model_errs_least(compared):
     assert lead(alone) == alone.sentences_at(place)[0]
 
 
+def test_the_lead_says_what_contradicts_it(compared):
+    """The ideal drive, which loses over windows, made to win on whole runs."""
+    place = compared.places[0]
+    fitness = tuple(
+        replace(each, fitness=replace(each.fitness, x_m2=0.0 if "drive" in each.model else 900.0))
+        for each in compared.fitness
+    )
+    alone = replace(
+        compared,
+        split_models=tuple(p for p in compared.split_models if p.split.terrain == place.terrain),
+        fitness=fitness,
+    )
+    assert "icr_symmetric errs more than differential_drive (J/N" in lead(alone)
+    both = replace(compared, fitness=fitness)
+    assert "At 2 of them medians or whole runs say otherwise" in lead(both)
+
+
 def test_figures_of_an_earlier_comparison_go_and_other_files_stay(compared, tmp_path):
     folder = tmp_path / "figures"
     folder.mkdir()
