@@ -126,7 +126,7 @@ class IdentifiedModel(Candidate):
             values = self.model.guess(robot)
             return Predictor(self.model, values, (), np.empty((0, 0)), "known of the robot")
         if not split.training:
-            raise IdentificationError("no run of --train is of this robot on this ground")
+            raise IdentificationError("no run of --train is of this robot on this terrain")
         windows = _thinned(windows_of_parts(split.training, config.training), self.most_windows)
         fit = fitter(
             self.model,

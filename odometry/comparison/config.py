@@ -23,7 +23,7 @@ class ComparisonConfig:
     solver : SolverConfig
     horizons_m : tuple of float
         Evaluation horizons h_e of Baril 2020: wheel travel over which errors are taken. Models
-        are told apart on the first.
+        are distinguished on the first.
     draws : int
         Of the bootstrap.
     block_m : float

@@ -25,7 +25,7 @@ class Interval:
 
     @property
     def holds_zero(self) -> bool:
-        """Whether the mean cannot be told from nothing."""
+        """Whether the mean cannot be distinguished from zero."""
         return self.low <= 0 <= self.high
 
 

@@ -26,7 +26,8 @@ Block = Paragraph | Listing | Grid | Picture
 
 FIGURES = ("errors", "speed_plane", "horizons", "rotation")
 HOW = (
-    "Every window is judged by a model that did not see it; the tables say what it had seen. "
+    "Every window is evaluated with a model that was not identified on it; the tables say on which "
+    "runs it was. "
     "Errors are per metre of wheel travel. Windows are distinct; they may straddle changes of "
     "`window` (joints of chained reference poses), where the reference is less certain, but no "
     "gaps; that is the same for every model. Intervals are 95 % intervals of paired differences "
@@ -93,7 +94,7 @@ def lead(comparison: Comparison) -> str:
 
 
 def _place(comparison: Comparison, place: Place, folder: Path) -> Section:
-    """Everything about one robot and ground over one horizon."""
+    """Everything about one robot and terrain over one horizon."""
     evaluations = comparison.evaluations_at(place)
     name = picture_name(comparison, place)
     pictures = (
@@ -111,9 +112,9 @@ def _place(comparison: Comparison, place: Place, folder: Path) -> Section:
     return Section(place.title, blocks)
 
 
-def _horizons(comparison: Comparison, robot: str, ground: str, folder: Path) -> Section:
-    picture = horizon_picture(comparison, robot, ground, folder)
-    return Section(f"{robot} on {ground}, over every horizon", [picture] if picture else [])
+def _horizons(comparison: Comparison, robot: str, terrain: str, folder: Path) -> Section:
+    picture = horizon_picture(comparison, robot, terrain, folder)
+    return Section(f"{robot} on {terrain}, over every horizon", [picture] if picture else [])
 
 
 def _rotation(comparison: Comparison, robot: str, folder: Path) -> Section:

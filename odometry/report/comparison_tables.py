@@ -26,7 +26,7 @@ def error_grid(comparison: Comparison) -> Grid:
         for summary in comparison.summaries_at(place)
     ]
     header = (
-        *("robot", "ground", "horizon m", "model", "windows"),
+        *("robot", "terrain", "horizon m", "model", "windows"),
         *("m per m: mean", "median", "degrees per m: mean", "median"),
     )
     return Grid(header, rows, "Held-out errors per metre of wheel travel.")
@@ -54,7 +54,7 @@ def split_grid(comparison: Comparison, place: Place) -> Grid:
         (evaluation.run, evaluation.training_runs, str(len(evaluation.windows)))
         for evaluation in comparison.evaluations_at(place)
     )
-    return Grid(("judged run", "identified on", "windows"), list(rows), "The split.")
+    return Grid(("evaluated run", "identified on", "windows"), list(rows), "The split.")
 
 
 def difference_grid(found: Sequence[Difference]) -> Grid:
@@ -97,7 +97,7 @@ def parameter_grid(comparison: Comparison) -> Grid:
     """What was identified, from all that each model may see."""
     rows = []
     for (robot, model), parameters in comparison.parameters.items():
-        for ground, table in parameters.terrains.items():
+        for terrain, table in parameters.terrains.items():
             sigmas = dict(
                 zip(table.covariance_order, np.sqrt(np.diag(table.covariance)), strict=True)
             )
@@ -105,7 +105,7 @@ def parameter_grid(comparison: Comparison) -> Grid:
                 f"{name} {value:.4g}" + (f" ± {sigmas[name]:.2g}" if name in sigmas else "")
                 for name, value in table.values.items()
             ]
-            rows.append((f"{robot} on {ground}", model, ", ".join(words)))
+            rows.append((f"{robot} on {terrain}", model, ", ".join(words)))
     caption = "Values with one standard deviation, as in the files of parameters/."
     return Grid(("where", "model", "parameters"), rows, caption)
 
@@ -138,5 +138,5 @@ def _quartiles(summary: Summary, quantity: str, decimals: int) -> str:
 
 
 def _verdict(difference: Difference) -> str:
-    apart = "not told apart" if difference.interval.holds_zero else "told apart"
+    apart = "not distinguished" if difference.interval.holds_zero else "distinguished"
     return f"{difference.words()}: {apart}"

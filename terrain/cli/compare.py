@@ -41,7 +41,7 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
     metavar="H",
     help="Wheel travel over which errors are taken [m]; repeat.",
 )
-@click.option("--terrain", metavar="NAME", help="Ground of runs that name none.")
+@click.option("--terrain", metavar="NAME", help="Terrain of runs that name none.")
 @click.option(
     "--seed",
     type=click.IntRange(min=0),
@@ -60,11 +60,12 @@ def compare(
     terrain: str | None,
     seed: int,
 ) -> None:
-    """Compare kinematic models on the run folders RUN, by robot and ground.
+    """Compare kinematic models on the run folders RUN, by robot and terrain.
 
-    No window is judged by a model that was identified on it. With --train, models are identified
-    on those runs; else each run is judged by models identified on the other runs of the same
-    robot and ground, and where a ground has one run, each half of it by the other half.
+    No window is evaluated with a model that was identified on it. With --train, models are
+    identified on those runs. Else each run is held out in turn, or in ten groups where there are
+    more, and models are identified on the other runs of the same robot and terrain; where a
+    terrain has one run, each half of it is held out in turn.
 
     \b
     Example:
@@ -108,7 +109,7 @@ def compare(
 
 
 def _print_errors(comparison: "Comparison") -> None:
-    """Print one row a place and model, what they had seen, and what the numbers say."""
+    """Print one row a place and model, what they were identified on, and what that says."""
     rows: list[tuple[str, ...]] = [
         (
             *("robot", "terrain", "over", "model", "windows"),
@@ -129,7 +130,7 @@ def _print_errors(comparison: "Comparison") -> None:
             rows.append((*where, *cells, remark))
     click.echo("Held-out errors, per metre of wheel travel:")
     print_table(rows)
-    click.echo("Each run was judged by models identified on:")
+    click.echo("Runs were held out from models that were identified on:")
     for models in comparison.split_models:
         split = models.split
         held_out = ", ".join(part.name for part in split.held_out)

@@ -237,7 +237,7 @@ def test_a_robot_that_training_does_not_know_has_no_model(grass, quick):
     other = replace(grass[2], robot=replace(grass[2].robot, track_width=0.7))
     comparison = compare(grass[:1], ["icr_symmetric"], train=[other], config=quick)
     (summary,) = comparison.summaries_at(comparison.places[0])
-    assert summary.reasons == ("run_0: no run of --train is of this robot on this ground",)
+    assert summary.reasons == ("run_0: no run of --train is of this robot on this terrain",)
 
 
 def test_without_a_long_enough_run_there_is_a_row_that_says_so(grass, quick):
