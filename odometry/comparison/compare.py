@@ -11,6 +11,7 @@ from odometry.comparison.result import Comparison
 from odometry.comparison.split import of_all, splits
 from odometry.comparison.statistics import Difference, differences
 from odometry.comparison.summary import Place
+from odometry.comparison.training_horizons import training_horizon_errors
 from odometry.comparison.whole_runs import run_fitness
 from odometry.errors import OdometryError
 from odometry.grounds import with_named_ground
@@ -75,6 +76,9 @@ def compare(
     )
     evaluations, not_evaluated = evaluate_all(split_models, config)
     names = tuple(candidate.label for candidate in candidates)
+    by_training_horizon = training_horizon_errors(
+        planned, identified, config, split_models if known else on_all, show_progress=show_progress
+    )
     return Comparison(
         models=names,
         split_models=split_models,
@@ -87,6 +91,7 @@ def compare(
             split_models if known else on_all, [each.label for each in identified]
         ),
         config=config,
+        by_training_horizon=by_training_horizon,
     )
 
 

@@ -9,6 +9,7 @@ from odometry.comparison.fitting import SplitModels
 from odometry.comparison.sentences import contradictions, sentences
 from odometry.comparison.statistics import Difference
 from odometry.comparison.summary import Place, Summary, summarise
+from odometry.comparison.training_horizons import HorizonErrors
 from odometry.comparison.whole_runs import RunFitness
 from odometry.parameters import ParameterSet
 
@@ -33,6 +34,8 @@ class Comparison:
     parameters : Mapping of (robot, model) to ParameterSet
         Of the identified models, from all that they may see.
     config : ComparisonConfig
+    by_training_horizon : tuple of HorizonErrors
+        Empty where no training horizons were asked for.
     """
 
     models: tuple[str, ...]
@@ -44,6 +47,7 @@ class Comparison:
     fitness: tuple[RunFitness, ...]
     parameters: Mapping[tuple[str, str], ParameterSet]
     config: ComparisonConfig
+    by_training_horizon: tuple[HorizonErrors, ...] = ()
 
     @property
     def robots_and_terrains(self) -> tuple[tuple[str, str], ...]:
@@ -90,6 +94,14 @@ class Comparison:
         ]
         notes = dict.fromkeys(note for fit in fits for note in fit.notes)
         return (*summary.reasons, *left_open, *notes)
+
+    def horizon_errors_of(self, robot: str, terrain: str) -> dict[str, tuple[HorizonErrors, ...]]:
+        """Errors by model, over all training and evaluation horizons."""
+        found: dict[str, list[HorizonErrors]] = {}
+        for each in self.by_training_horizon:
+            if (each.summary.place.robot, each.summary.place.terrain) == (robot, terrain):
+                found.setdefault(each.summary.model, []).append(each)
+        return {model: tuple(errors) for model, errors in found.items()}
 
     def fitness_at(self, place: Place) -> tuple[RunFitness, ...]:
         """Of the runs that were evaluated at one place."""

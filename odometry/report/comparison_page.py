@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from odometry.comparison.result import Comparison
-from odometry.comparison.summary import Place
+from odometry.comparison.summary import QUANTITIES, Place
+from odometry.comparison.training_horizons import horizon_sentence
 from odometry.report.comparison_figures import (
     distribution_picture,
     horizon_picture,
@@ -21,10 +22,11 @@ from odometry.report.comparison_tables import (
 )
 from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
 from odometry.report.speed_plane_figure import speed_plane_picture
+from odometry.report.training_horizons import training_horizon_picture
 
 Block = Paragraph | Listing | Grid | Picture
 
-FIGURES = ("errors", "speed_plane", "horizons", "rotation")
+FIGURES = ("errors", "speed_plane", "horizons", "rotation", "training_horizons")
 HOW = (
     "Every window is evaluated with a model that was not identified on it; the tables say on which "
     "runs it was. "
@@ -57,6 +59,7 @@ def write_comparison_report(comparison: Comparison, out: str | Path) -> list[Pat
         Section("All errors", [error_grid(comparison), *_left_out(comparison)]),
         *(_place(comparison, place, folder) for place in comparison.places),
         *(_horizons(comparison, *pair, folder) for pair in comparison.robots_and_terrains),
+        *(_training(comparison, *pair, folder) for pair in comparison.robots_and_terrains),
         *(_rotation(comparison, robot, folder) for robot in robots),
         Section("Whole runs", [fitness_grid(comparison)]),
         Section("Parameters", [parameter_grid(comparison)]),
@@ -115,6 +118,16 @@ def _place(comparison: Comparison, place: Place, folder: Path) -> Section:
 def _horizons(comparison: Comparison, robot: str, terrain: str, folder: Path) -> Section:
     picture = horizon_picture(comparison, robot, terrain, folder)
     return Section(f"{robot} on {terrain}, over every horizon", [picture] if picture else [])
+
+
+def _training(comparison: Comparison, robot: str, terrain: str, folder: Path) -> Section:
+    """Which training horizon suits which evaluation horizon, model by model."""
+    blocks: list[Block] = []
+    for model, errors in comparison.horizon_errors_of(robot, terrain).items():
+        blocks.append(Listing([horizon_sentence(model, errors, q) for q in QUANTITIES]))
+        picture = training_horizon_picture(errors, folder, model)
+        blocks += [picture] if picture else []
+    return Section(f"{robot} on {terrain}: training and evaluation horizon", blocks)
 
 
 def _rotation(comparison: Comparison, robot: str, folder: Path) -> Section:

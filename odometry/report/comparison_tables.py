@@ -115,6 +115,7 @@ def settings_grid(comparison: Comparison) -> Grid:
     config = comparison.config
     values = {
         "evaluation horizons m": ", ".join(f"{h:g}" for h in config.horizons_m),
+        "training horizons m": ", ".join(f"{h:g}" for h in config.training_horizons_m) or "-",
         "draws": config.draws,
         "block m": config.block_m,
         "seed": config.seed,

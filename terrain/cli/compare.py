@@ -41,6 +41,15 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
     metavar="H",
     help="Wheel travel over which errors are taken [m]; repeat.",
 )
+@click.option(
+    "--training-horizon",
+    "training_horizons_m",
+    multiple=True,
+    type=float,
+    metavar="H",
+    help="Identify also over this wheel travel [m], and show which training horizon suits which "
+    "evaluation horizon; repeat. Each costs as many fits as the comparison itself.",
+)
 @click.option("--terrain", metavar="NAME", help="Terrain of runs that name none.")
 @click.option(
     "--seed",
@@ -57,6 +66,7 @@ def compare(
     train: tuple[Path, ...],
     windows: "WindowConfig",
     horizons_m: tuple[float, ...],
+    training_horizons_m: tuple[float, ...],
     terrain: str | None,
     seed: int,
 ) -> None:
@@ -81,7 +91,11 @@ def compare(
     from odometry.run import Run
 
     config = ComparisonConfig(
-        training=windows, solver=SolverConfig(seed=seed), horizons_m=horizons_m, seed=seed
+        training=windows,
+        solver=SolverConfig(seed=seed),
+        horizons_m=horizons_m,
+        training_horizons_m=training_horizons_m,
+        seed=seed,
     )
     if out.resolve() in {folder.resolve() for folder in (*folders, *train)}:
         raise click.UsageError("--out is one of the run folders; choose another folder")
@@ -104,8 +118,21 @@ def compare(
     for reason in comparison.left_out.values():
         click.echo(f"Note: left out: {reason}", err=True)
     _print_errors(comparison)
+    _print_training_horizons(comparison)
     print_written(written, out)
     click.echo(f"Next: open {out / 'report.html'}")
+
+
+def _print_training_horizons(comparison: "Comparison") -> None:
+    """Print which training horizons suit which evaluation horizon, a line a model and quantity."""
+    from odometry.comparison.summary import QUANTITIES
+    from odometry.comparison.training_horizons import horizon_sentence
+
+    for robot, terrain in comparison.robots_and_terrains:
+        for model, errors in comparison.horizon_errors_of(robot, terrain).items():
+            for quantity in QUANTITIES:
+                said = horizon_sentence(model, errors, quantity)
+                click.echo(f"{robot} on {terrain}: {said}")
 
 
 def _print_errors(comparison: "Comparison") -> None:

@@ -2,6 +2,7 @@
 
 import csv
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -84,6 +85,25 @@ def test_the_parameters_can_be_read_as_a_set(written, compared):
     table = compared.parameters["rover", "icr_symmetric"].terrains["grass"]
     assert again.terrains["grass"].values == pytest.approx(dict(table.values))
     np.testing.assert_allclose(again.terrains["grass"].covariance, table.covariance)
+
+
+def test_errors_by_training_horizon_can_be_read_back(grass, quick, tmp_path):
+    config = replace(quick, training_horizons_m=(1.0, 900.0))
+    comparison = compare(grass[:2], ["icr_symmetric"], config=config)
+    files = write_comparison(comparison, tmp_path)
+    assert tmp_path / "training_horizons.csv" in files
+    with (tmp_path / "training_horizons.csv").open(newline="") as file:
+        rows = {float(row["evaluation_horizon"]): row for row in csv.DictReader(file)}
+    assert len(rows) == 5  # of 900 m there is none
+    for each in comparison.by_training_horizon[:5]:
+        row, summary = rows[each.summary.place.horizon_m], each.summary
+        assert (row["robot"], row["terrain"], row["model"]) == ("rover", "grass", "icr_symmetric")
+        assert (float(row["training_horizon"]), int(row["windows"])) == (1.0, summary.windows)
+        low, median, high = summary.quartiles["rotation"]
+        assert float(row["rotation_deg_per_m_median"]) == pytest.approx(median, abs=1e-8)
+        assert float(row["rotation_deg_per_m_quartile_range"]) == pytest.approx(
+            high - low, abs=1e-8
+        )
 
 
 def test_robots_have_folders_of_their_own(tmp_path, bench, quick):

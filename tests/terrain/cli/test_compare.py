@@ -90,6 +90,17 @@ def test_options_reach_the_comparison(runs, tmp_path):
         assert (out / file).read_bytes() == (again / file).read_bytes()
 
 
+def test_training_horizons_are_shown_and_written(runs, tmp_path):
+    out = tmp_path / "out"
+    options = ["--model", "icr_symmetric", "--training-horizon", "1", "--training-horizon", "4"]
+    answer = invoke(*runs, *options, "--out", out)
+    assert answer.exit_code == 0, answer.output
+    assert "icr_symmetric, translation: training horizons [m] with the least" in answer.stdout
+    assert "training_horizons.csv" in answer.stdout
+    assert (out / "figures" / "training_horizons_rover_grass_icr_symmetric.png").is_file()
+    assert "training and evaluation horizon" in (out / "report.html").read_text(encoding="utf-8")
+
+
 def test_the_parameters_it_writes_can_be_compared_again(runs, tmp_path):
     first, second = tmp_path / "first", tmp_path / "second"
     assert invoke(*runs, "--model", "icr_symmetric", "--out", first).exit_code == 0
