@@ -109,16 +109,24 @@ def _whole_runs(
     for each in fitness:
         runs.setdefault(each.run, {})[each.model] = each.fitness
     of_all = [of_run for of_run in runs.values() if set(complete) <= set(of_run)]
+    if not of_all:
+        return []
+    pooled = {m: pooled_fitness([of_run[m] for of_run in of_all]) for m in complete}
     said = []
-    for model, other in permutations(complete if of_all else (), 2):
-        ours, theirs = (pooled_fitness([of_run[m] for of_run in of_all]) for m in (model, other))
-        less = complete[model].means["translation"] < complete[other].means["translation"]
-        if less and ours > theirs:
-            lost = sum(of_run[model].mean > of_run[other].mean for of_run in of_all)
+    for model, summary in complete.items():
+        better = [
+            f"{other} ({pooled[other]:.3g}; on "
+            f"{sum(of_run[model].mean > of_run[other].mean for of_run in of_all)} of "
+            f"{len(of_all)} runs)"
+            for other in complete
+            if summary.means["translation"] < complete[other].means["translation"]
+            and pooled[other] < pooled[model]
+        ]
+        if better:
             said.append(
-                f"On whole runs on {place.terrain} {model} errs more than {other} (J/N {ours:.3g} "
-                f"against {theirs:.3g}; more on {lost} of {len(of_all)} runs), although it errs "
-                f"less over {place.horizon_m:g} m."
+                f"On whole runs on {place.terrain} {model} (J/N {pooled[model]:.3g}) errs more "
+                f"than {', '.join(better)}, although its mean translation error over "
+                f"{place.horizon_m:g} m is less."
             )
     return said
 

@@ -16,7 +16,7 @@ from odometry.comparison.training_horizons import HorizonErrors, best_training_h
 from odometry.report.figure import save_figure
 from odometry.report.html import Picture
 
-_WIDTH_IN, _ROW_IN, _REST_IN = 7.0, 0.32, 0.9
+_WIDTH_IN, _ROW_IN, _LEAST_IN, _REST_IN = 7.0, 0.32, 1.6, 0.9
 _MOST_RATIO = 2.0  # times the least of a column: the end of the colours
 
 
@@ -30,10 +30,11 @@ def training_horizon_picture(
     first = evaluated[0].summary
     training_m = sorted({each.training_m for each in errors})
     evaluation_m = sorted({each.summary.place.horizon_m for each in evaluated})
-    height_in = _REST_IN + _ROW_IN * len(training_m)
+    map_in = max(_LEAST_IN, _ROW_IN * len(training_m))  # room for the label beside it
+    height_in = _REST_IN + map_in
 
     def draw(figure: Figure) -> None:
-        bottom, height = 0.55 / height_in, _ROW_IN * len(training_m) / height_in
+        bottom, height = 0.55 / height_in, map_in / height_in
         for quantity, left in (("translation", 0.09), ("rotation", 0.525)):
             axes = figure.add_axes((left, bottom, 0.385, height))
             medians = median_table(evaluated, training_m, evaluation_m, quantity)

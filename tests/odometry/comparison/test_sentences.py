@@ -186,8 +186,8 @@ def test_a_model_that_wins_over_windows_and_loses_on_whole_runs():
     fitness = [fit_of("a", "icr", 9.0), fit_of("a", "ideal", 1.0)]
     fitness += [fit_of("b", "icr", 1.0), fit_of("b", "ideal", 2.0)]
     assert contradictions(PLACE, found, fitness) == [
-        "On whole runs on grass icr errs more than ideal (J/N 5 against 1.5; more on 1 of 2 "
-        "runs), although it errs less over 2 m."
+        "On whole runs on grass icr (J/N 5) errs more than ideal (1.5; on 1 of 2 runs), although "
+        "its mean translation error over 2 m is less."
     ]
     assert contradictions(PLACE, found, fitness[2:]) == []
     assert contradictions(PLACE, found, fitness[:1]) == []  # nothing of the other

@@ -125,7 +125,7 @@ def test_the_lead_says_what_contradicts_it(compared):
         split_models=tuple(p for p in compared.split_models if p.split.terrain == place.terrain),
         fitness=fitness,
     )
-    assert "icr_symmetric errs more than differential_drive (J/N" in lead(alone)
+    assert "icr_symmetric (J/N 900) errs more than differential_drive (" in lead(alone)
     both = replace(compared, fitness=fitness)
     assert "At 2 of them medians or whole runs say otherwise" in lead(both)
 
