@@ -1,23 +1,20 @@
 """What is compared: models to be identified, and parameter sets that are taken as they are."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.comparison.config import ComparisonConfig
-from odometry.comparison.errors import ComparisonError
 from odometry.comparison.split import Split, windows_of_parts
 from odometry.effects.tables import model_of, table_of
 from odometry.errors import ParameterError
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fitters import fitter
 from odometry.models.base import KinematicModel
-from odometry.models.catalogue import MODELS
-from odometry.parameters import ParameterSet, TerrainParameters, read_parameters
+from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.windows.windows import Windows
 
 AS_GIVEN = "taken as it is; it may have been identified on these very runs"
@@ -188,35 +185,3 @@ def _thinned(windows: Windows, most: int | None) -> Windows:
     kept = np.zeros(len(windows), dtype=np.bool_)
     kept[np.linspace(0, len(windows) - 1, most).astype(np.int64)] = True
     return windows.where(kept)
-
-
-def candidates_named(names: Sequence[str | Candidate]) -> tuple[Candidate, ...]:
-    """Candidates from names of the catalogue and files of parameter sets; others pass through.
-
-    Raises
-    ------
-    ComparisonError
-        If one is neither, or there twice, or there is none.
-    ParameterError
-        If a file is no parameter set.
-    """
-    found: list[Candidate] = []
-    for name in names:
-        if isinstance(name, Candidate):
-            found.append(name)
-        elif name in MODELS:
-            found.append(IdentifiedModel(MODELS[name]))
-        elif Path(name).suffix == ".toml":
-            found.append(GivenParameters(Path(name).stem, read_parameters(name)))
-        else:
-            raise ComparisonError(
-                f"there is no model {name!r}; known: {', '.join(MODELS)}, or a parameter set "
-                "(.toml)"
-            )
-    labels = [candidate.label for candidate in found]
-    twice = [label for label in labels if labels.count(label) > 1]
-    if twice or not labels:
-        raise ComparisonError(
-            f"models {', '.join(labels) or '(none)'}: expected one or more, each name once"
-        )
-    return tuple(found)

@@ -1,8 +1,9 @@
 """Compare models on windows that they were not identified on."""
 
 from collections.abc import Sequence
+from pathlib import Path
 
-from odometry.comparison.candidates import Candidate, IdentifiedModel, candidates_named
+from odometry.comparison.candidates import Candidate, GivenParameters, IdentifiedModel
 from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.errors import ComparisonError
 from odometry.comparison.evaluation import Evaluation, evaluate_all
@@ -15,7 +16,8 @@ from odometry.comparison.training_horizons import training_horizon_errors
 from odometry.comparison.whole_runs import run_fitness
 from odometry.errors import OdometryError
 from odometry.grounds import with_named_ground
-from odometry.parameters import ParameterSet, TerrainParameters
+from odometry.models.catalogue import MODELS
+from odometry.parameters import ParameterSet, TerrainParameters, read_parameters
 from odometry.run import Run
 from odometry.windows.record import record_of
 
@@ -93,6 +95,38 @@ def compare(
         config=config,
         by_training_horizon=by_training_horizon,
     )
+
+
+def candidates_named(names: Sequence[str | Candidate]) -> tuple[Candidate, ...]:
+    """Candidates from names of the catalogue and files of parameter sets; others pass through.
+
+    Raises
+    ------
+    ComparisonError
+        If one is neither, or there twice, or there is none.
+    ParameterError
+        If a file is no parameter set.
+    """
+    found: list[Candidate] = []
+    for name in names:
+        if isinstance(name, Candidate):
+            found.append(name)
+        elif name in MODELS:
+            found.append(IdentifiedModel(MODELS[name]))
+        elif Path(name).suffix == ".toml":
+            found.append(GivenParameters(Path(name).stem, read_parameters(name)))
+        else:
+            raise ComparisonError(
+                f"there is no model {name!r}; known: {', '.join(MODELS)}, or a parameter set "
+                "(.toml)"
+            )
+    labels = [candidate.label for candidate in found]
+    twice = [label for label in labels if labels.count(label) > 1]
+    if twice or not labels:
+        raise ComparisonError(
+            f"models {', '.join(labels) or '(none)'}: expected one or more, each name once"
+        )
+    return tuple(found)
 
 
 def _with_poses(runs: Sequence[Run], config: ComparisonConfig) -> tuple[list[Run], dict[str, str]]:

@@ -2,7 +2,6 @@
 
 import json
 import re
-from collections.abc import Sequence
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
@@ -13,14 +12,13 @@ import numpy as np
 from odometry.comparison.evaluation import Evaluation
 from odometry.comparison.fitting import SplitModels
 from odometry.comparison.result import Comparison
-from odometry.comparison.summary import Place, Summary, values_of
-from odometry.comparison.training_horizons import HorizonErrors
+from odometry.comparison.summary import COLUMNS, Place, Summary, values_of
+from odometry.comparison.training_horizons import write_training_horizons
 from odometry.io.csv_table import write_csv_table
 from odometry.io.files import atomic_write
 from odometry.parameters import write_parameters
 
 FORMAT = 1  # of comparison.json
-NAMES = {"translation": "translation_m_per_m", "rotation": "rotation_deg_per_m"}
 
 
 def write_comparison(comparison: Comparison, out: str | Path) -> list[Path]:
@@ -48,7 +46,7 @@ def write_comparison(comparison: Comparison, out: str | Path) -> list[Path]:
     horizons = out / "training_horizons.csv"
     horizons.unlink(missing_ok=True)  # of an earlier comparison
     if comparison.by_training_horizon:
-        _write_training_horizons(horizons, comparison.by_training_horizon)
+        write_training_horizons(horizons, comparison.by_training_horizon)
         files.append(horizons)
     robots = {robot for robot, _ in comparison.parameters}
     for (robot, model), parameters in comparison.parameters.items():
@@ -129,7 +127,7 @@ def _summary(summary: Summary) -> dict[str, Any]:
                 "median": summary.medians.get(quantity),
                 "quartiles": summary.quartiles[quantity].tolist() if summary.windows else None,
             }
-            for quantity, name in NAMES.items()
+            for quantity, name in COLUMNS.items()
         },
         "reasons": list(summary.reasons),
     }
@@ -169,23 +167,6 @@ def _write_windows(file: Path, comparison: Comparison) -> None:
         write_csv_table(
             file, {name: np.concatenate([each[name] for each in columns]) for name in columns[0]}
         )
-
-
-def _write_training_horizons(file: Path, errors: Sequence[HorizonErrors]) -> None:
-    """One row a robot, terrain, model, training horizon and evaluation horizon [m]."""
-    rows = [(each.training_m, each.summary) for each in errors if each.summary.complete]
-    columns: dict[str, Any] = {
-        "robot": [summary.place.robot for _, summary in rows],
-        "terrain": [summary.place.terrain for _, summary in rows],
-        "model": [summary.model for _, summary in rows],
-        "training_horizon": [training_m for training_m, _ in rows],
-        "evaluation_horizon": [summary.place.horizon_m for _, summary in rows],
-        "windows": [summary.windows for _, summary in rows],
-    }
-    for quantity, name in NAMES.items():
-        low, median, high = np.array([s.quartiles[quantity] for _, s in rows]).reshape(-1, 3).T
-        columns[f"{name}_median"], columns[f"{name}_quartile_range"] = median, high - low
-    write_csv_table(file, {name: np.array(column) for name, column in columns.items()})
 
 
 def _columns(evaluation: Evaluation, model: str) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from odometry.windows.window_errors import WindowErrors
 
 # Quantity to unit. Angles are degrees in everything that a comparison states.
 QUANTITIES = {"translation": "m per m", "rotation": "degrees per m"}
+COLUMNS = {"translation": "translation_m_per_m", "rotation": "rotation_deg_per_m"}  # in files
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
 
+import numpy as np
 from tqdm import tqdm
 
 from odometry.comparison.candidates import IdentifiedModel
@@ -10,7 +13,8 @@ from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.evaluation import evaluate_all
 from odometry.comparison.fitting import SplitModels, fit_models
 from odometry.comparison.split import Split
-from odometry.comparison.summary import Place, Summary, summarise
+from odometry.comparison.summary import COLUMNS, Place, Summary, summarise
+from odometry.io.csv_table import write_csv_table
 
 AS_GOOD = 1.05  # times the least median error: no worse in practice
 
@@ -109,3 +113,20 @@ def horizon_sentence(model: str, errors: Sequence[HorizonErrors], quantity: str)
         f"{model}, {quantity}: training horizons [m] with the least median error, or up to "
         f"{AS_GOOD - 1:.0%} more, for each evaluation horizon [m]: {'; '.join(parts) or 'none'}."
     )
+
+
+def write_training_horizons(file: Path, errors: Sequence[HorizonErrors]) -> None:
+    """One row a robot, terrain, model, training horizon and evaluation horizon [m]."""
+    rows = [(each.training_m, each.summary) for each in errors if each.summary.complete]
+    columns: dict[str, Any] = {
+        "robot": [summary.place.robot for _, summary in rows],
+        "terrain": [summary.place.terrain for _, summary in rows],
+        "model": [summary.model for _, summary in rows],
+        "training_horizon": [training_m for training_m, _ in rows],
+        "evaluation_horizon": [summary.place.horizon_m for _, summary in rows],
+        "windows": [summary.windows for _, summary in rows],
+    }
+    for quantity, name in COLUMNS.items():
+        low, median, high = np.array([s.quartiles[quantity] for _, s in rows]).reshape(-1, 3).T
+        columns[f"{name}_median"], columns[f"{name}_quartile_range"] = median, high - low
+    write_csv_table(file, {name: np.array(column) for name, column in columns.items()})

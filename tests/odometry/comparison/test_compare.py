@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.comparison.candidates import IdentifiedModel, candidates_named
-from odometry.comparison.compare import compare
+from odometry.comparison.candidates import IdentifiedModel
+from odometry.comparison.compare import candidates_named, compare
 from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.errors import ComparisonError
 from odometry.comparison.statistics import between
