@@ -1,7 +1,6 @@
 """A set of modes and how long each lasts, as TOML."""
 
 import math
-import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +12,7 @@ import tomli_w
 from odometry.arrays import BoolArray, FloatArray
 from odometry.errors import ParameterError
 from odometry.io.files import atomic_write
+from odometry.io.structured import read_toml
 from odometry.modes.traction import TractionModes
 from odometry.modes.velocity import VelocityModes
 
@@ -103,10 +103,7 @@ def read_mode_set(file: Path) -> ModeSet:
         Naming file, table and key: not TOML, an unknown or missing key, a number that is not
         finite, a shape or a variance that cannot be.
     """
-    try:
-        content = tomllib.loads(Path(file).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ParameterError(f"{file}: cannot be read as TOML: {error}") from error
+    content = read_toml(Path(file), ParameterError)
     head, tables = content.get("modes"), content.get("mode")
     if not isinstance(head, dict) or head.get("kind") not in list(KINDS):
         raise ParameterError(f"{file}: expected [modes] with kind = one of {', '.join(KINDS)}")

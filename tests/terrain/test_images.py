@@ -83,7 +83,7 @@ def test_a_file_that_is_no_image_is_named(tmp_path, content):
 
 
 def test_a_missing_file_is_named(tmp_path):
-    with pytest.raises(ImageError, match=r"nowhere\.png: cannot be opened \(No such file"):
+    with pytest.raises(ImageError, match=r"nowhere\.png: cannot be read: No such file"):
         read_image(tmp_path / "nowhere.png")
 
 

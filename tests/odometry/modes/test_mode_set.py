@@ -111,7 +111,7 @@ def test_modes_must_be_tables(tmp_path):
 
 
 def test_no_file_and_no_text_are_told(tmp_path):
-    with pytest.raises(ParameterError, match=r"absent\.toml: cannot be read as TOML"):
+    with pytest.raises(ParameterError, match=r"absent\.toml: cannot be read: No such file"):
         read_mode_set(tmp_path / "absent.toml")
     (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe")
     with pytest.raises(ParameterError, match=r"bytes\.toml: cannot be read as TOML"):

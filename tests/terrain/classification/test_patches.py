@@ -127,7 +127,14 @@ def test_a_manifest_saved_by_a_spreadsheet_groups_too(tmp_path):
 
 @pytest.mark.parametrize(
     ("rows", "message"),
-    [(b"grass/a.jpg\n", "row 2, column 'photo_id'"), (b"gr\xfcn/a.jpg,1\n", "cannot be read")],
+    [
+        (b"grass/a.jpg,\n", "row 2, column 'photo_id'"),
+        (b"grass/a.jpg\n", "row 2: 1 cells"),
+        (b"gr\xfcn/a.jpg,1\n", "cannot be read"),
+        (b"", "it is empty"),
+        (b"grass/\0a.jpg,1\n", "row 2 holds a NUL byte"),
+        (b"../a.jpg,1\n", r"row 2, column 'path': '\.\./a\.jpg' leads out"),
+    ],
 )
 def test_a_manifest_with_holes_is_an_error(tmp_path, rows, message):
     photo(tmp_path / "grass/a.jpg")
