@@ -1,10 +1,9 @@
 """Settings of a comparison."""
 
-import math
 from dataclasses import dataclass, field
 from itertools import pairwise
 
-from odometry.config import require
+from odometry.config import LARGEST, SMALLEST, require, require_positive
 from odometry.identification.config import SolverConfig
 from odometry.windows.config import WindowConfig
 
@@ -50,11 +49,14 @@ class ComparisonConfig:
             ("training", self.training_horizons_m),
         ):
             for horizon in horizons_m:
-                require(0 < horizon < math.inf, f"{kind} horizon {horizon} m, expected above 0")
+                require(
+                    SMALLEST <= horizon <= LARGEST,
+                    f"{kind} horizon {horizon} m, expected above 0: {SMALLEST:g} to {LARGEST:g}",
+                )
             doubled = [a for a, b in pairwise(sorted(horizons_m)) if a == b]
             require(not doubled, f"{kind} horizons {doubled} m are given twice")
         require(self.draws >= 100, f"draws = {self.draws}, expected 100 or more")
-        require(0 < self.block_m < math.inf, f"block_m = {self.block_m}, expected above 0")
+        require_positive(self, "block_m")
 
     @property
     def evaluated_m(self) -> tuple[float, ...]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.config import require
+from odometry.config import require_positive
 from odometry.evaluation.horizons import spatial_horizons
 from odometry.geometry import se2
 from odometry.geometry.angles import continuous_difference
@@ -28,8 +28,7 @@ class EvaluationConfig:
     stride_m: float = 0.5
 
     def __post_init__(self) -> None:
-        require(self.horizon_m > 0, f"horizon_m = {self.horizon_m}, expected above 0")
-        require(self.stride_m > 0, f"stride_m = {self.stride_m}, expected above 0")
+        require_positive(self, "horizon_m", "stride_m")
 
 
 @dataclass(frozen=True)
