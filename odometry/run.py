@@ -193,9 +193,10 @@ def _robot(settings: Mapping[str, Any], file: Path) -> Robot:
         value = table[field.name]
         if field.name == "name":
             known["name"] = str(value)
-        elif isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < 1e9:
+        elif isinstance(value, bool) or not isinstance(value, int | float) or not 1e-3 <= value <= 1e6:
             raise RunFolderError(
-                f"{file}: [robot] {field.name} = {value!r}, expected a positive number"
+                f"{file}: [robot] {field.name} = {value!r}, expected a positive number, "
+                "0.001 to 1e6"
             )
         else:
             known[field.name] = float(value)

@@ -2,6 +2,7 @@
 
 import struct
 
+PIXELS = 64_000_000  # of the largest image that is read: decoded it needs up to 0.4 GB
 PNG = b"\x89PNG\r\n\x1a\n"
 # SOF0 to SOF15 state the size; among their numbers are DHT, JPG and DAC, which are none
 START_OF_FRAME = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
@@ -26,6 +27,18 @@ def stated_size(encoded: bytes) -> tuple[int, int] | None:
         width, height = struct.unpack_from("<ii", encoded, 18)
         return abs(width), abs(height)  # a negative height: the top row comes first
     return None
+
+
+def is_whole(encoded: bytes) -> bool:
+    """Whether a PNG or JPEG has its end: decoders fill what is missing with grey, and say nothing.
+
+    Other formats are taken as whole.
+    """
+    if encoded.startswith(PNG):
+        return encoded.rfind(b"IEND") > encoded.rfind(b"IDAT")
+    if encoded.startswith(b"\xff\xd8"):  # end of image, after the last start of scan
+        return encoded.rfind(b"\xff\xd9") > encoded.rfind(b"\xff\xda")
+    return True
 
 
 def _jpeg_size(encoded: bytes) -> tuple[int, int] | None:

@@ -8,10 +8,9 @@ import numpy as np
 from odometry.arrays import AnyArray, ByteImage
 from odometry.io.input_file import read_bytes
 from terrain.errors import ImageError
-from terrain.image_size import stated_size
+from terrain.image_size import PIXELS, is_whole, stated_size
 
 IMAGE_BYTES = 256 * 1024**2
-PIXELS = 64_000_000  # decoded they need up to 0.4 GB, and once more to become 8 bits
 
 
 def read_image(path: Path | str) -> ByteImage:
@@ -42,6 +41,8 @@ def read_image(path: Path | str) -> ByteImage:
     width, height = size
     if not 0 < width * height <= PIXELS:
         raise ImageError(f"{path}: {width} x {height} pixels, expected 1 to {PIXELS} in all")
+    if not is_whole(encoded):
+        raise ImageError(f"{path}: the image has no end; it was cut off at {len(encoded)} bytes")
     try:
         decoded: AnyArray | None = cv2.imdecode(
             np.frombuffer(encoded, np.uint8), cv2.IMREAD_UNCHANGED

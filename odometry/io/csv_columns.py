@@ -38,8 +38,14 @@ NUMBER_COLUMNS = frozenset(
         "x_icr",
     ]
 )
-LARGEST = 1e12  # in any unit nothing of a robot is larger; products of such numbers are finite
-LARGEST_STAMP = 1e19  # nanoseconds since 1970 are 1.8e18
+LARGEST = 1e6  # of speeds, angles and the like, in any unit that was meant
+LARGEST_BY_NAME = {
+    "t": 1e19,  # nanoseconds since 1970 are 1.8e18
+    "x": 1e11,  # UTM in millimetres is 1e10
+    "y": 1e11,
+    "z": 1e11,
+    "window": 1e12,
+}
 LONGEST_NAME = 1000  # characters; an array of names has room for the longest in every row
 
 
@@ -57,11 +63,11 @@ def numbers(
         values = np.fromiter(map(float, cells), np.float64, len(cells))
     except ValueError:
         values = np.array([_number(cell, file, row, name) for cell, row in zip(cells, lines, strict=True)])
-    largest = LARGEST_STAMP if name == "t" else LARGEST
+    largest = LARGEST_BY_NAME.get(name, LARGEST)
     wrong = ~(np.abs(values) <= largest) & ~(may_miss & np.isnan(values))
     if wrong.any():
         first = int(np.argmax(wrong))
-        size = "" if not math.isfinite(values[first]) else f", below {largest:g} in size"
+        size = "" if not math.isfinite(values[first]) else f", at most {largest:g} in size"
         raise RunFolderError(
             f"{file}: row {lines[first]}, column {name!r}: {cells[first].strip()!r}, "
             f"expected a finite number{size}"

@@ -8,13 +8,14 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.errors import TrajectoryError
 from odometry.geometry import se3
-from odometry.io.csv_columns import LARGEST, LARGEST_STAMP
+from odometry.io.csv_columns import LARGEST, LARGEST_BY_NAME
 from odometry.io.files import atomic_write
 from odometry.io.input_file import opened_lines
 from odometry.spatial_trajectory import SpatialTrajectory
 from odometry.trajectory import Trajectory
 
 COLUMNS = ("stamp", "x", "y", "z", "qx", "qy", "qz", "qw")
+LARGEST_VALUES = [LARGEST_BY_NAME[name] for name in ("t", "x", "y", "z")] + 4 * [LARGEST]
 BLOCK_ROWS = 1000
 LENGTH_TOLERANCE = 0.01  # of a quaternion: files with three digits pass, mixed columns rarely do
 
@@ -86,13 +87,13 @@ def _block(block: list[tuple[int, list[str]]], file: Path) -> tuple[IntArray, Fl
     except ValueError:
         _refuse_words(block, file)
         raise
-    wrong = ~(np.abs(table) <= [LARGEST_STAMP, *[LARGEST] * 7])
+    wrong = ~(np.abs(table) <= LARGEST_VALUES)
     if wrong.any():
         first, column = np.argwhere(wrong)[0]
         row, words = block[first]
         raise TrajectoryError(
             f"{file}: row {row}, {COLUMNS[column]}: {words[column]!r}, expected a finite number, "
-            f"at most {LARGEST:g} in size"
+            f"at most {LARGEST_VALUES[column]:g} in size"
         )
     lengths = np.linalg.norm(table[:, 4:], axis=1)
     off = np.flatnonzero(np.abs(lengths - 1) > LENGTH_TOLERANCE)

@@ -17,9 +17,10 @@ from odometry.modes.traction import TractionModes
 from odometry.modes.velocity import VelocityModes
 
 DWELL_S = 20.0  # of a mode of which nothing else is said
+LARGEST, SMALLEST = 1e9, 1e-18  # of a number, and of one above 0: a standard deviation of 1e-9
 IS_OF_SIGN: dict[str, Callable[[FloatArray], BoolArray]] = {
     "": np.isfinite,
-    "above 0": lambda values: values > 0,
+    "above 0": lambda values: values >= SMALLEST,
     "0 or more": lambda values: values >= 0,
 }
 
@@ -146,7 +147,7 @@ def _array(table: dict[str, Any], one: Key, where: str) -> FloatArray:
         values = np.asarray(table[one.name], dtype=np.float64)
     except (TypeError, ValueError):
         values = np.full((), math.nan)
-    fits = values.shape == one.shape and np.isfinite(values).all()
+    fits = values.shape == one.shape and bool(np.all(np.abs(values) <= LARGEST))
     if not fits or not np.all(IS_OF_SIGN[one.sign](values)):
         raise ParameterError(
             f"{where}: {one.name} = {table[one.name]!r}, expected finite numbers"

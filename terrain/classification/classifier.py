@@ -16,7 +16,7 @@ from terrain.classification.neighbours import vote
 from terrain.classification.patches import cut_patches
 from terrain.classification.persistence import read_model, write_model
 from terrain.classification.presets import PRESETS
-from terrain.classification.training_set import check_labels, common_size, has_colour
+from terrain.classification.training_set import check_codes, check_labels, common_size, has_colour
 from terrain.classification.validation import CrossValidation, cross_validate
 from terrain.errors import ImageError, ModelFileError, PatchError
 
@@ -225,6 +225,7 @@ class TerrainClassifier:
         model.n_neighbors_ = settings.n_neighbors
         model.rejection_distance_ = settings.rejection_distance
         model._features = settings.features
+        check_codes(arrays["codes"], len(settings.classes))
         model._neighbours = PRESETS[model.preset].neighbours.from_arrays(arrays)
         model._check_that_parts_fit()
         return model

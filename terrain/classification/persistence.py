@@ -9,6 +9,7 @@ import hashlib
 import io
 import json
 import math
+import tokenize
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -28,7 +29,7 @@ HEADER = "header.json"
 CHECKSUM = "sha256"
 MODEL_BYTES = 1024**3
 ZIP_ERRORS = (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, ValueError, OSError)
-NPY_ERRORS = (ValueError, SyntaxError, TypeError, RecursionError, MemoryError)
+NPY_ERRORS = (ValueError, SyntaxError, TypeError, RecursionError, MemoryError, tokenize.TokenError)
 
 
 def write_model(path: Path, settings: Mapping[str, Any], arrays: Mapping[str, AnyArray]) -> None:

@@ -12,6 +12,13 @@ from odometry.simulation.driver import WeavingDriver
 from terrain.camera import Camera
 from terrain.errors import SynthesisError
 
+LARGEST = {  # a run of a day, in steps that are worth it
+    "zone_length_m": 1000.0,
+    "odometry_rate_hz": 1000.0,
+    "metres_per_pixel": 1.0,
+    "patch_size_px": 4096,
+    "patches_per_terrain": 100_000,
+}
 # y_left, y_right, x_icr in track widths
 _KNOWN_ICRS = {
     "gravel": (0.725, -0.65, -0.2),
@@ -103,14 +110,20 @@ class SynthesisConfig:
     def __post_init__(self) -> None:
         if not self.zones:
             raise SynthesisError("there must be at least one zone")
-        for name in ("zone_length_m", "odometry_rate_hz", "metres_per_pixel", "patch_size_px"):
-            if not getattr(self, name) > 0:
-                raise SynthesisError(f"{name} must be above zero, seen {getattr(self, name)}")
+        for name, largest in LARGEST.items():
+            if not 0 < getattr(self, name) <= largest:
+                raise SynthesisError(
+                    f"{name} must be above zero, at most {largest:g}, seen {getattr(self, name)}"
+                )
         if not 1 <= self.jpeg_quality <= 100:
             raise SynthesisError(f"jpeg_quality must be in 1 to 100, seen {self.jpeg_quality}")
         missing = [name for name in ("track_width", "length", "width") if name not in self.robot]
         if missing:
             raise SynthesisError(f"[robot] needs {', '.join(missing)}; seen {sorted(self.robot)}")
+        for name in ("track_width", "length", "width"):
+            value = self.robot[name]
+            if not isinstance(value, int | float) or not 0.01 <= value <= 100:
+                raise SynthesisError(f"[robot] {name} = {value!r}, expected 0.01 to 100 m")
         self.samples_between("pose_rate_hz")
         self.samples_between("image_rate_hz")
 
