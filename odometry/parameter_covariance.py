@@ -78,7 +78,9 @@ def _order_and_matrix(table: Any, where: str) -> tuple[tuple[str, ...], FloatArr
 
 
 def _is_covariance(matrix: FloatArray) -> bool:
-    if not np.all(np.abs(matrix) <= LARGEST**2) or not np.allclose(matrix, matrix.T, rtol=1e-9, atol=0):
+    if not np.all(np.abs(matrix) <= LARGEST**2) or not np.allclose(
+        matrix, matrix.T, rtol=1e-9, atol=0
+    ):
         return False
     eigenvalues = np.linalg.eigvalsh(matrix)
     return bool(eigenvalues[0] >= -1e-12 * max(eigenvalues[-1], 1e-300))

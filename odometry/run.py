@@ -193,7 +193,11 @@ def _robot(settings: Mapping[str, Any], file: Path) -> Robot:
         value = table[field.name]
         if field.name == "name":
             known["name"] = str(value)
-        elif isinstance(value, bool) or not isinstance(value, int | float) or not 1e-3 <= value <= 1e6:
+        elif (
+            isinstance(value, bool)
+            or not isinstance(value, int | float)
+            or not 1e-3 <= value <= 1e6
+        ):
             raise RunFolderError(
                 f"{file}: [robot] {field.name} = {value!r}, expected a positive number, "
                 "0.001 to 1e6"

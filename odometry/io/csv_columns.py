@@ -1,4 +1,4 @@
-"""Columns of a CSV file as arrays: numbers by the names of the format, names, and what else is there."""
+"""Columns of a CSV file as arrays: numbers, names, and what else is there."""
 
 import math
 from collections.abc import Sequence
@@ -62,7 +62,9 @@ def numbers(
     try:
         values = np.fromiter(map(float, cells), np.float64, len(cells))
     except ValueError:
-        values = np.array([_number(cell, file, row, name) for cell, row in zip(cells, lines, strict=True)])
+        values = np.array(
+            [_number(cell, file, row, name) for cell, row in zip(cells, lines, strict=True)]
+        )
     largest = LARGEST_BY_NAME.get(name, LARGEST)
     wrong = ~(np.abs(values) <= largest) & ~(may_miss & np.isnan(values))
     if wrong.any():

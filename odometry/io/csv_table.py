@@ -20,6 +20,7 @@ from odometry.io.csv_columns import (
 from odometry.io.files import atomic_write
 from odometry.table import Table
 
+
 def read_csv_table(file: Path, required: Iterable[str], complete: Iterable[str] = ()) -> Table:
     """Read a CSV file whose columns are found by name, in any order.
 

@@ -33,7 +33,9 @@ def read_toml(file: Path, error: type[OdometryError]) -> dict[str, Any]:
     try:
         content = tomllib.load(io.BytesIO(data))
     except UnicodeDecodeError as problem:
-        raise error(f"{file}: cannot be read as TOML: not UTF-8 text: {problem.reason}") from problem
+        raise error(
+            f"{file}: cannot be read as TOML: not UTF-8 text: {problem.reason}"
+        ) from problem
     except ValueError as problem:  # TOMLDecodeError, and integers of thousands of digits
         raise error(f"{file}: cannot be read as TOML: {problem}") from problem
     except RecursionError as problem:
@@ -50,7 +52,9 @@ def read_json(file: Path, error: type[OdometryError]) -> Any:
     OdometryError
         Of the kind `error`, as `read_toml`.
     """
-    return parsed_json(read_bytes(file, error, JSON_BYTES, "a result has a few thousand"), file, error)
+    return parsed_json(
+        read_bytes(file, error, JSON_BYTES, "a result has a few thousand"), file, error
+    )
 
 
 def parsed_json(data: bytes, file: Path, error: type[OdometryError]) -> Any:

@@ -123,7 +123,12 @@ def _from_npy(path: Path, name: str, data: bytes) -> AnyArray:
     except NPY_ERRORS as error:
         raise ModelFileError(f"{path}: {name} is not an array: {error}") from error
     rest = data[stream.tell() :]
-    if fortran or min(shape, default=0) < 0 or dtype.kind not in "fi" or math.prod(shape) * dtype.itemsize != len(rest):
+    if (
+        fortran
+        or min(shape, default=0) < 0
+        or dtype.kind not in "fi"
+        or math.prod(shape) * dtype.itemsize != len(rest)
+    ):
         raise ModelFileError(f"{path}: {name} claims {shape} of {dtype}, holds {len(rest)} bytes")
     array = np.frombuffer(rest, dtype=dtype).reshape(shape).copy()
     if not np.isfinite(array).all():

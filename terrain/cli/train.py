@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from terrain.cli.options import Positive
+
 if TYPE_CHECKING:
     from terrain.classification.classifier import TerrainClassifier
     from terrain.classification.patches import LabelledPatches
@@ -33,7 +35,7 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--metres-per-pixel",
-    type=click.FloatRange(min=0, min_open=True),
+    type=Positive(1000.0),
     help="Scale of the photographs on the ground; kept in the model.  [default: as manifest.csv "
     "states it]",
 )

@@ -10,9 +10,42 @@ import numpy as np
 
 WORDS = (
     *("nan", "inf", "-inf", "1e300", "-1e300", "1e-300", "1e999", "1e12", "-1e12", "0", "-1", ""),
-    *("fast", "true", '"text"', "[]", "{}", "[1, 2]", "2020-01-01", "0x10", "1_0", "9223372036854775808"),
-    *("1" * 6000, "0x" + "f" * 6000, "[" * 3000, "[" * 40 + "]" * 40, "a" * 70000, "\0", "\u00e9", '"'),
-    *("../x", "/etc/passwd", "unknown", "1,2", "'", "\n", "\r", "=", "[a.b.c]", "{a = 1}", "#", "-0.0"),
+    *(
+        "fast",
+        "true",
+        '"text"',
+        "[]",
+        "{}",
+        "[1, 2]",
+        "2020-01-01",
+        "0x10",
+        "1_0",
+        "9223372036854775808",
+    ),
+    *(
+        "1" * 6000,
+        "0x" + "f" * 6000,
+        "[" * 3000,
+        "[" * 40 + "]" * 40,
+        "a" * 70000,
+        "\0",
+        "\u00e9",
+        '"',
+    ),
+    *(
+        "../x",
+        "/etc/passwd",
+        "unknown",
+        "1,2",
+        "'",
+        "\n",
+        "\r",
+        "=",
+        "[a.b.c]",
+        "{a = 1}",
+        "#",
+        "-0.0",
+    ),
 )
 VALUES = (
     *(None, True, False, 0, -1, 10**30, 1e300, -1e300, 0.5, "", "text", "\ud800", [], {}, [1, 2]),
@@ -70,7 +103,9 @@ def word_changed(data, rng):
 def text_changed(data, rng):
     """One to three changes of a text."""
     for _ in range(rng.integers(1, 4)):
-        data = (bytes_changed, lines_changed, word_changed, word_changed)[rng.integers(4)](data, rng)
+        data = (bytes_changed, lines_changed, word_changed, word_changed)[rng.integers(4)](
+            data, rng
+        )
     return data
 
 

@@ -111,7 +111,7 @@ class Reader:
 
 
 def fails(reader, content):
-    """None where it is read, else the error of the project; any other error or warning is raised."""
+    """None where it is read, else the error of the project; others and warnings are raised."""
     reader.file.write_bytes(content)
     try:
         with warnings.catch_warnings():

@@ -36,7 +36,9 @@ def main() -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # the decoders of images are loud
     sound = True
     with tempfile.TemporaryDirectory() as scratch:
-        print(f"{'reader':16} {'changed':>8} {'read':>8} {'refused':>8} {'wrong':>6} {'longest ms':>10}")
+        print(
+            f"{'reader':16} {'changed':>8} {'read':>8} {'refused':>8} {'wrong':>6} {'longest ms':>10}"
+        )
         for reader in readers(Path(scratch)):
             if arguments.only in (None, reader.name):
                 sound &= study(reader, arguments.changes, arguments.seed)
@@ -52,12 +54,14 @@ def study(reader, changes, seed):
         start = time.perf_counter()
         try:
             counts["read" if fails(reader, content) is None else "refused"] += 1
-        except Exception as error:  # noqa: BLE001 - any error is what is looked for
+        except Exception as error:
             counts["wrong"] += 1
             place = traceback.extract_tb(error.__traceback__)[-1]
             seen[kind := f"{type(error).__name__} {Path(place.filename).name}:{place.lineno}"] += 1
             if seen[kind] == 1:
-                own = [f for f in traceback.extract_tb(error.__traceback__) if "fuzz" not in f.filename]
+                own = [
+                    f for f in traceback.extract_tb(error.__traceback__) if "fuzz" not in f.filename
+                ]
                 steps = " > ".join(f"{Path(f.filename).name}:{f.lineno}" for f in own[-6:])
                 print(f"  {kind}: {str(error)[:100]}\n    {steps}\n    {content[:400]!r}")
         taken_s = time.perf_counter() - start
