@@ -36,9 +36,7 @@ def main() -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # the decoders of images are loud
     sound = True
     with tempfile.TemporaryDirectory() as scratch:
-        print(
-            f"{'reader':16} {'changed':>8} {'read':>8} {'refused':>8} {'wrong':>6} {'longest ms':>10}"
-        )
+        print(f"{'reader':16}  changed     read  refused  wrong longest ms")
         for reader in readers(Path(scratch)):
             if arguments.only in (None, reader.name):
                 sound &= study(reader, arguments.changes, arguments.seed)
