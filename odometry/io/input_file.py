@@ -1,6 +1,7 @@
 """Open an input file safely: a regular file of bounded size, text that is text."""
 
 import io
+import os
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -43,7 +44,8 @@ def opened(file: Path, error: type[OdometryError], most_bytes: int, why: str) ->
 def read_bytes(file: Path, error: type[OdometryError], most_bytes: int, why: str) -> bytes:
     """The content of a file; raises as `opened`."""
     with opened(file, error, most_bytes, why) as stream:
-        return stream.read(most_bytes)
+        size = os.fstat(stream.fileno()).st_size  # reading more would allocate more
+        return stream.read(min(size, most_bytes))
 
 
 @contextmanager

@@ -1,5 +1,6 @@
 """The terrain classifier: SFTA features, a scaler and k nearest neighbours, with rejection."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -91,6 +92,8 @@ class TerrainClassifier:
             raise ConfigError(f"preset '{preset}' is not one of {', '.join(sorted(PRESETS))}")
         if not 0 < rejected_share < 1:
             raise ConfigError(f"rejected_share is {rejected_share}, expected between 0 and 1")
+        if metres_per_pixel is not None and not 0 < metres_per_pixel < math.inf:
+            raise ConfigError(f"metres_per_pixel is {metres_per_pixel}, expected above zero")
         self.preset = preset
         self.colour = colour
         self.metres_per_pixel = metres_per_pixel
