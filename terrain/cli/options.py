@@ -15,10 +15,10 @@ MODEL_NAMES = (
 
 
 class Positive(click.FloatRange):
-    """A number above zero that is finite: click lets nan and inf pass."""
+    """A number well above zero that is finite: click lets nan and inf pass."""
 
     def __init__(self, largest: float) -> None:
-        super().__init__(min=0, min_open=True, max=largest)
+        super().__init__(min=1e-6, max=largest)
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None

@@ -12,12 +12,14 @@ from odometry.simulation.driver import WeavingDriver
 from terrain.camera import Camera
 from terrain.errors import SynthesisError
 
-LARGEST = {  # a run of a day, in steps that are worth it
-    "zone_length_m": 1000.0,
-    "odometry_rate_hz": 1000.0,
-    "metres_per_pixel": 1.0,
-    "patch_size_px": 4096,
-    "patches_per_terrain": 100_000,
+LIMITS = {  # a run of a day, in steps that are worth it
+    "zone_length_m": (0.01, 1000.0),
+    "odometry_rate_hz": (0.1, 1000.0),
+    "pose_rate_hz": (0.001, 1000.0),
+    "image_rate_hz": (0.001, 1000.0),
+    "metres_per_pixel": (1e-5, 1.0),
+    "patch_size_px": (1, 4096),
+    "patches_per_terrain": (1, 100_000),
 }
 # y_left, y_right, x_icr in track widths
 _KNOWN_ICRS = {
@@ -110,10 +112,10 @@ class SynthesisConfig:
     def __post_init__(self) -> None:
         if not self.zones:
             raise SynthesisError("there must be at least one zone")
-        for name, largest in LARGEST.items():
-            if not 0 < getattr(self, name) <= largest:
+        for name, (low, high) in LIMITS.items():
+            if not low <= getattr(self, name) <= high:
                 raise SynthesisError(
-                    f"{name} must be above zero, at most {largest:g}, seen {getattr(self, name)}"
+                    f"{name} must be above zero: {low:g} to {high:g}, seen {getattr(self, name)}"
                 )
         if not 1 <= self.jpeg_quality <= 100:
             raise SynthesisError(f"jpeg_quality must be in 1 to 100, seen {self.jpeg_quality}")

@@ -99,10 +99,10 @@ def test_a_file_of_another_kind_of_value_is_named(tmp_path):
         read_image(path)
 
 
-def png_of(width, height):
-    """A PNG that states a size and holds grey rows of zeros, packed: 30000 x 30000 is 0.9 MB."""
+def png_of(width, height, rows_held=None):
+    """A PNG that states a size and holds rows of black, packed: few bytes make a large image."""
     rows = zlib.compressobj(9)
-    data = b"".join(rows.compress(bytes(width + 1)) for _ in range(height)) + rows.flush()
+    data = b"".join(rows.compress(bytes(width + 1)) for _ in range(rows_held or height)) + rows.flush()
     header = struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
     chunks = ((b"IHDR", header), (b"IDAT", data), (b"IEND", b""))
     packed = [
@@ -115,7 +115,7 @@ def png_of(width, height):
 def test_the_size_is_read_before_the_image(tmp_path):
     """Nothing of the size of the decoded image may be allocated."""
     file = tmp_path / "photo.png"
-    file.write_bytes(png_of(30000, 30000))
+    file.write_bytes(png_of(30000, 30000, rows_held=100))
     tracemalloc.start()
     with pytest.raises(ImageError, match="30000 x 30000 pixels, expected 1 to 64000000"):
         read_image(file)
