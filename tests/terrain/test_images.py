@@ -102,7 +102,8 @@ def test_a_file_of_another_kind_of_value_is_named(tmp_path):
 def png_of(width, height, rows_held=None):
     """A PNG that states a size and holds rows of black, packed: few bytes make a large image."""
     rows = zlib.compressobj(9)
-    data = b"".join(rows.compress(bytes(width + 1)) for _ in range(rows_held or height)) + rows.flush()
+    packed = [rows.compress(bytes(width + 1)) for _ in range(rows_held or height)]
+    data = b"".join(packed) + rows.flush()
     header = struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
     chunks = ((b"IHDR", header), (b"IDAT", data), (b"IEND", b""))
     packed = [
