@@ -12,6 +12,7 @@ from terrain.errors import CameraError
 from terrain.image_size import PIXELS
 
 LARGEST = 1e9  # of a value in pixels, metres or radians
+SHORTEST_FOCUS_PX = 1e-3  # also where matrix is that of an image of one unit
 
 # The optical frame (x right, y down, z along the view) seen from the camera's own (x, y left, z up)
 _OPTICAL_FROM_CAMERA = np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]])
@@ -37,7 +38,10 @@ def intrinsic_matrix(matrix: ArrayLike) -> FloatArray:
     """Intrinsic matrix (3, 3) without skew, which OpenCV's lens model does not know."""
     array = finite_array("matrix", matrix, (3, 3))
     pattern = np.array([[0, 1, 0], [1, 0, 0], [1, 1, 1]], dtype=bool)
-    if array[0, 0] <= 0 or array[1, 1] <= 0 or (array[pattern] != [0, 0, 0, 0, 1]).any():
+    if (
+        min(array[0, 0], array[1, 1]) < SHORTEST_FOCUS_PX
+        or (array[pattern] != [0, 0, 0, 0, 1]).any()
+    ):
         raise CameraError(
             f"matrix must be [[fx, 0, cx], [0, fy, cy], [0, 0, 1]] with positive fx and fy, "
             f"seen {array.tolist()}"

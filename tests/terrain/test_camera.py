@@ -216,6 +216,7 @@ TABLE = mounted().to_table()
         ({"matrix": None}, "matrix must|matrix has shape"),
         ({"matrix": [[1, 0], [0, 1]]}, r"shape \(2, 2\)"),
         ({"matrix": [[0, 0, 1], [0, 1, 1], [0, 0, 1]]}, "positive fx and fy"),
+        ({"matrix": [[1e-300, 0, 1], [0, 9, 1], [0, 0, 1]]}, "positive fx and fy"),
         ({"matrix": [[9, 1, 1], [0, 9, 1], [0, 0, 1]]}, r"fx, 0, cx"),
         ({"image_size": [640.5, 480]}, "whole numbers"),
         ({"image_size": [0, 480]}, "whole numbers"),
