@@ -1,14 +1,16 @@
 """Frozen blocks of settings, read from TOML; an unknown key is an error."""
 
 import math
-import tomllib
 from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, TypeVar
 
 from odometry.errors import ConfigError
+from odometry.io import structured
 
+LARGEST = 1e6  # metres, seconds, hertz of a setting; squares of larger ones lose all digits
+SMALLEST = 1e-6  # of a setting that divides
 Block = TypeVar("Block")
 
 
@@ -44,16 +46,22 @@ def read_toml(file: Path) -> dict[str, Any]:
     Raises
     ------
     ConfigError
-        If it is missing or not TOML.
+        As `odometry.io.structured.read_toml`.
     """
-    try:
-        with Path(file).open("rb") as stream:
-            return tomllib.load(stream)
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ConfigError(f"{file}: cannot be read as TOML: {error}") from error
+    return structured.read_toml(file, ConfigError)
 
 
 def require(condition: bool, message: str) -> None:
     """Raise ConfigError with `message` unless `condition` holds."""
     if not condition:
         raise ConfigError(message)
+
+
+def require_positive(block: Any, *names: str) -> None:
+    """Raise ConfigError unless the named settings of a block are SMALLEST to LARGEST."""
+    for name in names:
+        value = getattr(block, name)
+        require(
+            SMALLEST <= value <= LARGEST,
+            f"{name} = {value}, expected above 0: {SMALLEST:g} to {LARGEST:g}",
+        )

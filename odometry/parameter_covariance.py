@@ -8,11 +8,15 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
 
+LARGEST = 1e9  # of a parameter in SI units: the stiffest and heaviest stay below
+
 
 def finite_number(value: Any, where: str) -> float:
     """The value as a float, or a ParameterError that says where it stands."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
-        raise ParameterError(f"{where} = {value!r}, expected a finite number")
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= LARGEST:
+        raise ParameterError(
+            f"{where} = {value!r}, expected a finite number, at most {LARGEST:g} in size"
+        )
     return float(value)
 
 
@@ -74,7 +78,9 @@ def _order_and_matrix(table: Any, where: str) -> tuple[tuple[str, ...], FloatArr
 
 
 def _is_covariance(matrix: FloatArray) -> bool:
-    if not np.all(np.isfinite(matrix)) or not np.allclose(matrix, matrix.T, rtol=1e-9, atol=0):
+    if not np.all(np.abs(matrix) <= LARGEST**2) or not np.allclose(
+        matrix, matrix.T, rtol=1e-9, atol=0
+    ):
         return False
     eigenvalues = np.linalg.eigvalsh(matrix)
     return bool(eigenvalues[0] >= -1e-12 * max(eigenvalues[-1], 1e-300))

@@ -1,6 +1,5 @@
 """Parameter sets: one table of model parameters for each terrain, as TOML."""
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,6 +11,7 @@ import tomli_w
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
 from odometry.io.files import atomic_write
+from odometry.io.structured import read_toml
 from odometry.models.catalogue import MODELS, OPTIONAL_NAMES, PARAMETER_NAMES
 from odometry.parameter_covariance import covariance_of_table, finite_number
 from odometry.run import UNKNOWN
@@ -74,11 +74,7 @@ def read_parameters(file: str | Path) -> ParameterSet:
         not a finite number, a covariance that is not symmetric and positive semi-definite.
     """
     file = Path(file)
-    try:
-        with file.open("rb") as stream:
-            content = tomllib.load(stream)
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ParameterError(f"{file}: cannot be read as TOML: {error}") from error
+    content = read_toml(file, ParameterError)
     unknown = sorted(set(content) - {"vehicle", "terrain"})
     if unknown:
         raise ParameterError(f"{file}: unknown table [{unknown[0]}]; known: vehicle, terrain")

@@ -11,6 +11,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.errors import RunFolderError
 from odometry.io.run_folder import read_settings, read_tables
+from odometry.sensors import Sensors, YawRate, preferred_yaw_rate, sensors_of
 from odometry.table import Table
 
 UNKNOWN = "unknown"  # the reserved terrain name: nothing is known of this ground
@@ -93,6 +94,7 @@ class Run:
         settings = read_settings(folder)
         robot = _robot(settings, folder / "run.toml")
         _check_terrain(settings, folder / "run.toml")
+        sensors_of(settings, str(folder / "run.toml"))
         return cls(folder, robot, settings, **read_tables(folder))
 
     @property
@@ -105,6 +107,16 @@ class Run:
         """The ground of the whole run, where run.toml names one."""
         name: str | None = self.settings.get("run", {}).get("terrain")
         return name
+
+    @property
+    def sensors(self) -> Sensors:
+        """Where the sensors sit, as `[sensors]` of run.toml says."""
+        return sensors_of(self.settings, str(self.folder / "run.toml"))
+
+    @property
+    def yaw_rate(self) -> YawRate | None:
+        """Measured yaw rates: imu.csv's where it has them, else odometry.csv's, else None."""
+        return preferred_yaw_rate(self.imu, self.odometry, self.sensors)
 
     @property
     def wheel_travel_m(self) -> FloatArray:
@@ -181,9 +193,14 @@ def _robot(settings: Mapping[str, Any], file: Path) -> Robot:
         value = table[field.name]
         if field.name == "name":
             known["name"] = str(value)
-        elif isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < 1e9:
+        elif (
+            isinstance(value, bool)
+            or not isinstance(value, int | float)
+            or not 1e-3 <= value <= 1e6
+        ):
             raise RunFolderError(
-                f"{file}: [robot] {field.name} = {value!r}, expected a positive number"
+                f"{file}: [robot] {field.name} = {value!r}, expected a positive number, "
+                "0.001 to 1e6"
             )
         else:
             known[field.name] = float(value)

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from odometry.errors import RunFolderError
-from odometry.run import Run
+from odometry.run import Robot, Run
 
 
 def run_names(runs: Sequence[Run]) -> list[str]:
@@ -14,8 +14,18 @@ def run_names(runs: Sequence[Run]) -> list[str]:
 
 
 def check_no_run_twice(runs: Sequence[Run]) -> None:
-    """Raise RunFolderError if a folder is there twice: a model would be judged by its own data."""
+    """Raise RunFolderError if a folder is there twice: a model would be tested on its own data."""
     folders = [run.folder.resolve() for run in runs]
     for folder in folders:
         if folders.count(folder) > 1:
             raise RunFolderError(f"{folder} is given twice; expected each run once")
+
+
+def robot_labels(robots: Sequence[Robot]) -> dict[tuple[str, float], str]:
+    """A short name for every robot: what comes before a bracket where that tells them apart."""
+    keys = list(dict.fromkeys((robot.name, robot.track_width) for robot in robots))
+    full = {(name, width): name or f"robot {width:g} m wide" for name, width in keys}
+    short = {key: name.split(" (")[0] for key, name in full.items()}
+    longest = {key: f"{name}, track width {key[1]:g} m" for key, name in full.items()}
+    choices = (short, full, longest)
+    return next(labels for labels in choices if len(set(labels.values())) == len(keys))

@@ -1,6 +1,6 @@
 """The values that describe a camera, checked one by one, and what a mount amounts to."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sized
 from typing import Any
 
 import numpy as np
@@ -9,6 +9,10 @@ from numpy.typing import ArrayLike
 from odometry.arrays import FloatArray
 from terrain.distortion import COEFFICIENT_COUNTS
 from terrain.errors import CameraError
+from terrain.image_size import PIXELS
+
+LARGEST = 1e9  # of a value in pixels, metres or radians
+SHORTEST_FOCUS_PX = 1e-3  # also where matrix is that of an image of one unit
 
 # The optical frame (x right, y down, z along the view) seen from the camera's own (x, y left, z up)
 _OPTICAL_FROM_CAMERA = np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]])
@@ -22,8 +26,10 @@ def finite_array(name: str, values: ArrayLike, shape: tuple[int, ...]) -> FloatA
         raise CameraError(f"{name} must hold numbers of shape {shape}: {error}") from error
     if array.shape != shape:
         raise CameraError(f"{name} has shape {array.shape}, expected {shape}")
-    if not np.isfinite(array).all():
-        raise CameraError(f"{name} holds values that are not finite: {array.tolist()}")
+    if not (np.abs(array) <= LARGEST).all():
+        raise CameraError(
+            f"{name} holds values that are not finite or above {LARGEST:g}: {array.tolist()}"
+        )
     array.setflags(write=False)
     return array
 
@@ -32,7 +38,10 @@ def intrinsic_matrix(matrix: ArrayLike) -> FloatArray:
     """Intrinsic matrix (3, 3) without skew, which OpenCV's lens model does not know."""
     array = finite_array("matrix", matrix, (3, 3))
     pattern = np.array([[0, 1, 0], [1, 0, 0], [1, 1, 1]], dtype=bool)
-    if array[0, 0] <= 0 or array[1, 1] <= 0 or (array[pattern] != [0, 0, 0, 0, 1]).any():
+    if (
+        min(array[0, 0], array[1, 1]) < SHORTEST_FOCUS_PX
+        or (array[pattern] != [0, 0, 0, 0, 1]).any()
+    ):
         raise CameraError(
             f"matrix must be [[fx, 0, cx], [0, fy, cy], [0, 0, 1]] with positive fx and fy, "
             f"seen {array.tolist()}"
@@ -42,7 +51,7 @@ def intrinsic_matrix(matrix: ArrayLike) -> FloatArray:
 
 def lens_coefficients(distortion: ArrayLike) -> FloatArray:
     """Distortion coefficients (n,) of a length that OpenCV knows."""
-    count = np.size(distortion)
+    count = len(distortion) if isinstance(distortion, Sized) else 1
     if count not in COEFFICIENT_COUNTS:
         raise CameraError(
             f"distortion has {count} values, OpenCV's models have {COEFFICIENT_COUNTS}"
@@ -53,8 +62,11 @@ def lens_coefficients(distortion: ArrayLike) -> FloatArray:
 def size_in_pixels(image_size: tuple[int, int]) -> tuple[int, int]:
     """Width and height as whole, positive numbers."""
     size = finite_array("image_size", image_size, (2,))
-    if (size < 1).any() or (size != np.floor(size)).any():
-        raise CameraError(f"image_size must be two positive whole numbers, seen {size.tolist()}")
+    if (size < 1).any() or (size != np.floor(size)).any() or size.prod() > PIXELS:
+        raise CameraError(
+            f"image_size must be two positive whole numbers, seen {size.tolist()}, and the image "
+            f"have at most {PIXELS} pixels"
+        )
     return int(size[0]), int(size[1])
 
 

@@ -6,7 +6,11 @@ import cv2
 import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage
+from odometry.io.input_file import read_bytes
 from terrain.errors import ImageError
+from terrain.image_size import PIXELS, is_whole, stated_size
+
+IMAGE_BYTES = 256 * 1024**2
 
 
 def read_image(path: Path | str) -> ByteImage:
@@ -15,7 +19,7 @@ def read_image(path: Path | str) -> ByteImage:
     Parameters
     ----------
     path : Path or str
-        A JPEG, PNG or any other file that OpenCV decodes.
+        A JPEG, PNG, TIFF or BMP file.
 
     Returns
     -------
@@ -26,18 +30,27 @@ def read_image(path: Path | str) -> ByteImage:
     Raises
     ------
     ImageError
-        The file cannot be opened, or does not hold an image.
+        The file cannot be opened, is no such image, or has more than PIXELS pixels.
     """
+    encoded = read_bytes(Path(path), ImageError, IMAGE_BYTES, "a photograph has a few million")
+    size = stated_size(encoded)
+    if size is None:
+        raise ImageError(
+            f"{path}: {len(encoded)} bytes that do not decode as a JPEG, PNG, TIFF or BMP image"
+        )
+    width, height = size
+    if not 0 < width * height <= PIXELS:
+        raise ImageError(f"{path}: {width} x {height} pixels, expected 1 to {PIXELS} in all")
+    if not is_whole(encoded):
+        raise ImageError(f"{path}: the image has no end; it was cut off at {len(encoded)} bytes")
     try:
-        encoded = np.frombuffer(Path(path).read_bytes(), np.uint8)
-    except OSError as error:
-        raise ImageError(f"{path}: cannot be opened ({error.strerror})") from error
-    try:
-        decoded: AnyArray | None = cv2.imdecode(encoded, cv2.IMREAD_UNCHANGED)
-    except cv2.error:  # an empty file, or an image too large for OpenCV
+        decoded: AnyArray | None = cv2.imdecode(
+            np.frombuffer(encoded, np.uint8), cv2.IMREAD_UNCHANGED
+        )
+    except cv2.error:
         decoded = None
     if decoded is None:
-        raise ImageError(f"{path}: {encoded.size} bytes that do not decode as an image")
+        raise ImageError(f"{path}: {len(encoded)} bytes that do not decode as an image")
     try:
         image = to_bytes(decoded)
     except ImageError as error:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.config import require
+from odometry.config import require_positive
 from odometry.geometry import se2
 from odometry.run import Robot
 from terrain.camera import Camera
@@ -41,9 +41,9 @@ class RegionConfig:
     per_tread: bool = False
 
     def __post_init__(self) -> None:
-        for name in ("footprint_scale", "most_ahead_s", "most_ahead_lengths", "coarsest"):
-            require(getattr(self, name) > 0, f"{name} = {getattr(self, name)}, expected above 0")
-        require(self.ahead_s >= 0, f"ahead_s = {self.ahead_s}, expected 0 or more")
+        require_positive(self, "footprint_scale", "most_ahead_s", "most_ahead_lengths", "coarsest")
+        if self.ahead_s != 0:
+            require_positive(self, "ahead_s")
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ import numpy as np
 from odometry.estimation.estimate import STATE_NAMES
 from odometry.io.csv_table import write_csv_table
 from odometry.io.files import atomic_write
+from odometry.io.structured import read_json
 from odometry.io.tum import write_tum
 from odometry.parameters import write_parameters
 from odometry.trajectory import Trajectory
@@ -19,6 +20,12 @@ from terrain.switch_delay import switch_delays
 from terrain.watcher import Sighting
 
 FORMAT = 1  # of result.json
+ERRORS = (  # of each trajectory in it, and which number of each the tables show
+    ("translation_m_per_m", "mean"),
+    ("rotation_deg_per_m", "mean"),
+    ("position_m", "mean"),
+    ("position_m", "final"),
+)
 
 
 def write_results(result: RunResult, out: str | Path) -> list[Path]:
@@ -167,13 +174,19 @@ def read_errors(folder: str | Path) -> dict[str, Any]:
         If the folder has no result of `run`.
     """
     file = Path(folder) / "result.json"
+    content = read_json(file, ResultError)
     try:
-        content = json.loads(file.read_text(encoding="utf-8"))
         for errors in content["errors"].values():
-            for name in ("translation_m_per_m", "rotation_deg_per_m", "position_m"):
-                float(errors[name]["mean"] or 0)
+            for name, statistic in ERRORS:
+                _check_error(errors[name][statistic])
         return {key: content[key] for key in ("errors", "reference", "horizon_m")}
-    except (OSError, ValueError) as error:
-        raise ResultError(f"{file}: {error}") from error
-    except (KeyError, TypeError, AttributeError) as error:
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise ResultError(f"{file}: it is not a result of `run`") from error
+
+
+def _check_error(value: Any) -> None:
+    """Raise ValueError unless it is a number, or None where there was nothing to measure."""
+    if value is not None and not (
+        isinstance(value, int | float) and not isinstance(value, bool) and np.isfinite(value)
+    ):
+        raise ValueError(value)

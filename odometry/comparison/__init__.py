@@ -1,1 +1,7 @@
-"""Models side by side on runs that they were not identified on."""
+"""Models side by side on runs that they were not identified on.
+
+In order: `split` (who may see what), `candidates` (models and parameter sets), `fitting` (the
+models of each split), `evaluation` (errors on held-out windows), `whole_runs` (errors of whole
+runs), `summary` and `statistics` (means, differences, intervals), `sentences`, `result`, `files`.
+`compare` takes these steps.
+"""

@@ -1,27 +1,67 @@
 """What is compared: models to be identified, and parameter sets that are taken as they are."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 
+from odometry.arrays import FloatArray
 from odometry.comparison.config import ComparisonConfig
-from odometry.comparison.errors import ComparisonError
-from odometry.comparison.parts import windows_of_parts
-from odometry.comparison.predictor import Predictor
-from odometry.comparison.split import Split
-from odometry.effects.tables import model_of
+from odometry.comparison.split import Split, windows_of_parts
+from odometry.effects.tables import model_of, table_of
 from odometry.errors import ParameterError
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fitters import fitter
 from odometry.models.base import KinematicModel
-from odometry.models.catalogue import MODELS
-from odometry.parameters import ParameterSet, read_parameters
+from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.windows.windows import Windows
 
 AS_GIVEN = "taken as it is; it may have been identified on these very runs"
+
+
+@dataclass(frozen=True)
+class Predictor:
+    """A model with parameters, ready to be evaluated.
+
+    Attributes
+    ----------
+    model : KinematicModel
+    values : Mapping of name to float
+    covariance_order : tuple of str
+        The identified parameters.
+    covariance : (F, F)
+    source : str
+    undetermined : tuple of str
+        What the windows left open; the model can be evaluated all the same.
+    notes : tuple of str
+        What else a reader should know of the identification.
+    """
+
+    model: KinematicModel
+    values: Mapping[str, float]
+    covariance_order: tuple[str, ...]
+    covariance: FloatArray
+    source: str
+    undetermined: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    @property
+    def packed(self) -> FloatArray:
+        """Parameters (P,) in the order of the model."""
+        return self.model.pack(self.values)
+
+    def to_parameters(self) -> TerrainParameters:
+        """The table of a parameter set.
+
+        What was left open stands in its source, and no covariance is stated then.
+        """
+        if self.undetermined:
+            source = f"{self.source}; not determined: {'; '.join(self.undetermined)}"
+            return table_of(self.model, self.values, (), np.empty((0, 0)), source)
+        return table_of(
+            self.model, self.values, self.covariance_order, self.covariance, self.source
+        )
 
 
 class Candidate(ABC):
@@ -33,8 +73,17 @@ class Candidate(ABC):
         """Its name in tables and figures."""
 
     @abstractmethod
-    def on(self, split: Split, config: ComparisonConfig) -> Predictor:
-        """The model that may be judged on a split.
+    def on(
+        self, split: Split, config: ComparisonConfig, near: Mapping[str, float] | None = None
+    ) -> Predictor:
+        """The model that may be evaluated on the held-out parts of a split.
+
+        Parameters
+        ----------
+        split : Split
+        config : ComparisonConfig
+        near : Mapping of name to float, optional
+            Where the one search starts that is then made; without it, there are several.
 
         Raises
         ------
@@ -45,7 +94,7 @@ class Candidate(ABC):
 
 @dataclass(frozen=True)
 class IdentifiedModel(Candidate):
-    """A model of the catalogue, identified on what a split lets it see.
+    """A model of the catalogue, identified on the training parts of a split.
 
     Attributes
     ----------
@@ -65,28 +114,30 @@ class IdentifiedModel(Candidate):
         """The model's name."""
         return self.model.name
 
-    def on(self, split: Split, config: ComparisonConfig) -> Predictor:
+    def on(
+        self, split: Split, config: ComparisonConfig, near: Mapping[str, float] | None = None
+    ) -> Predictor:
         """See `Candidate.on`."""
-        robot = split.judged[0].run.robot
+        robot = split.held_out[0].run.robot
         if all(parameter.known for parameter in self.model.parameters):
             values = self.model.guess(robot)
             return Predictor(self.model, values, (), np.empty((0, 0)), "known of the robot")
-        if not split.seen:
-            raise IdentificationError("no run of --train is of this robot on this ground")
-        windows = _thinned(windows_of_parts(split.seen, config.training), self.most_windows)
+        if not split.training:
+            raise IdentificationError("no run of --train is of this robot on this terrain")
+        windows = _thinned(windows_of_parts(split.training, config.training), self.most_windows)
         fit = fitter(
             self.model,
             robot,
             fixed=self.fixed,
             window_config=config.training,
             solver_config=config.solver,
-        )(windows)
+        )(windows, near)
         return Predictor(
             self.model,
             fit.values,
             fit.names,
             fit.covariance,
-            f"identified by terrain-odometry from {len(windows)} windows of {split.words}",
+            f"identified by terrain-odometry from {len(windows)} windows of {split.training_names}",
             tuple(open_.words() for open_ in fit.undetermined),
             tuple(f"{name} ended at the edge of its search range" for name in fit.at_bound),
         )
@@ -104,17 +155,22 @@ class GivenParameters(Candidate):
         """The given name."""
         return self.name
 
-    def on(self, split: Split, config: ComparisonConfig) -> Predictor:  # noqa: ARG002 - its face
+    def on(
+        self,
+        split: Split,
+        config: ComparisonConfig,  # noqa: ARG002 - as every candidate
+        near: Mapping[str, float] | None = None,  # noqa: ARG002
+    ) -> Predictor:
         """See `Candidate.on`."""
-        table = self.parameters.terrains.get(split.ground)
+        table = self.parameters.terrains.get(split.terrain)
         if table is None:
             raise ParameterError(
-                f"the set has no terrain {split.ground!r}; it has "
+                f"the set has no terrain {split.terrain!r}; it has "
                 f"{', '.join(self.parameters.terrains)}"
             )
-        where = f"{self.name}: [terrain.{split.ground}]"
+        where = f"{self.name}: [terrain.{split.terrain}]"
         return Predictor(
-            model_of(table, split.judged[0].run.robot, where),
+            model_of(table, split.held_out[0].run.robot, where),
             table.values,
             table.covariance_order,
             table.covariance,
@@ -129,35 +185,3 @@ def _thinned(windows: Windows, most: int | None) -> Windows:
     kept = np.zeros(len(windows), dtype=np.bool_)
     kept[np.linspace(0, len(windows) - 1, most).astype(np.int64)] = True
     return windows.where(kept)
-
-
-def candidates_named(names: Sequence[str | Candidate]) -> tuple[Candidate, ...]:
-    """Candidates from names of the catalogue and files of parameter sets; others pass through.
-
-    Raises
-    ------
-    ComparisonError
-        If one is neither, or there twice, or there is none.
-    ParameterError
-        If a file is no parameter set.
-    """
-    found: list[Candidate] = []
-    for name in names:
-        if isinstance(name, Candidate):
-            found.append(name)
-        elif name in MODELS:
-            found.append(IdentifiedModel(MODELS[name]))
-        elif Path(name).suffix == ".toml":
-            found.append(GivenParameters(Path(name).stem, read_parameters(name)))
-        else:
-            raise ComparisonError(
-                f"there is no model {name!r}; known: {', '.join(MODELS)}, or a parameter set "
-                "(.toml)"
-            )
-    labels = [candidate.label for candidate in found]
-    twice = [label for label in labels if labels.count(label) > 1]
-    if twice or not labels:
-        raise ComparisonError(
-            f"models {', '.join(labels) or '(none)'}: expected one or more, each name once"
-        )
-    return tuple(found)

@@ -1,21 +1,23 @@
-"""Identify models, judge them on what they have not seen, and tell them apart."""
+"""Compare models on windows that they were not identified on."""
 
 from collections.abc import Sequence
+from pathlib import Path
 
-from odometry.comparison.candidates import Candidate, IdentifiedModel, candidates_named
-from odometry.comparison.comparison import Comparison
+from odometry.comparison.candidates import Candidate, GivenParameters, IdentifiedModel
 from odometry.comparison.config import ComparisonConfig
-from odometry.comparison.differences import Difference, differences
 from odometry.comparison.errors import ComparisonError
-from odometry.comparison.judgement import Judgement
-from odometry.comparison.judging import judge_all
-from odometry.comparison.prepare import Prepared, prepare
-from odometry.comparison.run_fitness import run_fitness
+from odometry.comparison.evaluation import Evaluation, evaluate_all
+from odometry.comparison.fitting import SplitModels, fit_models
+from odometry.comparison.result import Comparison
 from odometry.comparison.split import of_all, splits
+from odometry.comparison.statistics import Difference, differences
 from odometry.comparison.summary import Place
+from odometry.comparison.training_horizons import training_horizon_errors
+from odometry.comparison.whole_runs import run_fitness
 from odometry.errors import OdometryError
 from odometry.grounds import with_named_ground
-from odometry.parameters import ParameterSet, TerrainParameters
+from odometry.models.catalogue import MODELS
+from odometry.parameters import ParameterSet, TerrainParameters, read_parameters
 from odometry.run import Run
 from odometry.windows.record import record_of
 
@@ -31,21 +33,22 @@ def compare(
     config: ComparisonConfig | None = None,
     show_progress: bool = False,
 ) -> Comparison:
-    """Compare kinematic models on recorded runs, by robot and ground.
+    """Compare kinematic models on recorded runs, by robot and terrain.
 
-    A model of the catalogue is judged on windows that it was not identified on: by other runs of
-    the same robot and ground, by the other half where there is one run, or by `train`.
+    A model of the catalogue is evaluated on windows that it was not identified on: it is
+    identified on the other runs of the same robot and terrain, on the other half where there is
+    one run, or on `train`.
 
     Parameters
     ----------
     runs : sequence of Run
-        To be judged on.
+        To evaluate on.
     models : sequence of str or Candidate
         Names of the catalogue, files of parameter sets, or candidates of one's own.
     train : sequence of Run
         To identify on instead of `runs`.
     terrain : str, optional
-        The ground of runs that name none.
+        The terrain of runs that name none.
     config : ComparisonConfig, optional
     show_progress : bool
         Whether to draw a bar on standard error.
@@ -53,43 +56,81 @@ def compare(
     Raises
     ------
     ComparisonError
-        If no run can be judged, one is there twice, or a model is not known.
+        If no run can be evaluated, one is there twice, or a model is not known.
     ParameterError
         If a file is no parameter set.
     """
     config = config or ComparisonConfig()
     candidates = candidates_named(models)
-    judged, left_out = _with_poses([with_named_ground(run, terrain) for run in runs], config)
-    known, not_seen = _with_poses([with_named_ground(run, terrain) for run in train], config)
-    if not judged or (train and not known):
+    usable, left_out = _with_poses([with_named_ground(run, terrain) for run in runs], config)
+    known, not_used = _with_poses([with_named_ground(run, terrain) for run in train], config)
+    if not usable or (train and not known):
         raise ComparisonError(
-            "\n  ".join(["no run to compare on", *(left_out | not_seen).values()])
+            "\n  ".join(["no run to compare on", *(left_out | not_used).values()])
         )
-    planned = splits(judged, known)
-    prepared = prepare(planned, candidates, config, show_progress=show_progress)
-    judgements, shortfalls = judge_all(prepared, config)
-    names = tuple(candidate.label for candidate in candidates)
+    planned = splits(usable, known)
     identified = [each for each in candidates if isinstance(each, IdentifiedModel)]
-    on_all = (
-        prepared
-        if known
-        else prepare(of_all(planned), identified, config, show_progress=show_progress)
+    on_all = fit_models(
+        of_all(planned), () if known else identified, config, show_progress=show_progress
+    )
+    split_models = fit_models(
+        planned, candidates, config, fitted_to_all=on_all, show_progress=show_progress
+    )
+    evaluations, not_evaluated = evaluate_all(split_models, config)
+    names = tuple(candidate.label for candidate in candidates)
+    by_training_horizon = training_horizon_errors(
+        planned, identified, config, split_models if known else on_all, show_progress=show_progress
     )
     return Comparison(
         models=names,
-        prepared=prepared,
-        judgements=tuple(judgements),
-        shortfalls=tuple(shortfalls),
-        left_out=left_out | not_seen,
-        differences=tuple(_differences(prepared, judgements, names, config)),
-        fitness=tuple(run_fitness(prepared, names)),
-        parameters=_parameter_sets(on_all, [each.label for each in identified]),
+        split_models=split_models,
+        evaluations=tuple(evaluations),
+        not_evaluated=tuple(not_evaluated),
+        left_out=left_out | not_used,
+        differences=tuple(_differences(split_models, evaluations, names, config)),
+        fitness=tuple(run_fitness(split_models, names)),
+        parameters=_parameter_sets(
+            split_models if known else on_all, [each.label for each in identified]
+        ),
         config=config,
+        by_training_horizon=by_training_horizon,
     )
 
 
+def candidates_named(names: Sequence[str | Candidate]) -> tuple[Candidate, ...]:
+    """Candidates from names of the catalogue and files of parameter sets; others pass through.
+
+    Raises
+    ------
+    ComparisonError
+        If one is neither, or there twice, or there is none.
+    ParameterError
+        If a file is no parameter set.
+    """
+    found: list[Candidate] = []
+    for name in names:
+        if isinstance(name, Candidate):
+            found.append(name)
+        elif name in MODELS:
+            found.append(IdentifiedModel(MODELS[name]))
+        elif Path(name).suffix == ".toml":
+            found.append(GivenParameters(Path(name).stem, read_parameters(name)))
+        else:
+            raise ComparisonError(
+                f"there is no model {name!r}; known: {', '.join(MODELS)}, or a parameter set "
+                "(.toml)"
+            )
+    labels = [candidate.label for candidate in found]
+    twice = [label for label in labels if labels.count(label) > 1]
+    if twice or not labels:
+        raise ComparisonError(
+            f"models {', '.join(labels) or '(none)'}: expected one or more, each name once"
+        )
+    return tuple(found)
+
+
 def _with_poses(runs: Sequence[Run], config: ComparisonConfig) -> tuple[list[Run], dict[str, str]]:
-    """Runs that have measured poses, and by folder why others cannot be judged."""
+    """Runs that have measured poses, and by folder why others cannot be evaluated."""
     usable, reasons = [], {}
     for run in runs:
         try:
@@ -101,29 +142,29 @@ def _with_poses(runs: Sequence[Run], config: ComparisonConfig) -> tuple[list[Run
 
 
 def _differences(
-    prepared: Sequence[Prepared],
-    judgements: Sequence[Judgement],
+    split_models: Sequence[SplitModels],
+    evaluations: Sequence[Evaluation],
     models: Sequence[str],
     config: ComparisonConfig,
 ) -> list[Difference]:
     found = []
-    for robot, ground in dict.fromkeys((p.split.robot, p.split.ground) for p in prepared):
+    for robot, terrain in dict.fromkeys((p.split.robot, p.split.terrain) for p in split_models):
         for horizon_m in config.horizons_m:
-            place = Place(robot, ground, horizon_m)
-            here = [judgement for judgement in judgements if place.holds(judgement)]
+            place = Place(robot, terrain, horizon_m)
+            here = [evaluation for evaluation in evaluations if place.holds(evaluation)]
             found += differences(place, here, models, config)
     return found
 
 
 def _parameter_sets(
-    prepared: Sequence[Prepared], models: Sequence[str]
+    split_models: Sequence[SplitModels], models: Sequence[str]
 ) -> dict[tuple[str, str], ParameterSet]:
-    """One set a robot and model, one table a ground."""
+    """One set a robot and model, one table a terrain."""
     tables: dict[tuple[str, str], dict[str, TerrainParameters]] = {}
-    for each in prepared:
+    for each in split_models:
         for model in (model for model in models if model in each.predictors):
             of_model = tables.setdefault((each.split.robot, model), {})
-            of_model[each.split.ground] = each.predictors[model].to_parameters()
+            of_model[each.split.terrain] = each.predictors[model].to_parameters()
     return {
         (robot, model): ParameterSet(of_model, {"name": robot})
         for (robot, model), of_model in tables.items()

@@ -1,10 +1,9 @@
 """Settings of a comparison."""
 
-import math
 from dataclasses import dataclass, field
 from itertools import pairwise
 
-from odometry.config import require
+from odometry.config import LARGEST, SMALLEST, require, require_positive
 from odometry.identification.config import SolverConfig
 from odometry.windows.config import WindowConfig
 
@@ -23,7 +22,10 @@ class ComparisonConfig:
     solver : SolverConfig
     horizons_m : tuple of float
         Evaluation horizons h_e of Baril 2020: wheel travel over which errors are taken. Models
-        are told apart on the first.
+        are distinguished on the first.
+    training_horizons_m : tuple of float
+        Training horizons h_t of Baril 2020 Fig. 4 with which models are identified and evaluated
+        besides; each costs as many fits as the comparison itself.
     draws : int
         Of the bootstrap.
     block_m : float
@@ -35,18 +37,26 @@ class ComparisonConfig:
     training: WindowConfig = field(default_factory=WindowConfig)
     solver: SolverConfig = field(default_factory=SolverConfig)
     horizons_m: tuple[float, ...] = (2.0,)
+    training_horizons_m: tuple[float, ...] = ()
     draws: int = 2000
     block_m: float = 10.0
     seed: int = 0
 
     def __post_init__(self) -> None:
         require(bool(self.horizons_m), "no evaluation horizon; expected one or more")
-        for horizon in self.horizons_m:
-            require(0 < horizon < math.inf, f"evaluation horizon {horizon} m, expected above 0")
-        doubled = [a for a, b in pairwise(sorted(self.horizons_m)) if a == b]
-        require(not doubled, f"evaluation horizons {doubled} m are given twice")
+        for kind, horizons_m in (
+            ("evaluation", self.horizons_m),
+            ("training", self.training_horizons_m),
+        ):
+            for horizon in horizons_m:
+                require(
+                    SMALLEST <= horizon <= LARGEST,
+                    f"{kind} horizon {horizon} m, expected above 0: {SMALLEST:g} to {LARGEST:g}",
+                )
+            doubled = [a for a, b in pairwise(sorted(horizons_m)) if a == b]
+            require(not doubled, f"{kind} horizons {doubled} m are given twice")
         require(self.draws >= 100, f"draws = {self.draws}, expected 100 or more")
-        require(0 < self.block_m < math.inf, f"block_m = {self.block_m}, expected above 0")
+        require_positive(self, "block_m")
 
     @property
     def evaluated_m(self) -> tuple[float, ...]:

@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from odometry.comparison.comparison import Comparison
-from odometry.comparison.judgement import Judgement
-from odometry.comparison.prepare import Prepared
-from odometry.comparison.summary import Place, Summary, values_of
+from odometry.comparison.evaluation import Evaluation
+from odometry.comparison.fitting import SplitModels
+from odometry.comparison.result import Comparison
+from odometry.comparison.summary import COLUMNS, Place, Summary, values_of
+from odometry.comparison.training_horizons import write_training_horizons
 from odometry.io.csv_table import write_csv_table
 from odometry.io.files import atomic_write
 from odometry.parameters import write_parameters
@@ -32,21 +33,27 @@ def write_comparison(comparison: Comparison, out: str | Path) -> list[Path]:
     Returns
     -------
     list of Path
-        comparison.json, windows.csv, and one file of parameters/ a model; where there are
-        several robots, in a folder for each.
+        comparison.json, windows.csv, training_horizons.csv where training horizons were asked
+        for, and one file of parameters/ a model; where there are several robots, in a folder for
+        each.
     """
     out = Path(out)
     text = json.dumps(comparison_table(comparison), indent=2, allow_nan=False)
     with atomic_write(out / "comparison.json") as part:
         part.write_text(text + "\n", encoding="utf-8")
     _write_windows(out / "windows.csv", comparison)
+    files = [out / "comparison.json", out / "windows.csv"]
+    horizons = out / "training_horizons.csv"
+    horizons.unlink(missing_ok=True)  # of an earlier comparison
+    if comparison.by_training_horizon:
+        write_training_horizons(horizons, comparison.by_training_horizon)
+        files.append(horizons)
     robots = {robot for robot, _ in comparison.parameters}
-    files = []
     for (robot, model), parameters in comparison.parameters.items():
         folder = out / "parameters" / (file_name(robot) if len(robots) > 1 else "")
         files.append(folder / f"{model}.toml")
         write_parameters(files[-1], parameters)
-    return [out / "comparison.json", out / "windows.csv", *files]
+    return files
 
 
 def file_name(*names: str) -> str:
@@ -64,12 +71,12 @@ def comparison_table(comparison: Comparison) -> dict[str, Any]:
         "places": [_place(comparison, place) for place in comparison.places],
         "by_horizon": [
             _summary(summary)
-            for robot, ground in comparison.robots_and_grounds
+            for robot, terrain in comparison.robots_and_terrains
             for horizon_m in comparison.config.evaluated_m
-            for summary in comparison.summaries_at(Place(robot, ground, horizon_m))
+            for summary in comparison.summaries_at(Place(robot, terrain, horizon_m))
             if summary.windows
         ],
-        "splits": [_split(prepared) for prepared in comparison.prepared],
+        "splits": [_split(each) for each in comparison.split_models],
         "fitness": [
             {
                 "robot": each.robot,
@@ -86,7 +93,7 @@ def comparison_table(comparison: Comparison) -> dict[str, Any]:
 
 def _place(comparison: Comparison, place: Place) -> dict[str, Any]:
     return {
-        **asdict(place),
+        **_place_names(place),
         "models": [_summary(summary) for summary in comparison.summaries_at(place)],
         "differences": [
             {
@@ -102,35 +109,37 @@ def _place(comparison: Comparison, place: Place) -> dict[str, Any]:
     }
 
 
+def _place_names(place: Place) -> dict[str, Any]:
+    return {"robot": place.robot, "ground": place.terrain, "horizon_m": place.horizon_m}
+
+
 def _summary(summary: Summary) -> dict[str, Any]:
     return {
-        **asdict(summary.place),
+        **_place_names(summary.place),
         "model": summary.model,
         "runs": list(summary.runs),
-        "seen": list(summary.seen),
+        "seen": list(summary.training_runs),
         "windows": summary.windows,
         "complete": summary.complete,
         **{
             name: {
                 "mean": summary.means.get(quantity),
+                "median": summary.medians.get(quantity),
                 "quartiles": summary.quartiles[quantity].tolist() if summary.windows else None,
             }
-            for quantity, name in (
-                ("translation", "translation_m_per_m"),
-                ("rotation", "rotation_deg_per_m"),
-            )
+            for quantity, name in COLUMNS.items()
         },
         "reasons": list(summary.reasons),
     }
 
 
-def _split(prepared: Prepared) -> dict[str, Any]:
-    split = prepared.split
+def _split(models: SplitModels) -> dict[str, Any]:
+    split = models.split
     return {
         "robot": split.robot,
-        "ground": split.ground,
-        "judged": [part.name for part in split.judged],
-        "seen": split.words,
+        "ground": split.terrain,
+        "judged": [part.name for part in split.held_out],
+        "seen": split.training_names,
         "models": {
             model: {
                 "model": predictor.model.name,
@@ -139,42 +148,43 @@ def _split(prepared: Prepared) -> dict[str, Any]:
                 "undetermined": list(predictor.undetermined),
                 "notes": list(predictor.notes),
             }
-            for model, predictor in prepared.predictors.items()
+            for model, predictor in models.predictors.items()
         },
-        "failed": dict(prepared.reasons),
+        "failed": dict(models.reasons),
     }
 
 
 def _write_windows(file: Path, comparison: Comparison) -> None:
     """One row a model and window, over the horizons that were asked for."""
     rows = [
-        (judgement, model)
-        for judgement in comparison.judgements
-        if judgement.horizon_m in comparison.config.horizons_m
-        for model in judgement.errors
+        (evaluation, model)
+        for evaluation in comparison.evaluations
+        if evaluation.horizon_m in comparison.config.horizons_m
+        for model in evaluation.errors
     ]
-    columns = [_columns(judgement, model) for judgement, model in rows]
+    columns = [_columns(evaluation, model) for evaluation, model in rows]
     if columns:
         write_csv_table(
             file, {name: np.concatenate([each[name] for each in columns]) for name in columns[0]}
         )
 
 
-def _columns(judgement: Judgement, model: str) -> dict[str, Any]:
-    judged, errors = judgement.judged, judgement.errors[model]
+def _columns(evaluation: Evaluation, model: str) -> dict[str, Any]:
+    windows, errors = evaluation.windows, evaluation.errors[model]
+    speeds_m_s = evaluation.mean_speeds_m_s
     names = {
-        "robot": judgement.robot,
-        "ground": judgement.ground,
-        "run": judgement.run,
+        "robot": evaluation.robot,
+        "ground": evaluation.terrain,
+        "run": evaluation.run,
         "model": model,
     }
     return {
-        **{key: np.full(len(judged), name, dtype=object) for key, name in names.items()},
-        "horizon": np.full(len(judged), judgement.horizon_m),
-        "start_s": judged.windows.start_s,
-        "travel": judged.windows.travel_m,
+        **{key: np.full(len(windows), name, dtype=object) for key, name in names.items()},
+        "horizon": np.full(len(windows), evaluation.horizon_m),
+        "start_s": windows.start_s,
+        "travel": windows.travel_m,
         "translation_m_per_m": values_of(errors, "translation"),
         "rotation_deg_per_m": values_of(errors, "rotation"),
-        "v_left": judged.mean_speeds_m_s[:, 0],
-        "v_right": judged.mean_speeds_m_s[:, 1],
+        "v_left": speeds_m_s[:, 0],
+        "v_right": speeds_m_s[:, 1],
     }

@@ -1,4 +1,4 @@
-"""Errors of each model by robot, ground and horizon."""
+"""Errors of each model by robot, terrain and horizon."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,31 +6,32 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.comparison.judgement import Judgement, Shortfall
+from odometry.comparison.evaluation import Evaluation, NotEvaluated
 from odometry.windows.window_errors import WindowErrors
 
 # Quantity to unit. Angles are degrees in everything that a comparison states.
 QUANTITIES = {"translation": "m per m", "rotation": "degrees per m"}
+COLUMNS = {"translation": "translation_m_per_m", "rotation": "rotation_deg_per_m"}  # in files
 
 
 @dataclass(frozen=True)
 class Place:
-    """Where models are compared: one robot on one ground over one horizon."""
+    """Where models are compared: one robot on one terrain over one horizon."""
 
     robot: str
-    ground: str
+    terrain: str
     horizon_m: float
 
     @property
     def title(self) -> str:
         """The place in words."""
-        return f"{self.robot} on {self.ground}, over {self.horizon_m:g} m"
+        return f"{self.robot} on {self.terrain}, over {self.horizon_m:g} m"
 
-    def holds(self, judgement: Judgement) -> bool:
-        """Whether a judgement belongs here."""
-        return (judgement.robot, judgement.ground, judgement.horizon_m) == (
+    def holds(self, evaluation: Evaluation) -> bool:
+        """Whether a evaluation belongs here."""
+        return (evaluation.robot, evaluation.terrain, evaluation.horizon_m) == (
             self.robot,
-            self.ground,
+            self.terrain,
             self.horizon_m,
         )
 
@@ -43,28 +44,33 @@ class Summary:
     ----------
     place : Place
     model : str
-    seen : tuple of str
-        What it had seen, once for each split.
+    training_runs : tuple of str
+        What it was identified on, once for each split.
     runs : tuple of str
-        That it was judged on.
+        That it was evaluated on.
     windows : int
     complete : bool
-        Whether it was judged on all windows of the place.
+        Whether it was evaluated on all windows of the place.
     means : Mapping of quantity to float
     quartiles : Mapping of quantity to (3,)
     reasons : tuple of str
-        Why it was not judged on some run.
+        Why it was not evaluated on some run.
     """
 
     place: Place
     model: str
-    seen: tuple[str, ...]
+    training_runs: tuple[str, ...]
     runs: tuple[str, ...]
     windows: int
     complete: bool
     means: dict[str, float]
     quartiles: dict[str, FloatArray]
     reasons: tuple[str, ...]
+
+    @property
+    def medians(self) -> dict[str, float]:
+        """By quantity: what outliers among the measured poses hardly change."""
+        return {quantity: float(values[1]) for quantity, values in self.quartiles.items()}
 
 
 def values_of(errors: WindowErrors, quantity: str) -> FloatArray:
@@ -75,30 +81,33 @@ def values_of(errors: WindowErrors, quantity: str) -> FloatArray:
 
 
 def summarise(
-    place: Place, judgements: Sequence[Judgement], shortfalls: Sequence[Shortfall], model: str
+    place: Place,
+    evaluations: Sequence[Evaluation],
+    not_evaluated: Sequence[NotEvaluated],
+    model: str,
 ) -> Summary:
-    """Pool the windows of one model over the judgements of a place."""
-    here = [judgement for judgement in judgements if model in judgement.errors]
+    """Pool the windows of one model over the evaluations of a place."""
+    here = [evaluation for evaluation in evaluations if model in evaluation.errors]
     pooled = {
         quantity: np.concatenate(
             [np.empty(0), *(values_of(each.errors[model], quantity) for each in here)]
         )
         for quantity in QUANTITIES
     }
-    windows = sum(len(judgement.judged) for judgement in here)
+    windows = sum(len(evaluation.windows) for evaluation in here)
     return Summary(
         place=place,
         model=model,
-        seen=tuple(dict.fromkeys(judgement.seen for judgement in here)),
-        runs=tuple(dict.fromkeys(judgement.run for judgement in here)),
+        training_runs=tuple(dict.fromkeys(evaluation.training_runs for evaluation in here)),
+        runs=tuple(dict.fromkeys(evaluation.run for evaluation in here)),
         windows=windows,
-        complete=0 < windows == sum(len(judgement.judged) for judgement in judgements),
+        complete=0 < windows == sum(len(evaluation.windows) for evaluation in evaluations),
         means={q: float(values.mean()) for q, values in pooled.items() if windows},
         quartiles={q: np.percentile(v, [25, 50, 75]) for q, v in pooled.items() if windows},
         reasons=tuple(
-            f"{shortfall.run}: {shortfall.reason}"
-            for shortfall in shortfalls
-            if (shortfall.robot, shortfall.ground) == (place.robot, place.ground)
-            and shortfall.model in (model, "")
+            f"{missing.run}: {missing.reason}"
+            for missing in not_evaluated
+            if (missing.robot, missing.terrain) == (place.robot, place.terrain)
+            and missing.model in (model, "")
         ),
     )

@@ -22,6 +22,7 @@ from odometry.effects.time_offset import TimeOffset
 from odometry.effects.traction_loss import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.errors import ParameterError
+from odometry.parameter_covariance import finite_number
 
 EFFECTS: tuple[type[Effect], ...] = (
     WheelScale,
@@ -84,7 +85,11 @@ def _added(table: Mapping[str, Any], where: str) -> Added:
         for key, value in table.items()
         if key not in {"name", "form", "parameters", "source"}
     }
-    constants = {k: v for k, v in values.items() if k in CONSTANTS.get(kind, ())}
+    constants = {
+        name: finite_number(value, f"{where}: {name}")
+        for name, value in values.items()
+        if name in CONSTANTS.get(kind, ())
+    }
     try:
         effect = BY_FORM[kind](**settings, **constants)
     except (TypeError, ParameterError) as error:

@@ -9,6 +9,7 @@ from odometry.arrays import FloatArray
 from odometry.effects.base import Base, EffectParameter, MotionEffect
 from odometry.errors import ParameterError
 from odometry.models.inputs import Inputs
+from odometry.parameter_covariance import finite_number
 
 HARMONICS = 2
 COMPONENTS = ("v_x", "v_y", "omega")
@@ -40,6 +41,9 @@ class Residual(MotionEffect):
     knots: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
+        knots = [finite_number(knot, "knots: one") for knot in self.knots]
+        if sorted(set(knots)) != knots:
+            raise ParameterError(f"knots = {knots}, expected increasing numbers")
         functions = len(self.knots) or 2 * HARMONICS
         for term in self.terms:
             if len(term) != 2 or term[0] not in COMPONENTS or term[1] not in range(functions):

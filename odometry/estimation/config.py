@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from odometry.config import require
+from odometry.config import LARGEST, require, require_positive
 
 
 @dataclass(frozen=True)
@@ -45,13 +45,14 @@ class IcrEkfConfig:
     jump_window: int = 10
 
     def __post_init__(self) -> None:
-        for name in ("position_sigma_m", "yaw_sigma_rad", "reset_sigma_widths"):
-            require(getattr(self, name) > 0, f"{name} = {getattr(self, name)}, expected above 0")
+        require_positive(self, "position_sigma_m", "yaw_sigma_rad", "reset_sigma_widths")
         for name in ("position_noise", "yaw_noise", "icr_noise_widths"):
-            require(getattr(self, name) >= 0, f"{name} = {getattr(self, name)}, expected 0 or more")
+            value = getattr(self, name)
+            require(0 <= value <= LARGEST, f"{name} = {value}, expected 0 or more, to {LARGEST:g}")
         for name in ("gate_probability", "jump_probability"):
             require(
                 0 < getattr(self, name) <= 1, f"{name} = {getattr(self, name)}, expected 0 to 1"
             )
         for name in ("gate_patience", "jump_window"):
-            require(getattr(self, name) >= 1, f"{name} = {getattr(self, name)}, expected 1 or more")
+            value = getattr(self, name)
+            require(1 <= value <= LARGEST, f"{name} = {value}, expected 1 or more, to {LARGEST:g}")

@@ -1,12 +1,13 @@
 """Fitness of a dead-reckoned trajectory (Martinez 2024 eq. 13, Table II)."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import TrajectoryError
-from odometry.geometry.angles import wrap
+from odometry.geometry.angles import continuous_difference
 from odometry.spatial_trajectory import SpatialTrajectory
 
 
@@ -22,6 +23,8 @@ class Fitness:
         How many of them have a measured z.
     x_m2, y_m2, z_m2, yaw_rad2 : float
         Sums of squared errors, divided by N. A pose without a measured z adds nothing to z.
+        Whole turns of yaw count: an odometer that is two turns off errs more than one that is
+        right.
     """
 
     poses: int
@@ -40,6 +43,11 @@ class Fitness:
     def total(self) -> float:
         """J of Martinez 2024 eq. 13; smaller is better."""
         return self.poses * self.mean
+
+
+def pooled_fitness(of_runs: Sequence[Fitness]) -> float:
+    """J / N over the poses of several runs."""
+    return sum(each.total for each in of_runs) / sum(each.poses for each in of_runs)
 
 
 def fitness(
@@ -69,7 +77,7 @@ def fitness(
         )
     ours = trajectory.at(reference_s[covered])
     position_errors = ours.positions_m - reference[covered, :3]
-    heading_errors = wrap(ours.roll_pitch_yaw[:, 2] - reference[covered, 3])
+    heading_errors = continuous_difference(ours.roll_pitch_yaw[:, 2], reference[covered, 3])
     has_height = np.isfinite(position_errors[:, 2])
     position_errors[~has_height, 2] = 0.0
     x, y, z = np.mean(position_errors**2, axis=0)

@@ -25,8 +25,9 @@ def spatial_horizons(travel_m: FloatArray, horizon_m: float, stride_m: float) ->
         the robot stands, only one window starts.
     """
     travelled = travel_m - travel_m[0]
-    count = int(np.floor(max(travelled[-1] - horizon_m, -1.0) / stride_m + 1e-9)) + 1
-    starts = np.searchsorted(travelled, stride_m * np.arange(count) - 1e-9)
+    last = np.floor(max(travelled[-1] - horizon_m, -1.0) / stride_m + 1e-9)
+    strides = np.minimum(np.floor((travelled + 1e-9) / stride_m), last)  # whole ones up to a sample
+    starts = np.flatnonzero(np.diff(strides, prepend=-1.0) > 0)
     ends = np.searchsorted(travelled, travelled[starts] + horizon_m - 1e-9)
     inside = ends < len(travel_m)
     return np.unique(np.stack([starts[inside], ends[inside]], axis=-1), axis=0)

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.config import require
+from odometry.config import require_positive
 from odometry.evaluation.horizons import spatial_horizons
 from odometry.geometry import se2
+from odometry.geometry.angles import continuous_difference
 from odometry.trajectory import Trajectory
 
 
@@ -27,8 +28,7 @@ class EvaluationConfig:
     stride_m: float = 0.5
 
     def __post_init__(self) -> None:
-        require(self.horizon_m > 0, f"horizon_m = {self.horizon_m}, expected above 0")
-        require(self.stride_m > 0, f"stride_m = {self.stride_m}, expected above 0")
+        require_positive(self, "horizon_m", "stride_m")
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,8 @@ class RelativeErrors:
         Distance between the two end positions, both seen from the start, per metre of wheel
         travel.
     rotation_per_m : (K,)
-        Absolute difference of the two turns, rad per metre of wheel travel.
+        Absolute difference of the two turns, rad per metre of wheel travel; whole turns count,
+        so that it may be above pi per horizon.
     """
 
     start_s: FloatArray
@@ -83,11 +84,12 @@ def relative_errors(
     error = se2.between(
         se2.between(true_poses[first], true_poses[last]), se2.between(poses[first], poses[last])
     )
+    yaw_errors = continuous_difference(poses[:, 2], true_poses[:, 2])
     length = travelled[last] - travelled[first]
     return RelativeErrors(
         stamps_s[first],
         np.hypot(error[:, 0], error[:, 1]) / length,
-        np.abs(error[:, 2]) / length,
+        np.abs(yaw_errors[last] - yaw_errors[first]) / length,
     )
 
 

@@ -1,4 +1,4 @@
-"""The numbers by which one trajectory of a run is judged."""
+"""Errors of one trajectory of a run in a few numbers."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -25,8 +25,8 @@ class Score:
     rotation_deg_per_m : (3,) or None
         Quartiles of the heading error, degrees per metre of wheel travel.
     mean_rotation_deg_per_m : float or None
-    mean_position_m, final_position_m : float or None
-        Distance from the reference, over all its stamps and at the last.
+    mean_position_m, final_position_m, median_position_m : float or None
+        Distance from the reference: mean and median over all its stamps, and at the last.
     """
 
     windows: int
@@ -36,6 +36,7 @@ class Score:
     mean_rotation_deg_per_m: float | None = None
     mean_position_m: float | None = None
     final_position_m: float | None = None
+    median_position_m: float | None = None
 
     def to_table(self) -> dict[str, Any]:
         """Plain values with the unit in each name."""
@@ -43,18 +44,24 @@ class Score:
             "windows": self.windows,
             "translation_m_per_m": {
                 "mean": self.mean_translation_per_m,
+                "median": _median(self.translation_per_m),
                 "quartiles": _plain(self.translation_per_m),
             },
             "rotation_deg_per_m": {
                 "mean": self.mean_rotation_deg_per_m,
+                "median": _median(self.rotation_deg_per_m),
                 "quartiles": _plain(self.rotation_deg_per_m),
             },
-            "position_m": {"mean": self.mean_position_m, "final": self.final_position_m},
+            "position_m": {
+                "mean": self.mean_position_m,
+                "median": self.median_position_m,
+                "final": self.final_position_m,
+            },
         }
 
 
 def reference_of(run: Run) -> tuple[str, Trajectory] | None:
-    """The trajectory that a run is judged against: truth.csv, else pose.csv, else none."""
+    """The trajectory that a run is compared with: truth.csv, else pose.csv, else none."""
     for name, table in (("truth", run.truth), ("pose", run.pose)):
         if table is None:
             continue
@@ -68,13 +75,17 @@ def reference_of(run: Run) -> tuple[str, Trajectory] | None:
 def score(
     run: Run, trajectory: Trajectory, reference: Trajectory, config: EvaluationConfig
 ) -> Score:
-    """Judge a trajectory of a run against a reference."""
+    """Errors of a trajectory of a run against a reference."""
     relative = relative_errors(
         trajectory, reference, run.odometry.stamps_s, run.wheel_travel_m, config
     )
     _, distances = position_errors(trajectory, reference)
     position: dict[str, Any] = (
-        {"mean_position_m": float(distances.mean()), "final_position_m": float(distances[-1])}
+        {
+            "mean_position_m": float(distances.mean()),
+            "median_position_m": float(np.median(distances)),
+            "final_position_m": float(distances[-1]),
+        }
         if len(distances)
         else {}
     )
@@ -89,6 +100,10 @@ def score(
         float(rotation.mean()),
         **position,
     )
+
+
+def _median(quartiles: FloatArray | None) -> float | None:
+    return None if quartiles is None else float(quartiles[1])
 
 
 def _plain(quartiles: FloatArray | None) -> list[float] | None:

@@ -1,9 +1,8 @@
 """Settings of the gap workflow."""
 
-import math
 from dataclasses import dataclass
 
-from odometry.config import require
+from odometry.config import require, require_positive
 
 
 @dataclass(frozen=True)
@@ -43,9 +42,7 @@ class GapConfig:
     most_windows: int = 300
 
     def __post_init__(self) -> None:
-        for name in ("horizon_s", "part_s", "least_evidence"):
-            value = getattr(self, name)
-            require(0 < value < math.inf, f"{name} = {value}, expected above 0")
+        require_positive(self, "horizon_s", "part_s", "least_evidence")
         require(self.folds >= 2, f"folds = {self.folds}, expected 2 or more")
         require(self.held_back >= 2, f"held_back = {self.held_back}, expected 2 or more")
         for name in ("least_share", "first_share"):

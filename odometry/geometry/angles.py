@@ -9,3 +9,12 @@ def wrap(angle: FloatArray | float) -> FloatArray:
     """The same angle in (-pi, pi]."""
     wrapped = np.pi - np.mod(np.pi - np.asarray(angle, dtype=np.float64), 2 * np.pi)
     return np.where(wrapped == -np.pi, np.pi, wrapped)  # the remainder may round up to 2 pi
+
+
+def continuous_difference(yaw: FloatArray, reference_yaw: FloatArray) -> FloatArray:
+    """Differences (N,) of a yaw (N,) from a reference (N,), whole turns counted.
+
+    The first is taken along the shorter way. From one sample to the next the difference is taken
+    to change by less than half a turn, however far both turn.
+    """
+    return np.asarray(np.unwrap(wrap(np.asarray(yaw) - np.asarray(reference_yaw))))

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from odometry.config import require
+from odometry.config import require, require_positive
 
 
 @dataclass(frozen=True)
@@ -31,4 +31,4 @@ class SolverConfig:
     def __post_init__(self) -> None:
         require(self.loss in ("huber", "linear"), f"loss = {self.loss!r}: huber or linear")
         require(self.starts >= 1, f"starts = {self.starts}, expected 1 or more")
-        require(self.undetermined > 0, f"undetermined = {self.undetermined}, expected above 0")
+        require_positive(self, "undetermined")

@@ -9,38 +9,16 @@ import numpy as np
 
 from odometry.arrays import AnyArray
 from odometry.errors import RunFolderError
+from odometry.io.csv_cells import Cells, opened_csv
+from odometry.io.csv_columns import (
+    NAME_COLUMNS,
+    NUMBER_COLUMNS,
+    names,
+    numbers,
+    numbers_or_names,
+)
 from odometry.io.files import atomic_write
 from odometry.table import Table
-
-NAME_COLUMNS = frozenset({"file", "terrain"})
-NUMBER_COLUMNS = frozenset(
-    [
-        "t",
-        "v_left",
-        "v_right",
-        "roll",
-        "pitch",
-        "gyro_x",
-        "gyro_y",
-        "gyro_z",
-        "accel_x",
-        "accel_y",
-        "accel_z",
-        "current_left",
-        "current_right",
-        "x",
-        "y",
-        "yaw",
-        "z",
-        "window",
-        "vx",
-        "vy",
-        "wz",
-        "y_left",
-        "y_right",
-        "x_icr",
-    ]
-)
 
 
 def read_csv_table(file: Path, required: Iterable[str], complete: Iterable[str] = ()) -> Table:
@@ -62,27 +40,27 @@ def read_csv_table(file: Path, required: Iterable[str], complete: Iterable[str] 
     RunFolderError
         Naming file, row (the line of the file, header = 1) and column.
     """
-    header, rows, lines = _read_cells(file)
-    for name in required:
-        if name not in header:
-            raise RunFolderError(
-                f"{file}: the column {name!r} is missing; the header has {', '.join(header)}"
-            )
-    if not rows:
+    complete = frozenset(complete)
+    parts: list[dict[str, AnyArray]] = []
+    lines: list[AnyArray] = []
+    with opened_csv(file, RunFolderError) as (header, blocks):
+        for name in required:
+            if name not in header:
+                raise RunFolderError(
+                    f"{file}: the column {name!r} is missing; the header has {', '.join(header)}"
+                )
+        for block_lines, cells in blocks:
+            parts.append(_block_columns(header, cells, file, block_lines, complete))
+            lines.append(np.array(block_lines))
+    if not parts:
         raise RunFolderError(f"{file}: there are no rows below the header")
-    columns: dict[str, AnyArray] = {}
-    for position, name in enumerate(header):
-        cells = [row[position].strip() for row in rows]
-        if name in NAME_COLUMNS:
-            columns[name] = np.array(cells)
-        elif name in NUMBER_COLUMNS:
-            columns[name] = _numbers(cells, file, lines, name, may_miss=name not in complete)
-        else:
-            columns[name] = _numbers_or_names(cells)
-    _check_not_back(columns["t"], file, lines)
+    columns = {name: _whole(name, [part.pop(name) for part in parts]) for name in header}
+    all_lines = np.concatenate(lines)
+    _check_not_back(columns["t"], file, all_lines)
     repeated = np.diff(columns["t"], prepend=-math.inf) == 0
-    kept = {name: column[~repeated] for name, column in columns.items()}
-    return Table(file, kept, np.array(lines)[~repeated], np.array(lines)[repeated])
+    if repeated.any():
+        columns = {name: column[~repeated] for name, column in columns.items()}
+    return Table(file, columns, all_lines[~repeated], all_lines[repeated])
 
 
 def write_csv_table(file: Path, columns: Mapping[str, AnyArray], decimals: int = 9) -> None:
@@ -97,57 +75,24 @@ def write_csv_table(file: Path, columns: Mapping[str, AnyArray], decimals: int =
         writer.writerows(zip(*formatted, strict=True))
 
 
-def _read_cells(file: Path) -> tuple[list[str], list[list[str]], list[int]]:
-    rows: list[list[str]] = []
-    lines: list[int] = []
-    try:
-        with file.open(newline="", encoding="utf-8-sig") as stream:
-            reader = csv.reader(stream, strict=True)
-            header = [name.strip() for name in next(reader, [])]
-            for row in reader:
-                if row:
-                    rows.append(row)
-                    lines.append(reader.line_num)
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise RunFolderError(f"{file}: cannot be read as CSV: {error}") from error
-    repeated = sorted({name for name in header if header.count(name) > 1})
-    if repeated:
-        raise RunFolderError(f"{file}: row 1: the column {repeated[0]!r} stands there twice")
-    for line, row in zip(lines, rows, strict=True):
-        if len(row) != len(header):
-            raise RunFolderError(
-                f"{file}: row {line}: {len(row)} cells, but the header has {len(header)} columns"
-            )
-    return header, rows, lines
+def _block_columns(
+    header: list[str], cells: Cells, file: Path, lines: list[int], complete: frozenset[str]
+) -> dict[str, AnyArray]:
+    """Numbers of the columns that are known to hold them, texts of the others."""
+    return {
+        name: numbers(column, file, lines, name, may_miss=name not in complete)
+        if name in NUMBER_COLUMNS
+        else names(column, file, lines, name)
+        for name, column in zip(header, cells, strict=True)
+    }
 
 
-def _numbers(
-    cells: list[str], file: Path, lines: list[int], name: str, *, may_miss: bool
-) -> AnyArray:
-    values = np.empty(len(cells))
-    for row, cell in enumerate(cells):
-        try:
-            value = float(cell) if cell else math.nan
-        except ValueError:
-            raise RunFolderError(
-                f"{file}: row {lines[row]}, column {name!r}: {cell!r} is not a number"
-            ) from None
-        if math.isinf(value) or (math.isnan(value) and not may_miss):
-            raise RunFolderError(
-                f"{file}: row {lines[row]}, column {name!r}: {cell!r}, expected a finite number"
-            )
-        values[row] = value
-    return values
+def _whole(name: str, parts: list[AnyArray]) -> AnyArray:
+    column = np.concatenate(parts)
+    return column if name in NUMBER_COLUMNS | NAME_COLUMNS else numbers_or_names(column)
 
 
-def _numbers_or_names(cells: list[str]) -> AnyArray:
-    try:
-        return np.array([float(cell) if cell else math.nan for cell in cells])
-    except ValueError:
-        return np.array(cells)
-
-
-def _check_not_back(stamps_s: AnyArray, file: Path, lines: list[int]) -> None:
+def _check_not_back(stamps_s: AnyArray, file: Path, lines: AnyArray) -> None:
     backwards = np.flatnonzero(np.diff(stamps_s) < 0)
     if backwards.size:
         row = int(backwards[0])

@@ -1,6 +1,6 @@
 """Read and write run folders: the only door by which recordings come in."""
 
-import tomllib
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -11,6 +11,8 @@ from odometry.arrays import AnyArray
 from odometry.errors import RunFolderError
 from odometry.io.csv_table import read_csv_table, write_csv_table
 from odometry.io.files import atomic_write
+from odometry.io.inside import leads_out
+from odometry.io.structured import read_toml
 from odometry.table import Table
 
 # file: (is it required, columns it must have, columns with a number in every row)
@@ -30,18 +32,14 @@ def read_settings(folder: Path) -> dict[str, Any]:
     Raises
     ------
     RunFolderError
-        If the folder or the file is missing, or the file is not TOML.
+        If the folder or the file is missing, or as `odometry.io.structured.read_toml`.
     """
     if not folder.is_dir():
         raise RunFolderError(f"{folder}: there is no such folder; expected a run folder")
     file = folder / "run.toml"
-    try:
-        with file.open("rb") as stream:
-            return tomllib.load(stream)
-    except FileNotFoundError:
-        raise RunFolderError(f"{file}: missing; a run folder needs run.toml") from None
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise RunFolderError(f"{file}: cannot be read as TOML: {error}") from error
+    if not file.exists():
+        raise RunFolderError(f"{file}: missing; a run folder needs run.toml")
+    return read_toml(file, RunFolderError)
 
 
 def read_tables(folder: Path) -> dict[str, Table]:
@@ -92,5 +90,7 @@ def _check_image_files(folder: Path, images: Table) -> None:
         where = f"{images.file}: row {line}, column 'file'"
         if Path(name).is_absolute():
             raise RunFolderError(f"{where}: {name!r} is absolute; expected a path in the folder")
-        if not (folder / name).is_file():
+        if leads_out(folder, name):
+            raise RunFolderError(f"{where}: {name!r} leads out of the folder {folder}")
+        if not os.path.isfile(folder / name):  # noqa: PTH113 - Path.is_file raises on long names
             raise RunFolderError(f"{where}: {name!r} is not a file in {folder}")

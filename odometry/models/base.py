@@ -10,6 +10,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
 from odometry.models.inputs import Inputs
+from odometry.parameter_covariance import LARGEST
 from odometry.run import Robot
 
 
@@ -104,10 +105,10 @@ class KinematicModel(ABC):
             value = values.get(parameter.name, parameter.default)
             if value is None:
                 raise ParameterError(f"the model {self.name!r} needs {parameter.name!r}")
-            if not (np.isfinite(value) and parameter.low <= value <= parameter.high):
+            if not (abs(value) <= LARGEST and parameter.low <= value <= parameter.high):
                 raise ParameterError(
-                    f"{parameter.name} = {value}, expected a finite number from {parameter.low} "
-                    f"to {parameter.high}"
+                    f"{parameter.name} = {value}, expected a finite number from "
+                    f"{max(parameter.low, -LARGEST):g} to {min(parameter.high, LARGEST):g}"
                 )
             packed.append(float(value))
         self.check(np.array(packed))

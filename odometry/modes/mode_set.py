@@ -1,7 +1,6 @@
 """A set of modes and how long each lasts, as TOML."""
 
 import math
-import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,13 +12,15 @@ import tomli_w
 from odometry.arrays import BoolArray, FloatArray
 from odometry.errors import ParameterError
 from odometry.io.files import atomic_write
+from odometry.io.structured import read_toml
 from odometry.modes.traction import TractionModes
 from odometry.modes.velocity import VelocityModes
 
 DWELL_S = 20.0  # of a mode of which nothing else is said
+LARGEST, SMALLEST = 1e9, 1e-18  # of a number, and of one above 0: a standard deviation of 1e-9
 IS_OF_SIGN: dict[str, Callable[[FloatArray], BoolArray]] = {
     "": np.isfinite,
-    "above 0": lambda values: values > 0,
+    "above 0": lambda values: values >= SMALLEST,
     "0 or more": lambda values: values >= 0,
 }
 
@@ -103,10 +104,7 @@ def read_mode_set(file: Path) -> ModeSet:
         Naming file, table and key: not TOML, an unknown or missing key, a number that is not
         finite, a shape or a variance that cannot be.
     """
-    try:
-        content = tomllib.loads(Path(file).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ParameterError(f"{file}: cannot be read as TOML: {error}") from error
+    content = read_toml(Path(file), ParameterError)
     head, tables = content.get("modes"), content.get("mode")
     if not isinstance(head, dict) or head.get("kind") not in list(KINDS):
         raise ParameterError(f"{file}: expected [modes] with kind = one of {', '.join(KINDS)}")
@@ -149,7 +147,7 @@ def _array(table: dict[str, Any], one: Key, where: str) -> FloatArray:
         values = np.asarray(table[one.name], dtype=np.float64)
     except (TypeError, ValueError):
         values = np.full((), math.nan)
-    fits = values.shape == one.shape and np.isfinite(values).all()
+    fits = values.shape == one.shape and bool(np.all(np.abs(values) <= LARGEST))
     if not fits or not np.all(IS_OF_SIGN[one.sign](values)):
         raise ParameterError(
             f"{where}: {one.name} = {table[one.name]!r}, expected finite numbers"

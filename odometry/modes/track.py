@@ -8,7 +8,7 @@ import numpy as np
 from tqdm import tqdm
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray
-from odometry.config import require
+from odometry.config import require, require_positive
 from odometry.estimation.ekf_bank import EkfBank
 from odometry.estimation.imm import Imm
 from odometry.estimation.mode_belief import ModeBelief
@@ -42,7 +42,7 @@ class ModesConfig:
     def __post_init__(self) -> None:
         require(0 <= self.floor < 0.5, f"floor = {self.floor}, expected 0 to below 0.5")
         require(0.5 < self.sure < 1, f"sure = {self.sure}, expected above 0.5 and below 1")
-        require(self.lasting_s > 0, f"lasting_s = {self.lasting_s}, expected above 0")
+        require_positive(self, "lasting_s")
 
 
 @dataclass(frozen=True)

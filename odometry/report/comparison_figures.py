@@ -7,10 +7,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from odometry.arrays import FloatArray
-from odometry.comparison.comparison import Comparison
 from odometry.comparison.config import ROTATION_HORIZON_M
+from odometry.comparison.evaluation import Evaluation
 from odometry.comparison.files import file_name
-from odometry.comparison.judgement import Judgement
+from odometry.comparison.result import Comparison
 from odometry.comparison.summary import QUANTITIES, Place, values_of
 from odometry.report.commanded_rotation import (
     commanded_rotation,
@@ -28,9 +28,9 @@ _PANELS, _PANEL_IN = 3, 2.3  # of the figure of turns
 
 
 def distribution_picture(comparison: Comparison, place: Place, folder: Path) -> Picture | None:
-    """Violins of both errors, one row a model; None where no model was judged."""
-    judgements = comparison.judgements_at(place)
-    errors = {q: pooled_errors(judgements, comparison.models, q) for q in QUANTITIES}
+    """Violins of both errors, one row a model; None where no model was evaluated."""
+    evaluations = comparison.evaluations_at(place)
+    errors = {q: pooled_errors(evaluations, comparison.models, q) for q in QUANTITIES}
     names = list(errors["translation"])
     if not names:
         return None
@@ -60,10 +60,10 @@ def distribution_picture(comparison: Comparison, place: Place, folder: Path) -> 
 
 
 def horizon_picture(
-    comparison: Comparison, robot: str, ground: str, folder: Path
+    comparison: Comparison, robot: str, terrain: str, folder: Path
 ) -> Picture | None:
     """Median and interquartile range over evaluation horizons; None below two horizons."""
-    curves = {q: horizon_curves(comparison, robot, ground, q) for q in QUANTITIES}
+    curves = {q: horizon_curves(comparison, robot, terrain, q) for q in QUANTITIES}
     if not any(len(h) > 1 for median, _ in curves.values() for h, _ in median.values()):
         return None
     styles = line_styles(comparison.models)
@@ -92,7 +92,7 @@ def horizon_picture(
     trained = f"{training.horizon_s:g} s" if training.horizon_s else f"{training.horizon_m:g} m"
     return Picture(
         save_figure(
-            folder / f"horizons_{file_name(robot, ground)}.png", (_WIDTH_IN, height_in), draw
+            folder / f"horizons_{file_name(robot, terrain)}.png", (_WIDTH_IN, height_in), draw
         ),
         "Errors of each model against the evaluation horizon.",
         f"Held-out errors against the evaluation horizon h_e (as Baril 2020 Fig. 4); training "
@@ -102,16 +102,16 @@ def horizon_picture(
 
 def rotation_picture(comparison: Comparison, robot: str, folder: Path) -> Picture | None:
     """Measured turns over one metre by commanded difference; None without such windows."""
-    grounds: dict[str, list[Judgement]] = {}
-    for each in comparison.judgements:
+    terrains: dict[str, list[Evaluation]] = {}
+    for each in comparison.evaluations:
         if each.robot == robot and each.horizon_m == ROTATION_HORIZON_M:
-            grounds.setdefault(each.ground, []).append(each)
-    if not grounds:
+            terrains.setdefault(each.terrain, []).append(each)
+    if not terrains:
         return None
-    commanded = {ground: _commanded(of_ground) for ground, of_ground in grounds.items()}
+    commanded = {terrain: _commanded(of_terrain) for terrain, of_terrain in terrains.items()}
     edges = difference_edges(np.concatenate([each[0] for each in commanded.values()]))
-    every = {ground: commanded_rotation(*pair, edges) for ground, pair in commanded.items()}
-    found = {ground: each for ground, each in every.items() if len(each.differences_m_s)}
+    every = {terrain: commanded_rotation(*pair, edges) for terrain, pair in commanded.items()}
+    found = {terrain: each for terrain, each in every.items() if len(each.differences_m_s)}
     if not found:
         return None
     columns = min(len(found), _PANELS)
@@ -121,12 +121,12 @@ def rotation_picture(comparison: Comparison, robot: str, folder: Path) -> Pictur
 
     def draw(figure: Figure) -> None:
         panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
-        for number, (ground, each) in enumerate(found.items()):
+        for number, (terrain, each) in enumerate(found.items()):
             axes = panels[number]
             plot_commanded_rotation(
                 axes, each, [other for other in found.values() if other is not each], style
             )
-            axes.set_title(ground, loc="left", parse_math=False)
+            axes.set_title(terrain, loc="left", parse_math=False)
             axes.tick_params(labelbottom=number + columns >= len(found))
         for axes in panels[len(found) :]:
             axes.set_visible(False)
@@ -141,24 +141,24 @@ def rotation_picture(comparison: Comparison, robot: str, folder: Path) -> Pictur
         f"Measured turns of {robot} against the commanded difference of tread speeds.",
         "Measured turn over one metre of wheel travel against the commanded difference of the "
         "tread speeds (as Baril 2020 Fig. 7). Lines: medians; bands: quartiles; grey: the medians "
-        "on the other grounds.",
+        "on the other terrains.",
     )
 
 
 def pooled_errors(
-    judgements: tuple[Judgement, ...], models: tuple[str, ...], quantity: str
+    evaluations: tuple[Evaluation, ...], models: tuple[str, ...], quantity: str
 ) -> dict[str, FloatArray]:
-    """All errors by model, of those that were judged."""
+    """All errors by model, of those that were evaluated."""
     found: dict[str, FloatArray] = {}
     for model in models:
-        values = [values_of(j.errors[model], quantity) for j in judgements if model in j.errors]
+        values = [values_of(j.errors[model], quantity) for j in evaluations if model in j.errors]
         if values:
             found[model] = np.concatenate(values)
     return found
 
 
 def horizon_curves(
-    comparison: Comparison, robot: str, ground: str, quantity: str
+    comparison: Comparison, robot: str, terrain: str, quantity: str
 ) -> tuple[Mapping[str, tuple[FloatArray, FloatArray]], ...]:
     """Median, and interquartile range, by model: horizons and values."""
     medians, ranges = {}, {}
@@ -166,7 +166,7 @@ def horizon_curves(
         rows = [
             (horizon_m, *summary.quartiles[quantity])
             for horizon_m in comparison.config.evaluated_m
-            for summary in comparison.summaries_at(Place(robot, ground, horizon_m))
+            for summary in comparison.summaries_at(Place(robot, terrain, horizon_m))
             if summary.model == model and summary.windows
         ]
         if rows:
@@ -175,13 +175,12 @@ def horizon_curves(
     return medians, ranges
 
 
-def _commanded(judgements: list[Judgement]) -> tuple[FloatArray, FloatArray]:
+def _commanded(evaluations: list[Evaluation]) -> tuple[FloatArray, FloatArray]:
     """Commanded differences and measured turns (degrees per m) of all windows."""
-    judged = [judgement.judged for judgement in judgements]
     differences = np.concatenate(
-        [j.mean_speeds_m_s[:, 1] - j.mean_speeds_m_s[:, 0] for j in judged]
+        [j.mean_speeds_m_s[:, 1] - j.mean_speeds_m_s[:, 0] for j in evaluations]
     )
-    turns = np.concatenate([j.windows.measured[:, 2] / j.windows.travel_m for j in judged])
+    turns = np.concatenate([j.windows.measured[:, 2] / j.windows.travel_m for j in evaluations])
     return differences, np.degrees(turns)
 
 
@@ -189,4 +188,4 @@ def picture_name(comparison: Comparison, place: Place) -> str:
     """Of the files of a place: with the horizon where there are several."""
     several = len(comparison.config.horizons_m) > 1
     horizon = f"_{place.horizon_m:g}m".replace(".", "p") if several else ""
-    return file_name(place.robot, place.ground) + horizon
+    return file_name(place.robot, place.terrain) + horizon

@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
-from odometry.comparison.comparison import Comparison
-from odometry.comparison.summary import Place
+from odometry.comparison.result import Comparison
+from odometry.comparison.summary import QUANTITIES, Place
+from odometry.comparison.training_horizons import horizon_sentence
 from odometry.report.comparison_figures import (
     distribution_picture,
     horizon_picture,
@@ -15,18 +16,20 @@ from odometry.report.comparison_tables import (
     error_grid,
     fitness_grid,
     parameter_grid,
-    seen_grid,
+    quartile_grid,
     settings_grid,
     split_grid,
 )
 from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
 from odometry.report.speed_plane_figure import speed_plane_picture
+from odometry.report.training_horizons import training_horizon_picture
 
 Block = Paragraph | Listing | Grid | Picture
 
-FIGURES = ("errors", "speed_plane", "horizons", "rotation")
+FIGURES = ("errors", "speed_plane", "horizons", "rotation", "training_horizons")
 HOW = (
-    "Every window is judged by a model that did not see it; the tables say what it had seen. "
+    "Every window is evaluated with a model that was not identified on it; the tables say on which "
+    "runs it was. "
     "Errors are per metre of wheel travel. Windows are distinct; they may straddle changes of "
     "`window` (joints of chained reference poses), where the reference is less certain, but no "
     "gaps; that is the same for every model. Intervals are 95 % intervals of paired differences "
@@ -50,12 +53,13 @@ def write_comparison_report(comparison: Comparison, out: str | Path) -> list[Pat
         The files written, the page last. Figures of an earlier comparison are removed.
     """
     folder = Path(out) / "figures"
-    robots = dict.fromkeys(robot for robot, _ in comparison.robots_and_grounds)
+    robots = dict.fromkeys(robot for robot, _ in comparison.robots_and_terrains)
     sections = [
         Section("How to read this", [Paragraph(HOW)]),
         Section("All errors", [error_grid(comparison), *_left_out(comparison)]),
         *(_place(comparison, place, folder) for place in comparison.places),
-        *(_horizons(comparison, *pair, folder) for pair in comparison.robots_and_grounds),
+        *(_horizons(comparison, *pair, folder) for pair in comparison.robots_and_terrains),
+        *(_training(comparison, *pair, folder) for pair in comparison.robots_and_terrains),
         *(_rotation(comparison, robot, folder) for robot in robots),
         Section("Whole runs", [fitness_grid(comparison)]),
         Section("Parameters", [parameter_grid(comparison)]),
@@ -72,39 +76,58 @@ def write_comparison_report(comparison: Comparison, out: str | Path) -> list[Pat
 
 
 def lead(comparison: Comparison) -> str:
-    """The one sentence that a hurried reader should see."""
+    """What a hurried reader should see: the best model, and what contradicts that."""
     if len(comparison.places) == 1:
         said = comparison.sentences_at(comparison.places[0])
-        return said[0] if said else "No model could be judged."
+        contradicted = comparison.contradictions_at(comparison.places[0])
+        others = [each for each in contradicted if each != said[0]]
+        return " ".join([*said[:1], *others]) or "No model could be evaluated."
     least: dict[str, int] = {}
     for place in comparison.places:
-        judged = [summary for summary in comparison.summaries_at(place) if summary.complete]
-        if judged:
-            best = min(judged, key=lambda summary: summary.means["translation"]).model
+        complete = [summary for summary in comparison.summaries_at(place) if summary.complete]
+        if complete:
+            best = min(complete, key=lambda summary: summary.means["translation"]).model
             least[best] = least.get(best, 0) + 1
     counts = ", ".join(f"{model} {count} times" for model, count in least.items())
-    return f"Least mean translation error at {len(comparison.places)} places: {counts or 'none'}."
+    places = len(comparison.places)
+    count = sum(bool(comparison.contradictions_at(place)) for place in comparison.places)
+    return f"Least mean translation error at {places} places: {counts or 'none'}." + (
+        f" At {count} of them medians or whole runs say otherwise; see there." if count else ""
+    )
 
 
 def _place(comparison: Comparison, place: Place, folder: Path) -> Section:
-    """Everything about one robot and ground over one horizon."""
-    judgements = comparison.judgements_at(place)
+    """Everything about one robot and terrain over one horizon."""
+    evaluations = comparison.evaluations_at(place)
     name = picture_name(comparison, place)
     pictures = (
         distribution_picture(comparison, place, folder),
-        speed_plane_picture(judgements, comparison.models, folder / f"speed_plane_{name}.png"),
+        speed_plane_picture(evaluations, comparison.models, folder / f"speed_plane_{name}.png"),
     )
     found = comparison.differences_at(place)
-    blocks: list[Block] = [Listing(comparison.sentences_at(place)), seen_grid(comparison, place)]
+    blocks: list[Block] = [
+        Listing(comparison.sentences_at(place)),
+        quartile_grid(comparison, place),
+    ]
     blocks += [picture for picture in pictures if picture is not None]
     blocks += [difference_grid(found)] if found else []
-    blocks += [split_grid(comparison, place)] if judgements else []
+    blocks += [split_grid(comparison, place)] if evaluations else []
     return Section(place.title, blocks)
 
 
-def _horizons(comparison: Comparison, robot: str, ground: str, folder: Path) -> Section:
-    picture = horizon_picture(comparison, robot, ground, folder)
-    return Section(f"{robot} on {ground}, over every horizon", [picture] if picture else [])
+def _horizons(comparison: Comparison, robot: str, terrain: str, folder: Path) -> Section:
+    picture = horizon_picture(comparison, robot, terrain, folder)
+    return Section(f"{robot} on {terrain}, over every horizon", [picture] if picture else [])
+
+
+def _training(comparison: Comparison, robot: str, terrain: str, folder: Path) -> Section:
+    """Which training horizon suits which evaluation horizon, model by model."""
+    blocks: list[Block] = []
+    for model, errors in comparison.horizon_errors_of(robot, terrain).items():
+        blocks.append(Listing([horizon_sentence(model, errors, q) for q in QUANTITIES]))
+        picture = training_horizon_picture(errors, folder, model)
+        blocks += [picture] if picture else []
+    return Section(f"{robot} on {terrain}: training and evaluation horizon", blocks)
 
 
 def _rotation(comparison: Comparison, robot: str, folder: Path) -> Section:

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from odometry.comparison.comparison import Comparison
-from odometry.comparison.differences import Difference
+from odometry.comparison.result import Comparison
+from odometry.comparison.statistics import Difference
 from odometry.comparison.summary import Place, Summary
 from odometry.report.html import Grid
 
@@ -15,7 +15,7 @@ def error_grid(comparison: Comparison) -> Grid:
     rows = [
         (
             place.robot,
-            place.ground,
+            place.terrain,
             f"{place.horizon_m:g}",
             summary.model,
             str(summary.windows),
@@ -26,14 +26,14 @@ def error_grid(comparison: Comparison) -> Grid:
         for summary in comparison.summaries_at(place)
     ]
     header = (
-        *("robot", "ground", "horizon m", "model", "windows"),
+        *("robot", "terrain", "horizon m", "model", "windows"),
         *("m per m: mean", "median", "degrees per m: mean", "median"),
     )
     return Grid(header, rows, "Held-out errors per metre of wheel travel.")
 
 
-def seen_grid(comparison: Comparison, place: Place) -> Grid:
-    """Quartiles of both errors, on which windows, and what had been seen."""
+def quartile_grid(comparison: Comparison, place: Place) -> Grid:
+    """Quartiles of both errors, on which windows, and remarks."""
     rows = [
         (
             summary.model,
@@ -49,12 +49,12 @@ def seen_grid(comparison: Comparison, place: Place) -> Grid:
 
 
 def split_grid(comparison: Comparison, place: Place) -> Grid:
-    """Which runs were judged by models that had seen what."""
+    """Which runs were held out from models that were identified on which."""
     rows = dict.fromkeys(
-        (judgement.run, judgement.seen, str(len(judgement.judged)))
-        for judgement in comparison.judgements_at(place)
+        (evaluation.run, evaluation.training_runs, str(len(evaluation.windows)))
+        for evaluation in comparison.evaluations_at(place)
     )
-    return Grid(("judged run", "identified on", "windows"), list(rows), "The split.")
+    return Grid(("evaluated run", "identified on", "windows"), list(rows), "The split.")
 
 
 def difference_grid(found: Sequence[Difference]) -> Grid:
@@ -97,7 +97,7 @@ def parameter_grid(comparison: Comparison) -> Grid:
     """What was identified, from all that each model may see."""
     rows = []
     for (robot, model), parameters in comparison.parameters.items():
-        for ground, table in parameters.terrains.items():
+        for terrain, table in parameters.terrains.items():
             sigmas = dict(
                 zip(table.covariance_order, np.sqrt(np.diag(table.covariance)), strict=True)
             )
@@ -105,7 +105,7 @@ def parameter_grid(comparison: Comparison) -> Grid:
                 f"{name} {value:.4g}" + (f" ± {sigmas[name]:.2g}" if name in sigmas else "")
                 for name, value in table.values.items()
             ]
-            rows.append((f"{robot} on {ground}", model, ", ".join(words)))
+            rows.append((f"{robot} on {terrain}", model, ", ".join(words)))
     caption = "Values with one standard deviation, as in the files of parameters/."
     return Grid(("where", "model", "parameters"), rows, caption)
 
@@ -115,6 +115,7 @@ def settings_grid(comparison: Comparison) -> Grid:
     config = comparison.config
     values = {
         "evaluation horizons m": ", ".join(f"{h:g}" for h in config.horizons_m),
+        "training horizons m": ", ".join(f"{h:g}" for h in config.training_horizons_m) or "-",
         "draws": config.draws,
         "block m": config.block_m,
         "seed": config.seed,
@@ -127,8 +128,8 @@ def settings_grid(comparison: Comparison) -> Grid:
 def _mean_and_median(summary: Summary, quantity: str, decimals: int) -> tuple[str, str]:
     if not summary.windows:
         return "-", "-"
-    median = summary.quartiles[quantity][1]
-    return f"{summary.means[quantity]:.{decimals}f}", f"{median:.{decimals}f}"
+    numbers = (summary.means[quantity], summary.medians[quantity])
+    return f"{numbers[0]:.{decimals}f}", f"{numbers[1]:.{decimals}f}"
 
 
 def _quartiles(summary: Summary, quantity: str, decimals: int) -> str:
@@ -138,5 +139,5 @@ def _quartiles(summary: Summary, quantity: str, decimals: int) -> str:
 
 
 def _verdict(difference: Difference) -> str:
-    apart = "not told apart" if difference.interval.holds_zero else "told apart"
+    apart = "not distinguished" if difference.interval.holds_zero else "distinguished"
     return f"{difference.words()}: {apart}"

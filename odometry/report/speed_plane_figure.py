@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
-from odometry.comparison.judgement import Judgement
+from odometry.comparison.evaluation import Evaluation
 from odometry.comparison.summary import QUANTITIES, values_of
 from odometry.report.figure import save_figure
 from odometry.report.html import Picture
@@ -58,18 +58,18 @@ class Layout:
 
 
 def speed_plane_picture(
-    judgements: tuple[Judgement, ...], models: tuple[str, ...], file: Path
+    evaluations: tuple[Evaluation, ...], models: tuple[str, ...], file: Path
 ) -> Picture | None:
     """Mean rotation and translation errors by mean tread speeds; None without a window.
 
     Parameters
     ----------
-    judgements : tuple of Judgement
+    evaluations : tuple of Evaluation
         Of one place.
     models : tuple of str
     file : Path
     """
-    planes = {quantity: _planes(judgements, models, quantity) for quantity in QUANTITIES}
+    planes = {quantity: _planes(evaluations, models, quantity) for quantity in QUANTITIES}
     names = list(planes["rotation"])
     if not names:
         return None
@@ -91,17 +91,17 @@ def speed_plane_picture(
 
 
 def _planes(
-    judgements: tuple[Judgement, ...], models: tuple[str, ...], quantity: str
+    evaluations: tuple[Evaluation, ...], models: tuple[str, ...], quantity: str
 ) -> dict[str, SpeedPlane]:
-    """The plane of each judged model, all with the same bins."""
-    if not judgements:
+    """The plane of each evaluated model, all with the same bins."""
+    if not evaluations:
         return {}
-    edges = speed_edges(np.concatenate([j.judged.mean_speeds_m_s for j in judgements]))
+    edges = speed_edges(np.concatenate([j.mean_speeds_m_s for j in evaluations]))
     found = {}
     for model in models:
-        here = [judgement for judgement in judgements if model in judgement.errors]
+        here = [evaluation for evaluation in evaluations if model in evaluation.errors]
         if here:
-            speeds = np.concatenate([j.judged.mean_speeds_m_s for j in here])
+            speeds = np.concatenate([j.mean_speeds_m_s for j in here])
             errors = np.concatenate([values_of(j.errors[model], quantity) for j in here])
             found[model] = speed_plane(speeds, errors, edges)
     return found

@@ -16,10 +16,17 @@ from odometry.simulation.commands import (
 from odometry.simulation.contact.slope import Ground, Plane, Zones
 from odometry.simulation.contact.steady_state import steady_state
 from odometry.simulation.contact.vehicle import ContactVehicle
+from odometry.simulation.errors import SimulationError
 from odometry.simulation.manoeuvre_courses import MANOEUVRES, manoeuvre
 
 STEP_S = 0.02
 CRUISE, TURN = 0.6, 0.8  # mean speed and difference of speeds, as shares of the largest speed
+LIMITS = {
+    "duration_s": (1.0, 86400.0),
+    "max_speed_m_s": (0.01, 100.0),
+    "slope_rad": (-1.0, 1.0),
+    "uphill_rad": (-100.0, 100.0),
+}
 COURSE_NAMES = ("excitation", "spin", "figure_eight", "tour", *MANOEUVRES)
 
 
@@ -65,7 +72,22 @@ def make_course(
         Steepest slope, and the world direction in which the ground rises.
     rng : numpy.random.Generator
         For the excitation, and the side of an outward spiral.
+
+    Raises
+    ------
+    SimulationError
+        If a number is beyond LIMITS, or the name or the course is not possible.
     """
+    asked = {
+        "duration_s": duration_s,
+        "max_speed_m_s": max_speed_m_s,
+        "slope_rad": slope_rad,
+        "uphill_rad": uphill_rad,
+    }
+    for key, value in asked.items():
+        low, high = LIMITS[key]
+        if not low <= value <= high:
+            raise SimulationError(f"{key} = {value:g}, expected {low:g} to {high:g}")
     plane = Plane(slope_rad, uphill_rad)
     if name in MANOEUVRES:
         speeds = manoeuvre(

@@ -1,9 +1,8 @@
 """How recordings are cut into windows."""
 
-import math
 from dataclasses import dataclass
 
-from odometry.config import require
+from odometry.config import require, require_positive
 
 
 @dataclass(frozen=True)
@@ -36,10 +35,9 @@ class WindowConfig:
     yaw_sigma_rad: float = 0.01
 
     def __post_init__(self) -> None:
-        for name in ("horizon_m", "stride", "pose_gap_s", "position_sigma_m", "yaw_sigma_rad"):
-            value = getattr(self, name)
-            require(0 < value < math.inf, f"{name} = {value}, expected above 0")
-        require(
-            0 <= self.horizon_s < math.inf, f"horizon_s = {self.horizon_s}, expected 0 or above"
+        require_positive(
+            self, "horizon_m", "stride", "pose_gap_s", "position_sigma_m", "yaw_sigma_rad"
         )
+        if self.horizon_s != 0:
+            require_positive(self, "horizon_s")
         require(0 < self.shortest <= 1, f"shortest = {self.shortest}, expected 0 to 1")

@@ -1,5 +1,6 @@
 """The terrain classifier: SFTA features, a scaler and k nearest neighbours, with rejection."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +17,7 @@ from terrain.classification.neighbours import vote
 from terrain.classification.patches import cut_patches
 from terrain.classification.persistence import read_model, write_model
 from terrain.classification.presets import PRESETS
-from terrain.classification.training_set import check_labels, common_size, has_colour
+from terrain.classification.training_set import check_codes, check_labels, common_size, has_colour
 from terrain.classification.validation import CrossValidation, cross_validate
 from terrain.errors import ImageError, ModelFileError, PatchError
 
@@ -91,6 +92,8 @@ class TerrainClassifier:
             raise ConfigError(f"preset '{preset}' is not one of {', '.join(sorted(PRESETS))}")
         if not 0 < rejected_share < 1:
             raise ConfigError(f"rejected_share is {rejected_share}, expected between 0 and 1")
+        if metres_per_pixel is not None and not 0 < metres_per_pixel < math.inf:
+            raise ConfigError(f"metres_per_pixel is {metres_per_pixel}, expected above zero")
         self.preset = preset
         self.colour = colour
         self.metres_per_pixel = metres_per_pixel
@@ -225,6 +228,7 @@ class TerrainClassifier:
         model.n_neighbors_ = settings.n_neighbors
         model.rejection_distance_ = settings.rejection_distance
         model._features = settings.features
+        check_codes(arrays["codes"], len(settings.classes))
         model._neighbours = PRESETS[model.preset].neighbours.from_arrays(arrays)
         model._check_that_parts_fit()
         return model

@@ -1,5 +1,6 @@
 """What a model file says beside its arrays, checked when it is read."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, Self
@@ -48,8 +49,16 @@ class ModelSettings:
         for name, kind in kinds.items():
             if not isinstance(table[name], kind):
                 raise TypeError(f"{name} is {table[name]!r}")
-        if table["patch_size_px"] < 1 or table["n_neighbors"] < 1:
-            raise ValueError("patch_size_px and n_neighbors must be at least 1")
+        limits = {
+            "patch_size_px": (1, 4096),
+            "n_neighbors": (1, 10_000),
+            "rejection_distance": (0.0, 1e12),
+        }
+        for name, (low, high) in limits.items():
+            if not low <= table[name] <= high:
+                raise ValueError(f"{name} = {table[name]}, expected {low:g} to {high:g}")
+        if table["metres_per_pixel"] is not None and not 0 < table["metres_per_pixel"] < math.inf:
+            raise ValueError(f"metres_per_pixel = {table['metres_per_pixel']}, expected above 0")
         values = {name: table[name] for name in kinds}
         values["classes"] = tuple(map(str, table["classes"]))
         values["features"] = FeatureSettings.from_table(table["features"])

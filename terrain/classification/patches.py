@@ -1,7 +1,5 @@
 """Labelled photographs of ground: find them, group them, cut them to patches of one size."""
 
-import csv
-import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,6 +9,7 @@ import numpy as np
 
 from odometry.arrays import ByteImage
 from odometry.run import UNKNOWN
+from terrain.classification.manifest import Manifest, read_manifest
 from terrain.errors import PatchError
 from terrain.images import read_image
 
@@ -47,18 +46,19 @@ def find_photos(root: Path) -> list[LabelledPhoto]:
     Raises
     ------
     PatchError
-        If `root` is not a folder, holds no photographs, or uses the reserved name ``unknown``.
+        If `root` is not a folder, holds no photographs, or uses the reserved name ``unknown``,
+        or if the manifest is damaged or names none of the photographs.
     """
     if not root.is_dir():
         raise PatchError(f"{root} is not a folder; expected {root}/<class>/*.jpg or *.png")
-    groups = _photo_ids(root)
+    paths = [path for path in sorted(root.glob("*/*")) if path.suffix.lower() in SUFFIXES]
+    if not paths:
+        raise PatchError(f"{root} holds no photographs; expected {root}/<class>/*.jpg or *.png")
+    groups = _photo_ids(read_manifest(root), paths)
     photos = [
         LabelledPhoto(path, path.parent.name, groups.get(path.resolve(), str(path)))
-        for path in sorted(root.glob("*/*"))
-        if path.suffix.lower() in SUFFIXES
+        for path in paths
     ]
-    if not photos:
-        raise PatchError(f"{root} holds no photographs; expected {root}/<class>/*.jpg or *.png")
     if any(photo.label == UNKNOWN for photo in photos):
         raise PatchError(f"{root / UNKNOWN}: the name '{UNKNOWN}' is reserved")
     return photos
@@ -152,47 +152,21 @@ def stated_metres_per_pixel(root: Path) -> float | None:
     Raises
     ------
     PatchError
-        If a value is not a number above zero, or the photographs differ in scale.
+        As `read_manifest`.
     """
-    file, rows = _manifest(root)
-    cells = {row["metres_per_pixel"] for row in rows if row.get("metres_per_pixel")}
-    if not cells:
-        return None
-    try:
-        (scale,) = {float(cell) for cell in cells}
-    except ValueError:
-        seen = ", ".join(sorted(cells))
-        raise PatchError(f"{file}: metres_per_pixel is {seen}; expected one number") from None
-    if not 0 < scale < math.inf:
-        raise PatchError(f"{file}: metres_per_pixel is {scale}; expected a number above zero")
-    return scale
+    manifest = read_manifest(root)
+    return None if manifest is None else manifest.metres_per_pixel
 
 
-def _photo_ids(root: Path) -> dict[Path, str]:
-    file, rows = _manifest(root)
-    return {(file.parent / row["path"]).resolve(): row["photo_id"] for row in rows}
-
-
-def _manifest(root: Path) -> tuple[Path, list[dict[str, str]]]:
-    """Rows of the manifest in `root` or its parent; none where neither has one."""
-    for file in (root / "manifest.csv", root.parent / "manifest.csv"):
-        if file.is_file() and (rows := _manifest_rows(file)):
-            return file, rows
-    return root / "manifest.csv", []
-
-
-def _manifest_rows(file: Path) -> list[dict[str, str]]:
-    """Rows with path and photo_id; none where the file is about something else."""
-    try:
-        with file.open(newline="", encoding="utf-8-sig") as stream:
-            reader = csv.DictReader(stream)
-            rows = list(reader)
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise PatchError(f"{file}: cannot be read as CSV: {error}") from error
-    if not {"path", "photo_id"} <= set(reader.fieldnames or ()):
-        return []
-    for line, row in enumerate(rows, start=2):
-        for name in ("path", "photo_id"):
-            if not row[name]:
-                raise PatchError(f"{file}: row {line}, column {name!r}: it is empty")
-    return rows
+def _photo_ids(manifest: Manifest | None, photos: Sequence[Path]) -> dict[Path, str]:
+    """The photo_id of each resolved path that the manifest names; PatchError if it names none."""
+    if manifest is None:
+        return {}
+    found = {photo.resolve() for photo in photos} & set(manifest.photo_ids)
+    if not found:
+        raise PatchError(
+            f"{manifest.file}: none of its {len(manifest.photo_ids)} paths is one of the "
+            f"{len(photos)} photographs: it names {next(iter(manifest.photo_ids))}, and there is "
+            f"{photos[0].resolve()}; paths are relative to the folder of manifest.csv"
+        )
+    return dict(manifest.photo_ids)

@@ -9,6 +9,7 @@ import hashlib
 import io
 import json
 import math
+import tokenize
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -18,12 +19,17 @@ import numpy as np
 
 from odometry.arrays import AnyArray
 from odometry.io.files import atomic_write
+from odometry.io.input_file import read_bytes
+from odometry.io.structured import parsed_json
 from terrain.errors import ModelFileError
 
 FORMAT = "terrain-odometry classifier"
 VERSION = 1
 HEADER = "header.json"
 CHECKSUM = "sha256"
+MODEL_BYTES = 1024**3
+ZIP_ERRORS = (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, ValueError, OSError)
+NPY_ERRORS = (ValueError, SyntaxError, TypeError, RecursionError, MemoryError, tokenize.TokenError)
 
 
 def write_model(path: Path, settings: Mapping[str, Any], arrays: Mapping[str, AnyArray]) -> None:
@@ -52,10 +58,11 @@ def read_model(path: Path) -> tuple[dict[str, Any], dict[str, AnyArray]]:
     ModelFileError
         If the file is missing, damaged, not a model, or of a newer version.
     """
+    data = read_bytes(path, ModelFileError, MODEL_BYTES, "a model has a few million")
     try:
-        with zipfile.ZipFile(path) as archive:
-            members = _stored_members(path, archive)
-    except (OSError, zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError) as error:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            members = _stored_members(path, archive, len(data))
+    except ZIP_ERRORS as error:
         raise ModelFileError(f"{path}: cannot be read as a model file: {error}") from error
     header = _read_header(path, members)
     return header["settings"], {
@@ -65,8 +72,7 @@ def read_model(path: Path) -> tuple[dict[str, Any], dict[str, AnyArray]]:
     }
 
 
-def _stored_members(path: Path, archive: zipfile.ZipFile) -> dict[str, bytes]:
-    size = path.stat().st_size
+def _stored_members(path: Path, archive: zipfile.ZipFile, size: int) -> dict[str, bytes]:
     entries = archive.infolist()
     claimed = sum(entry.file_size for entry in entries)
     if claimed > size:
@@ -78,11 +84,12 @@ def _stored_members(path: Path, archive: zipfile.ZipFile) -> dict[str, bytes]:
 
 
 def _read_header(path: Path, members: Mapping[str, bytes]) -> dict[str, Any]:
-    text = members.get(HEADER, b"")
+    if HEADER not in members:
+        raise ModelFileError(f"{path}: there is no {HEADER} in it; not a model file")
     try:
-        header = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise ModelFileError(f"{path}: no readable {HEADER} in it; not a model file") from error
+        header = parsed_json(members[HEADER], path, ModelFileError)
+    except ModelFileError as error:
+        raise ModelFileError(f"{error}; not a model file") from error
     if not isinstance(header, dict) or header.get("format") != FORMAT:
         raise ModelFileError(f"{path}: {HEADER} does not say '{FORMAT}'; not a model file")
     if header.get("version") != VERSION:
@@ -113,9 +120,17 @@ def _from_npy(path: Path, name: str, data: bytes) -> AnyArray:
     try:
         np.lib.format.read_magic(stream)
         shape, fortran, dtype = np.lib.format.read_array_header_1_0(stream)
-    except ValueError as error:
+    except NPY_ERRORS as error:
         raise ModelFileError(f"{path}: {name} is not an array: {error}") from error
     rest = data[stream.tell() :]
-    if fortran or dtype.kind not in "fi" or math.prod(shape) * dtype.itemsize != len(rest):
+    if (
+        fortran
+        or min(shape, default=0) < 0
+        or dtype.kind not in "fi"
+        or math.prod(shape) * dtype.itemsize != len(rest)
+    ):
         raise ModelFileError(f"{path}: {name} claims {shape} of {dtype}, holds {len(rest)} bytes")
-    return np.frombuffer(rest, dtype=dtype).reshape(shape).copy()
+    array = np.frombuffer(rest, dtype=dtype).reshape(shape).copy()
+    if not np.isfinite(array).all():
+        raise ModelFileError(f"{path}: {name} holds numbers that are not finite")
+    return array

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from odometry.arrays import ByteImage
+from odometry.arrays import AnyArray, ByteImage
 from odometry.run import UNKNOWN
 from terrain.errors import PatchError
 
@@ -30,6 +30,12 @@ def check_labels(n_images: int, labels: Sequence[str], groups: Sequence[str]) ->
             "training needs at least 2 classes with patches of at least 2 photographs each, "
             f"so that some can be held back; photographs seen: {seen or 'none'}"
         )
+
+
+def check_codes(codes: AnyArray, classes: int) -> None:
+    """Raise ValueError unless codes (n,) are whole numbers that use each of the classes."""
+    if codes.ndim != 1 or codes.dtype.kind != "i" or set(codes.tolist()) != set(range(classes)):
+        raise ValueError(f"codes of {codes.dtype} {codes.shape} do not name {classes} classes")
 
 
 def has_colour(images: Sequence[ByteImage], labels: Sequence[str]) -> bool:

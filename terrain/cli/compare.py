@@ -9,7 +9,7 @@ from terrain.cli.options import MODEL_NAMES, window_options
 from terrain.cli.results import print_table, print_written
 
 if TYPE_CHECKING:
-    from odometry.comparison.comparison import Comparison
+    from odometry.comparison.result import Comparison
     from odometry.windows.config import WindowConfig
 
 FOLDER = click.Path(file_okay=False, path_type=Path)
@@ -41,7 +41,16 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
     metavar="H",
     help="Wheel travel over which errors are taken [m]; repeat.",
 )
-@click.option("--terrain", metavar="NAME", help="Ground of runs that name none.")
+@click.option(
+    "--training-horizon",
+    "training_horizons_m",
+    multiple=True,
+    type=float,
+    metavar="H",
+    help="Identify also over this wheel travel [m], and show which training horizon suits which "
+    "evaluation horizon; repeat. Each costs as many fits as the comparison itself.",
+)
+@click.option("--terrain", metavar="NAME", help="Terrain of runs that name none.")
 @click.option(
     "--seed",
     type=click.IntRange(min=0),
@@ -57,14 +66,16 @@ def compare(
     train: tuple[Path, ...],
     windows: "WindowConfig",
     horizons_m: tuple[float, ...],
+    training_horizons_m: tuple[float, ...],
     terrain: str | None,
     seed: int,
 ) -> None:
-    """Compare kinematic models on the run folders RUN, by robot and ground.
+    """Compare kinematic models on the run folders RUN, by robot and terrain.
 
-    No window is judged by a model that was identified on it. With --train, models are identified
-    on those runs; else each run is judged by models identified on the other runs of the same
-    robot and ground, and where a ground has one run, each half of it by the other half.
+    No window is evaluated with a model that was identified on it. With --train, models are
+    identified on those runs. Else each run is held out in turn, or in ten groups where there are
+    more, and models are identified on the other runs of the same robot and terrain; where a
+    terrain has one run, each half of it is held out in turn.
 
     \b
     Example:
@@ -80,7 +91,11 @@ def compare(
     from odometry.run import Run
 
     config = ComparisonConfig(
-        training=windows, solver=SolverConfig(seed=seed), horizons_m=horizons_m, seed=seed
+        training=windows,
+        solver=SolverConfig(seed=seed),
+        horizons_m=horizons_m,
+        training_horizons_m=training_horizons_m,
+        seed=seed,
     )
     if out.resolve() in {folder.resolve() for folder in (*folders, *train)}:
         raise click.UsageError("--out is one of the run folders; choose another folder")
@@ -103,30 +118,50 @@ def compare(
     for reason in comparison.left_out.values():
         click.echo(f"Note: left out: {reason}", err=True)
     _print_errors(comparison)
+    _print_training_horizons(comparison)
     print_written(written, out)
     click.echo(f"Next: open {out / 'report.html'}")
 
 
+def _print_training_horizons(comparison: "Comparison") -> None:
+    """Print which training horizons suit which evaluation horizon, a line a model and quantity."""
+    from odometry.comparison.summary import QUANTITIES
+    from odometry.comparison.training_horizons import horizon_sentence
+
+    for robot, terrain in comparison.robots_and_terrains:
+        for model, errors in comparison.horizon_errors_of(robot, terrain).items():
+            for quantity in QUANTITIES:
+                said = horizon_sentence(model, errors, quantity)
+                click.echo(f"{robot} on {terrain}: {said}")
+
+
 def _print_errors(comparison: "Comparison") -> None:
-    """Print one row a place and model, what they had seen, and what the numbers say."""
+    """Print one row a place and model, what they were identified on, and what that says."""
     rows: list[tuple[str, ...]] = [
-        ("robot", "ground", "over", "model", "windows", "m per m", "deg per m", "")
+        (
+            *("robot", "terrain", "over", "model", "windows"),
+            *("m per m: mean", "median", "deg per m: mean", "median", ""),
+        )
     ]
     for place in comparison.places:
         for summary in comparison.summaries_at(place):
-            means = (summary.means.get("translation"), summary.means.get("rotation"))
-            cells = ["-" if mean is None else f"{mean:.4f}" for mean in means]
+            errors = (
+                statistic.get(quantity)
+                for quantity in ("translation", "rotation")
+                for statistic in (summary.means, summary.medians)
+            )
+            cells = ["-" if error is None else f"{error:.4f}" for error in errors]
             remark = "see below" if comparison.remarks_at(place, summary) else ""
             over = f"{place.horizon_m:g} m"
-            where = (place.robot, place.ground, over, summary.model, str(summary.windows))
+            where = (place.robot, place.terrain, over, summary.model, str(summary.windows))
             rows.append((*where, *cells, remark))
-    click.echo("Mean held-out errors, per metre of wheel travel:")
+    click.echo("Held-out errors, per metre of wheel travel:")
     print_table(rows)
-    click.echo("Each run was judged by models identified on:")
-    for prepared in comparison.prepared:
-        split = prepared.split
-        judged = ", ".join(part.name for part in split.judged)
-        click.echo(f"  {split.robot} on {split.ground}: {judged}: {split.words}")
+    click.echo("Runs were held out from models that were identified on:")
+    for models in comparison.split_models:
+        split = models.split
+        held_out = ", ".join(part.name for part in split.held_out)
+        click.echo(f"  {split.robot} on {split.terrain}: {held_out}: {split.training_names}")
     for place in comparison.places:
         click.echo(f"{place.title}:")
         for summary in comparison.summaries_at(place):

@@ -31,7 +31,7 @@ def evaluate(folders: tuple[Path, ...], as_json: bool) -> None:
     else:
         rows = [row for name, result in results.items() for row in _rows(name, result)]
         print_table([("folder", "trajectory", "against", *HEADER[1:]), *rows])
-        click.echo("Means; per metre over the horizon that each result.json names.")
+        click.echo("Per metre of wheel travel, over the horizon that each result.json names.")
     if any("error" in result for result in results.values()):
         sys.exit(1)
 
@@ -48,10 +48,11 @@ def _read(folder: Path) -> dict[str, Any]:
 
 
 def _rows(name: str, result: dict[str, Any]) -> list[tuple[str, ...]]:
+    empty = [""] * len(HEADER)
     if "error" in result:
-        return [(name, f"failed: {result['error']}", *[""] * 5)]
+        return [(name, f"failed: {result['error']}", *empty)]
     if not result["errors"]:
-        return [(name, "nothing to compare with", *[""] * 5)]
+        return [(name, "nothing to compare with", *empty)]
     against = str(result.get("reference") or "-")
     return [
         (name, trajectory, against, *error_cells(errors))

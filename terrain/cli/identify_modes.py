@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from terrain.cli.options import Positive
 from terrain.cli.results import print_table
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ SLOW_TIGHT_TURNS_M_S = ((0.05, 0.15), (0.15, 0.05))  # to the left, to the right
 @click.option("--paper", is_flag=True, help="Traction: one k and m alone, as in Salvi 2024.")
 @click.option(
     "--dwell",
-    type=click.FloatRange(min=0, min_open=True),
+    type=Positive(1e6),
     default=20.0,
     show_default=True,
     help="Mean time in a mode [s].",

@@ -63,3 +63,6 @@ def main() -> None:
     except (OdometryError, OSError) as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(1)
+    except MemoryError as error:
+        click.echo(f"Error: there is not enough memory for this input: {error}", err=True)
+        sys.exit(1)

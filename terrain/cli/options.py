@@ -1,5 +1,6 @@
 """Options that several commands share."""
 
+import math
 from collections.abc import Callable, Sequence
 from functools import wraps
 from typing import Any
@@ -11,6 +12,22 @@ MODEL_NAMES = (
     *("differential_drive", "icr_symmetric", "icr", "radius_of_curvature", "full_linear"),
     *("icr_slope", "icr_inertia", "icr_inertia_measured", "traction_mode", "contact"),
 )
+
+
+class Positive(click.FloatRange):
+    """A number well above zero that is finite: click lets nan and inf pass."""
+
+    def __init__(self, largest: float) -> None:
+        super().__init__(min=1e-6, max=largest)
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        """The number, or click's error."""
+        number = float(super().convert(value, param, ctx))
+        if math.isnan(number):
+            self.fail("nan is no number above zero", param, ctx)
+        return number
 
 
 def assignments(texts: Sequence[str]) -> dict[str, float]:

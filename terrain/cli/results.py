@@ -9,7 +9,10 @@ import click
 if TYPE_CHECKING:
     from terrain.run_odometry import RunResult
 
-HEADER = ("", "m per m", "deg per m", "mean position m", "final position m")
+HEADER = (
+    *("", "m per m: mean", "median", "deg per m: mean", "median"),
+    *("position m: mean", "median", "final"),
+)
 
 
 def print_errors(results: Mapping[str, "RunResult"]) -> None:
@@ -19,11 +22,11 @@ def print_errors(results: Mapping[str, "RunResult"]) -> None:
         for trajectory, score in result.scores.items():
             rows.append((f"{name}: {trajectory}", *error_cells(score.to_table())))
     if not rows:
-        click.echo("There is no pose.csv or truth.csv to judge the odometer against.")
+        click.echo("There is no pose.csv or truth.csv to compare the odometer with.")
         return
     first = next(iter(results.values()))
     click.echo(
-        f"Mean errors against {first.reference_name}.csv, "
+        f"Errors against {first.reference_name}.csv, "
         f"per metre over {first.config.evaluation.horizon_m:g} m of wheel travel:"
     )
     print_table([HEADER, *rows])
@@ -35,16 +38,25 @@ def print_sightings(counts: Mapping[str, int]) -> None:
         click.echo("Images: " + ", ".join(f"{count} {word}" for word, count in counts.items()))
 
 
-def error_cells(errors: Mapping[str, Any]) -> tuple[str, str, str, str]:
-    """Numbers of one trajectory of result.json as cells of the table."""
-    values = (
-        errors["translation_m_per_m"]["mean"],
-        errors["rotation_deg_per_m"]["mean"],
-        errors["position_m"]["mean"],
-        errors["position_m"]["final"],
+def error_cells(errors: Mapping[str, Any]) -> list[str]:
+    """Numbers of one trajectory of result.json as cells of the table; "-" where there is none."""
+    translation, rotation, position = (
+        errors[name] for name in ("translation_m_per_m", "rotation_deg_per_m", "position_m")
     )
-    cells = tuple("-" if value is None else f"{value:.4f}" for value in values)
-    return cells[0], cells[1], cells[2], cells[3]
+    values = (
+        *(translation["mean"], _median(translation)),
+        *(rotation["mean"], _median(rotation)),
+        *(position["mean"], position.get("median"), position["final"]),
+    )
+    return [f"{value:.4f}" if isinstance(value, float | int) else "-" for value in values]
+
+
+def _median(errors: Mapping[str, Any]) -> float | None:
+    """The median, which version 0.4 wrote as the second of the quartiles alone."""
+    match errors.get("quartiles"):
+        case [_, float() as median, _]:
+            return median
+    return None
 
 
 def print_table(rows: Sequence[Sequence[str]]) -> None:

@@ -5,8 +5,11 @@ from typing import TYPE_CHECKING
 
 import click
 
+from terrain.cli.options import Positive
+
 if TYPE_CHECKING:
     from terrain.classification.classifier import TerrainClassifier
+    from terrain.classification.patches import LabelledPatches
 
 
 @click.command()
@@ -32,7 +35,7 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--metres-per-pixel",
-    type=click.FloatRange(min=0, min_open=True),
+    type=Positive(1000.0),
     help="Scale of the photographs on the ground; kept in the model.  [default: as manifest.csv "
     "states it]",
 )
@@ -72,6 +75,13 @@ def train(
     size = classifier.patch_size_px
     for path in loaded.too_small:
         click.echo(f"left out, smaller than {size} x {size} pixels: {path}", err=True)
+    photos, grouped = set(loaded.photos), _grouped(loaded)
+    if 0 < len(grouped) < len(photos):
+        click.echo(
+            f"Note: manifest.csv groups {len(grouped)} of {len(photos)} photographs; each of the "
+            f"others is a group of its own, such as {min(photos - grouped)}",
+            err=True,
+        )
     if colour and not classifier.colour_:
         click.echo(
             "Colour is left out: patches are grey, or most of a class are, or the preset is.",
@@ -80,6 +90,12 @@ def train(
     classifier.save(out)
     click.echo(_summary(classifier, loaded.photos))
     click.echo(f"\nWrote {out}. Next: terrain-odometry classify {out} IMAGE...")
+
+
+def _grouped(patches: "LabelledPatches") -> set[Path]:
+    """The photographs that a manifest names: the others are named after themselves."""
+    pairs = zip(patches.photos, patches.groups, strict=True)
+    return {photo for photo, group in pairs if group != str(photo)}
 
 
 def _summary(classifier: "TerrainClassifier", photos: list[Path]) -> str:

@@ -53,6 +53,7 @@ def error_table(lines: ReportLines, scores: Mapping[str, Score]) -> Grid:
             "heading, mean [°/m]",
             "heading, median [°/m]",
             "off course, mean [m]",
+            "off course, median [m]",
             "off course, at the end [m]",
             "stretches",
         ),
@@ -64,6 +65,7 @@ def error_table(lines: ReportLines, scores: Mapping[str, Score]) -> Grid:
                 _number(of.mean_rotation_deg_per_m, 2),
                 _number(None if of.rotation_deg_per_m is None else of.rotation_deg_per_m[1], 2),
                 _number(of.mean_position_m, 3),
+                _number(of.median_position_m, 3),
                 _number(of.final_position_m, 3),
                 str(of.windows),
             )

@@ -12,6 +12,15 @@ from odometry.simulation.driver import WeavingDriver
 from terrain.camera import Camera
 from terrain.errors import SynthesisError
 
+LIMITS = {  # a run of a day, in steps that are worth it
+    "zone_length_m": (0.01, 1000.0),
+    "odometry_rate_hz": (0.1, 1000.0),
+    "pose_rate_hz": (0.001, 1000.0),
+    "image_rate_hz": (0.001, 1000.0),
+    "metres_per_pixel": (1e-5, 1.0),
+    "patch_size_px": (1, 4096),
+    "patches_per_terrain": (1, 100_000),
+}
 # y_left, y_right, x_icr in track widths
 _KNOWN_ICRS = {
     "gravel": (0.725, -0.65, -0.2),
@@ -103,14 +112,20 @@ class SynthesisConfig:
     def __post_init__(self) -> None:
         if not self.zones:
             raise SynthesisError("there must be at least one zone")
-        for name in ("zone_length_m", "odometry_rate_hz", "metres_per_pixel", "patch_size_px"):
-            if not getattr(self, name) > 0:
-                raise SynthesisError(f"{name} must be above zero, seen {getattr(self, name)}")
+        for name, (low, high) in LIMITS.items():
+            if not low <= getattr(self, name) <= high:
+                raise SynthesisError(
+                    f"{name} must be above zero: {low:g} to {high:g}, seen {getattr(self, name)}"
+                )
         if not 1 <= self.jpeg_quality <= 100:
             raise SynthesisError(f"jpeg_quality must be in 1 to 100, seen {self.jpeg_quality}")
         missing = [name for name in ("track_width", "length", "width") if name not in self.robot]
         if missing:
             raise SynthesisError(f"[robot] needs {', '.join(missing)}; seen {sorted(self.robot)}")
+        for name in ("track_width", "length", "width"):
+            value = self.robot[name]
+            if not isinstance(value, int | float) or not 0.01 <= value <= 100:
+                raise SynthesisError(f"[robot] {name} = {value!r}, expected 0.01 to 100 m")
         self.samples_between("pose_rate_hz")
         self.samples_between("image_rate_hz")
 

@@ -1,9 +1,9 @@
 """Cameras and vehicles described in TOML files."""
 
-import tomllib
 from pathlib import Path
 from typing import Any
 
+from odometry.io.structured import read_toml
 from terrain.camera import Camera
 from terrain.errors import SynthesisError
 
@@ -33,11 +33,7 @@ def read_robot(file: Path) -> dict[str, Any]:
 
 
 def _read_table(file: Path, name: str) -> dict[str, Any]:
-    try:
-        with file.open("rb") as stream:
-            content = tomllib.load(stream)
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise SynthesisError(f"{file}: cannot be read as TOML: {error}") from error
+    content = read_toml(file, SynthesisError)
     table = content.get(name)
     if not isinstance(table, dict):
         raise SynthesisError(f"{file}: the table [{name}] is missing; seen: {sorted(content)}")

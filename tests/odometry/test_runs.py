@@ -3,8 +3,8 @@ from dataclasses import replace
 import pytest
 
 from odometry.errors import RunFolderError
-from odometry.run import Run
-from odometry.runs import check_no_run_twice, run_names
+from odometry.run import Robot, Run
+from odometry.runs import check_no_run_twice, robot_labels, run_names
 
 
 def test_runs_of_one_name_are_told_apart_by_their_folders(make_run, tmp_path):
@@ -25,3 +25,12 @@ def test_no_folder_is_there_twice_however_it_is_written(make_run):
     check_no_run_twice([run])
     with pytest.raises(RunFolderError, match="a_run is given twice"):
         check_no_run_twice([run, again])
+
+
+def test_robots_have_short_names_where_these_tell_them_apart():
+    assert list(robot_labels([Robot(0.5, "A (new)"), Robot(0.6, "B (new)")]).values()) == ["A", "B"]
+    alike = [Robot(0.5, "A (old)"), Robot(0.5, "A (new)"), Robot(0.5)]
+    assert list(robot_labels(alike).values()) == ["A (old)", "A (new)", "robot 0.5 m wide"]
+    same = [Robot(0.5, "A"), Robot(0.6, "A"), Robot(0.6, "A")]
+    expected = ["A, track width 0.5 m", "A, track width 0.6 m"]
+    assert list(robot_labels(same).values()) == expected

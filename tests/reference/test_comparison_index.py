@@ -9,8 +9,8 @@ import csv
 
 import numpy as np
 
-from odometry.comparison.judged import judged_windows
-from odometry.comparison.parts import parts_by_ground
+from odometry.comparison.evaluation import evaluation_windows
+from odometry.comparison.split import parts_by_terrain
 from odometry.grounds import with_named_ground
 from odometry.models.catalogue import MODELS
 from odometry.run import Run
@@ -18,9 +18,9 @@ from odometry.windows.config import WindowConfig
 from odometry.windows.window_errors import window_errors
 
 
-def mean_errors(judged, model, **values):
+def mean_errors(windows, model, **values):
     model = MODELS[model]
-    errors = window_errors(model, model.pack(values), judged.windows)
+    errors = window_errors(model, model.pack(values), windows)
     return [errors.translation_per_m.mean(), np.degrees(errors.rotation_per_m.mean())]
 
 
@@ -31,15 +31,15 @@ def test_errors_over_two_metres_meet_the_index(shared_data):
             run = with_named_ground(Run.read(shared_data / "motion" / row["run"]), None)
             if run.pose is None:
                 continue
-            (part,) = parts_by_ground(run, run.name).values()
-            judged = judged_windows(part, 2.0, WindowConfig())
-            ideal = mean_errors(judged, "differential_drive", track_width=run.robot.track_width)
+            (part,) = parts_by_terrain(run, run.name).values()
+            windows = evaluation_windows(part, 2.0, WindowConfig())
+            ideal = mean_errors(windows, "differential_drive", track_width=run.robot.track_width)
             fitted = mean_errors(
-                judged, "icr_symmetric", alpha=float(row["alpha"]), b_hat=float(row["b_hat"])
+                windows, "icr_symmetric", alpha=float(row["alpha"]), b_hat=float(row["b_hat"])
             )
             names = ("ideal_te_per_m", "ideal_he_deg_per_m", "icr_te_per_m", "icr_he_deg_per_m")
             ratios.append(np.array([*ideal, *fitted]) / [float(row[name]) for name in names])
-            counts.append(len(judged) / float(row["n_win"]))
+            counts.append(len(windows) / float(row["n_win"]))
     assert len(ratios) == 26
     np.testing.assert_allclose(np.median(ratios, axis=0), 1, atol=0.03)
     np.testing.assert_allclose(ratios, 1, atol=0.4)

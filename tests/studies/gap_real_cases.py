@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from odometry.comparison.parts import halves, parts_by_ground
+from odometry.comparison.split import halves, parts_by_terrain
 from odometry.identification.identify import identify
 from odometry.run import Run
 
@@ -111,7 +111,7 @@ def controls(runs: Mapping[str, Run]) -> list[Case]:
 
 def in_halves(run: Run) -> tuple[Run, Run]:
     """Two runs of one, each with half of the wheel travel."""
-    (whole,) = parts_by_ground(run, run.name).values()
+    (whole,) = parts_by_terrain(run, run.name).values()
     first, second = (half.cut() for half in halves(whole))
     return renamed(first, "first"), renamed(second, "second")
 

@@ -3,12 +3,12 @@
     TERRAIN_ODOMETRY_DATA=... python tests/studies/real_models.py [--out FOLDER] [--jobs 2]
 
 Runs with a pose are grouped by robot and ground as INDEX.csv names them; recordings whose ground
-is not stated are one ground of each robot. A run is judged by models identified on the other runs
-of its group, where there is one run each half by the other. `least` is the candidate that errs
+is not stated are one ground of each robot. A run is evaluated with models identified on the other
+runs of its group, where there is one run each half by the other. `least` is the candidate that errs
 least, translation and rotation as ratios to those of `icr` added up, when the runs that it may see
 are split once more in the same way; `chosen` is the same among those that err no more than `icr`
-in either. Neither sees what it is judged on, but the rule of `chosen` was added after a first look
-at how `least` fares. H of the inertia models is held at 1, since it acts
+in either. Neither sees what it is evaluated on, but the rule of `chosen` was added after a first
+look at how `least` fares. H of the inertia models is held at 1, since it acts
 inside a sign alone. Slow models are identified on a part of the windows, evenly picked: at most 120
 for inertia, 45 for `contact`.
 
@@ -20,7 +20,7 @@ import argparse
 import csv
 import os
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -28,15 +28,14 @@ from typing import Any
 import numpy as np
 from joblib import Parallel, delayed
 
-from odometry.comparison.candidates import Candidate, IdentifiedModel
+from odometry.comparison.candidates import Candidate, IdentifiedModel, Predictor
 from odometry.comparison.compare import compare
-from odometry.comparison.comparison import Comparison
 from odometry.comparison.config import ComparisonConfig
-from odometry.comparison.differences import Difference, between
+from odometry.comparison.evaluation import evaluation_windows
 from odometry.comparison.files import write_comparison
-from odometry.comparison.judged import judged_windows
-from odometry.comparison.predictor import Predictor
-from odometry.comparison.split import Split, left_out
+from odometry.comparison.result import Comparison
+from odometry.comparison.split import Split, folds
+from odometry.comparison.statistics import Difference, between
 from odometry.comparison.summary import QUANTITIES, Place, Summary
 from odometry.errors import OdometryError
 from odometry.identification.config import SolverConfig
@@ -66,11 +65,13 @@ class Remembered(Candidate):
     def label(self) -> str:
         return self.candidate.label
 
-    def on(self, split: Split, config: ComparisonConfig) -> Predictor:
-        key = tuple((part.name, part.start, part.stop) for part in split.seen)
+    def on(
+        self, split: Split, config: ComparisonConfig, near: Mapping[str, float] | None = None
+    ) -> Predictor:
+        key = tuple((part.name, part.start, part.stop) for part in split.training)
         if key not in self.known:
             try:
-                self.known[key] = self.candidate.on(split, config)
+                self.known[key] = self.candidate.on(split, config, near)
             except OdometryError as error:
                 self.known[key] = error
         found = self.known[key]
@@ -100,13 +101,15 @@ class Least(Candidate):
     def label(self) -> str:
         return self.name
 
-    def on(self, split: Split, config: ComparisonConfig) -> Predictor:
-        inner = left_out(split.robot, split.ground, split.seen)
+    def on(
+        self, split: Split, config: ComparisonConfig, near: Mapping[str, float] | None = None
+    ) -> Predictor:
+        inner = folds(split.robot, split.terrain, split.training)
         scores = {each.label: score(each, inner, config) for each in self.candidates}
         ratios = {label: errors / scores[BASELINE] for label, errors in scores.items()}
         allowed = [c for c in self.candidates if ratios[c.label].max() <= self.most_ratio]
         best = min(allowed, key=lambda each: ratios[each.label].sum())
-        predictor = best.on(split, config)
+        predictor = best.on(split, config, near)
         return replace(predictor, source=f"chosen: {best.label}; {predictor.source}")
 
 
@@ -116,9 +119,9 @@ def score(candidate: Candidate, inner: Sequence[Split], config: ComparisonConfig
     for split in inner:
         try:
             predictor = candidate.on(split, config)
-            for part in split.judged:
-                judged = judged_windows(part, config.horizons_m[0], config.training)
-                errors = window_errors(predictor.model, predictor.packed, judged.windows)
+            for part in split.held_out:
+                windows = evaluation_windows(part, config.horizons_m[0], config.training)
+                errors = window_errors(predictor.model, predictor.packed, windows)
                 translation.append(errors.translation_per_m)
                 rotation.append(errors.rotation_per_m)
         except OdometryError:
@@ -201,7 +204,7 @@ def row(
     comparison: Comparison, place: Place, summary: Summary, found: Sequence[Difference]
 ) -> list[str]:
     """Cells of one model at one place."""
-    cells = [place.robot, place.ground, summary.model, str(summary.windows)]
+    cells = [place.robot, place.terrain, summary.model, str(summary.windows)]
     for quantity, decimals in (("translation", 4), ("rotation", 3)):
         mean = summary.means.get(quantity)
         difference = against_baseline(found, summary.model, quantity)
@@ -217,9 +220,9 @@ def row(
 def picks(comparison: Comparison, summary: Summary) -> str:
     """What was chosen, split by split."""
     sources = [
-        prepared.predictors[summary.model].source
-        for prepared in comparison.prepared
-        if summary.model in prepared.predictors
+        models.predictors[summary.model].source
+        for models in comparison.split_models
+        if summary.model in models.predictors
     ]
     chosen = [source for source in sources if source.startswith("chosen: ")]
     return ", ".join(source.removeprefix("chosen: ").split(";")[0] for source in chosen)
@@ -245,7 +248,7 @@ def verdicts(compared: Sequence[Comparison]) -> list[str]:
 def verdict(difference: Difference | None) -> str:
     """A difference in a word, and in numbers."""
     if difference is None:
-        return "not judged"
+        return "not evaluated"
     if difference.interval.holds_zero:
         return f"matched, {difference.words()}"
     return f"{'better' if difference.interval.high < 0 else 'worse'}, {difference.words()}"

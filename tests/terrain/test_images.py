@@ -1,5 +1,9 @@
 """Grey by the equation, and files of every kind that is read."""
 
+import struct
+import tracemalloc
+import zlib
+
 import cv2
 import numpy as np
 import pytest
@@ -7,6 +11,7 @@ from hypothesis import given
 from hypothesis.extra.numpy import array_shapes, arrays
 
 from terrain.errors import ImageError
+from terrain.image_size import is_whole, stated_size
 from terrain.images import read_image, to_bytes, to_grey
 
 colour_images = arrays(
@@ -83,7 +88,7 @@ def test_a_file_that_is_no_image_is_named(tmp_path, content):
 
 
 def test_a_missing_file_is_named(tmp_path):
-    with pytest.raises(ImageError, match=r"nowhere\.png: cannot be opened \(No such file"):
+    with pytest.raises(ImageError, match=r"nowhere\.png: cannot be read: No such file"):
         read_image(tmp_path / "nowhere.png")
 
 
@@ -92,3 +97,65 @@ def test_a_file_of_another_kind_of_value_is_named(tmp_path):
     cv2.imwrite(str(path), np.full((4, 4), 7.0, np.float32))
     with pytest.raises(ImageError, match=r"depth\.tiff: a float image has values in 0 to 1"):
         read_image(path)
+
+
+def png_of(width, height, rows_held=None):
+    """A PNG that states a size and holds rows of black, packed: few bytes make a large image."""
+    rows = zlib.compressobj(9)
+    packed = [rows.compress(bytes(width + 1)) for _ in range(rows_held or height)]
+    data = b"".join(packed) + rows.flush()
+    header = struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
+    chunks = ((b"IHDR", header), (b"IDAT", data), (b"IEND", b""))
+    packed = [
+        struct.pack(">I", len(content)) + kind + content + zlib.crc32(kind + content).to_bytes(4)
+        for kind, content in chunks
+    ]
+    return b"\x89PNG\r\n\x1a\n" + b"".join(packed)
+
+
+def test_the_size_is_read_before_the_image(tmp_path):
+    """Nothing of the size of the decoded image may be allocated."""
+    file = tmp_path / "photo.png"
+    file.write_bytes(png_of(30000, 30000, rows_held=100))
+    tracemalloc.start()
+    with pytest.raises(ImageError, match="30000 x 30000 pixels, expected 1 to 64000000"):
+        read_image(file)
+    assert tracemalloc.get_traced_memory()[1] < 20e6
+    tracemalloc.stop()
+    file.write_bytes(png_of(40, 30))
+    assert read_image(file).shape == (30, 40)
+    file.write_bytes(png_of(0, 30))
+    with pytest.raises(ImageError, match="0 x 30 pixels"):
+        read_image(file)
+
+
+@pytest.mark.parametrize("suffix", ["png", "jpg", "bmp", "tiff"])
+def test_the_stated_size_is_that_of_the_image(suffix, colour):
+    encoded = cv2.imencode(f".{suffix}", colour)[1].tobytes()
+    assert stated_size(encoded) == (17, 12)
+    for length in range(26):
+        assert stated_size(encoded[:length]) in (None, (17, 12))
+
+
+def test_a_jpeg_with_a_thumbnail_states_its_own_size(colour):
+    """The thumbnail is a whole JPEG of another size, in a segment before the frame header."""
+    thumbnail = cv2.imencode(".jpg", colour[:5, :4])[1].tobytes()
+    segment = b"\xff\xe1" + struct.pack(">H", len(thumbnail) + 8) + b"Exif\0\0" + thumbnail
+    encoded = cv2.imencode(".jpg", colour)[1].tobytes()
+    with_thumbnail = encoded[:2] + segment + b"\xff" + encoded[2:]
+    assert stated_size(with_thumbnail) == (17, 12)
+    assert is_whole(with_thumbnail)
+    assert not is_whole(with_thumbnail[:-2])
+
+
+@pytest.mark.parametrize("suffix", ["png", "jpg"])
+def test_an_image_that_was_cut_off_is_refused(tmp_path, colour, suffix):
+    """OpenCV fills the rest of a JPEG with grey, and says so to nobody."""
+    encoded = cv2.imencode(f".{suffix}", cv2.resize(colour, (170, 120)))[1].tobytes()
+    file = tmp_path / f"photo.{suffix}"
+    for share in (0.5, 0.9, 0.99):
+        file.write_bytes(encoded[: int(share * len(encoded))])
+        with pytest.raises(ImageError, match="cut off"):
+            read_image(file)
+    file.write_bytes(encoded + b"something of the camera's own")
+    assert read_image(file).shape == (120, 170, 3)

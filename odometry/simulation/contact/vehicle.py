@@ -13,6 +13,9 @@ from odometry.simulation.contact.friction import Coulomb, FrictionLaw, Shear
 from odometry.simulation.contact.vectors import ComplexArray
 from odometry.simulation.errors import SimulationError
 
+LARGEST = 1e6  # kg, m or kg m2 of a vehicle
+SMALLEST = 1e-4  # of a friction coefficient, or a length [m] over which friction builds up
+
 
 @dataclass(frozen=True, eq=False)
 class ContactVehicle:
@@ -58,13 +61,19 @@ class ContactVehicle:
             ("distance from entry", np.min(self.entry_m), 0.0),
             ("height", self.centre_of_mass_m[2], -1e-9),
         ):
-            if not value > low:
-                raise SimulationError(f"{name} = {value}, expected more than {max(low, 0.0):g}")
+            if not low < value <= LARGEST:
+                raise SimulationError(
+                    f"{name} = {value}, expected more than {max(low, 0.0):g}, to {LARGEST:g}"
+                )
         for name, array in (("friction", self.friction), ("entry_m", self.entry_m)):
             if array.shape != (2, contacts):
                 raise SimulationError(
                     f"{contacts} contacts a side need {name} of shape (2, {contacts}), "
                     f"seen {array.shape}"
+                )
+            if not ((array >= SMALLEST) & (array <= LARGEST)).all():
+                raise SimulationError(
+                    f"{name} = {array.tolist()}, expected {SMALLEST:g} to {LARGEST:g}"
                 )
         if contacts < 2 or len(np.unique(self.contact_x_m)) < contacts:
             raise SimulationError(
@@ -160,16 +169,21 @@ def _friction(table: dict[str, Any], contacts: int) -> FloatArray:
         each = np.full((2, contacts), float(table.pop("friction")))
     else:
         each = np.array([table.pop("friction_left"), table.pop("friction_right")], np.float64)
-    if not (each > 0).all():
-        raise SimulationError(f"friction = {each.min()}, expected more than 0")
+    if not ((each >= SMALLEST) & (each <= LARGEST)).all():
+        raise SimulationError(
+            f"friction = {each.min()}, expected more than 0: {SMALLEST:g} to {LARGEST:g}"
+        )
     return each
 
 
 def _law(table: dict[str, Any], friction: float) -> FrictionLaw:
     name = table.pop("law")
     rounding, modulus = float(table.pop("rounding", 0.005)), float(table.pop("modulus", 0.005))
-    if not (rounding > 0 and modulus > 0):
-        raise SimulationError(f"rounding = {rounding}, modulus = {modulus}, expected more than 0")
+    if not all(SMALLEST <= one <= LARGEST for one in (rounding, modulus)):
+        raise SimulationError(
+            f"rounding = {rounding}, modulus = {modulus}, expected more than 0: {SMALLEST:g} to "
+            f"{LARGEST:g}"
+        )
     laws: dict[str, FrictionLaw] = {
         "coulomb": Coulomb(rounding),
         "shear": Shear.for_modulus(modulus, friction),

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.comparison.candidates import IdentifiedModel, candidates_named
-from odometry.comparison.compare import compare
+from odometry.comparison.candidates import IdentifiedModel
+from odometry.comparison.compare import candidates_named, compare
 from odometry.comparison.config import ComparisonConfig
-from odometry.comparison.differences import between
 from odometry.comparison.errors import ComparisonError
+from odometry.comparison.statistics import between
 from odometry.errors import ConfigError, ParameterError
 from odometry.identification.config import SolverConfig
 from odometry.models.catalogue import MODELS
@@ -30,7 +30,7 @@ def compared(grass, quick):
     return compare(grass, config=quick)
 
 
-def test_models_that_are_the_same_cannot_be_told_apart_and_a_wrong_one_is(
+def test_models_that_are_the_same_cannot_be_distinguished_and_a_wrong_one_is(
     grass, quick, bench, tmp_path
 ):
     """A robot whose ICRs are symmetric: `icr` and `icr_symmetric` predict the same motion."""
@@ -48,7 +48,7 @@ def test_models_that_are_the_same_cannot_be_told_apart_and_a_wrong_one_is(
         assert between(of_quantity, "icr", "wrong").interval.high < 0
     lines = comparison.sentences_at(comparison.places[0])
     assert "wrong" not in " ".join(lines)
-    assert sum("cannot be told apart" in line for line in lines) == 2
+    assert sum("cannot be distinguished" in line for line in lines) == 2
     for summary in comparison.summaries_at(comparison.places[0]):
         (remark,) = comparison.remarks_at(comparison.places[0], summary)
         assert "may have been identified on these very runs" in remark
@@ -69,8 +69,8 @@ def test_identified_models_find_the_truth_and_the_ideal_one_errs(compared, bench
     assert ideal.values == {"track_width": bench.track_width}
 
 
-def test_every_horizon_is_judged_and_only_those_asked_for_are_compared(compared):
-    horizons = {judgement.horizon_m for judgement in compared.judgements}
+def test_every_horizon_is_evaluated_and_only_those_asked_for_are_compared(compared):
+    horizons = {evaluation.horizon_m for evaluation in compared.evaluations}
     assert horizons == {0.5, 1.0, 2.0, 5.0, 10.0}
     assert {each.place.horizon_m for each in compared.differences} == {2.0}
 
@@ -85,7 +85,7 @@ def test_fitness_is_that_of_a_plain_loop_over_the_whole_run(compared, grass, ben
             errors.append(at - measured[i // 2])
         at = bench.advance(at, left, right, ideal, bench.step_s)
     errors = np.array(errors)
-    errors[:, 2] = np.arctan2(np.sin(errors[:, 2]), np.cos(errors[:, 2]))
+    errors[:, 2] = np.unwrap(errors[:, 2])
     (found,) = [
         f.fitness for f in compared.fitness if (f.run, f.model) == ("run_0", "differential_drive")
     ]
@@ -120,26 +120,37 @@ def test_fitness_changes_parameters_with_the_ground(tmp_path, bench, quick):
     assert (found.fitness.x_m2, found.fitness.y_m2) == pytest.approx(tuple(expected), abs=1e-4)
 
 
-def test_the_only_run_of_a_ground_is_judged_by_halves(grass, quick):
+def test_the_only_run_of_a_terrain_is_evaluated_by_halves(grass, quick):
     comparison = compare(grass[:1], ["icr_symmetric"], config=quick)
-    assert {judgement.seen for judgement in comparison.judgements} == {
+    assert {evaluation.training_runs for evaluation in comparison.evaluations} == {
         "the first half of the run",
         "the second half of the run",
     }
-    values = [p.predictors["icr_symmetric"].values["b_hat"] for p in comparison.prepared]
+    values = [p.predictors["icr_symmetric"].values["b_hat"] for p in comparison.split_models]
     assert values[0] != values[1]
     assert len(comparison.fitness) == 1
 
 
-def test_training_runs_are_seen_and_the_others_judged(grass, quick):
+def test_a_fit_to_all_runs_tells_where_to_search_and_nothing_else(grass, quick):
+    """The models of each split are those that a search from far finds."""
+    near = compare(grass, ["icr"], config=replace(quick, solver=SolverConfig(starts=4)))
+    for models in near.split_models:
+        alone = IdentifiedModel(MODELS["icr"]).on(models.split, near.config)
+        found = models.predictors["icr"]
+        assert found.values == pytest.approx(dict(alone.values), abs=1e-5)
+        np.testing.assert_allclose(found.covariance, alone.covariance, rtol=1e-3)
+        assert found.values != near.parameters["rover", "icr"].terrains["grass"].values
+
+
+def test_models_are_identified_on_training_runs_and_evaluated_on_the_others(grass, quick):
     comparison = compare(grass[:2], ["icr_symmetric"], train=grass[2:], config=quick)
-    assert {(j.run, j.seen) for j in comparison.judgements} == {
+    assert {(j.run, j.training_runs) for j in comparison.evaluations} == {
         ("run_0", "run_2"),
         ("run_1", "run_2"),
     }
-    (prepared,) = comparison.prepared
+    (models,) = comparison.split_models
     table = comparison.parameters["rover", "icr_symmetric"].terrains["grass"]
-    assert table.values == prepared.predictors["icr_symmetric"].values
+    assert table.values == models.predictors["icr_symmetric"].values
 
 
 def test_grounds_within_one_run_have_models_of_their_own(tmp_path, bench, quick):
@@ -151,7 +162,7 @@ def test_grounds_within_one_run_have_models_of_their_own(tmp_path, bench, quick)
         run = bench.write(tmp_path / f"run_{seed}", speeds, seed=seed, terrain_column=names)
         runs.append(Run.read(run))
     comparison = compare(runs, ["icr_symmetric"], config=quick)
-    assert comparison.robots_and_grounds == (("rover", "grass"), ("rover", "ice"))
+    assert comparison.robots_and_terrains == (("rover", "grass"), ("rover", "ice"))
     assert set(comparison.parameters["rover", "icr_symmetric"].terrains) == {"grass", "ice"}
     assert {f.run for f in comparison.fitness} == {"run_0", "run_1"}
 
@@ -179,7 +190,7 @@ def test_a_model_that_fails_is_a_row_with_its_reason(grass, quick, tmp_path):
         assert any(model in line and words in line for line in comparison.sentences_at(place))
 
 
-def test_a_fit_that_leaves_something_open_is_judged_and_flagged(tmp_path, bench, quick):
+def test_a_fit_that_leaves_something_open_is_evaluated_and_flagged(tmp_path, bench, quick):
     """Straight ahead, nothing tells the width."""
     runs = [
         Run.read(bench.write(tmp_path / f"run_{i}", np.full((400, 2), 0.5), seed=i))
@@ -199,13 +210,13 @@ def test_a_candidate_of_ones_own_may_hold_values_and_see_fewer_windows(grass, qu
     """Every second window or so, from the first to the last of what may be seen."""
     held = IdentifiedModel(MODELS["icr_symmetric"], {"b_hat": 0.7}, most_windows=9)
     comparison = compare(grass, [held], config=quick)
-    for prepared in comparison.prepared:
-        predictor = prepared.predictors["icr_symmetric"]
+    for models in comparison.split_models:
+        predictor = models.predictors["icr_symmetric"]
         assert predictor.values["b_hat"] == 0.7
         assert predictor.covariance_order == ("alpha",)
         assert "from 9 windows of" in predictor.source
     few = IdentifiedModel(MODELS["icr_symmetric"], most_windows=9)
-    assert few.on(comparison.prepared[0].split, quick).values["b_hat"] == pytest.approx(
+    assert few.on(comparison.split_models[0].split, quick).values["b_hat"] == pytest.approx(
         0.8, abs=0.02
     )
 
@@ -215,7 +226,7 @@ def test_runs_without_poses_are_left_out(grass, quick):
     comparison = compare([blind, *grass[1:]], ["differential_drive"], config=quick)
     (reason,) = comparison.left_out.values()
     assert "needs pose.csv" in reason
-    assert {judgement.run for judgement in comparison.judgements} == {"run_1", "run_2"}
+    assert {evaluation.run for evaluation in comparison.evaluations} == {"run_1", "run_2"}
     with pytest.raises(ComparisonError, match=r"no run to compare on\n.*needs pose.csv"):
         compare([blind], ["differential_drive"], config=quick)
     with pytest.raises(ComparisonError, match=r"no run to compare on\n.*needs pose.csv"):
@@ -226,7 +237,7 @@ def test_a_robot_that_training_does_not_know_has_no_model(grass, quick):
     other = replace(grass[2], robot=replace(grass[2].robot, track_width=0.7))
     comparison = compare(grass[:1], ["icr_symmetric"], train=[other], config=quick)
     (summary,) = comparison.summaries_at(comparison.places[0])
-    assert summary.reasons == ("run_0: no run of --train is of this robot on this ground",)
+    assert summary.reasons == ("run_0: no run of --train is of this robot on this terrain",)
 
 
 def test_without_a_long_enough_run_there_is_a_row_that_says_so(grass, quick):
@@ -278,8 +289,8 @@ def test_settings_reach_the_identification(grass):
     )
     comparison = compare(grass[:2], ["icr_symmetric"], config=config)
     counts = [
-        p.predictors["icr_symmetric"].source.split(" windows")[0] for p in comparison.prepared
+        p.predictors["icr_symmetric"].source.split(" windows")[0] for p in comparison.split_models
     ]
     usual = compare(grass[:2], ["icr_symmetric"], config=replace(config, training=WindowConfig()))
-    others = [p.predictors["icr_symmetric"].source.split(" windows")[0] for p in usual.prepared]
+    others = [p.predictors["icr_symmetric"].source.split(" windows")[0] for p in usual.split_models]
     assert counts != others

@@ -2,6 +2,7 @@
 
 import csv
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -58,7 +59,7 @@ def test_every_window_of_every_model_is_a_row_and_the_means_are_theirs(written):
 def test_a_model_that_failed_has_no_numbers_but_a_reason(written):
     content = json.loads((written[0] / "comparison.json").read_text())
     (slope,) = [m for m in content["places"][0]["models"] if m["model"] == "icr_slope"]
-    assert slope["translation_m_per_m"] == {"mean": None, "quartiles": None}
+    assert slope["translation_m_per_m"] == {"mean": None, "median": None, "quartiles": None}
     assert "tilted" in slope["reasons"][0]
     assert all("tilted" in split["failed"]["icr_slope"] for split in content["splits"])
 
@@ -70,7 +71,7 @@ def test_the_splits_and_settings_are_written_down(written, compared):
         (["run_1"], "run_0"),
     ]
     used = content["splits"][0]["models"]["icr_symmetric"]["parameters"]
-    assert used == dict(compared.prepared[0].predictors["icr_symmetric"].values)
+    assert used == dict(compared.split_models[0].predictors["icr_symmetric"].values)
     assert content["settings"]["training"]["horizon_m"] == 2.0
     assert content["settings"]["draws"] == 400
     assert len(content["fitness"]) == 4
@@ -84,6 +85,25 @@ def test_the_parameters_can_be_read_as_a_set(written, compared):
     table = compared.parameters["rover", "icr_symmetric"].terrains["grass"]
     assert again.terrains["grass"].values == pytest.approx(dict(table.values))
     np.testing.assert_allclose(again.terrains["grass"].covariance, table.covariance)
+
+
+def test_errors_by_training_horizon_can_be_read_back(grass, quick, tmp_path):
+    config = replace(quick, training_horizons_m=(1.0, 900.0))
+    comparison = compare(grass[:2], ["icr_symmetric"], config=config)
+    files = write_comparison(comparison, tmp_path)
+    assert tmp_path / "training_horizons.csv" in files
+    with (tmp_path / "training_horizons.csv").open(newline="") as file:
+        rows = {float(row["evaluation_horizon"]): row for row in csv.DictReader(file)}
+    assert len(rows) == 5  # of 900 m there is none
+    for each in comparison.by_training_horizon[:5]:
+        row, summary = rows[each.summary.place.horizon_m], each.summary
+        assert (row["robot"], row["terrain"], row["model"]) == ("rover", "grass", "icr_symmetric")
+        assert (float(row["training_horizon"]), int(row["windows"])) == (1.0, summary.windows)
+        low, median, high = summary.quartiles["rotation"]
+        assert float(row["rotation_deg_per_m_median"]) == pytest.approx(median, abs=1e-8)
+        assert float(row["rotation_deg_per_m_quartile_range"]) == pytest.approx(
+            high - low, abs=1e-8
+        )
 
 
 def test_robots_have_folders_of_their_own(tmp_path, bench, quick):

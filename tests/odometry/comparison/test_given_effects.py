@@ -38,8 +38,8 @@ def changed(run, table, **columns):
 
 
 def of_model(comparison, model):
-    """Translation and rotation errors per metre over all judged windows."""
-    errors = [judgement.errors[model] for judgement in comparison.judgements]
+    """Translation and rotation errors per metre over all evaluated windows."""
+    errors = [evaluation.errors[model] for evaluation in comparison.evaluations]
     return np.concatenate([[e.translation_per_m, e.rotation_per_m] for e in errors], axis=1)
 
 
@@ -75,11 +75,11 @@ def test_on_commands_wheel_scale_is_another_slip_factor(skewed, bench, quick, tm
         fitness_of(comparison, "scaled"), fitness_of(comparison, "plain"), rtol=1e-6
     )
     assert of_model(comparison, "without")[0].mean() > 0.2
-    assert "scaled" in comparison.prepared[0].predictors
-    assert comparison.prepared[0].predictors["scaled"].to_parameters().effects == (scale,)
+    assert "scaled" in comparison.split_models[0].predictors
+    assert comparison.split_models[0].predictors["scaled"].to_parameters().effects == (scale,)
 
 
-def test_a_lever_arm_is_judged_as_the_icrs_that_look_like_it(skewed, bench, quick, tmp_path):
+def test_a_lever_arm_is_evaluated_as_the_icrs_that_look_like_it(skewed, bench, quick, tmp_path):
     """FACTS: x_icr less x_arm, both lateral ICRs less y_arm, turns of more than pi included."""
     runs = []
     for run in skewed:
@@ -94,7 +94,7 @@ def test_a_lever_arm_is_judged_as_the_icrs_that_look_like_it(skewed, bench, quic
     }
     files = sets(tmp_path, arm=(bench.skewed, LEVER_ARM), shifted=(shifted,))
     comparison = compare(runs, files, config=quick)
-    turned = [np.abs(j.judged.windows.measured[:, 2]).max() for j in comparison.judgements]
+    turned = [np.abs(j.windows.measured[:, 2]).max() for j in comparison.evaluations]
     assert max(turned) > math.pi
     np.testing.assert_allclose(
         of_model(comparison, "arm"), of_model(comparison, "shifted"), atol=1e-9
@@ -117,7 +117,7 @@ def test_late_stamps_are_undone(skewed, bench, quick, tmp_path):
 
 
 def test_the_moment_of_a_loss_is_run_time_in_both_halves(bench, quick, tmp_path):
-    """One run, judged half by half; traction is lost in the second one."""
+    """One run, evaluated half by half; traction is lost in the second one."""
     driven = bench.varied(np.random.default_rng(6), 60.0)
     lost = bench.step_s * np.arange(len(driven)) >= 45.0
     run = Run.read(bench.write(tmp_path / "r", driven))
@@ -126,7 +126,7 @@ def test_the_moment_of_a_loss_is_run_time_in_both_halves(bench, quick, tmp_path)
     loss = effect("traction_loss", "k_m", k=0.6, m=0.6, moment=45.0)
     files = sets(tmp_path, loss=(bench.symmetric, loss), plain=(bench.symmetric,))
     comparison = compare([run], files, config=quick)
-    assert len(comparison.prepared) == 2
+    assert len(comparison.split_models) == 2
     assert of_model(comparison, "loss")[0].max() < 0.1
     assert of_model(comparison, "plain")[0].max() > 0.35
     loss_j, plain_j = (fitness_of(comparison, name).item() for name in ("loss", "plain"))
@@ -161,4 +161,4 @@ def test_sensors_that_differ_by_ground_have_no_fitness(bench, quick, tmp_path):
     write_parameters(tmp_path / "set.toml", ParameterSet(tables))
     comparison = compare([run], [str(tmp_path / "set.toml"), "icr_symmetric"], config=quick)
     assert {f.model for f in comparison.fitness} == {"icr_symmetric"}
-    assert all("set" in judgement.errors for judgement in comparison.judgements)
+    assert all("set" in evaluation.errors for evaluation in comparison.evaluations)

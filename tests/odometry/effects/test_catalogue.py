@@ -147,6 +147,34 @@ def test_the_source_of_an_effect_may_be_stated():
         ({**SCALE, "colour": "red"}, r"WheelScale"),
         ({"name": "unknown", "form": "residual", "parameters": {}}, r"variable"),
         (
+            {
+                "name": "slope_sliding",
+                "form": "icr_slope",
+                "parameters": {"half_width": "wide", "half_length": 1.0},
+            },
+            r"half_width = 'wide', expected a finite number",
+        ),
+        (
+            {
+                "name": "unknown",
+                "form": "residual",
+                "variable": "speed",
+                "knots": [0, 1e300],
+                "parameters": {},
+            },
+            r"knots.*expected a finite number",
+        ),
+        (
+            {
+                "name": "unknown",
+                "form": "residual",
+                "variable": "speed",
+                "knots": [1, 0],
+                "parameters": {},
+            },
+            r"expected increasing numbers",
+        ),
+        (
             {"name": "terrain", "form": "icr_by_label", "labels": "ice", "parameters": {}},
             r"expected a list of names",
         ),

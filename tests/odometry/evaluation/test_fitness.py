@@ -32,6 +32,14 @@ def test_sums_of_squares_over_the_covered_poses():
     assert result.total == pytest.approx(1.26 + yaw**2, rel=1e-13)
 
 
+def test_turns_count_in_full():
+    """The reference turns by 2 rad a second and the odometer by 4: 0, 2, 4 and 6 rad off."""
+    still = np.zeros(4)
+    reference = np.column_stack([still, still, still, [0, 2, 4 - 2 * np.pi, 6 - 2 * np.pi]])
+    ours = trajectory(still, still, still, [0, 4, 8 - 2 * np.pi, 12 - 4 * np.pi])
+    assert fitness(ours, STAMPS_S, reference).yaw_rad2 == pytest.approx((4 + 16 + 36) / 4)
+
+
 def test_heights_count_only_where_they_were_measured():
     partly = REFERENCE.copy()
     partly[2, 2] = np.nan

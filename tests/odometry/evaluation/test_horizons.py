@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -54,3 +55,11 @@ def test_each_window_is_the_shortest_that_reaches_the_horizon(steps_m, horizon_m
         assert travel_m[last] - travel_m[first] >= horizon_m - 1e-8
         assert travel_m[last - 1] - travel_m[first] < horizon_m
     assert np.all(np.diff(windows[:, 0]) > 0)
+
+
+@pytest.mark.parametrize("stride_m", [1e-9, 1e-300])
+def test_strides_shorter_than_the_samples_start_a_window_at_each(stride_m):
+    """Neither memory nor time may grow with the number of strides: here 1e13 and more."""
+    travel_m = np.arange(6.0) * 2e3
+    windows = spatial_horizons(travel_m, 4e3, stride_m)
+    assert windows.tolist() == [[0, 2], [1, 3], [2, 4], [3, 5]]

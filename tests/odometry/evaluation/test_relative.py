@@ -170,6 +170,12 @@ def test_relative_errors_by_composition(rng):
         )
 
 
+def test_turns_count_in_full():
+    """5 m of wheel travel in 5 s: 3.5 rad/s seen as 2 are 7.5 rad off, not 7.5 - 2 pi."""
+    errors = errors_of(on_a_circle(1.0, 2.0), on_a_circle(1.0, 3.5), 1.0)
+    np.testing.assert_allclose(errors.rotation_per_m, 7.5 / 5, rtol=1e-11)
+
+
 @pytest.mark.parametrize("settings", [{"horizon_m": 0.0}, {"stride_m": -1.0}])
 def test_settings_without_meaning_are_refused(settings):
     with pytest.raises(ConfigError, match=next(iter(settings))):

@@ -28,6 +28,7 @@ def test_a_scale_error_and_an_offset(straight_run):
     np.testing.assert_allclose(found.rotation_deg_per_m, [1, 1, 1])
     assert found.mean_position_m == pytest.approx(0.1 * 10)
     assert found.final_position_m == pytest.approx(2.0)
+    assert found.median_position_m == pytest.approx(0.1 * 10)
     straight = score(straight_run, line(0.9), line(1.0), CONFIG)
     np.testing.assert_allclose(straight.translation_per_m, [0.1, 0.1, 0.1])
     assert straight.mean_translation_per_m == pytest.approx(0.1)
@@ -54,6 +55,17 @@ def test_a_run_too_short_for_a_window_has_position_errors_alone(straight_run):
     assert found.final_position_m == pytest.approx(2.0)
 
 
+def test_one_pose_far_away_moves_the_mean_but_not_the_median(straight_run):
+    t = np.arange(21.0)
+    poses = np.column_stack([t, 0 * t, 0 * t])
+    poses[10, 1] = 1000.0
+    found = score(straight_run, line(1.0), Trajectory(t, poses), CONFIG)
+    assert found.mean_position_m > 40
+    assert found.median_position_m == 0
+    assert found.mean_translation_per_m > 10
+    assert found.translation_per_m[1] == 0
+
+
 def test_nothing_in_common(straight_run):
     late = Trajectory(np.array([100.0, 101.0]), np.zeros((2, 3)))
     found = score(straight_run, late, line(1.0), CONFIG)
@@ -64,6 +76,8 @@ def test_the_table_has_units_in_its_names(straight_run):
     table = score(straight_run, line(0.9), line(1.0), CONFIG).to_table()
     assert table["windows"] == 16
     assert table["translation_m_per_m"]["mean"] == pytest.approx(0.1)
+    assert table["translation_m_per_m"]["median"] == pytest.approx(0.1)
+    assert table["position_m"]["median"] == pytest.approx(1.0)
     assert table["rotation_deg_per_m"]["quartiles"] == pytest.approx([0, 0, 0])
     assert table["position_m"]["final"] == pytest.approx(2.0)
 

@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.geometry.angles import wrap
+from odometry.geometry.angles import continuous_difference, wrap
 
 
 def test_the_half_turn_is_positive():
@@ -26,3 +26,13 @@ def test_it_never_leaves_the_interval_beside_its_ends():
     odd = np.pi * np.arange(-9.0, 10.0, 2.0)
     near = np.concatenate([odd, np.nextafter(odd, -np.inf), np.nextafter(odd, np.inf)])
     assert np.all((wrap(near) > -np.pi) & (wrap(near) <= np.pi))
+
+
+@given(st.floats(-3, 3), st.floats(-4, 4), st.integers(-3, 3))
+def test_differences_count_whole_turns(first, step, turns):
+    """A reference that spins by 5 rad a sample, and a yaw that moves away by `step` a sample."""
+    n = np.arange(9.0)
+    step = step % 3.0
+    reference, yaw = 5.0 * n, first + (5.0 + step) * n
+    found = continuous_difference(wrap(yaw) + 2 * np.pi * turns, wrap(reference))
+    np.testing.assert_allclose(found, first + step * n, rtol=0, atol=1e-10)

@@ -4,6 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from odometry.errors import RunFolderError
+from odometry.io import csv_cells
 from odometry.io.csv_table import read_csv_table, write_csv_table
 
 
@@ -156,3 +157,40 @@ def test_the_same_table_gives_the_same_bytes(tmp_path):
 def test_not_measured_is_an_empty_cell(tmp_path):
     write_csv_table(tmp_path / "a.csv", {"t": np.array([0.5]), "x": np.array([np.nan])})
     assert (tmp_path / "a.csv").read_text().splitlines()[1].endswith(",")
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        ("t,x\n1,2\n2,1e200\n", ["row 3", "'x'", "1e200", "at most 1e+11"]),
+        ("t,v_left,x\n1,1e300,1\n", ["row 2", "'v_left'", "1e300", "at most 1e+06"]),
+        ("t,x\n1e300,1\n", ["row 2", "'t'", "1e300", "at most 1e+19"]),
+        ("t,x,file\n1,1," + "a" * 1001 + "\n", ["row 2", "'file'", "1001 characters"]),
+        ("t,x,mine\n1,1," + "a" * 1001 + "\n", ["row 2", "'mine'", "1001 characters"]),
+        ("t,x,file\n1,1,a\0b\n", ["row 2", "NUL"]),
+        ('t,x\n1,"2\n', ["row 2", "CSV"]),
+    ],
+)
+def test_what_no_robot_has_is_named(read, content, words):
+    assert_refused(read, content, *words)
+
+
+def test_stamps_in_nanoseconds_and_places_in_millimetres_are_read(read):
+    table = read("t,x\n1763765720123456789,5400000000\n")
+    assert (table["t"][0], table["x"][0]) == (1763765720123456789.0, 5.4e9)
+
+
+@pytest.mark.parametrize("rows", [1, 2, 3, 7])
+def test_blocks_make_one_table(read, monkeypatch, rows):
+    """Numbers, names, an empty cell, a column that turns out to hold names in its last row."""
+    content = "t,x,terrain,late,mine\n1,,a,1,2\n\n2,5,bb,2,\n2,6,c,3,4\n3,7,,x,5\n"
+    whole = read(content)
+    monkeypatch.setattr(csv_cells, "BLOCK_ROWS", rows)
+    table = read(content)
+    assert (table.lines.tolist(), table.repeated_lines.tolist()) == ([2, 4, 6], [5])
+    assert table["late"].tolist() == ["1", "2", "x"]
+    assert table["terrain"].tolist() == ["a", "bb", ""]
+    for name in whole.columns:
+        np.testing.assert_array_equal(table[name], whole[name], strict=True)
+    assert_refused(read, "t,x\n1,2\n2,3\n3,4\n4,y\n", "row 5", "y")
+    assert_refused(read, "t,x\n1,2\n2,3\n3,4\n3,4,5\n", "row 5", "3 cells")

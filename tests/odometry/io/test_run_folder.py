@@ -115,3 +115,29 @@ def test_writing_twice_gives_the_same_bytes(tmp_path):
     assert names == ["odometry.csv", "run.toml"]
     for name in names:
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
+
+
+@pytest.mark.parametrize("name", ["../x.png", "images/../../x.png", "link.png", "linked/x.png"])
+def test_images_outside_of_the_folder_are_refused(make_run, name):
+    folder = make_run(images=f"t,file\n\n0,{name}\n")
+    (folder / "images").mkdir()
+    (folder.parent / "x.png").touch()
+    (folder / "link.png").symlink_to(folder.parent / "x.png")
+    (folder / "linked").symlink_to(folder.parent)
+    with pytest.raises(RunFolderError, match=r"images\.csv: row 3, column 'file': .* leads out"):
+        Run.read(folder)
+
+
+def test_a_folder_behind_a_symbolic_link_is_read(make_run):
+    folder = make_run(images="t,file\n0,images/one.jpg\n")
+    (folder / "images").mkdir()
+    (folder / "images" / "one.jpg").touch()
+    way = folder.with_name("way")
+    way.symlink_to(folder)
+    assert len(Run.read(way).images) == 1
+
+
+@pytest.mark.parametrize("value", ["1e-300", "1e300", "nan", "1" * 6000, "'wide'", "[1]", "true"])
+def test_sizes_that_no_robot_has_are_refused(make_run, value):
+    with pytest.raises(RunFolderError, match=r"run\.toml: "):
+        Run.read(make_run(f"[robot]\ntrack_width = {value}\n"))

@@ -6,6 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from odometry.errors import TrajectoryError
 from odometry.geometry import se3
+from odometry.io import tum
 from odometry.io.tum import read_spatial_tum, read_tum, write_spatial_tum, write_tum
 from odometry.spatial_trajectory import SpatialTrajectory
 from odometry.trajectory import Trajectory
@@ -109,3 +110,17 @@ def test_what_is_wrong_is_named(tmp_path, content, words):
 def test_a_missing_file_is_named(tmp_path):
     with pytest.raises(TrajectoryError, match="gone"):
         read_tum(tmp_path / "gone.tum")
+
+
+@pytest.mark.parametrize("rows", [1, 2, 5])
+def test_blocks_make_one_trajectory(tmp_path, monkeypatch, rows):
+    monkeypatch.setattr(tum, "BLOCK_ROWS", rows)
+    file = tmp_path / "a.tum"
+    file.write_text("# c\n1 2 3 0 0 0 0 1\n\n2 3 4 0 0 0 0 1\n3 4 5 0 0 0 0 1\n")
+    assert read_tum(file).poses[:, 0].tolist() == [2, 3, 4]
+    file.write_text("1 2 3 0 0 0 0 1\n3 3 4 0 0 0 0 1\n2 4 5 0 0 0 0 1\n")
+    with pytest.raises(TrajectoryError, match=r"row 3: stamp 2\.0 after 3\.0"):
+        read_tum(file)
+    file.write_text("1 2 3 0 0 0 0 1\n3 1e200 4 0 0 0 0 1\n")
+    with pytest.raises(TrajectoryError, match=r"row 2, x: '1e200', .* at most 1e\+11"):
+        read_tum(file)

@@ -76,6 +76,8 @@ def edited(tmp_path):
         ("dwell_s = 20.0", 'dwell_s = "long"', r"\[mode\.ice\]: dwell_s = 'long'"),
         ("errors_last_s = 0.0", "errors_last_s = [1, 2]", r"\[modes\]: errors_last_s = \[1, 2\]"),
         ("-50.0", "30.0", r"set\.toml: \[mode\.ice\] A: grows at 30 per second"),
+        ("-50.0", "-1e300", r"\[mode\.ice\]: A = .*expected finite numbers, shape \(2, 2\)"),
+        ("dwell_s = 20.0", "dwell_s = 1e-300", r"\[mode\.ice\]: dwell_s = 1e-300, expected"),
         ("-50.0", "inf", r"\[mode\.ice\]: A = .*expected finite numbers, shape \(2, 2\)"),
         ("kind =", "kind", "cannot be read as TOML"),
     ],
@@ -111,7 +113,7 @@ def test_modes_must_be_tables(tmp_path):
 
 
 def test_no_file_and_no_text_are_told(tmp_path):
-    with pytest.raises(ParameterError, match=r"absent\.toml: cannot be read as TOML"):
+    with pytest.raises(ParameterError, match=r"absent\.toml: cannot be read: No such file"):
         read_mode_set(tmp_path / "absent.toml")
     (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe")
     with pytest.raises(ParameterError, match=r"bytes\.toml: cannot be read as TOML"):

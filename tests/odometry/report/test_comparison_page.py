@@ -108,9 +108,26 @@ def test_the_lead_counts_where_a_model_errs_least(compared):
     place = compared.places[0]
     alone = replace(
         compared,
-        prepared=tuple(p for p in compared.prepared if p.split.ground == place.ground),
+        split_models=tuple(p for p in compared.split_models if p.split.terrain == place.terrain),
     )
     assert lead(alone) == alone.sentences_at(place)[0]
+
+
+def test_the_lead_says_what_contradicts_it(compared):
+    """The ideal drive, which loses over windows, made to win on whole runs."""
+    place = compared.places[0]
+    fitness = tuple(
+        replace(each, fitness=replace(each.fitness, x_m2=0.0 if "drive" in each.model else 900.0))
+        for each in compared.fitness
+    )
+    alone = replace(
+        compared,
+        split_models=tuple(p for p in compared.split_models if p.split.terrain == place.terrain),
+        fitness=fitness,
+    )
+    assert "icr_symmetric (J/N 900) errs more than differential_drive (" in lead(alone)
+    both = replace(compared, fitness=fitness)
+    assert "At 2 of them medians or whole runs say otherwise" in lead(both)
 
 
 def test_figures_of_an_earlier_comparison_go_and_other_files_stay(compared, tmp_path):
@@ -118,8 +135,8 @@ def test_figures_of_an_earlier_comparison_go_and_other_files_stay(compared, tmp_
     folder.mkdir()
     for name in ("errors_old.png", "mine.png"):
         (folder / name).write_bytes(b"")
-    only = [p for p in compared.prepared if p.split.ground != "sand $^"]
-    write_comparison_report(replace(compared, prepared=tuple(only)), tmp_path)
+    only = [p for p in compared.split_models if p.split.terrain != "sand $^"]
+    write_comparison_report(replace(compared, split_models=tuple(only)), tmp_path)
     names = {file.name for file in folder.iterdir()}
     assert "mine.png" in names
     assert "errors_old.png" not in names
@@ -129,7 +146,7 @@ def test_without_a_window_the_page_says_why(compared, tmp_path):
     config = replace(compared.config, horizons_m=(900.0,))
     reason = {"/runs/other": "other: no pose.csv"}
     bare = replace(
-        compared, judgements=(), differences=(), fitness=(), config=config, left_out=reason
+        compared, evaluations=(), differences=(), fitness=(), config=config, left_out=reason
     )
     files = write_comparison_report(bare, tmp_path)
     assert [file.name for file in files] == ["report.html"]

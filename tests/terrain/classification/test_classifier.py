@@ -227,3 +227,31 @@ def test_colour_stays_off_for_grey_patches_and_for_the_paper(rng):
     model = TerrainClassifier(colour=True).fit(images, labels, groups)
     assert not model.colour_
     assert model.classify([grains(rng)])
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("patch_size_px", 10**9),
+        ("n_neighbors", 10**9),
+        ("rejection_distance", 1e300),
+        ("metres_per_pixel", -1.0),
+        ("classes", ["grass"]),
+    ],
+)
+def test_settings_beyond_all_measure_are_refused(tmp_path, key, value):
+    """No memory is taken because a file claims that it is needed."""
+    rng = np.random.default_rng(0)
+    images = [rng.integers(0, 60 + 60 * (i % 2), (16, 16), np.uint8) for i in range(8)]
+    groups = [str(i // 2) for i in range(8)]
+    TerrainClassifier("chen2023").fit(images, ["a", "b"] * 4, groups).save(tmp_path / "a.model")
+    settings, arrays = read_model(tmp_path / "a.model")
+    write_model(tmp_path / "b.model", settings | {key: value}, arrays)
+    with pytest.raises(ModelFileError, match=r"b\.model: its settings or arrays do not fit"):
+        TerrainClassifier.load(tmp_path / "b.model")
+
+
+@pytest.mark.parametrize("scale", [np.nan, np.inf, 0.0, -1.0])
+def test_a_scale_must_be_a_number_above_zero(scale):
+    with pytest.raises(ConfigError, match="metres_per_pixel"):
+        TerrainClassifier(metres_per_pixel=scale)

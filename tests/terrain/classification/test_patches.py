@@ -127,7 +127,14 @@ def test_a_manifest_saved_by_a_spreadsheet_groups_too(tmp_path):
 
 @pytest.mark.parametrize(
     ("rows", "message"),
-    [(b"grass/a.jpg\n", "row 2, column 'photo_id'"), (b"gr\xfcn/a.jpg,1\n", "cannot be read")],
+    [
+        (b"grass/a.jpg,\n", "row 2, column 'photo_id'"),
+        (b"grass/a.jpg\n", "row 2: 1 cells"),
+        (b"gr\xfcn/a.jpg,1\n", "cannot be read"),
+        (b"", "it is empty"),
+        (b"grass/\0a.jpg,1\n", "row 2 holds a NUL byte"),
+        (b"../a.jpg,1\n", r"row 2, column 'path': '\.\./a\.jpg' leads out"),
+    ],
 )
 def test_a_manifest_with_holes_is_an_error(tmp_path, rows, message):
     photo(tmp_path / "grass/a.jpg")
@@ -140,3 +147,34 @@ def test_patches_do_not_keep_their_photographs(tmp_path):
     photo(tmp_path / "grass/a.jpg", (64, 64))
     patches = load_patches(find_photos(tmp_path), 16)
     assert all(patch.base is None for patch in patches.images)
+
+
+def test_a_manifest_that_names_no_photograph_is_an_error(tmp_path):
+    photo(tmp_path / "set/grass/a.jpg")
+    (tmp_path / "set/manifest.csv").write_text("path,photo_id\nset/grass/a.jpg,1\nb.jpg,1\n")
+    with pytest.raises(PatchError, match=r"manifest\.csv: none of its 2 paths") as error:
+        find_photos(tmp_path / "set")
+    for path in ("set/set/grass/a.jpg", "set/grass/a.jpg"):
+        assert str(tmp_path / path) in str(error.value)
+
+
+def test_a_manifest_may_not_name_what_lies_outside(tmp_path):
+    photo(tmp_path / "outside.jpg")
+    photo(tmp_path / "set/grass/a.jpg")
+    (tmp_path / "set/grass/link.jpg").symlink_to(tmp_path / "outside.jpg")
+    for row in ("../outside.jpg", "grass/link.jpg", "/etc/hostname"):
+        (tmp_path / "set/manifest.csv").write_text(f"path,photo_id\ngrass/a.jpg,1\n{row},2\n")
+        with pytest.raises(PatchError, match=r"manifest\.csv: row 3, column 'path': .*leads out"):
+            find_photos(tmp_path / "set")
+
+
+def test_an_empty_manifest_is_an_error_and_one_of_something_else_is_not(tmp_path):
+    photo(tmp_path / "grass/a.jpg")
+    (tmp_path / "manifest.csv").touch()
+    for content in ("", "path,photo_id\n", "\n\n"):
+        (tmp_path / "manifest.csv").write_text(content)
+        with pytest.raises(PatchError, match="it is empty"):
+            stated_metres_per_pixel(tmp_path)
+    (tmp_path / "manifest.csv").write_text("a,b\n1,2,3\n")
+    assert stated_metres_per_pixel(tmp_path) is None
+    assert len(find_photos(tmp_path)) == 1

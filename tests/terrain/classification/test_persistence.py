@@ -206,3 +206,25 @@ def test_overlapping_members_cannot_add_up_to_more_than_the_file(file):
     tail[12:16] = len(directory).to_bytes(4, "little")
     file.write_bytes(whole[:start] + directory + tail)
     refused(file, "stores them uncompressed")
+
+
+def test_packed_members_are_refused(file):
+    """A member that unpacks to more than the file has is a bomb; this one has 100 MB of zeros."""
+    with zipfile.ZipFile(file, "a", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("zeros.npy", bytes(100_000_000))
+    refused(file, "claim .* bytes, the file has")
+
+
+@pytest.mark.parametrize("odd", [np.nan, np.inf])
+def test_numbers_that_are_not_finite_are_refused(tmp_path, odd):
+    write_model(tmp_path / "a.model", SETTINGS, ARRAYS | {"points": np.array([0.0, odd])})
+    refused(tmp_path / "a.model", "points.npy holds numbers that are not finite")
+
+
+def test_an_array_header_that_does_not_end_is_refused(file):
+    """numpy's own reader of headers lets an error of the tokenizer through."""
+
+    def cut(_, members):
+        members["points.npy"] = members["points.npy"].replace(b"(4, 3), }", b"(4, 3), (")
+
+    refused(rewritten(file, cut), "points.npy is not an array")

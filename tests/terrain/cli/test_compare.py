@@ -57,7 +57,9 @@ def test_a_row_for_each_model_then_what_it_means(runs, tmp_path):
         ][:1]
         assert row[:5] == ["rover", "grass", "2", "m", model["model"]]
         assert float(row[6]) == pytest.approx(model["translation_m_per_m"]["mean"], abs=5e-5)
-        assert float(row[7]) == pytest.approx(model["rotation_deg_per_m"]["mean"], abs=5e-5)
+        assert float(row[7]) == pytest.approx(model["translation_m_per_m"]["median"], abs=5e-5)
+        assert float(row[8]) == pytest.approx(model["rotation_deg_per_m"]["mean"], abs=5e-5)
+        assert float(row[9]) == pytest.approx(model["rotation_deg_per_m"]["median"], abs=5e-5)
     assert "rover on grass: run_0: run_1" in answer.stdout
     assert "icr_symmetric errs least on grass in translation" in answer.stdout
     assert answer.stdout.rstrip().endswith(f"Next: open {out / 'report.html'}")
@@ -86,6 +88,17 @@ def test_options_reach_the_comparison(runs, tmp_path):
     invoke(plain[0], "--train", runs[0], *options, "--out", again)
     for file in ("comparison.json", "windows.csv", "report.html"):
         assert (out / file).read_bytes() == (again / file).read_bytes()
+
+
+def test_training_horizons_are_shown_and_written(runs, tmp_path):
+    out = tmp_path / "out"
+    options = ["--model", "icr_symmetric", "--training-horizon", "1", "--training-horizon", "4"]
+    answer = invoke(*runs, *options, "--out", out)
+    assert answer.exit_code == 0, answer.output
+    assert "icr_symmetric, translation: training horizons [m] with the least" in answer.stdout
+    assert "training_horizons.csv" in answer.stdout
+    assert (out / "figures" / "training_horizons_rover_grass_icr_symmetric.png").is_file()
+    assert "training and evaluation horizon" in (out / "report.html").read_text(encoding="utf-8")
 
 
 def test_the_parameters_it_writes_can_be_compared_again(runs, tmp_path):

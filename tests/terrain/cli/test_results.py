@@ -23,11 +23,12 @@ def test_columns_line_up_words_to_the_left_numbers_to_the_right(capsys):
 
 def test_cells_hold_the_means_and_a_dash_where_there_is_none():
     errors = {
-        "translation_m_per_m": {"mean": 0.01234, "quartiles": None},
+        "translation_m_per_m": {"mean": 0.01234, "quartiles": [0.005, 0.01, 0.02]},
         "rotation_deg_per_m": {"mean": None, "quartiles": None},
         "position_m": {"mean": 1.0, "final": 2.0},
     }
-    assert error_cells(errors) == ("0.0123", "-", "1.0000", "2.0000")
+    cells = ["0.0123", "0.0100", "-", "-", "1.0000", "-", "2.0000"]
+    assert error_cells(errors) == cells
 
 
 def test_errors_are_those_of_the_scores_and_name_the_reference(curvy_run, capsys):

@@ -24,6 +24,7 @@ def errs(metres_per_metre):
         2.5,
         0.25,
         0.5,
+        0.125,
     )
 
 
@@ -54,5 +55,5 @@ def test_the_first_sentence_without_scores_or_horizons():
 
 def test_the_table_is_in_centimetres_and_degrees():
     rows = error_table(LINES, {"a": errs(0.0234), "b": Score(0, mean_position_m=0.1)}).rows
-    assert rows[0] == ("a", "2.34", "2.34", "2.50", "2.00", "0.250", "0.500", "7")
-    assert rows[1] == ("b", *[NOTHING] * 4, "0.100", NOTHING, "0")
+    assert rows[0] == ("a", "2.34", "2.34", "2.50", "2.00", "0.250", "0.125", "0.500", "7")
+    assert rows[1] == ("b", *[NOTHING] * 4, "0.100", NOTHING, NOTHING, "0")

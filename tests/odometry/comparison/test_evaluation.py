@@ -6,10 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.comparison.judged import judged_windows
-from odometry.comparison.parts import parts_by_ground, windows_of_parts
+from odometry.comparison.compare import compare
+from odometry.comparison.config import ComparisonConfig
+from odometry.comparison.evaluation import Evaluation, evaluation_windows
+from odometry.comparison.split import parts_by_terrain, windows_of_parts
+from odometry.dead_reckoning import dead_reckon
+from odometry.evaluation.relative import EvaluationConfig
+from odometry.evaluation.score import reference_of, score
 from odometry.grounds import with_named_ground
 from odometry.models.catalogue import MODELS
+from odometry.models.run_inputs import inputs_of
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.errors import WindowError
@@ -17,7 +23,7 @@ from odometry.windows.window_errors import window_errors
 
 
 def whole(run):
-    (part,) = parts_by_ground(with_named_ground(run, None), run.name).values()
+    (part,) = parts_by_terrain(with_named_ground(run, None), run.name).values()
     return part
 
 
@@ -61,10 +67,10 @@ def test_errors_are_those_of_a_plain_loop(tmp_path, bench, horizon_m):
     speeds = np.column_stack([half, np.sign(half) * 1.6 - half])  # mean of magnitudes: 0.8
     run = Run.read(bench.write(tmp_path / "run", speeds, icrs=bench.skewed, noise_m=0.02))
     model = MODELS["icr"]
-    judged = judged_windows(whole(run), horizon_m, WindowConfig())
-    errors = window_errors(model, model.pack(bench.symmetric), judged.windows)
+    windows = evaluation_windows(whole(run), horizon_m, WindowConfig())
+    errors = window_errors(model, model.pack(bench.symmetric), windows)
     expected = loop_errors(run, bench.symmetric, horizon_m, bench)
-    assert len(judged) == len(expected[0]) > 5
+    assert len(windows) == len(expected[0]) > 5
     np.testing.assert_allclose(errors.translation_per_m, expected[0], rtol=0, atol=1e-5)
     np.testing.assert_allclose(errors.rotation_per_m, expected[1], rtol=0, atol=1e-5)
 
@@ -73,30 +79,31 @@ def test_a_robot_that_spins_turns_by_more_than_half_a_circle(tmp_path, bench):
     """v = -0.5, 0.5 at 0.8 m between ICRs: 1.25 rad/s, 2.5 rad per metre, 10 rad over 4 m."""
     speeds = np.tile([-0.5, 0.5], (500, 1))
     run = Run.read(bench.write(tmp_path / "run", speeds, noise_m=0.0))
-    judged = judged_windows(whole(run), 4.0, WindowConfig())
-    np.testing.assert_allclose(judged.windows.measured[:, 2], 10.0, rtol=0, atol=1e-6)
+    windows = evaluation_windows(whole(run), 4.0, WindowConfig())
+    np.testing.assert_allclose(windows.measured[:, 2], 10.0, rtol=0, atol=1e-6)
     ideal = MODELS["differential_drive"]
-    errors = window_errors(ideal, ideal.pack({"track_width": bench.track_width}), judged.windows)
+    errors = window_errors(ideal, ideal.pack({"track_width": bench.track_width}), windows)
     np.testing.assert_allclose(errors.rotation_per_m, 4.0 - 2.5, rtol=0, atol=1e-6)
 
 
 def test_mean_speeds_are_averages_over_time(tmp_path, bench):
     speeds = np.concatenate([np.tile([0.2, 0.6], (50, 1)), np.tile([1.0, 0.6], (51, 1))])
     run = Run.read(bench.write(tmp_path / "run", speeds))
-    judged = judged_windows(whole(run), 3.0, WindowConfig())
-    np.testing.assert_allclose(judged.mean_speeds_m_s, [[0.6, 0.6]], rtol=0, atol=1e-9)
+    windows = evaluation_windows(whole(run), 3.0, WindowConfig())
+    found = Evaluation("rover", "grass", "run", "others", 3.0, windows, {}).mean_speeds_m_s
+    np.testing.assert_allclose(found, [[0.6, 0.6]], rtol=0, atol=1e-9)
 
 
 def test_windows_straddle_joints_of_poses_but_no_gaps(tmp_path, bench):
     """1 m/s for 30 s, joints every 2 s: 14 distinct windows of 2 m; a gap costs two of them."""
     speeds = np.full((601, 2), 1.0)
     plain = Run.read(bench.write(tmp_path / "plain", speeds, window_s=1.5))
-    assert len(judged_windows(whole(plain), 2.0, WindowConfig())) == 15
+    assert len(evaluation_windows(whole(plain), 2.0, WindowConfig())) == 15
     gap = Run.read(bench.write(tmp_path / "gap", speeds, window_s=1.5, gap_s=(10.5, 11.9)))
-    judged = judged_windows(whole(gap), 2.0, WindowConfig())
-    ends_s = judged.windows.start_s + 2.0
-    assert len(judged) == 5 + 9
-    assert not np.any((judged.windows.start_s < 11.0) & (ends_s > 11.0))
+    windows = evaluation_windows(whole(gap), 2.0, WindowConfig())
+    ends_s = windows.start_s + 2.0
+    assert len(windows) == 5 + 9
+    assert not np.any((windows.start_s < 11.0) & (ends_s > 11.0))
 
 
 def test_training_windows_do_not_straddle_joints(tmp_path, bench):
@@ -110,11 +117,38 @@ def test_training_windows_do_not_straddle_joints(tmp_path, bench):
 def test_a_run_shorter_than_the_horizon_says_so(tmp_path, bench):
     run = Run.read(bench.write(tmp_path / "run", np.full((40, 2), 0.5)))
     with pytest.raises(WindowError, match="no window of 2 m"):
-        judged_windows(whole(run), 2.0, WindowConfig())
+        evaluation_windows(whole(run), 2.0, WindowConfig())
 
 
-def test_horizons_of_training_do_not_reach_the_judged_windows(tmp_path, bench):
+def test_horizons_of_training_do_not_reach_the_evaluation_windows(tmp_path, bench):
     run = Run.read(bench.write(tmp_path / "run", np.full((400, 2), 0.5)))
     seconds = replace(WindowConfig(), horizon_s=1.0, stride=0.5, shortest=0.1)
-    by_seconds, by_metres = (judged_windows(whole(run), 2.0, c) for c in (seconds, WindowConfig()))
-    np.testing.assert_array_equal(by_seconds.windows.start_s, by_metres.windows.start_s)
+    by_seconds, by_metres = (
+        evaluation_windows(whole(run), 2.0, c) for c in (seconds, WindowConfig())
+    )
+    np.testing.assert_array_equal(by_seconds.start_s, by_metres.start_s)
+
+
+def test_a_score_of_the_same_windows_has_the_same_errors(tmp_path, bench):
+    """The ideal drive of a robot that spins twice as fast: more than half a turn off in 5 m."""
+    icrs = bench.symmetric | {"y_left": 0.12, "y_right": -0.12}
+    runs = [
+        Run.read(bench.write(tmp_path / f"{i}", bench.varied(rng, 60.0), icrs=icrs))
+        for i, rng in enumerate(map(np.random.default_rng, (8, 9)))
+    ]
+    config = ComparisonConfig(horizons_m=(5.0,), draws=100)
+    found = compare(runs, ["differential_drive"], config=config)
+    (evaluation,) = [e for e in found.evaluations if (e.run, e.horizon_m) == ("0", 5.0)]
+    rotation = np.degrees(evaluation.errors["differential_drive"].rotation_per_m)
+    assert rotation.max() * 5 > 180
+    run, ideal = runs[0], MODELS["differential_drive"]
+    twists = ideal.twist(ideal.pack({"track_width": bench.track_width}), inputs_of(run))
+    odometer = dead_reckon(run.odometry.stamps_s, twists, np.zeros(3))
+    scored = score(run, odometer, reference_of(run)[1], EvaluationConfig(5.0, stride_m=5.0))
+    assert scored.windows == len(evaluation.windows)
+    np.testing.assert_allclose(
+        scored.rotation_deg_per_m, np.percentile(rotation, [25, 50, 75]), rtol=1e-6
+    )
+    assert scored.mean_rotation_deg_per_m == pytest.approx(rotation.mean(), rel=1e-6)
+    translation = evaluation.errors["differential_drive"].translation_per_m
+    assert scored.mean_translation_per_m == pytest.approx(translation.mean(), rel=1e-4)

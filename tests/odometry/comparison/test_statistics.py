@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.comparison.bootstrap import Interval, mean_interval
+from odometry.comparison.statistics import Interval, mean_interval
 
 
 def interval(values, runs, block, draws=4000, seed=0):

@@ -1,0 +1,118 @@
+"""The result of a comparison."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from odometry.comparison.config import ComparisonConfig
+from odometry.comparison.evaluation import Evaluation, NotEvaluated
+from odometry.comparison.fitting import SplitModels
+from odometry.comparison.sentences import contradictions, sentences
+from odometry.comparison.statistics import Difference
+from odometry.comparison.summary import Place, Summary, summarise
+from odometry.comparison.training_horizons import HorizonErrors
+from odometry.comparison.whole_runs import RunFitness
+from odometry.parameters import ParameterSet
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Models and their errors on windows that they were not identified on.
+
+    Attributes
+    ----------
+    models : tuple of str
+    split_models : tuple of SplitModels
+        The models of each split.
+    evaluations : tuple of Evaluation
+        Over all horizons.
+    not_evaluated : tuple of NotEvaluated
+    left_out : Mapping of folder to str
+        Runs that cannot be evaluated, and why.
+    differences : tuple of Difference
+        Over the horizons that were asked for.
+    fitness : tuple of RunFitness
+    parameters : Mapping of (robot, model) to ParameterSet
+        Of the identified models, from all that they may see.
+    config : ComparisonConfig
+    by_training_horizon : tuple of HorizonErrors
+        Empty where no training horizons were asked for.
+    """
+
+    models: tuple[str, ...]
+    split_models: tuple[SplitModels, ...]
+    evaluations: tuple[Evaluation, ...]
+    not_evaluated: tuple[NotEvaluated, ...]
+    left_out: Mapping[str, str]
+    differences: tuple[Difference, ...]
+    fitness: tuple[RunFitness, ...]
+    parameters: Mapping[tuple[str, str], ParameterSet]
+    config: ComparisonConfig
+    by_training_horizon: tuple[HorizonErrors, ...] = ()
+
+    @property
+    def robots_and_terrains(self) -> tuple[tuple[str, str], ...]:
+        """In the order of the runs."""
+        return tuple(
+            dict.fromkeys((each.split.robot, each.split.terrain) for each in self.split_models)
+        )
+
+    @property
+    def places(self) -> tuple[Place, ...]:
+        """Robots and terrains over the horizons that were asked for."""
+        return tuple(
+            Place(robot, terrain, horizon_m)
+            for robot, terrain in self.robots_and_terrains
+            for horizon_m in self.config.horizons_m
+        )
+
+    def evaluations_at(self, place: Place) -> tuple[Evaluation, ...]:
+        """Evaluations of one place."""
+        return tuple(evaluation for evaluation in self.evaluations if place.holds(evaluation))
+
+    def differences_at(self, place: Place) -> tuple[Difference, ...]:
+        """Differences at one place."""
+        return tuple(each for each in self.differences if each.place == place)
+
+    def summaries_at(self, place: Place) -> tuple[Summary, ...]:
+        """One summary a model; its `windows` is 0 where it was not evaluated."""
+        evaluations = self.evaluations_at(place)
+        return tuple(summarise(place, evaluations, self.not_evaluated, m) for m in self.models)
+
+    def remarks_at(self, place: Place, summary: Summary) -> tuple[str, ...]:
+        """Why a model was not evaluated on some run, what was left open, and what else to know."""
+        fits = [
+            each.predictors[summary.model]
+            for each in self.split_models
+            if (each.split.robot, each.split.terrain) == (place.robot, place.terrain)
+            and summary.model in each.predictors
+        ]
+        open_ = [fit.undetermined for fit in fits if fit.undetermined]
+        left_open = [
+            f"not determined in {len(open_)} of {len(fits)} identifications, such as "
+            f"{'; '.join(words)}"
+            for words in open_[:1]
+        ]
+        notes = dict.fromkeys(note for fit in fits for note in fit.notes)
+        return (*summary.reasons, *left_open, *notes)
+
+    def horizon_errors_of(self, robot: str, terrain: str) -> dict[str, tuple[HorizonErrors, ...]]:
+        """Errors by model, over all training and evaluation horizons."""
+        found: dict[str, list[HorizonErrors]] = {}
+        for each in self.by_training_horizon:
+            if (each.summary.place.robot, each.summary.place.terrain) == (robot, terrain):
+                found.setdefault(each.summary.model, []).append(each)
+        return {model: tuple(errors) for model, errors in found.items()}
+
+    def fitness_at(self, place: Place) -> tuple[RunFitness, ...]:
+        """Of the runs that were evaluated at one place."""
+        runs = {evaluation.run for evaluation in self.evaluations_at(place)}
+        return tuple(f for f in self.fitness if f.robot == place.robot and f.run in runs)
+
+    def sentences_at(self, place: Place) -> list[str]:
+        """What the numbers of one place say."""
+        summaries = self.summaries_at(place)
+        return sentences(place, summaries, self.differences_at(place), self.fitness_at(place))
+
+    def contradictions_at(self, place: Place) -> list[str]:
+        """Those of `sentences_at` that contradict the order of the mean window errors."""
+        return contradictions(place, self.summaries_at(place), self.fitness_at(place))

@@ -1,0 +1,148 @@
+"""Differences of models on the same windows, with bootstrap intervals."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from odometry.arrays import AnyArray, FloatArray
+from odometry.comparison.config import ComparisonConfig
+from odometry.comparison.evaluation import Evaluation
+from odometry.comparison.summary import QUANTITIES, Place, values_of
+
+LEAST_BLOCKS = 5  # of a run, however long the blocks should be
+COVERED = (2.5, 97.5)  # percentiles of the 95 % interval
+
+
+@dataclass(frozen=True)
+class Interval:
+    """A mean with its 95 % interval."""
+
+    mean: float
+    low: float
+    high: float
+
+    @property
+    def holds_zero(self) -> bool:
+        """Whether the mean cannot be distinguished from zero."""
+        return self.low <= 0 <= self.high
+
+
+def mean_interval(
+    values: FloatArray, runs: AnyArray, block: int, draws: int, rng: np.random.Generator
+) -> Interval:
+    """The mean of values with its percentile interval from a bootstrap of two levels.
+
+    Each draw takes as many runs as there are, with replacement, and of each of these blocks of
+    neighbouring windows, with replacement too (moving blocks around a circle: Politis and Romano
+    1992). What differs from run to run widens the interval; for windows that are independent, it
+    is up to sqrt(2) times wider than it need be. With one run, blocks alone are drawn.
+
+    Parameters
+    ----------
+    values : (K,)
+        In order of time within each run.
+    runs : (K,)
+        The run of each.
+    block : int
+        Windows of a block; less in a run that has not five such blocks.
+    draws : int
+    rng : numpy.random.Generator
+    """
+    of_runs = [values[runs == run] for run in dict.fromkeys(runs)]
+    sizes = np.array([len(of_run) for of_run in of_runs])
+    drawn = rng.integers(len(of_runs), size=(draws, len(of_runs)))
+    means = np.empty(drawn.size)
+    counts = np.bincount(drawn.ravel(), minlength=len(of_runs))
+    places = np.split(np.argsort(drawn, axis=None, kind="stable"), np.cumsum(counts)[:-1])
+    for of_run, here in zip(of_runs, places, strict=True):
+        means[here] = _block_means(of_run, block, len(here), rng)
+    weights = sizes[drawn]
+    totals = np.sum(weights * means.reshape(drawn.shape), axis=1) / np.sum(weights, axis=1)
+    low, high = np.percentile(totals, COVERED)
+    return Interval(float(values.mean()), float(low), float(high))
+
+
+def _block_means(
+    values: FloatArray, block: int, draws: int, rng: np.random.Generator
+) -> FloatArray:
+    """Means (draws,) of values (K,) put together from blocks."""
+    block = max(1, min(block, len(values) // LEAST_BLOCKS))
+    around = np.concatenate([values, values[: block - 1]])
+    sums = np.concatenate([[0.0], np.cumsum(around)])
+    of_blocks = (sums[block:] - sums[:-block]) / block
+    count = -(-len(values) // block)
+    return np.asarray(of_blocks[rng.integers(len(values), size=(draws, count))].mean(axis=1))
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Mean error of one model less that of another, over windows that both were evaluated on.
+
+    Attributes
+    ----------
+    place : Place
+    quantity : str
+    first, second : str
+    windows : int
+    interval : Interval
+        Below 0 where the first errs less, in the unit of the quantity.
+    """
+
+    place: Place
+    quantity: str
+    first: str
+    second: str
+    windows: int
+    interval: Interval
+
+    def with_first(self, model: str) -> "Difference":
+        """The same with `model` first."""
+        if model == self.first:
+            return self
+        turned = Interval(-self.interval.mean, -self.interval.high, -self.interval.low)
+        return Difference(self.place, self.quantity, self.second, self.first, self.windows, turned)
+
+    def words(self) -> str:
+        """The difference with its interval and unit."""
+        numbers = (self.interval.mean, self.interval.low, self.interval.high)
+        decimals = 4 if self.quantity == "translation" else 3
+        mean, low, high = (f"{round(number, decimals) + 0.0:.{decimals}f}" for number in numbers)
+        return f"{mean} [{low}, {high}] {QUANTITIES[self.quantity]}"
+
+
+def differences(
+    place: Place,
+    evaluations: Sequence[Evaluation],
+    models: Sequence[str],
+    config: ComparisonConfig,
+) -> list[Difference]:
+    """Paired differences of all models at one place, for both quantities."""
+    block = max(1, round(config.block_m / place.horizon_m))
+    found = []
+    for first, second in combinations(models, 2):
+        both = [each for each in evaluations if {first, second} <= set(each.errors)]
+        if not both:
+            continue
+        runs = np.repeat(np.arange(len(both)), [len(each.windows) for each in both])
+        for quantity in QUANTITIES:
+            values = np.concatenate(
+                [
+                    values_of(each.errors[first], quantity)
+                    - values_of(each.errors[second], quantity)
+                    for each in both
+                ]
+            )
+            rng = np.random.default_rng(config.seed)
+            interval = mean_interval(values, runs, block, config.draws, rng)
+            found.append(Difference(place, quantity, first, second, len(values), interval))
+    return found
+
+
+def between(found: Sequence[Difference], first: str, second: str) -> Difference | None:
+    """The difference of two models with the first one first; None where no window is shared."""
+    for difference in found:
+        if {difference.first, difference.second} == {first, second}:
+            return difference.with_first(first)
+    return None

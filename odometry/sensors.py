@@ -1,0 +1,110 @@
+"""Where the sensors sit on the robot, and the yaw rate that is to be preferred."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.errors import RunFolderError
+from odometry.geometry.se3 import rotation_from_roll_pitch_yaw
+from odometry.table import Table
+
+FARTHEST_M = 100.0  # of an antenna from the robot's origin; beyond it the numbers are millimetres
+GYRO_AXES = ("gyro_x", "gyro_y", "gyro_z")
+Triple = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Sensors:
+    """What `[sensors]` of run.toml says.
+
+    Attributes
+    ----------
+    pose_m : (x, y, z) or None
+        Place of the antenna or reference of pose.csv in the robot frame; None where not stated.
+    imu_rad : (roll, pitch, yaw) or None
+        Attitude of the axes of imu.csv in the robot frame, R = Rz(yaw) Ry(pitch) Rx(roll); None
+        where not stated: they are those of the robot.
+    """
+
+    pose_m: Triple | None = None
+    imu_rad: Triple | None = None
+
+
+class YawRate(NamedTuple):
+    """Measured yaw rates, counter-clockwise.
+
+    Attributes
+    ----------
+    stamps_s : (N,)
+    yaw_rate_rad_s : (N,)
+        Finite.
+    """
+
+    stamps_s: FloatArray
+    yaw_rate_rad_s: FloatArray
+
+
+def sensors_of(settings: Mapping[str, Any], where: str) -> Sensors:
+    """The table `[sensors]` of run.toml; keys that the format does not name are ignored.
+
+    Raises
+    ------
+    RunFolderError
+        Naming `where` and the key: no three finite numbers, a place farther than FARTHEST_M or an
+        angle of more than a turn.
+    """
+    table = settings.get("sensors", {})
+    if not isinstance(table, Mapping):
+        raise RunFolderError(f"{where}: sensors = {table!r}, expected a table [sensors]")
+    return Sensors(
+        _triple(table, "pose", "x, y, z in metres", FARTHEST_M, where),
+        _triple(table, "imu", "roll, pitch, yaw in radians", 2 * math.pi, where),
+    )
+
+
+def preferred_yaw_rate(imu: Table | None, odometry: Table, sensors: Sensors) -> YawRate | None:
+    """The yaw rate of imu.csv where it tells one, else gyro_z of odometry.csv, else None.
+
+    Rows without a number are dropped. The axes of imu.csv are turned into the robot frame by
+    `sensors.imu_rad`, which needs all three; where one is absent and roll or pitch is stated,
+    imu.csv tells no yaw rate.
+    """
+    tables = [(imu, _imu_rates(imu, sensors))] if imu is not None else []
+    if "gyro_z" in odometry:
+        tables.append((odometry, odometry["gyro_z"]))
+    for table, rates in tables:
+        there = np.isfinite(rates)
+        if there.any():
+            return YawRate(table.stamps_s[there], rates[there])
+    return None
+
+
+def _imu_rates(imu: Table, sensors: Sensors) -> FloatArray:
+    """Yaw rate (N,) of imu.csv about the robot's z, NaN where it cannot be told."""
+    roll_pitch_yaw = np.array(sensors.imu_rad or (0.0, 0.0, 0.0))
+    if "gyro_z" in imu and not roll_pitch_yaw[:2].any():
+        return imu["gyro_z"]
+    if all(axis in imu for axis in GYRO_AXES):
+        z_of_robot = rotation_from_roll_pitch_yaw(roll_pitch_yaw)[2]  # seen in the sensor's axes
+        return np.asarray(imu.stack(*GYRO_AXES) @ z_of_robot)
+    return np.full(len(imu), np.nan)
+
+
+def _triple(
+    table: Mapping[str, Any], key: str, words: str, largest: float, where: str
+) -> Triple | None:
+    if key not in table:
+        return None
+    match table[key]:
+        case [int() | float() as a, int() | float() as b, int() | float() as c] if all(
+            not isinstance(one, bool) and abs(one) <= largest for one in (a, b, c)
+        ):
+            return float(a), float(b), float(c)
+    raise RunFolderError(
+        f"{where}: [sensors] {key} = {table[key]!r}, expected three finite numbers {words}, "
+        f"none above {largest:.4g} in size"
+    )

@@ -1,0 +1,88 @@
+"""The file beside labelled photographs that groups them and states their scale."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from odometry.io.csv_cells import opened_csv
+from odometry.io.inside import leads_out
+from terrain.errors import PatchError
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """What `manifest.csv` says.
+
+    Attributes
+    ----------
+    file : Path
+    photo_ids : Mapping[Path, str]
+        By resolved path.
+    metres_per_pixel : float or None
+        The scale of all photographs, where a column `metres_per_pixel` states it.
+    """
+
+    file: Path
+    photo_ids: Mapping[Path, str]
+    metres_per_pixel: float | None
+
+
+def read_manifest(root: Path) -> Manifest | None:
+    """The manifest in `root` or its parent; None where neither has one with path and photo_id.
+
+    Raises
+    ------
+    PatchError
+        Naming file, row and column: no CSV, empty, an empty cell, a path out of its folder, a
+        scale that is not a number above zero, or several scales.
+    """
+    for file in (root / "manifest.csv", root.parent / "manifest.csv"):
+        if file.exists() and (table := _columns(file)):
+            columns, lines = table
+            return Manifest(file, _photo_ids(file, columns, lines), _scale(file, columns))
+    return None
+
+
+def _columns(file: Path) -> tuple[dict[str, list[str]], list[int]] | None:
+    """Cells by column, and the line of each row; None where the file is about something else."""
+    with opened_csv(file, PatchError) as (header, blocks):
+        if header and not {"path", "photo_id"} <= set(header):
+            return None
+        columns: dict[str, list[str]] = {name: [] for name in header}
+        lines: list[int] = []
+        for block_lines, cells in blocks:
+            lines.extend(block_lines)
+            for name, column in zip(header, cells, strict=True):
+                columns[name].extend(cell.strip() for cell in column)
+    if not lines:
+        raise PatchError(f"{file}: it is empty; expected the columns path and photo_id, and rows")
+    return columns, lines
+
+
+def _photo_ids(file: Path, columns: Mapping[str, list[str]], lines: list[int]) -> dict[Path, str]:
+    photo_ids: dict[Path, str] = {}
+    for line, path, photo_id in zip(lines, columns["path"], columns["photo_id"], strict=True):
+        for name, cell in (("path", path), ("photo_id", photo_id)):
+            if not cell:
+                raise PatchError(f"{file}: row {line}, column {name!r}: it is empty")
+        if leads_out(file.parent, path):
+            raise PatchError(
+                f"{file}: row {line}, column 'path': {path!r} leads out of the folder {file.parent}"
+            )
+        photo_ids[(file.parent / path).resolve()] = photo_id
+    return photo_ids
+
+
+def _scale(file: Path, columns: Mapping[str, list[str]]) -> float | None:
+    cells = {cell for cell in columns.get("metres_per_pixel", ()) if cell}
+    if not cells:
+        return None
+    try:
+        (scale,) = {float(cell) for cell in cells}
+    except ValueError:
+        seen = ", ".join(sorted(cells)[:4])
+        raise PatchError(f"{file}: metres_per_pixel is {seen}; expected one number") from None
+    if not 0 < scale < math.inf:
+        raise PatchError(f"{file}: metres_per_pixel is {scale}; expected a number above zero")
+    return scale

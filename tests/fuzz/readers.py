@@ -1,0 +1,271 @@
+"""Every reader of the project: a valid input, how it is made wrong, and how it is read."""
+
+import json
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from odometry.effects.tables import model_of
+from odometry.errors import OdometryError
+from odometry.estimation.icr_prior import prior_belief
+from odometry.io.tum import read_tum
+from odometry.models.run_inputs import inputs_of
+from odometry.modes.mode_set import read_mode_set, write_mode_set
+from odometry.modes.track import follow_modes
+from odometry.parameters import read_parameters
+from odometry.run import Run
+from odometry.simulation.contact.vehicle import read_contact_vehicle
+from odometry.windows.config import WindowConfig
+from odometry.windows.windows import windows_of
+from terrain.camera import Camera
+from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.patches import find_photos, stated_metres_per_pixel
+from terrain.cli.evaluate import _rows
+from terrain.config import Config
+from terrain.images import read_image
+from terrain.results import read_errors
+from terrain.run_odometry import run_odometry
+from terrain.shipped import shipped_data
+from terrain.synthesis.config import SynthesisConfig
+from terrain.synthesis.files import read_camera, read_robot
+from tests.fuzz.mutations import bytes_changed, json_changed, model_changed, text_changed
+from tests.odometry.modes.mode_examples import traction_set, velocity_set
+
+CAMERA = """[camera]
+image_size = [160, 120]
+matrix = [[120.0, 0.0, 80.0], [0.0, 118.0, 58.0], [0.0, 0.0, 1.0]]
+distortion = [-0.12, 0.03, 0.001, -0.001]
+mount = [0.2, 0.0, 0.55, 0.01, 0.85, 0.02]
+"""
+RUN = f"""[robot]
+name = "fuzzed"
+track_width = 0.4
+length = 0.5
+mass = 30
+[run]
+terrain = "grass"
+[sensors]
+pose = [0.1, 0.0, 0.5]
+imu = [0.0, 0.1, 1.5]
+{CAMERA}"""
+SET = """[vehicle]
+name = "fuzzed"
+[terrain.grass]
+y_left = 0.41
+y_right = -0.39
+x_icr = -0.02
+[terrain.grass.sigma]
+y_left = 0.02
+x_icr = 0.01
+[terrain.ice]
+model = "icr_symmetric"
+alpha = 0.9
+b_hat = 0.8
+[terrain.ice.covariance]
+order = ["alpha", "b_hat"]
+matrix = [[0.01, 0.001], [0.001, 0.02]]
+[[terrain.grass.effects]]
+name = "slope_sliding"
+form = "icr_slope"
+parameters = { lambda_1 = 1.2, lambda_2 = 5.0, v_max = 1.0, half_width = 0.6, half_length = 1.06 }
+[[terrain.grass.effects]]
+name = "unknown"
+form = "residual"
+variable = "speed"
+terms = [["v_x", 0], ["omega", 1]]
+knots = [0.0, 0.5, 1.0]
+parameters = { v_x_0 = 0.01, omega_1 = 0.02 }
+[[terrain.grass.effects]]
+name = "wheel_scale"
+form = "factors"
+parameters = { c_l = 0.9, c_r = 1.1 }
+"""
+SETTINGS = """[filter]
+position_sigma_m = 0.03
+gate_patience = 5
+detect_jumps = true
+[region]
+footprint_scale = 1.1
+per_tread = false
+[switch]
+labels_in_row = 3
+[evaluation]
+horizon_m = 4
+stride_m = 0.5
+"""
+
+
+@dataclass(frozen=True)
+class Reader:
+    """A valid content of a file, how to make it wrong, and what reads and uses it."""
+
+    name: str
+    file: Path
+    valid: bytes
+    changed: Callable[[bytes, np.random.Generator], bytes]
+    read: Callable[[], object]
+
+
+def fails(reader, content):
+    """None where it is read, else the error of the project; others and warnings are raised."""
+    reader.file.write_bytes(content)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            reader.read()
+    except OdometryError as error:
+        return error
+    finally:
+        reader.file.write_bytes(reader.valid)
+    return None
+
+
+def readers(folder):
+    """All readers, their files in `folder`."""
+    return [
+        *_of_runs(folder / "run"),
+        *_of_settings(folder),
+        *_of_images(folder),
+        _of_classifier(folder / "terrain.model"),
+        _of_manifest(folder / "patches"),
+        _of_results(folder / "results"),
+    ]
+
+
+def _reader(name, file, valid, changed, read):
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_bytes(valid)
+    return Reader(name, file, valid, changed, read)
+
+
+def _of_runs(folder):
+    t = np.arange(8) * 0.1
+    tables = {
+        "odometry": ["t,v_left,v_right,roll,pitch,gyro_z,accel_x,terrain"]
+        + [f"{s:.1f},0.{i}5,0.6{i},0.01,-0.02,0.{i},9.1,grass" for i, s in enumerate(t)],
+        "pose": ["t,x,y,yaw,window"] + [f"{s:.1f},{s},0.1,0.{i},0" for i, s in enumerate(t)],
+        "velocity": ["t,vx,vy,wz"] + [f"{s:.1f},0.5,,0.{i}" for i, s in enumerate(t)],
+        "images": ["t,file,terrain"] + [f"{s:.1f},images/{i}.jpg,grass" for i, s in enumerate(t)],
+        "truth": ["t,x,y,yaw,terrain"] + [f"{s:.1f},{s},0.1,0.{i},grass" for i, s in enumerate(t)],
+        "imu": ["t,gyro_x,gyro_y,gyro_z"] + [f"{s:.1f},0.1,0,0.{i}" for i, s in enumerate(t)],
+    }
+    (folder / "images").mkdir(parents=True)
+    for i in range(len(t)):
+        (folder / "images" / f"{i}.jpg").touch()
+    for name, rows in tables.items():
+        text = "\n".join(rows) + "\n"
+        yield _reader(
+            f"{name}.csv", folder / f"{name}.csv", text.encode(), text_changed, lambda: _use(folder)
+        )
+    yield _reader("run.toml", folder / "run.toml", RUN.encode(), text_changed, lambda: _use(folder))
+
+
+def _use(folder):
+    """Read a run, cut it into windows and replay it."""
+    run = Run.read(folder)
+    assert run.yaw_rate is None or np.isfinite(run.yaw_rate.yaw_rate_rad_s).all()
+    inputs_of(run)
+    if "camera" in run.settings:
+        Camera.from_table(run.settings["camera"]).ground_to_pixels([[1.0, 0.0]])
+    try:
+        windows_of([run], WindowConfig(horizon_m=0.1))
+    finally:
+        run_odometry(run)
+
+
+def _of_settings(folder):
+    run = Run.read(folder / "run")
+
+    def use_set():
+        given = read_parameters(folder / "set.toml")
+        for name, table in given.terrains.items():
+            model = model_of(table, run.robot, name)
+            model.twist(model.pack(table.values), inputs_of(run))
+            prior_belief(given, name, 0.4, 0.1)
+
+    yield _reader("parameter set", folder / "set.toml", SET.encode(), text_changed, use_set)
+    for kind, make in (("velocity", velocity_set), ("traction", traction_set)):
+        file = folder / f"{kind}.toml"
+        write_mode_set(file, make())
+        yield _reader(
+            f"{kind} modes",
+            file,
+            file.read_bytes(),
+            text_changed,
+            lambda file=file: follow_modes(run, read_mode_set(file)),
+        )
+    file = folder / "config.toml"
+    yield _reader("config", file, SETTINGS.encode(), text_changed, lambda: Config.read(file))
+    camera = folder / "camera.toml"
+    yield _reader("camera", camera, CAMERA.encode(), text_changed, lambda: read_camera(camera))
+    vehicle, shipped = folder / "vehicle.toml", shipped_data() / "vehicles" / "husky_like.toml"
+
+    def use_vehicle():
+        read_contact_vehicle(vehicle)
+        SynthesisConfig(robot=read_robot(vehicle))
+
+    yield _reader("vehicle", vehicle, shipped.read_bytes(), text_changed, use_vehicle)
+    tum = folder / "a.tum"
+    rows = "\n".join(f"{i} {i}.5 0 0 0 0 0.6 0.8" for i in range(5)) + "\n"
+    yield _reader("TUM", tum, rows.encode(), text_changed, lambda: read_tum(tum))
+
+
+def _of_images(folder):
+    pixels = np.random.default_rng(0).integers(0, 256, (9, 12, 3), np.uint8)
+    for suffix in ("png", "jpg", "tiff", "bmp"):
+        file = folder / f"photo.{suffix}"
+        encoded = cv2.imencode(f".{suffix}", pixels)[1].tobytes()
+        yield _reader(
+            f"image, {suffix}", file, encoded, bytes_changed, lambda file=file: read_image(file)
+        )
+
+
+def _of_classifier(file):
+    rng = np.random.default_rng(0)
+    images = [rng.integers(0, 60 + 60 * (i % 2), (16, 16), np.uint8) for i in range(12)]
+    labels = ["grass", "sand"] * 6
+    model = TerrainClassifier(preset="chen2023")
+    model.fit(images, labels, [str(i // 2) for i in range(12)])
+    model.save(file)
+
+    def use():
+        TerrainClassifier.load(file).classify(images[:1])
+
+    return _reader("classifier", file, file.read_bytes(), model_changed, use)
+
+
+def _of_manifest(folder):
+    for name in ("grass/a.jpg", "grass/b.jpg", "sand/c.png"):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).touch()
+    text = (
+        "path,photo_id,metres_per_pixel\n"
+        "grass/a.jpg,1,0.003\ngrass/b.jpg,1,0.003\nsand/c.png,2,0.003\n"
+    )
+
+    def use():
+        find_photos(folder)
+        stated_metres_per_pixel(folder)
+
+    return _reader("manifest.csv", folder / "manifest.csv", text.encode(), text_changed, use)
+
+
+def _of_results(folder):
+    errors = {
+        "windows": 3,
+        "translation_m_per_m": {"mean": 0.01, "quartiles": [0.01, 0.02, 0.03]},
+        "rotation_deg_per_m": {"mean": 1.5, "quartiles": None},
+        "position_m": {"mean": 0.25, "final": None},
+    }
+    content = {"reference": "pose", "horizon_m": 5.0, "errors": {"odometer": errors}}
+
+    def use():
+        for row in _rows("results", read_errors(folder)):
+            "".join(row).encode()
+
+    text = json.dumps(content, indent=1).encode()
+    return _reader("result.json", folder / "result.json", text, json_changed, use)

@@ -1,0 +1,96 @@
+"""Training horizon against evaluation horizon."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.comparison.compare import compare
+from odometry.comparison.config import ComparisonConfig
+from odometry.comparison.summary import Place, Summary
+from odometry.comparison.training_horizons import (
+    HorizonErrors,
+    best_training_horizons,
+    horizon_sentence,
+)
+from odometry.errors import ConfigError
+
+MODELS = ["differential_drive", "icr_symmetric", "icr"]
+
+
+@pytest.fixture(scope="module")
+def compared(grass, quick):
+    return compare(grass, MODELS, config=replace(quick, training_horizons_m=(1.0, 2.0, 900.0)))
+
+
+def test_the_training_horizon_of_the_comparison_gives_its_errors(compared):
+    assert compared.config.training.horizon_m == 2.0
+    here = [each for each in compared.by_training_horizon if each.training_m == 2.0]
+    assert {each.summary.place.horizon_m for each in here} == set(compared.config.evaluated_m)
+    for each in here:
+        expected = {s.model: s for s in compared.summaries_at(each.summary.place)}
+        summary = expected[each.summary.model]
+        assert each.summary.windows == summary.windows
+        assert each.summary.medians == pytest.approx(summary.medians, rel=1e-4)
+        assert each.summary.means == pytest.approx(summary.means, rel=1e-4)
+
+
+def test_every_training_horizon_is_another_fit_on_the_same_windows(compared):
+    errors = compared.horizon_errors_of("rover", "grass")["icr"]
+    at_two = {e.training_m: e.summary for e in errors if e.summary.place.horizon_m == 2.0}
+    assert at_two[1.0].windows == at_two[2.0].windows
+    assert at_two[1.0].means != at_two[2.0].means
+    assert at_two[1.0].means["translation"] < 0.02
+
+
+def test_a_model_of_which_nothing_is_identified_has_no_training_horizon(compared):
+    assert set(compared.horizon_errors_of("rover", "grass")) == {"icr_symmetric", "icr"}
+
+
+def test_a_horizon_longer_than_any_run_takes_no_part(compared):
+    errors = compared.horizon_errors_of("rover", "grass")["icr"]
+    long = [each for each in errors if each.training_m == 900.0]
+    assert not any(each.summary.complete for each in long)
+    assert "no window of 900 m" in long[0].summary.reasons[0]
+    best = best_training_horizons(errors, "translation")
+    assert set(best) == set(compared.config.evaluated_m)
+    assert all(900.0 not in horizons for horizons in best.values())
+
+
+def test_without_training_horizons_nothing_is_done(grass, quick):
+    assert compare(grass[:2], ["icr_symmetric"], config=quick).by_training_horizon == ()
+
+
+def errors_of(medians):
+    """Errors from {(h_t, h_e): median}."""
+    found = []
+    for (training_m, horizon_m), median in medians.items():
+        quartiles = {q: np.array([0.0, median, 1.0]) for q in ("translation", "rotation")}
+        place = Place("rover", "grass", horizon_m)
+        summary = Summary(place, "icr", (), (), 9, True, {}, quartiles, ())
+        found.append(HorizonErrors(training_m, summary))
+    return found
+
+
+def test_the_best_training_horizons_err_at_most_five_percent_more():
+    """As Baril 2020 reads Fig. 4: short ones suit short evaluation horizons, long ones long."""
+    errors = errors_of(
+        {(1.0, 0.5): 0.1, (2.0, 0.5): 0.104, (5.0, 0.5): 0.106}
+        | {(1.0, 5.0): 0.3, (2.0, 5.0): 0.2, (5.0, 5.0): 0.1}
+        | {(1.0, 2.0): 0.2, (2.0, 2.0): 0.2, (5.0, 2.0): 0.2}
+    )
+    assert best_training_horizons(errors, "translation") == {
+        0.5: (1.0, 2.0),
+        2.0: (1.0, 2.0, 5.0),
+        5.0: (5.0,),
+    }
+    assert horizon_sentence("icr", errors, "rotation") == (
+        "icr, rotation: training horizons [m] with the least median error, or up to 5% more, for "
+        "each evaluation horizon [m]: 1, 2 for 0.5; any for 2; 5 for 5."
+    )
+
+
+@pytest.mark.parametrize("horizons_m", [(0.0,), (float("inf"),), (2.0, 2.0)])
+def test_training_horizons_without_meaning_are_refused(horizons_m):
+    with pytest.raises(ConfigError, match="training horizon"):
+        ComparisonConfig(training_horizons_m=horizons_m)

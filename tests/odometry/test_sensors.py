@@ -1,0 +1,87 @@
+"""Where sensors sit, and which yaw rate is preferred."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from odometry.errors import RunFolderError
+from odometry.run import Run
+
+ROBOT = "[robot]\ntrack_width = 0.4\n"
+ODOMETRY = "t,v_left,v_right,gyro_z\n0,0.5,0.5,0.1\n0.1,0.4,0.6,\n0.2,0.4,0.6,0.3\n"
+
+
+def test_a_run_without_the_table_states_nothing(make_run):
+    sensors = Run.read(make_run()).sensors
+    assert sensors.pose_m is None
+    assert sensors.imu_rad is None
+
+
+def test_what_the_table_states_is_kept(make_run):
+    run = Run.read(make_run(ROBOT + "[sensors]\npose = [0.3, 0, 1]\nimu = [0, -0.1, 1.5]\nx = 1\n"))
+    assert run.sensors.pose_m == (0.3, 0.0, 1.0)
+    assert run.sensors.imu_rad == (0.0, -0.1, 1.5)
+    assert run.settings["sensors"] == {"pose": [0.3, 0, 1], "imu": [0, -0.1, 1.5], "x": 1}
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        "sensors = 3",
+        "[sensors]\npose = 3",
+        "[sensors]\npose = [1, 2]",
+        "[sensors]\npose = [1, 2, nan]",
+        "[sensors]\npose = [1, 2, inf]",
+        "[sensors]\npose = [1, 2, true]",
+        "[sensors]\npose = [1, 2, 300.0]",
+        "[sensors]\nimu = [0, 0, '1']",
+        "[sensors]\nimu = [0, 0, 90]",
+    ],
+)
+def test_what_is_no_three_finite_numbers_is_refused(make_run, table):
+    top, below = (table + "\n", "") if table.startswith("sensors") else ("", table)
+    with pytest.raises(RunFolderError, match=r"run\.toml: .*sensors.*expected"):
+        Run.read(make_run(top + ROBOT + below))
+
+
+def test_without_a_gyroscope_there_is_no_yaw_rate(make_run):
+    assert Run.read(make_run()).yaw_rate is None
+    assert Run.read(make_run(imu="t,accel_z\n0,9.8\n")).yaw_rate is None
+    empty = make_run(odometry="t,v_left,v_right,gyro_z\n0,1,1,\n", imu="t,gyro_z\n0,\n")
+    assert Run.read(empty).yaw_rate is None
+
+
+def test_the_gyroscope_of_odometry_without_what_was_not_measured(make_run):
+    stamps_s, rates = Run.read(make_run(odometry=ODOMETRY)).yaw_rate
+    assert (stamps_s.tolist(), rates.tolist()) == ([0.0, 0.2], [0.1, 0.3])
+
+
+def test_that_of_imu_csv_goes_first(make_run):
+    run = Run.read(make_run(odometry=ODOMETRY, imu="t,gyro_z\n0,7\n0.01,\n0.02,9\n"))
+    assert run.yaw_rate.stamps_s.tolist() == [0, 0.02]
+    assert run.yaw_rate.yaw_rate_rad_s.tolist() == [7, 9]
+    nothing = Run.read(make_run(odometry=ODOMETRY, imu="t,gyro_z\n0,\n"))
+    assert nothing.yaw_rate.yaw_rate_rad_s.tolist() == [0.1, 0.3]
+
+
+@pytest.mark.parametrize("angles", [(np.pi, 0, 0), (0.2, -0.3, 1.0), (np.pi / 2, 0, 0.4)])
+def test_axes_are_turned_into_those_of_the_robot(make_run, rng, angles):
+    """scipy's intrinsic ZYX rotation takes the robot's rates into the sensor's axes."""
+    robot = rng.normal(size=(5, 3))
+    axes = Rotation.from_euler("ZYX", [angles[2], angles[1], angles[0]])
+    seen = axes.inv().apply(robot)
+    rows = "\n".join(f"{i},{x!r},{y!r},{z!r}" for i, (x, y, z) in enumerate(seen.tolist()))
+    settings = f"{ROBOT}[sensors]\nimu = {[float(angle) for angle in angles]}\n"
+    run = Run.read(make_run(settings, imu=f"t,gyro_x,gyro_y,gyro_z\n{rows}\n"))
+    np.testing.assert_allclose(run.yaw_rate.yaw_rate_rad_s, robot[:, 2], rtol=0, atol=1e-12)
+
+
+def test_one_axis_of_a_tilted_sensor_tells_nothing(make_run):
+    """Upside down its sign is wrong: the gyroscope of odometry.csv is taken."""
+    tilted = f"{ROBOT}[sensors]\nimu = [3.14159, 0, 0]\n"
+    imu = "t,gyro_z\n0,-0.1\n1,-0.2\n"
+    assert Run.read(make_run(tilted, imu=imu)).yaw_rate is None
+    run = Run.read(make_run(tilted, odometry=ODOMETRY, imu=imu))
+    assert run.yaw_rate.yaw_rate_rad_s.tolist() == [0.1, 0.3]
+    turned = f"{ROBOT}[sensors]\nimu = [0, 0, 2]\n"
+    assert Run.read(make_run(turned, imu=imu)).yaw_rate.yaw_rate_rad_s.tolist() == [-0.1, -0.2]
