@@ -61,13 +61,13 @@ class _Blocks:
             return unknown
         return max(least, MARGIN * float(np.quantile(errors[self.ordinary], QUANTILE)))
 
-    def evidence(
-        self, holds_s: FloatArray, contradicts: BoolArray, agrees: BoolArray
-    ) -> Evidence:
+    def evidence(self, holds_s: FloatArray, contradicts: BoolArray, agrees: BoolArray) -> Evidence:
         """Of the blocks (K,) whose middle lies in a hold (H, 2)."""
         middle_s = (self.begin_s + self.end_s) / 2
         first, last = np.searchsorted(middle_s, holds_s.T)
-        contradicted, agreed = (np.concatenate([[0], np.cumsum(of)]) for of in (contradicts, agrees))
+        contradicted, agreed = (
+            np.concatenate([[0], np.cumsum(of)]) for of in (contradicts, agrees)
+        )
         all_along = np.zeros(len(holds_s), dtype=np.bool_)
         for i, (start, stop) in enumerate(zip(first, last, strict=True)):
             ends_s = [holds_s[i, 0], *middle_s[start:stop], holds_s[i, 1]]
@@ -93,9 +93,7 @@ def gyroscope_evidence(run: Run, holds_s: FloatArray) -> Evidence:
     blocks = _Blocks(begin_s, end_s, ~touched(holds_s, begin_s, end_s))
     straight = blocks.ordinary & (np.abs(differences) < STRAIGHT_M_S)
     rates = rates - (np.median(rates[straight]) if straight.sum() >= LEAST_BLOCKS else 0.0)
-    asked = differences * _fitted(
-        rates, differences, blocks.ordinary, 1 / run.robot.track_width
-    )
+    asked = differences * _fitted(rates, differences, blocks.ordinary, 1 / run.robot.track_width)
     errors = np.abs(rates - asked) - SLIP * np.abs(asked)
     limit = blocks.limit(errors, LEAST_RAD_S, UNKNOWN_RAD_S)
     return blocks.evidence(holds_s, errors > limit, errors <= AGREED_RAD_S)
@@ -152,7 +150,9 @@ def _path(run: Run, asked_s: FloatArray, scale: float, rad_per_m: float) -> Floa
     return np.asarray(path.poses[np.searchsorted(stamps_s, asked_s)])
 
 
-def _fitted(measured: FloatArray, asked: FloatArray, ordinary: BoolArray, otherwise: float) -> float:
+def _fitted(
+    measured: FloatArray, asked: FloatArray, ordinary: BoolArray, otherwise: float
+) -> float:
     """Factor of the measured (K,) by the asked (K,) in ordinary moments."""
     told = ordinary & (asked != 0)
     return slope(measured[told], asked[told]) if told.sum() >= LEAST_BLOCKS else otherwise

@@ -9,6 +9,7 @@ from odometry.arrays import AnyArray, IntArray
 
 CHANGE_OF_TERRAIN = "change of terrain"
 CHANGE_OF_WINDOW = "change of `window`"
+FEW_POSES = "fewer poses than most windows"
 ODOMETRY_GAP = "gap of odometry.csv"
 POSE_GAP = "gap of pose.csv"
 STATIONARY = "treads stationary"

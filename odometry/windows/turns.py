@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.arrays import BoolArray, FloatArray
 from odometry.geometry.angles import wrap
 from odometry.run import Run
 from odometry.windows.gaps import odometry_gaps
@@ -105,7 +105,8 @@ def _predictions(
     pairs = _close_pairs(travel, width_m, stamps_s, yaw_rad, gaps_s)
     begin_s, end_s = stamps_s[:-1], stamps_s[1:]
     if gyroscope is not None:
-        by_gyroscope = _by_gyroscope(gyroscope, travel, width_m, pairs, begin_s, end_s)
+        ideal = travel.between(begin_s, end_s)[1] / width_m
+        by_gyroscope = _by_gyroscope(gyroscope, pairs, begin_s, end_s, ideal)
         if by_gyroscope is not None:
             yield by_gyroscope
     unseen = _unseen(travel, gaps_s, begin_s, end_s)
@@ -157,20 +158,18 @@ def _close_pairs(
 
 def _by_gyroscope(
     gyroscope: Gyroscope,
-    travel: TreadTravel,
-    width_m: float,
     pairs: _Pairs,
     begin_s: FloatArray,
     end_s: FloatArray,
+    ideal_rad: FloatArray,
 ) -> tuple[FloatArray, FloatArray] | None:
-    """Turns and bounds; None of a gyroscope that cannot be believed."""
+    """Turns and bounds; None where it turns another way than the treads (ideal, without slip)."""
     turn, gross, off, silent_s = gyroscope.between(begin_s, end_s)
     lasts_s = end_s - begin_s
-    heard = silent_s == 0
-    ideal = travel.between(begin_s[heard], end_s[heard])[1] / width_m
-    if np.count_nonzero(ideal) < LEAST_PAIRS or not (
-        WIDTHS[0] < slope(turn[heard], ideal) < WIDTHS[1]
-    ):
+    heard = (silent_s == 0) & (ideal_rad != 0)
+    if heard.sum() < LEAST_PAIRS:
+        return None
+    if not WIDTHS[0] < slope(turn[heard], ideal_rad[heard]) < WIDTHS[1]:
         return None
     found = _bias_and_scale(gyroscope, pairs)
     if found is None:

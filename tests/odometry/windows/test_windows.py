@@ -77,9 +77,7 @@ def travel_between(run, begin_s, end_s):
 def breaks_between(run, earlier, later, pose_gap_s):
     """Whether two neighbouring poses (rows of pose.csv) belong to different stretches."""
     odometry_s, begin_s, end_s = run.odometry.stamps_s, *run.pose.stamps_s[[earlier, later]]
-    paused = any(
-        before < end_s and begin_s < after for before, after in odometry_gaps(run).spans_s
-    )
+    paused = any(before < end_s and begin_s < after for before, after in odometry_gaps(run).spans_s)
     rows = [max(np.flatnonzero(odometry_s <= stamp)) for stamp in (begin_s, end_s)]
     grounds = set(run.odometry["terrain"][rows[0] : rows[1] + 1])
     window = run.pose["window"][[earlier, later]]
