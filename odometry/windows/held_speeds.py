@@ -20,7 +20,6 @@ from odometry.windows.spans import touched
 from odometry.windows.tread_travel import tread_travel
 
 BLOCK_S = 0.5  # over which motions are compared
-SHIFT_S = 0.1  # from a block of the gyroscope to the next
 LONGEST_S = 2.0  # between two poses that are compared
 LEAST_BLOCKS = 20  # ordinary ones: fewer tell no limit
 QUANTILE, MARGIN = 0.99, 1.5  # of the ordinary errors: the limit of what is no contradiction
@@ -89,12 +88,12 @@ def gyroscope_evidence(run: Run, holds_s: FloatArray) -> Evidence:
     gyroscope = gyroscope_of(run)
     if gyroscope is None:
         return _silent(len(holds_s))
-    stamps_s = run.odometry.stamps_s
-    begin_s = np.arange(stamps_s[0], stamps_s[-1] - BLOCK_S, SHIFT_S)
-    turn, _, _, silent_s = gyroscope.between(begin_s, begin_s + BLOCK_S)
-    heard = silent_s == 0
-    begin_s, rates = begin_s[heard], turn[heard] / BLOCK_S
+    begin_s = gyroscope.stamps_s
     end_s = begin_s + BLOCK_S
+    turn, _, _, silent_s = gyroscope.between(begin_s, end_s)
+    odometry_s = run.odometry.stamps_s
+    told = (silent_s == 0) & (begin_s >= odometry_s[0]) & (end_s <= odometry_s[-1])
+    begin_s, end_s, rates = begin_s[told], end_s[told], turn[told] / BLOCK_S
     differences = tread_travel(run).between(begin_s, end_s)[1] / BLOCK_S
     blocks = _Blocks(begin_s, end_s, ~touched(holds_s, begin_s, end_s))
     straight = blocks.told_by & (np.abs(differences) < STRAIGHT_M_S)
