@@ -82,7 +82,7 @@ def record_of(run: Run, config: WindowConfig) -> Record:
     if inside.sum() < 2:
         raise WindowError(
             f"{run.folder}: {int(inside.sum())} measured poses within the time of odometry.csv, "
-            "expected two or more: windows need pose.csv"
+            "expected two or more: a window needs pose.csv"
         )
     pose_s, poses, windows = pose_s[inside], poses[inside], windows[inside]
     stamps_s = np.unique(np.concatenate([odometry_s, pose_s]))
