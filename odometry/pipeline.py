@@ -1,7 +1,7 @@
 """The frame loop: a run goes in, a filter is told the terrain, its estimates come out."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -14,6 +14,7 @@ from odometry.estimation.estimate import Estimate
 from odometry.models.icr import icr_twist
 from odometry.run import Frame, Run
 from odometry.trajectory import Trajectory
+from odometry.windows.gaps import odometry_gaps
 
 
 class Estimator(Protocol):
@@ -140,7 +141,11 @@ def replay(
 
 
 def _from_start(run: Run) -> Iterator[Frame]:
-    """The frames from the first that can start a filter to the end of odometry."""
+    """The frames from the first that can start a filter to the end of odometry.
+
+    A held speed goes on in a gap, as the best that is known; the frames say that it is one.
+    """
+    gap_begins_s, gap_ends_s = odometry_gaps(run).spans_s.T
     has_pose = run.pose is not None and bool(
         np.isfinite(run.pose.stack("x", "y", "yaw")).all(axis=1).any()
     )
@@ -150,7 +155,8 @@ def _from_start(run: Run) -> Iterator[Frame]:
         if not started:
             posed = frame.pose is not None and bool(np.all(np.isfinite(frame.pose)))
             started = moves and (posed or not has_pose)
+        in_gap = (gap_begins_s < frame.stamp_s) & (frame.stamp_s <= gap_ends_s)
         if started:
-            yield frame
+            yield replace(frame, in_gap=bool(in_gap.any()))
             if not moves:
                 return

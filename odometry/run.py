@@ -46,6 +46,8 @@ class Frame:
         Measured x, y, yaw in the reference frame at this stamp.
     image : Path or None
         The image taken at this stamp; it is opened by whoever needs it.
+    in_gap : bool
+        Whether the speeds that led to this frame are not known: odometry.csv has a gap there.
     """
 
     stamp_s: float
@@ -53,6 +55,7 @@ class Frame:
     odometry_row: int
     pose: FloatArray | None
     image: Path | None
+    in_gap: bool = False
 
 
 @dataclass(frozen=True)

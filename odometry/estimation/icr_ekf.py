@@ -19,6 +19,7 @@ from odometry.parameters import ParameterSet
 from odometry.run import Frame
 
 SIDES = np.array([[0.0, 0.0, 0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, -1.0, 0.0]])
+GAP_DENSITY = np.array([25.0, 25.0, 9.0, 0.0, 0.0, 0.0])  # [m^2/s], [rad^2/s]: all may happen
 LEAST_SIDE = 0.05  # of the track width; y_left and -y_right are kept above it
 
 
@@ -46,7 +47,8 @@ class IcrEkf:
     and the one that went in is not changed. On a new name the ICRs are those last learned there
     or those of the parameter set, whichever is the more certain, and their covariance is reset
     to `reset_sigma_widths`, or to what was known before where that is less certain. A pose
-    with NaN is as good as none.
+    with NaN is as good as none. Over a gap of odometry the speed that was held goes on, but where
+    the robot then is counts as not known, and the ICRs learn nothing of it.
     """
 
     def __init__(
@@ -106,7 +108,7 @@ class IcrEkf:
                 estimate.effective_speeds_m_s,
                 estimate.added_twist,
                 step_s=step_s,
-                density=self._density,
+                density=self._density + GAP_DENSITY * frame.in_gap,
             )
         return replace(
             estimate,

@@ -9,13 +9,14 @@ from odometry.arrays import FloatArray
 from odometry.effects.base import Base
 from odometry.gap.config import GapConfig
 from odometry.gap.errors import GapError
-from odometry.gap.noise import Noise, estimated_noise, whitening
-from odometry.gap.scene import Scene, numbered_pieces, pieces, scene_of, thinned
+from odometry.gap.pieces import numbered_pieces, pieces
 from odometry.gap.simulate import residuals, whitened_residuals
 from odometry.gap.solve import Solved, least_squares, with_jacobian
 from odometry.gap.uncertain import Uncertain
 from odometry.models.base import KinematicModel
 from odometry.run import Robot, Run
+from odometry.windows.dense import DenseWindows, dense_windows_of, thinned
+from odometry.windows.dense_noise import Noise, estimated_noise, whitening
 
 LEAST_WINDOWS = 20
 TOGETHER_S = 10.0  # within which errors are taken as alike
@@ -35,7 +36,7 @@ class Calibration:
     information : (F, F)
         Inverse covariance of these.
     noise : Noise
-    held_back : tuple of (Base, Scene)
+    held_back : tuple of (Base, DenseWindows)
         Stretches of the calibration runs, each with a base identified on all others: the noise
         floor is the gap of these.
     """
@@ -43,7 +44,7 @@ class Calibration:
     uncertain: Uncertain
     information: FloatArray
     noise: Noise
-    held_back: tuple[tuple[Base, Scene], ...]
+    held_back: tuple[tuple[Base, DenseWindows], ...]
 
     @property
     def base(self) -> Base:
@@ -65,7 +66,7 @@ def calibrated(
     GapError
         If there are too few windows.
     """
-    scenes = [thinned(scene_of(run, config), config.most_windows) for run in runs]
+    scenes = [thinned(dense_windows_of(run, config.horizon_s), config.most_windows) for run in runs]
     if sum(map(len, scenes)) < LEAST_WINDOWS:
         raise GapError(
             f"{sum(map(len, scenes))} windows of {config.horizon_s:g} s in the calibration runs: "
@@ -88,8 +89,8 @@ def calibrated(
 
 
 def _held_back(
-    uncertain: Uncertain, scenes: Sequence[Scene], noise: Noise, config: GapConfig
-) -> tuple[tuple[Base, Scene], ...]:
+    uncertain: Uncertain, scenes: Sequence[DenseWindows], noise: Noise, config: GapConfig
+) -> tuple[tuple[Base, DenseWindows], ...]:
     """Every part of the runs with a base identified on the others."""
     numbers = [pieces(scene, config.part_s) % config.held_back for scene in scenes]
     held_back = []
@@ -102,7 +103,7 @@ def _held_back(
 
 
 def _fit(
-    uncertain: Uncertain, scenes: Sequence[Scene], noise: Noise
+    uncertain: Uncertain, scenes: Sequence[DenseWindows], noise: Noise
 ) -> tuple[Uncertain, FloatArray]:
     """The free numbers that fit best, and their information (F, F)."""
     whiteners = [whitening(scene, noise) for scene in scenes]
@@ -117,7 +118,7 @@ def _fit(
     return found, _information(solved, scenes)
 
 
-def _information(solved: Solved, scenes: Sequence[Scene]) -> FloatArray:
+def _information(solved: Solved, scenes: Sequence[DenseWindows]) -> FloatArray:
     """Inverse covariance (F, F), divided by the design effect of pieces of the runs.
 
     Errors that last for longer than a window say less than as many independent ones: the scores

@@ -20,14 +20,14 @@ from odometry.effects.time_offset import TimeOffset
 from odometry.effects.traction_loss import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.calibration import Calibration
-from odometry.gap.scene import Scene
+from odometry.windows.dense import DenseWindows
 
 LATERAL_M_S2 = 0.3  # less inertia than this is nothing that contact forces are worth trying for
 KNOTS = 5
 LEAST_RANGE = 1e-3  # of a variable that says anything
 
 
-def quick_effects(scenes: Sequence[Scene], calibration: Calibration) -> tuple[Effect, ...]:
+def quick_effects(scenes: Sequence[DenseWindows], calibration: Calibration) -> tuple[Effect, ...]:
     """Effects of the catalogue that the measured runs could tell, but those of contact forces."""
     calibrated = {str(n) for _, s in calibration.held_back for n in np.unique(_labels(s))}
     labels = tuple(sorted({n for s in scenes for n in new_labels(s.inputs, calibrated)}))
@@ -49,7 +49,7 @@ def quick_effects(scenes: Sequence[Scene], calibration: Calibration) -> tuple[Ef
     return tuple(e for e in every if told_by(e, scenes, calibration))
 
 
-def contact_effects(scenes: Sequence[Scene], calibration: Calibration) -> tuple[Effect, ...]:
+def contact_effects(scenes: Sequence[DenseWindows], calibration: Calibration) -> tuple[Effect, ...]:
     """Effects by the balance of contact forces, where slope or speed ask for them."""
     found: list[Effect] = []
     half_width = calibration.base.robot.track_width / 2
@@ -62,14 +62,14 @@ def contact_effects(scenes: Sequence[Scene], calibration: Calibration) -> tuple[
     return tuple(found)
 
 
-def of_angles(scenes: Sequence[Scene]) -> tuple[Residual, ...]:
+def of_angles(scenes: Sequence[DenseWindows]) -> tuple[Residual, ...]:
     """Smooth functions of an angle that no effect of the catalogue depends on."""
     angles = [a for a in ANGLES if all(a in variables_of(s.inputs) for s in scenes)]
     terms = _every_term(2 * HARMONICS)
     return tuple(Residual(angle, terms, by_speed) for angle in angles for by_speed in (False, True))
 
 
-def of_variables(scenes: Sequence[Scene]) -> tuple[Residual, ...]:
+def of_variables(scenes: Sequence[DenseWindows]) -> tuple[Residual, ...]:
     """Smooth functions of the other variables recorded: what is left may depend on any."""
     found = []
     for name, values in variables_of(scenes[0].inputs).items():
@@ -84,15 +84,15 @@ def _every_term(functions: int) -> tuple[tuple[str, int], ...]:
     return tuple((component, k) for component in COMPONENTS for k in range(functions))
 
 
-def told_by(effect: Effect, scenes: Sequence[Scene], calibration: Calibration) -> bool:
+def told_by(effect: Effect, scenes: Sequence[DenseWindows], calibration: Calibration) -> bool:
     """Whether a run has the data that the effect needs."""
     return any(not effect.lacks(scene.inputs, calibration.base) for scene in scenes)
 
 
-def _labels(scene: Scene) -> np.ndarray:
+def _labels(scene: DenseWindows) -> np.ndarray:
     return np.array([]) if scene.inputs.terrain is None else scene.inputs.terrain.astype(str)
 
 
-def _lateral_m_s2(scene: Scene, calibration: Calibration) -> float:
+def _lateral_m_s2(scene: DenseWindows, calibration: Calibration) -> float:
     twist = calibration.base.model.twist(calibration.base.values, scene.inputs)
     return float(np.percentile(np.abs(twist[:, 0] * twist[:, 2]), 95))

@@ -9,9 +9,10 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.effects.base import Base
 from odometry.effects.corrected import Added
 from odometry.gap.calibration import Calibration
-from odometry.gap.noise import end_variance
-from odometry.gap.scene import Scene, numbered_pieces
+from odometry.gap.pieces import numbered_pieces
 from odometry.gap.simulate import residuals
+from odometry.windows.dense import DenseWindows
+from odometry.windows.dense_noise import end_variance
 
 STEP = 1e-4  # of a base parameter, for a derivative
 RIDGE = 1e-6  # of the information of the calibration: it may leave a direction open
@@ -65,7 +66,7 @@ class Ends:
 def ends_of(
     base: Base,
     effects: Sequence[Added],
-    scenes: Sequence[Scene],
+    scenes: Sequence[DenseWindows],
     calibration: Calibration,
     part_s: float,
 ) -> Ends:
@@ -84,5 +85,5 @@ def ends_of(
     return Ends(motion, variance, leeway, numbered_pieces(scenes, part_s))
 
 
-def _ends(base: Base, effects: Sequence[Added], scenes: Sequence[Scene]) -> FloatArray:
+def _ends(base: Base, effects: Sequence[Added], scenes: Sequence[DenseWindows]) -> FloatArray:
     return np.concatenate([residuals(base, effects, scene)[:, -1] for scene in scenes])

@@ -14,14 +14,15 @@ from odometry.gap.fit import Fitter
 from odometry.gap.locate import locate
 from odometry.gap.measured import measured_of
 from odometry.gap.name import explained
+from odometry.gap.pieces import pieces
 from odometry.gap.result import Closing, GapResult, NamedEffect, Rival
-from odometry.gap.scene import Scene, pieces, scene_of, thinned
 from odometry.gap.statistic import floor_of, floor_there, gap_of
 from odometry.identification.identify import robot_of
 from odometry.models.base import KinematicModel
 from odometry.models.icr import Icr
 from odometry.run import Run
 from odometry.runs import check_no_run_twice
+from odometry.windows.dense import DenseWindows, dense_windows_of, thinned
 
 WITHIN_95 = 1.96  # standard deviations
 
@@ -117,11 +118,11 @@ def _counting(bar: "tqdm[None]") -> Callable[[], None]:
 
 def _scenes(
     measured: Sequence[Run], holdout: Sequence[Run], config: GapConfig
-) -> tuple[list[Scene], list[Scene]]:
+) -> tuple[list[DenseWindows], list[DenseWindows]]:
     """Scenes to fit and scenes to judge by."""
-    scenes = [scene_of(run, config) for run in measured]
+    scenes = [dense_windows_of(run, config.horizon_s) for run in measured]
     if holdout:
-        held = [scene_of(run, config) for run in holdout]
+        held = [dense_windows_of(run, config.horizon_s) for run in holdout]
     else:
         outs = [pieces(s, config.part_s) % config.held_back == config.held_back - 1 for s in scenes]
         held = [s.where(out) for s, out in zip(scenes, outs, strict=True) if out.any()]

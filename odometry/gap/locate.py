@@ -12,8 +12,8 @@ from odometry.gap.config import GapConfig
 from odometry.gap.ends import ends_of
 from odometry.gap.predictors import Predictor, groups_of, predictors
 from odometry.gap.regions import Region, regions
-from odometry.gap.scene import Scene
 from odometry.gap.variables import Variable, window_variables
+from odometry.windows.dense import DenseWindows
 
 __all__ = ["Location", "Predictor", "Region", "locate"]
 
@@ -50,7 +50,7 @@ class Location:
 def locate(
     base: Base,
     effects: Sequence[Added],
-    scenes: Sequence[Scene],
+    scenes: Sequence[DenseWindows],
     floor_m: float,
     config: GapConfig,
     *,
@@ -65,7 +65,7 @@ def locate(
     ----------
     base, effects
         The simulation.
-    scenes : sequence of Scene
+    scenes : sequence of DenseWindows
         Measured runs.
     floor_m : float
         The noise floor: the RMS position error on held-back stretches of the calibration.

@@ -11,9 +11,10 @@ from odometry.effects.base import Base
 from odometry.effects.corrected import Added
 from odometry.gap.calibration import Calibration
 from odometry.gap.config import GapConfig
-from odometry.gap.noise import whitening
-from odometry.gap.scene import Scene, numbered_pieces
+from odometry.gap.pieces import numbered_pieces
 from odometry.gap.simulate import whitened_residuals
+from odometry.windows.dense import DenseWindows
+from odometry.windows.dense_noise import whitening
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,7 @@ class Measured:
 
     Attributes
     ----------
-    scenes : tuple of Scene
+    scenes : tuple of DenseWindows
     whiteners : tuple of (K, 3n, 3n)
     folds : (K of all,)
         Which part each window belongs to.
@@ -30,7 +31,7 @@ class Measured:
         Number of the piece of all runs in which it lies.
     """
 
-    scenes: tuple[Scene, ...]
+    scenes: tuple[DenseWindows, ...]
     whiteners: tuple[FloatArray, ...]
     folds: IntArray
     pieces: IntArray
@@ -51,7 +52,9 @@ class Measured:
         return np.asarray(summed, dtype=np.float64)
 
 
-def measured_of(scenes: Sequence[Scene], calibration: Calibration, config: GapConfig) -> Measured:
+def measured_of(
+    scenes: Sequence[DenseWindows], calibration: Calibration, config: GapConfig
+) -> Measured:
     """Whiten windows by the noise of a calibration; pieces of the runs are dealt to the folds."""
     joined = numbered_pieces(scenes, config.part_s)
     return Measured(

@@ -7,8 +7,8 @@ from odometry.effects.base import Base
 from odometry.effects.corrected import Added
 from odometry.gap.calibration import Calibration
 from odometry.gap.locate import Location
-from odometry.gap.scene import Scene
 from odometry.gap.statistic import Gap
+from odometry.windows.dense import DenseWindows
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class GapResult:
         The model believed so far.
     base : Base
         The same, moved within what its calibration leaves open.
-    measured_scenes, holdout_scenes : tuple of Scene
+    measured_scenes, holdout_scenes : tuple of DenseWindows
     horizon_s : float
     """
 
@@ -101,8 +101,8 @@ class GapResult:
     rivals: tuple[Rival, ...]
     calibration: Calibration
     base: Base
-    measured_scenes: tuple[Scene, ...]
-    holdout_scenes: tuple[Scene, ...]
+    measured_scenes: tuple[DenseWindows, ...]
+    holdout_scenes: tuple[DenseWindows, ...]
     horizon_s: float
 
     @property

@@ -7,13 +7,12 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base import Base
 from odometry.effects.corrected import Added, corrected_twist, delay_s, seen_poses
-from odometry.gap.scene import Scene
-from odometry.geometry import se2
-from odometry.geometry.angles import wrap
+from odometry.windows.dense import DenseWindows
+from odometry.windows.dense_motion import off_measured, poses_at
 from odometry.windows.motion import level_path
 
 
-def simulated_poses(base: Base, effects: Sequence[Added], scene: Scene) -> FloatArray:
+def simulated_poses(base: Base, effects: Sequence[Added], scene: DenseWindows) -> FloatArray:
     """Poses (M, 3) at the stamps of the measured ones, from the origin; yaw is not wrapped."""
     twists = corrected_twist(base, effects, scene.inputs)
     path = level_path(twists, scene.steps_s, scene.inputs)
@@ -21,7 +20,7 @@ def simulated_poses(base: Base, effects: Sequence[Added], scene: Scene) -> Float
     return seen_poses(effects, poses_at(path, scene, seen_s))
 
 
-def residuals(base: Base, effects: Sequence[Added], scene: Scene) -> FloatArray:
+def residuals(base: Base, effects: Sequence[Added], scene: DenseWindows) -> FloatArray:
     """Measured less simulated motion (K, n, 3), in the frame of each window's first pose."""
     return off_measured(simulated_poses(base, effects, scene), scene)
 
@@ -29,7 +28,7 @@ def residuals(base: Base, effects: Sequence[Added], scene: Scene) -> FloatArray:
 def whitened_residuals(
     base: Base,
     effects: Sequence[Added],
-    scenes: Sequence[Scene],
+    scenes: Sequence[DenseWindows],
     whiteners: Sequence[FloatArray],
 ) -> FloatArray:
     """Residuals (R,) of all windows, scene by scene, each scene by its whiteners (K, 3n, 3n)."""
@@ -40,16 +39,3 @@ def whitened_residuals(
         ],
         axis=None,
     )
-
-
-def poses_at(path: FloatArray, scene: Scene, seen_s: FloatArray) -> FloatArray:
-    """Poses (M, 3) of a path (N, 3) over a scene's samples at run times (M,)."""
-    return np.stack([np.interp(seen_s, scene.time_s, column) for column in path.T], axis=-1)
-
-
-def off_measured(poses: FloatArray, scene: Scene) -> FloatArray:
-    """Measured motion less that of poses (M, 3), (K, n, 3), in the frame of each first pose."""
-    poses = poses[scene.windows]
-    difference = scene.measured - se2.between(poses[:, :1], poses[:, 1:])
-    difference[..., 2] = wrap(difference[..., 2])
-    return difference

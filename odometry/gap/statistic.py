@@ -9,9 +9,10 @@ from odometry.arrays import FloatArray
 from odometry.effects.base import Base
 from odometry.effects.corrected import Added
 from odometry.gap.calibration import Calibration
-from odometry.gap.noise import end_variance
-from odometry.gap.scene import Scene, numbered_pieces
+from odometry.gap.pieces import numbered_pieces
 from odometry.gap.simulate import residuals
+from odometry.windows.dense import DenseWindows
+from odometry.windows.dense_noise import end_variance
 
 RESAMPLES = 1000
 SEED = 0
@@ -26,36 +27,38 @@ class Gap:
     high: float
 
 
-def squared_errors(base: Base, effects: Sequence[Added], scene: Scene) -> FloatArray:
+def squared_errors(base: Base, effects: Sequence[Added], scene: DenseWindows) -> FloatArray:
     """Squared error (K,) of the position at the end of each window [m^2]."""
     ends = residuals(base, effects, scene)[:, -1, :2]
     return np.asarray((ends**2).sum(axis=-1))
 
 
-def gap_of(base: Base, effects: Sequence[Added], scenes: Sequence[Scene], part_s: float) -> Gap:
+def gap_of(
+    base: Base, effects: Sequence[Added], scenes: Sequence[DenseWindows], part_s: float
+) -> Gap:
     """The gap over all windows; resampled are pieces of the runs, not windows."""
     return _pooled([(squared_errors(base, effects, scene), scene) for scene in scenes], part_s)
 
 
-def floor_of(held_back: Sequence[tuple[Base, Scene]], part_s: float) -> Gap:
+def floor_of(held_back: Sequence[tuple[Base, DenseWindows]], part_s: float) -> Gap:
     """The noise floor: the same over stretches of calibration runs, each with its own base."""
     return _pooled([(squared_errors(base, (), scene), scene) for base, scene in held_back], part_s)
 
 
-def floor_there(floor: Gap, calibration: Calibration, scenes: Sequence[Scene]) -> Gap:
+def floor_there(floor: Gap, calibration: Calibration, scenes: Sequence[DenseWindows]) -> Gap:
     """The noise floor as it would be on other runs: faster ones wander further in a window."""
     here = _mean_variance([scene for _, scene in calibration.held_back], calibration)
     ratio = float(np.sqrt(_mean_variance(scenes, calibration) / here))
     return Gap(ratio * floor.value, ratio * floor.low, ratio * floor.high)
 
 
-def _mean_variance(scenes: Sequence[Scene], calibration: Calibration) -> float:
+def _mean_variance(scenes: Sequence[DenseWindows], calibration: Calibration) -> float:
     """Of the position at the end of a window [m^2]."""
     variances = [end_variance(scene, calibration.noise)[:, :2] for scene in scenes]
     return float(np.concatenate(variances).sum(axis=1).mean())
 
 
-def _pooled(errors: Sequence[tuple[FloatArray, Scene]], part_s: float) -> Gap:
+def _pooled(errors: Sequence[tuple[FloatArray, DenseWindows]], part_s: float) -> Gap:
     squares = np.concatenate([of for of, _ in errors])
     scenes, rng = [scene for _, scene in errors], np.random.default_rng(SEED)
     (drawn,) = drawn_gaps((squares,), scenes, part_s, rng)
@@ -65,7 +68,7 @@ def _pooled(errors: Sequence[tuple[FloatArray, Scene]], part_s: float) -> Gap:
 
 def drawn_gaps(
     squares_m2: Sequence[FloatArray],
-    scenes: Sequence[Scene],
+    scenes: Sequence[DenseWindows],
     part_s: float,
     rng: np.random.Generator,
 ) -> FloatArray:

@@ -8,9 +8,9 @@ import numpy as np
 from odometry.arrays import AnyArray, FloatArray, IntArray
 from odometry.effects.base import Base
 from odometry.effects.corrected import Added, corrected_twist
-from odometry.gap.scene import Scene
 from odometry.geometry.angles import wrap
 from odometry.run import UNKNOWN
+from odometry.windows.dense import DenseWindows
 
 CREEPING_M_S = 0.05  # below this forward speed a curvature is taken as at it
 STRAIGHT_RAD_S = 0.05  # windows of slower turns are straight
@@ -38,7 +38,7 @@ class Variable:
 
 
 def window_variables(
-    base: Base, effects: Sequence[Added], scenes: Sequence[Scene]
+    base: Base, effects: Sequence[Added], scenes: Sequence[DenseWindows]
 ) -> tuple[Variable, ...]:
     """Variables that were recorded in every scene and are not constant.
 
@@ -72,7 +72,7 @@ def _varies(values: AnyArray, kind: str) -> bool:
     return len(values) > 0 and bool(np.ptp(values) > CONSTANT)
 
 
-def _of_scene(base: Base, effects: Sequence[Added], scene: Scene) -> list[Variable]:
+def _of_scene(base: Base, effects: Sequence[Added], scene: DenseWindows) -> list[Variable]:
     inputs, means = scene.inputs, _Means(scene)
     twist = corrected_twist(base, effects, inputs)
     treads = (inputs.left + inputs.right) / 2
@@ -115,7 +115,7 @@ def _turns(omega_rad_s: FloatArray) -> AnyArray:
 class _Means:
     """Means over the windows of a scene, of what holds between stamps."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: DenseWindows) -> None:
         self.scene = scene
         ends_s = scene.pose_s[scene.windows[:, [0, -1]]]
         self.middle_s = ends_s.mean(axis=1)

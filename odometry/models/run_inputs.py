@@ -7,6 +7,7 @@ from odometry.gaps import fill_gaps, level_where_missing
 from odometry.grounds import terrains_of
 from odometry.models.inputs import Inputs
 from odometry.run import Run
+from odometry.windows.turns import continuous_yaw
 
 
 def inputs_of(run: Run) -> Inputs:
@@ -49,11 +50,11 @@ def _accelerations(run: Run) -> FloatArray | None:
 def _heading(run: Run) -> FloatArray | None:
     if run.pose is None:
         return None
-    measured = np.isfinite(run.pose["yaw"])
+    yaw = continuous_yaw(run)
+    measured = np.isfinite(yaw)
     if not measured.any():
         return None
-    yaw = np.unwrap(run.pose["yaw"][measured])
-    return np.interp(run.odometry.stamps_s, run.pose.stamps_s[measured], yaw)
+    return np.interp(run.odometry.stamps_s, run.pose.stamps_s[measured], yaw[measured])
 
 
 def _wheel_angles(run: Run) -> FloatArray | None:

@@ -6,8 +6,6 @@ import numpy as np
 from tqdm import tqdm
 
 from odometry.arrays import FloatArray
-from odometry.gap.noise import FIRST_GUESS, Noise, estimated_noise
-from odometry.gap.scene import Scene
 from odometry.identification.identify import robot_of
 from odometry.modes.mode_windows import heard_by_mode, inside, scenes_by_mode
 from odometry.modes.traction import TractionModes
@@ -18,6 +16,8 @@ from odometry.modes.yaw_rate_noise import (
     estimated_yaw_rate_noise,
 )
 from odometry.run import Run
+from odometry.windows.dense import DenseWindows
+from odometry.windows.dense_noise import FIRST_GUESS, Noise, estimated_noise
 
 FIRST_YAW_RATE_NOISE = YawRateNoise(0.05**2)
 ROUNDS = 2  # of a fit weighted by the noise that the one before left
@@ -45,7 +45,7 @@ def identify_traction_modes(
     IdentificationError
         If a run names no mode, or a mode was not driven, or (but with `paper`) does not turn to
         both sides, for long enough.
-    GapError
+    WindowError
         If a run has no window of 2 s without a gap.
     """
     width = robot_of(runs).track_width
@@ -87,7 +87,7 @@ def identify_traction_modes(
     )
 
 
-def _left_open(fits: dict[str, TractionFit], scenes: dict[str, list[Scene]]) -> FloatArray:
+def _left_open(fits: dict[str, TractionFit], scenes: dict[str, list[DenseWindows]]) -> FloatArray:
     """What gains that are not exact add to place and yaw by a metre, and to the yaw rate (3,).
 
     To a place in each direction as much as along or aside, whichever is more.

@@ -97,7 +97,7 @@ def _records(run: Run, speed: FloatArray | None) -> Iterable[tuple[str, Record]]
         speed = signals.tread_speeds_m_s.mean(axis=1)
     table = np.column_stack([speed, signals.measured[:, 1], signals.tread_speeds_m_s])
     step_s = float(np.median(np.diff(signals.stamps_s)))
-    for label, rows in stretches_by_label(signals.stamps_s, signals.labels):
+    for label, rows in stretches_by_label(run, signals.labels):
         if label == UNKNOWN:
             raise IdentificationError(
                 f"{run.folder}: rows {rows[0]} to {rows[-1]} of odometry.csv have no ground; "

@@ -6,9 +6,6 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.arrays import BoolArray
-from odometry.gap.config import GapConfig
-from odometry.gap.errors import GapError
-from odometry.gap.scene import Scene, scene_of, thinned
 from odometry.grounds import terrains_of
 from odometry.identification.errors import IdentificationError
 from odometry.modes.signals import STANDING_M_S
@@ -16,45 +13,48 @@ from odometry.modes.stretches import stretches_by_label
 from odometry.modes.traction import LEFT_TURN, RIGHT_TURN, turns_of
 from odometry.modes.yaw_rate_noise import Heard, heard_of
 from odometry.run import UNKNOWN, Run
+from odometry.windows.dense import DenseWindows, dense_windows_of, thinned
 from odometry.windows.errors import WindowError
 
 HORIZONS_S = (4.0, 2.0)  # of windows, the second where poses are chained for less than the first
 LEAST_S = 10.0  # of driving in each mode, in windows, and of its turns to each side
+MOST_WINDOWS = 300  # of a mode and run
 MOST_POSES = 40  # of a window, after its first
 TURNING = 0.02  # of the treads' speed: less difference is no turn
 
 
 def scenes_by_mode(
     runs: Sequence[Run], *, paper: bool = False
-) -> tuple[float, dict[str, list[Scene]]]:
+) -> tuple[float, dict[str, list[DenseWindows]]]:
     """The longest horizon of which there is enough, and the windows of each mode in order."""
     for horizon_s in HORIZONS_S[:-1]:
         try:
             return horizon_s, _windows(runs, horizon_s, paper=paper)
-        except (GapError, WindowError):
+        except WindowError:
             continue
     return HORIZONS_S[-1], _windows(runs, HORIZONS_S[-1], paper=paper)
 
 
-def _windows(runs: Sequence[Run], horizon_s: float, *, paper: bool) -> dict[str, list[Scene]]:
-    config = GapConfig(horizon_s=horizon_s)
-    scenes: dict[str, list[Scene]] = {}
+def _windows(
+    runs: Sequence[Run], horizon_s: float, *, paper: bool
+) -> dict[str, list[DenseWindows]]:
+    scenes: dict[str, list[DenseWindows]] = {}
     for run in runs:
-        scene = _fewer_poses(scene_of(run, config))
+        scene = _fewer_poses(dense_windows_of(run, horizon_s))
         for name in map(str, np.unique(terrains_of(run))):
             if name == UNKNOWN:
                 raise IdentificationError(
                     f"{run.folder}: names no mode; expected [run] terrain in run.toml or a column "
                     "terrain"
                 )
-            scenes.setdefault(name, []).append(thinned(_on(scene, name), config.most_windows))
+            scenes.setdefault(name, []).append(thinned(_on(scene, name), MOST_WINDOWS))
     found = {name: [one for one in scenes[name] if len(one)] for name in sorted(scenes)}
     for name, of in found.items():
         _check(name, of, paper=paper)
     return found
 
 
-def _fewer_poses(scene: Scene) -> Scene:
+def _fewer_poses(scene: DenseWindows) -> DenseWindows:
     """At most MOST_POSES after the first of each window, evenly chosen."""
     poses = scene.windows.shape[1]
     if poses <= MOST_POSES + 1:
@@ -67,13 +67,13 @@ def heard_by_mode(runs: Sequence[Run]) -> dict[str, list[Heard]]:
     """Stretches of each mode that a gyroscope heard."""
     found: dict[str, list[Heard]] = {}
     for run in runs:
-        for name, rows in stretches_by_label(run.odometry.stamps_s, terrains_of(run)):
+        for name, rows in stretches_by_label(run, terrains_of(run)):
             heard = heard_of(run, rows)
             found.setdefault(name, []).extend([] if heard is None else [heard])
     return found
 
 
-def _check(name: str, scenes: Sequence[Scene], *, paper: bool) -> None:
+def _check(name: str, scenes: Sequence[DenseWindows], *, paper: bool) -> None:
     """Whether there is enough to tell all gains."""
     lasts_s, left_s, right_s = np.sum([(0.0, 0.0, 0.0), *map(_driven_s, scenes)], axis=0)
     if lasts_s < LEAST_S:
@@ -88,7 +88,7 @@ def _check(name: str, scenes: Sequence[Scene], *, paper: bool) -> None:
         )
 
 
-def _driven_s(scene: Scene) -> tuple[float, float, float]:
+def _driven_s(scene: DenseWindows) -> tuple[float, float, float]:
     """For how long the windows of a scene move, turn to the left, and turn to the right."""
     speeds = scene.inputs.tread_speeds_m_s
     fastest = np.abs(speeds).max(axis=1)
@@ -101,14 +101,14 @@ def _driven_s(scene: Scene) -> tuple[float, float, float]:
     return float(scene.steps_s[moving].sum()), float(left_s), float(right_s)
 
 
-def inside(scene: Scene) -> BoolArray:
+def inside(scene: DenseWindows) -> BoolArray:
     """Whether each sample (N,) lies in a window."""
     starts_s, ends_s = scene.pose_s[scene.windows[:, [0, -1]]].T
     window = np.searchsorted(starts_s, scene.time_s, side="right") - 1
     return np.asarray((window >= 0) & (scene.time_s < ends_s[window]))
 
 
-def _on(scene: Scene, name: str) -> Scene:
+def _on(scene: DenseWindows, name: str) -> DenseWindows:
     """Windows of which every pose is in one mode."""
     labels = terrains_of(scene.run)
     odometry_s = scene.run.odometry.stamps_s - scene.run.odometry.stamps_s[0]

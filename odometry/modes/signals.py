@@ -1,6 +1,6 @@
 """What a bank of filters is fed with: inputs that hold from stamp to stamp, and measurements."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -9,6 +9,8 @@ from odometry.errors import RunFolderError
 from odometry.grounds import terrains_of
 from odometry.run import Run
 from odometry.table import Table
+from odometry.windows.gaps import odometry_gaps
+from odometry.windows.turns import continuous_yaw
 
 AROUND_S = 0.15  # on either side: over which a speed is read from poses
 STANDING_M_S = 0.01  # of a tread, or less
@@ -28,15 +30,29 @@ class Signals:
         NaN where an entry was not measured.
     labels : (N,) of str
         Ground or mode that the run names, for identification and scoring.
+    gaps_s : (G, 2)
+        Between which stamps the speeds in force are not known.
     """
 
     stamps_s: FloatArray
     tread_speeds_m_s: FloatArray
     measured: FloatArray
     labels: AnyArray
+    gaps_s: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
 
     def __len__(self) -> int:
         return len(self.stamps_s)
+
+    def after(self, row: int) -> "Signals":
+        """The signals from a row on."""
+        later = slice(row, None)
+        return Signals(
+            self.stamps_s[later],
+            self.tread_speeds_m_s[later],
+            self.measured[later],
+            self.labels[later],
+            self.gaps_s[self.gaps_s[:, 0] >= self.stamps_s[row]],
+        )
 
     @property
     def accelerations_m_s2(self) -> FloatArray:
@@ -68,7 +84,8 @@ def velocity_signals(run: Run) -> Signals:
     if run.velocity is not None:
         speed = _nearest(run.velocity, "vx", stamps_s)
     measured = np.column_stack([speed, omega])
-    return Signals(stamps_s, run.odometry.stack("v_left", "v_right"), measured, terrains_of(run))
+    speeds = run.odometry.stack("v_left", "v_right")
+    return Signals(stamps_s, speeds, measured, terrains_of(run), odometry_gaps(run).spans_s)
 
 
 def pose_signals(run: Run) -> Signals:
@@ -96,7 +113,8 @@ def pose_signals(run: Run) -> Signals:
     if "gyro_z" in run.odometry:
         measured[np.searchsorted(stamps_s, odometry_s), 3] = run.odometry["gyro_z"]
     speeds = run.odometry.stack("v_left", "v_right")[rows]
-    return Signals(stamps_s, speeds, measured, terrains_of(run)[rows])
+    gaps_s = odometry_gaps(run).spans_s
+    return Signals(stamps_s, speeds, measured, terrains_of(run)[rows], gaps_s)
 
 
 def accelerations_m_s2(stamps_s: FloatArray, tread_speeds_m_s: FloatArray) -> FloatArray:
@@ -120,7 +138,7 @@ def forward_speed_m_s(run: Run) -> FloatArray | None:
     poses = run.pose.stack("x", "y", "yaw")
     known = np.isfinite(poses).all(axis=1)
     pose_s, poses = run.pose.stamps_s[known], poses[known]
-    poses[:, 2] = np.unwrap(poses[:, 2])
+    poses[:, 2] = continuous_yaw(run)[known]
     before, here, after = (
         np.column_stack([np.interp(stamps_s + shift, pose_s, column) for column in poses.T])
         for shift in (-AROUND_S, 0.0, AROUND_S)

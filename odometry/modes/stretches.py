@@ -4,15 +4,15 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from odometry.arrays import AnyArray, FloatArray, IntArray
+from odometry.arrays import AnyArray, IntArray
+from odometry.run import Run
+from odometry.windows.gaps import odometry_gaps
 
-LONG = 5.0  # periods from which a step is a gap
 
-
-def stretches_by_label(stamps_s: FloatArray, labels: AnyArray) -> Iterator[tuple[str, IntArray]]:
-    """Label and rows of each stretch in order; stamps (N,), labels (N,)."""
-    steps = np.diff(stamps_s)
-    gap = steps > LONG * np.median(steps) if len(steps) else np.zeros(0, dtype=np.bool_)
-    cuts = np.flatnonzero((labels[1:] != labels[:-1]) | gap) + 1
+def stretches_by_label(run: Run, labels: AnyArray) -> Iterator[tuple[str, IntArray]]:
+    """Label and rows of odometry.csv of each stretch in order; labels (N,)."""
+    stamps_s = run.odometry.stamps_s
+    gap = np.isin(stamps_s, odometry_gaps(run).spans_s[:, 1])
+    cuts = np.flatnonzero((labels[1:] != labels[:-1]) | gap[1:]) + 1
     for rows in np.split(np.arange(len(stamps_s)), cuts):
         yield str(labels[rows[0]]), rows

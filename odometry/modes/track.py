@@ -17,6 +17,7 @@ from odometry.modes.sight import SeenGround, mode_chains
 from odometry.modes.signals import STANDING_M_S, Signals
 from odometry.modes.tempered import TemperedBank
 from odometry.run import Run
+from odometry.windows.spans import touched
 
 SETTLED_S = 1e4  # after which a chain has forgotten where it began
 
@@ -137,7 +138,10 @@ def follow_signals(
         return Imm(bank, chains[chain].transition, modes.state_angles, config.floor)
 
     roughness = modes.roughness(signals)
-    measured = np.where(_moving(signals)[:, None], signals.measured, np.nan)
+    gap_ends = np.searchsorted(signals.stamps_s, signals.gaps_s[:, 1])
+    told = _moving(signals) & ~touched(signals.gaps_s, signals.stamps_s, signals.stamps_s)
+    told[gap_ends] = False
+    measured = np.where(told[:, None], signals.measured, np.nan)
     first = chains[in_force[0]].transition(SETTLED_S).mean(axis=0)
     belief = ModeBelief.alike(mean, covariance, first)
     size = len(signals)
@@ -154,6 +158,8 @@ def follow_signals(
                 measured[row],
                 float(signals.stamps_s[row] - signals.stamps_s[row - 1]),
             )
+        if row in gap_ends:  # what moved in a gap tells nothing of the modes
+            belief = ModeBelief.alike(*modes.start(signals.after(row)), belief.probabilities)
         probabilities[row] = belief.probabilities
         mean, covariance = imm.merged(belief)
         variances = np.diag(covariance) + probabilities[row] @ lasting

@@ -7,12 +7,12 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.gap.noise import Noise, whitening
-from odometry.gap.scene import Scene
-from odometry.gap.simulate import off_measured, poses_at
 from odometry.models.icr import GUESSED_WIDTHS
 from odometry.modes.traction import SHORTEST_LAG_S, lagged, requested, turns_of, twists_of
 from odometry.modes.yaw_rate_noise import Heard, YawRateNoise
+from odometry.windows.dense import DenseWindows
+from odometry.windows.dense_motion import off_measured, poses_at
+from odometry.windows.dense_noise import Noise, whitening
 from odometry.windows.motion import level_path
 
 FIRST_LAG_S = 0.05
@@ -39,7 +39,7 @@ class TractionFit:
     lag_s: float
     covariances: FloatArray
 
-    def twist_variances(self, scene: Scene) -> FloatArray:
+    def twist_variances(self, scene: DenseWindows) -> FloatArray:
         """What the runs leave open of (v_x, v_y, omega) at each sample (N, 3) of a scene."""
         speeds = scene.inputs.tread_speeds_m_s
         inputs = requested(speeds, scene.run.robot.track_width)
@@ -48,7 +48,7 @@ class TractionFit:
 
 
 def fitted(
-    scenes: Sequence[Scene],
+    scenes: Sequence[DenseWindows],
     heard: Sequence[Heard],
     noise: Noise,
     yaw_rate_noise: YawRateNoise,
@@ -88,7 +88,7 @@ def fitted(
     return TractionFit(*fit_at(np.asarray(found.x)), of_gains)
 
 
-def residuals(gains: FloatArray, lag_s: float, scene: Scene) -> FloatArray:
+def residuals(gains: FloatArray, lag_s: float, scene: DenseWindows) -> FloatArray:
     """Measured less predicted motion (K, n, 3) of the windows of a scene."""
     twists = twists_of(gains, scene.inputs.tread_speeds_m_s, scene.run.robot.track_width)
     yaw_rates = lagged(twists[:, 2], scene.time_s, lag_s)

@@ -8,11 +8,11 @@ from matplotlib.figure import Figure
 
 from odometry.arrays import FloatArray
 from odometry.gap.result import Closing, GapResult
-from odometry.gap.scene import Scene
 from odometry.gap.statistic import squared_errors
 from odometry.report.figure import save_figure
 from odometry.report.html import Picture
 from odometry.report.palette import LINE_STYLES, LineStyle
+from odometry.windows.dense import DenseWindows
 
 WIDTH_IN = 7.0
 BEFORE, AFTER = LINE_STYLES[1], LINE_STYLES[0]
@@ -150,7 +150,7 @@ def _draw_closing(axes: Axes, row: float, closing: Closing) -> None:
         )
 
 
-def _draw_over_time(axes: Axes, result: GapResult, scene: Scene) -> None:
+def _draw_over_time(axes: Axes, result: GapResult, scene: DenseWindows) -> None:
     floor = result.holdout.noise_floor
     axes.axhspan(floor.low, floor.high, color=FLOOR, alpha=0.3, linewidth=0)
     axes.axhline(floor.value, color=FLOOR, linewidth=1.0, label="noise floor")

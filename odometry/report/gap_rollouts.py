@@ -9,7 +9,6 @@ from matplotlib.figure import Figure
 from odometry.effects.base import Base
 from odometry.effects.corrected import Added
 from odometry.gap.result import GapResult
-from odometry.gap.scene import Scene
 from odometry.gap.simulate import simulated_poses
 from odometry.geometry import se2
 from odometry.report.figure import save_figure
@@ -18,6 +17,7 @@ from odometry.report.html import Picture
 from odometry.report.map_plots import plot_paths
 from odometry.report.palette import REFERENCE_STYLE
 from odometry.trajectory import Trajectory
+from odometry.windows.dense import DenseWindows
 
 MEASURED_NAME, BEFORE_NAME, AFTER_NAME = "measured", "before", "after"
 STYLES = {MEASURED_NAME: REFERENCE_STYLE, BEFORE_NAME: BEFORE, AFTER_NAME: AFTER}
@@ -43,7 +43,7 @@ def rollout_pictures(result: GapResult, folder: Path) -> list[Picture]:
     return found
 
 
-def rollouts(result: GapResult, scene: Scene) -> dict[str, Trajectory]:
+def rollouts(result: GapResult, scene: DenseWindows) -> dict[str, Trajectory]:
     """Paths by name at the stamps of the measured poses."""
     bare = rollout(result.calibration.base, (), scene)
     return {
@@ -53,7 +53,7 @@ def rollouts(result: GapResult, scene: Scene) -> dict[str, Trajectory]:
     }
 
 
-def rollout(base: Base, effects: Sequence[Added], scene: Scene) -> Trajectory:
+def rollout(base: Base, effects: Sequence[Added], scene: DenseWindows) -> Trajectory:
     """Simulated poses of a whole run, as the reference sensor would see them, from its first."""
     seen = simulated_poses(base, effects, scene)
     moved = se2.compose(scene.poses[:1], se2.between(seen[:1], seen))

@@ -1,7 +1,8 @@
 """Windows of recorded motion: inputs on the way, and the measured motion from end to end."""
 
+from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from odometry.run import Run
 from odometry.runs import run_names
 from odometry.windows.config import WindowConfig
 from odometry.windows.errors import WindowError
+from odometry.windows.left_out import STATIONARY, straddling, summed, words
 from odometry.windows.record import Record, record_of
 
 STANDING_M = 1e-3  # less wheel travel than this says nothing of a model
@@ -38,7 +40,9 @@ class Windows:
         Wheel travel.
     start_s : (K,)
     run, terrain : (K,) of str
-        Name of the run (its path where names are alike), and of the ground.
+        Name of the run (its path where names are alike), and of the terrain.
+    left_out : Counter of str
+        How many windows of the runs there are not, by reason (`odometry.windows.left_out`).
     """
 
     inputs: Inputs
@@ -52,6 +56,7 @@ class Windows:
     start_s: FloatArray
     run: AnyArray
     terrain: AnyArray
+    left_out: Counter[str] = field(default_factory=Counter)
 
     def __len__(self) -> int:
         return len(self.first)
@@ -75,13 +80,15 @@ class Windows:
             self.start_s[chosen],
             self.run[chosen],
             self.terrain[chosen],
+            self.left_out,
         )
 
 
 def windows_of(runs: Sequence[Run], config: WindowConfig) -> Windows:
     """Cut runs into windows of one horizon; none straddles a gap or a change of `window`.
 
-    Windows in which the wheels stand still are left out.
+    Windows in which the wheels stand still are left out, and those in which the number of whole
+    turns is not known.
 
     Raises
     ------
@@ -95,7 +102,7 @@ def windows_of(runs: Sequence[Run], config: WindowConfig) -> Windows:
         for run, name in zip(runs, run_names(runs), strict=True)
     ]
     if not sum(map(len, parts)):
-        raise WindowError(_no_window(runs, config))
+        raise WindowError(_no_window(runs, config, summed(part.left_out for part in parts)))
     samples = np.cumsum([0, *(len(part.steps_s) for part in parts[:-1])])
     poses = np.cumsum([0, *(1 + part.last_pose.max(initial=-1) for part in parts[:-1])])
     return Windows(
@@ -110,11 +117,12 @@ def windows_of(runs: Sequence[Run], config: WindowConfig) -> Windows:
         np.concatenate([part.start_s for part in parts]),
         np.concatenate([part.run for part in parts]),
         np.concatenate([part.terrain for part in parts]),
+        summed(part.left_out for part in parts),
     )
 
 
 def _windows_of_record(record: Record, name: str, config: WindowConfig) -> Windows:
-    pose_s = record.stamps_s[record.pose_samples]
+    pose_s = record.pose_s
     travel_m = record.travel_m[record.pose_samples]
     measure, horizon = (
         (pose_s, config.horizon_s) if config.horizon_s else (travel_m, config.horizon_m)
@@ -125,6 +133,9 @@ def _windows_of_record(record: Record, name: str, config: WindowConfig) -> Windo
         found.append(begin + _windows_of_stretch(measure[begin:end], horizon, config))
     first, last = np.concatenate(found).T
     moved = travel_m[last] - travel_m[first] > STANDING_M
+    unbroken = _windows_of_stretch(measure, horizon, config)
+    left_out = straddling(record.breaks, *unbroken.T)
+    left_out[STATIONARY] += int(np.count_nonzero(~moved))
     first, last = first[moved], last[moved]
     return Windows(
         record.inputs,
@@ -138,14 +149,14 @@ def _windows_of_record(record: Record, name: str, config: WindowConfig) -> Windo
         pose_s[first],
         np.full(len(first), name, dtype=object),
         record.terrains[first],
+        +left_out,
     )
 
 
 def _motion(poses: FloatArray, first: IntArray, last: IntArray) -> FloatArray:
-    """Poses (K, 3) of the ends seen from the starts, the turn counted in full over all poses."""
+    """Poses (K, 3) of the ends seen from the starts, with whole turns."""
     motion = se2.between(poses[first], poses[last])
-    yaw = np.unwrap(poses[:, 2])
-    motion[:, 2] = yaw[last] - yaw[first]
+    motion[:, 2] = poses[last, 2] - poses[first, 2]
     return np.asarray(motion)
 
 
@@ -157,11 +168,16 @@ def _windows_of_stretch(measure: FloatArray, horizon: float, config: WindowConfi
     return spatial_horizons(measure, horizon, config.stride * horizon)
 
 
-def _no_window(runs: Sequence[Run], config: WindowConfig) -> str:
+def _no_window(runs: Sequence[Run], config: WindowConfig, left_out: Counter[str]) -> str:
     wanted = f"{config.horizon_s:g} s" if config.horizon_s else f"{config.horizon_m:g} m"
     longest = max(float(run.wheel_travel_m[-1]) for run in runs)
-    return (
-        f"no window of {wanted} in {', '.join(run.name for run in runs)}: the longest run has "
-        f"{longest:.2f} m of wheel travel, and windows do not straddle gaps of odometry.csv or "
-        "pose.csv or changes of `window`; choose a shorter horizon"
+    return "; ".join(
+        part
+        for part in (
+            f"no window of {wanted} in {', '.join(run.name for run in runs)}: the longest run has "
+            f"{longest:.2f} m of wheel travel",
+            words(left_out),
+            "choose a shorter horizon",
+        )
+        if part
     )

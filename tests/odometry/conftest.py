@@ -13,14 +13,14 @@ from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.calibration import Calibration
 from odometry.gap.config import GapConfig
 from odometry.gap.locate import locate
-from odometry.gap.noise import Noise
 from odometry.gap.result import Closing, Equivalent, GapResult, NamedEffect, Rival
-from odometry.gap.scene import scene_of
 from odometry.gap.statistic import floor_of, gap_of
 from odometry.gap.uncertain import Uncertain
 from odometry.models.icr import Icr
 from odometry.run import Robot, Run
 from odometry.table import Table
+from odometry.windows.dense import dense_windows_of
+from odometry.windows.dense_noise import Noise
 
 ROBOT = Robot(track_width=0.55, name="R", wheel_radius=0.165)
 Y_LEFT, Y_RIGHT, X_ICR = 0.45, -0.42, 0.02
@@ -73,7 +73,7 @@ def table(columns):
 
 
 def scene(seed, effect=None, **settings):
-    return scene_of(drive(seed, effect, **settings), GapConfig())
+    return dense_windows_of(drive(seed, effect, **settings), GapConfig().horizon_s)
 
 
 def scaled(columns, twist):  # noqa: ARG001 - of the face of effects

@@ -1,4 +1,4 @@
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -140,6 +140,32 @@ def test_the_source_sees_the_first_frame_and_each_with_the_estimate_before_it(ma
     replayed(run, source)
     before = [STAMPS_S[0], *STAMPS_S[:-1]]
     assert source.shown == list(zip(STAMPS_S, before, strict=True))
+
+
+def gap_run(make_run):
+    """A left turn by the ICRs of "b"; from 10 to 13 s it went straight on, without odometry."""
+    t = np.arange(0, 20, 0.05)
+    lost = (t > 10.0) & (t < 13.0)
+    omega = np.where(lost, 0.0, 0.3 / 1.4)
+    ahead, aside = (0.6 * 0.8 + 0.3 * 0.6) / 1.4, 0.1 * omega
+    yaw = np.cumsum(np.append(0.0, omega[:-1])) * 0.05
+    x = np.cumsum(ahead * np.cos(yaw) - aside * np.sin(yaw)) * 0.05
+    y = np.cumsum(ahead * np.sin(yaw) + aside * np.cos(yaw)) * 0.05
+    odometry = "t,v_left,v_right\n" + "".join(f"{s},0.3,0.6\n" for s in t[~lost])
+    rows = np.column_stack([t, x, y, yaw])[::4]
+    pose = "t,x,y,yaw\n" + "".join(",".join(map(str, row)) + "\n" for row in rows.tolist())
+    return Run.read(make_run(odometry=odometry, pose=pose))
+
+
+def test_a_filter_learns_nothing_of_a_gap_of_odometry(make_run):
+    run = gap_run(make_run)
+    result = replayed(run, ConstantTerrain("b"))
+    after = int(np.searchsorted(result.stamps_s, 13.5))
+    np.testing.assert_allclose(result.means[after, 3:5], [0.8, -0.6], atol=0.005)
+    blind = replayed(replace(run, pose=run.pose.rows(slice(0, 50))), ConstantTerrain("b"))
+    before, ended = np.searchsorted(blind.stamps_s, [9.9, 13.0])
+    assert blind.sigmas[before, 0] < 1.0
+    assert blind.sigmas[ended, 0] > 5.0
 
 
 def test_what_a_replay_holds(make_run):

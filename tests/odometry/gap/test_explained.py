@@ -9,8 +9,8 @@ from odometry.gap.config import GapConfig
 from odometry.gap.fit import Fitter
 from odometry.gap.measured import measured_of
 from odometry.gap.name import explained
-from odometry.gap.scene import scene_of
 from odometry.gap.statistic import floor_of
+from odometry.windows.dense import dense_windows_of
 
 CONFIG = GapConfig()
 
@@ -27,7 +27,9 @@ def study(make_scene, known):
         run = make_scene(1, planted, top_m_s=0.5).run
         level = {name: 0.0 * run.odometry[name] for name in ("roll", "pitch")}
         columns = {**run.odometry.columns, **level}
-        scene = scene_of(replace(run, odometry=replace(run.odometry, columns=columns)), CONFIG)
+        scene = dense_windows_of(
+            replace(run, odometry=replace(run.odometry, columns=columns)), CONFIG.horizon_s
+        )
         fitter = Fitter(known, measured_of([scene], known, CONFIG))
         floor = floor_of(known.held_back, CONFIG.part_s)
         return explained(fitter, floor, CONFIG, lambda: None)

@@ -11,9 +11,9 @@ from odometry.gap.calibration import calibrated
 from odometry.gap.config import GapConfig
 from odometry.gap.fit import Fitted, Fitter
 from odometry.gap.measured import measured_of
-from odometry.gap.scene import scene_of, thinned
 from odometry.models.icr import Icr
 from odometry.run import Run
+from odometry.windows.dense import dense_windows_of, thinned
 from tests.blind.cases import make_case
 
 CONFIG = GapConfig()
@@ -81,7 +81,7 @@ def test_inertia_is_found_beside_a_delay(tmp_path):
     case = make_case("inertia+time_offset", 3, tmp_path)
     measured, calibration = (Run.read(folder) for folder in (case.measured, case.calibration))
     known = calibrated([calibration], Icr(), calibration.robot, CONFIG)
-    scene = thinned(scene_of(measured, CONFIG), CONFIG.most_windows)
+    scene = thinned(dense_windows_of(measured, CONFIG.horizon_s), CONFIG.most_windows)
     fitter = Fitter(known, measured_of([scene], known, CONFIG))
     robot = known.base.robot
     alone = fitter.fit([InertiaByIndices(robot.mass, robot.track_width)])

@@ -5,8 +5,8 @@ from dataclasses import astuple, replace
 import numpy as np
 import pytest
 
-from odometry.gap.noise import Noise
 from odometry.gap.statistic import Gap, floor_there
+from odometry.windows.dense_noise import Noise
 
 FLOOR = Gap(0.03, 0.02, 0.05)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.gap.calibration import TOGETHER_S, _information
-from odometry.gap.scene import pieces
+from odometry.gap.pieces import pieces
 from odometry.gap.solve import Solved
 
 

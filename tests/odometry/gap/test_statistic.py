@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.gap.scene import pieces
+from odometry.gap.pieces import pieces
 from odometry.gap.simulate import simulated_poses
 from odometry.gap.statistic import drawn_gaps, floor_of, gap_of, squared_errors
 from odometry.geometry import se2

@@ -3,13 +3,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.gap.errors import GapError
-from odometry.gap.noise import Noise
 from odometry.identification.errors import IdentificationError
 from odometry.modes.identify_traction import identify_traction_modes
 from odometry.modes.mode_windows import MOST_POSES, heard_by_mode, scenes_by_mode
 from odometry.modes.traction_fit import fitted
 from odometry.modes.yaw_rate_noise import LASTING_S, NOT_MEASURED, YawRateNoise
+from odometry.windows.dense_noise import Noise
+from odometry.windows.errors import WindowError
 from tests.odometry.modes.mode_drives import (
     ROBOT,
     asked_twists,
@@ -163,7 +163,7 @@ def test_turns_that_no_window_holds_do_not_count():
     columns = {
         name: np.where(to_right & (name != "t"), np.nan, c) for name, c in run.pose.columns.items()
     }
-    with pytest.raises((IdentificationError, GapError)):
+    with pytest.raises((IdentificationError, WindowError)):
         identify_traction_modes([replace(run, pose=replace(run.pose, columns=columns))])
 
 
@@ -237,7 +237,7 @@ def test_too_short_a_run():
     for size, lasts in ((500, r"8\.\d"), (250, r"3\.\d")):
         with pytest.raises(IdentificationError, match=f"none: {lasts} s of driving .* 10 s"):
             identify_traction_modes([drive(1, "none", size=size)])
-    with pytest.raises(GapError, match="drive: no window of 2 s"):
+    with pytest.raises(WindowError, match="drive: no window of 2 s"):
         identify_traction_modes([drive(1, "none", size=100)])
 
 

@@ -91,17 +91,24 @@ def test_forward_speed_is_the_measured_one_where_there_is_one(run):
     assert forward_speed_m_s(run) is None
 
 
+def driving(stamps_s):
+    """A run that turns, and of which nothing but the treads was recorded."""
+    ones = np.ones(len(stamps_s))
+    return Run(Path("one"), Robot(0.5), {}, table(t=stamps_s, v_left=ones, v_right=2 * ones))
+
+
 @given(st.lists(st.tuples(st.sampled_from("ab"), st.booleans()), min_size=1, max_size=20))
 def test_stretches_are_whole_even_and_of_one_label(rows):
     labels = np.array([label for label, _ in rows], dtype=object)
-    steps = np.array([9.0 if gap else 1.0 for _, gap in rows])
-    found = list(stretches_by_label(np.cumsum(steps), labels))
+    steps = np.array([30.0 if gap else 1.0 for _, gap in rows])
+    found = list(stretches_by_label(driving(np.cumsum(steps)), labels))
     assert np.concatenate([part for _, part in found]).tolist() == list(range(len(rows)))
     for label, part in found:
         assert set(labels[part]) == {label}
 
 
-def test_a_stretch_ends_at_a_gap():
-    stamps_s = np.array([0.0, 0.1, 0.2, 0.3, 1.0, 1.1])
-    parts = [rows.tolist() for _, rows in stretches_by_label(stamps_s, np.array(["a"] * 6))]
-    assert parts == [[0, 1, 2, 3], [4, 5]]
+@pytest.mark.parametrize(("pause_s", "parts"), [(2.5, [4, 2]), (0.9, [6])])
+def test_a_stretch_ends_at_a_gap_but_not_at_a_hold(pause_s, parts):
+    stamps_s = np.array([0.0, 0.1, 0.2, 0.3, 0.3 + pause_s, 0.4 + pause_s])
+    found = [len(rows) for _, rows in stretches_by_label(driving(stamps_s), np.array(["a"] * 6))]
+    assert found == parts

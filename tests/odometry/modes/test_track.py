@@ -65,6 +65,27 @@ def test_a_change_of_ground_is_told_within_seconds(run):
     assert track.labels.tolist() == np.repeat(NAMES, CHANGE).tolist()
 
 
+def test_what_moves_in_a_gap_of_odometry_tells_nothing(run):
+    """For 2 s on ice the speeds in force turn two thirds as much as the treads truly did."""
+    signals = SET.modes.signals(run)
+    gap = slice(500, 600)
+    treads = signals.tread_speeds_m_s.copy()
+    middle = treads[gap].mean(axis=1, keepdims=True)
+    treads[gap] = middle + 2 / 3 * (treads[gap] - middle)
+    lost = replace(signals, tread_speeds_m_s=treads)
+    spans_s = signals.stamps_s[[[gap.start, gap.stop]]]
+    naive, told = (
+        follow_signals(one, SET).probabilities[:, 0]
+        for one in (lost, replace(lost, gaps_s=spans_s))
+    )
+    assert naive[gap].min() < 0.01  # as if it were tar
+    assert told[500:700].min() > 0.8  # less by what may have changed meanwhile
+    changed = np.where(np.arange(2 * CHANGE)[:, None] // 100 == 5, 99.0, signals.measured)
+    changed[gap.start] = signals.measured[gap.start]
+    same = follow_signals(replace(lost, measured=changed, gaps_s=spans_s), SET)
+    np.testing.assert_array_equal(same.probabilities[:, 0], told)
+
+
 def test_probabilities_sum_to_one_and_keep_their_floor(run):
     track = follow_modes(run, SET, ModesConfig(floor=0.01))
     np.testing.assert_allclose(track.probabilities.sum(axis=1), 1.0, atol=1e-12)

@@ -6,17 +6,19 @@ import pytest
 from odometry.run import UNKNOWN, Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.errors import WindowError
+from odometry.windows.left_out import UNKNOWN_TURNS
 from odometry.windows.record import record_of
 
 CONFIG = WindowConfig(pose_gap_s=0.5)
+SLOW = 2.0**-10  # [m/s]: turns too slow for their count to be in doubt
 SETTINGS = "[robot]\ntrack_width = 0.4\n"
 
 
 def odometry(stamps_s, **columns):
-    """v_left counts the rows from 1, v_right is its negative."""
+    """v_left counts the rows from 1 in SLOW, v_right is its negative."""
     names = ["t", "v_left", "v_right", *columns]
-    rows = zip(stamps_s, *columns.values(), strict=True)
-    lines = [",".join(map(str, (row[0], i, -i, *row[1:]))) for i, row in enumerate(rows, start=1)]
+    rows = enumerate(zip(stamps_s, *columns.values(), strict=True), start=1)
+    lines = [",".join(map(str, (row[0], SLOW * i, -SLOW * i, *row[1:]))) for i, row in rows]
     return "\n".join([",".join(names), *lines]) + "\n"
 
 
@@ -48,10 +50,10 @@ def test_stamps_are_merged_and_the_row_in_force_is_the_last_before(record):
     """A pose at a stamp of odometry is no sample of its own."""
     merged = record(odometry([0.0, 0.2, 0.4, 0.6]), pose([0.1, 0.2, 0.35]))
     assert merged.stamps_s.tolist() == [0.0, 0.1, 0.2, 0.35, 0.4, 0.6]
-    assert merged.inputs.left.tolist() == [1, 1, 2, 2, 3, 4]
-    assert merged.inputs.right.tolist() == [-1, -1, -2, -2, -3, -4]
+    assert (merged.inputs.left / SLOW).tolist() == [1, 1, 2, 2, 3, 4]
+    assert (merged.inputs.right / SLOW).tolist() == [-1, -1, -2, -2, -3, -4]
     assert merged.stamps_s[merged.pose_samples].tolist() == [0.1, 0.2, 0.35]
-    np.testing.assert_allclose(merged.travel_m, [0, 0.1, 0.2, 0.5, 0.6, 1.2], rtol=1e-14)
+    np.testing.assert_allclose(merged.travel_m / SLOW, [0, 0.1, 0.2, 0.5, 0.6, 1.2], rtol=1e-14)
     assert merged.stretch.tolist() == [0, 0, 0]
 
 
@@ -97,26 +99,36 @@ def test_poses_that_are_always_seconds_apart_have_no_pause(record):
 @pytest.mark.parametrize(
     ("pose_s", "expected"),
     [
-        ([0.15, 0.3, 0.7, 0.75], [[0.15, 0.3], [0.7, 0.75]]),
-        ([0.15, 0.35, 0.65, 0.75], [[0.15], [0.35], [0.65], [0.75]]),
-        ([0.15, 0.25, 0.45, 0.7], [[0.15, 0.25], [0.45], [0.7]]),
-        ([0.15, 0.3, 0.45, 0.7], [[0.15, 0.3], [0.45], [0.7]]),
+        ([0.15, 0.3, 1.5, 1.55], [[0.15, 0.3], [1.5, 1.55]]),
+        ([0.15, 0.35, 1.4, 1.55], [[0.15], [0.35], [1.4], [1.55]]),
+        ([0.15, 0.25, 0.45, 1.5], [[0.15, 0.25], [0.45], [1.5]]),
+        ([0.15, 0.3, 0.45, 1.5], [[0.15, 0.3], [0.45], [1.5]]),
         ([0.1, 0.3], [[0.1, 0.3]]),
-        ([0.7, 0.9], [[0.7, 0.9]]),
+        ([1.5, 1.7], [[1.5, 1.7]]),
     ],
     ids=["at both edges", "two inside", "one inside", "edge and inside", "before", "after"],
 )
-def test_a_pause_of_the_odometry_breaks_a_stretch(make_run, pose_s, expected):
-    """0.01 s apart, but from 0.3 to 0.7 nothing: no two poses across it, or in it, are one."""
-    stamps_s = np.round(np.r_[np.arange(0, 0.301, 0.01), np.arange(0.7, 1, 0.01)], 2)
+def test_a_gap_of_the_odometry_breaks_a_stretch(make_run, pose_s, expected):
+    """0.01 s apart, but from 0.3 to 1.5 nothing: no two poses across it, or in it, are one."""
+    stamps_s = np.round(np.r_[np.arange(0, 0.301, 0.01), np.arange(1.5, 1.8, 0.01)], 2)
     run = Run.read(make_run(odometry=odometry(stamps_s), pose=pose(pose_s)))
-    assert groups(record_of(run, CONFIG)) == expected
+    assert groups(record_of(run, WindowConfig(pose_gap_s=10.0))) == expected
 
 
-def test_five_usual_periods_are_no_pause_yet(record):
-    """Periods 1 but one of 4.9, in tenths of a second."""
-    stamps_s = np.round(np.r_[np.arange(10) * 0.1, 0.9 + 0.49 + np.arange(10) * 0.1], 2)
-    assert len(groups(record(odometry(stamps_s), pose([0.8, 1.0, 1.4])))) == 1
+def test_a_hold_that_nothing_contradicts_breaks_nothing(record):
+    """Forty periods, but less than a second."""
+    stamps_s = np.round(np.r_[np.arange(0, 0.301, 0.01), np.arange(0.7, 1, 0.01)], 2)
+    standing = "t,x,y,yaw\n" + "".join(f"{t},0,0,0\n" for t in (0.15, 0.35, 0.65, 0.75))
+    assert set(record(odometry(stamps_s), standing).breaks) == {""}
+
+
+def test_poses_between_which_turns_cannot_be_counted_break_a_stretch(make_run):
+    """2.5 m/s apart on 0.4 m are up to two turns a second; after 1 s the count is open."""
+    csv = "t,v_left,v_right\n" + "".join(f"{i / 10},-0.5,0.5\n" for i in range(40))
+    run = Run.read(make_run(settings=SETTINGS, odometry=csv, pose=pose([0.1, 0.3, 0.5, 1.5, 1.7])))
+    found = record_of(run, WindowConfig(pose_gap_s=10.0))
+    assert groups(found) == [[0.1, 0.3, 0.5], [1.5, 1.7]]
+    assert found.breaks.tolist() == ["", "", UNKNOWN_TURNS, ""]
 
 
 def test_a_change_of_window_breaks_a_stretch(record):

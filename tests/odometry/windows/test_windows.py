@@ -12,11 +12,13 @@ from odometry.run import Robot, Run
 from odometry.table import Table
 from odometry.windows.config import WindowConfig
 from odometry.windows.errors import WindowError
+from odometry.windows.gaps import odometry_gaps
 from odometry.windows.motion import window_motion, window_motion_jacobian
 from odometry.windows.windows import windows_of
 
 VALUES = np.array([0.45, -0.36, 0.06, 0.97, 0.93])
 POSE_GAP_S = 0.5
+WIDE_M = 20.0  # so wide a robot turns too little for the count of its turns to be in doubt
 
 
 def run_of(name, odometry, pose):
@@ -25,7 +27,7 @@ def run_of(name, odometry, pose):
         Table(Path(name) / f"{kind}.csv", columns, np.arange(2, 2 + len(columns["t"])))
         for kind, columns in (("odometry", odometry), ("pose", pose))
     ]
-    return Run(Path(name), Robot(0.5), {}, *tables)
+    return Run(Path(name), Robot(WIDE_M), {}, *tables)
 
 
 @st.composite
@@ -33,10 +35,11 @@ def runs(draw, name="drawn"):
     """Stamps with pauses, changing speeds and attitude, names of grounds, chained poses."""
     rng = np.random.default_rng(draw(st.integers(0, 2**32)))
     count, poses = draw(st.integers(5, 120)), draw(st.integers(5, 60))
-    periods_s = np.where(rng.random(count) < draw(st.floats(0, 0.1)), 1.0, 0.1)
+    periods_s = np.where(rng.random(count) < draw(st.floats(0, 0.1)), 2.1, 0.1)
     pauses_s = np.where(rng.random(poses) < draw(st.floats(0, 0.2)), 0.7, 0.25)
     odometry_s, pose_s = np.cumsum(periods_s), 1.0 + np.cumsum(pauses_s) - rng.random()
-    speeds = rng.uniform(-1, 1, (count, 2)) * (rng.random((count, 1)) < 0.9)
+    standing = (rng.random(count) > 0.9) & (np.append(periods_s[1:], 0.1) < 1.0)
+    speeds = rng.uniform(-1, 1, (count, 2)) * ~standing[:, None]
     odometry = {
         "t": odometry_s,
         "v_left": speeds[:, 0],
@@ -46,7 +49,7 @@ def runs(draw, name="drawn"):
         "terrain": np.array(["ice", "sand"])[np.cumsum(rng.random(count) < 0.03) % 2],
     }
     window = np.cumsum(rng.random(poses) < 0.05).astype(float)
-    columns = dict(zip(["x", "y", "yaw"], rng.normal(size=(3, poses)), strict=True))
+    columns = dict(zip(["x", "y", "yaw"], 0.3 * rng.normal(size=(3, poses)), strict=True))
     return run_of(name, odometry, {"t": pose_s, **columns, "window": window})
 
 
@@ -74,11 +77,7 @@ def travel_between(run, begin_s, end_s):
 def breaks_between(run, earlier, later, pose_gap_s):
     """Whether two neighbouring poses (rows of pose.csv) belong to different stretches."""
     odometry_s, begin_s, end_s = run.odometry.stamps_s, *run.pose.stamps_s[[earlier, later]]
-    usual_s = np.median(np.diff(odometry_s))
-    paused = any(
-        after - before > 5 * usual_s and before < end_s and begin_s < after
-        for before, after in pairwise(odometry_s)
-    )
+    paused = any(before < end_s and begin_s < after for before, after in odometry_gaps(run).spans_s)
     rows = [max(np.flatnonzero(odometry_s <= stamp)) for stamp in (begin_s, end_s)]
     grounds = set(run.odometry["terrain"][rows[0] : rows[1] + 1])
     window = run.pose["window"][[earlier, later]]

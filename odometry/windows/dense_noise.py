@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.gap.scene import Scene
+from odometry.windows.dense import DenseWindows
 
 FIRST_GUESS = np.square([0.02, 0.01, 0.005, 0.005])
 SMALLEST = np.square([1e-4, 1e-4, 1e-5, 1e-5])
@@ -34,7 +34,7 @@ class Noise:
         return np.square([self.position_m, self.yaw_rad, self.wander_m, self.wander_rad])
 
 
-def covariance_parts(scene: Scene) -> FloatArray:
+def covariance_parts(scene: DenseWindows) -> FloatArray:
     """Derivative (4, K, 3n, 3n) of the covariance of a window's residuals by each variance."""
     motion = scene.measured
     count, steps, _ = motion.shape
@@ -66,13 +66,13 @@ def covariance_parts(scene: Scene) -> FloatArray:
     return np.stack([part.reshape(size) for part in (position, yaw, wander, turn)])
 
 
-def end_variance(scene: Scene, noise: Noise) -> FloatArray:
+def end_variance(scene: DenseWindows, noise: Noise) -> FloatArray:
     """Variance (K, 3) of the residuals at the end of each window."""
     last = covariance_parts(scene)[:, :, -3:, -3:]
     return np.asarray(np.einsum("p,pkii->ki", noise.variances, last))
 
 
-def whitening(scene: Scene, noise: Noise) -> FloatArray:
+def whitening(scene: DenseWindows, noise: Noise) -> FloatArray:
     """Matrices (K, 3n, 3n) that make the residuals of each window white, of unit variance."""
     covariance = np.einsum("p,pkij->kij", noise.variances, covariance_parts(scene))
     factor = np.linalg.cholesky(covariance)
@@ -80,7 +80,7 @@ def whitening(scene: Scene, noise: Noise) -> FloatArray:
     return np.asarray(np.linalg.solve(factor, identity))
 
 
-def estimated_noise(scenes: Sequence[Scene], residuals: Sequence[FloatArray]) -> Noise:
+def estimated_noise(scenes: Sequence[DenseWindows], residuals: Sequence[FloatArray]) -> Noise:
     """Most likely variances of the residuals (K, n, 3) of each scene, by Fisher scoring."""
     parts, rows = [], []
     share = MOST_WINDOWS / max(1, sum(map(len, scenes)))

@@ -1,20 +1,20 @@
 """A run cut into short windows in which every measured pose counts."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections import Counter
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
-from odometry.gap.config import GapConfig
-from odometry.gap.errors import GapError
 from odometry.geometry import se2
 from odometry.grounds import terrains_of
 from odometry.models.inputs import Inputs
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
-from odometry.windows.record import record_of
+from odometry.windows.errors import WindowError
+from odometry.windows.left_out import FEW_POSES, straddling, words
+from odometry.windows.record import Record, record_of
 
 LEAST_POSES = 3  # of a window
 EDGE_S = 0.5  # of a run: a late or early pose must still lie within its odometry
@@ -23,8 +23,10 @@ FEW = 0.1  # share of the windows that may be lost for having fewer poses than t
 
 
 @dataclass(frozen=True)
-class Scene:
+class DenseWindows:
     """One run, its samples, and K windows of n + 1 measured poses each.
+
+    Beside `odometry.windows.windows.Windows`, which knows the two ends of each window alone.
 
     Attributes
     ----------
@@ -38,9 +40,11 @@ class Scene:
     pose_s : (M,)
         Run time of each measured pose.
     poses : (M, 3)
-        Measured x, y, yaw.
+        Measured x, y, yaw; whole turns are counted, so that yaw is not wrapped.
     windows : (K, n + 1)
         Poses of each window; neighbours share one.
+    left_out : Counter of str
+        How many windows of the run there are not, by reason (`odometry.windows.left_out`).
     """
 
     run: Run
@@ -50,6 +54,7 @@ class Scene:
     pose_s: FloatArray
     poses: FloatArray
     windows: IntArray
+    left_out: Counter[str] = field(default_factory=Counter)
 
     def __len__(self) -> int:
         return len(self.windows)
@@ -59,7 +64,7 @@ class Scene:
         """Run time (N,) of the samples."""
         time_s = self.inputs.time_s
         if time_s is None:
-            raise GapError(f"{self.run.folder}: no stamps")
+            raise WindowError(f"{self.run.folder}: no stamps")
         return time_s
 
     @property
@@ -74,40 +79,48 @@ class Scene:
 
     @cached_property
     def measured(self) -> FloatArray:
-        """Measured motion (K, n, 3) in the frame of each window's first pose."""
-        poses = self.poses[self.windows]
-        return se2.between(poses[:, :1], poses[:, 1:])
+        """Measured motion (K, n, 3) in the frame of each window's first pose, with whole turns."""
+        return motion_from_first(self.poses[self.windows])
 
-    def where(self, chosen: BoolArray) -> "Scene":
+    def where(self, chosen: BoolArray) -> "DenseWindows":
         """The chosen (K,) windows."""
         return replace(self, windows=self.windows[chosen])
 
 
-def scene_of(run: Run, config: GapConfig) -> Scene:
-    """Cut a run into windows; none straddles a gap or a change of `window`.
+def motion_from_first(poses: FloatArray) -> FloatArray:
+    """Motion (K, n, 3) of n + 1 poses (K, n + 1, 3) seen from the first; yaw is not wrapped."""
+    motion = se2.between(poses[:, :1], poses[:, 1:])
+    motion[..., 2] = poses[:, 1:, 2] - poses[:, :1, 2]
+    return np.asarray(motion)
+
+
+def dense_windows_of(run: Run, horizon_s: float) -> DenseWindows:
+    """Cut a run into windows of a duration; a change of terrain cuts nothing.
+
+    None straddles a gap or a change of `window`, or poses between which the number of whole turns
+    is not known.
 
     Raises
     ------
-    GapError
-        If no window of the horizon is in the run.
     WindowError
-        If it has no measured poses.
+        If the run has no measured poses, or no window of the horizon is in it.
     """
     columns = {name: c for name, c in run.odometry.columns.items() if name != "terrain"}
     unlabelled = replace(run, odometry=replace(run.odometry, columns=columns))
-    record = record_of(unlabelled, WindowConfig(horizon_s=config.horizon_s))
+    record = record_of(unlabelled, WindowConfig(horizon_s=horizon_s))
     start_s = run.odometry.stamps_s[0]
     rows = np.searchsorted(run.odometry.stamps_s, record.stamps_s, side="right") - 1
     time_s = record.stamps_s - start_s
     inputs = replace(record.inputs, time_s=time_s, terrain=terrains_of(run)[rows])
     pose_s = time_s[record.pose_samples]
-    windows = _windows(pose_s, record.stretch, time_s[-1], config)
+    windows, left_out = _windows(pose_s, record, time_s[-1], horizon_s)
     if not len(windows):
-        raise GapError(
-            f"{run.folder}: no window of {config.horizon_s:g} s with {LEAST_POSES} measured poses "
-            "without a gap; choose a longer horizon"
+        told = words(left_out)
+        raise WindowError(
+            f"{run.folder}: no window of {horizon_s:g} s with {LEAST_POSES} measured poses "
+            f"without a gap; {told + '; ' if told else ''}choose a longer horizon"
         )
-    return Scene(
+    return DenseWindows(
         run,
         inputs,
         np.append(np.diff(time_s), 0.0),
@@ -115,21 +128,31 @@ def scene_of(run: Run, config: GapConfig) -> Scene:
         pose_s,
         record.poses,
         windows,
+        left_out,
     )
 
 
-def _windows(pose_s: FloatArray, stretch: IntArray, end_s: float, config: GapConfig) -> IntArray:
-    """Poses (K, n + 1): n as about nine windows in ten have, evenly chosen where there are more."""
-    spans = []
+def _windows(
+    pose_s: FloatArray, record: Record, end_s: float, horizon_s: float
+) -> tuple[IntArray, Counter[str]]:
+    """Poses (K, n + 1) of windows, and how many were left out.
+
+    n is what about nine windows in ten have, evenly chosen where there are more.
+    """
+    inside = (pose_s >= EDGE_S) & (pose_s <= end_s - EDGE_S)
+    spans, stretch = [], record.stretch
     for number in np.unique(stretch):
-        inside = (stretch == number) & (pose_s >= EDGE_S) & (pose_s <= end_s - EDGE_S)
-        spans += _spans(pose_s, np.flatnonzero(inside), config.horizon_s)
+        spans += _spans(pose_s, np.flatnonzero(inside & (stretch == number)), horizon_s)
+    unbroken = np.array(_spans(pose_s, np.flatnonzero(inside), horizon_s), dtype=np.int64)
+    left_out = straddling(record.breaks, *unbroken.reshape(-1, 2).T)
     firsts, lasts = np.array(spans, dtype=np.int64).reshape(-1, 2).T
     if not len(firsts):
-        return np.empty((0, LEAST_POSES), dtype=np.int64)
+        return np.empty((0, LEAST_POSES), dtype=np.int64), left_out
     steps = max(LEAST_POSES - 1, int(np.quantile(lasts - firsts, FEW)))
     kept = lasts - firsts >= steps
-    return np.rint(np.linspace(firsts[kept], lasts[kept], steps + 1, axis=1)).astype(np.int64)
+    left_out[FEW_POSES] += int(np.count_nonzero(~kept))
+    chosen = np.rint(np.linspace(firsts[kept], lasts[kept], steps + 1, axis=1))
+    return chosen.astype(np.int64), +left_out
 
 
 def _spans(pose_s: FloatArray, poses: IntArray, horizon_s: float) -> list[tuple[int, int]]:
@@ -144,25 +167,10 @@ def _spans(pose_s: FloatArray, poses: IntArray, horizon_s: float) -> list[tuple[
     return found
 
 
-def pieces(scene: Scene, part_s: float) -> IntArray:
-    """Number (K,) of the piece of the run in which each window starts."""
-    return np.asarray(np.floor(scene.start_s / part_s).astype(np.int64))
-
-
-def numbered_pieces(scenes: Sequence[Scene], part_s: float) -> IntArray:
-    """The same (K of all,) for several scenes: no two share a number."""
-    numbers, begin = [], 0
-    for scene in scenes:
-        here = pieces(scene, part_s)
-        numbers.append(begin + here)
-        begin += int(here.max(initial=-1)) + 1
-    return np.concatenate(numbers)
-
-
-def thinned(scene: Scene, most: int) -> Scene:
+def thinned(windows: DenseWindows, most: int) -> DenseWindows:
     """At most so many windows, at even distances."""
-    if len(scene) <= most:
-        return scene
-    chosen = np.zeros(len(scene), dtype=np.bool_)
-    chosen[np.linspace(0, len(scene) - 1, most).astype(np.int64)] = True
-    return scene.where(chosen)
+    if len(windows) <= most:
+        return windows
+    chosen = np.zeros(len(windows), dtype=np.bool_)
+    chosen[np.linspace(0, len(windows) - 1, most).astype(np.int64)] = True
+    return windows.where(chosen)

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.gap.config import GapConfig
-from odometry.gap.errors import GapError
-from odometry.gap.scene import numbered_pieces, pieces, scene_of, thinned
+from odometry.gap.pieces import numbered_pieces, pieces
+from odometry.windows.dense import dense_windows_of, thinned
 from odometry.windows.errors import WindowError
+from odometry.windows.left_out import ODOMETRY_GAP
 
 TWO_SECONDS = 10  # steps between poses at 5 Hz
 
@@ -24,7 +24,7 @@ def with_poses(run, chosen=slice(None), **columns):
 
 
 def test_windows_follow_one_another_over_the_run(run):
-    scene = scene_of(run, GapConfig())
+    scene = dense_windows_of(run, 2.0)
     assert scene.windows.shape == (29, TWO_SECONDS + 1)
     np.testing.assert_array_equal(np.diff(scene.windows, axis=1), 1)
     np.testing.assert_array_equal(scene.windows[1:, 0], scene.windows[:-1, -1])
@@ -33,7 +33,7 @@ def test_windows_follow_one_another_over_the_run(run):
 
 
 def test_the_measured_motion_is_seen_from_each_windows_first_pose(run):
-    scene = scene_of(run, GapConfig())
+    scene = dense_windows_of(run, 2.0)
     x, y, yaw = run.pose.stack("x", "y", "yaw").T
     for k in (0, 13, 28):
         first = np.searchsorted(run.pose.stamps_s, scene.start_s[k])
@@ -44,13 +44,13 @@ def test_the_measured_motion_is_seen_from_each_windows_first_pose(run):
 
 
 def test_another_horizon_makes_other_windows(run):
-    scene = scene_of(run, GapConfig(horizon_s=5.0))
+    scene = dense_windows_of(run, 5.0)
     assert scene.windows.shape == (11, 26)
 
 
 def test_no_window_straddles_a_gap_between_poses(run):
     t = run.pose.stamps_s
-    scene = scene_of(with_poses(run, (t < 21.0) | (t > 26.0)), GapConfig())
+    scene = dense_windows_of(with_poses(run, (t < 21.0) | (t > 26.0)), 2.0)
     ends_s = scene.pose_s[scene.windows[:, -1]]
     assert ((ends_s < 21.0) | (scene.start_s > 26.0)).all()
     assert (ends_s - scene.start_s == pytest.approx(2.0)) is True
@@ -60,18 +60,38 @@ def test_no_window_straddles_a_gap_between_poses(run):
 def test_no_window_straddles_a_change_of_window(run):
     t = run.pose.stamps_s
     for number, straddling in ((np.where(t < 21.0, 1.0, 2.0), 0), (np.ones(len(t)), 1)):
-        scene = scene_of(with_poses(run, window=number), GapConfig())
+        scene = dense_windows_of(with_poses(run, window=number), 2.0)
         ends_s = scene.pose_s[scene.windows[:, -1]]
         assert ((ends_s >= 21.0) & (scene.start_s < 21.0)).sum() == straddling
         assert len(scene) == 29
 
 
-def test_no_window_straddles_a_gap_in_odometry(run):
+def without_two_seconds(run, row):
+    """The run, of which 40 rows of odometry after this one are missing, and when."""
     t = run.odometry.stamps_s
-    odometry = run.odometry.rows((t < 21.0) | (t > 23.0))
-    scene = scene_of(replace(run, odometry=odometry), GapConfig())
-    ends_s = scene.pose_s[scene.windows[:, -1]]
-    assert ((ends_s <= 21.0) | (scene.start_s >= 22.8)).all()
+    kept = (np.arange(len(t)) <= row) | (np.arange(len(t)) > row + 40)
+    return replace(run, odometry=run.odometry.rows(kept)), t[row], t[row + 41]
+
+
+def test_no_window_straddles_a_gap_in_odometry(run):
+    """Where the speeds change most in two seconds."""
+    speeds = run.odometry.stack("v_left", "v_right")
+    row = int(np.abs(speeds[41:] - speeds[:-41]).max(axis=1).argmax())
+    cut, begin_s, end_s = without_two_seconds(run, row)
+    windows = dense_windows_of(cut, 2.0)
+    ends_s = windows.pose_s[windows.windows[:, -1]]
+    assert ((ends_s <= begin_s) | (windows.start_s >= end_s)).all()
+    assert windows.left_out[ODOMETRY_GAP] in {1, 2}
+
+
+def test_windows_go_on_over_speeds_that_were_held(run):
+    """Where they hardly change."""
+    speeds = run.odometry.stack("v_left", "v_right")
+    held = np.lib.stride_tricks.sliding_window_view(speeds, 42, axis=0)
+    row = int(np.ptp(held, axis=-1).max(axis=1).argmin())
+    windows = dense_windows_of(without_two_seconds(run, row)[0], 2.0)
+    assert len(windows) == len(dense_windows_of(run, 2.0))
+    assert not windows.left_out
 
 
 def test_a_change_of_ground_is_kept_and_cuts_nothing(make_scene):
@@ -86,7 +106,7 @@ def test_a_change_of_ground_is_kept_and_cuts_nothing(make_scene):
 
 
 def test_samples_are_in_force_until_the_next(run):
-    scene = scene_of(run, GapConfig())
+    scene = dense_windows_of(run, 2.0)
     assert scene.steps_s.sum() == pytest.approx(scene.time_s[-1])
     speeds = run.odometry.stack("v_left", "v_right")
     travel_m = (np.abs(speeds[:-1]).mean(axis=1) * np.diff(run.odometry.stamps_s)).sum()
@@ -94,17 +114,17 @@ def test_samples_are_in_force_until_the_next(run):
 
 
 def test_a_run_shorter_than_a_window_is_refused(run):
-    with pytest.raises(GapError, match=r"no window of 2 s with 3 measured poses.*longer horizon"):
-        scene_of(with_poses(run, run.pose.stamps_s < 2.2), GapConfig())
+    with pytest.raises(WindowError, match=r"no window of 2 s with 3 .*longer horizon"):
+        dense_windows_of(with_poses(run, run.pose.stamps_s < 2.2), 2.0)
 
 
 def test_a_run_without_poses_is_refused(run):
     with pytest.raises(WindowError, match=r"run.*pose\.csv"):
-        scene_of(replace(run, pose=None), GapConfig())
+        dense_windows_of(replace(run, pose=None), 2.0)
 
 
 def test_pieces_and_thinning(run):
-    scene = scene_of(run, GapConfig())
+    scene = dense_windows_of(run, 2.0)
     np.testing.assert_array_equal(pieces(scene, 10.0), (scene.start_s / 10.0).astype(int))
     fewer = thinned(scene, 10)
     assert len(fewer) == 10

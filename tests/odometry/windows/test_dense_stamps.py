@@ -8,10 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.gap.config import GapConfig
-from odometry.gap.errors import GapError
-from odometry.gap.scene import scene_of
 from odometry.table import Table
+from odometry.windows.dense import dense_windows_of
+from odometry.windows.errors import WindowError
 
 HORIZON_S = 2.0
 DURATION_S = 60.0
@@ -23,11 +22,13 @@ def run(make_scene):
 
 
 def scene_at(run, stamps_s):
-    """The run with poses at other stamps; where they are is of no matter here."""
-    place = 0.5 * stamps_s
-    columns = {"t": stamps_s, "x": place, "y": 0 * place, "yaw": 0 * place}
+    """The run with poses at other stamps."""
+    columns = {
+        name: np.interp(stamps_s, run.pose.stamps_s, run.pose[name]) for name in ("x", "y", "yaw")
+    }
+    columns = {"t": stamps_s, **columns}
     pose = Table(Path("pose.csv"), columns, np.arange(len(stamps_s)) + 2)
-    return scene_of(replace(run, pose=pose), GapConfig(horizon_s=HORIZON_S))
+    return dense_windows_of(replace(run, pose=pose), HORIZON_S)
 
 
 def lasting_s(scene):
@@ -96,5 +97,5 @@ def test_windows_last_as_near_the_horizon_as_the_stamps_allow(run, period_s, jit
 def test_poses_farther_apart_than_half_the_horizon_are_too_few(run):
     """Every second three poses make a window; every two seconds there are but two."""
     assert scene_at(run, np.arange(0.5, DURATION_S, 1.0)).windows.shape[1] == 3
-    with pytest.raises(GapError, match=r"no window of 2 s with 3 measured poses.*longer horizon"):
+    with pytest.raises(WindowError, match=r"no window of 2 s with 3 .*longer horizon"):
         scene_at(run, np.arange(0.5, DURATION_S, 2.0))

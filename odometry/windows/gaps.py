@@ -1,0 +1,71 @@
+"""Gaps of odometry.csv: long holds of a speed that was not the true one.
+
+CONVENTIONS: a tread speed holds until the next stamp, however long; it is a gap only where other
+files contradict the held speed, or where it lasts long, the treads turn, and nothing else speaks.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import AnyArray, FloatArray
+from odometry.run import Run
+from odometry.windows.held_speeds import gyroscope_evidence, pose_evidence
+
+HOLD_PERIODS = 5.0  # usual periods up to which nobody asks whether a step is a hold or a gap
+LONG_S, LONG_PERIODS = 1.0, 20.0  # beyond both a held speed needs something else that says so
+STANDING_M_S = 0.01  # of a tread, or less
+REPEATS = 0.05  # share of the rows: a log that repeats its row so often is not one of changes
+BY_GYROSCOPE = "the gyroscope contradicts the held speed"
+BY_POSES = "the poses contradict the held speed"
+SILENT = "nothing else says that the held speed lasted"
+
+
+@dataclass(frozen=True)
+class Gaps:
+    """G gaps of odometry.csv in order.
+
+    Attributes
+    ----------
+    spans_s : (G, 2)
+        The stamps between which each lies.
+    reasons : (G,) of str
+    """
+
+    spans_s: FloatArray
+    reasons: AnyArray
+
+    def __len__(self) -> int:
+        return len(self.spans_s)
+
+
+def odometry_gaps(run: Run) -> Gaps:
+    """Find the gaps of odometry.csv.
+
+    A step of more than five usual periods is a gap
+
+    - where the gyroscope or the poses contradict the held speeds, see `held_speeds`;
+    - where it is longer than 1 s and than 20 usual periods, a tread turns, and nothing says that
+      it went on so. Poses do, all along it; a gyroscope, which hears turns alone, only where
+      odometry.csv is a log of changes: one that repeats its row now and then would have done so.
+    """
+    stamps_s, speeds = run.odometry.stamps_s, run.odometry.stack("v_left", "v_right")
+    periods_s = np.diff(stamps_s)
+    usual_s = float(np.median(periods_s)) if len(periods_s) else 0.0
+    holds = np.flatnonzero(periods_s > HOLD_PERIODS * usual_s)
+    if not len(holds):
+        return Gaps(np.empty((0, 2)), np.empty(0, dtype=object))
+    spans_s = np.column_stack([stamps_s[holds], stamps_s[holds + 1]])
+    by_gyroscope, by_poses = gyroscope_evidence(run, spans_s), pose_evidence(run, spans_s)
+    repeated = np.all(speeds[1:] == speeds[:-1], axis=1) & (periods_s <= HOLD_PERIODS * usual_s)
+    moving = np.abs(speeds).max(axis=1) > STANDING_M_S
+    of_changes = np.count_nonzero(repeated & moving[1:]) <= REPEATS * np.count_nonzero(moving)
+    long = periods_s[holds] > max(LONG_S, LONG_PERIODS * usual_s)
+    told = by_poses.agrees | (by_gyroscope.agrees & of_changes)
+    reasons = np.select(
+        [by_gyroscope.contradicts, by_poses.contradicts, long & moving[holds] & ~told],
+        [BY_GYROSCOPE, BY_POSES, SILENT],
+        "",
+    ).astype(object)
+    found = reasons != ""
+    return Gaps(spans_s[found], reasons[found])

@@ -1,0 +1,60 @@
+"""What a gyroscope turned up to any moment, and where it was silent."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.run import Run
+
+SILENT_S = 0.5  # between two samples: a turn between them is not known
+
+
+@dataclass(frozen=True)
+class Gyroscope:
+    """Integrals over the yaw rate of a run, up to each of G samples.
+
+    Attributes
+    ----------
+    stamps_s : (G,)
+    integrals : (G, 4)
+        Turn [rad] by the trapezoidal rule, its gross size [rad], how far the rule can be off
+        [rad], and time without samples [s].
+    """
+
+    stamps_s: FloatArray
+    integrals: FloatArray
+
+    def between(self, begin_s: FloatArray, end_s: FloatArray) -> FloatArray:
+        """Integrals (4, K) from stamps (K,) to others; outside of the samples it is silent."""
+        turn, gross, off, silent_s = (
+            np.interp(end_s, self.stamps_s, column) - np.interp(begin_s, self.stamps_s, column)
+            for column in self.integrals.T
+        )
+        outside_s = np.maximum(self.stamps_s[0] - begin_s, 0.0)
+        outside_s = outside_s + np.maximum(end_s - self.stamps_s[-1], 0.0)
+        return np.stack([turn, gross, off, silent_s + outside_s])
+
+
+def gyroscope_of(run: Run) -> Gyroscope | None:
+    """The gyroscope of imu.csv, else that of odometry.csv; None without two samples."""
+    for table in (run.imu, run.odometry):
+        if table is None or "gyro_z" not in table:
+            continue
+        measured = np.isfinite(table["gyro_z"])
+        if measured.sum() > 1:
+            return _integrated(table.stamps_s[measured], table["gyro_z"][measured])
+    return None
+
+
+def _integrated(stamps_s: FloatArray, rates_rad_s: FloatArray) -> Gyroscope:
+    steps_s = np.diff(stamps_s)
+    steps = np.column_stack(
+        [
+            (rates_rad_s[1:] + rates_rad_s[:-1]) / 2 * steps_s,
+            (np.abs(rates_rad_s[1:]) + np.abs(rates_rad_s[:-1])) / 2 * steps_s,
+            np.abs(np.diff(rates_rad_s)) / 2 * steps_s,
+            np.where(steps_s > SILENT_S, steps_s, 0.0),
+        ]
+    )
+    return Gyroscope(stamps_s, np.concatenate([np.zeros((1, 4)), np.cumsum(steps, axis=0)]))

@@ -1,0 +1,99 @@
+"""Whole turns between measured poses, counted by the gyroscope or by the treads.
+
+A measured yaw tells a turn but for whole turns. The number of these between two poses is the one
+that is nearest to a predicted turn, and it is known where the prediction, with its bound, stays
+within half a turn of it. Three predictions are asked in this order:
+
+- the gyroscope, less its bias, where it agrees with turns that poses measured;
+- the difference of the tread speeds over an effective width, found from the same turns;
+- no turn, with the bound that no robot turns twice as fast as treads that do not slip, or faster
+  than the treads' difference turned it elsewhere in the run.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray
+from odometry.geometry.angles import wrap
+from odometry.run import Run
+from odometry.windows.close_pairs import FASTEST, POSE_RAD, close_pairs, fastest_rad, unseen
+from odometry.windows.gaps import odometry_gaps
+from odometry.windows.gyroscope import gyroscope_of
+from odometry.windows.tread_travel import tread_travel
+from odometry.windows.turns_by_gyroscope import turns_by_gyroscope
+from odometry.windows.turns_by_treads import turn_per_metre, turns_by_treads
+
+LEAST_TURN = 0.1  # of that of treads that do not slip: less, or to the other side, is no width
+
+
+@dataclass(frozen=True)
+class Turns:
+    """The yaw of M poses, continuous over whole turns.
+
+    Attributes
+    ----------
+    yaw_rad : (M,)
+        Not wrapped; where turns are not known, the shorter way.
+    known : (M - 1,)
+        Whether the whole turns from a pose to the next are known.
+    """
+
+    yaw_rad: FloatArray
+    known: BoolArray
+
+
+def continuous_yaw(run: Run) -> FloatArray:
+    """Yaw (M,) of the rows of pose.csv without wraps; NaN where it was not measured."""
+    if run.pose is None:
+        return np.empty(0)
+    measured = np.isfinite(run.pose["yaw"])
+    yaw = np.full(len(measured), np.nan)
+    if measured.any():
+        yaw[measured] = counted_turns(
+            run, run.pose.stamps_s[measured], run.pose["yaw"][measured]
+        ).yaw_rad
+    return yaw
+
+
+def counted_turns(run: Run, stamps_s: FloatArray, yaw_rad: FloatArray) -> Turns:
+    """Count the whole turns between yaws that were measured on a run.
+
+    Parameters
+    ----------
+    run : Run
+    stamps_s, yaw_rad : (M,)
+        Measured yaws at increasing stamps; one or more.
+    """
+    measured = wrap(np.diff(yaw_rad))
+    turned, known = measured.copy(), np.zeros(len(measured), dtype=np.bool_)
+    for predicted, bound in _predictions(run, stamps_s, yaw_rad):
+        whole = 2 * np.pi * np.round((predicted - measured) / (2 * np.pi))
+        told = ~known & (np.abs(predicted - measured - whole) + bound < np.pi)
+        turned[told] += whole[told]
+        known |= told
+        if known.all():
+            break
+    return Turns(yaw_rad[0] + np.append(0.0, np.cumsum(turned)), known)
+
+
+def _predictions(
+    run: Run, stamps_s: FloatArray, yaw_rad: FloatArray
+) -> Iterator[tuple[FloatArray, FloatArray]]:
+    """Turns (M - 1,) between neighbours, and how far each may be off, the best first."""
+    width_m, travel, gyroscope = run.robot.track_width, tread_travel(run), gyroscope_of(run)
+    gaps_s = odometry_gaps(run).spans_s
+    pairs = close_pairs(travel, width_m, stamps_s, yaw_rad, gaps_s)
+    if gyroscope is not None:
+        by_gyroscope = turns_by_gyroscope(gyroscope, pairs, stamps_s, yaw_rad)
+        if by_gyroscope is not None:
+            yield by_gyroscope
+    rad_per_m = turn_per_metre(travel, pairs)
+    of_ideal = 0.0 if rad_per_m is None else rad_per_m * width_m
+    not_seen = unseen(travel, gaps_s, stamps_s[:-1], stamps_s[1:])
+    if rad_per_m is not None and LEAST_TURN < of_ideal < FASTEST:
+        turn, bound = turns_by_treads(travel, pairs, stamps_s, rad_per_m)
+        yield turn, np.where(not_seen, np.inf, bound)
+    fastest = fastest_rad(travel, width_m, stamps_s[:-1], stamps_s[1:]) * max(1.0, abs(of_ideal))
+    yield np.zeros(len(fastest)), np.where(not_seen, np.inf, fastest + POSE_RAD)
