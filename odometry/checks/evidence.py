@@ -59,13 +59,10 @@ class Evidence:
     @cached_property
     def yaw_rate(self) -> tuple[FloatArray, FloatArray] | None:
         """Stamps (G,) and yaw rates (G,) of the gyroscope, spikes left out."""
-        for table in (self.run.imu, self.run.odometry):
-            if table is not None and "gyro_z" in table:
-                measured = np.isfinite(table["gyro_z"])
-                if measured.sum() > 1:
-                    stamps_s = table.stamps_s[measured]
-                    return stamps_s, without_spikes(table["gyro_z"][measured])
-        return None
+        found = self.run.yaw_rate
+        if found is None or len(found.stamps_s) < 2:
+            return None
+        return found.stamps_s, without_spikes(found.yaw_rate_rad_s)
 
     @cached_property
     def gyroscope_file(self) -> str:

@@ -61,8 +61,8 @@ def jumps(
         yield Finding(
             "treads_frozen",
             Level.WARNING,
-            f"poses move by up to {step[lost].max():.2f} m while both treads read zero ({len(lost)} "
-            f"times, first at {evidence.run_time_s(stamps_s[lost[0]]):.1f} s)",
+            f"poses move by up to {step[lost].max():.2f} m while both treads read zero "
+            f"({len(lost)} times, first at {evidence.run_time_s(stamps_s[lost[0]]):.1f} s)",
             "Odometry is lost: the log writes zeros (a motor driver or bus that stopped); or the "
             "robot was pushed, carried or slid, or poses jump",
             "Cut the recording with --from and --to",

@@ -61,7 +61,8 @@ CAUSES = (
     ),
     (
         r"\[robot\] track_width = -|\[robot\] track_width = 0|expected a positive number",
-        "track_width or another size of the robot is negative or zero: a sign, or a placeholder never filled in",
+        "track_width or another size of the robot is negative or zero: a sign, or a placeholder "
+        "never filled in",
         "Measure it, in metres",
     ),
     (
