@@ -33,13 +33,7 @@ TRUE = {"y_left": 0.45, "y_right": -0.38, "x_icr": 0.04, "alpha_left": 0.96, "al
 class LoopProblem(Problem):
     """The same loss, sample by sample."""
 
-    def residuals(self, chosen):
-        return self._loop(chosen)[0]
-
-    def jacobian(self, chosen):
-        return self._loop(chosen)[1]
-
-    def _loop(self, chosen):
+    def _linearised(self, chosen):
         speeds = self.windows.inputs.tread_speeds_m_s.tolist()
         steps_s = self.windows.steps_s.tolist()
         errors, slopes = [], []
