@@ -50,7 +50,13 @@ class Corrected(KinematicModel):
         return corrected_twist(base, self.effects, inputs)
 
     def linearised(self, values: FloatArray, inputs: Inputs) -> Linearised:
-        """See `KinematicModel.linearised`; the derivative by central differences."""
+        """See `KinematicModel.linearised`.
+
+        Effects on motion may depend on the base's parameters in any way: under these, the
+        derivative is one by central differences.
+        """
+        if not any(isinstance(added.effect, MotionEffect) for added in self.effects):
+            return self.base.linearised(values, with_true_speeds(self.effects, inputs))
         steps = RELATIVE_STEP * np.maximum(1.0, np.abs(values))
         columns = [
             (self.twist(values + step, inputs) - self.twist(values - step, inputs))

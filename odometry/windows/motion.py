@@ -82,11 +82,19 @@ class _Block:
 
     windows: slice
     samples: slice
-    first: IntArray  # places among these samples
-    last: IntArray
-    ends: IntArray  # first and last of each in turn
+    ends: IntArray  # (2 K,), where each window starts and ends among these samples, in turn
     steps_s: FloatArray
     tilt: Tilt | None
+
+    @property
+    def first(self) -> IntArray:
+        """Samples (K,) at which the windows start."""
+        return self.ends[::2]
+
+    @property
+    def last(self) -> IntArray:
+        """Samples (K,) at which they end."""
+        return self.ends[1::2]
 
 
 def _blocks(windows: Windows) -> Iterator[_Block]:
@@ -97,12 +105,10 @@ def _blocks(windows: Windows) -> Iterator[_Block]:
         chosen = slice(begin, end)
         first, last = windows.first[chosen], windows.last[chosen]
         samples = slice(first.min(), last.max() + 1)
-        ends = np.stack([first, last], axis=-1) - samples.start
         yield _Block(
             chosen,
             samples,
-            *ends.T,
-            ends.ravel(),
+            np.stack([first, last], axis=-1).ravel() - samples.start,
             windows.steps_s[samples],
             None if tilt is None else Tilt(*(part[samples] for part in tilt)),
         )
