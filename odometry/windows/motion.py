@@ -56,6 +56,7 @@ def linearised_window_motion(
 ) -> tuple[FloatArray, FloatArray]:
     """`window_motion` (K, 3) and its derivative (K, 3, P) by the parameters."""
     twists, by_parameters = model.linearised(values, windows.inputs)
+    columns = np.ascontiguousarray(np.moveaxis(by_parameters, 0, -1))  # (3, P, N)
     motion = np.empty((len(windows), 3))
     derivative = np.empty((len(windows), *by_parameters.shape[1:]))
     for block in _blocks(windows):
@@ -64,7 +65,7 @@ def linearised_window_motion(
         motion[block.windows] = _between(path.poses, block)
         by_twist = block.steps_s * _by_displacement(path, arcs, by_arc, block.tilt)
         for parameter in range(by_parameters.shape[-1]):
-            changes = by_parameters[block.samples, :, parameter]
+            changes = columns[:, parameter, block.samples]
             derivative[block.windows, :, parameter] = _moved(by_twist, changes, path, block)
     return motion, derivative
 
@@ -155,8 +156,8 @@ def _by_displacement(
 
 
 def _moved(by_twist: FloatArray, changes: FloatArray, path: _Path, block: _Block) -> FloatArray:
-    """Change (K, 3) of the windows' motion when the twists change (N, 3)."""
-    v_x, v_y, omega = changes.T
+    """Change (K, 3) of the windows' motion when the twists change (3, N)."""
+    v_x, v_y, omega = changes
     x_by, y_by, yaw_by = by_twist[:3], by_twist[3:6], by_twist[6]
     x, y, yaw = (
         _within(step, block)

@@ -1,8 +1,8 @@
 """Identification of `icr` on one hour of 20 Hz data, against a loop over samples.
 
 Both do the same work: the same windows, the same searches and reweightings by the same solver,
-the same exact arcs and analytic gradients. Only the residuals and their Jacobian are computed
-sample by sample in plain Python in the one, and with arrays in the other.
+the same exact arcs and analytic gradients, each point computed once. Only the residuals and their
+derivative are found sample by sample in plain Python in the one, and with arrays in the other.
 """
 
 import math
