@@ -1,5 +1,7 @@
 """A model with effects has the face of any model."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from odometry.effects.actuator_lag import ActuatorLag
@@ -131,8 +133,6 @@ def test_under_effects_on_commands_alone_the_derivative_is_the_base_s(bench, rng
 
 def test_ordinary_sizes_are_those_of_the_base(bench):
     """What is per newton is judged by the robot's mass, with an effect added as without."""
-    base = MODELS["icr_inertia"]
-    model = Corrected(base, bench.robot, [SCALE])
-    np.testing.assert_array_equal(
-        model.ordinary_sizes(bench.robot), base.ordinary_sizes(bench.robot)
-    )
+    base, robot = MODELS["icr_inertia"], replace(bench.robot, mass=50.0)
+    model = Corrected(base, robot, [SCALE])
+    np.testing.assert_array_equal(model.ordinary_sizes(robot), base.ordinary_sizes(robot))
