@@ -90,4 +90,7 @@ class Problem:
         predicted, by_parameters = linearised_window_motion(
             self.model, self.complete(chosen), self.windows
         )
-        return predicted - self.windows.measured, by_parameters[:, :, self.free]
+        found = predicted - self.windows.measured, by_parameters[:, :, self.free]
+        for array in found:
+            array.setflags(write=False)  # it will be handed out again
+        return found

@@ -122,4 +122,6 @@ def test_points_are_remembered_by_their_values_and_forgotten(problem):
     for factor in (1.0, 1.1, 1.2, 1.3):
         fresh.linearised(far * factor)
     np.testing.assert_array_equal(fresh.linearised(near)[0], first)
+    with pytest.raises(ValueError, match="read-only"):
+        fresh.linearised(near)[1][:] = 0.0
     assert np.abs(fresh.linearised(far)[0] - first).max() > 0.01
