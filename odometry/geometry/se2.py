@@ -5,6 +5,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.geometry.angles import sine_and_cosine, wrap
 
+NO_ANGLE = 1e-100  # below it quotients of angles would lose digits
 SMALL_ANGLE = 1e-4  # below it slopes of sin(a)/a, (1-cos(a))/a come from series, right to 1e-13
 
 
@@ -99,6 +100,6 @@ def _arc_ratios(angle: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """sin(a)/a and (1 - cos(a))/a: the chord leads ahead by half the angle; and sin(a)."""
     half = angle / 2
     sine, cosine = sine_and_cosine(half)
-    still = half == 0
-    chord = (sine + still) / (half + still)  # sin(half)/half, 1 at 0
+    straight = np.abs(half) < NO_ANGLE
+    chord = (sine + straight) / (half + straight)  # sin(half)/half, 1 at 0
     return chord * cosine, chord * sine, 2 * sine * cosine
