@@ -23,8 +23,9 @@ def exp(displacement: FloatArray) -> FloatArray:
         Pose at the end in the body frame at the start; yaw is not wrapped.
     """
     along, across, angle = np.moveaxis(np.asarray(displacement, dtype=np.float64), -1, 0)
-    sine_ratio, cosine_ratio, _ = _arc_ratios(angle)
-    return _end(along, across, angle, sine_ratio, cosine_ratio)
+    half = angle / 2
+    chord = np.sinc(half / np.pi)  # it leads ahead by half the angle
+    return _end(along, across, angle, chord * np.cos(half), chord**2 * half)
 
 
 def compose(first: FloatArray, second: FloatArray) -> FloatArray:
@@ -66,9 +67,14 @@ def exp_jacobian(displacement: FloatArray) -> FloatArray:
 
 
 def linearised_exp(displacement: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """`exp` (..., 3) and its derivative (..., 3, 3) by displacements (..., 3)."""
+    """`exp` (..., 3), to some 1e-16, and its derivative (..., 3, 3) by displacements (..., 3)."""
     along, across, angle = np.moveaxis(np.asarray(displacement, dtype=np.float64), -1, 0)
-    sine_ratio, cosine_ratio, sine = _arc_ratios(angle)
+    half = angle / 2
+    half_sine, half_cosine = sine_and_cosine(half)
+    straight = np.abs(half) < NO_ANGLE
+    chord = (half_sine + straight) / (half + straight)  # sin(half)/half, 1 at 0
+    sine_ratio, cosine_ratio = chord * half_cosine, chord * half_sine
+    sine = 2 * half_sine * half_cosine
     cosine = 1.0 - angle * cosine_ratio
     small = np.abs(angle) < SMALL_ANGLE
     safe = angle + small
@@ -91,15 +97,7 @@ def _end(
     sine_ratio: FloatArray,
     cosine_ratio: FloatArray,
 ) -> FloatArray:
+    """End of an arc, from sin(a)/a and (1 - cos(a))/a of its angle."""
     x = sine_ratio * along - cosine_ratio * across
     y = cosine_ratio * along + sine_ratio * across
     return np.moveaxis(np.stack([x, y, angle]), 0, -1)
-
-
-def _arc_ratios(angle: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """sin(a)/a and (1 - cos(a))/a: the chord leads ahead by half the angle; and sin(a)."""
-    half = angle / 2
-    sine, cosine = sine_and_cosine(half)
-    straight = np.abs(half) < NO_ANGLE
-    chord = (sine + straight) / (half + straight)  # sin(half)/half, 1 at 0
-    return chord * cosine, chord * sine, 2 * sine * cosine

@@ -30,11 +30,8 @@ def window_motion(model: KinematicModel, values: FloatArray, windows: Windows) -
     eq. 12 with REP-103's rotation); yaw is not wrapped.
     """
     twists = model.twist(values, windows.inputs)
-    motion = np.empty((len(windows), 3))
-    for block in _blocks(windows):
-        arcs = se2.exp(twists[block.samples] * block.steps_s[:, None])
-        motion[block.windows] = _between(_laid(arcs, block.tilt).poses, block)
-    return motion
+    path = level_path(twists, windows.steps_s, windows.inputs)
+    return _between(path, windows.first, windows.last)
 
 
 def level_path(twists: FloatArray, steps_s: FloatArray, inputs: Inputs) -> FloatArray:
@@ -48,21 +45,25 @@ def level_path(twists: FloatArray, steps_s: FloatArray, inputs: Inputs) -> Float
     inputs : Inputs
         Of stack (N,); its roll and pitch count.
     """
-    return _laid(se2.exp(twists * steps_s[:, None]), inputs.tilt).poses
+    steps = _level(se2.exp(twists * steps_s[:, None]), inputs.tilt)
+    yaw = _summed(steps[:, 2])[:-1]
+    return _laid(steps, yaw, np.sin(yaw), np.cos(yaw)).poses
 
 
 def linearised_window_motion(
     model: KinematicModel, values: FloatArray, windows: Windows
 ) -> tuple[FloatArray, FloatArray]:
-    """`window_motion` (K, 3) and its derivative (K, 3, P) by the parameters."""
+    """`window_motion` (K, 3), to rounding, and its derivative (K, 3, P) by the parameters."""
     twists, by_parameters = model.linearised(values, windows.inputs)
     columns = np.ascontiguousarray(np.moveaxis(by_parameters, 0, -1))  # (3, P, N)
     motion = np.empty((len(windows), 3))
     derivative = np.empty((len(windows), *by_parameters.shape[1:]))
     for block in _blocks(windows):
         arcs, by_arc = se2.linearised_exp(twists[block.samples] * block.steps_s[:, None])
-        path = _laid(arcs, block.tilt)
-        motion[block.windows] = _between(path.poses, block)
+        steps = _level(arcs, block.tilt)
+        yaw = _summed(steps[:, 2])[:-1]
+        path = _laid(steps, yaw, *sine_and_cosine(yaw))
+        motion[block.windows] = _between(path.poses, block.first, block.last)
         by_twist = block.steps_s * _by_displacement(path, arcs, by_arc, block.tilt)
         for parameter in range(by_parameters.shape[-1]):
             changes = columns[:, parameter, block.samples]
@@ -120,19 +121,20 @@ class _Path(NamedTuple):
 
     poses: FloatArray  # (N, 3), before each step
     after: FloatArray  # (2, N), places after each
-    cosine: FloatArray  # (N,), of the yaw before each
-    sine: FloatArray
+    sine: FloatArray  # (N,), of the yaw before each
+    cosine: FloatArray
 
 
-def _laid(arcs: FloatArray, tilt: Tilt | None) -> _Path:
-    """The path of steps (N, 3), each in the body's own plane."""
-    steps = arcs if tilt is None else level_steps(arcs, tilt)
-    along, across, turns = steps.T
-    yaw = _summed(turns)[:-1]
-    sine, cosine = sine_and_cosine(yaw)
+def _level(arcs: FloatArray, tilt: Tilt | None) -> FloatArray:
+    return arcs if tilt is None else level_steps(arcs, tilt)
+
+
+def _laid(steps: FloatArray, yaw: FloatArray, sine: FloatArray, cosine: FloatArray) -> _Path:
+    """The path of level steps (N, 3), with the yaw (N,) before each."""
+    along, across, _ = steps.T
     x = _summed(cosine * along - sine * across)
     y = _summed(sine * along + cosine * across)
-    return _Path(np.stack([x[:-1], y[:-1], yaw]).T, np.stack([x[1:], y[1:]]), cosine, sine)
+    return _Path(np.stack([x[:-1], y[:-1], yaw]).T, np.stack([x[1:], y[1:]]), sine, cosine)
 
 
 def _by_displacement(
@@ -179,8 +181,8 @@ def _within(steps: FloatArray, block: _Block) -> FloatArray:
     return np.asarray(np.add.reduceat(steps, block.ends)[::2])
 
 
-def _between(path: FloatArray, block: _Block) -> FloatArray:
-    start, difference = path[block.first], path[block.last] - path[block.first]
+def _between(path: FloatArray, first: IntArray, last: IntArray) -> FloatArray:
+    start, difference = path[first], path[last] - path[first]
     cosine, sine = np.cos(start[:, 2]), np.sin(start[:, 2])
     x = cosine * difference[:, 0] + sine * difference[:, 1]
     y = -sine * difference[:, 0] + cosine * difference[:, 1]
