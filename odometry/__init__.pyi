@@ -15,7 +15,6 @@ from .io.run_folder import write_run_folder
 from .io.tum import read_spatial_tum, read_tum, write_spatial_tum, write_tum
 from .models.catalogue import MODELS
 from .models.inputs import Inputs
-from .models.run_inputs import inputs_of
 from .modes.identify_traction import identify_traction_modes
 from .modes.identify_velocity import identify_velocity_modes
 from .modes.mode_set import ModeSet, read_mode_set, write_mode_set
@@ -23,6 +22,7 @@ from .modes.track import ModeTrack, follow_modes
 from .parameters import ParameterSet, TerrainParameters, read_parameters, write_parameters
 from .pipeline import ConstantTerrain, Replay, replay
 from .run import Frame, Robot, Run
+from .run_inputs import inputs_of
 from .simulation.contact.drive import simulate_contact
 from .spatial_trajectory import SpatialTrajectory
 from .trajectory import Trajectory

@@ -63,6 +63,16 @@ def test_odometry_never_imports_terrain():
     assert pointing_back == {}
 
 
+def test_models_do_not_import_what_uses_them():
+    """What a model needs said of it, it says itself."""
+    users = ("identification", "windows", "effects", "estimation", "comparison", "gap")
+    models = {name: GRAPH[name] for name in GRAPH if name.startswith("odometry.models")}
+    assert models
+    for name, targets in models.items():
+        rooms = {target.split(".")[1] for target in targets if target.startswith("odometry.")}
+        assert not rooms & set(users), name
+
+
 def test_only_the_command_line_imports_click_and_nobody_else_exits():
     for name, file in FILES.items():
         if not name.startswith("terrain.cli"):

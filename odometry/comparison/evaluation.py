@@ -15,8 +15,8 @@ from odometry.effects.tables import effects_of
 from odometry.errors import OdometryError
 from odometry.evaluation.open_loop import measured_poses
 from odometry.geometry import se2
-from odometry.models.run_inputs import inputs_of
 from odometry.run import Run
+from odometry.run_inputs import inputs_of
 from odometry.windows.config import WindowConfig
 from odometry.windows.motion import level_path, window_motion
 from odometry.windows.window_errors import WindowErrors, errors_of_motion

@@ -13,6 +13,7 @@ from odometry.comparison.summary import QUANTITIES, Place, values_of
 
 LEAST_BLOCKS = 5  # of a run, however long the blocks should be
 COVERED = (2.5, 97.5)  # percentiles of the 95 % interval
+ROUNDING = 1e-12  # a smaller value is one of arithmetic: models that are the same differ by it
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,7 @@ def mean_interval(
     draws : int
     rng : numpy.random.Generator
     """
+    values = np.where(np.abs(values) < ROUNDING, 0.0, values)
     of_runs = [values[runs == run] for run in dict.fromkeys(runs)]
     sizes = np.array([len(of_run) for of_run in of_runs])
     drawn = rng.integers(len(of_runs), size=(draws, len(of_runs)))

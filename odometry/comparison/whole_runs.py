@@ -13,7 +13,7 @@ from odometry.effects.tables import effects_of
 from odometry.errors import OdometryError
 from odometry.evaluation.fitness import Fitness, fitness
 from odometry.evaluation.open_loop import measured_poses, open_loop
-from odometry.models.run_inputs import inputs_of
+from odometry.run_inputs import inputs_of
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.effects.base import Base, CommandEffect, Effect, MeasurementEffect, MotionEffect
-from odometry.models.base import KinematicModel
+from odometry.models.base import KinematicModel, Linearised
 from odometry.models.inputs import Inputs
 from odometry.run import Robot
 
@@ -49,17 +49,21 @@ class Corrected(KinematicModel):
         base = Base(self.base, values, self.robot)
         return corrected_twist(base, self.effects, inputs)
 
-    def parameter_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
-        """See `KinematicModel.parameter_jacobian`; by central differences."""
+    def linearised(self, values: FloatArray, inputs: Inputs) -> Linearised:
+        """See `KinematicModel.linearised`.
+
+        Effects on motion may depend on the base's parameters in any way: under these, the
+        derivative is one by central differences.
+        """
+        if not any(isinstance(added.effect, MotionEffect) for added in self.effects):
+            return self.base.linearised(values, with_true_speeds(self.effects, inputs))
         steps = RELATIVE_STEP * np.maximum(1.0, np.abs(values))
-        return np.stack(
-            [
-                (self.twist(values + step, inputs) - self.twist(values - step, inputs))
-                / (2 * step.sum())
-                for step in np.diag(steps)
-            ],
-            axis=-1,
-        )
+        columns = [
+            (self.twist(values + step, inputs) - self.twist(values - step, inputs))
+            / (2 * step.sum())
+            for step in np.diag(steps)
+        ]
+        return Linearised(self.twist(values, inputs), np.stack(columns, axis=-1))
 
     def speed_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.speed_jacobian`; that of the base."""
@@ -68,6 +72,10 @@ class Corrected(KinematicModel):
     def guess(self, robot: Robot) -> dict[str, float]:
         """See `KinematicModel.guess`; that of the base."""
         return self.base.guess(robot)
+
+    def ordinary_sizes(self, robot: Robot) -> FloatArray:
+        """See `KinematicModel.ordinary_sizes`; those of the base."""
+        return self.base.ordinary_sizes(robot)
 
     def check(self, values: FloatArray) -> None:
         """See `KinematicModel.check`; that of the base."""

@@ -7,9 +7,9 @@ from odometry.arrays import FloatArray
 from odometry.effects.base import Base
 from odometry.effects.corrected import Corrected, corrected_twist, with_true_speeds
 from odometry.effects.tables import model_of
-from odometry.models.run_inputs import inputs_of
 from odometry.parameters import ParameterSet
 from odometry.run import Run
+from odometry.run_inputs import inputs_of
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,11 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
 from odometry.estimation.estimate import IcrBelief
-from odometry.models.catalogue import ICR_NAMES
+from odometry.models.catalogue import MODELS, model_named
+from odometry.models.icr_form import IcrForm
 from odometry.parameters import ParameterSet, TerrainParameters
 
-ICR_FORM_MODELS = ("icr", "icr_symmetric", "differential_drive", "traction_mode")
-WIDTH_NAMES = {"icr_symmetric": "b_hat", "differential_drive": "track_width"}
+ICR_FORM_MODELS = tuple(name for name, model in MODELS.items() if model.has_constant_icrs)
 BROAD_SIGMA_WIDTHS = 0.5  # standard deviation of the broad prior, in track widths
 
 
@@ -38,52 +38,47 @@ def prior_belief(
         return IcrBelief(
             np.array([track_width / 2, -track_width / 2, 0.0]), np.ones(2), sigma**2 * np.eye(3)
         )
-    icrs, alphas = icr_form(table, f"[terrain.{terrain}]")
-    return IcrBelief(icrs, alphas, _covariance(table, reset_sigma_m))
+    form = icr_form(table, f"[terrain.{terrain}]")
+    return IcrBelief(form.icrs, form.alphas, _covariance(table, form, reset_sigma_m))
 
 
-def _covariance(table: TerrainParameters, reset_sigma_m: float) -> FloatArray:
-    """Covariance (3, 3) of the ICRs: what the table states, `reset_sigma_m` for the rest."""
-    covariance = reset_sigma_m**2 * np.eye(3)
-    stated = tuple(name for name in ICR_NAMES[:3] if name in table.covariance_order)
-    places = [ICR_NAMES.index(name) for name in stated]
-    covariance[np.ix_(places, places)] = table.covariance_of(stated)
-    width = WIDTH_NAMES.get(table.model)
-    if width in table.covariance_order:  # y_left = -y_right = width / 2
-        covariance[[0, 1], [0, 1]] = table.covariance_of((width,))[0, 0] / 4
-    return covariance
+def _covariance(table: TerrainParameters, form: IcrForm, reset_sigma_m: float) -> FloatArray:
+    """Covariance (3, 3) of the ICRs: what the table states, `reset_sigma_m` for the rest.
+
+    An ICR is stated where the table states every parameter that it follows from and that is not
+    known of the robot. ICRs that follow from one parameter are taken as independent all the same:
+    that they move together is what the model supposes, not what was measured.
+    """
+    model = model_named(table.model)
+    names = [parameter.name for parameter in model.parameters]
+    stated = np.array([name in table.covariance_order for name in names])
+    needed = np.array([not parameter.known for parameter in model.parameters])
+    follows = form.by_parameters != 0
+    is_stated = np.any(follows & stated, axis=1) & ~np.any(follows & needed & ~stated, axis=1)
+    order = tuple(name for name in names if name in table.covariance_order)
+    by_stated = form.by_parameters[:, stated]
+    shared = follows.astype(int) @ follows.T > 0
+    apart = np.eye(3, dtype=np.bool_) | ~shared
+    both = is_stated & is_stated[:, None]
+    mapped = by_stated @ table.covariance_of(order) @ by_stated.T
+    return np.where(both, np.where(apart, mapped, 0.0), reset_sigma_m**2 * np.eye(3))
 
 
-def icr_form(table: TerrainParameters, where: str) -> tuple[FloatArray, FloatArray]:
-    """ICRs (3,) and slip factors (2,) of a model that has constant ones, its effects left out.
+def icr_form(table: TerrainParameters, where: str) -> IcrForm:
+    """The constant ICRs that a table stands for, its effects left out.
 
     Raises
     ------
     ParameterError
-        If the model has none.
+        If its model has none.
     """
-    values = table.values
-    match table.model:
-        case "icr":
-            icrs = [values["y_left"], values["y_right"], values["x_icr"]]
-            alphas = [values.get("alpha_left", 1.0), values.get("alpha_right", 1.0)]
-        case "icr_symmetric":
-            icrs = [values["b_hat"] / 2, -values["b_hat"] / 2, 0.0]
-            alphas = [values["alpha"], values["alpha"]]
-        case "differential_drive":
-            icrs = [values["track_width"] / 2, -values["track_width"] / 2, 0.0]
-            alphas = [1.0, 1.0]
-        case "traction_mode":  # alpha_left = alpha_right = k, y_left - y_right = b k / m
-            if values["m"] * values["k"] <= 0:
-                raise ParameterError(
-                    f"{where}: k = {values['k']} and m = {values['m']}, expected both above 0"
-                )
-            width = values["track_width"] * values["k"] / values["m"]
-            icrs = [width / 2, -width / 2, 0.0]
-            alphas = [values["k"], values["k"]]
-        case _:
-            raise ParameterError(
-                f"{where}: the model {table.model!r} has no constant ICRs; the ICR filter takes "
-                f"{', '.join(ICR_FORM_MODELS)}"
-            )
-    return np.array(icrs), np.array(alphas)
+    model = model_named(table.model)
+    if not model.has_constant_icrs:
+        raise ParameterError(
+            f"{where}: the model {table.model!r} has no constant ICRs; the ICR filter takes "
+            f"{', '.join(ICR_FORM_MODELS)}"
+        )
+    try:
+        return model.icr_form(model.pack(table.values))
+    except ParameterError as error:
+        raise ParameterError(f"{where}: {error}") from error

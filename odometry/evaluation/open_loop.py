@@ -5,8 +5,8 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.dead_reckoning import dead_reckon_in_space
 from odometry.errors import RunFolderError, TrajectoryError
-from odometry.models.run_inputs import attitude_of
 from odometry.run import Run
+from odometry.run_inputs import attitude_of
 from odometry.spatial_trajectory import SpatialTrajectory
 
 

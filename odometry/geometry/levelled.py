@@ -47,7 +47,7 @@ def level_steps(steps: FloatArray, tilt: Tilt) -> FloatArray:
     change = np.arctan2(y_turned, x_turned) - angle
     change -= 2 * np.pi * np.rint(change / (2 * np.pi))  # less than half a turn
     along = tilt.cos_pitch * dx + tilt.sin_pitch * tilt.sin_roll * dy
-    return np.stack([along, tilt.cos_roll * dy + 0 * along, angle + change], axis=-1)
+    return np.moveaxis(np.stack([along, tilt.cos_roll * dy + 0 * along, angle + change]), 0, -1)
 
 
 def rises(steps: FloatArray, tilt: Tilt) -> FloatArray:
@@ -59,12 +59,12 @@ def rises(steps: FloatArray, tilt: Tilt) -> FloatArray:
 def level_step_jacobian(steps: FloatArray, tilt: Tilt) -> FloatArray:
     """Derivative (..., 3, 3) of `level_steps` by the steps."""
     x_turned, y_turned = _turned_axis(np.asarray(steps)[..., 2], tilt)
-    jacobian = np.zeros((*x_turned.shape, 3, 3))
-    jacobian[..., 0, 0] = tilt.cos_pitch
-    jacobian[..., 0, 1] = tilt.sin_pitch * tilt.sin_roll
-    jacobian[..., 1, 1] = tilt.cos_roll
-    jacobian[..., 2, 2] = tilt.cos_roll * tilt.cos_pitch / (x_turned**2 + y_turned**2)
-    return jacobian
+    jacobian = np.zeros((3, 3, *x_turned.shape))
+    jacobian[0, 0] = tilt.cos_pitch
+    jacobian[0, 1] = tilt.sin_pitch * tilt.sin_roll
+    jacobian[1, 1] = tilt.cos_roll
+    jacobian[2, 2] = tilt.cos_roll * tilt.cos_pitch / (x_turned**2 + y_turned**2)
+    return np.moveaxis(jacobian, (0, 1), (-2, -1))
 
 
 def _turned_axis(angle: FloatArray, tilt: Tilt) -> tuple[FloatArray, FloatArray]:

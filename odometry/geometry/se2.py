@@ -3,8 +3,9 @@
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.geometry.angles import wrap
+from odometry.geometry.angles import sine_and_cosine, wrap
 
+NO_ANGLE = 1e-100  # below it quotients of angles would lose digits
 SMALL_ANGLE = 1e-4  # below it slopes of sin(a)/a, (1-cos(a))/a come from series, right to 1e-13
 
 
@@ -22,15 +23,9 @@ def exp(displacement: FloatArray) -> FloatArray:
         Pose at the end in the body frame at the start; yaw is not wrapped.
     """
     along, across, angle = np.moveaxis(np.asarray(displacement, dtype=np.float64), -1, 0)
-    sine_ratio, cosine_ratio = _arc_ratios(angle)
-    return np.stack(
-        [
-            sine_ratio * along - cosine_ratio * across,
-            cosine_ratio * along + sine_ratio * across,
-            angle,
-        ],
-        axis=-1,
-    )
+    half = angle / 2
+    chord = np.sinc(half / np.pi)  # it leads ahead by half the angle
+    return _end(along, across, angle, chord * np.cos(half), chord**2 * half)
 
 
 def compose(first: FloatArray, second: FloatArray) -> FloatArray:
@@ -66,25 +61,43 @@ def _rotate(x: FloatArray, y: FloatArray, yaw: FloatArray) -> tuple[FloatArray, 
     return cosine * x - sine * y, sine * x + cosine * y
 
 
-def _arc_ratios(angle: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """sin(a)/a and (1 - cos(a))/a: the chord leads ahead by half the angle."""
-    half = angle / 2
-    chord = np.sinc(half / np.pi)
-    return chord * np.cos(half), chord**2 * half
-
-
 def exp_jacobian(displacement: FloatArray) -> FloatArray:
     """Derivative (..., 3, 3) of `exp` by displacements (..., 3)."""
-    along, across, angle = np.moveaxis(np.asarray(displacement), -1, 0)
-    sine_ratio, cosine_ratio = _arc_ratios(angle)
+    return linearised_exp(displacement)[1]
+
+
+def linearised_exp(displacement: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """`exp` (..., 3), to some 1e-16, and its derivative (..., 3, 3) by displacements (..., 3)."""
+    along, across, angle = np.moveaxis(np.asarray(displacement, dtype=np.float64), -1, 0)
+    half = angle / 2
+    half_sine, half_cosine = sine_and_cosine(half)
+    straight = np.abs(half) < NO_ANGLE
+    chord = (half_sine + straight) / (half + straight)  # sin(half)/half, 1 at 0
+    sine_ratio, cosine_ratio = chord * half_cosine, chord * half_sine
+    sine = 2 * half_sine * half_cosine
+    cosine = 1.0 - angle * cosine_ratio
     small = np.abs(angle) < SMALL_ANGLE
-    safe = np.where(small, 1.0, angle)
-    sine_slope = np.where(small, -angle / 3, (np.cos(angle) - sine_ratio) / safe)
-    cosine_slope = np.where(small, 0.5 - angle**2 / 8, (np.sin(angle) - cosine_ratio) / safe)
-    jacobian = np.zeros((*np.shape(angle), 3, 3))
-    jacobian[..., 0, 0] = jacobian[..., 1, 1] = sine_ratio
-    jacobian[..., 0, 1], jacobian[..., 1, 0] = -cosine_ratio, cosine_ratio
-    jacobian[..., 0, 2] = sine_slope * along - cosine_slope * across
-    jacobian[..., 1, 2] = cosine_slope * along + sine_slope * across
-    jacobian[..., 2, 2] = 1.0
-    return jacobian
+    safe = angle + small
+    sine_slope = np.where(small, -angle / 3, (cosine - sine_ratio) / safe)
+    cosine_slope = np.where(small, 0.5 - angle**2 / 8, (sine - cosine_ratio) / safe)
+    jacobian = np.zeros((3, 3, *np.shape(angle)))
+    jacobian[0, 0] = jacobian[1, 1] = sine_ratio
+    jacobian[0, 1], jacobian[1, 0] = -cosine_ratio, cosine_ratio
+    jacobian[0, 2] = sine_slope * along - cosine_slope * across
+    jacobian[1, 2] = cosine_slope * along + sine_slope * across
+    jacobian[2, 2] = 1.0
+    end = _end(along, across, angle, sine_ratio, cosine_ratio)
+    return end, np.moveaxis(jacobian, (0, 1), (-2, -1))
+
+
+def _end(
+    along: FloatArray,
+    across: FloatArray,
+    angle: FloatArray,
+    sine_ratio: FloatArray,
+    cosine_ratio: FloatArray,
+) -> FloatArray:
+    """End of an arc, from sin(a)/a and (1 - cos(a))/a of its angle."""
+    x = sine_ratio * along - cosine_ratio * across
+    y = cosine_ratio * along + sine_ratio * across
+    return np.moveaxis(np.stack([x, y, angle]), 0, -1)

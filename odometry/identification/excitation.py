@@ -8,7 +8,6 @@ from odometry.arrays import FloatArray
 from odometry.models.base import KinematicModel
 from odometry.run import Robot
 
-NEWTONS = {"m/N": 1, "1/N": 1, "1/N^2": 2}  # power of the force in a unit
 SHOWN = 0.3  # a parameter is named if it has this share of a direction
 
 
@@ -37,25 +36,8 @@ class Undetermined:
 
 
 def ordinary_sizes(model: KinematicModel, robot: Robot) -> FloatArray:
-    """A size (P,) for every parameter, by which searches step and deviations are judged.
-
-    The guessed value; where that is 0, a quarter of the search range; and where there is no end
-    to it, half the track width of a length and 1 of anything else, what is per newton at an
-    acceleration of 1 m/s^2.
-    """
-    guess = model.guess(robot)
-    sizes = []
-    for parameter in model.parameters:
-        low, high = parameter.search or (parameter.low, parameter.high)
-        if guess[parameter.name]:
-            sizes.append(abs(guess[parameter.name]))
-        elif np.isfinite(high - low):
-            sizes.append((high - low) / 4)
-        else:
-            length = robot.track_width / 2 if parameter.unit.startswith("m") else 1.0
-            newtons = NEWTONS.get(parameter.unit, 0)
-            sizes.append(length / guess["mass"] ** newtons if newtons else length)
-    return np.array(sizes)
+    """See `KinematicModel.ordinary_sizes`."""
+    return model.ordinary_sizes(robot)
 
 
 def undetermined(

@@ -1,6 +1,7 @@
-"""Which way of fitting suits which model."""
+"""The way of fitting that a model asks for: all parameters at once, or in stages."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from functools import partial
 from typing import Protocol
 
 from odometry.identification.config import SolverConfig
@@ -19,9 +20,6 @@ class FitTo(Protocol):
         """The fit."""
 
 
-FITTERS: dict[str, Callable[..., Fit]] = {"icr_slope": fit_in_two_stages}  # else `fit`
-
-
 def fitter(
     model: KinematicModel,
     robot: Robot,
@@ -31,8 +29,8 @@ def fitter(
     window_config: WindowConfig,
     solver_config: SolverConfig,
 ) -> FitTo:
-    """The function that fits a model to windows, in the way that suits it."""
-    fit_with = FITTERS.get(model.name, fit)
+    """The function that fits a model to windows, in its `stages` where it has any."""
+    fit_with = partial(fit_in_two_stages, stages=model.stages) if model.stages else fit
 
     def fit_to(windows: Windows, near: Mapping[str, float] | None = None) -> Fit:
         return fit_with(

@@ -7,9 +7,11 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.models.base import KinematicModel
-from odometry.windows.motion import window_motion, window_motion_jacobian
+from odometry.windows.motion import linearised_window_motion, window_motion
 from odometry.windows.noise import window_covariances
 from odometry.windows.windows import Windows
+
+REMEMBERED = 2  # a search asks again at its last point, or the one before
 
 
 @dataclass(frozen=True)
@@ -62,10 +64,33 @@ class Problem:
 
     def residuals(self, chosen: FloatArray) -> FloatArray:
         """Predicted less measured motion (K, 3); turns count in full."""
+        if chosen.tobytes() in self._recent:
+            return self._recent[chosen.tobytes()][0]
         predicted = window_motion(self.model, self.complete(chosen), self.windows)
         return np.asarray(predicted - self.windows.measured)
 
     def jacobian(self, chosen: FloatArray) -> FloatArray:
         """Derivative (K, 3, F) of the residuals by the free parameters."""
-        every = window_motion_jacobian(self.model, self.complete(chosen), self.windows)
-        return every[:, :, self.free]
+        return self.linearised(chosen)[1]
+
+    def linearised(self, chosen: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Both at once; of the last points the answers are remembered."""
+        key = chosen.tobytes()
+        if key not in self._recent:
+            while len(self._recent) >= REMEMBERED:
+                self._recent.pop(next(iter(self._recent)))
+            self._recent[key] = self._linearised(chosen)
+        return self._recent[key]
+
+    @cached_property
+    def _recent(self) -> dict[bytes, tuple[FloatArray, FloatArray]]:
+        return {}
+
+    def _linearised(self, chosen: FloatArray) -> tuple[FloatArray, FloatArray]:
+        predicted, by_parameters = linearised_window_motion(
+            self.model, self.complete(chosen), self.windows
+        )
+        found = predicted - self.windows.measured, by_parameters[:, :, self.free]
+        for array in found:
+            array.setflags(write=False)  # it will be handed out again
+        return found

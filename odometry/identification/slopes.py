@@ -1,4 +1,4 @@
-"""Two stages for slopes (Martinez 2024, III-B): flat ground first, then lambda_1 and lambda_2."""
+"""Two stages for slopes (Martinez 2024, III-B): flat terrain first, then tilted."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -12,17 +12,15 @@ from odometry.identification.fit import Fit, fit
 from odometry.identification.problem import Problem
 from odometry.identification.solve import Solution
 from odometry.identification.uncertainty import residual_scale
-from odometry.models.base import KinematicModel
-from odometry.models.icr import Icr
+from odometry.models.base import KinematicModel, Stages
 from odometry.run import Robot
 from odometry.windows.config import WindowConfig
 from odometry.windows.noise import pose_variances
 from odometry.windows.windows import Windows
 
-FLAT_RAD = np.radians(1.5)  # ground tilted less than this is flat
-SLOPE_NAMES = ("lambda_1", "lambda_2")
+FLAT_RAD = np.radians(1.5)  # terrain tilted less than this is flat
 ROUNDS = 10
-SETTLED = 1e-4  # change of the slope terms [s/rad] below which a round has changed nothing
+SETTLED = 1e-4  # change of the second stage's parameters below which a round has changed nothing
 
 
 def fit_in_two_stages(
@@ -30,19 +28,21 @@ def fit_in_two_stages(
     windows: Windows,
     robot: Robot,
     *,
+    stages: Stages,
     fixed: Mapping[str, float],
     released: frozenset[str] = frozenset(),
     near: Mapping[str, float] | None = None,
     window_config: WindowConfig,
     solver_config: SolverConfig,
 ) -> Fit:
-    """Identify `icr_slope`: the ICRs on the flat windows, then the slope terms on the tilted ones.
+    """Identify some parameters on the flat windows, then the others on the tilted ones.
 
-    The first round is the paper's, without slope terms in the first stage. What is called flat may
-    tilt a little, so the stages are repeated with the terms found, until these stay.
+    The first round is the paper's, with the second stage's parameters at zero in the first. What is
+    called flat may tilt a little, so the stages are repeated with what was found, until it stays.
 
-    Parameters are those of `fit`. `v_max` is the largest mean tread speed in the windows unless
-    it is fixed. The covariance of the slope terms holds what the first stage leaves uncertain.
+    Parameters are those of `fit`, and the model's `stages`. Known parameters that the recording
+    tells are taken from it unless they are fixed or released. The covariance of the second stage
+    holds what the first one leaves uncertain.
 
     Raises
     ------
@@ -50,8 +50,8 @@ def fit_in_two_stages(
         If the flat or the tilted windows are too few for their stage.
     """
     tilted = mean_tilt_rad(windows) > FLAT_RAD
-    icr_free = [p.name for p in Icr.parameters if p.name not in fixed]
-    _check_counts(int(np.sum(~tilted)), int(np.sum(tilted)), icr_free)
+    first_free = [name for name in stages.flat if name not in fixed]
+    _check_counts(int(np.sum(~tilted)), int(np.sum(tilted)), first_free, stages.tilted)
 
     def stage(chosen: BoolArray, known: Mapping[str, float], free: frozenset[str]) -> Fit:
         return fit(
@@ -65,31 +65,31 @@ def fit_in_two_stages(
             solver_config=solver_config,
         )
 
-    usual = {} if "v_max" in released else {"v_max": _largest_speed(windows)}
-    held = usual | dict(fixed)
-    if not icr_free:
+    told = model.told_by(windows.inputs)
+    held = {name: value for name, value in told.items() if name not in released} | dict(fixed)
+    if not first_free:
         return stage(tilted, held, released)
-    terms = {name: {**(near or {}), **held}.get(name, 0.0) for name in SLOPE_NAMES}
+    terms = {name: {**(near or {}), **held}.get(name, 0.0) for name in stages.tilted}
     for _ in range(ROUNDS):
         flat = stage(~tilted, held | terms, frozenset())
         sloped = stage(tilted, held | {name: flat.values[name] for name in flat.names}, released)
-        before, terms = terms, {name: sloped.values[name] for name in (*SLOPE_NAMES, *released)}
-        if max(abs(terms[name] - before[name]) for name in SLOPE_NAMES) < SETTLED:
+        before, terms = terms, {name: sloped.values[name] for name in (*stages.tilted, *released)}
+        if max(abs(terms[name] - before[name]) for name in stages.tilted) < SETTLED:
             break
     return _joined(flat, sloped, windows, tilted, pose_variances(window_config))
 
 
-def _check_counts(flat: int, tilted: int, icr_free: list[str]) -> None:
+def _check_counts(flat: int, tilted: int, first: list[str], second: tuple[str, ...]) -> None:
     limit = f"{np.degrees(FLAT_RAD):.1f} degrees"
-    if icr_free and 3 * flat <= len(icr_free):
+    if first and 3 * flat <= len(first):
         raise IdentificationError(
-            f"{flat} windows lie on ground flatter than {limit}, too few for "
-            f"{', '.join(icr_free)}: add a run on flat ground, or fix these"
+            f"{flat} windows lie on terrain flatter than {limit}, too few for "
+            f"{', '.join(first)}: add a run on flat terrain, or fix these"
         )
-    if 3 * tilted <= len(SLOPE_NAMES):
+    if 3 * tilted <= len(second):
         raise IdentificationError(
             f"{tilted} windows are tilted more than {limit} (roll and pitch of odometry.csv), too "
-            f"few for {', '.join(SLOPE_NAMES)}"
+            f"few for {', '.join(second)}"
         )
 
 
@@ -102,18 +102,13 @@ def mean_tilt_rad(windows: Windows) -> FloatArray:
     return np.asarray((sums[windows.last] - sums[windows.first]) / counts)
 
 
-def _largest_speed(windows: Windows) -> float:
-    """v_y^m of Martinez 2024: the largest |V_r + V_l| / 2."""
-    return float(np.abs(windows.inputs.tread_speeds_m_s.mean(axis=-1)).max())
-
-
 def _joined(
     flat: Fit, sloped: Fit, windows: Windows, tilted: BoolArray, variances: FloatArray
 ) -> Fit:
     """The second stage with what the first one found, over all windows.
 
     The optimum of the second stage moves with the first's parameters by -H22^-1 H21, H being the
-    curvature of its loss: that carries the first's covariance into the slope terms.
+    curvature of its loss (implicit function theorem): that carries the first's covariance over.
     """
     names = flat.names + sloped.names
     free = np.array([parameter.name in names for parameter in sloped.model.parameters])

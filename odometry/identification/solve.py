@@ -103,12 +103,12 @@ def _least_squares(
     root = np.sqrt(weights)[:, None, None] * problem.whitening
 
     def residuals(chosen: FloatArray) -> FloatArray:
-        return np.asarray(np.einsum("kij,kj->ki", root, problem.residuals(chosen))).ravel()
+        found, _ = problem.linearised(chosen)
+        return np.asarray(np.einsum("kij,kj->ki", root, found)).ravel()
 
     def jacobian(chosen: FloatArray) -> FloatArray:
-        return np.asarray(root @ problem.jacobian(chosen)).reshape(
-            3 * len(problem.windows), len(chosen)
-        )
+        _, found = problem.linearised(chosen)
+        return np.asarray(root @ found).reshape(3 * len(problem.windows), len(chosen))
 
     solved = least_squares(
         residuals, start, jacobian, bounds=problem.bounds(), x_scale=sizes, max_nfev=evaluations

@@ -3,12 +3,13 @@
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
+from odometry.models.icr_form import IcrForm
 from odometry.models.inputs import Inputs
 from odometry.parameter_covariance import LARGEST
 from odometry.run import Robot
@@ -46,16 +47,48 @@ class Parameter:
     in_sign: bool = False
 
 
+class Linearised(NamedTuple):
+    """A twist (..., 3) and its derivative (..., 3, P) by the parameters."""
+
+    twist: FloatArray
+    by_parameters: FloatArray
+
+
+@dataclass(frozen=True)
+class Stages:
+    """Which parameters an identification finds first, on flat terrain, and which then, on tilted.
+
+    Attributes
+    ----------
+    flat, tilted : tuple of str
+        Names; known parameters that are released belong to the second stage.
+    """
+
+    flat: tuple[str, ...]
+    tilted: tuple[str, ...]
+
+
 class KinematicModel(ABC):
     """Tread speeds and attitude in, body twist out.
 
     A subclass is one file, and one row of `odometry.models.catalogue`. Stacks broadcast:
     values (..., P) against inputs (...).
+
+    Attributes
+    ----------
+    name, source : str
+    parameters : tuple of Parameter
+    stages : Stages or None
+        None where all parameters are identified at once.
+    has_constant_icrs : bool
+        Whether there is an `icr_form`.
     """
 
     name: str
     source: ClassVar[str]
     parameters: tuple[Parameter, ...]
+    stages: ClassVar[Stages | None] = None
+    has_constant_icrs: ClassVar[bool] = False
 
     @abstractmethod
     def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:
@@ -75,8 +108,12 @@ class KinematicModel(ABC):
         """
 
     @abstractmethod
+    def linearised(self, values: FloatArray, inputs: Inputs) -> Linearised:
+        """The twist, exactly as of `twist`, and its derivative; what both need is found once."""
+
     def parameter_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """Derivative (..., 3, P) of the twist by the parameters."""
+        return self.linearised(values, inputs).by_parameters
 
     @abstractmethod
     def speed_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
@@ -85,6 +122,38 @@ class KinematicModel(ABC):
     @abstractmethod
     def guess(self, robot: Robot) -> dict[str, float]:
         """Every parameter, from what is known of a robot: where an identification starts."""
+
+    def ordinary_sizes(self, robot: Robot) -> FloatArray:
+        """A size (P,) for every parameter, by which searches step and deviations are judged.
+
+        The guessed value; where that is 0, a quarter of the search range; and where there is no
+        end to it, half the track width of what is in metres and 1 of anything else.
+        """
+        guess = self.guess(robot)
+        sizes = []
+        for parameter in self.parameters:
+            low, high = parameter.search or (parameter.low, parameter.high)
+            if guess[parameter.name]:
+                sizes.append(abs(guess[parameter.name]))
+            elif np.isfinite(high - low):
+                sizes.append((high - low) / 4)
+            else:
+                sizes.append(robot.track_width / 2 if parameter.unit.startswith("m") else 1.0)
+        return np.array(sizes)
+
+    def told_by(self, inputs: Inputs) -> dict[str, float]:  # noqa: ARG002 - of the face
+        """Known parameters that recorded inputs (N,) tell, by name."""
+        return {}
+
+    def icr_form(self, values: FloatArray) -> IcrForm:  # noqa: ARG002 - of the face
+        """The constant ICRs that parameters (P,) stand for.
+
+        Raises
+        ------
+        ParameterError
+            If the model has no constant ICRs, or these parameters stand for none.
+        """
+        raise ParameterError(f"the model {self.name!r} has no constant ICRs")
 
     def pack(self, values: Mapping[str, float]) -> FloatArray:
         """Parameters by name as an array (P,) in the order of `parameters`.

@@ -10,7 +10,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
-from odometry.models.base import KinematicModel, Parameter
+from odometry.models.base import KinematicModel, Linearised, Parameter
 from odometry.models.contact_balance import balance_at
 from odometry.models.contact_derivatives import parameter_derivative, speed_derivative
 from odometry.models.contact_solve import balanced_twist
@@ -70,7 +70,8 @@ class Contact(KinematicModel):
 
     def check(self, values: FloatArray) -> None:
         """The centre of mass must lie within 0.9 of the base."""
-        for name, centre, half in (("x_cm", *values[[2, 5]]), ("y_cm", *values[[3, 6]])):
+        _, _, x_cm, y_cm, _, half_length, half_width, _, _ = values
+        for name, centre, half in (("x_cm", x_cm, half_length), ("y_cm", y_cm, half_width)):
             if abs(centre) > INSIDE * half:
                 raise ParameterError(
                     f"{name} = {centre} m, expected within {INSIDE} of {half} m from the middle "
@@ -81,9 +82,10 @@ class Contact(KinematicModel):
         """See `KinematicModel.twist`."""
         return _in_blocks(balanced_twist, values, inputs)
 
-    def parameter_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
-        """See `KinematicModel.parameter_jacobian`."""
-        return _in_blocks(_parameter_derivative, values, inputs)
+    def linearised(self, values: FloatArray, inputs: Inputs) -> Linearised:
+        """See `KinematicModel.linearised`."""
+        both = _in_blocks(_linearised, values, inputs)
+        return Linearised(both[..., 0], both[..., 1:])
 
     def speed_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.speed_jacobian`."""
@@ -105,8 +107,11 @@ class Contact(KinematicModel):
         }
 
 
-def _parameter_derivative(stance: Stance) -> FloatArray:
-    return parameter_derivative(balance_at(stance, balanced_twist(stance)))
+def _linearised(stance: Stance) -> FloatArray:
+    """The twist, then its derivative by the parameters (3, 1 + 9, N)."""
+    twist = balanced_twist(stance)
+    by_parameters = parameter_derivative(balance_at(stance, twist))
+    return np.concatenate([twist[:, None], by_parameters], axis=1)
 
 
 def _speed_derivative(stance: Stance) -> FloatArray:
@@ -116,7 +121,7 @@ def _speed_derivative(stance: Stance) -> FloatArray:
 def _in_blocks(
     answer: Callable[[Stance], FloatArray], values: FloatArray, inputs: Inputs
 ) -> FloatArray:
-    """Broadcast, and answer (..., N) a stance of N samples at a time; samples first: (..., ...)."""
+    """Broadcast, and answer a stance of N samples at a time: of (M, N) it makes (..., M)."""
     stack = np.broadcast_shapes(np.shape(values)[:-1], inputs.shape)
     rows = np.broadcast_to(values, (*stack, np.shape(values)[-1])).reshape(-1, np.shape(values)[-1])
     speeds = np.broadcast_to(inputs.tread_speeds_m_s, (*stack, 2)).reshape(-1, 2)
@@ -128,5 +133,7 @@ def _in_blocks(
         answer(stance_of(rows[block], flat.rows(block)))
         for block in (slice(k, k + BLOCK) for k in range(0, max(len(rows), 1), BLOCK))
     ]
-    joined = np.moveaxis(np.concatenate(answers, axis=-1), -1, 0)
-    return np.ascontiguousarray(joined.reshape(*stack, *joined.shape[1:]))
+    joined = np.concatenate(answers, axis=-1)
+    entries = joined.ndim - 1
+    last = range(-entries, 0)
+    return np.moveaxis(joined.reshape(*joined.shape[:-1], *stack), range(entries), last)

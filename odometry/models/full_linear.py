@@ -3,9 +3,10 @@
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.models.base import KinematicModel, Parameter
+from odometry.models.base import KinematicModel, Linearised, Parameter
 from odometry.models.icr import GUESSED_WIDTHS
 from odometry.models.inputs import Inputs
+from odometry.models.layout import zero_matrices
 from odometry.run import Robot
 
 
@@ -31,12 +32,13 @@ class FullLinear(KinematicModel):
         """See `KinematicModel.twist`."""
         return np.asarray(np.einsum("...ij,...j->...i", _matrix(values), inputs.tread_speeds_m_s))
 
-    def parameter_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
-        """See `KinematicModel.parameter_jacobian`."""
-        jacobian = np.zeros((*np.broadcast_shapes(values.shape[:-1], inputs.shape), 3, 6))
+    def linearised(self, values: FloatArray, inputs: Inputs) -> Linearised:
+        """See `KinematicModel.linearised`."""
+        twist = self.twist(values, inputs)
+        jacobian = zero_matrices(twist.shape[:-1], 3, 6)
         for row in range(3):
             jacobian[..., row, 2 * row : 2 * row + 2] = inputs.tread_speeds_m_s
-        return jacobian
+        return Linearised(twist, jacobian)
 
     def speed_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.speed_jacobian`."""

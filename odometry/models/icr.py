@@ -4,11 +4,14 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
-from odometry.models.base import Parameter
+from odometry.models.base import Linearised, Parameter
+from odometry.models.icr_form import IcrForm
 from odometry.models.inputs import Inputs
 from odometry.models.invertible import InvertibleModel, before_slip, icr_tread_speeds
+from odometry.models.layout import vectors, zero_matrices
 from odometry.run import Robot
 
+ICRS, ALPHAS = slice(0, 3), slice(3, 5)  # where the parameters of `icr` have them
 GUESSED_WIDTHS = 1.5  # distance between tread ICRs in track widths, where nothing else is known
 
 
@@ -32,7 +35,7 @@ def icr_twist(icrs: FloatArray, tread_speeds: FloatArray) -> FloatArray:
     width = y_left - y_right
     omega = (right - left) / width  # Chen 2023 eq. 3, third row
     v_x = (right * y_left - left * y_right) / width  # Chen 2023 eq. 3, first row
-    return np.stack([v_x, -x_icr * omega, omega], axis=-1)
+    return vectors(v_x, -x_icr * omega, omega)
 
 
 def icr_twist_jacobian(icrs: FloatArray, tread_speeds: FloatArray) -> FloatArray:
@@ -40,15 +43,23 @@ def icr_twist_jacobian(icrs: FloatArray, tread_speeds: FloatArray) -> FloatArray
 
     This is Chen 2023 eq. 10 in the body frame, with its misprints mended.
     """
-    y_left, y_right, x_icr = np.moveaxis(np.asarray(icrs), -1, 0)
     omega = icr_twist(icrs, tread_speeds)[..., 2]
+    jacobian = zero_matrices(np.shape(omega), 3, 3)
+    fill_by_icrs(jacobian, np.asarray(icrs), omega)
+    return jacobian
+
+
+def fill_by_icrs(jacobian: FloatArray, icrs: FloatArray, omega: FloatArray) -> None:
+    """Put the derivative by ICRs (..., 3) into the first columns of a zero matrix (..., 3, P).
+
+    `omega` (...) is that of the twist [rad/s].
+    """
+    y_left, y_right, x_icr = np.moveaxis(icrs, -1, 0)
     rate = omega / (y_left - y_right)
-    jacobian = np.zeros((*np.shape(rate), 3, 3))
     jacobian[..., 0, 0], jacobian[..., 0, 1] = -y_right * rate, y_left * rate
     jacobian[..., 1, 0], jacobian[..., 1, 1] = x_icr * rate, -x_icr * rate
     jacobian[..., 1, 2] = -omega
     jacobian[..., 2, 0], jacobian[..., 2, 1] = -rate, rate
-    return jacobian
 
 
 def icr_speed_matrix(icrs: FloatArray) -> FloatArray:
@@ -75,6 +86,7 @@ class Icr(InvertibleModel):
         Parameter("alpha_left", "", 0.0, 2.0, default=1.0),
         Parameter("alpha_right", "", 0.0, 2.0, default=1.0),
     )
+    has_constant_icrs = True
 
     def check(self, values: FloatArray) -> None:
         """y_left must exceed y_right."""
@@ -85,25 +97,33 @@ class Icr(InvertibleModel):
 
     def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.twist`."""
-        return icr_twist(values[..., :3], values[..., 3:] * inputs.tread_speeds_m_s)
+        return icr_twist(values[..., ICRS], values[..., ALPHAS] * inputs.tread_speeds_m_s)
 
-    def parameter_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
-        """See `KinematicModel.parameter_jacobian`."""
-        by_icr = icr_twist_jacobian(values[..., :3], values[..., 3:] * inputs.tread_speeds_m_s)
-        by_effective_speed = icr_speed_matrix(values[..., :3])
-        by_alpha = by_effective_speed * np.asarray(inputs.tread_speeds_m_s)[..., None, :]
-        return np.concatenate([by_icr, by_alpha], axis=-1)
+    def linearised(self, values: FloatArray, inputs: Inputs) -> Linearised:
+        """See `KinematicModel.linearised`."""
+        twist = self.twist(values, inputs)
+        jacobian = zero_matrices(twist.shape[:-1], 3, 5)
+        fill_by_icrs(jacobian, values[..., ICRS], twist[..., 2])
+        by_speed = icr_speed_matrix(values[..., ICRS])
+        for tread, speed in enumerate((inputs.left, inputs.right)):
+            by_alpha = jacobian[..., ALPHAS][..., tread]
+            np.multiply(by_speed[..., tread], speed[..., None], out=by_alpha)
+        return Linearised(twist, jacobian)
 
     def speed_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.speed_jacobian`."""
-        matrix = icr_speed_matrix(values[..., :3]) * values[..., None, 3:]
+        matrix = icr_speed_matrix(values[..., ICRS]) * values[..., None, ALPHAS]
         stack = np.broadcast_shapes(matrix.shape[:-2], inputs.shape)
         return np.asarray(np.broadcast_to(matrix, (*stack, 3, 2)))
 
     def tread_speeds(self, values: FloatArray, v_x: FloatArray, omega: FloatArray) -> FloatArray:
         """See `InvertibleModel.tread_speeds`."""
         effective = icr_tread_speeds(values[..., 0], values[..., 1], v_x, omega)
-        return before_slip(effective, values[..., 3:])
+        return before_slip(effective, values[..., ALPHAS])
+
+    def icr_form(self, values: FloatArray) -> IcrForm:
+        """The parameters themselves."""
+        return IcrForm(values[ICRS], values[ALPHAS], np.eye(3, 5))
 
     def guess(self, robot: Robot) -> dict[str, float]:
         """Tread ICRs 1.5 times as far apart as the treads, no slip."""

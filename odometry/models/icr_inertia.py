@@ -4,6 +4,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.models.consistent_force import consistent_force
+from odometry.models.inertia_columns import COEFFICIENTS, Column
 from odometry.models.inertia_model import G_M_S2, InertiaModel, Turn
 from odometry.models.invertible import InvertibleModel, icr_tread_speeds
 from odometry.models.steering_indices import indices_under
@@ -22,7 +23,7 @@ class IcrInertia(InertiaModel, InvertibleModel):
 
     def caused_force(self, values: FloatArray, turn: Turn) -> tuple[FloatArray, FloatArray]:
         """See `InertiaModel.caused_force` (Martinez 2017 eq. 11)."""
-        mass, x_cm, y_cm = np.moveaxis(values[..., 8:11], -1, 0)
+        mass, x_cm, y_cm = (values[..., c] for c in (Column.MASS, Column.X_CM, Column.Y_CM))
         zeta, epsilon, omega = turn.indices.zeta, turn.indices.epsilon, turn.omega
         speed, ahead, left = _centre_of_mass(values, turn.v_x, omega, zeta)
         momentum_rate = mass * np.abs(omega)
@@ -37,12 +38,12 @@ class IcrInertia(InertiaModel, InvertibleModel):
     def caused_force_gradient(self, values: FloatArray, turn: Turn) -> FloatArray:
         """See `InertiaModel.caused_force_gradient`."""
         speed, ahead, left = _centre_of_mass(values, turn.v_x, turn.omega, turn.indices.zeta)
-        momentum_rate = values[..., 8] * np.abs(turn.omega)
-        gradient = np.zeros((*turn.omega.shape, 14))
-        gradient[..., 8] = np.abs(turn.omega) * speed
-        gradient[..., 9] = momentum_rate * left * turn.omega
-        gradient[..., 10] = -momentum_rate * ahead * turn.omega
-        gradient[..., 12] = gradient[..., 13] = momentum_rate * ahead / 2
+        momentum_rate = values[..., Column.MASS] * np.abs(turn.omega)
+        gradient = np.zeros((*turn.omega.shape, len(Column)))
+        gradient[..., Column.MASS] = np.abs(turn.omega) * speed
+        gradient[..., Column.X_CM] = momentum_rate * left * turn.omega
+        gradient[..., Column.Y_CM] = -momentum_rate * ahead * turn.omega
+        gradient[..., Column.V_LEFT] = gradient[..., Column.V_RIGHT] = momentum_rate * ahead / 2
         return gradient
 
     def tread_speeds(self, values: FloatArray, v_x: FloatArray, omega: FloatArray) -> FloatArray:
@@ -58,7 +59,7 @@ class IcrInertia(InertiaModel, InvertibleModel):
         )
         for x2_sign in (-1.0, 1.0):
             supposed = _tread_speeds(values, v_x, omega, x2_sign)
-            x2 = supposed[..., 0] + values[..., 7] * supposed[..., 1]  # eq. 15
+            x2 = supposed[..., 0] + values[..., Column.H] * supposed[..., 1]  # eq. 15
             agrees = (np.sign(x2) == x2_sign) | (omega == 0)
             speeds = np.where(agrees[..., None], supposed, speeds)
         return speeds
@@ -68,8 +69,8 @@ def _centre_of_mass(
     values: FloatArray, v_x: FloatArray, omega: FloatArray, zeta: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Speed (...) of the centre of mass, and the direction in which it moves (eq. 9)."""
-    ahead = v_x - values[..., 10] * omega
-    left = (values[..., 9] - zeta) * omega
+    ahead = v_x - values[..., Column.Y_CM] * omega
+    left = (values[..., Column.X_CM] - zeta) * omega
     speed = np.hypot(ahead, left)
     moving = np.where(speed > 0, speed, 1.0)
     return speed, ahead / moving, left / moving
@@ -79,16 +80,16 @@ def _tread_speeds(
     values: FloatArray, v_x: FloatArray, omega: FloatArray, x2_sign: float
 ) -> FloatArray:
     """Tread speeds (..., 2) if V_l + H V_r has the sign supposed."""
-    mass, track_width = values[..., 8], values[..., 11]
-    slide = values[..., 1] * x2_sign  # of zeta by the force
+    mass, track_width = values[..., Column.MASS], values[..., Column.TRACK_WIDTH]
+    slide = values[..., Column.ZETA_1] * x2_sign  # of zeta by the force
 
     def force_at(force_n: FloatArray) -> tuple[FloatArray, FloatArray]:
-        zeta = values[..., 0] + slide * force_n
+        zeta = values[..., Column.ZETA_0] + slide * force_n
         speed, _, left = _centre_of_mass(values, v_x, omega, zeta)
         return mass * np.abs(omega) * speed, -mass * np.abs(omega) * left * omega * slide
 
     stack = np.broadcast_shapes(mass.shape, v_x.shape, omega.shape)
     force_n = consistent_force(force_at, np.broadcast_to(mass * G_M_S2, stack))
-    found = indices_under(values[..., :7], force_n, -np.sign(omega), np.asarray(x2_sign))
+    found = indices_under(values[..., COEFFICIENTS], force_n, -np.sign(omega), np.asarray(x2_sign))
     half = track_width * found.eta / 2
     return icr_tread_speeds(half - found.epsilon, -half - found.epsilon, v_x, omega)

@@ -4,6 +4,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
+from odometry.models.inertia_columns import CENTRE_OF_MASS, Column
 from odometry.models.inertia_model import G_M_S2, InertiaModel, Turn
 
 
@@ -21,17 +22,19 @@ class IcrInertiaMeasured(InertiaModel):
     def caused_force(self, values: FloatArray, turn: Turn) -> tuple[FloatArray, FloatArray]:
         """See `InertiaModel.caused_force`."""
         size, direction = _acceleration(values, turn)
-        inward = (direction * values[..., 9:11]).sum(axis=-1)
+        inward = (direction * values[..., CENTRE_OF_MASS]).sum(axis=-1)
         by_turn = np.zeros((*size.shape, 3))
-        by_turn[..., 2] = -2 * values[..., 8] * turn.omega * inward
-        return values[..., 8] * size, by_turn
+        by_turn[..., 2] = -2 * values[..., Column.MASS] * turn.omega * inward
+        return values[..., Column.MASS] * size, by_turn
 
     def caused_force_gradient(self, values: FloatArray, turn: Turn) -> FloatArray:
         """See `InertiaModel.caused_force_gradient`."""
         size, direction = _acceleration(values, turn)
-        gradient = np.zeros((*size.shape, 14))
-        gradient[..., 8] = size
-        gradient[..., 9:11] = -(values[..., 8] * turn.omega**2)[..., None] * direction
+        gradient = np.zeros((*size.shape, len(Column)))
+        gradient[..., Column.MASS] = size
+        gradient[..., CENTRE_OF_MASS] = (
+            -(values[..., Column.MASS] * turn.omega**2)[..., None] * direction
+        )
         return gradient
 
 
@@ -49,6 +52,8 @@ def _acceleration(values: FloatArray, turn: Turn) -> tuple[FloatArray, FloatArra
         ),
         axis=-1,
     )
-    carried = inputs.accelerations_m_s2 - level - turn.omega[..., None] ** 2 * values[..., 9:11]
+    carried = (
+        inputs.accelerations_m_s2 - level - turn.omega[..., None] ** 2 * values[..., CENTRE_OF_MASS]
+    )
     size = np.hypot(carried[..., 0], carried[..., 1])
     return size, carried / np.where(size > 0, size, 1.0)[..., None]

@@ -1,17 +1,35 @@
 """Tread ICRs that move with the attitude: ICR kinematics on slopes (Martinez 2024 eq. 1-11)."""
 
 from dataclasses import dataclass
+from enum import IntEnum
 
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.models.base import KinematicModel, Parameter
-from odometry.models.icr import Icr, icr_speed_matrix, icr_twist, icr_twist_jacobian
+from odometry.models.base import KinematicModel, Linearised, Parameter, Stages
+from odometry.models.icr import (
+    ALPHAS,
+    ICRS,
+    Icr,
+    icr_speed_matrix,
+    icr_twist,
+    icr_twist_jacobian,
+)
 from odometry.models.inputs import Inputs
 from odometry.run import Robot
 
 GUESSED_V_MAX_M_S = 1.0
 GUESSED_HALF_LENGTH = 0.35  # of the body's length: the wheels stand within the body
+
+
+class Column(IntEnum):
+    """Where the parameters have what `icr` does not."""
+
+    LAMBDA_1 = 5
+    LAMBDA_2 = 6
+    V_MAX = 7
+    HALF_WIDTH = 8
+    HALF_LENGTH = 9
 
 
 class IcrSlope(KinematicModel):
@@ -37,6 +55,10 @@ class IcrSlope(KinematicModel):
         Parameter("half_width", "m", 1e-3, known=True),
         Parameter("half_length", "m", 0.0, known=True),
     )
+    stages = Stages(  # Martinez 2024, III-B
+        flat=tuple(parameter.name for parameter in Icr.parameters),
+        tilted=("lambda_1", "lambda_2"),
+    )
 
     def check(self, values: FloatArray) -> None:
         """y_left must exceed y_right on level ground."""
@@ -48,31 +70,34 @@ class IcrSlope(KinematicModel):
 
     def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.twist`."""
-        shifted = _shifted(values, inputs)
-        return icr_twist(shifted.limited, shifted.effective_speeds)
+        return _twist(_shifted(values, inputs))
 
-    def parameter_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
-        """See `KinematicModel.parameter_jacobian`."""
+    def linearised(self, values: FloatArray, inputs: Inputs) -> Linearised:
+        """See `KinematicModel.linearised`."""
         shifted = _shifted(values, inputs)
         inside = shifted.free == shifted.limited
         spare = shifted.spare[..., None]
         icrs = np.zeros((*shifted.free.shape, 10))  # their derivative by the parameters
         icrs[..., [0, 1, 2], [0, 1, 2]] = inside
-        icrs[..., 5] = inside * spare * shifted.by_lambda_1
-        icrs[..., 6] = inside * spare * shifted.by_lambda_2
-        icrs[..., 7] = inside * (spare > 0) * shifted.by_spare
-        icrs[..., 8] = ~inside * [1.0, -1.0, 0.0]  # limits I and II
-        icrs[..., 2, 9] = ~inside[..., 2] * np.sign(shifted.free[..., 2])  # limit III
+        icrs[..., Column.LAMBDA_1] = inside * spare * shifted.by_lambda_1
+        icrs[..., Column.LAMBDA_2] = inside * spare * shifted.by_lambda_2
+        icrs[..., Column.V_MAX] = inside * (spare > 0) * shifted.by_spare
+        icrs[..., Column.HALF_WIDTH] = ~inside * [1.0, -1.0, 0.0]  # limits I and II
+        icrs[..., 2, Column.HALF_LENGTH] = ~inside[..., 2] * np.sign(shifted.free[..., 2])  # III
         by_icr = icr_twist_jacobian(shifted.limited, shifted.effective_speeds)
         jacobian = by_icr @ icrs
         speeds = np.asarray(inputs.tread_speeds_m_s)[..., None, :]
-        jacobian[..., 3:5] = _effective_speed_jacobian(shifted) * speeds
-        return jacobian
+        jacobian[..., ALPHAS] = _effective_speed_jacobian(shifted) * speeds
+        return Linearised(_twist(shifted), jacobian)
 
     def speed_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.speed_jacobian`."""
         by_effective = _effective_speed_jacobian(_shifted(values, inputs))
-        return np.asarray(by_effective * values[..., None, 3:5])
+        return np.asarray(by_effective * values[..., None, ALPHAS])
+
+    def told_by(self, inputs: Inputs) -> dict[str, float]:
+        """v_max: the largest |V_r + V_l| / 2 (v_y^m of Martinez 2024)."""
+        return {"v_max": float(np.abs(inputs.tread_speeds_m_s.mean(axis=-1)).max())}
 
     def guess(self, robot: Robot) -> dict[str, float]:
         """The guess of `icr`, a base rectangle from the robot's size, both lambdas 1 s/rad."""
@@ -103,19 +128,20 @@ class _Shifted:
 
 
 def _shifted(values: FloatArray, inputs: Inputs) -> _Shifted:
-    lambda_1, lambda_2, v_max, half_width, half_length = np.moveaxis(values[..., 5:], -1, 0)
+    half_width, half_length = values[..., Column.HALF_WIDTH], values[..., Column.HALF_LENGTH]
     stack = np.broadcast_shapes(values.shape[:-1], inputs.shape)
-    effective = np.broadcast_to(values[..., 3:5] * inputs.tread_speeds_m_s, (*stack, 2))
+    effective = np.broadcast_to(values[..., ALPHAS] * inputs.tread_speeds_m_s, (*stack, 2))
     forward = effective.mean(axis=-1)
-    spare = np.maximum(v_max - np.abs(forward), 0)
+    spare = np.maximum(values[..., Column.V_MAX] - np.abs(forward), 0)
     roll, pitch = _paper_attitude(inputs)
     direction = np.sign(effective[..., 1] - effective[..., 0])  # eq. 8
     ring = direction * pitch  # eq. 5-6; y = -x_ICR
     lobe = direction * np.sign(pitch) * np.maximum(np.abs(pitch) - np.abs(roll), 0)  # eq. 9-10
     by_lambda_1 = np.stack([-ring, -ring, direction * roll], axis=-1)  # eq. 5-7
     by_lambda_2 = np.stack([-np.minimum(lobe, 0), -np.maximum(lobe, 0), 0 * lobe], axis=-1)
-    by_spare = lambda_1[..., None] * by_lambda_1 + lambda_2[..., None] * by_lambda_2
-    free = values[..., :3] + spare[..., None] * by_spare
+    lambda_1, lambda_2 = values[..., Column.LAMBDA_1, None], values[..., Column.LAMBDA_2, None]
+    by_spare = lambda_1 * by_lambda_1 + lambda_2 * by_lambda_2
+    free = values[..., ICRS] + spare[..., None] * by_spare
     limited = [
         np.maximum(free[..., 0], half_width),  # limit I
         np.minimum(free[..., 1], -half_width),  # limit II
@@ -124,6 +150,10 @@ def _shifted(values: FloatArray, inputs: Inputs) -> _Shifted:
     return _Shifted(
         effective, forward, spare, by_lambda_1, by_lambda_2, by_spare, free, np.stack(limited, -1)
     )
+
+
+def _twist(shifted: _Shifted) -> FloatArray:
+    return icr_twist(shifted.limited, shifted.effective_speeds)
 
 
 def _paper_attitude(inputs: Inputs) -> tuple[FloatArray, FloatArray]:

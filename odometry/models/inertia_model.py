@@ -10,9 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.models.base import KinematicModel, Parameter
+from odometry.models.base import KinematicModel, Linearised, Parameter
 from odometry.models.consistent_force import consistent_force
 from odometry.models.icr import GUESSED_WIDTHS
+from odometry.models.inertia_columns import COEFFICIENTS, PARAMETERS, SPEEDS, Column
 from odometry.models.inputs import Inputs
 from odometry.models.steering_indices import (
     LEAST_ETA,
@@ -25,6 +26,7 @@ from odometry.run import Robot
 
 G_M_S2 = 9.80665
 GUESSED_MASS_KG = 1.0  # the coefficients are then by acceleration
+NEWTONS = {"m/N": 1, "1/N": 1, "1/N^2": 2}  # power of the force in a unit
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,11 @@ class Turn:
     def v_y(self) -> FloatArray:
         """Speed to the left (...) [m/s] (Martinez 2017 eq. 21)."""
         return np.asarray(-self.omega * self.indices.zeta)
+
+    @property
+    def twist(self) -> FloatArray:
+        """Body twist (..., 3)."""
+        return np.stack([self.v_x, self.v_y, self.omega], axis=-1)
 
 
 class InertiaModel(KinematicModel):
@@ -81,29 +88,26 @@ class InertiaModel(KinematicModel):
 
     @abstractmethod
     def caused_force_gradient(self, values: FloatArray, turn: Turn) -> FloatArray:
-        """Derivative (..., 14) of the same by parameters, v_left and v_right.
-
-        At given zeta, epsilon and omega.
-        """
+        """Derivative (..., 14) of the same by each `Column`, at given zeta, epsilon and omega."""
 
     def icrs(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """Momentary y_left, y_right, x_icr (..., 3) [m] (Martinez 2017 eq. 28-30)."""
         found = self.turn(values, inputs).indices
-        half = values[..., 11] * found.eta / 2
+        half = values[..., Column.TRACK_WIDTH] * found.eta / 2
         return np.stack([half - found.epsilon, -half - found.epsilon, found.zeta], axis=-1)
 
     def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.twist`."""
-        turn = self.turn(values, inputs)
-        return np.stack([turn.v_x, turn.v_y, turn.omega], axis=-1)
+        return self.turn(values, inputs).twist
 
-    def parameter_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
-        """See `KinematicModel.parameter_jacobian`."""
-        return self._jacobian(values, inputs)[..., :12]
+    def linearised(self, values: FloatArray, inputs: Inputs) -> Linearised:
+        """See `KinematicModel.linearised`."""
+        turn = self.turn(values, inputs)
+        return Linearised(turn.twist, self._jacobian(values, turn)[..., PARAMETERS])
 
     def speed_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.speed_jacobian`."""
-        return self._jacobian(values, inputs)[..., 12:]
+        return self._jacobian(values, self.turn(values, inputs))[..., SPEEDS]
 
     def guess(self, robot: Robot) -> dict[str, float]:
         """No effect of inertia on a width of 1.5 track widths, the mass in the middle."""
@@ -116,6 +120,13 @@ class InertiaModel(KinematicModel):
             "track_width": robot.track_width,
         }
 
+    def ordinary_sizes(self, robot: Robot) -> FloatArray:
+        """See `KinematicModel.ordinary_sizes`; what is per newton, at 1 m/s^2."""
+        mass = self.guess(robot)["mass"]
+        return super().ordinary_sizes(robot) / [
+            mass ** NEWTONS.get(parameter.unit, 0) for parameter in self.parameters
+        ]
+
     def turn(self, values: FloatArray, inputs: Inputs) -> Turn:
         """The motion that causes the force of inertia which it is under."""
         stack = np.broadcast_shapes(values.shape[:-1], inputs.shape)
@@ -125,50 +136,51 @@ class InertiaModel(KinematicModel):
             force, by_turn = self.caused_force(values, turn)
             return force, (by_turn * _turn_by_force(values, turn)).sum(axis=-1)
 
-        limit_n = np.broadcast_to(values[..., 8] * G_M_S2, stack)
+        limit_n = np.broadcast_to(values[..., Column.MASS] * G_M_S2, stack)
         return _turn_under(values, inputs, consistent_force(force_at, limit_n))
 
-    def _jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
-        """Derivative (..., 3, 14) of the twist by parameters, v_left and v_right."""
-        turn = self.turn(values, inputs)
+    def _jacobian(self, values: FloatArray, turn: Turn) -> FloatArray:
+        """Derivative (..., 3, 14) of the twist by each `Column`."""
         given_force = _turn_gradient(values, turn)
         turn_by_force = _turn_by_force(values, turn)
         _, by_turn = self.caused_force(values, turn)
         direct = self.caused_force_gradient(values, turn)
         direct = direct + np.einsum("...i,...ij->...j", by_turn, given_force)
         feedback = (by_turn * turn_by_force).sum(axis=-1)[..., None]
-        held = (turn.indices.force_n >= values[..., 8] * G_M_S2)[..., None]
-        force = np.where(held, G_M_S2 * np.eye(14)[8], direct / np.where(held, 1, 1 - feedback))
+        held = (turn.indices.force_n >= values[..., Column.MASS] * G_M_S2)[..., None]
+        weight = np.zeros(len(Column))
+        weight[Column.MASS] = G_M_S2
+        force = np.where(held, weight, direct / np.where(held, 1, 1 - feedback))
         in_all = given_force + turn_by_force[..., :, None] * force[..., None, :]
         jacobian = _twist_by_turn(turn) @ in_all
-        jacobian[..., 0, 12:] += 0.5
+        jacobian[..., 0, SPEEDS] += 0.5
         return np.asarray(jacobian)
 
 
 def _turn_under(values: FloatArray, inputs: Inputs, force_n: FloatArray) -> Turn:
     """The motion (...) under a force (...)."""
     left, right = inputs.left, inputs.right
-    x1_sign, x2_sign = np.sign(left - right), np.sign(left + values[..., 7] * right)
-    found = indices_under(values[..., :7], force_n, x1_sign, x2_sign)
-    omega = (right - left) / (values[..., 11] * found.eta)  # eq. 20
+    x1_sign, x2_sign = np.sign(left - right), np.sign(left + values[..., Column.H] * right)
+    found = indices_under(values[..., COEFFICIENTS], force_n, x1_sign, x2_sign)
+    omega = (right - left) / (values[..., Column.TRACK_WIDTH] * found.eta)  # eq. 20
     return Turn(inputs, omega, found)
 
 
 def _turn_by_force(values: FloatArray, turn: Turn) -> FloatArray:
     """Derivative (..., 3) of zeta, epsilon, omega by the force."""
-    derivative = by_force(values[..., :7], turn.indices)
+    derivative = by_force(values[..., COEFFICIENTS], turn.indices)
     derivative[..., 2] *= -turn.omega / turn.indices.eta
     return derivative
 
 
 def _turn_gradient(values: FloatArray, turn: Turn) -> FloatArray:
-    """Derivative (..., 3, 14) of zeta, epsilon, omega by parameters and speeds, at one force."""
-    gradient = np.zeros((*turn.omega.shape, 3, 14))
-    gradient[..., :7] = by_coefficient(turn.indices)
-    gradient[..., 2, :7] *= (-turn.omega / turn.indices.eta)[..., None]
-    gradient[..., 2, 11] = -turn.omega / values[..., 11]
-    gradient[..., 2, 13] = 1 / (values[..., 11] * turn.indices.eta)
-    gradient[..., 2, 12] = -gradient[..., 2, 13]
+    """Derivative (..., 3, 14) of zeta, epsilon, omega by each `Column`, at one force."""
+    gradient = np.zeros((*turn.omega.shape, 3, len(Column)))
+    gradient[..., COEFFICIENTS] = by_coefficient(turn.indices)
+    gradient[..., 2, COEFFICIENTS] *= (-turn.omega / turn.indices.eta)[..., None]
+    gradient[..., 2, Column.TRACK_WIDTH] = -turn.omega / values[..., Column.TRACK_WIDTH]
+    gradient[..., 2, Column.V_RIGHT] = 1 / (values[..., Column.TRACK_WIDTH] * turn.indices.eta)
+    gradient[..., 2, Column.V_LEFT] = -gradient[..., 2, Column.V_RIGHT]
     return gradient
 
 

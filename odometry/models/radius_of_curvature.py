@@ -4,9 +4,10 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
-from odometry.models.base import KinematicModel, Parameter
+from odometry.models.base import KinematicModel, Linearised, Parameter
 from odometry.models.icr import GUESSED_WIDTHS
 from odometry.models.inputs import Inputs
+from odometry.models.layout import vectors, zero_matrices
 from odometry.run import Robot
 
 
@@ -45,24 +46,21 @@ class RadiusOfCurvature(KinematicModel):
 
     def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.twist`."""
-        alpha, _, _, width = np.moveaxis(values, -1, 0)
         factor, *_ = _width_factor(values, inputs)
-        v_x = alpha * (inputs.left + inputs.right) / 2
-        omega = alpha * (inputs.right - inputs.left) / width * factor  # eq. 8
-        return np.stack(np.broadcast_arrays(v_x, np.zeros(()), omega), axis=-1)
+        return _twist(values, inputs, factor)
 
-    def parameter_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
-        """See `KinematicModel.parameter_jacobian`."""
+    def linearised(self, values: FloatArray, inputs: Inputs) -> Linearised:
+        """See `KinematicModel.linearised`."""
         alpha, _, _, width = np.moveaxis(values, -1, 0)
         factor, by_beta_1, by_beta_2, _, _ = _width_factor(values, inputs)
         turn = (inputs.right - inputs.left) / width
-        jacobian = np.zeros((*np.shape(factor), 3, 4))
+        jacobian = zero_matrices(np.shape(factor), 3, 4)
         jacobian[..., 0, 0] = (inputs.left + inputs.right) / 2
         jacobian[..., 2, 0] = turn * factor
         jacobian[..., 2, 1] = alpha * turn * by_beta_1
         jacobian[..., 2, 2] = alpha * turn * by_beta_2
         jacobian[..., 2, 3] = -alpha * turn * factor / width
-        return jacobian
+        return Linearised(_twist(values, inputs, factor), jacobian)
 
     def speed_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.speed_jacobian`."""
@@ -83,6 +81,13 @@ class RadiusOfCurvature(KinematicModel):
             "beta_2": 1.0,
             "track_width": robot.track_width,
         }
+
+
+def _twist(values: FloatArray, inputs: Inputs, factor: FloatArray) -> FloatArray:
+    alpha, _, _, width = np.moveaxis(values, -1, 0)
+    v_x = alpha * (inputs.left + inputs.right) / 2
+    omega = alpha * (inputs.right - inputs.left) / width * factor  # eq. 8
+    return vectors(v_x, np.zeros(()), omega)
 
 
 def _width_factor(values: FloatArray, inputs: Inputs) -> tuple[FloatArray, ...]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.models.inertia_columns import Column
 
 LEAST_ETA = 0.1  # the tread ICRs stay at least a tenth of the track width apart
 
@@ -73,12 +74,12 @@ def by_force(coefficients: FloatArray, at: Indices) -> FloatArray:
 def by_coefficient(at: Indices) -> FloatArray:
     """Derivative (..., 3, 7) of zeta, epsilon, eta by the coefficients."""
     signed = at.x1_sign * at.x2_sign * at.force_n
-    jacobian = np.zeros((*np.shape(at.eta), 3, 7))
-    jacobian[..., 0, 0] = 1
-    jacobian[..., 0, 1] = at.x2_sign * at.force_n
-    jacobian[..., 1, 2] = 1
-    jacobian[..., 1, 3] = signed
-    jacobian[..., 2, 4] = at.eta_is_free
-    jacobian[..., 2, 5] = at.eta_is_free * signed
-    jacobian[..., 2, 6] = at.eta_is_free * at.force_n**2
+    jacobian = np.zeros((*np.shape(at.eta), 3, Column.H))
+    jacobian[..., 0, Column.ZETA_0] = 1
+    jacobian[..., 0, Column.ZETA_1] = at.x2_sign * at.force_n
+    jacobian[..., 1, Column.EPSILON_0] = 1
+    jacobian[..., 1, Column.EPSILON_1] = signed
+    jacobian[..., 2, Column.ETA_0] = at.eta_is_free
+    jacobian[..., 2, Column.ETA_1] = at.eta_is_free * signed
+    jacobian[..., 2, Column.ETA_2] = at.eta_is_free * at.force_n**2
     return jacobian

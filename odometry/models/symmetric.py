@@ -3,10 +3,12 @@
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.models.base import Parameter
+from odometry.models.base import Linearised, Parameter
 from odometry.models.icr import GUESSED_WIDTHS
+from odometry.models.icr_form import IcrForm
 from odometry.models.inputs import Inputs
 from odometry.models.invertible import InvertibleModel, before_slip, icr_tread_speeds
+from odometry.models.layout import vectors, zero_matrices
 from odometry.run import Robot
 
 
@@ -16,16 +18,18 @@ class DifferentialDrive(InvertibleModel):
     name = "differential_drive"
     source = "Baril 2020, eq. 3"
     parameters = (Parameter("track_width", "m", 1e-3, known=True),)
+    has_constant_icrs = True
 
     def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.twist`."""
         return _symmetric_twist(np.ones_like(values[..., 0]), values[..., 0], inputs)
 
-    def parameter_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
-        """See `KinematicModel.parameter_jacobian`."""
-        omega = self.twist(values, inputs)[..., 2]
-        zero = np.zeros_like(omega)
-        return np.stack([zero, zero, -omega / values[..., 0]], axis=-1)[..., None]
+    def linearised(self, values: FloatArray, inputs: Inputs) -> Linearised:
+        """See `KinematicModel.linearised`."""
+        twist = self.twist(values, inputs)
+        jacobian = zero_matrices(twist.shape[:-1], 3, 1)
+        jacobian[..., 2, 0] = -twist[..., 2] / values[..., 0]
+        return Linearised(twist, jacobian)
 
     def speed_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.speed_jacobian`."""
@@ -35,6 +39,11 @@ class DifferentialDrive(InvertibleModel):
         """See `InvertibleModel.tread_speeds`."""
         half = values[..., 0] / 2
         return icr_tread_speeds(half, -half, v_x, omega)
+
+    def icr_form(self, values: FloatArray) -> IcrForm:
+        """ICRs on the treads."""
+        (width,) = values
+        return IcrForm(symmetric_icrs(width), np.ones(2), symmetric_icrs(1.0)[:, None])
 
     def guess(self, robot: Robot) -> dict[str, float]:
         """The track width."""
@@ -47,19 +56,20 @@ class IcrSymmetric(InvertibleModel):
     name = "icr_symmetric"
     source = "Baril 2020, eq. 8-9"
     parameters = (Parameter("alpha", "", 0.0, 2.0), Parameter("b_hat", "m", 1e-3))
+    has_constant_icrs = True
 
     def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.twist`."""
         return _symmetric_twist(values[..., 0], values[..., 1], inputs)
 
-    def parameter_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
-        """See `KinematicModel.parameter_jacobian`."""
+    def linearised(self, values: FloatArray, inputs: Inputs) -> Linearised:
+        """See `KinematicModel.linearised`."""
         width = values[..., 1]
-        by_alpha = _symmetric_twist(np.ones_like(width), width, inputs)
-        omega = self.twist(values, inputs)[..., 2]
-        zero = np.zeros_like(omega)
-        by_width = np.stack([zero, zero, -omega / width], axis=-1)
-        return np.stack([by_alpha, by_width], axis=-1)
+        twist = self.twist(values, inputs)
+        jacobian = zero_matrices(twist.shape[:-1], 3, 2)
+        jacobian[..., 0] = _symmetric_twist(np.ones_like(width), width, inputs)
+        jacobian[..., 2, 1] = -twist[..., 2] / width
+        return Linearised(twist, jacobian)
 
     def speed_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.speed_jacobian`."""
@@ -70,15 +80,26 @@ class IcrSymmetric(InvertibleModel):
         half = values[..., 1] / 2
         return before_slip(icr_tread_speeds(half, -half, v_x, omega), values[..., :1])
 
+    def icr_form(self, values: FloatArray) -> IcrForm:
+        """Half the width on each side."""
+        alpha, width = values
+        alphas, by_width = np.array([alpha, alpha]), symmetric_icrs(1.0)
+        return IcrForm(symmetric_icrs(width), alphas, np.outer(by_width, [0.0, 1.0]))
+
     def guess(self, robot: Robot) -> dict[str, float]:
         """A width of 1.5 track widths, no slip."""
         return {"alpha": 1.0, "b_hat": GUESSED_WIDTHS * robot.track_width}
 
 
+def symmetric_icrs(width: float) -> FloatArray:
+    """y_left, y_right, x_icr (3,) of an effective width [m]; linear in it."""
+    return np.array([width / 2, -width / 2, 0.0])
+
+
 def _symmetric_twist(alpha: FloatArray, width: FloatArray, inputs: Inputs) -> FloatArray:
     v_x = alpha * (inputs.left + inputs.right) / 2
     omega = alpha * (inputs.right - inputs.left) / width
-    return np.stack([v_x, np.zeros_like(v_x), omega], axis=-1)
+    return vectors(v_x, np.zeros(()), omega)
 
 
 def _speed_matrix(alpha: FloatArray, width: FloatArray, inputs: Inputs) -> FloatArray:

@@ -3,10 +3,14 @@
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.models.base import Parameter
+from odometry.errors import ParameterError
+from odometry.models.base import Linearised, Parameter
 from odometry.models.icr import GUESSED_WIDTHS
+from odometry.models.icr_form import IcrForm
 from odometry.models.inputs import Inputs
 from odometry.models.invertible import InvertibleModel, before_slip, icr_tread_speeds
+from odometry.models.layout import vectors, zero_matrices
+from odometry.models.symmetric import symmetric_icrs
 from odometry.run import Robot
 
 
@@ -23,24 +27,25 @@ class TractionMode(InvertibleModel):
         Parameter("m", "", 0.0, 2.0),
         Parameter("track_width", "m", 1e-3, known=True),
     )
+    has_constant_icrs = True
 
     def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.twist`."""
         k, m, width = np.moveaxis(values, -1, 0)
         v_x = k * (inputs.left + inputs.right) / 2  # eq. 3, k u_1
         omega = m * (inputs.right - inputs.left) / width  # eq. 3, m u_2
-        return np.stack([v_x, np.zeros_like(v_x), omega], axis=-1)
+        return vectors(v_x, np.zeros(()), omega)
 
-    def parameter_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
-        """See `KinematicModel.parameter_jacobian`."""
+    def linearised(self, values: FloatArray, inputs: Inputs) -> Linearised:
+        """See `KinematicModel.linearised`."""
         _, m, width = np.moveaxis(values, -1, 0)
-        forward = (inputs.left + inputs.right) / 2
+        twist = self.twist(values, inputs)
         turn = (inputs.right - inputs.left) / width
-        jacobian = np.zeros((*np.broadcast_shapes(m.shape, inputs.shape), 3, 3))
-        jacobian[..., 0, 0] = forward
+        jacobian = zero_matrices(twist.shape[:-1], 3, 3)
+        jacobian[..., 0, 0] = (inputs.left + inputs.right) / 2
         jacobian[..., 2, 1] = turn
         jacobian[..., 2, 2] = -m * turn / width
-        return jacobian
+        return Linearised(twist, jacobian)
 
     def speed_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.speed_jacobian`."""
@@ -55,6 +60,22 @@ class TractionMode(InvertibleModel):
         k, m, width = np.moveaxis(values, -1, 0)
         half = width / 2
         return icr_tread_speeds(half, -half, before_slip(v_x, k), before_slip(omega, m))
+
+    def icr_form(self, values: FloatArray) -> IcrForm:
+        """Both factors k, and y_left - y_right = track_width k / m; see `KinematicModel.icr_form`.
+
+        Raises
+        ------
+        ParameterError
+            If k or m is 0: no tread ICRs make such a motion.
+        """
+        k, m, track_width = values
+        if m * k <= 0:
+            raise ParameterError(f"k = {k} and m = {m}, expected both above 0")
+        width = track_width * k / m
+        alphas, by_width = np.array([k, k]), symmetric_icrs(1.0)
+        width_by = [track_width / m, -width / m, k / m]
+        return IcrForm(symmetric_icrs(width), alphas, np.outer(by_width, width_by))
 
     def guess(self, robot: Robot) -> dict[str, float]:
         """No loss forward, the turn rate of a width of 1.5 track widths."""

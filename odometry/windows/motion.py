@@ -1,13 +1,26 @@
-"""What a model predicts over windows, and its derivative by the parameters."""
+"""What a model predicts over windows, and its derivative by the parameters.
+
+Steps are laid end to end, and windows take their pieces of that path: the work is proportional
+to the samples. It is done for some thousand samples at a time, whose arrays fit the cache, and
+inside with the samples last, so that sums along them are fast.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import FloatArray, IntArray
 from odometry.geometry import se2
-from odometry.geometry.levelled import level_step_jacobian, level_steps
+from odometry.geometry.angles import sine_and_cosine
+from odometry.geometry.levelled import Tilt, level_step_jacobian, level_steps
 from odometry.models.base import KinematicModel
 from odometry.models.inputs import Inputs
 from odometry.windows.windows import Windows
+
+BLOCK = 16384  # samples at a time
 
 
 def window_motion(model: KinematicModel, values: FloatArray, windows: Windows) -> FloatArray:
@@ -17,7 +30,8 @@ def window_motion(model: KinematicModel, values: FloatArray, windows: Windows) -
     eq. 12 with REP-103's rotation); yaw is not wrapped.
     """
     twists = model.twist(values, windows.inputs)
-    return _between(level_path(twists, windows.steps_s, windows.inputs), windows)
+    path = level_path(twists, windows.steps_s, windows.inputs)
+    return _between(path, windows.first, windows.last)
 
 
 def level_path(twists: FloatArray, steps_s: FloatArray, inputs: Inputs) -> FloatArray:
@@ -31,83 +45,153 @@ def level_path(twists: FloatArray, steps_s: FloatArray, inputs: Inputs) -> Float
     inputs : Inputs
         Of stack (N,); its roll and pitch count.
     """
-    return _paths(_level(se2.exp(twists * steps_s[:, None]), inputs))
+    steps = _level(se2.exp(twists * steps_s[:, None]), inputs.tilt)
+    yaw = _summed(steps[:, 2])[:-1]
+    return _laid(steps, yaw, np.sin(yaw), np.cos(yaw)).poses
+
+
+def linearised_window_motion(
+    model: KinematicModel, values: FloatArray, windows: Windows
+) -> tuple[FloatArray, FloatArray]:
+    """`window_motion` (K, 3), to rounding, and its derivative (K, 3, P) by the parameters."""
+    twists, by_parameters = model.linearised(values, windows.inputs)
+    columns = np.ascontiguousarray(np.moveaxis(by_parameters, 0, -1))  # (3, P, N)
+    motion = np.empty((len(windows), 3))
+    derivative = np.empty((len(windows), *by_parameters.shape[1:]))
+    for block in _blocks(windows):
+        arcs, by_arc = se2.linearised_exp(twists[block.samples] * block.steps_s[:, None])
+        steps = _level(arcs, block.tilt)
+        yaw = _summed(steps[:, 2])[:-1]
+        path = _laid(steps, yaw, *sine_and_cosine(yaw))
+        motion[block.windows] = _between(path.poses, block.first, block.last)
+        by_twist = block.steps_s * _by_displacement(path, arcs, by_arc, block.tilt)
+        for parameter in range(by_parameters.shape[-1]):
+            changes = columns[:, parameter, block.samples]
+            derivative[block.windows, :, parameter] = _moved(by_twist, changes, path, block)
+    return motion, derivative
 
 
 def window_motion_jacobian(
     model: KinematicModel, values: FloatArray, windows: Windows
 ) -> FloatArray:
     """Derivative (K, 3, P) of `window_motion` by the parameters."""
-    displacements = model.twist(values, windows.inputs) * windows.steps_s[:, None]
-    arcs = se2.exp(displacements)
-    path = _paths(_level(arcs, windows.inputs))
-    by_arc = _rotations(path[:, 2]) @ _level_jacobian(arcs, windows.inputs)
-    by_twist = by_arc @ se2.exp_jacobian(displacements) * windows.steps_s[:, None, None]
-    by_step = _product(by_twist, model.parameter_jacobian(values, windows.inputs))
-    yaw_by = _before(by_step[2])
-    dx, dy = np.diff(path[:, :2], axis=0, append=path[-1:, :2]).T
-    by_step[0] -= dy * yaw_by  # a turn before a step swings the step
-    by_step[1] += dx * yaw_by
-    sums = np.stack([_before(by_step[0]), _before(by_step[1]), yaw_by])  # (3, P, N)
-
-    first, last = windows.first, windows.last
-    on_the_way = np.moveaxis(sums[..., last] - sums[..., first], -1, 0)
-    derivative = _rotations(-path[first, 2]) @ on_the_way
-    end, turned = _between(path, windows), yaw_by[:, first].T
-    derivative[:, 0] += end[:, 1, None] * turned  # and one before the window its frame
-    derivative[:, 1] -= end[:, 0, None] * turned
-    return np.asarray(derivative)
+    return linearised_window_motion(model, values, windows)[1]
 
 
-def _level(arcs: FloatArray, inputs: Inputs) -> FloatArray:
-    return arcs if inputs.tilt is None else level_steps(arcs, inputs.tilt)
+@dataclass(frozen=True)
+class _Block:
+    """Some windows, and the samples from the first one's start to the last one's end."""
+
+    windows: slice
+    samples: slice
+    ends: IntArray  # (2 K,), where each window starts and ends among these samples, in turn
+    steps_s: FloatArray
+    tilt: Tilt | None
+
+    @property
+    def first(self) -> IntArray:
+        """Samples (K,) at which the windows start."""
+        return self.ends[::2]
+
+    @property
+    def last(self) -> IntArray:
+        """Samples (K,) at which they end."""
+        return self.ends[1::2]
 
 
-def _level_jacobian(arcs: FloatArray, inputs: Inputs) -> FloatArray:
-    return np.eye(3) if inputs.tilt is None else level_step_jacobian(arcs, inputs.tilt)
+def _blocks(windows: Windows) -> Iterator[_Block]:
+    """The windows in their order; those that start near each other are taken together."""
+    tilt = windows.inputs.tilt
+    begins = np.flatnonzero(np.diff(windows.first // BLOCK, prepend=-1))
+    for begin, end in pairwise([*begins, len(windows)]):
+        chosen = slice(begin, end)
+        first, last = windows.first[chosen], windows.last[chosen]
+        samples = slice(first.min(), last.max() + 1)
+        yield _Block(
+            chosen,
+            samples,
+            np.stack([first, last], axis=-1).ravel() - samples.start,
+            windows.steps_s[samples],
+            None if tilt is None else Tilt(*(part[samples] for part in tilt)),
+        )
 
 
-def _product(matrices: FloatArray, jacobian: FloatArray) -> FloatArray:
-    """Products of (N, 3, 3) and (N, 3, P) as (3, P, N): sums along N are then fast."""
-    columns = np.ascontiguousarray(np.moveaxis(jacobian, 0, -1))
-    rows = np.ascontiguousarray(np.moveaxis(matrices, 0, -1))
-    return np.asarray(
-        rows[:, 0, None] * columns[0]
-        + rows[:, 1, None] * columns[1]
-        + rows[:, 2, None] * columns[2]
+class _Path(NamedTuple):
+    """Steps laid end to end."""
+
+    poses: FloatArray  # (N, 3), before each step
+    after: FloatArray  # (2, N), places after each
+    sine: FloatArray  # (N,), of the yaw before each
+    cosine: FloatArray
+
+
+def _level(arcs: FloatArray, tilt: Tilt | None) -> FloatArray:
+    return arcs if tilt is None else level_steps(arcs, tilt)
+
+
+def _laid(steps: FloatArray, yaw: FloatArray, sine: FloatArray, cosine: FloatArray) -> _Path:
+    """The path of level steps (N, 3), with the yaw (N,) before each."""
+    along, across, _ = steps.T
+    x = _summed(cosine * along - sine * across)
+    y = _summed(sine * along + cosine * across)
+    return _Path(np.stack([x[:-1], y[:-1], yaw]).T, np.stack([x[1:], y[1:]]), sine, cosine)
+
+
+def _by_displacement(
+    path: _Path, arcs: FloatArray, by_arc: FloatArray, tilt: Tilt | None
+) -> FloatArray:
+    """What displacements (N, 3) move: x (3), y (3) and yaw (by the turn alone) in rows (7, N).
+
+    x and y are those of all later steps in the path's frame, turned about its origin.
+    """
+    along, across, turn = np.moveaxis(by_arc, 0, -1)
+    yaw = turn[2]
+    if tilt is not None:
+        level = np.moveaxis(level_step_jacobian(arcs, tilt), 0, -1)
+        along, across = level[0, 0] * along + level[0, 1] * across, level[1, 1] * across
+        yaw = level[2, 2]
+    x = path.cosine * along - path.sine * across
+    y = path.sine * along + path.cosine * across
+    x[2] += path.after[1] * yaw  # a turn swings what comes after its step
+    y[2] -= path.after[0] * yaw
+    return np.stack([*x, *y, yaw])
+
+
+def _moved(by_twist: FloatArray, changes: FloatArray, path: _Path, block: _Block) -> FloatArray:
+    """Change (K, 3) of the windows' motion when the twists change (3, N)."""
+    v_x, v_y, omega = changes
+    x_by, y_by, yaw_by = by_twist[:3], by_twist[3:6], by_twist[6]
+    x, y, yaw = (
+        _within(step, block)
+        for step in (
+            x_by[0] * v_x + x_by[1] * v_y + x_by[2] * omega,
+            y_by[0] * v_x + y_by[1] * v_y + y_by[2] * omega,
+            yaw_by * omega,
+        )
     )
+    end_x, end_y, _ = path.poses[block.last].T
+    x, y = x - end_y * yaw, y + end_x * yaw
+    start = path.poses[block.first, 2]
+    cosine, sine = np.cos(start), np.sin(start)
+    return np.stack([cosine * x + sine * y, cosine * y - sine * x, yaw], axis=-1)
 
 
-def _paths(steps: FloatArray) -> FloatArray:
-    """Poses (N, 3) before each level step (N, 3), all steps laid end to end."""
-    yaw = _before(steps[:, 2])
-    cosine, sine = np.cos(yaw), np.sin(yaw)
-    x = _before(cosine * steps[:, 0] - sine * steps[:, 1])
-    y = _before(sine * steps[:, 0] + cosine * steps[:, 1])
-    return np.column_stack([x, y, yaw])
+def _within(steps: FloatArray, block: _Block) -> FloatArray:
+    """Sums (K,) of steps (N,) from the first to before the last sample of each window."""
+    return np.asarray(np.add.reduceat(steps, block.ends)[::2])
 
 
-def _rotations(yaw: FloatArray) -> FloatArray:
-    """Matrices (N, 3, 3) that turn x and y by yaw (N,) and keep the heading."""
-    turned = np.zeros((len(yaw), 3, 3))
-    turned[:, 0, 0] = turned[:, 1, 1] = np.cos(yaw)
-    turned[:, 1, 0] = np.sin(yaw)
-    turned[:, 0, 1] = -turned[:, 1, 0]
-    turned[:, 2, 2] = 1.0
-    return turned
-
-
-def _between(path: FloatArray, windows: Windows) -> FloatArray:
-    start, difference = path[windows.first], path[windows.last] - path[windows.first]
+def _between(path: FloatArray, first: IntArray, last: IntArray) -> FloatArray:
+    start, difference = path[first], path[last] - path[first]
     cosine, sine = np.cos(start[:, 2]), np.sin(start[:, 2])
     x = cosine * difference[:, 0] + sine * difference[:, 1]
     y = -sine * difference[:, 0] + cosine * difference[:, 1]
     return np.column_stack([x, y, difference[:, 2]])
 
 
-def _before(steps: FloatArray) -> FloatArray:
-    """Sum of all steps (..., N) before each one."""
-    sums = np.empty_like(steps)
-    sums[..., :1] = 0.0
-    np.cumsum(steps[..., :-1], axis=-1, out=sums[..., 1:])
+def _summed(steps: FloatArray) -> FloatArray:
+    """Sums (N + 1,) of the steps (N,) before each one, and of all."""
+    sums = np.empty(len(steps) + 1)
+    sums[0] = 0.0
+    np.cumsum(steps, out=sums[1:])
     return sums

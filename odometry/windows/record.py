@@ -7,8 +7,8 @@ import numpy as np
 from odometry.arrays import AnyArray, FloatArray, IntArray
 from odometry.grounds import terrains_of
 from odometry.models.inputs import Inputs
-from odometry.models.run_inputs import inputs_of
 from odometry.run import Run
+from odometry.run_inputs import inputs_of
 from odometry.windows.config import WindowConfig
 from odometry.windows.errors import WindowError
 from odometry.windows.gaps import odometry_gaps

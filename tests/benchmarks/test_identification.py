@@ -1,8 +1,8 @@
 """Identification of `icr` on one hour of 20 Hz data, against a loop over samples.
 
 Both do the same work: the same windows, the same searches and reweightings by the same solver,
-the same exact arcs and analytic gradients. Only the residuals and their Jacobian are computed
-sample by sample in plain Python in the one, and with arrays in the other.
+the same exact arcs and analytic gradients, each point computed once. Only the residuals and their
+derivative are found sample by sample in plain Python in the one, and with arrays in the other.
 """
 
 import math
@@ -33,13 +33,7 @@ TRUE = {"y_left": 0.45, "y_right": -0.38, "x_icr": 0.04, "alpha_left": 0.96, "al
 class LoopProblem(Problem):
     """The same loss, sample by sample."""
 
-    def residuals(self, chosen):
-        return self._loop(chosen)[0]
-
-    def jacobian(self, chosen):
-        return self._loop(chosen)[1]
-
-    def _loop(self, chosen):
+    def _linearised(self, chosen):
         speeds = self.windows.inputs.tread_speeds_m_s.tolist()
         steps_s = self.windows.steps_s.tolist()
         errors, slopes = [], []

@@ -13,11 +13,11 @@ from odometry.effects.tables import model_of
 from odometry.errors import OdometryError
 from odometry.estimation.icr_prior import prior_belief
 from odometry.io.tum import read_tum
-from odometry.models.run_inputs import inputs_of
 from odometry.modes.mode_set import read_mode_set, write_mode_set
 from odometry.modes.track import follow_modes
 from odometry.parameters import read_parameters
 from odometry.run import Run
+from odometry.run_inputs import inputs_of
 from odometry.simulation.contact.vehicle import read_contact_vehicle
 from odometry.windows.config import WindowConfig
 from odometry.windows.windows import windows_of

@@ -26,9 +26,9 @@ from odometry.identification.identify import identify
 from odometry.models.catalogue import MODELS
 from odometry.models.icr_slope import IcrSlope
 from odometry.models.inputs import Inputs
-from odometry.models.run_inputs import inputs_of
 from odometry.parameters import read_parameters
 from odometry.run import Run
+from odometry.run_inputs import inputs_of
 from odometry.simulation.contact.drive import simulate_contact
 from odometry.simulation.contact.slope import Plane
 from odometry.simulation.contact.vehicle import read_contact_vehicle

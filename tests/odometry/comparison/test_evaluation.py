@@ -15,8 +15,8 @@ from odometry.evaluation.relative import EvaluationConfig
 from odometry.evaluation.score import reference_of, score
 from odometry.grounds import with_named_ground
 from odometry.models.catalogue import MODELS
-from odometry.models.run_inputs import inputs_of
 from odometry.run import Run
+from odometry.run_inputs import inputs_of
 from odometry.windows.config import WindowConfig
 from odometry.windows.errors import WindowError
 from odometry.windows.window_errors import window_errors

@@ -81,6 +81,12 @@ def test_few_windows_are_no_error(count):
     assert (found.mean, found.low, found.high) == pytest.approx((0.2, 0.2, 0.2))
 
 
+def test_differences_of_arithmetic_alone_are_none():
+    """Two forms of one model differ in the last digit, and may do so always the same way."""
+    found = interval(np.full(40, 3e-16), np.repeat([0, 1], 20), 3)
+    assert (found.mean, found.low, found.high) == (0.0, 0.0, 0.0)
+
+
 def test_the_seed_decides():
     values = np.random.default_rng(1).normal(0, 1, 50)
     runs = np.repeat([0, 1], 25)

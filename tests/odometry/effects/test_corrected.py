@@ -1,5 +1,7 @@
 """A model with effects has the face of any model."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from odometry.effects.actuator_lag import ActuatorLag
@@ -112,3 +114,25 @@ def test_a_sensor_is_moved_then_turned():
     seen = [[0.9, 2.3, np.pi / 2 + 0.25]]
     np.testing.assert_allclose(seen_poses([SCALE, ARM, TURNED, LATE], robot), seen, atol=1e-15)
     np.testing.assert_allclose(delay_s([LATE, ARM, LATE]), 0.3)
+
+
+def test_under_effects_on_commands_alone_the_derivative_is_the_base_s(bench, rng):
+    inputs, base = bench.drive(rng), MODELS["icr"]
+    model = Corrected(base, bench.robot, [SCALE, LAG])
+    found = model.linearised(bench.values, inputs)
+    expected = base.linearised(bench.values, with_true_speeds([SCALE, LAG], inputs))
+    np.testing.assert_array_equal(found.twist, model.twist(bench.values, inputs))
+    np.testing.assert_array_equal(found.by_parameters, expected.by_parameters)
+    steps = 1e-6 * np.eye(5)
+    numeric = [
+        (model.twist(bench.values + h, inputs) - model.twist(bench.values - h, inputs)) / 2e-6
+        for h in steps
+    ]
+    np.testing.assert_allclose(found.by_parameters, np.stack(numeric, axis=-1), atol=1e-8)
+
+
+def test_ordinary_sizes_are_those_of_the_base(bench):
+    """What is per newton is judged by the robot's mass, with an effect added as without."""
+    base, robot = MODELS["icr_inertia"], replace(bench.robot, mass=50.0)
+    model = Corrected(base, robot, [SCALE])
+    np.testing.assert_array_equal(model.ordinary_sizes(robot), base.ordinary_sizes(robot))

@@ -90,8 +90,40 @@ def test_half_the_uncertainty_of_a_width_is_that_of_each_side(model, values, nam
 
 
 @pytest.mark.parametrize(
-    "mode", [{"k": 0.9, "m": 0.0}, {"k": 0.9, "m": -1.0}, {"k": 0.0, "m": 1.0}]
+    ("mode", "expected"),
+    [
+        ({"k": 0.9, "m": 0.0}, "expected both above 0"),
+        ({"k": 0.0, "m": 1.0}, "expected both above 0"),
+        ({"k": 0.9, "m": -1.0}, "m = -1.0, expected a finite number from 0.0"),
+    ],
 )
-def test_a_traction_mode_without_a_width_is_an_error(mode):
-    with pytest.raises(ParameterError, match="expected both above 0"):
+def test_a_traction_mode_without_a_width_is_an_error(mode, expected):
+    with pytest.raises(ParameterError, match=rf"terrain\.here.*{expected}"):
         prior_of(TerrainParameters("traction_mode", {"track_width": 0.6, **mode}))
+
+
+def test_the_uncertainty_of_a_traction_mode_is_that_of_its_width():
+    """width = b k / m: to first order by hand, the sides as independent as for any width."""
+    values = {"k": 0.9, "m": 0.6, "track_width": 0.4}
+    covariance = np.array([[4e-4, 1e-4], [1e-4, 9e-4]])
+    belief = prior_of(TerrainParameters("traction_mode", values, ("k", "m"), covariance))
+    by_k, by_m = 0.4 / 0.6, -0.4 * 0.9 / 0.6**2
+    variance = by_k**2 * 4e-4 + 2 * by_k * by_m * 1e-4 + by_m**2 * 9e-4
+    np.testing.assert_allclose(
+        belief.covariance, np.diag([variance / 4, variance / 4, RESET_M**2]), atol=1e-15
+    )
+
+
+def test_half_a_traction_mode_tells_no_width():
+    values = {"k": 0.9, "m": 0.6, "track_width": 0.4}
+    belief = prior_of(TerrainParameters("traction_mode", values, ("k",), np.array([[4e-4]])))
+    np.testing.assert_allclose(belief.covariance, RESET_M**2 * np.eye(3))
+
+
+def test_correlations_of_icrs_are_kept():
+    values = {"y_left": 0.4, "y_right": -0.5, "x_icr": 0.1}
+    root = np.array([[0.02, 0.0, 0.0], [0.01, 0.03, 0.0], [0.0, -0.01, 0.02]])
+    order = ("y_right", "y_left", "x_icr")
+    belief = prior_of(TerrainParameters("icr", values, order, root @ root.T))
+    places = [1, 0, 2]
+    np.testing.assert_array_equal(belief.covariance, (root @ root.T)[np.ix_(places, places)])

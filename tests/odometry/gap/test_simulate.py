@@ -13,7 +13,7 @@ from odometry.effects.time_offset import TimeOffset
 from odometry.evaluation.open_loop import open_loop
 from odometry.gap.simulate import residuals, simulated_poses
 from odometry.geometry import se2
-from odometry.models.run_inputs import inputs_of
+from odometry.run_inputs import inputs_of
 from odometry.windows.dense import dense_windows_of
 
 ARM = np.array([0.4, -0.3])

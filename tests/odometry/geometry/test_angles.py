@@ -1,8 +1,9 @@
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.geometry.angles import continuous_difference, wrap
+from odometry.geometry.angles import continuous_difference, sine_and_cosine, wrap
 
 
 def test_the_half_turn_is_positive():
@@ -36,3 +37,20 @@ def test_differences_count_whole_turns(first, step, turns):
     reference, yaw = 5.0 * n, first + (5.0 + step) * n
     found = continuous_difference(wrap(yaw) + 2 * np.pi * turns, wrap(reference))
     np.testing.assert_allclose(found, first + step * n, rtol=0, atol=1e-10)
+
+
+@given(st.floats(-1e3, 1e3))
+def test_sine_and_cosine_by_the_tangent_of_the_half(angle):
+    sine, cosine = sine_and_cosine(np.array(angle))
+    assert sine == pytest.approx(np.sin(angle), rel=0, abs=6e-16)
+    assert cosine == pytest.approx(np.cos(angle), rel=0, abs=6e-16)
+
+
+def test_sine_and_cosine_of_quarter_turns_and_of_next_to_nothing():
+    """Half a turn is a pole of the tangent; a small angle keeps all its digits."""
+    quarters = np.pi / 2 * np.arange(-8.0, 9.0)
+    found = sine_and_cosine(quarters)
+    np.testing.assert_allclose(found, [np.sin(quarters), np.cos(quarters)], rtol=0, atol=4e-16)
+    small = np.array([0.0, 1e-300, -1e-160, 1e-20, 1e-9])
+    np.testing.assert_allclose(sine_and_cosine(small)[0], small, rtol=1e-15)
+    assert np.all(sine_and_cosine(small)[1] == 1.0)

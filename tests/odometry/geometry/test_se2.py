@@ -118,3 +118,12 @@ def test_exp_jacobian_is_the_derivative(step):
         [(se2.exp(step + h * e) - se2.exp(step - h * e)) / (2 * h) for e in np.eye(3)]
     )
     np.testing.assert_allclose(se2.exp_jacobian(step), numeric, rtol=0, atol=2e-8)
+
+
+@pytest.mark.parametrize("angle", [0.0, 5e-324, -2.2e-313, 1e-200, -1e-99, 1e-20])
+def test_next_to_no_angle_is_a_straight_line(angle):
+    """Down to the smallest numbers, which have few digits."""
+    np.testing.assert_allclose(se2.exp(np.array([2.0, -3.0, angle])), [2, -3, angle], rtol=1e-15)
+    jacobian = se2.exp_jacobian(np.array([2.0, -3.0, angle]))
+    expected = [[1, 0, 1.5], [0, 1, 1.0], [0, 0, 1]]
+    np.testing.assert_allclose(jacobian, expected, rtol=0, atol=1e-15)

@@ -1,7 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from odometry.identification.config import SolverConfig
 from odometry.identification.problem import Problem
+from odometry.identification.solve import solve
 from odometry.models.icr import Icr
 from odometry.models.radius_of_curvature import RadiusOfCurvature
 from odometry.run import Run
@@ -80,3 +84,44 @@ def test_jacobian_is_the_derivative_of_the_residuals(problem):
     ]
     numeric = np.stack(columns, axis=-1)
     np.testing.assert_allclose(problem.jacobian(at), numeric, rtol=1e-6, atol=1e-7)
+
+
+class Counted(Icr):
+    """Counts how often it is asked for a motion."""
+
+    def __init__(self):
+        self.asked = []
+
+    def twist(self, values, inputs):
+        self.asked.append(values.tobytes())
+        return super().twist(values, inputs)
+
+
+def test_both_at_once_are_what_each_is(problem):
+    at = np.array([0.5, -0.1, 0.8])
+    apart = replace(problem)
+    residuals, jacobian = problem.linearised(at)
+    np.testing.assert_allclose(apart.residuals(at), residuals, rtol=0, atol=1e-12)
+    np.testing.assert_array_equal(apart.jacobian(at), jacobian)
+
+
+def test_a_search_computes_no_motion_twice(problem):
+    """Residuals, derivative, loss and distances at one point: one motion."""
+    model = Counted()
+    counted = replace(problem, model=model)
+    start = np.array([0.6, 0.1, 0.9])
+    solve(counted, start, np.array([0.4, 0.25, 1.0]), SolverConfig(starts=1))
+    assert len(model.asked) > 3
+    assert len(model.asked) == len(set(model.asked))
+
+
+def test_points_are_remembered_by_their_values_and_forgotten(problem):
+    near, far = np.array([0.45, 0.06, 0.93]), np.array([0.6, 0.1, 0.9])
+    fresh = replace(problem)
+    first = fresh.residuals(near).copy()
+    for factor in (1.0, 1.1, 1.2, 1.3):
+        fresh.linearised(far * factor)
+    np.testing.assert_allclose(fresh.linearised(near)[0], first, rtol=0, atol=1e-12)
+    with pytest.raises(ValueError, match="read-only"):
+        fresh.linearised(near)[1][:] = 0.0
+    assert np.abs(fresh.linearised(far)[0] - first).max() > 0.01

@@ -60,6 +60,7 @@ def in_two_stages(sloped, synthetic):
             IcrSlope(),
             windows_of([run], config) if windows is None else windows,
             run.robot,
+            stages=IcrSlope.stages,
             fixed=fixed,
             released=frozenset(released),
             window_config=config,
@@ -134,7 +135,7 @@ def test_an_unknown_name_is_told(in_two_stages):
     ("flat", "words"),
     [
         (True, r"0 windows are tilted more than 1\.5 degrees .*lambda_1, lambda_2"),
-        (False, r"0 windows lie on ground flatter than 1\.5 degrees, too few for y_left"),
+        (False, r"0 windows lie on terrain flatter than 1\.5 degrees, too few for y_left"),
     ],
 )
 def test_a_stage_without_windows_is_told(in_two_stages, sloped, flat, words):

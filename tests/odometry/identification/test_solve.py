@@ -213,6 +213,9 @@ class TwoMinima:
     def jacobian(self, chosen):
         return np.tile([[chosen[0] / 3], [0.1], [0.0]], (4, 1, 1))
 
+    def linearised(self, chosen):
+        return self.residuals(chosen), self.jacobian(chosen)
+
 
 def test_further_starts_find_a_better_minimum_and_count_themselves():
     """The first start alone slides into the worse one."""

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.linalg import expm
@@ -8,8 +10,13 @@ from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr
 from odometry.models.inputs import Inputs
 from odometry.run import Robot, Run
+from odometry.windows import motion
 from odometry.windows.config import WindowConfig
-from odometry.windows.motion import window_motion, window_motion_jacobian
+from odometry.windows.motion import (
+    linearised_window_motion,
+    window_motion,
+    window_motion_jacobian,
+)
 from odometry.windows.windows import Windows, windows_of
 
 STEP = 1e-5  # of a parameter's ordinary size; truncation and rounding are both below 1e-8
@@ -153,3 +160,28 @@ def test_jacobian_is_the_derivative(model, tilt, winding):
             atol=1e-7,
             err_msg=model.parameters[place].name,
         )
+
+
+@pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
+def test_linearised_has_the_motion_of_the_other_face(model, driven):
+    if model.name == "icr_inertia_measured":
+        return  # nothing was measured here
+    windows = windows_of([driven], WindowConfig(horizon_m=1.5, stride=0.6))
+    values = model.pack(model.guess(ROBOT))
+    predicted, derivative = linearised_window_motion(model, values, windows)
+    expected = window_motion(model, values, windows)
+    np.testing.assert_allclose(predicted, expected, rtol=0, atol=1e-12)
+    np.testing.assert_array_equal(derivative, window_motion_jacobian(model, values, windows))
+
+
+@pytest.mark.parametrize("order", [1, -1], ids=["in order", "backwards"])
+def test_blocks_make_no_difference(driven, monkeypatch, order):
+    """Windows of one block, of many that overlap, and of many in any order."""
+    windows = windows_of([driven], WindowConfig(horizon_m=1.5, stride=0.3))
+    fields = ("first", "last", "measured")
+    windows = replace(windows, **{name: getattr(windows, name)[::order] for name in fields})
+    whole = linearised_window_motion(Icr(), SPINNING, windows)
+    monkeypatch.setattr(motion, "BLOCK", 7)
+    apart = linearised_window_motion(Icr(), SPINNING, windows)
+    for one, other in zip(whole, apart, strict=True):
+        np.testing.assert_allclose(one, other, rtol=0, atol=1e-12)
