@@ -16,7 +16,7 @@ STOOD = 0.3  # share of the motion at the held speed below which the robot stood
 
 
 def gaps(evidence: Evidence) -> Iterator[Finding]:
-    """True gaps of odometry.csv (not holds, which a log of changes has), and clocks that were set."""
+    """True gaps of odometry.csv (a hold of a log of changes is none), and clocks that were set."""
     stamps_s = evidence.stamps_s
     lasts_s = np.diff(stamps_s)
     long = np.flatnonzero(lasts_s > max(LONG_S, LONG_PERIODS * evidence.period_s))
@@ -31,19 +31,19 @@ def gaps(evidence: Evidence) -> Iterator[Finding]:
             evidence,
             "odometry_gap",
             lost,
-            reason,
-            "Rows of odometry.csv are lost: a true gap (the logger or the bus stopped)",
-            "Windows do not cross it; cut with --from and --to",
+            reason=reason,
+            cause="Rows of odometry.csv are lost: a true gap (the logger or the bus stopped)",
+            remedy="Windows do not cross it; cut with --from and --to",
         )
     if clock:
         yield _finding(
             evidence,
             "clock_set",
             clock,
-            "the robot does not move on meanwhile",
-            "The clock jumps: it was set ahead while recording (time synchronisation), or the "
+            reason="the robot does not move on meanwhile",
+            cause="The clock jumps: it was set ahead while recording (time synchronisation), or the "
             "recording was paused",
-            "Cut the recording there with --from and --to",
+            remedy="Cut the recording there with --from and --to",
         )
 
 
@@ -60,7 +60,13 @@ def _bursts(evidence: Evidence, lasts_s: FloatArray) -> Finding:
 
 
 def _finding(
-    evidence: Evidence, name: str, spans_s: list[FloatArray], reason: str, cause: str, remedy: str
+    evidence: Evidence,
+    name: str,
+    spans_s: list[FloatArray],
+    *,
+    reason: str,
+    cause: str,
+    remedy: str,
 ) -> Finding:
     whole_s = sum(float(end_s - begin_s) for begin_s, end_s in spans_s)
     first_s, first_end_s = spans_s[0]
