@@ -1,4 +1,5 @@
 from .camera import Camera
+from .checks.recording import check_run
 from .classification.classifier import Classification, TerrainClassifier
 from .classification.training import Training, train
 from .config import Config
@@ -20,6 +21,7 @@ __all__ = [
     "TerrainClassifier",
     "TerrainError",
     "Training",
+    "check_run",
     "read_errors",
     "run_demo",
     "run_odometry",

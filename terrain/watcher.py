@@ -15,8 +15,9 @@ from terrain.classification.classifier import Classification, TerrainClassifier
 from terrain.errors import CameraError, ImageError
 from terrain.images import read_image
 from terrain.region import Rectangle, Region, RegionConfig, predict_region
+from terrain.suited import unsuited
 from terrain.switch import Sight, Switch, SwitchConfig, SwitchEvent
-from terrain.warp import ground_sampling_m, ground_view, pixel_view, view_shape
+from terrain.warp import ground_view, pixel_view
 
 
 @dataclass(frozen=True)
@@ -162,16 +163,7 @@ class TerrainWatcher:
 
     def _unfit(self, rectangle: Rectangle) -> str:
         """Why a rectangle cannot be compared with the training patches, or ""."""
-        scale, size_px = self.classifier.metres_per_pixel, self.classifier.patch_size_px
-        if scale is None:
-            pixels = self._camera.ground_to_pixels(rectangle.corners)
-            smallest = float(np.min(pixels.max(axis=0) - pixels.min(axis=0)))
-            return "" if smallest >= size_px else "the region is smaller than a training patch"
-        if min(view_shape(rectangle, scale)) < size_px:
-            return "the region is smaller than a training patch"
-        if ground_sampling_m(self._camera, rectangle)[1] > self._region.coarsest * scale:
-            return "the image is too coarse there"
-        return ""
+        return unsuited(self.classifier, self._camera, rectangle, self._region.coarsest)
 
     def _view(self, image: ByteImage, rectangle: Rectangle) -> ByteImage:
         scale = self.classifier.metres_per_pixel

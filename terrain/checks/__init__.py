@@ -1,0 +1,1 @@
+"""What is odd about the camera of a recording and its images."""

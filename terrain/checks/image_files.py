@@ -1,0 +1,103 @@
+"""Image files that are damaged, too large or repeated, and stamps without odometry."""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from odometry.checks.finding import Finding, Level
+from odometry.run import Run
+from terrain.checks.sampled import SampledImage
+from terrain.image_size import PIXELS
+
+MOST = 0.5  # share of damaged images from which vision says little about a run
+OTHER_VIEW_M = 0.2  # of wheel travel, after which noise alone makes every real image another
+FEW_OUTSIDE = 0.02  # of the stamps: a recorder starts and ends its files at slightly other times
+
+
+def damaged(images: Sequence[SampledImage]) -> Iterator[Finding]:
+    """Images that are empty, truncated, too large or no images."""
+    kinds = Counter(image.damage for image in images if image.damage)
+    if not kinds:
+        return
+    count = sum(kinds.values())
+    first = next(image for image in images if image.damage)
+    words = ", ".join(f"{number} {damage}" for damage, number in kinds.most_common())
+    (most, _), *_ = kinds.most_common()
+    cause, remedy = _CAUSES.get(most, _CAUSES["no image"])
+    yield Finding(
+        "images_damaged",
+        Level.WARNING if count > MOST * len(images) else Level.NOTE,
+        f"{count} of {len(images)} images looked at cannot be used: {words} (the first is "
+        f"{first.file.name})",
+        cause,
+        remedy,
+    )
+
+
+_CAUSES = {
+    "truncated": (
+        "Files are truncated: the recorder stopped, or a copy broke off, before they were written",
+        "Copy the images again, or leave these rows out",
+    ),
+    "empty": (
+        "Files are empty: the disk was full, or the recorder made them and wrote nothing",
+        "Copy the images again, or leave these rows out",
+    ),
+    "too large": (
+        f"Images of more than {PIXELS // 10**6} megapixels are not decoded: no robot's camera has "
+        "as many, so that the file is damaged or a map",
+        "Reduce the images together with image_size and matrix",
+    ),
+    "no image": (
+        "Files are unreadable: no JPEG, PNG, TIFF or BMP (raw pixels, another format, or damaged)",
+        "Convert the images to JPEG or PNG",
+    ),
+}
+
+
+def frozen(run: Run, images: Sequence[SampledImage]) -> Iterator[Finding]:
+    """Images of equal bytes though the treads moved meanwhile: noise alone differs in real ones."""
+    whole = [image for image in images if not image.damage]
+    if len(whole) < 2:
+        return
+    stamps_s = np.array([image.stamp_s for image in whole])
+    travel_m = np.diff(np.interp(stamps_s, run.odometry.stamps_s, run.wheel_travel_m))
+    moved = travel_m > OTHER_VIEW_M
+    same = np.array([a.digest == b.digest for a, b in pairwise(whole)])
+    repeated = np.flatnonzero(same & moved)
+    if not len(repeated):
+        return
+    begin_s = float(run.odometry.stamps_s[0])
+    spans = tuple(
+        (float(stamps_s[i] - begin_s), float(stamps_s[i + 1] - begin_s)) for i in repeated
+    )
+    yield Finding(
+        "images_frozen",
+        Level.WARNING,
+        f"{len(repeated)} of {int(moved.sum())} pairs of successive images looked at are identical "
+        f"though the treads moved on (by up to {travel_m[repeated].max():.3g} m)",
+        "The camera was frozen: it repeats its last image, or one file was copied to many names",
+        "Leave these rows out of images.csv, and look at the camera's driver",
+        spans,
+    )
+
+
+def outside_of_odometry(run: Run) -> Iterator[Finding]:
+    """Images before or after the treads were recorded; half and more is a matter of clocks."""
+    if run.images is None:
+        return
+    stamps_s = run.images.stamps_s
+    first_s, last_s = float(run.odometry.stamps_s[0]), float(run.odometry.stamps_s[-1])
+    before, after = int(np.sum(stamps_s < first_s)), int(np.sum(stamps_s > last_s))
+    share = (before + after) / len(stamps_s)
+    if FEW_OUTSIDE < share <= 0.5:  # above, odometry.checks.stamps speaks
+        yield Finding(
+            "images_outside",
+            Level.NOTE,
+            f"{before} images lie before and {after} after the stamps of odometry.csv (of "
+            f"{len(stamps_s)})",
+            "The camera was recorded for longer than the treads, or odometry.csv was cut",
+            "Nothing to do: these images are not used",
+        )

@@ -1,0 +1,120 @@
+"""Check a recording with its camera before anything is fitted to it."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from odometry.checks.finding import CheckReport, Finding, Level
+from odometry.checks.recording import check_recording
+from odometry.errors import RunFolderError
+from odometry.run import Run
+from terrain.camera import Camera
+from terrain.checks.image_files import damaged, frozen, outside_of_odometry
+from terrain.checks.image_sizes import other_sizes
+from terrain.checks.image_values import Values, grey_of, image_values, values_of
+from terrain.checks.lens import lens
+from terrain.checks.region_ahead import region_ahead, straight_ahead
+from terrain.checks.sampled import DECODED, SampledImage, decode, sample_images, spread
+from terrain.checks.vision_model import vision_model
+from terrain.classification.classifier import TerrainClassifier
+from terrain.errors import CameraError
+from terrain.warp import pixel_view
+
+
+def check_run(
+    run: Run | str | Path, model: TerrainClassifier | str | Path | None = None
+) -> CheckReport:
+    """What is odd about a recording and its camera: likeliest cause, remedy, most important first.
+
+    Beside what `odometry.check_recording` finds: the camera's numbers are tried on the motion of
+    the run, and at most 100 images spread over it are looked at, 20 of them decoded.
+
+    Parameters
+    ----------
+    run : Run or path of a run folder
+        A folder that cannot be read is a finding, not an error.
+    model : TerrainClassifier or path, optional
+        The classifier that is going to read the images.
+
+    Raises
+    ------
+    ModelFileError
+        If the model cannot be read.
+    """
+    classifier = TerrainClassifier.load(Path(model)) if isinstance(model, str | Path) else model
+    if not isinstance(run, Run):
+        try:
+            run = Run.read(run)
+        except RunFolderError:
+            return check_recording(run)
+    report = check_recording(run)
+    if report.at(Level.REFUSED):
+        return report.with_more((), ("the camera: the recording is refused",))
+    findings = list(_findings(run, classifier))
+    return report.with_more(findings, _skipped(run))
+
+
+def _findings(run: Run, classifier: TerrainClassifier | None) -> Iterator[Finding]:
+    table = run.settings.get("camera")
+    if run.images is None:
+        if table is not None:
+            yield Finding(
+                "no_images",
+                Level.NOTE,
+                "run.toml has [camera], and there is no images.csv",
+                "The images were not recorded or not copied",
+                "Nothing to do where no vision is wanted",
+            )
+        return
+    images = sample_images(run)
+    yield from damaged(images)
+    yield from frozen(run, images)
+    yield from outside_of_odometry(run)
+    if not isinstance(table, Mapping):
+        yield Finding(
+            "no_camera",
+            Level.WARNING,
+            f"images.csv has {len(run.images)} images, and run.toml has no table [camera]",
+            "The camera's calibration is missing: nobody knows which ground an image shows",
+            "Write [camera] with image_size, matrix, distortion and mount, or leave images.csv out",
+        )
+        yield from image_values(_values(images, None, run))
+        return
+    camera = _camera(table)
+    if camera is not None:
+        yield from lens(camera)
+        for scaled in other_sizes(camera, table, images):
+            yield scaled.finding
+            table = scaled.mended or table
+    yield from region_ahead(run, table)
+    yield from image_values(_values(images, camera, run))
+    if classifier is not None:
+        yield from vision_model(classifier, _camera(table), run.robot)
+
+
+def _camera(table: Mapping[str, Any]) -> Camera | None:
+    try:
+        return Camera.from_table(table)
+    except CameraError:
+        return None
+
+
+def _values(images: Sequence[SampledImage], camera: Camera | None, run: Run) -> list[Values]:
+    """Pixels of some images in the region ahead, of whole images where that is not known."""
+    region = straight_ahead(camera, run.robot) if camera is not None else ""
+    found = []
+    for place in spread(len(images), DECODED):
+        pixels = decode(images[place])
+        if pixels is None or pixels.dtype.itemsize > 2:
+            continue
+        grey = grey_of(pixels)
+        if camera is not None and not isinstance(region, str):
+            view = pixel_view(grey, camera, region.rectangle)
+            grey = view if images[place].size == camera.image_size else grey
+        found.append(values_of(pixels, grey))
+    return found
+
+
+def _skipped(run: Run) -> Iterator[str]:
+    if run.images is None:
+        yield "no images: the camera was not checked"

@@ -1,0 +1,34 @@
+"""Whether a rectangle of the ground can be compared with the training patches."""
+
+import numpy as np
+
+from terrain.camera import Camera
+from terrain.classification.classifier import TerrainClassifier
+from terrain.region import Rectangle
+from terrain.warp import ground_sampling_m, view_shape
+
+
+def unsuited(
+    classifier: TerrainClassifier, camera: Camera, rectangle: Rectangle, coarsest: float
+) -> str:
+    """Why a rectangle cannot be compared with the training patches, or "".
+
+    Parameters
+    ----------
+    classifier : TerrainClassifier
+    camera : Camera
+    rectangle : Rectangle
+        In the image.
+    coarsest : float
+        See `RegionConfig`.
+    """
+    scale, size_px = classifier.metres_per_pixel, classifier.patch_size_px
+    if scale is None:
+        pixels = camera.ground_to_pixels(rectangle.corners)
+        smallest = float(np.min(pixels.max(axis=0) - pixels.min(axis=0)))
+        return "" if smallest >= size_px else "the region is smaller than a training patch"
+    if min(view_shape(rectangle, scale)) < size_px:
+        return "the region is smaller than a training patch"
+    if ground_sampling_m(camera, rectangle)[1] > coarsest * scale:
+        return "the image is too coarse there"
+    return ""
