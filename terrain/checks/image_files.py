@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
+from itertools import groupby
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from odometry.run import Run
 from terrain.checks.sampled import SampledImage
 from terrain.image_size import PIXELS
 
-MOST = 0.5  # share of damaged images from which vision says little about a run
+MANY = 0.1  # of the images: a truncated JPEG decodes, its rest grey, and is given a label
 OTHER_VIEW_M = 0.2  # of wheel travel, after which noise alone makes every real image another
 FEW_OUTSIDE = 0.02  # of the stamps: a recorder starts and ends its files at slightly other times
 
@@ -28,7 +28,7 @@ def damaged(images: Sequence[SampledImage]) -> Iterator[Finding]:
     cause, remedy = _CAUSES.get(most, _CAUSES["no image"])
     yield Finding(
         "images_damaged",
-        Level.WARNING if count > MOST * len(images) else Level.NOTE,
+        Level.WARNING if count > MANY * len(images) else Level.NOTE,
         f"{count} of {len(images)} images looked at cannot be used: {words} (the first is "
         f"{first.file.name})",
         cause,
@@ -59,29 +59,30 @@ _CAUSES = {
 
 def frozen(run: Run, images: Sequence[SampledImage]) -> Iterator[Finding]:
     """Images of equal bytes though the treads moved meanwhile: noise alone differs in real ones."""
-    whole = [image for image in images if not image.damage]
-    if len(whole) < 2:
-        return
-    stamps_s = np.array([image.stamp_s for image in whole])
-    travel_m = np.diff(np.interp(stamps_s, run.odometry.stamps_s, run.wheel_travel_m))
-    moved = travel_m > OTHER_VIEW_M
-    same = np.array([a.digest == b.digest for a, b in pairwise(whole)])
-    repeated = np.flatnonzero(same & moved)
-    if not len(repeated):
-        return
+    groups = [list(group) for _, group in groupby(images, key=lambda image: image.digest)]
     begin_s = float(run.odometry.stamps_s[0])
-    spans = tuple(
-        (float(stamps_s[i] - begin_s), float(stamps_s[i + 1] - begin_s)) for i in repeated
-    )
+    held = [group for group in groups if _travel_m(run, group) > OTHER_VIEW_M]
+    if not held:
+        return
+    spans = tuple((group[0].stamp_s - begin_s, group[-1].stamp_s - begin_s) for group in held)
     yield Finding(
         "images_frozen",
         Level.WARNING,
-        f"{len(repeated)} of {int(moved.sum())} pairs of successive images looked at are identical "
-        f"though the treads moved on (by up to {travel_m[repeated].max():.3g} m)",
+        f"{sum(map(len, held))} of {len(images)} images looked at are identical to the one before "
+        f"or after, though the treads moved by {max(_travel_m(run, g) for g in held):.3g} m "
+        f"meanwhile (from {spans[0][0]:.1f} s of run time)",
         "The camera was frozen: it repeats its last image, or one file was copied to many names",
         "Leave these rows out of images.csv, and look at the camera's driver",
         spans,
     )
+
+
+def _travel_m(run: Run, group: Sequence[SampledImage]) -> float:
+    """Wheel travel from the first to the last image of a group; damaged ones do not count."""
+    if group[0].damage:
+        return 0.0
+    stamps_s = [group[0].stamp_s, group[-1].stamp_s]
+    return float(np.ptp(np.interp(stamps_s, run.odometry.stamps_s, run.wheel_travel_m)))
 
 
 def outside_of_odometry(run: Run) -> Iterator[Finding]:

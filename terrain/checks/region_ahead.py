@@ -27,6 +27,7 @@ MOST = 0.5
 MOVING = 0.05  # of the fastest tread speed
 ORDINARY_WIDTH = 1.8  # effective width in track widths, the middle of robots that were measured
 SMALLEST_PX = 16  # of a side of the region: SFTA of smaller patches says nothing of texture
+HORIZON_M = 1e4
 OUTSIDE, TINY = "outside the image", f"smaller than {SMALLEST_PX} pixels"
 
 
@@ -191,7 +192,7 @@ def _seen(camera: Camera, table: Mapping[str, Any]) -> str:
     (ground,) = camera.pixels_to_ground([(np.array(camera.image_size) - 1) / 2])
     centre = (
         f"the middle of the image shows the ground at x = {ground[0]:.2f}, y = {ground[1]:.2f} m"
-        if np.isfinite(ground).all()
+        if np.abs(ground).max() < HORIZON_M  # False for NaN
         else "the middle of the image shows no ground"
     )
     if camera.mount is None:
