@@ -14,9 +14,9 @@ MOST = 0.5  # share of the images of which something must hold
 DARK, BRIGHT = 8, 247  # grey levels of 256 next to the ends, where noise is clipped
 CLIPPED = 0.5  # share of such pixels from which too little texture is left
 FLAT = 1.5  # standard deviation in grey levels: rounding and the sensor's noise make about as much
-# Details of a pixel in grey levels, and as a share of the contrast. Photographs of terrain, focused:
-# 1.7 to 19 and 0.045 to 0.6 (smooth concrete 0.4 and 0.13); blurred with a Gaussian of 4 pixels and
-# compressed: 0.25 to 0.65 and 0.006 to 0.09. Both must be small: a note misses, and does not accuse.
+# Details of a pixel in grey levels, and as a share of the contrast. Photographs of terrain in
+# focus: 1.7 to 19 and 0.045 to 0.6 (smooth concrete 0.4 and 0.13); blurred with a Gaussian of 4
+# pixels and compressed: 0.25 to 0.65 and 0.006 to 0.09. Both must be small: the note is cautious.
 DETAIL, DETAIL_SHARE = 0.6, 0.05
 
 

@@ -8,6 +8,7 @@ import click
 from odometry.errors import OdometryError
 
 VERBS = {
+    "check": "What is odd about recordings, before anything is fitted to them.",
     "train": "Train a terrain classifier on labelled patches.",
     "classify": "Name the terrain of images.",
     "run": "Replay a run: the main job.",

@@ -1,0 +1,107 @@
+"""`terrain-odometry check`: what is odd about recordings, before anything is fitted to them."""
+
+import json
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from odometry.checks.finding import CheckReport
+
+
+@click.command()
+@click.argument(
+    "folders", metavar="RUN...", nargs=-1, required=True, type=click.Path(path_type=Path)
+)
+@click.option("--json", "as_json", is_flag=True, help="Print the findings as a JSON list.")
+@click.option(
+    "--picture",
+    type=click.Path(path_type=Path),
+    metavar="DIR_or_FILE",
+    help="Draw each run: speeds, yaw rates, path, the ground in one image (PNG).",
+)
+@click.option(
+    "--model",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="Classifier made by `train` that is going to read the images.",
+)
+def check(
+    folders: tuple[Path, ...], *, as_json: bool, picture: Path | None, model: Path | None
+) -> None:
+    """Find what is odd about the run folders RUN: what was seen, its likeliest cause, what to do.
+
+    `refused`: the run cannot be read as it is. `warning`: answers would mislead. `note`: repaired,
+    or harmless. The exit code is 1 where a run is refused or has a warning.
+
+    \b
+    Example:
+      terrain-odometry check my_run other_run --picture pictures
+    """
+    from terrain.checks.recording import check_run
+    from terrain.classification.classifier import TerrainClassifier
+    from terrain.report.check_figure import write_check_figure
+
+    files = _picture_files(folders, picture) if picture is not None else {}
+    classifier = TerrainClassifier.load(model) if model is not None else None
+    reports = {}
+    for folder in dict.fromkeys(folders):
+        reports[folder] = check_run(folder, classifier)
+        if not as_json:
+            _print_findings(folder, reports[folder])
+        if folder in files and write_check_figure(reports[folder], files[folder]) is None:
+            click.echo(f"Note: {folder}: no picture, it is refused", err=True)
+    if as_json:
+        click.echo(json.dumps([report.to_table() for report in reports.values()], indent=2))
+    else:
+        click.echo(_next(reports, files))
+    if any(report.misleads for report in reports.values()):
+        sys.exit(1)
+
+
+def _print_findings(folder: Path, report: "CheckReport") -> None:
+    if not report.findings:
+        click.echo(f"{folder}: no findings")
+    else:
+        click.echo(f"{folder}:")
+        for finding in report.findings:
+            click.echo(f"  {' '.join(finding.line.split())}")
+    for reason in report.skipped:
+        click.echo(f"  not checked: {reason}")
+
+
+def _next(reports: Mapping[Path, "CheckReport"], files: Mapping[Path, Path]) -> str:
+    """What to do next, in one line."""
+    from odometry.checks.finding import Level
+
+    drawn = [file for folder, file in files.items() if not reports[folder].at(Level.REFUSED)]
+    look = f"look at {', '.join(map(str, drawn))}; " if drawn else ""
+    odd = [str(folder) for folder, report in reports.items() if report.misleads]
+    if not odd:
+        runs = " ".join(map(str, reports))
+        return f"Next: {look}terrain-odometry identify {runs} --model icr --out my_robot.toml"
+    look = look or ("" if files else f"terrain-odometry check {' '.join(odd)} --picture pictures; ")
+    return f"Next: {look}mend {', '.join(odd)}, or leave out, and check again"
+
+
+def _picture_files(folders: tuple[Path, ...], picture: Path) -> dict[Path, Path]:
+    """One file a run; runs of the same name are numbered."""
+    from odometry.io.files import check_writable
+
+    runs = list(dict.fromkeys(folders))
+    if picture.suffix.lower() == ".png":
+        if len(runs) > 1:
+            raise click.UsageError(
+                f"--picture {picture} is one file; name a folder for several runs"
+            )
+        check_writable(picture.parent)
+        return {runs[0]: picture}
+    check_writable(picture)
+    files: dict[Path, Path] = {}
+    for folder in runs:
+        name = folder.resolve().name
+        taken = sum(other.resolve().name == name for other in files)
+        files[folder] = picture / (f"{name}_{taken + 1}.png" if taken else f"{name}.png")
+    return files

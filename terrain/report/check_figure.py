@@ -1,0 +1,109 @@
+"""The figure of a check: treads, yaw rates, measured path, and the ground that the camera sees."""
+
+from pathlib import Path
+from textwrap import wrap
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from odometry.checks.evidence import Evidence
+from odometry.checks.finding import CheckReport, Level
+from odometry.report.check_plots import (
+    marks_of,
+    plot_measured_path,
+    plot_tread_speeds,
+    plot_yaw_rates,
+)
+from odometry.report.figure import save_figure
+from odometry.run import Run
+from terrain.checks.shown_image import ShownImage, shown_image
+from terrain.report.ground_plots import (
+    draw_footprint,
+    draw_ground_grid,
+    draw_region_ahead,
+    ground_legend,
+)
+from terrain.report.plots import plot_image
+
+_WIDTH_IN = 10.0
+_PANELS_IN = 9.0  # height of all panels
+_LINE_IN = 0.17
+_LETTERS = 150  # of a line of findings
+_SHOWN = 8  # findings
+_LEFT, _RIGHT = 0.085, 0.985
+
+
+def write_check_figure(report: CheckReport, file: Path) -> Path | None:
+    """Draw a recording and what its check found.
+
+    Parameters
+    ----------
+    report : CheckReport
+        Of the run folder that it names.
+    file : Path
+        Ends in .png.
+
+    Returns
+    -------
+    Path or None
+        `file`; None where the recording is refused, and nothing can be drawn.
+    """
+    if report.at(Level.REFUSED):
+        return None
+    run = Run.read(report.folder)
+    lines = _finding_lines(report)
+    text_in = 0.45 + _LINE_IN * len(lines)
+    height_in = _PANELS_IN + text_in
+    shown = shown_image(run)
+
+    def draw(figure: Figure) -> None:
+        def axes(left: float, bottom_in: float, right: float, panel_in: float) -> Axes:
+            place = (left, bottom_in / height_in, right - left, panel_in / height_in)
+            return figure.add_axes(place)
+
+        figure.text(_LEFT, 1 - 0.22 / height_in, _title(report), fontsize=12, fontweight="bold",
+                    va="center", parse_math=False)  # fmt: skip
+        for number, line in enumerate(lines):
+            figure.text(_LEFT, 1 - (0.5 + _LINE_IN * number) / height_in, line, fontsize=8.5,
+                        va="center", parse_math=False)  # fmt: skip
+        evidence, marks = Evidence(run), marks_of(report)
+        plot_tread_speeds(axes(_LEFT, 6.55, _RIGHT, 1.95), evidence, marks)
+        plot_yaw_rates(axes(_LEFT, 4.1, _RIGHT, 1.75), evidence, marks)
+        middle = 0.48 if shown is not None else _RIGHT
+        plot_measured_path(axes(_LEFT, 0.5, middle, 2.8), evidence, marks)
+        if shown is not None:
+            _draw_ground(axes(0.53, 0.5, _RIGHT, 2.8), run, shown)
+
+    return save_figure(file, (_WIDTH_IN, height_in), draw)
+
+
+def _draw_ground(axes: Axes, run: Run, shown: ShownImage) -> None:
+    ahead = f"region {shown.region.distance_ahead_m:.2g} m ahead" if shown.region else shown.reason
+    plot_image(axes, shown.image, "")
+    axes.set_title(f"image at {shown.run_time_s:.1f} s: {ahead}", fontsize=9.5, loc="left",
+                   parse_math=False)  # fmt: skip
+    if shown.camera is None:
+        return
+    height, width = shown.image.shape[:2]
+    step_m = draw_ground_grid(axes, shown.camera, shown.region)
+    draw_footprint(axes, shown.camera, run.robot)
+    if shown.region is not None:
+        draw_region_ahead(axes, shown.camera, shown.region)
+    axes.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5))
+    ground_legend(axes, step_m)
+
+
+def _title(report: CheckReport) -> str:
+    counts = [f"{len(report.at(level))} {level}s" for level in (Level.WARNING, Level.NOTE)]
+    found = " and ".join(word[:-1] if word.startswith("1 ") else word for word in counts)
+    return f"{report.name}: {found if report.findings else 'no findings'}"
+
+
+def _finding_lines(report: CheckReport) -> list[str]:
+    lines = []
+    for finding in report.findings[:_SHOWN]:
+        first, *more = wrap(f"{finding.name} ({finding.level}): {finding.seen}", _LETTERS)
+        lines += [first, *(f"    {line}" for line in more)]
+    if len(report.findings) > _SHOWN:
+        lines.append(f"... and {len(report.findings) - _SHOWN} more")
+    return lines

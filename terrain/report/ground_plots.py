@@ -1,0 +1,99 @@
+"""What the camera sees of the ground: a metric grid, the footprint and the region ahead."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import Polygon
+from matplotlib.patheffects import withStroke
+
+from odometry.arrays import FloatArray
+from odometry.run import Robot
+from terrain.camera import Camera
+from terrain.region import Rectangle, Region
+from terrain.whole_image import outline
+
+GRID = "#FFFFFF"
+FOOTPRINT, REGION = "footprint", "region ahead"
+_OUTLINES = {FOOTPRINT: "#99DDFF", REGION: "#EEDD88"}  # bright, with dark edges
+NEAR_M = 4.0  # a region as near as this gets a grid of half metres
+BEHIND_M, ASIDE_M, BEYOND_M = 1.0, 3.0, 2.0  # of the robot's middle, and beyond the region
+FINE_M = 0.02
+_HALO = (withStroke(linewidth=2.5, foreground="black"),)
+
+
+def draw_ground_grid(axes: Axes, camera: Camera, region: Region | None) -> float:
+    """Draw a metric grid of robot-frame x and y on the raw image, with distances ahead.
+
+    Parameters
+    ----------
+    axes : Axes
+        That show the image.
+    camera : Camera
+    region : Region or None
+        The grid goes beyond it.
+
+    Returns
+    -------
+    float
+        Between two lines [m].
+    """
+    farthest_m = (region.rectangle.x_max if region is not None else NEAR_M) + BEYOND_M
+    step_m = 0.5 if farthest_m - BEYOND_M <= NEAR_M else 1.0
+    across, along = np.arange(-ASIDE_M, ASIDE_M + 1e-9, FINE_M), np.arange(
+        -BEHIND_M, farthest_m, FINE_M
+    )  # fmt: skip
+    for x in np.arange(-BEHIND_M, farthest_m, step_m):
+        _line(axes, camera, np.stack([np.full(len(across), x), across], axis=-1))
+    for y in np.arange(-ASIDE_M, ASIDE_M + 1e-9, step_m):
+        _line(axes, camera, np.stack([along, np.full(len(along), y)], axis=-1), y == 0)
+    for x in np.arange(0.0, farthest_m, step_m):
+        _text(axes, camera, (x, 0.0), f"{x:g} m")
+    return step_m
+
+
+def draw_footprint(axes: Axes, camera: Camera, robot: Robot) -> None:
+    """Outline the robot as it stands."""
+    length, width = robot.length or robot.track_width, robot.width or robot.track_width
+    _outlined(axes, camera, Rectangle(-length / 2, length / 2, -width / 2, width / 2), FOOTPRINT)
+
+
+def draw_region_ahead(axes: Axes, camera: Camera, region: Region) -> None:
+    """Outline the region that vision would read."""
+    _outlined(axes, camera, region.rectangle, REGION)
+
+
+def ground_legend(axes: Axes, step_m: float) -> None:
+    """Say below the image what the lines are that are drawn in it."""
+    drawn = [patch.get_gid() for patch in axes.patches]
+    lines = {f"grid of {step_m:g} m": GRID}
+    lines |= {name: colour for name, colour in _OUTLINES.items() if name in drawn}
+    handles = [
+        Line2D([], [], color=colour, linewidth=2.0, label=name, path_effects=[*_HALO])
+        for name, colour in lines.items()
+    ]
+    axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.0, 0.0), ncols=3,
+                frameon=False, fontsize=9, borderaxespad=0.3, columnspacing=1.2)  # fmt: skip
+
+
+def _line(axes: Axes, camera: Camera, ground: FloatArray, thick: bool = False) -> None:
+    u, v = camera.ground_to_pixels(ground).T
+    axes.plot(u, v, color=GRID, linewidth=1.4 if thick else 0.7, alpha=0.8,
+              path_effects=[withStroke(linewidth=2.2 if thick else 1.3, foreground="#00000066")],
+              scalex=False, scaley=False)  # fmt: skip
+
+
+def _text(axes: Axes, camera: Camera, place: tuple[float, float], text: str) -> None:
+    (pixel,) = camera.ground_to_pixels([place])
+    if camera.in_image(pixel):
+        axes.annotate(text, (float(pixel[0]), float(pixel[1])), (3.0, 2.0), fontsize=8,
+                      textcoords="offset points", color="white", path_effects=_HALO)  # fmt: skip
+
+
+def _outlined(axes: Axes, camera: Camera, rectangle: Rectangle, name: str) -> None:
+    """Draw the part of a rectangle that the image shows."""
+    shape = camera.ground_to_pixels(outline(rectangle))
+    if camera.in_image(shape).any():
+        for colour, width_pt in (("black", 3.6), (_OUTLINES[name], 2.2)):
+            axes.add_patch(
+                Polygon(shape, fill=False, edgecolor=colour, linewidth=width_pt, gid=name)
+            )
