@@ -22,6 +22,7 @@ NARROWEST = 0.004  # of the time axis: a mark of a single sample must be seen
 ROOM = 1.15  # of the limits, above what all but one sample in 200 reach
 BEYOND = 3.0  # times that, from which single samples do not set the limits
 ARROWS = 36
+FEW_POSES = 500  # below, each is a point
 FAR_M = 1e4  # from the origin: positions are drawn less the first one
 _LEFT, _RIGHT, _GYROSCOPE = LINE_STYLES[0], LINE_STYLES[1], LINE_STYLES[2]
 _THIN = LineStyle(REFERENCE_STYLE.colour, "solid", 1.2)
@@ -50,6 +51,8 @@ def plot_tread_speeds(axes: Axes, evidence: Evidence, marks: Marks) -> None:
                   linestyle=style.dashes, label=f"{name} tread")  # fmt: skip
     axes.set_ylabel("tread speed [m/s]")
     _time_axis(axes, evidence, marks)
+    colours = mark_colours(marks)
+    _legend(axes, [Patch(color=colour, label=name) for name, colour in colours.items()])
     _limits(axes, [speeds.ravel()])
 
 
@@ -78,6 +81,7 @@ def plot_yaw_rates(axes: Axes, evidence: Evidence, marks: Marks) -> None:
     axes.set_ylabel("yaw rate [rad/s]")
     axes.set_xlabel("run time [s]")
     _time_axis(axes, evidence, marks)
+    _legend(axes, [])
     _limits(axes, drawn)
 
 
@@ -92,7 +96,8 @@ def plot_measured_path(axes: Axes, evidence: Evidence, marks: Marks) -> None:
     stamps_s, positions = pose.stamps_s[used], pose.stack("x", "y")[used]
     origin = positions[0] if np.abs(positions).max() > FAR_M else np.zeros(2)
     x, y = (positions - origin).T
-    axes.plot(x, y, color=_THIN.colour, linewidth=1.0, marker=".", markersize=2.5)
+    marker = "." if len(x) < FEW_POSES else ""
+    axes.plot(x, y, color=_THIN.colour, linewidth=1.0, marker=marker, markersize=2.5)
     for name, colour in mark_colours(marks).items():
         spans_s = marks[name] + [-0.05, 0.05] + evidence.stamps_s[0]
         inside = within(stamps_s, spans_s)
@@ -130,18 +135,21 @@ def effective_width_m(evidence: Evidence) -> tuple[float, str]:
 
 
 def _time_axis(axes: Axes, evidence: Evidence, marks: Marks) -> None:
-    """Shade what is odd, and put the legend above the axes, where it hides nothing."""
+    """Shade what is odd."""
     axes.set_xlim(0.0, max(evidence.duration_s, 1e-9))
     least_s = NARROWEST * evidence.duration_s
     colours = mark_colours(marks)
     for name, spans_s in marks.items():
         for begin_s, end_s in spans_s:
             wider_s = max(0.0, least_s - (end_s - begin_s)) / 2
-            axes.axvspan(begin_s - wider_s, end_s + wider_s, color=colours[name], linewidth=0,
-                         zorder=0.5, gid=name)  # fmt: skip
+            axes.axvspan(begin_s - wider_s, end_s + wider_s, color=colours[name], alpha=0.7,
+                         linewidth=0, zorder=0.5, gid=name)  # fmt: skip
     axes.grid(visible=True, axis="y")
     axes.yaxis.set_major_locator(MaxNLocator(5))
-    patches = [Patch(color=colour, label=name) for name, colour in colours.items()]
+
+
+def _legend(axes: Axes, patches: list[Patch]) -> None:
+    """Name lines and marks above the axes, where a legend hides nothing."""
     axes.legend(
         handles=[*axes.lines, *patches],
         loc="lower left",

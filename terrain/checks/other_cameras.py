@@ -113,7 +113,7 @@ def _angles(mount: FloatArray) -> Iterator[tuple[str, str, FloatArray]]:
         ("roll", roll, [pitch, roll, yaw]),
         ("yaw", yaw, [roll, yaw, pitch]),
     ):
-        if abs(pitch) < value < np.pi / 2:  # what stands there looks down
+        if max(abs(pitch), TILTED_RAD) < value < np.pi / 2:  # what stands there looks down
             yield (
                 f"pitch and {words} are exchanged",
                 "Write roll, pitch, yaw in this order",

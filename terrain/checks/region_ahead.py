@@ -22,7 +22,7 @@ from terrain.checks.sampled import spread
 from terrain.errors import CameraError
 from terrain.region import Region, RegionConfig, predict_region
 
-FRAMES = 60  # moments of a run, some milliseconds each
+FRAMES = 40  # moments of a run, some milliseconds each
 MOST = 0.5
 MOVING = 0.05  # of the fastest tread speed
 ORDINARY_WIDTH = 1.8  # effective width in track widths, the middle of robots that were measured

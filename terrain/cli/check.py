@@ -83,7 +83,7 @@ def _next(reports: Mapping[Path, "CheckReport"], files: Mapping[Path, Path]) -> 
         runs = " ".join(map(str, reports))
         return f"Next: {look}terrain-odometry identify {runs} --model icr --out my_robot.toml"
     look = look or ("" if files else f"terrain-odometry check {' '.join(odd)} --picture pictures; ")
-    return f"Next: {look}mend {', '.join(odd)}, or leave out, and check again"
+    return f"Next: {look}mend or leave out {', '.join(odd)}, and check again"
 
 
 def _picture_files(folders: tuple[Path, ...], picture: Path) -> dict[Path, Path]:

@@ -1,6 +1,11 @@
 """What a user may not have meant."""
 
+from collections import Counter
+from collections.abc import Sequence
+
+from odometry.run import UNKNOWN
 from terrain.run_odometry import RunResult
+from terrain.watcher import Sighting
 
 MANY_REFUSED = 0.1
 
@@ -20,6 +25,8 @@ def hints(result: RunResult, *, vision: bool) -> list[str]:
             f"the model knows {name!r}, the parameter set does not: it starts from a broad prior"
             for name in sorted(set(result.watcher.classifier.classes_) - set(known))
         ]
+    if result.watcher is not None:
+        found += _blind(result.watcher.sightings)
     innovations = [e.innovation for e in result.replay.estimates if e.innovation is not None]
     refused = sum(not innovation.accepted for innovation in innovations)
     if refused > MANY_REFUSED * len(innovations):
@@ -28,3 +35,15 @@ def hints(result: RunResult, *, vision: bool) -> list[str]:
             "odometry.csv, jumps of the reference, or noise settings ([filter] of --config)?"
         )
     return found
+
+
+def _blind(sightings: Sequence[Sighting]) -> list[str]:
+    """Say why where no image was given the name of a terrain."""
+    if not sightings or any(sighting.label not in ("", UNKNOWN) for sighting in sightings):
+        return []
+    reasons = Counter(sighting.reason or "unlike any training patch" for sighting in sightings)
+    words = ", ".join(f"{reason} ({count})" for reason, count in reasons.most_common(3))
+    return [
+        f"vision named no terrain in any of {len(sightings)} images: {words}; the terrain in force "
+        "never changed. Try terrain-odometry check RUN --model MODEL --picture DIR"
+    ]

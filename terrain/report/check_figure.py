@@ -28,7 +28,7 @@ from terrain.report.plots import plot_image
 _WIDTH_IN = 10.0
 _PANELS_IN = 9.0  # height of all panels
 _LINE_IN = 0.17
-_LETTERS = 150  # of a line of findings
+_LETTERS = 138  # of a line of findings
 _SHOWN = 8  # findings
 _LEFT, _RIGHT = 0.085, 0.985
 

@@ -18,6 +18,7 @@ _OUTLINES = {FOOTPRINT: "#99DDFF", REGION: "#EEDD88"}  # bright, with dark edges
 NEAR_M = 4.0  # a region as near as this gets a grid of half metres
 BEHIND_M, ASIDE_M, BEYOND_M = 1.0, 3.0, 2.0  # of the robot's middle, and beyond the region
 FINE_M = 0.02
+APART = 0.06  # of the image's height, between two distances that are written
 _HALO = (withStroke(linewidth=2.5, foreground="black"),)
 
 
@@ -46,8 +47,7 @@ def draw_ground_grid(axes: Axes, camera: Camera, region: Region | None) -> float
         _line(axes, camera, np.stack([np.full(len(across), x), across], axis=-1))
     for y in np.arange(-ASIDE_M, ASIDE_M + 1e-9, step_m):
         _line(axes, camera, np.stack([along, np.full(len(along), y)], axis=-1), y == 0)
-    for x in np.arange(0.0, farthest_m, step_m):
-        _text(axes, camera, (x, 0.0), f"{x:g} m")
+    _write_distances(axes, camera, np.arange(0.0, farthest_m, step_m))
     return step_m
 
 
@@ -65,7 +65,7 @@ def draw_region_ahead(axes: Axes, camera: Camera, region: Region) -> None:
 def ground_legend(axes: Axes, step_m: float) -> None:
     """Say below the image what the lines are that are drawn in it."""
     drawn = [patch.get_gid() for patch in axes.patches]
-    lines = {f"grid of {step_m:g} m": GRID}
+    lines = {f"grid of {step_m:g} m": GRID} if axes.lines else {}
     lines |= {name: colour for name, colour in _OUTLINES.items() if name in drawn}
     handles = [
         Line2D([], [], color=colour, linewidth=2.0, label=name, path_effects=[*_HALO])
@@ -76,17 +76,25 @@ def ground_legend(axes: Axes, step_m: float) -> None:
 
 
 def _line(axes: Axes, camera: Camera, ground: FloatArray, thick: bool = False) -> None:
-    u, v = camera.ground_to_pixels(ground).T
+    pixels = camera.ground_to_pixels(ground)
+    if not camera.in_image(pixels).any():
+        return
+    u, v = pixels.T
     axes.plot(u, v, color=GRID, linewidth=1.4 if thick else 0.7, alpha=0.8,
               path_effects=[withStroke(linewidth=2.2 if thick else 1.3, foreground="#00000066")],
               scalex=False, scaley=False)  # fmt: skip
 
 
-def _text(axes: Axes, camera: Camera, place: tuple[float, float], text: str) -> None:
-    (pixel,) = camera.ground_to_pixels([place])
-    if camera.in_image(pixel):
-        axes.annotate(text, (float(pixel[0]), float(pixel[1])), (3.0, 2.0), fontsize=8,
-                      textcoords="offset points", color="white", path_effects=_HALO)  # fmt: skip
+def _write_distances(axes: Axes, camera: Camera, ahead_m: FloatArray) -> None:
+    """Write distances on the line straight ahead, near ones first, where there is room."""
+    pixels = camera.ground_to_pixels(np.stack([ahead_m, np.zeros(len(ahead_m))], axis=-1))
+    last_v, room = np.inf, APART * camera.image_size[1]
+    for x, pixel in zip(ahead_m, pixels, strict=True):
+        if camera.in_image(pixel) and abs(last_v - pixel[1]) > room:
+            last_v = float(pixel[1])
+            axes.annotate(f"{x:g} m", (float(pixel[0]), last_v), (3.0, 2.0), fontsize=8,
+                          textcoords="offset points", color="white",
+                          path_effects=_HALO)  # fmt: skip
 
 
 def _outlined(axes: Axes, camera: Camera, rectangle: Rectangle, name: str) -> None:

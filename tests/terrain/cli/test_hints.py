@@ -7,7 +7,9 @@ from terrain.cli.hints import hints
 
 def result(initial="gravel", tables=("gravel",), classes=None, images=True, refused=0):
     watcher = (
-        None if classes is None else SimpleNamespace(classifier=SimpleNamespace(classes_=classes))
+        None
+        if classes is None
+        else SimpleNamespace(classifier=SimpleNamespace(classes_=classes), sightings=[])
     )
     return SimpleNamespace(
         initial_terrain=initial,
@@ -45,3 +47,21 @@ def test_many_refused_poses_are_named():
     assert hints(result(refused=1), vision=False) == []
     (hint,) = hints(result(refused=2), vision=False)
     assert "refused 2 of 12 poses" in hint
+
+
+def sighted(*labels_and_reasons):
+    """A result whose images got these labels."""
+    of = result(classes=["gravel"])
+    of.watcher.sightings = [
+        SimpleNamespace(label=label, reason=reason) for label, reason in labels_and_reasons
+    ]
+    return of
+
+
+def test_vision_that_names_nothing_says_why():
+    outside = ("", "the region lies outside the image")
+    (hint,) = hints(sighted(outside, outside, ("unknown", "")), vision=True)
+    assert "named no terrain in any of 3 images" in hint
+    assert "the region lies outside the image (2), unlike any training patch (1)" in hint
+    assert hints(sighted(outside, ("gravel", "")), vision=True) == []
+    assert hints(sighted(), vision=True) == []

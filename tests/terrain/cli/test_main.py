@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-VERBS = ("train", "classify", "run", "evaluate", "synthesise")
+VERBS = ("check", "train", "classify", "run", "evaluate", "synthesise")
 VERBS += ("simulate", "identify", "compare", "gap")
 VERBS += ("identify-modes", "modes", "demo")
 SLOW = ("numpy", "scipy", "sklearn", "skimage", "cv2", "matplotlib", "filterpy", "pandas")

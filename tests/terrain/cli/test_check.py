@@ -1,0 +1,93 @@
+"""`check`: a line a finding, an exit code, JSON, pictures."""
+
+import json
+import shutil
+
+import pytest
+from click.testing import CliRunner
+
+from terrain.cli.check import check
+
+
+@pytest.fixture
+def faulty(curvy_run, tmp_path):
+    """A winding drive with one absurd sample."""
+    folder = tmp_path / "faulty"
+    shutil.copytree(curvy_run, folder)
+    file = folder / "odometry.csv"
+    lines = file.read_text().split()
+    t, _, right = lines[100].split(",")
+    lines[100] = f"{t},50,{right}"
+    file.write_text("\n".join(lines) + "\n")
+    return folder
+
+
+def invoke(*arguments):
+    return CliRunner().invoke(check, list(map(str, arguments)))
+
+
+def test_a_clean_run(curvy_run):
+    answer = invoke(curvy_run)
+    first, *_, last = answer.stdout.splitlines()
+    assert answer.exit_code == 0
+    assert first == f"{curvy_run}: no findings"
+    assert last == f"Next: terrain-odometry identify {curvy_run} --model icr --out my_robot.toml"
+
+
+def test_findings_by_run_and_an_unreadable_folder_between(curvy_run, faulty, tmp_path):
+    answer = invoke(faulty, tmp_path / "nowhere", curvy_run)
+    assert answer.exit_code == 1
+    lines = answer.stdout.splitlines()
+    place = lines.index(f"{faulty}:")
+    assert lines[place + 1].startswith("  warning: 1 samples of v_left jump")
+    assert lines[place + 1].count(". ") >= 2  # seen. cause. remedy.
+    place = lines.index(f"{tmp_path / 'nowhere'}:")
+    assert lines[place + 1].startswith("  refused: ")
+    assert f"{curvy_run}: no findings" in lines
+    assert lines[-1].startswith("Next: ")
+    assert f"{faulty}, {tmp_path / 'nowhere'}" in lines[-1]
+
+
+def test_json_is_one_array_and_nothing_else(curvy_run, faulty, tmp_path):
+    answer = invoke(curvy_run, faulty, tmp_path / "nowhere", "--json")
+    clean, odd, refused = json.loads(answer.stdout)
+    assert answer.exit_code == 1
+    assert (clean["run"], clean["misleads"], clean["findings"]) == (curvy_run.name, False, [])
+    assert odd["findings"][0]["name"] == "absurd_speed"
+    assert odd["findings"][0]["spans_s"]
+    assert refused["findings"][0]["level"] == "refused"
+
+
+def test_pictures_go_into_a_folder_or_a_file(curvy_run, faulty, tmp_path):
+    answer = invoke(curvy_run, faulty, tmp_path / "nowhere", "--picture", tmp_path / "pictures")
+    assert sorted(file.name for file in (tmp_path / "pictures").iterdir()) == [
+        f"{curvy_run.name}.png",
+        "faulty.png",
+    ]
+    assert "no picture" in answer.stderr
+    assert str(tmp_path / "pictures" / "faulty.png") in answer.stdout.splitlines()[-1]
+    invoke(curvy_run, "--picture", tmp_path / "one.png")
+    assert (tmp_path / "one.png").exists()
+
+
+def test_one_file_for_several_runs_is_a_wrong_command_line(curvy_run, faulty, tmp_path):
+    answer = invoke(curvy_run, faulty, "--picture", tmp_path / "one.png")
+    assert answer.exit_code == 2
+    assert "one file" in answer.stderr
+    assert not (tmp_path / "one.png").exists()
+
+
+def test_runs_of_one_name_get_pictures_of_their_own(curvy_run, tmp_path):
+    other = tmp_path / "elsewhere" / curvy_run.name
+    shutil.copytree(curvy_run, other)
+    invoke(curvy_run, other, "--picture", tmp_path / "pictures")
+    assert len(list((tmp_path / "pictures").iterdir())) == 2
+
+
+def test_the_model_is_read(across_run, model_file, tmp_path):
+    assert invoke(across_run, "--model", model_file).exit_code == 0
+    broken = tmp_path / "broken.model"
+    broken.write_bytes(b"no model")
+    answer = invoke(across_run, "--model", broken)
+    assert answer.exit_code == 1
+    assert "broken.model" in str(answer.exception)
