@@ -12,6 +12,7 @@ from odometry.run import Robot
 # No skid-steer robot carries its camera as far from its centre [m].
 FARTHEST_M = 5.0
 WHOLE_TURN_RAD = 2 * np.pi  # nobody writes a larger angle in radians
+UP_RAD = 0.09  # 5 degrees, by which nobody lets a camera for the ground look up
 LARGE_RAD = 3.2  # above half a turn, which nobody needs in radians; 2 and 3 degrees are seldom
 TILTED_RAD = 0.35  # 20 degrees, by which nobody turns a camera about its view
 # Columns: the camera's x, y, z axes seen in its optical frame (x right, y down, z along the view)
@@ -62,6 +63,11 @@ def tilted(mount: FloatArray) -> bool:
     """Whether a mount (6,) holds the camera neither upright, nor on its side, nor overhead."""
     off = (mount[3] + np.pi / 4) % (np.pi / 2) - np.pi / 4
     return bool(abs(off) > TILTED_RAD)
+
+
+def looks_up(mount: FloatArray) -> bool:
+    """Whether a mount (6,) looks above the horizon."""
+    return bool(-np.sin(mount[4]) > np.sin(UP_RAD))
 
 
 def too_far(mount: FloatArray) -> bool:

@@ -14,6 +14,7 @@ from terrain.camera import Camera
 from terrain.checks.other_cameras import (
     Reading,
     angles_in_degrees,
+    looks_up,
     other_readings,
     tilted,
     too_far,
@@ -28,6 +29,7 @@ MOVING = 0.05  # of the fastest tread speed
 ORDINARY_WIDTH = 1.8  # effective width in track widths, the middle of robots that were measured
 SMALLEST_PX = 16  # of a side of the region: SFTA of smaller patches says nothing of texture
 HORIZON_M = 1e4
+USUAL_HEIGHT_M = (0.2, 3.0)  # of cameras on skid-steer robots
 OUTSIDE, TINY = "outside the image", f"smaller than {SMALLEST_PX} pixels"
 
 
@@ -128,7 +130,8 @@ def region_ahead(run: Run, table: Mapping[str, Any]) -> Iterator[Finding]:
 
 
 def _impossible(table: Mapping[str, Any]) -> bool:
-    return angles_in_degrees(_mount(table)) or too_far(_mount(table))
+    mount = _mount(table)
+    return angles_in_degrees(mount) or too_far(mount) or looks_up(mount)
 
 
 def _mount(table: Mapping[str, Any]) -> FloatArray:
@@ -137,16 +140,27 @@ def _mount(table: Mapping[str, Any]) -> FloatArray:
 
 
 def _fitting(robot: Robot, table: Mapping[str, Any]) -> list[Reading]:
-    """Readings by which the image shows the region of a robot that drives straight on."""
-    found = []
+    """Readings by which the image shows the region of a robot that drives straight on.
+
+    Those that put the camera near the ground or very high come last.
+    """
+    found: list[tuple[bool, Reading]] = []
     for reading in _readings(robot, table):
         try:
             camera = Camera.from_table(reading.table)
         except CameraError:
             continue
         if not isinstance(straight_ahead(camera, reading.robot), str):
-            found.append(reading)
-    return found
+            usual = USUAL_HEIGHT_M[0] <= height_m(camera) <= USUAL_HEIGHT_M[1]
+            found.append((not usual, reading))
+    return [reading for _, reading in sorted(found, key=lambda pair: pair[0])]
+
+
+def height_m(camera: Camera) -> float:
+    """Height above the ground: H = s K R [e1 e2 -c] has the determinant -s^3 fx fy c_z."""
+    rays = np.linalg.solve(camera.matrix, camera.ground_to_image)
+    scale = float(np.mean(np.linalg.norm(rays[:, :2], axis=0)))
+    return float(-np.linalg.det(rays) / scale**3)
 
 
 def _readings(robot: Robot, table: Mapping[str, Any]) -> list[Reading]:

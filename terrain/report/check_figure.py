@@ -26,7 +26,7 @@ from terrain.report.ground_plots import (
 from terrain.report.plots import plot_image
 
 _WIDTH_IN = 10.0
-_PANELS_IN = 9.0  # height of all panels
+_SIGNALS_IN, _PLACES_IN = 5.4, 3.6  # height of the panels over time, and of path and image
 _LINE_IN = 0.17
 _LETTERS = 138  # of a line of findings
 _SHOWN = 8  # findings
@@ -51,30 +51,36 @@ def write_check_figure(report: CheckReport, file: Path) -> Path | None:
     if report.at(Level.REFUSED):
         return None
     run = Run.read(report.folder)
+    evidence, marks, shown = Evidence(run), marks_of(report), shown_image(run)
     lines = _finding_lines(report)
-    text_in = 0.45 + _LINE_IN * len(lines)
-    height_in = _PANELS_IN + text_in
-    shown = shown_image(run)
+    has_path = evidence.positions_measured is not None
+    below_in = _PLACES_IN if has_path or shown is not None else 0.0
+    height_in = 0.45 + _LINE_IN * len(lines) + _SIGNALS_IN + below_in
 
     def draw(figure: Figure) -> None:
         def axes(left: float, bottom_in: float, right: float, panel_in: float) -> Axes:
             place = (left, bottom_in / height_in, right - left, panel_in / height_in)
             return figure.add_axes(place)
 
-        figure.text(_LEFT, 1 - 0.22 / height_in, _title(report), fontsize=12, fontweight="bold",
-                    va="center", parse_math=False)  # fmt: skip
-        for number, line in enumerate(lines):
-            figure.text(_LEFT, 1 - (0.5 + _LINE_IN * number) / height_in, line, fontsize=8.5,
-                        va="center", parse_math=False)  # fmt: skip
-        evidence, marks = Evidence(run), marks_of(report)
-        plot_tread_speeds(axes(_LEFT, 6.55, _RIGHT, 1.95), evidence, marks)
-        plot_yaw_rates(axes(_LEFT, 4.1, _RIGHT, 1.75), evidence, marks)
-        middle = 0.48 if shown is not None else _RIGHT
-        plot_measured_path(axes(_LEFT, 0.5, middle, 2.8), evidence, marks)
+        _write_findings(figure, _title(report), lines)
+        plot_tread_speeds(axes(_LEFT, below_in + 2.95, _RIGHT, 1.95), evidence, marks)
+        plot_yaw_rates(axes(_LEFT, below_in + 0.5, _RIGHT, 1.75), evidence, marks)
+        if below_in:
+            middle = 0.48 if shown is not None else _RIGHT
+            plot_measured_path(axes(_LEFT, 0.5, middle, 2.8), evidence, marks)
         if shown is not None:
             _draw_ground(axes(0.53, 0.5, _RIGHT, 2.8), run, shown)
 
     return save_figure(file, (_WIDTH_IN, height_in), draw)
+
+
+def _write_findings(figure: Figure, title: str, lines: list[str]) -> None:
+    height_in = figure.get_figheight()
+    figure.text(_LEFT, 1 - 0.22 / height_in, title, fontsize=12, fontweight="bold",
+                va="center", parse_math=False)  # fmt: skip
+    for number, line in enumerate(lines):
+        figure.text(_LEFT, 1 - (0.5 + _LINE_IN * number) / height_in, line, fontsize=8.5,
+                    va="center", parse_math=False)  # fmt: skip
 
 
 def _draw_ground(axes: Axes, run: Run, shown: ShownImage) -> None:
