@@ -104,28 +104,37 @@ def motion_at(run: Run, stamps_s: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def region_ahead(run: Run, table: Mapping[str, Any]) -> Iterator[Finding]:
-    """A mount or homography that shows the region ahead nowhere."""
-    found: Looks | None
+    """A mount or homography that shows the region ahead nowhere, or that cannot be read."""
     try:
         camera = Camera.from_table(table)
-        found, seen = looks(run, camera), _seen(camera, table)
     except CameraError as error:
-        camera, found, seen = None, None, str(error)
-    if found is not None:
-        seen = f"the region ahead is {_counts(found)}; {seen}"
-        impossible = _impossible(table)
-        if not impossible and not found.in_vain:
-            return
-        if not (impossible or isinstance(found.ahead, str) or tilted(_mount(table))):
-            yield _where_it_goes(seen, found.ahead)
-            return
+        yield _unreadable(str(error), _fitting(run.robot, table))
+        return
+    found = looks(run, camera)
+    seen = f"the region ahead is {_counts(found)}; {_seen(camera, table)}"
+    impossible = _impossible(table)
+    if not impossible and not found.in_vain:
+        return
+    if not (impossible or isinstance(found.ahead, str) or tilted(_mount(table))):
+        yield _where_it_goes(seen, found.ahead)
+        return
     fitting = _fitting(run.robot, table)
     yield Finding(
-        "region_outside" if camera is not None else "camera_unreadable",
+        "region_outside",
         Level.WARNING,
         seen,
         _cause(fitting),
         fitting[0].remedy if fitting else "Check [camera] with check --picture, or calibrate anew",
+    )
+
+
+def _unreadable(seen: str, fitting: list[Reading]) -> Finding:
+    return Finding(
+        "camera_unreadable",
+        Level.WARNING,
+        seen,
+        _cause(fitting) if fitting else "A value of [camera] is missing or not as the format says",
+        fitting[0].remedy if fitting else "Mend [camera] in run.toml",
     )
 
 
@@ -166,7 +175,7 @@ def height_m(camera: Camera) -> float:
 def _readings(robot: Robot, table: Mapping[str, Any]) -> list[Reading]:
     try:
         return list(other_readings(table, robot))
-    except (KeyError, TypeError, ValueError, IndexError):
+    except (KeyError, TypeError, ValueError, IndexError, OverflowError):
         return []  # what is wrong is no number: the reader's message says it
 
 

@@ -77,7 +77,8 @@ def _next(reports: Mapping[Path, "CheckReport"], files: Mapping[Path, Path]) -> 
     from odometry.checks.finding import Level
 
     drawn = [file for folder, file in files.items() if not reports[folder].at(Level.REFUSED)]
-    look = f"look at {', '.join(map(str, drawn))}; " if drawn else ""
+    place = drawn[0] if len(drawn) == 1 else drawn[0].parent if drawn else ""
+    look = f"look at {place}; " if drawn else ""
     odd = [str(folder) for folder, report in reports.items() if report.misleads]
     if not odd:
         runs = " ".join(map(str, reports))

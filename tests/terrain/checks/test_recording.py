@@ -40,7 +40,7 @@ def test_a_camera_table_that_is_none(faulty):
     faulty.settings(camera={"mount": ["a", 0, 1, 0, 0, 0]})
     finding = faulty.found()["camera_unreadable"]
     assert "mount must hold numbers" in finding.seen
-    assert "cannot be told" in finding.cause
+    assert "not as the format says" in finding.cause
 
 
 def test_a_folder_that_cannot_be_read_is_refused(tmp_path):

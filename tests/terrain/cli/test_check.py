@@ -65,7 +65,7 @@ def test_pictures_go_into_a_folder_or_a_file(curvy_run, faulty, tmp_path):
         "faulty.png",
     ]
     assert "no picture" in answer.stderr
-    assert str(tmp_path / "pictures" / "faulty.png") in answer.stdout.splitlines()[-1]
+    assert f"look at {tmp_path / 'pictures'};" in answer.stdout.splitlines()[-1]
     invoke(curvy_run, "--picture", tmp_path / "one.png")
     assert (tmp_path / "one.png").exists()
 
