@@ -7,7 +7,7 @@ import numpy as np
 from odometry.arrays import ByteImage
 from odometry.run import Run
 from terrain.camera import Camera
-from terrain.checks.region_ahead import image_rows, motion_at, seen_region
+from terrain.checks.looks import image_rows, motion_at, seen_region
 from terrain.errors import CameraError, ImageError
 from terrain.images import read_image
 from terrain.region import Region

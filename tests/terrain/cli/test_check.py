@@ -85,7 +85,10 @@ def test_runs_of_one_name_get_pictures_of_their_own(curvy_run, tmp_path):
 
 
 def test_the_model_is_read(across_run, model_file, tmp_path):
-    assert invoke(across_run, "--model", model_file).exit_code == 0
+    folder = tmp_path / "across"
+    shutil.copytree(across_run, folder)
+    (folder / "pose.csv").unlink()
+    assert invoke(folder, "--model", model_file).exit_code == 0
     broken = tmp_path / "broken.model"
     broken.write_bytes(b"no model")
     answer = invoke(across_run, "--model", broken)
