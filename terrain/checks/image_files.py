@@ -11,7 +11,7 @@ from odometry.run import Run
 from terrain.checks.sampled import SampledImage
 from terrain.image_size import PIXELS
 
-MANY = 0.1  # of the images: a truncated JPEG decodes, its rest grey, and is given a label
+MANY = 0.1  # of the images: more are no accident at the end of a recording
 OTHER_VIEW_M = 0.2  # of wheel travel, after which noise alone makes every real image another
 FEW_OUTSIDE = 0.02  # of the stamps: a recorder starts and ends its files at slightly other times
 

@@ -9,12 +9,11 @@ import numpy as np
 
 from odometry.arrays import AnyArray, IntArray
 from odometry.run import Run
-from terrain.image_size import PIXELS, PNG, stated_size
+from terrain.image_size import PIXELS, is_whole, stated_size
 
 FILES = 100  # read whole: at most some hundred megabytes from the disk, one at a time
 DECODED = 20  # of them, which takes about a second at two megapixels
 MOST_BYTES = 64 * 1024**2  # of a file; a compressed image of PIXELS pixels is smaller
-END = 4096  # bytes in which the end mark of a whole image lies; some cameras append a little
 
 
 @dataclass(frozen=True)
@@ -89,9 +88,4 @@ def _damage(encoded: bytes, size: tuple[int, int] | None) -> str:
         return "no image"
     if size[0] * size[1] > PIXELS:
         return "too large"
-    end = encoded[-END:]
-    if encoded.startswith(b"\xff\xd8") and b"\xff\xd9" not in end:  # ITU-T T.81: EOI
-        return "truncated"
-    if encoded.startswith(PNG) and b"IEND" not in end:
-        return "truncated"
-    return ""
+    return "" if is_whole(encoded) else "truncated"
