@@ -94,3 +94,12 @@ def test_the_model_is_read(across_run, model_file, tmp_path):
     answer = invoke(across_run, "--model", broken)
     assert answer.exit_code == 1
     assert "broken.model" in str(answer.exception)
+
+
+def test_a_note_does_not_fail(curvy_run, tmp_path, world):
+    folder = tmp_path / "noted"
+    shutil.copytree(curvy_run, folder)
+    world.write_toml(folder / "run.toml", robot=world.robot, camera=world.camera)
+    answer = invoke(folder)
+    assert "  note: run.toml has [camera]" in answer.stdout
+    assert answer.exit_code == 0
