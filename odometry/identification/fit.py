@@ -11,9 +11,10 @@ from odometry.identification.by_trial import try_values
 from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.excitation import Undetermined, ordinary_sizes, undetermined
-from odometry.identification.problem import Problem
+from odometry.identification.intervals import NORMAL, Interval, deviations_within
+from odometry.identification.problem import PROBLEMS, Problem
 from odometry.identification.solve import Solution, solve
-from odometry.identification.uncertainty import parameter_covariance, residual_scale
+from odometry.identification.uncertainty import parameter_uncertainty, residual_scale
 from odometry.models.base import KinematicModel
 from odometry.run import Robot
 from odometry.windows.config import WindowConfig
@@ -34,6 +35,8 @@ class Fit:
         Those that were identified and have a variance.
     covariance : (F, F)
         Of `names`.
+    freedom : (F,)
+        Degrees of freedom of the variances in it.
     undetermined : tuple of Undetermined
         What the windows leave open.
     by_trial : tuple of str
@@ -55,6 +58,7 @@ class Fit:
     values: Mapping[str, float]
     names: tuple[str, ...]
     covariance: FloatArray
+    freedom: FloatArray
     undetermined: tuple[Undetermined, ...]
     by_trial: tuple[str, ...]
     at_bound: tuple[str, ...]
@@ -80,6 +84,26 @@ class Fit:
         """Standard deviation of each identified parameter."""
         deviations = np.sqrt(np.diag(self.covariance))
         return {name: float(value) for name, value in zip(self.names, deviations, strict=True)}
+
+    @property
+    def intervals(self) -> dict[str, Interval]:
+        """95 % interval of each identified parameter, by Student's t."""
+        halves = np.sqrt(np.diag(self.covariance)) * deviations_within(self.freedom)
+        return {
+            name: Interval(self.values[name] - half, self.values[name] + half, freedom)
+            for name, half, freedom in zip(
+                self.names, halves.tolist(), self.freedom.tolist(), strict=True
+            )
+        }
+
+    @property
+    def normal_covariance(self) -> FloatArray:
+        """Covariance (F, F) of the normal distribution that has these intervals.
+
+        For whoever takes parameters as normal: filters, and readers of a parameter set.
+        """
+        growth = np.maximum(deviations_within(self.freedom) / NORMAL, 1.0)
+        return np.asarray(growth[:, None] * self.covariance * growth)
 
 
 def fit(
@@ -132,7 +156,9 @@ def fit(
             f"{len(windows)} windows cannot tell {int(free.sum())} parameters of {model.name!r}"
         )
     sizes = ordinary_sizes(model, robot)
-    problem = Problem(model, windows, values, free & ~in_sign, pose_variances(window_config))
+    problem = PROBLEMS[solver_config.loss](
+        model, windows, values, free & ~in_sign, pose_variances(window_config)
+    )
     solution = solve(problem, values[problem.free], sizes[problem.free], solver_config)
     for place in np.flatnonzero(free & in_sign):
         problem, solution = try_values(problem, solution, sizes, int(place), solver_config)
@@ -165,7 +191,7 @@ def _finish(
 ) -> Fit:
     scale = residual_scale(problem, solution)
     whitened = np.sqrt(solution.weights)[:, None, None] * (
-        problem.whitening @ problem.jacobian(solution.chosen)
+        problem.noise_whitening @ problem.jacobian(solution.chosen)
     )
     low, high = problem.bounds()
     edge = 1e-3 * sizes
@@ -175,11 +201,13 @@ def _finish(
         problem.model.check(values)
     except ParameterError as error:
         raise IdentificationError(f"the best fit of {problem.model.name!r}: {error}") from error
+    uncertainty = parameter_uncertainty(problem, solution, sizes)
     return Fit(
         model=problem.model,
         values={p.name: float(v) for p, v in zip(problem.model.parameters, values, strict=True)},
         names=problem.names,
-        covariance=parameter_covariance(problem, solution, sizes),
+        covariance=uncertainty.covariance,
+        freedom=uncertainty.freedom,
         undetermined=undetermined(
             whitened.reshape(3 * len(problem.windows), len(sizes)),
             problem.names,

@@ -40,10 +40,11 @@ if TYPE_CHECKING:
 @click.option("--terrain", metavar="NAME", help="Ground of runs that name none.")
 @click.option(
     "--loss",
-    type=click.Choice(["huber", "linear"]),
+    type=click.Choice(["huber", "squares", "linear"]),
     default="huber",
     show_default=True,
-    help="Weigh outliers down, or take the squares as they are.",
+    help="huber weighs outliers down; squares takes all windows in full; linear is Baril 2020 "
+    "eq. 13 with the identity covariance, metres as radians.",
 )
 @click.option(
     "--starts",
