@@ -52,6 +52,8 @@ class Fit:
     agreeing, starts : int
         How many of the starts found this minimum.
     windows : Windows
+    start : Mapping of name to float
+        Where the first search started.
     """
 
     model: KinematicModel
@@ -68,6 +70,7 @@ class Fit:
     agreeing: int
     starts: int
     windows: Windows
+    start: Mapping[str, float]
 
     @property
     def open_names(self) -> frozenset[str]:
@@ -162,7 +165,8 @@ def fit(
     solution = solve(problem, values[problem.free], sizes[problem.free], solver_config)
     for place in np.flatnonzero(free & in_sign):
         problem, solution = try_values(problem, solution, sizes, int(place), solver_config)
-    return _finish(problem, solution, sizes[problem.free], free & in_sign, solver_config)
+    found = _finish(problem, solution, sizes[problem.free], free & in_sign, solver_config)
+    return replace(found, start=_by_name(model, values))
 
 
 def _start(
@@ -204,7 +208,7 @@ def _finish(
     uncertainty = parameter_uncertainty(problem, solution, sizes)
     return Fit(
         model=problem.model,
-        values={p.name: float(v) for p, v in zip(problem.model.parameters, values, strict=True)},
+        values=_by_name(problem.model, values),
         names=problem.names,
         covariance=uncertainty.covariance,
         freedom=uncertainty.freedom,
@@ -225,4 +229,9 @@ def _finish(
         agreeing=solution.agreeing,
         starts=config.starts,
         windows=problem.windows,
+        start={},
     )
+
+
+def _by_name(model: KinematicModel, values: FloatArray) -> dict[str, float]:
+    return {p.name: float(value) for p, value in zip(model.parameters, values, strict=True)}

@@ -64,17 +64,6 @@ class Identification:
 
         It leaves parameters open, or has one at its bound with residuals far above the noise.
         """
-        refused = [
-            f"[{terrain}] {reason}"
-            for terrain, found in self.grounds.items()
-            for reason in refusals(found.fit)
-        ]
-        if refused:
-            raise IdentificationError(
-                "the model does not explain what was recorded:\n  "
-                + "\n  ".join(refused)
-                + f"\nLikeliest: {CAUSES}."
-            )
         lines = [
             f"[{terrain}] {open_.words()}"
             for terrain, found in self.grounds.items()
@@ -86,6 +75,17 @@ class Identification:
                 + "\n  ".join(lines)
                 + "\nAdd runs that excite them (turns both ways at several speeds; slopes), fix "
                 "values that are known, or choose a model with fewer parameters."
+            )
+        refused = [
+            f"[{terrain}] {reason}"
+            for terrain, found in self.grounds.items()
+            for reason in refusals(found.fit)
+        ]
+        if refused:
+            raise IdentificationError(
+                "the model does not explain what was recorded:\n  "
+                + "\n  ".join(refused)
+                + f"\nLikeliest: {CAUSES}."
             )
 
     def to_parameter_set(self) -> ParameterSet:

@@ -51,7 +51,16 @@ def notes(fit: Fit) -> tuple[str, ...]:
                 f"{parameter.name} = {value:.4g} is outside of {low:g} to {high:g}, where slip "
                 "leaves it: are the tread speeds in m/s?"
             )
-    found += [f"{name} ended at the edge of its search range" for name in fit.at_bound]
+    parameters = {parameter.name: parameter for parameter in fit.model.parameters}
+    found += [
+        f"{name} ended at the edge of its search range"
+        + (
+            ", where it has no effect: a model without it says the same"
+            if _is_neutral(parameters[name], fit.values[name])
+            else ""
+        )
+        for name in fit.at_bound
+    ]
     if fit.agreeing == 1 < fit.starts:
         found.append("no two starts agree; the minimum may not be the least")
     found += [
@@ -62,8 +71,8 @@ def notes(fit: Fit) -> tuple[str, ...]:
     few = float(fit.freedom.min(initial=np.inf))
     if few < FEW_FREEDOM:
         found.append(
-            f"few windows: {few:.1f} degrees of freedom make intervals "
+            f"few windows, or few runs that differ: {few:.1f} degrees of freedom make intervals "
             f"{float(deviations_within(np.array(few))) / NORMAL:.1f} times as wide as many would; "
-            "add runs, or take a shorter --horizon"
+            "add runs"
         )
     return tuple(found)

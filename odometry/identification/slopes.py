@@ -139,4 +139,5 @@ def _joined(flat: Fit, sloped: Fit, windows: Windows, tilted: BoolArray, problem
         scale=residual_scale(every, solution),
         agreeing=solution.agreeing,
         windows=windows,
+        start={**sloped.start, **{name: flat.start[name] for name in flat.names}},
     )

@@ -47,7 +47,9 @@ def spread_between(
 
 
 def _satterthwaite(crossed: FloatArray, own: FloatArray) -> FloatArray:
-    """Degrees of freedom (F,), 0 where no group tells a parameter, from what the groups' corrected scores have in common.
+    """Degrees of freedom (F,) from what the groups' corrected scores have in common.
+
+    They are 0 where no group tells a parameter.
 
     Parameters
     ----------

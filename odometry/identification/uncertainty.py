@@ -79,9 +79,11 @@ def parameter_uncertainty(problem: Problem, solution: Solution, sizes: FloatArra
     parts, freedoms = _parts_and_freedoms(problem, solution, near)
     covariance = parts.sum(axis=0)
     variances = np.diagonal(parts, axis1=1, axis2=2)
-    total = np.maximum(variances.sum(axis=0), np.finfo(float).tiny)
+    total = variances.sum(axis=0)
+    poses_alone = np.eye(4)[:, :1]  # where nothing depends on a parameter
+    shares = np.where(total > 0, variances / np.maximum(total, np.finfo(float).tiny), poses_alone)
     # Satterthwaite 1946 for a sum of independently estimated variances.
-    freedom = 1 / np.sum((variances / total) ** 2 / freedoms[:, None], axis=0)
+    freedom = 1 / np.sum(shares**2 / freedoms[:, None], axis=0)
     if len(set(problem.windows.run)) >= FEWEST_RUNS:
         covariance, freedom = _with_spread(problem.windows, near, covariance, freedom)
     covariance = sizes[:, None] * covariance * sizes

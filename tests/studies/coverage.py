@@ -19,10 +19,13 @@ import numpy as np
 
 from odometry.errors import OdometryError
 from odometry.identification.config import SolverConfig
-from odometry.identification.identify import identify
+from odometry.identification.fitters import fitter
+from odometry.identification.plausibility import refusals
+from odometry.models.catalogue import MODELS
 from odometry.run import Robot, Run
 from odometry.table import Table
 from odometry.windows.config import WindowConfig
+from odometry.windows.windows import windows_of
 
 POSITION_M, YAW_RAD = 0.01, np.radians(0.3)
 ICR = {"y_left": 0.45, "y_right": -0.38, "x_icr": 0.04, "alpha_left": 0.96, "alpha_right": 0.93}
@@ -140,14 +143,18 @@ def intervals_of(cell: Cell, seed: int) -> dict[str, tuple[float, float]] | None
     )
     runs = [drive(cell, seed, number) for number in range(cell.runs)]
     try:
-        found = identify(
-            runs, cell.model, window_config=config, solver_config=SolverConfig(starts=2)
-        )
-        found.require_determined()
+        fit = fitter(
+            MODELS[cell.model],
+            runs[0].robot,
+            fixed={},
+            window_config=config,
+            solver_config=SolverConfig(starts=2),
+        )(windows_of(runs, config))
     except OdometryError:
         return None
-    (ground,) = found.grounds.values()
-    return {name: (of.low, of.high) for name, of in ground.fit.intervals.items()}
+    if fit.undetermined or refusals(fit):
+        return None
+    return {name: (of.low, of.high) for name, of in fit.intervals.items()}
 
 
 def main() -> None:
