@@ -56,12 +56,10 @@ def correlations(fit: Fit, least: float = LEAST_CORRELATION) -> list[tuple[str, 
 
 def _statistics(fit: Fit) -> list[tuple[str, ...]]:
     runs = len(set(fit.windows.run))
+    length = fit.windows.travel_m.mean()
     weighed_down = int(np.sum(fit.weights < 1))
     rows: list[tuple[str, ...]] = [
-        (
-            "data",
-            f"{len(fit.windows)} windows of {fit.windows.travel_m.mean():.2f} m in {runs} run(s)",
-        ),
+        ("data", f"{len(fit.windows)} windows of {length:.2f} m in {runs} run(s)"),
         ("measured numbers", f"{3 * len(fit.windows)}"),
         ("free parameters", f"{len(fit.names) + len(fit.by_trial)}"),
         ("residuals", f"{fit.scale:.2f} times the poses' stated noise"),

@@ -59,6 +59,12 @@ if TYPE_CHECKING:
     show_default=True,
     help="Seed of the further starts.",
 )
+@click.option(
+    "--profile",
+    is_flag=True,
+    help="Intervals from the profile of the loss, which need not be symmetric: some twenty fits "
+    "for each parameter.",
+)
 def identify(
     folders: tuple[Path, ...],
     *,
@@ -71,6 +77,7 @@ def identify(
     loss: str,
     starts: int,
     seed: int,
+    profile: bool,
 ) -> None:
     """Identify the parameters of a kinematic model from the run folders RUN.
 
@@ -85,6 +92,7 @@ def identify(
     from odometry.estimation.icr_prior import ICR_FORM_MODELS
     from odometry.identification.config import SolverConfig
     from odometry.identification.identify import identify as identify_runs
+    from odometry.identification.profile import with_profiles
     from odometry.io.files import check_writable
     from odometry.parameters import read_parameters, write_parameters
     from odometry.run import Run
@@ -92,6 +100,7 @@ def identify(
     if out.suffix != ".toml":
         raise click.UsageError(f"--out {out}: expected a name that ends in .toml")
     check_writable(out.parent)
+    solver_config = SolverConfig(loss=loss, starts=starts, seed=seed)
     found = identify_runs(
         [Run.read(folder) for folder in folders],
         read_parameters(model) if Path(model).suffix == ".toml" else model,
@@ -99,9 +108,11 @@ def identify(
         released=free,
         terrain=terrain,
         window_config=windows,
-        solver_config=SolverConfig(loss=loss, starts=starts, seed=seed),
+        solver_config=solver_config,
         show_progress=True,
     )
+    if profile:
+        found = with_profiles(found, solver_config)
     for name, ground in found.grounds.items():
         _print_terrain(name, ground)
     found.require_determined()
