@@ -1,14 +1,39 @@
-"""What groups of windows tell of the parameters' variances by how much they differ."""
+"""What runs, or stretches of a run, tell of the parameters' variances by how they differ."""
 
 import numpy as np
 
-from odometry.arrays import AnyArray, FloatArray
+from odometry.arrays import AnyArray, FloatArray, IntArray
 
+FEWEST_RUNS = 3  # whose spread is taken as a sample of the spread between runs
+FEWEST_STRETCHES = 6
+STRETCH = 5  # windows: some 20 s, over which slip wanders
 DETERMINED_ALONE = 1 - 1e-6  # a direction in which one group has all of the information
 
 
+def groups_alike(run: AnyArray) -> IntArray | None:
+    """Group (K,) of each window, in which a model may err alike: runs, else stretches of them.
+
+    None where there are too few of both to tell a spread.
+
+    Parameters
+    ----------
+    run : (K,) of str
+        Of each window, in the order of time.
+    """
+    names = list(dict.fromkeys(run.tolist()))
+    if len(names) >= FEWEST_RUNS:
+        return np.array([names.index(name) for name in run], dtype=np.int64)
+    groups, count = np.zeros(len(run), dtype=np.int64), 0
+    for name in names:
+        here = np.flatnonzero(run == name)
+        stretches = max(1, len(here) // STRETCH)
+        groups[here] = count + np.arange(len(here)) * stretches // len(here)
+        count += stretches
+    return groups if count >= FEWEST_STRETCHES else None
+
+
 def spread_between(
-    groups: AnyArray, jacobian: FloatArray, residuals: FloatArray
+    groups: IntArray, jacobian: FloatArray, residuals: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Variances (F,) of parameters from the spread between groups, and degrees of freedom (F,).
 

@@ -4,15 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import FloatArray, IntArray
 from odometry.identification.problem import Problem
 from odometry.identification.residual_freedom import residual_freedom
 from odometry.identification.solve import Solution
-from odometry.identification.spread import spread_between
+from odometry.identification.spread import groups_alike, spread_between
 from odometry.windows.noise import score_covariance, window_covariances
 from odometry.windows.windows import Windows
-
-FEWEST_RUNS = 3  # whose spread is taken as a sample of the spread between runs
 
 
 @dataclass(frozen=True)
@@ -64,7 +62,8 @@ def parameter_uncertainty(problem: Problem, solution: Solution, sizes: FloatArra
     The poses have the stated noise, or less where the residuals are smaller than it explains;
     windows that share a pose share its noise. What the residuals have beyond is the model's own
     error: independent on every metre of wheel travel, and so shared by windows that overlap.
-    Where the spread between three or more runs shows larger variances, these are taken.
+    Where the spread between runs, or between stretches of one, shows larger variances, these are
+    taken.
 
     Parameters
     ----------
@@ -84,8 +83,9 @@ def parameter_uncertainty(problem: Problem, solution: Solution, sizes: FloatArra
     shares = np.where(total > 0, variances / np.maximum(total, np.finfo(float).tiny), poses_alone)
     # Satterthwaite 1946 for a sum of independently estimated variances.
     freedom = 1 / np.sum(shares**2 / freedoms[:, None], axis=0)
-    if len(set(problem.windows.run)) >= FEWEST_RUNS:
-        covariance, freedom = _with_spread(problem.windows, near, covariance, freedom)
+    groups = groups_alike(problem.windows.run)
+    if groups is not None:
+        covariance, freedom = _with_spread(groups, near, covariance, freedom)
     covariance = sizes[:, None] * covariance * sizes
     return Uncertainty(np.asarray((covariance + covariance.T) / 2), freedom)
 
@@ -150,11 +150,11 @@ def _overlap(windows: Windows) -> float:
 
 
 def _with_spread(
-    windows: Windows, near: Linearised, covariance: FloatArray, freedom: FloatArray
+    groups: IntArray, near: Linearised, covariance: FloatArray, freedom: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Covariance and degrees of freedom with the variances between runs where they are larger."""
+    """Covariance and degrees of freedom with variances between groups where they are larger."""
     residuals = np.einsum("kij,kj->ki", near.root, near.residuals)
-    between, between_freedom = spread_between(windows.run, near.root @ near.jacobian, residuals)
+    between, between_freedom = spread_between(groups, near.root @ near.jacobian, residuals)
     within = np.maximum(np.diag(covariance), np.finfo(float).tiny)
     growth = np.sqrt(np.maximum(between / within, 1.0))
     freedom = np.where(between > within, between_freedom, freedom)
