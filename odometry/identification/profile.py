@@ -10,7 +10,6 @@ from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.excitation import ordinary_sizes
 from odometry.identification.fit import Fit
-from odometry.identification.fitters import FITTERS
 from odometry.identification.identification import Identification
 from odometry.identification.intervals import Interval, deviations_within
 from odometry.identification.problem import PROBLEMS, Problem
@@ -40,7 +39,7 @@ def with_profiles(found: Identification, solver_config: SolverConfig) -> Identif
 def _profiled(
     fit: Fit, robot: Robot, window_config: WindowConfig, solver_config: SolverConfig
 ) -> Fit:
-    if fit.model.name in FITTERS:
+    if fit.model.stages is not None:
         raise IdentificationError(
             f"{fit.model.name!r} is fitted in stages, and has no one loss to profile"
         )
