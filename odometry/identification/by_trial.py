@@ -22,7 +22,7 @@ def try_values(
     """
     parameter = problem.model.parameters[place]
     ends = parameter.search or (parameter.low, parameter.high)
-    plain = replace(config, starts=1, loss="linear")
+    plain = replace(config, starts=1, loss="squares")
     coarse = [
         replace(problem, values=_put(problem.values, place, value))
         for value in np.geomspace(*ends, COARSE)

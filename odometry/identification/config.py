@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 from odometry.config import require, require_positive
 
+LOSSES = ("huber", "squares", "linear")
+
 
 @dataclass(frozen=True)
 class SolverConfig:
@@ -12,8 +14,10 @@ class SolverConfig:
     Attributes
     ----------
     loss : str
-        "huber": windows whose Mahalanobis distance is far above the others' weigh less;
-        "linear": Baril 2020 eq. 13 as printed.
+        "huber": squared Mahalanobis distances by the covariance that the poses' noise gives each
+        window, windows far above the others weighing less; "squares": the same, all windows in
+        full; "linear": Baril 2020 eq. 13 with the identity covariance, as the paper has it (a
+        metre of position weighs as a radian of yaw).
     starts : int
         Searches from different values; the best one counts.
     seed : int
@@ -29,6 +33,6 @@ class SolverConfig:
     undetermined: float = 1.0
 
     def __post_init__(self) -> None:
-        require(self.loss in ("huber", "linear"), f"loss = {self.loss!r}: huber or linear")
+        require(self.loss in LOSSES, f"loss = {self.loss!r}, expected one of {', '.join(LOSSES)}")
         require(self.starts >= 1, f"starts = {self.starts}, expected 1 or more")
         require_positive(self, "undetermined")

@@ -1,7 +1,7 @@
 """Fit one model to windows: values, covariance, and what the windows leave open."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,76 +10,18 @@ from odometry.errors import ParameterError
 from odometry.identification.by_trial import try_values
 from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
-from odometry.identification.excitation import Undetermined, ordinary_sizes, undetermined
-from odometry.identification.problem import Problem
+from odometry.identification.excitation import ordinary_sizes, undetermined
+from odometry.identification.fitted import Fit
+from odometry.identification.problem import PROBLEMS, Problem
 from odometry.identification.solve import Solution, solve
-from odometry.identification.uncertainty import parameter_covariance, residual_scale
+from odometry.identification.uncertainty import parameter_uncertainty, residual_scale
 from odometry.models.base import KinematicModel
 from odometry.run import Robot
 from odometry.windows.config import WindowConfig
 from odometry.windows.noise import pose_variances
 from odometry.windows.windows import Windows
 
-
-@dataclass(frozen=True)
-class Fit:
-    """Parameters of one model on one ground.
-
-    Attributes
-    ----------
-    model : KinematicModel
-    values : Mapping of name to float
-        Every parameter of the model.
-    names : tuple of str
-        Those that were identified and have a variance.
-    covariance : (F, F)
-        Of `names`.
-    undetermined : tuple of Undetermined
-        What the windows leave open.
-    by_trial : tuple of str
-        Identified by trying values, because they act through a sign alone: no variance.
-    at_bound : tuple of str
-        Parameters that ended at the edge of where the search may look.
-    residuals : (K, 3)
-        Predicted less measured motion: along, across [m], yaw [rad].
-    weights : (K,)
-        1 where a window counts in full, less where it is an outlier.
-    scale : float
-        How many times larger the residuals are than the poses' stated noise explains.
-    agreeing, starts : int
-        How many of the starts found this minimum.
-    windows : Windows
-    """
-
-    model: KinematicModel
-    values: Mapping[str, float]
-    names: tuple[str, ...]
-    covariance: FloatArray
-    undetermined: tuple[Undetermined, ...]
-    by_trial: tuple[str, ...]
-    at_bound: tuple[str, ...]
-    residuals: FloatArray
-    weights: FloatArray
-    scale: float
-    agreeing: int
-    starts: int
-    windows: Windows
-
-    @property
-    def open_names(self) -> frozenset[str]:
-        """Parameters of the combinations that the windows leave open: their sigmas mean nothing."""
-        return frozenset(name for open_ in self.undetermined for name in open_.direction)
-
-    @property
-    def packed(self) -> FloatArray:
-        """Parameters (P,) in the order of the model."""
-        return np.array([self.values[parameter.name] for parameter in self.model.parameters])
-
-    @property
-    def sigmas(self) -> dict[str, float]:
-        """Standard deviation of each identified parameter."""
-        deviations = np.sqrt(np.diag(self.covariance))
-        return {name: float(value) for name, value in zip(self.names, deviations, strict=True)}
+__all__ = ["Fit", "fit"]
 
 
 def fit(
@@ -132,11 +74,14 @@ def fit(
             f"{len(windows)} windows cannot tell {int(free.sum())} parameters of {model.name!r}"
         )
     sizes = ordinary_sizes(model, robot)
-    problem = Problem(model, windows, values, free & ~in_sign, pose_variances(window_config))
+    problem = PROBLEMS[solver_config.loss](
+        model, windows, values, free & ~in_sign, pose_variances(window_config)
+    )
     solution = solve(problem, values[problem.free], sizes[problem.free], solver_config)
     for place in np.flatnonzero(free & in_sign):
         problem, solution = try_values(problem, solution, sizes, int(place), solver_config)
-    return _finish(problem, solution, sizes[problem.free], free & in_sign, solver_config)
+    found = _finish(problem, solution, sizes[problem.free], free & in_sign, solver_config)
+    return replace(found, start=_by_name(model, values))
 
 
 def _start(
@@ -165,7 +110,7 @@ def _finish(
 ) -> Fit:
     scale = residual_scale(problem, solution)
     whitened = np.sqrt(solution.weights)[:, None, None] * (
-        problem.whitening @ problem.jacobian(solution.chosen)
+        problem.noise_whitening @ problem.jacobian(solution.chosen)
     )
     low, high = problem.bounds()
     edge = 1e-3 * sizes
@@ -175,11 +120,13 @@ def _finish(
         problem.model.check(values)
     except ParameterError as error:
         raise IdentificationError(f"the best fit of {problem.model.name!r}: {error}") from error
+    uncertainty = parameter_uncertainty(problem, solution, sizes)
     return Fit(
         model=problem.model,
-        values={p.name: float(v) for p, v in zip(problem.model.parameters, values, strict=True)},
+        values=_by_name(problem.model, values),
         names=problem.names,
-        covariance=parameter_covariance(problem, solution, sizes),
+        covariance=uncertainty.covariance,
+        freedom=uncertainty.freedom,
         undetermined=undetermined(
             whitened.reshape(3 * len(problem.windows), len(sizes)),
             problem.names,
@@ -197,4 +144,9 @@ def _finish(
         agreeing=solution.agreeing,
         starts=config.starts,
         windows=problem.windows,
+        start={},
     )
+
+
+def _by_name(model: KinematicModel, values: FloatArray) -> dict[str, float]:
+    return {p.name: float(value) for p, value in zip(model.parameters, values, strict=True)}

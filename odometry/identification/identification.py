@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from odometry.effects.tables import table_of
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
+from odometry.identification.plausibility import CAUSES, refusals
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.run import Robot
 from odometry.windows.config import WindowConfig
@@ -40,7 +41,7 @@ class Identified:
     def to_parameters(self, source: str) -> TerrainParameters:
         """The table of a parameter set, with the effects that the model has."""
         fit = self.fit
-        return table_of(fit.model, fit.values, fit.names, fit.covariance, source)
+        return table_of(fit.model, fit.values, fit.names, fit.normal_covariance, source)
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,10 @@ class Identification:
     window_config: WindowConfig
 
     def require_determined(self) -> None:
-        """Raise IdentificationError, with numbers, where a fit leaves parameters open."""
+        """Raise IdentificationError, with numbers, where a fit is no answer.
+
+        It leaves parameters open, or has one at its bound with residuals far above the noise.
+        """
         lines = [
             f"[{terrain}] {open_.words()}"
             for terrain, found in self.grounds.items()
@@ -71,6 +75,17 @@ class Identification:
                 + "\n  ".join(lines)
                 + "\nAdd runs that excite them (turns both ways at several speeds; slopes), fix "
                 "values that are known, or choose a model with fewer parameters."
+            )
+        refused = [
+            f"[{terrain}] {reason}"
+            for terrain, found in self.grounds.items()
+            for reason in refusals(found.fit)
+        ]
+        if refused:
+            raise IdentificationError(
+                "the model does not explain what was recorded:\n  "
+                + "\n  ".join(refused)
+                + f"\nLikeliest: {CAUSES}."
             )
 
     def to_parameter_set(self) -> ParameterSet:

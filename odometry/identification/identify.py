@@ -16,7 +16,7 @@ from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
 from odometry.identification.fitters import FitTo, fitter
-from odometry.identification.held_out import by_halves, by_runs, held_out_errors
+from odometry.identification.held_out import MOST_FOLDS, by_halves, by_runs, held_out_errors
 from odometry.identification.identification import Identification, Identified
 from odometry.models.catalogue import MODELS
 from odometry.run import UNKNOWN, Robot, Run
@@ -80,7 +80,7 @@ def identify(
         name: _windows_on(name, effects_of(of.model), named, windows, window_config)
         for name, of in asked.items()
     }
-    fits = sum(1 + max(2, len(set(here.run))) for here in by_ground.values())
+    fits = sum(1 + max(2, min(len(set(here.run)), MOST_FOLDS)) for here in by_ground.values())
     off = None if show_progress else True
     grounds = {}
     with tqdm(total=fits, unit="fit", disable=off) as bar:

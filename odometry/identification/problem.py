@@ -56,8 +56,13 @@ class Problem:
         low, high = np.array(ranges)[self.free].reshape(-1, 2).T
         return low, high
 
-    @cached_property
+    @property
     def whitening(self) -> FloatArray:
+        """Factors (K, 3, 3) by which residuals enter the loss: those of the stated noise."""
+        return self.noise_whitening
+
+    @cached_property
+    def noise_whitening(self) -> FloatArray:
         """Inverse Cholesky factors (K, 3, 3) of the windows' stated covariances."""
         covariances = window_covariances(self.windows, self.variances)
         return np.asarray(np.linalg.inv(np.linalg.cholesky(covariances)))
@@ -94,3 +99,19 @@ class Problem:
         for array in found:
             array.setflags(write=False)  # it will be handed out again
         return found
+
+
+class PaperProblem(Problem):
+    """Baril 2020 eq. 13 with the covariance of the paper: the identity, in metres and radians."""
+
+    @property
+    def whitening(self) -> FloatArray:
+        """See `Problem.whitening`."""
+        return np.broadcast_to(np.eye(3), (len(self.windows), 3, 3))
+
+
+PROBLEMS: dict[str, type[Problem]] = {
+    "huber": Problem,
+    "squares": Problem,
+    "linear": PaperProblem,
+}

@@ -9,7 +9,7 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit, fit
-from odometry.identification.problem import Problem
+from odometry.identification.problem import PROBLEMS, Problem
 from odometry.identification.solve import Solution
 from odometry.identification.uncertainty import residual_scale
 from odometry.models.base import KinematicModel, Stages
@@ -76,7 +76,11 @@ def fit_in_two_stages(
         before, terms = terms, {name: sloped.values[name] for name in (*stages.tilted, *released)}
         if max(abs(terms[name] - before[name]) for name in stages.tilted) < SETTLED:
             break
-    return _joined(flat, sloped, windows, tilted, pose_variances(window_config))
+    free = np.isin([p.name for p in model.parameters], (*flat.names, *sloped.names))
+    problem = PROBLEMS[solver_config.loss](
+        model, sloped.windows, sloped.packed, free, pose_variances(window_config)
+    )
+    return _joined(flat, sloped, windows, tilted, problem)
 
 
 def _check_counts(flat: int, tilted: int, first: list[str], second: tuple[str, ...]) -> None:
@@ -102,19 +106,15 @@ def mean_tilt_rad(windows: Windows) -> FloatArray:
     return np.asarray((sums[windows.last] - sums[windows.first]) / counts)
 
 
-def _joined(
-    flat: Fit, sloped: Fit, windows: Windows, tilted: BoolArray, variances: FloatArray
-) -> Fit:
+def _joined(flat: Fit, sloped: Fit, windows: Windows, tilted: BoolArray, problem: Problem) -> Fit:
     """The second stage with what the first one found, over all windows.
 
     The optimum of the second stage moves with the first's parameters by -H22^-1 H21, H being the
     curvature of its loss (implicit function theorem): that carries the first's covariance over.
     """
     names = flat.names + sloped.names
-    free = np.array([parameter.name in names for parameter in sloped.model.parameters])
-    problem = Problem(sloped.model, sloped.windows, sloped.packed, free, variances)
     order = [problem.names.index(name) for name in names]
-    jacobian = problem.jacobian(sloped.packed[free])[:, :, order]
+    jacobian = problem.jacobian(sloped.packed[problem.free])[:, :, order]
     weighted = np.sqrt(sloped.weights)[:, None, None] * problem.whitening @ jacobian
     flattened = weighted.reshape(-1, len(names))
     first, second = flattened[:, : len(flat.names)], flattened[:, len(flat.names) :]
@@ -123,13 +123,15 @@ def _joined(
     weights = np.empty(len(windows))
     weights[~tilted], weights[tilted] = flat.weights, sloped.weights
     every = replace(problem, windows=windows)
-    solution = Solution(sloped.packed[free], weights, np.nan, min(flat.agreeing, sloped.agreeing))
+    agreeing = min(flat.agreeing, sloped.agreeing)
+    solution = Solution(sloped.packed[problem.free], weights, np.nan, agreeing)
     return replace(
         sloped,
         names=names,
         covariance=np.block(
             [[flat.covariance, cross.T], [cross, sloped.covariance + cross @ moves.T]]
         ),
+        freedom=np.append(flat.freedom, np.minimum(sloped.freedom, flat.freedom.min())),
         undetermined=flat.undetermined + sloped.undetermined,
         at_bound=flat.at_bound + sloped.at_bound,
         residuals=every.residuals(solution.chosen),
@@ -137,4 +139,5 @@ def _joined(
         scale=residual_scale(every, solution),
         agreeing=solution.agreeing,
         windows=windows,
+        start={**sloped.start, **{name: flat.start[name] for name in flat.names}},
     )

@@ -30,7 +30,7 @@ class Solution:
     weights : (K,)
         Of the windows, 1 where they count in full.
     cost : float
-        Sum of Huber's function of the Mahalanobis distances (their squares for "linear").
+        Sum of Huber's function of the Mahalanobis distances, or of their squares.
     agreeing : int
         Starts that came to this minimum.
     """
@@ -73,7 +73,7 @@ def solve(problem: Problem, start: FloatArray, sizes: FloatArray, config: Solver
 
 def loss(problem: Problem, chosen: FloatArray, config: SolverConfig) -> float:
     """Sum of squared Mahalanobis distances (Baril 2020 eq. 13), or of Huber's function of them."""
-    if config.loss == "linear":
+    if config.loss != "huber":
         return _squares(problem, chosen)
     distances = _distances(problem, chosen)
     scale = _scale(distances)

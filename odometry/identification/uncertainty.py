@@ -1,27 +1,69 @@
 """How well the windows tell the parameters."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import FloatArray, IntArray
 from odometry.identification.problem import Problem
+from odometry.identification.residual_freedom import residual_freedom
 from odometry.identification.solve import Solution
+from odometry.identification.spread import groups_alike, spread_between
 from odometry.windows.noise import score_covariance, window_covariances
 from odometry.windows.windows import Windows
 
 
+@dataclass(frozen=True)
+class Uncertainty:
+    """Covariance of the identified parameters, and how well it is itself known.
+
+    Attributes
+    ----------
+    covariance : (F, F)
+    freedom : (F,)
+        Degrees of freedom of each variance: Student's t of so many makes an interval.
+    """
+
+    covariance: FloatArray
+    freedom: FloatArray
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """The loss near its least value, parameters in units of their ordinary sizes.
+
+    Attributes
+    ----------
+    root : (K, 3, 3)
+        Whitening of each window's residuals, with the square root of its weight.
+    residuals : (K, 3)
+    jacobian : (K, 3, F)
+        Derivative of the residuals.
+    inverse : (F, F)
+        Inverse of the curvature.
+    """
+
+    root: FloatArray
+    residuals: FloatArray
+    jacobian: FloatArray
+    inverse: FloatArray
+
+
 def residual_scale(problem: Problem, solution: Solution) -> float:
     """Root mean square of the whitened residuals: 1 where the stated noise explains them."""
-    whitened = np.einsum("kij,kj->ki", problem.whitening, problem.residuals(solution.chosen))
+    whitened = np.einsum("kij,kj->ki", problem.noise_whitening, problem.residuals(solution.chosen))
     freedom = max(3 * float(solution.weights.sum()) - len(solution.chosen), 1.0)
     return float(np.sqrt(np.sum(solution.weights[:, None] * whitened**2) / freedom))
 
 
-def parameter_covariance(problem: Problem, solution: Solution, sizes: FloatArray) -> FloatArray:
-    """Covariance (F, F) of the free parameters, of sandwich form.
+def parameter_uncertainty(problem: Problem, solution: Solution, sizes: FloatArray) -> Uncertainty:
+    """Covariance of the free parameters, of sandwich form, and its degrees of freedom.
 
     The poses have the stated noise, or less where the residuals are smaller than it explains;
     windows that share a pose share its noise. What the residuals have beyond is the model's own
     error: independent on every metre of wheel travel, and so shared by windows that overlap.
+    Where the spread between runs, or between stretches of one, shows larger variances, these are
+    taken.
 
     Parameters
     ----------
@@ -30,28 +72,69 @@ def parameter_covariance(problem: Problem, solution: Solution, sizes: FloatArray
     sizes : (F,)
         Ordinary sizes, so that parameters of very different units can be inverted together.
     """
-    windows, weights = problem.windows, solution.weights
-    variances = problem.variances * min(1.0, residual_scale(problem, solution)) ** 2
-    whitening = problem.whitening
-    inverse = whitening.swapaxes(1, 2) @ whitening
+    if not len(sizes):
+        return Uncertainty(np.empty((0, 0)), np.empty(0))
+    near = _linearised(problem, solution, sizes)
+    parts, freedoms = _parts_and_freedoms(problem, solution, near)
+    covariance = parts.sum(axis=0)
+    variances = np.diagonal(parts, axis1=1, axis2=2)
+    total = variances.sum(axis=0)
+    poses_alone = np.eye(4)[:, :1]  # where nothing depends on a parameter
+    shares = np.where(total > 0, variances / np.maximum(total, np.finfo(float).tiny), poses_alone)
+    # Satterthwaite 1946 for a sum of independently estimated variances.
+    freedom = 1 / np.sum(shares**2 / freedoms[:, None], axis=0)
+    groups = groups_alike(problem.windows.run)
+    if groups is not None:
+        covariance, freedom = _with_spread(groups, near, covariance, freedom)
+    covariance = sizes[:, None] * covariance * sizes
+    return Uncertainty(np.asarray((covariance + covariance.T) / 2), freedom)
+
+
+def _linearised(problem: Problem, solution: Solution, sizes: FloatArray) -> Linearised:
+    root = np.sqrt(solution.weights)[:, None, None] * problem.whitening
     jacobian = problem.jacobian(solution.chosen) * sizes
-    gradients = weights[:, None, None] * jacobian.swapaxes(1, 2) @ inverse
-    curvature = np.einsum("kfi,kig->fg", gradients, jacobian)
-    motion = _unexplained_per_m(problem, solution, variances)
-    scores = score_covariance(windows, gradients, variances, motion)
-    inverted = np.linalg.pinv(curvature, rcond=1e-14, hermitian=True)
-    covariance = sizes[:, None] * (inverted @ scores @ inverted) * sizes
-    return np.asarray((covariance + covariance.T) / 2)
+    whitened = root @ jacobian
+    curvature = np.einsum("kif,kig->fg", whitened, whitened)
+    inverse = np.linalg.pinv(curvature, rcond=1e-14, hermitian=True)
+    return Linearised(root, problem.residuals(solution.chosen), jacobian, inverse)
 
 
-def _unexplained_per_m(problem: Problem, solution: Solution, variances: FloatArray) -> FloatArray:
-    """Variances (3,) of along, across and yaw per metre that the poses' noise does not explain."""
+def _parts_and_freedoms(
+    problem: Problem, solution: Solution, near: Linearised
+) -> tuple[FloatArray, FloatArray]:
+    """Covariances (4, F, F) by poses, along, across and yaw; degrees of freedom (4,) of each."""
     windows, weights = problem.windows, solution.weights
-    residuals = problem.residuals(solution.chosen)
+    mean, freedom = residual_freedom(windows, near.root, near.jacobian, problem.variances)
+    whitened = np.einsum("kij,kj->ki", near.root, near.residuals)
+    variances = problem.variances * min(1.0, float(np.sum(whitened**2)) / mean)
+    inverse_noise = near.root.swapaxes(1, 2) @ near.root
+    gradients = near.jacobian.swapaxes(1, 2) @ inverse_noise
+    # Of each axis, the share of the residuals that the parameters follow: traces of hat matrices.
+    followed = np.einsum("kif,fg,kgi->i", near.jacobian, near.inverse, gradients)
+    left = np.maximum(1 - followed / weights.sum(), 1 / (3 * len(windows)))
+    motion = _unexplained_per_m(windows, weights, near.residuals, variances, left)
+    none = np.zeros(3)
+    scores = [
+        score_covariance(windows, gradients, *causes)
+        for causes in ((variances, none), *((none, axis * motion) for axis in np.eye(3)))
+    ]
+    parts = near.inverse @ np.array(scores) @ near.inverse
+    return parts, freedom * np.append(1.0, left / left.sum())
+
+
+def _unexplained_per_m(
+    windows: Windows,
+    weights: FloatArray,
+    residuals: FloatArray,
+    variances: FloatArray,
+    left: FloatArray,
+) -> FloatArray:
+    """Variances (3,) of along, across and yaw per metre that the poses' noise does not explain.
+
+    `left` (3,) is the share of the residuals that the fit leaves.
+    """
     stated = np.diagonal(window_covariances(windows, variances), axis1=1, axis2=2)
-    count = 3 * weights.sum()
-    freed = count / max(count - len(solution.chosen), 1.0)
-    surplus = np.sum(weights[:, None] * (freed * residuals**2 - stated), axis=0)
+    surplus = np.sum(weights[:, None] * (residuals**2 / left - stated), axis=0)
     return np.asarray(
         _overlap(windows) * np.maximum(surplus, 0.0) / np.sum(weights * windows.travel_m)
     )
@@ -64,3 +147,15 @@ def _overlap(windows: Windows) -> float:
     np.add.at(depth, windows.last, -1.0)
     covered = np.cumsum(depth[:-1])
     return float(covered.sum() / np.count_nonzero(covered))
+
+
+def _with_spread(
+    groups: IntArray, near: Linearised, covariance: FloatArray, freedom: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Covariance and degrees of freedom with variances between groups where they are larger."""
+    residuals = np.einsum("kij,kj->ki", near.root, near.residuals)
+    between, between_freedom = spread_between(groups, near.root @ near.jacobian, residuals)
+    within = np.maximum(np.diag(covariance), np.finfo(float).tiny)
+    growth = np.sqrt(np.maximum(between / within, 1.0))
+    freedom = np.where(between > within, between_freedom, freedom)
+    return growth[:, None] * covariance * growth, freedom

@@ -33,6 +33,10 @@ class Parameter:
         Measured on the robot or chosen, not identified from its motion unless asked to.
     search : (float, float) or None
         Where an identification looks; between the bounds where None.
+    usual : (float, float) or None
+        Where it lies on robots that slip; a value outside of it is doubted.
+    neutral : float or None
+        The value at which it has no effect, where that is a bound: to end there is an answer.
     in_sign : bool
         Acts through a sign alone: it has no derivative, and is found by trying values.
     """
@@ -44,7 +48,12 @@ class Parameter:
     default: float | None = None
     known: bool = False
     search: tuple[float, float] | None = None
+    usual: tuple[float, float] | None = None
+    neutral: float | None = None
     in_sign: bool = False
+
+
+USUAL_GAIN = (0.3, 1.5)  # of a tread's speed: slip lies within it, another unit does not
 
 
 class Linearised(NamedTuple):

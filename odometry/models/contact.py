@@ -61,7 +61,7 @@ class Contact(KinematicModel):
         Parameter("mass", "kg", 1e-3, known=True),
         Parameter("x_cm", "m", search=(-0.3, 0.3)),
         Parameter("y_cm", "m", search=(-0.3, 0.3)),
-        Parameter("height", "m", 0.0, search=(0.0, 2.0)),
+        Parameter("height", "m", 0.0, search=(0.0, 2.0), neutral=0.0),
         Parameter("half_length", "m", 1e-3, search=(0.02, 3.0)),
         Parameter("half_width", "m", 1e-3, known=True),
         Parameter("contacts", "", 2.0, 100.0, known=True),

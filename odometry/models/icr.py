@@ -4,7 +4,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
-from odometry.models.base import Linearised, Parameter
+from odometry.models.base import USUAL_GAIN, Linearised, Parameter
 from odometry.models.icr_form import IcrForm
 from odometry.models.inputs import Inputs
 from odometry.models.invertible import InvertibleModel, before_slip, icr_tread_speeds
@@ -83,8 +83,8 @@ class Icr(InvertibleModel):
         Parameter("y_left", "m", search=(1e-3, np.inf)),
         Parameter("y_right", "m", search=(-np.inf, -1e-3)),
         Parameter("x_icr", "m"),
-        Parameter("alpha_left", "", 0.0, 2.0, default=1.0),
-        Parameter("alpha_right", "", 0.0, 2.0, default=1.0),
+        Parameter("alpha_left", "", 0.0, 2.0, default=1.0, usual=USUAL_GAIN),
+        Parameter("alpha_right", "", 0.0, 2.0, default=1.0, usual=USUAL_GAIN),
     )
     has_constant_icrs = True
 

@@ -49,8 +49,8 @@ class IcrSlope(KinematicModel):
     source = "Martinez 2024, eq. 1-11"
     parameters = (
         *Icr.parameters,
-        Parameter("lambda_1", "s/rad", 0.0),
-        Parameter("lambda_2", "s/rad", 0.0),
+        Parameter("lambda_1", "s/rad", 0.0, neutral=0.0),
+        Parameter("lambda_2", "s/rad", 0.0, neutral=0.0),
         Parameter("v_max", "m/s", 0.0, known=True),
         Parameter("half_width", "m", 1e-3, known=True),
         Parameter("half_length", "m", 0.0, known=True),

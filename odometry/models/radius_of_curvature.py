@@ -4,7 +4,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
-from odometry.models.base import KinematicModel, Linearised, Parameter
+from odometry.models.base import USUAL_GAIN, KinematicModel, Linearised, Parameter
 from odometry.models.icr import GUESSED_WIDTHS
 from odometry.models.inputs import Inputs
 from odometry.models.layout import vectors, zero_matrices
@@ -31,9 +31,9 @@ class RadiusOfCurvature(KinematicModel):
     name = "radius_of_curvature"
     source = "Baril 2020, eq. 8 with eq. 10-11"
     parameters = (
-        Parameter("alpha", "", 0.0, 2.0),
+        Parameter("alpha", "", 0.0, 2.0, usual=USUAL_GAIN),
         Parameter("beta_1", "", -0.99, search=(-0.9, 1e3)),
-        Parameter("beta_2", "", search=(0.0, 1e3)),
+        Parameter("beta_2", "", search=(0.0, 1e3), neutral=0.0),
         Parameter("track_width", "m", 1e-3, known=True),
     )
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.models.base import Linearised, Parameter
+from odometry.models.base import USUAL_GAIN, Linearised, Parameter
 from odometry.models.icr import GUESSED_WIDTHS
 from odometry.models.icr_form import IcrForm
 from odometry.models.inputs import Inputs
@@ -55,7 +55,10 @@ class IcrSymmetric(InvertibleModel):
 
     name = "icr_symmetric"
     source = "Baril 2020, eq. 8-9"
-    parameters = (Parameter("alpha", "", 0.0, 2.0), Parameter("b_hat", "m", 1e-3))
+    parameters = (
+        Parameter("alpha", "", 0.0, 2.0, usual=USUAL_GAIN),
+        Parameter("b_hat", "m", 1e-3),
+    )
     has_constant_icrs = True
 
     def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:

@@ -4,7 +4,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
-from odometry.models.base import Linearised, Parameter
+from odometry.models.base import USUAL_GAIN, Linearised, Parameter
 from odometry.models.icr import GUESSED_WIDTHS
 from odometry.models.icr_form import IcrForm
 from odometry.models.inputs import Inputs
@@ -23,7 +23,7 @@ class TractionMode(InvertibleModel):
     name = "traction_mode"
     source = "Salvi 2024, eq. 3"
     parameters = (
-        Parameter("k", "", 0.0, 2.0),
+        Parameter("k", "", 0.0, 2.0, usual=USUAL_GAIN),
         Parameter("m", "", 0.0, 2.0),
         Parameter("track_width", "m", 1e-3, known=True),
     )

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 import click
 
 from terrain.cli.options import MODEL_NAMES, assignments, window_options
-from terrain.cli.results import print_table
 
 if TYPE_CHECKING:
     from odometry.identification.identification import Identified
@@ -40,10 +39,11 @@ if TYPE_CHECKING:
 @click.option("--terrain", metavar="NAME", help="Ground of runs that name none.")
 @click.option(
     "--loss",
-    type=click.Choice(["huber", "linear"]),
+    type=click.Choice(["huber", "squares", "linear"]),
     default="huber",
     show_default=True,
-    help="Weigh outliers down, or take the squares as they are.",
+    help="huber weighs outliers down; squares takes all windows in full; linear is Baril 2020 "
+    "eq. 13 with the identity covariance, metres as radians.",
 )
 @click.option(
     "--starts",
@@ -59,6 +59,12 @@ if TYPE_CHECKING:
     show_default=True,
     help="Seed of the further starts.",
 )
+@click.option(
+    "--profile",
+    is_flag=True,
+    help="Intervals from the profile of the loss, which need not be symmetric: some twenty fits "
+    "for each parameter.",
+)
 def identify(
     folders: tuple[Path, ...],
     *,
@@ -71,6 +77,7 @@ def identify(
     loss: str,
     starts: int,
     seed: int,
+    profile: bool,
 ) -> None:
     """Identify the parameters of a kinematic model from the run folders RUN.
 
@@ -85,6 +92,7 @@ def identify(
     from odometry.estimation.icr_prior import ICR_FORM_MODELS
     from odometry.identification.config import SolverConfig
     from odometry.identification.identify import identify as identify_runs
+    from odometry.identification.profile import with_profiles
     from odometry.io.files import check_writable
     from odometry.parameters import read_parameters, write_parameters
     from odometry.run import Run
@@ -92,6 +100,7 @@ def identify(
     if out.suffix != ".toml":
         raise click.UsageError(f"--out {out}: expected a name that ends in .toml")
     check_writable(out.parent)
+    solver_config = SolverConfig(loss=loss, starts=starts, seed=seed)
     found = identify_runs(
         [Run.read(folder) for folder in folders],
         read_parameters(model) if Path(model).suffix == ".toml" else model,
@@ -99,11 +108,13 @@ def identify(
         released=free,
         terrain=terrain,
         window_config=windows,
-        solver_config=SolverConfig(loss=loss, starts=starts, seed=seed),
+        solver_config=solver_config,
         show_progress=True,
     )
+    if profile:
+        found = with_profiles(found, solver_config)
     for name, ground in found.grounds.items():
-        _print_ground(name, ground)
+        _print_terrain(name, ground)
     found.require_determined()
     identified = found.to_parameter_set()
     write_parameters(out, identified)
@@ -117,79 +128,34 @@ def identify(
         click.echo(f"or:   terrain-odometry run RUN --parameters {out} --out results")
 
 
-def _print_ground(name: str, ground: "Identified") -> None:
-    """Print one ground: parameters, what the fit leaves, errors."""
-    from odometry.effects.tables import effects_of
+def _print_terrain(name: str, found: "Identified") -> None:
+    """Print the report of one terrain; what to doubt goes to standard error."""
+    from odometry.identification.plausibility import notes
+    from odometry.identification.report import report
 
-    fit, given = ground.fit, ground.given
-    click.echo(
-        f"[{name}] {len(fit.windows)} windows of {fit.windows.travel_m.mean():.2f} m; residuals "
-        f"{fit.scale:.1f} times the poses' stated noise; "
-        f"{fit.agreeing} of {fit.starts} starts agree"
-    )
-    for added in effects_of(fit.model):
-        held = ", ".join(f"{key} = {value:.5g}" for key, value in added.by_name.items())
-        click.echo(f"  held: {added.effect.name} ({added.effect.form}): {held}")
-    rows = [("parameter", "value", "sigma", "95 % low", "high", "")]
-    units = {parameter.name: parameter.unit for parameter in fit.model.parameters}
-    for parameter, value in fit.values.items():
-        sigma = fit.sigmas.get(parameter)
-        spread = (
-            ("given" if parameter in given else "assumed", "", "")
-            if sigma is None
-            else (f"{sigma:.3g}", f"{value - 1.96 * sigma:.5g}", f"{value + 1.96 * sigma:.5g}")
-        )
-        if parameter in fit.by_trial:
-            spread = ("by trial", "", "")
-        elif parameter in fit.open_names:
-            spread = ("open", "", "")
-        elif parameter in fit.at_bound:
-            spread = ("at its bound", "", "")
-        rows.append((parameter, f"{value:.5g}", *spread, units[parameter]))
-    print_table(rows)
-    assumed = [n for n in fit.values if n not in (*fit.sigmas, *fit.by_trial, *given)]
-    if assumed:
-        click.echo(
-            f"Note: {', '.join(assumed)}: assumed from [robot] of run.toml or by rule of thumb; "
-            "--fix NAME=VALUE says better",
-            err=True,
-        )
-    if fit.agreeing == 1 < fit.starts:
-        click.echo("Note: no two starts agree; the minimum may not be the least", err=True)
-    for parameter in fit.at_bound:
-        click.echo(f"Note: {parameter} ended at the edge of its search range", err=True)
-    for parameter in fit.by_trial:
-        click.echo(
-            f"Note: {parameter} acts through a sign alone: a range of values fits equally well, "
-            "and no interval can be stated",
-            err=True,
-        )
-    _print_errors(ground)
+    click.echo("\n".join(report(name, found)))
+    for words in (*notes(found.fit), *_assumed(found), *_no_gain(found)):
+        click.echo(f"Note: {words}", err=True)
 
 
-def _print_errors(ground: "Identified") -> None:
-    from math import degrees
+def _assumed(found: "Identified") -> list[str]:
+    fit = found.fit
+    names = [n for n in fit.values if n not in (*fit.names, *fit.by_trial, *found.given)]
+    if not names:
+        return []
+    return [
+        f"{', '.join(names)}: assumed from [robot] of run.toml or by rule of thumb; "
+        "--fix NAME=VALUE says better"
+    ]
 
-    rows = [("mean error", "m per m", "deg per m")]
-    for name, errors in (
-        (f"held out, by {ground.held_out_by}", ground.held_out),
-        ("ideal differential drive", ground.ideal),
+
+def _no_gain(found: "Identified") -> list[str]:
+    if found.held_out is None or (
+        found.held_out.translation_per_m.mean() < found.ideal.translation_per_m.mean()
+        and found.held_out.rotation_per_m.mean() < found.ideal.rotation_per_m.mean()
     ):
-        if errors is not None:
-            rows.append(
-                (
-                    name,
-                    f"{errors.translation_per_m.mean():.4f}",
-                    f"{degrees(errors.rotation_per_m.mean()):.3f}",
-                )
-            )
-    print_table(rows)
-    if ground.held_out and (
-        ground.held_out.translation_per_m.mean() >= ground.ideal.translation_per_m.mean()
-        or ground.held_out.rotation_per_m.mean() >= ground.ideal.rotation_per_m.mean()
-    ):
-        click.echo(
-            "Note: held out, it errs no less than no model at all: too little data, or an effect "
-            "that this model does not have",
-            err=True,
-        )
+        return []
+    return [
+        "held out, it errs no less than no model at all: too little data, or an effect that this "
+        "model does not have"
+    ]

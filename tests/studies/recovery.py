@@ -120,7 +120,7 @@ def main() -> None:
 
 
 def recover(name: str, seed: int) -> dict[str, tuple[float, float]]:
-    """Estimate and standard deviation by parameter."""
+    """Estimate and half the width of its 95 % interval by parameter."""
     case = CASES[name]
     with tempfile.TemporaryDirectory() as scratch:
         run = drive(name, case, seed, Path(scratch) / "run")
@@ -133,7 +133,7 @@ def recover(name: str, seed: int) -> dict[str, tuple[float, float]]:
         solver_config=SolverConfig(starts=2),
     )
     fit = fit_to(windows_of([run], config))
-    told = {n: (fit.values[n], fit.sigmas[n]) for n in fit.names}
+    told = {n: (fit.values[n], of.high - fit.values[n]) for n, of in fit.intervals.items()}
     told |= {n: (fit.values[n], np.nan) for n in fit.by_trial}
     if fit.undetermined:
         print(f"seed {seed}:", *(open_.words() for open_ in fit.undetermined), flush=True)
@@ -173,17 +173,17 @@ def report(name: str, found: list[dict[str, tuple[float, float]]]) -> None:
     print(f"\n{name}: {len(found)} seeds")
     hits, count = 0, 0
     for parameter in found[0]:
-        values, sigmas = np.array([seed[parameter] for seed in found]).T
+        values, halves = np.array([seed[parameter] for seed in found]).T
         truth = CASES[name].values[parameter]
-        if np.isnan(sigmas).any():
+        if np.isnan(halves).any():
             low, high = np.percentile(values, [5, 95])
             print(f"  {parameter:12} {truth:10.5g}  by trial, 5-95 % {low:.3g} to {high:.3g}")
             continue
-        inside = np.abs(values - truth) <= 1.96 * sigmas
+        inside = np.abs(values - truth) <= halves
         hits, count = hits + inside.sum(), count + len(inside)
         print(
             f"  {parameter:12} {truth:10.5g}  mean {values.mean():10.5g}  spread {values.std():.2g}"
-            f"  stated {np.median(sigmas):.2g}  covered {inside.mean():.0%}"
+            f"  stated {np.median(halves) / 1.96:.2g}  covered {inside.mean():.0%}"
         )
     interval = binomtest(int(hits), int(count)).proportion_ci()
     print(f"  all: {hits / count:.1%} [{interval.low:.1%}, {interval.high:.1%}]", flush=True)

@@ -17,7 +17,7 @@ from odometry.windows.windows import windows_of
 MODEL = MODELS["icr_inertia"]
 PLACE = [parameter.name for parameter in MODEL.parameters].index("h")
 KNOWN = ("mass", "x_cm", "y_cm", "track_width")
-CONFIG = SolverConfig(starts=1, loss="linear")
+CONFIG = SolverConfig(starts=1, loss="squares")
 
 
 def signs(run, h):

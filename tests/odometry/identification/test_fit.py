@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from scipy.stats import t as student
 
 from odometry.errors import ParameterError
 from odometry.identification.config import SolverConfig
@@ -48,6 +49,13 @@ def test_a_fit_tells_its_numbers_consistently(fitted, winding, synthetic, stated
     assert list(found.values) == list(synthetic.icrs)
     sigmas = np.sqrt(np.diag(found.covariance))
     assert found.sigmas == dict(zip(found.names, sigmas, strict=True))
+    for name, freedom in zip(found.names, found.freedom, strict=True):
+        half = student.ppf(0.975, freedom) * found.sigmas[name]
+        of = found.intervals[name]
+        assert (of.low, of.high) == pytest.approx(
+            (found.values[name] - half, found.values[name] + half), rel=1e-9
+        )
+        assert of.freedom == freedom
     expected = window_motion(Icr(), found.packed, found.windows) - found.windows.measured
     expected[:, 2] = np.remainder(expected[:, 2] + np.pi, 2 * np.pi) - np.pi
     np.testing.assert_allclose(found.residuals, expected, rtol=0, atol=1e-14)
@@ -121,7 +129,7 @@ def test_what_is_open_goes_by_the_residuals_where_these_are_larger_than_stated(
     deviations = []
     for share in (2, 8):
         stated = {name: sigma / share for name, sigma in synthetic.stated.items()}
-        found = fitted(run=run, config=WindowConfig(**stated), loss="linear", undetermined=1e-6)
+        found = fitted(run=run, config=WindowConfig(**stated), loss="squares", undetermined=1e-6)
         assert found.scale == pytest.approx(share, rel=0.3)
         assert len(found.undetermined) == 5
         deviations.append([open_.deviation for open_ in found.undetermined])

@@ -68,6 +68,20 @@ def test_the_runs_are_the_parts(runs):
     assert len(np.unique(parts)) == 3
 
 
+def test_more_runs_than_ten_are_ten_groups_of_neighbours(runs):
+    """Each fold is one fit to the others: the cost grows with the windows, not with the folds."""
+    windows = windows_of([runs["wide"]], replace(CONFIG, horizon_m=0.5))
+    names = np.array([f"run_{i // 2:02}" for i in range(len(windows))], dtype=object)
+    assert len(set(names)) > 10
+    parts = by_runs(replace(windows, run=names))
+    assert set(parts) == set(range(10))
+    assert np.all(np.diff(parts) >= 0)
+    for name in set(names):
+        assert len(set(parts[names == name])) == 1
+    sizes = [len(set(names[parts == part])) for part in range(10)]
+    assert max(sizes) - min(sizes) <= 1
+
+
 def test_runs_of_one_name_are_by_runs_their_own(runs):
     """As in two folders of recordings, of two days."""
     namesake = replace(runs["narrow"], folder=runs["narrow"].folder.parent / "day_2" / "wide")

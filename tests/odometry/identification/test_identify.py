@@ -253,7 +253,7 @@ def test_a_parameter_set_comes_back_from_its_file(noisy_runs, model, stated, tmp
         assert table.model == model
         assert table.values == ground.fit.values
         assert table.covariance_order == ground.fit.names
-        np.testing.assert_array_equal(table.covariance, ground.fit.covariance)
+        np.testing.assert_array_equal(table.covariance, ground.fit.normal_covariance)
         assert f"{len(ground.fit.windows)} windows" in table.source
         assert ground.fit.windows.run[0] in table.source
 

@@ -179,7 +179,7 @@ def many(in_two_stages, sloped, synthetic, stated):
     errors, covariances = [], []
     for seed in SEEDS:
         run = synthetic.noisy(sloped, np.random.default_rng([seed, 31]))
-        found = in_two_stages(run, stated, loss="linear")
+        found = in_two_stages(run, stated, loss="squares")
         errors.append([found.values[name] for name in NAMES] - truth)
         covariances.append(found.covariance)
     return np.array(errors), np.array(covariances)
@@ -212,7 +212,7 @@ def test_variance_of_each_parameter_by_many_draws(many):
 def test_cross_terms_are_how_the_lambdas_follow_the_icrs(in_two_stages, sloped, synthetic, stated):
     """Fit the second stage again with each parameter of the first a little off."""
     run = synthetic.noisy(sloped, np.random.default_rng(2))
-    found = in_two_stages(run, stated, loss="linear")
+    found = in_two_stages(run, stated, loss="squares")
     base = {name: synthetic.slope[name] for name in BASE}
     level = {name: found.values[name] for name in NAMES[:5]}
 
@@ -223,7 +223,7 @@ def test_cross_terms_are_how_the_lambdas_follow_the_icrs(in_two_stages, sloped, 
             run.robot,
             fixed=base | held,
             window_config=stated,
-            solver_config=SolverConfig(starts=1, loss="linear"),
+            solver_config=SolverConfig(starts=1, loss="squares"),
         )
 
     step, moves = 1e-4, np.zeros((2, 5))

@@ -8,7 +8,7 @@ from scipy.optimize import minimize
 from scipy.stats import chi2
 
 from odometry.identification.config import SolverConfig
-from odometry.identification.problem import Problem
+from odometry.identification.problem import PROBLEMS, Problem
 from odometry.identification.solve import solve
 from odometry.models.icr import Icr
 from odometry.run import Run
@@ -87,13 +87,27 @@ class PlainLoss:
         )
 
 
-def test_linear_is_the_printed_loss(short, synthetic, stated):
+def test_squares_are_least_over_plain_dead_reckoning(short, synthetic, stated):
     problem = problem_of(short[1], synthetic, stated)
-    solution = solve(problem, START, SIZES, SolverConfig(loss="linear", starts=1))
+    solution = solve(problem, START, SIZES, SolverConfig(loss="squares", starts=1))
     expected = PlainLoss(short, problem, synthetic, stated).least(np.sum)
     np.testing.assert_allclose(solution.chosen, expected.x, rtol=0, atol=1e-7)
     assert solution.cost == pytest.approx(expected.fun, rel=1e-6)
     assert np.all(solution.weights == 1)
+
+
+def test_linear_is_the_loss_of_the_paper_with_its_identity_covariance(short, synthetic, stated):
+    """A metre weighs as a radian, whatever noise is stated."""
+    windows = problem_of(short[1], synthetic, stated)
+    problem = PROBLEMS["linear"](Icr(), windows.windows, windows.values, FREE, windows.variances)
+    solution = solve(problem, START, SIZES, SolverConfig(loss="linear", starts=1))
+    plain = PlainLoss(short, problem, synthetic, stated)
+    plain.inverse = [np.eye(3)] * len(plain.inverse)
+    expected = plain.least(np.sum)
+    np.testing.assert_allclose(solution.chosen, expected.x, rtol=0, atol=1e-7)
+    assert solution.cost == pytest.approx(expected.fun, rel=1e-6)
+    weighted = solve(windows, START, SIZES, SolverConfig(loss="squares", starts=1))
+    assert np.abs(weighted.chosen - solution.chosen).max() > 1e-4
 
 
 def test_huber_is_least_for_the_scale_of_its_own_residuals(short, synthetic, stated):
@@ -123,7 +137,7 @@ def test_huber_is_least_for_the_scale_of_its_own_residuals(short, synthetic, sta
     np.testing.assert_allclose(solution.weights, np.minimum(1, cutoff / distances), atol=2e-3)
 
 
-@pytest.mark.parametrize("loss", ["huber", "linear"])
+@pytest.mark.parametrize("loss", ["huber", "squares"])
 def test_without_noise_the_truth_is_found_from_far_away(winding, synthetic, loss):
     problem = problem_of(winding, synthetic, WindowConfig(), np.ones(5, bool))
     start, sizes = np.array([1.5, -0.1, 0.4, 0.4, 1.6]), np.array([0.4, 0.4, 0.25, 1, 1])
@@ -143,7 +157,7 @@ def with_outliers(problem, rng):
     return Problem(problem.model, spoilt, problem.values, problem.free, problem.variances), wrong
 
 
-def test_huber_shrugs_off_gross_outliers_and_linear_does_not(winding, synthetic):
+def test_huber_shrugs_off_gross_outliers_and_squares_do_not(winding, synthetic):
     run = synthetic.noisy(winding, np.random.default_rng(6))
     config = WindowConfig(**synthetic.stated, horizon_m=1.0)
     clean = problem_of(run, synthetic, config, np.ones(5, bool))
@@ -153,7 +167,7 @@ def test_huber_shrugs_off_gross_outliers_and_linear_does_not(winding, synthetic)
     weighted = np.einsum("kij,kjf->kif", clean.whitening, clean.jacobian(truth)).reshape(-1, 5)
     sigmas = np.sqrt(np.diag(np.linalg.inv(weighted.T @ weighted)))
     shifts = {}
-    for loss in ("huber", "linear"):
+    for loss in ("huber", "squares"):
         config = SolverConfig(loss=loss, starts=1)
         alone = solve(clean, truth, sizes, config)
         solution = solve(spoilt, truth, sizes, config)
@@ -163,7 +177,7 @@ def test_huber_shrugs_off_gross_outliers_and_linear_does_not(winding, synthetic)
             assert np.all(solution.weights[wrong] < 0.15)
             assert np.mean(others == 1) > 0.8
     assert np.all(shifts["huber"] < 1.5)
-    assert np.max(shifts["linear"]) > 5
+    assert np.max(shifts["squares"]) > 5
 
 
 def test_at_a_bound_only_what_lies_beyond_would_be_better(synthetic, tmp_path):
@@ -174,7 +188,7 @@ def test_at_a_bound_only_what_lies_beyond_would_be_better(synthetic, tmp_path):
     config = WindowConfig(horizon_m=0.5)
     problem = problem_of(Run.read(folder), synthetic, config, np.ones(5, bool))
     start, sizes = np.array([0.4, -0.4, 0, 3.0, 3.0]), np.array([0.4, 0.4, 0.25, 1, 1])
-    solution = solve(problem, start, sizes, SolverConfig(loss="linear", starts=1))
+    solution = solve(problem, start, sizes, SolverConfig(loss="squares", starts=1))
     low, high = problem.bounds()
     assert np.all((low <= solution.chosen) & (solution.chosen <= high))
     np.testing.assert_allclose(solution.chosen[3:], 2.0, rtol=0, atol=1e-6)
@@ -220,9 +234,9 @@ class TwoMinima:
 def test_further_starts_find_a_better_minimum_and_count_themselves():
     """The first start alone slides into the worse one."""
     start, sizes = np.array([-4.0]), np.array([15.0])
-    alone = solve(TwoMinima(), start, sizes, SolverConfig(loss="linear", starts=1))
+    alone = solve(TwoMinima(), start, sizes, SolverConfig(loss="squares", starts=1))
     assert alone.chosen[0] == pytest.approx(-3, abs=0.1)
-    together = solve(TwoMinima(), start, sizes, SolverConfig(loss="linear", starts=8))
+    together = solve(TwoMinima(), start, sizes, SolverConfig(loss="squares", starts=8))
     assert together.chosen[0] == pytest.approx(3, abs=1e-6)
     assert 1 <= together.agreeing < 8
     assert together.cost < alone.cost

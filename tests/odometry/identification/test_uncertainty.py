@@ -15,7 +15,7 @@ from odometry.identification.config import SolverConfig
 from odometry.identification.fit import fit
 from odometry.identification.problem import Problem
 from odometry.identification.solve import Solution
-from odometry.identification.uncertainty import parameter_covariance, residual_scale
+from odometry.identification.uncertainty import parameter_uncertainty, residual_scale
 from odometry.models.icr import Icr
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
@@ -77,7 +77,7 @@ def assert_covers(errors, covariances):
     assert np.all(counts >= binom.ppf(RARE / errors.shape[1], len(errors), 0.95)), counts
 
 
-@pytest.mark.parametrize("loss", ["huber", "linear"])
+@pytest.mark.parametrize("loss", ["huber", "squares", "linear"])
 def test_the_noise_of_the_poses(errors_of, stated, loss):
     """1 cm and 0.3 degrees, stated as they are; neighbouring windows share a pose."""
     assert_covers(*errors_of(stated, loss))
@@ -85,16 +85,16 @@ def test_the_noise_of_the_poses(errors_of, stated, loss):
 
 def test_the_noise_of_the_poses_in_overlapping_windows(errors_of, stated):
     """Half the windows tell nothing new, and the covariance knows."""
-    assert_covers(*errors_of(replace(stated, stride=0.5), "linear"))
+    assert_covers(*errors_of(replace(stated, stride=0.5), "squares"))
 
 
 def test_noise_stated_three_times_too_large(errors_of, synthetic):
     """The residuals say that the poses are better than stated."""
     config = WindowConfig(**{name: 3 * sigma for name, sigma in synthetic.stated.items()})
-    assert_covers(*errors_of(config, "linear"))
+    assert_covers(*errors_of(config, "squares"))
 
 
-@pytest.mark.parametrize("loss", ["huber", "linear"])
+@pytest.mark.parametrize("loss", ["huber", "squares"])
 def test_a_model_with_errors_of_its_own(errors_of, stated, loss):
     """Added to each window alone: three times what the poses' noise explains."""
     assert_covers(*errors_of(stated, loss, model_error=MODEL_ERROR_PER_M))
@@ -102,7 +102,7 @@ def test_a_model_with_errors_of_its_own(errors_of, stated, loss):
 
 def test_large_errors_of_the_model_and_hardly_any_noise(errors_of, stated):
     large = 3 * MODEL_ERROR_PER_M
-    assert_covers(*errors_of(stated, "linear", model_error=large, position_m=1e-4))
+    assert_covers(*errors_of(stated, "squares", model_error=large, position_m=1e-4))
 
 
 @pytest.fixture
@@ -132,7 +132,9 @@ def test_covariance_does_not_depend_on_the_sizes(problem, synthetic):
     )
     solution = Solution(Icr().pack(synthetic.icrs), np.ones(len(windows)), 0.0, 1)
     one, two = (
-        parameter_covariance(replace(problem, windows=windows), solution, np.array(sizes))
+        parameter_uncertainty(
+            replace(problem, windows=windows), solution, np.array(sizes)
+        ).covariance
         for sizes in ([1.0] * 5, [0.4, 0.3, 0.2, 1, 7])
     )
     np.testing.assert_allclose(one, two, rtol=1e-8)
@@ -174,6 +176,6 @@ def test_without_surplus_it_is_the_sandwich_of_the_poses_noise(problem, syntheti
     expected = bread @ flat @ flat.T @ bread
 
     solution = Solution(truth, np.ones(len(windows)), 0.0, 1)
-    stated = parameter_covariance(spread, solution, np.ones(5))
+    stated = parameter_uncertainty(spread, solution, np.ones(5)).covariance
     units = np.outer(*2 * [np.sqrt(np.diag(expected))])
     np.testing.assert_allclose(stated / units, expected / units, rtol=0, atol=1e-2)

@@ -57,11 +57,35 @@ def test_values_intervals_and_errors_are_shown(command, curvy_run, tmp_path):
     for name, value in table.values.items():
         sigma = table.covariance_of((name,))[0, 0] ** 0.5
         assert sigma > 0.003
-        expected = [value, sigma, value - 1.96 * sigma, value + 1.96 * sigma]
-        assert list(map(float, shown[name][1:5])) == pytest.approx(expected, rel=0.005)
-    assert shown["b_hat"][5] == "m"
+        told, stated, share, sign, low, high, *_ = shown[name][1:]
+        expected = [value, value - 1.96 * sigma, value + 1.96 * sigma]
+        assert list(map(float, (told, low, high))) == pytest.approx(expected, rel=0.005)
+        assert 0.8 * sigma < float(stated) < sigma
+        assert sign == "%"
+        assert float(share) == pytest.approx(100 * float(stated) / value, abs=0.06)
+    assert shown["b_hat"][-2:] == ["0.45", "m"]
     assert shown["held"][:4] == ["held", "out,", "by", "halves"]
     assert float(shown["held"][4]) < float(shown["ideal"][3])
+
+
+def test_a_run_too_short_for_a_held_out_error_says_so(command, curvy_run):
+    code, output, _ = command(curvy_run, "--horizon", "6", "--starts", "1", model="icr_symmetric")
+    assert code == 0
+    assert "No held-out error" in output
+    assert "held out, by" not in output
+
+
+def test_speeds_a_third_of_the_true_are_refused_with_the_reason(command, curvy_run, tmp_path):
+    slow = shutil.copytree(curvy_run, tmp_path / "slow")
+    header, *lines = (slow / "odometry.csv").read_text().splitlines()
+    names = header.split(",")
+    rows = [dict(zip(names, line.split(","), strict=True)) for line in lines]
+    for row in rows:
+        row |= {name: str(float(row[name]) / 3) for name in ("v_left", "v_right")}
+    text = "\n".join([header, *(",".join(row.values()) for row in rows)]) + "\n"
+    (slow / "odometry.csv").write_text(text)
+    answer = command(slow, "--horizon", "0.2", "--starts", "1", model="icr_symmetric")
+    assert_refused(command, answer, "alpha ended at its bound 2", "another unit")
 
 
 def test_fixed_parameters_are_held(command, curvy_run):

@@ -1,0 +1,104 @@
+"""What a fit of one model to windows found."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.identification.excitation import Undetermined
+from odometry.identification.intervals import NORMAL, Interval, deviations_within
+from odometry.models.base import KinematicModel
+from odometry.windows.windows import Windows
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Parameters of one model on one ground.
+
+    Attributes
+    ----------
+    model : KinematicModel
+    values : Mapping of name to float
+        Every parameter of the model.
+    names : tuple of str
+        Those that were identified and have a variance.
+    covariance : (F, F)
+        Of `names`.
+    freedom : (F,)
+        Degrees of freedom of the variances in it.
+    undetermined : tuple of Undetermined
+        What the windows leave open.
+    by_trial : tuple of str
+        Identified by trying values, because they act through a sign alone: no variance.
+    at_bound : tuple of str
+        Parameters that ended at the edge of where the search may look.
+    residuals : (K, 3)
+        Predicted less measured motion: along, across [m], yaw [rad].
+    weights : (K,)
+        1 where a window counts in full, less where it is an outlier.
+    scale : float
+        How many times larger the residuals are than the poses' stated noise explains.
+    agreeing, starts : int
+        How many of the starts found this minimum.
+    windows : Windows
+    start : Mapping of name to float
+        Where the first search started.
+    profiled : Mapping of name to Interval
+        Intervals that were found by profiling (`profile.with_profiles`); others are symmetric.
+    """
+
+    model: KinematicModel
+    values: Mapping[str, float]
+    names: tuple[str, ...]
+    covariance: FloatArray
+    freedom: FloatArray
+    undetermined: tuple[Undetermined, ...]
+    by_trial: tuple[str, ...]
+    at_bound: tuple[str, ...]
+    residuals: FloatArray
+    weights: FloatArray
+    scale: float
+    agreeing: int
+    starts: int
+    windows: Windows
+    start: Mapping[str, float]
+    profiled: Mapping[str, Interval] = field(default_factory=dict)
+
+    @property
+    def open_names(self) -> frozenset[str]:
+        """Parameters of the combinations that the windows leave open: their sigmas mean nothing."""
+        return frozenset(name for open_ in self.undetermined for name in open_.direction)
+
+    @property
+    def packed(self) -> FloatArray:
+        """Parameters (P,) in the order of the model."""
+        return np.array([self.values[parameter.name] for parameter in self.model.parameters])
+
+    @property
+    def sigmas(self) -> dict[str, float]:
+        """Standard deviation of each identified parameter."""
+        deviations = np.sqrt(np.diag(self.covariance))
+        return {name: float(value) for name, value in zip(self.names, deviations, strict=True)}
+
+    @property
+    def intervals(self) -> dict[str, Interval]:
+        """95 % interval of each identified parameter: profiled, else by Student's t."""
+        halves = np.sqrt(np.diag(self.covariance)) * deviations_within(self.freedom)
+        return {
+            name: self.profiled.get(
+                name, Interval(self.values[name] - half, self.values[name] + half, freedom)
+            )
+            for name, half, freedom in zip(
+                self.names, halves.tolist(), self.freedom.tolist(), strict=True
+            )
+        }
+
+    @property
+    def normal_covariance(self) -> FloatArray:
+        """Covariance (F, F) of the normal distribution that has these intervals.
+
+        For whoever takes parameters as normal: filters, and readers of a parameter set.
+        """
+        growth = np.maximum(deviations_within(self.freedom) / NORMAL, 1.0)
+        return np.asarray(growth[:, None] * self.covariance * growth)

@@ -1,0 +1,122 @@
+"""What was found on one terrain as lines of text, in the order of lmfit's `fit_report`."""
+
+from collections.abc import Sequence
+from math import degrees
+
+import numpy as np
+
+from odometry.effects.tables import effects_of
+from odometry.identification.fit import Fit
+from odometry.identification.identification import Identified
+
+LEAST_CORRELATION = 0.3  # that is reported
+NO_HELD_OUT = (
+    "  No held-out error: no part of the windows tells the model without the others, so how far "
+    "these parameters predict is not known; add a run"
+)
+
+
+def report(terrain: str, found: Identified) -> list[str]:
+    """Lines: statistics of the fit, variables, correlations, and errors per metre."""
+    fit = found.fit
+    lines = [f"[{terrain}] {fit.model.name}", "  Fit statistics", *_columns(_statistics(fit))]
+    for added in effects_of(fit.model):
+        held = ", ".join(f"{key} = {value:.5g}" for key, value in added.by_name.items())
+        lines.append(f"    held: {added.effect.name} ({added.effect.form}): {held}")
+    lines += ["  Variables", *_columns(_variables(found))]
+    pairs = correlations(fit)
+    lines.append(f"  Correlations (none reported below {LEAST_CORRELATION:g})")
+    lines += [f"    C({first}, {second}) = {value:+.2f}" for first, second, value in pairs]
+    lines += ["  Errors", *_columns(_errors(found))]
+    return [*lines, NO_HELD_OUT] if found.held_out is None else lines
+
+
+def correlations(fit: Fit, least: float = LEAST_CORRELATION) -> list[tuple[str, str, float]]:
+    """Pairs of identified parameters and their correlation, the largest first.
+
+    Those that are open or at a bound are left out: their variances mean nothing.
+
+    Parameters
+    ----------
+    fit : Fit
+    least : float
+        Pairs whose correlation is nearer to zero are left out.
+    """
+    deviations = np.sqrt(np.diag(fit.covariance))
+    units = np.maximum(np.outer(deviations, deviations), np.finfo(float).tiny)
+    of = fit.covariance / units
+    blurred = {*fit.open_names, *fit.at_bound}
+    pairs = [
+        (fit.names[i], fit.names[j], float(of[i, j]))
+        for i, j in zip(*np.triu_indices(len(fit.names), 1), strict=True)
+        if abs(of[i, j]) >= least and not blurred & {fit.names[i], fit.names[j]}
+    ]
+    return sorted(pairs, key=lambda pair: -abs(pair[2]))
+
+
+def _statistics(fit: Fit) -> list[tuple[str, ...]]:
+    runs = len(set(fit.windows.run))
+    length = fit.windows.travel_m.mean()
+    weighed_down = int(np.sum(fit.weights < 1))
+    rows: list[tuple[str, ...]] = [
+        ("data", f"{len(fit.windows)} windows of {length:.2f} m in {runs} run(s)"),
+        ("measured numbers", f"{3 * len(fit.windows)}"),
+        ("free parameters", f"{len(fit.names) + len(fit.by_trial)}"),
+        ("residuals", f"{fit.scale:.2f} times the poses' stated noise"),
+        ("outlying windows", f"{weighed_down} weighed down"),
+        ("starts", f"{fit.agreeing} of {fit.starts} agree"),
+    ]
+    if len(fit.names):
+        least, most = fit.freedom.min(), fit.freedom.max()
+        rows.insert(3, ("degrees of freedom", f"{least:.1f} to {most:.1f} behind the intervals"))
+    return rows
+
+
+def _variables(found: Identified) -> list[tuple[str, ...]]:
+    fit, given = found.fit, found.given
+    rows: list[tuple[str, ...]] = [
+        ("parameter", "value", "+/-", "relative", "95 % low", "high", "start", "unit")
+    ]
+    sigmas, intervals = fit.sigmas, fit.intervals
+    for parameter in fit.model.parameters:
+        name, value = parameter.name, fit.values[parameter.name]
+        if name in fit.by_trial:
+            told = ("by trial", "", "", "", f"{fit.start[name]:.5g}")
+        elif name not in sigmas:
+            told = ("given" if name in given else "assumed", "", "", "", "")
+        elif name in fit.open_names:
+            told = ("open", "", "", "", f"{fit.start[name]:.5g}")
+        elif name in fit.at_bound:
+            told = ("at its bound", "", "", "", f"{fit.start[name]:.5g}")
+        else:
+            of, sigma = intervals[name], sigmas[name]
+            share = f"{100 * sigma / abs(value):.1f} %" if value else ""
+            start = f"{fit.start[name]:.5g}"
+            told = (f"{sigma:.3g}", share, f"{of.low:.5g}", f"{of.high:.5g}", start)
+        rows.append((name, f"{value:.5g}", *told, parameter.unit))
+    return rows
+
+
+def _errors(found: Identified) -> list[tuple[str, ...]]:
+    rows: list[tuple[str, ...]] = [("mean error", "m per m", "deg per m")]
+    for name, errors in (
+        (f"held out, by {found.held_out_by}", found.held_out),
+        ("ideal differential drive", found.ideal),
+    ):
+        if errors is not None:
+            translation, rotation = errors.translation_per_m, errors.rotation_per_m
+            rows.append((name, f"{translation.mean():.4f}", f"{degrees(rotation.mean()):.3f}"))
+    return rows
+
+
+def _columns(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Rows as lines, the first cell to the left, the others to the right of their columns."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    if len(widths) == 2:  # a name and words
+        return [f"    {row[0].ljust(widths[0])}  {row[1]}" for row in rows]
+    lines = []
+    for row in rows:
+        cells = [row[0].ljust(widths[0])]
+        cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
+        lines.append(("    " + "  ".join(cells)).rstrip())
+    return lines

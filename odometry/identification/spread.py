@@ -1,0 +1,91 @@
+"""What runs, or stretches of a run, tell of the parameters' variances by how they differ."""
+
+import numpy as np
+
+from odometry.arrays import AnyArray, FloatArray, IntArray
+
+FEWEST_RUNS = 3  # whose spread is taken as a sample of the spread between runs
+FEWEST_STRETCHES = 6
+STRETCH = 5  # windows: some 20 s, over which slip wanders
+DETERMINED_ALONE = 1 - 1e-6  # a direction in which one group has all of the information
+
+
+def groups_alike(run: AnyArray) -> IntArray | None:
+    """Group (K,) of each window, in which a model may err alike: runs, else stretches of them.
+
+    None where there are too few of both to tell a spread.
+
+    Parameters
+    ----------
+    run : (K,) of str
+        Of each window, in the order of time.
+    """
+    names = list(dict.fromkeys(run.tolist()))
+    if len(names) >= FEWEST_RUNS:
+        return np.array([names.index(name) for name in run], dtype=np.int64)
+    groups, count = np.zeros(len(run), dtype=np.int64), 0
+    for name in names:
+        here = np.flatnonzero(run == name)
+        stretches = max(1, len(here) // STRETCH)
+        groups[here] = count + np.arange(len(here)) * stretches // len(here)
+        count += stretches
+    return groups if count >= FEWEST_STRETCHES else None
+
+
+def spread_between(
+    groups: IntArray, jacobian: FloatArray, residuals: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Variances (F,) of parameters from the spread between groups, and degrees of freedom (F,).
+
+    The cluster-robust sandwich with the leverage correction CR2, and the degrees of freedom of
+    Satterthwaite that belong to it under equal independent residuals (Bell and McCaffrey 2002;
+    Pustejovsky and Tipton 2018 eq. 9 and 11). Both without any matrix larger than F: with
+    X'X = B^-1 = C C' and Z_g = X_g C'^-1, (I - Z_g Z_g')^-1/2 acts on the range of Z_g alone.
+
+    Parameters
+    ----------
+    groups : (K,)
+        Whose residuals may be alike.
+    jacobian : (K, 3, F)
+        Whitened derivative of the residuals by the parameters.
+    residuals : (K, 3)
+        Whitened.
+    """
+    count = jacobian.shape[-1]
+    total = np.einsum("kif,kig->fg", jacobian, jacobian)
+    sizes, axes = np.linalg.eigh(total)
+    told = sizes > sizes[-1] * len(jacobian) * np.finfo(float).eps
+    inverse = (axes[:, told] / np.sqrt(sizes[told])).T  # Z_g' = inverse X_g'
+    scores, crossed, own = [], [], []
+    for group in dict.fromkeys(groups.tolist()):
+        here = groups == group
+        stacked = jacobian[here].reshape(-1, count) @ inverse.T
+        shares, directions = np.linalg.eigh(stacked.T @ stacked)  # of all information
+        alone = shares > DETERMINED_ALONE
+        left = np.where(alone, np.inf, 1 - np.clip(shares, 0.0, DETERMINED_ALONE))
+        root = (directions / np.sqrt(left)) @ directions.T
+        scores.append(inverse.T @ root @ stacked.T @ residuals[here].ravel())
+        crossed.append(inverse.T @ root @ (directions * shares) @ directions.T)
+        own.append(((inverse.T @ directions) ** 2) @ (shares / left))
+    variances = np.sum(np.square(scores), axis=0)
+    return variances, _satterthwaite(np.array(crossed), np.array(own))
+
+
+def _satterthwaite(crossed: FloatArray, own: FloatArray) -> FloatArray:
+    """Degrees of freedom (F,) from what the groups' corrected scores have in common.
+
+    They are 0 where no group tells a parameter.
+
+    Parameters
+    ----------
+    crossed : (G, F, F)
+        For each parameter (row) the corrected scores in units of equal information.
+    own : (G, F)
+        Their squares before the fit took its share.
+    """
+    gram = -np.einsum("gfi,hfi->fgh", crossed, crossed)
+    places = np.arange(len(crossed))
+    gram[:, places, places] += own.T
+    traces = np.trace(gram, axis1=1, axis2=2)
+    squares = np.maximum(np.sum(gram**2, axis=(1, 2)), np.finfo(float).tiny)
+    return np.asarray(traces**2 / squares)

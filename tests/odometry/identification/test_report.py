@@ -1,0 +1,63 @@
+"""The lines of a report against the numbers of the fit that they tell."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.identification.config import SolverConfig
+from odometry.identification.identify import identify
+from odometry.identification.report import correlations, report
+
+
+@pytest.fixture(scope="module")
+def found(winding, synthetic, stated):
+    run = synthetic.noisy(winding, np.random.default_rng(1))
+    options = {"window_config": stated, "solver_config": SolverConfig(starts=2)}
+    return identify([run], "icr", fixed={"x_icr": 0.06}, **options).grounds["gravel"]
+
+
+def cells(lines, name):
+    return next(line.split() for line in lines if line.strip().startswith(name))
+
+
+def test_each_variable_stands_with_its_interval_and_where_it_started(found):
+    lines = report("gravel", found)
+    assert lines[0] == "[gravel] icr"
+    for name, of in found.fit.intervals.items():
+        row = [cell for cell in cells(lines, name) if cell != "%"]
+        value, sigma, share, low, high, start = map(float, row[1:7])
+        assert value == pytest.approx(found.fit.values[name], rel=1e-4)
+        assert sigma == pytest.approx(found.fit.sigmas[name], rel=1e-2)
+        assert share == pytest.approx(100 * sigma / abs(value), abs=0.06)
+        assert (low, high) == pytest.approx((of.low, of.high), rel=1e-4)
+        assert start == {"y": 0.375, "a": 1.0}[name[0]] * (-1 if name == "y_right" else 1)
+    assert cells(lines, "x_icr") == ["x_icr", "0.06", "given", "m"]
+
+
+def test_statistics_are_those_of_the_fit(found):
+    lines = report("gravel", found)
+    assert cells(lines, "data  ")[1] == str(len(found.fit.windows))
+    assert cells(lines, "measured numbers")[2] == str(3 * len(found.fit.windows))
+    assert cells(lines, "free parameters")[2] == "4"
+    assert float(cells(lines, "residuals")[1]) == pytest.approx(found.fit.scale, abs=0.005)
+
+
+def test_correlations_are_sorted_and_above_the_limit(found):
+    fit = found.fit
+    sigmas = np.array(list(fit.sigmas.values()))
+    of = fit.covariance / np.outer(sigmas, sigmas)
+    told = correlations(fit, 0.1)
+    assert [abs(value) for *_, value in told] == sorted((abs(v) for *_, v in told), reverse=True)
+    for first, second, value in told:
+        i, j = fit.names.index(first), fit.names.index(second)
+        assert value == pytest.approx(of[i, j])
+    assert len(told) == np.sum(np.abs(of[np.triu_indices(4, 1)]) >= 0.1)
+    assert correlations(replace(fit, at_bound=fit.names), 0.0) == []
+
+
+def test_what_has_no_interval_says_why(found):
+    fit = replace(found.fit, at_bound=("alpha_left",))
+    lines = report("gravel", replace(found, fit=fit, held_out=None))
+    assert "at its bound" in next(line for line in lines if "alpha_left" in line)
+    assert any("No held-out error" in line for line in lines)
