@@ -64,6 +64,7 @@ def is_set_of(verb: str) -> Callable[[Path], bool]:
 def _is_of_version_0_4(text: str, verb: str) -> bool:
     """Whether all tables name the source that version 0.4 gave to what it identified."""
     content = tomllib.loads(text)
-    tables = [content["modes"]] if "modes" in content else [*content.get("terrain", {}).values()]
+    terrains = content.get("terrain")
+    tables = [content.get("modes"), *(terrains.values() if isinstance(terrains, dict) else ())]
     sources = [str(table.get("source", "")) for table in tables if isinstance(table, dict)]
     return bool(sources) and all(one.startswith(SET_SOURCES_0_4[verb]) for one in sources)
