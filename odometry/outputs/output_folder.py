@@ -111,9 +111,9 @@ def claim_folder(out: Path, made: Made) -> OutputFolder:
         earlier: tuple[str, ...] = ()
     else:
         earlier = _earlier_files(out, made.verb)
-        _refuse_strangers(out, made.verb, earlier)
     if out.exists():
         remove_stages(out)
+        _refuse_strangers(out, made.verb, earlier)
         for folder in sorted({out, *((out / name).parent for name in earlier)}):
             remove_temporaries(folder, _is_own_in(folder, out, made.verb))
     return OutputFolder(out, made, earlier)

@@ -209,3 +209,15 @@ def test_the_manifest_cannot_lead_out_of_the_folder(tmp_path, made):
         with pytest.raises(OutputError, match="damaged"):
             claim_folder(tmp_path / "out", made)
     assert (tmp_path / "precious").exists()
+
+
+def test_what_a_killed_run_left_aside_is_in_nobodys_way(tmp_path, made):
+    """The verb `modes` gives folders names of the user's, so that any folder may be its own."""
+    made = replace(made, verb="modes")
+    write(tmp_path, made, {"modes.csv": "first"})
+    stage = tmp_path / f".unfinished.{os.getpid()}.part"
+    stage.mkdir()
+    (stage / "modes.csv").write_text("half")
+    write(tmp_path, made, {"modes.csv": "second"})
+    assert results(tmp_path) == {"modes.csv": "second"}
+    assert not stage.exists()
