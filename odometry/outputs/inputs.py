@@ -53,7 +53,7 @@ class Input:
             lines = [f"{self._name(file)}\0{file_sha256(file)}\n" for file in files]
         except OSError:
             return ""
-        return hashlib.sha256("".join(lines).encode()).hexdigest()
+        return hashlib.sha256("".join(lines).encode(errors="surrogateescape")).hexdigest()
 
     def _name(self, file: Path) -> str:
         beside = file.parent == self.path.parent

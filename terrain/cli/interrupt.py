@@ -21,7 +21,10 @@ class Interrupted(BaseException):
 
 
 def raise_on_signals(*numbers: signal.Signals) -> None:
-    """Raise `Interrupted` at the first of these signals; a second one ends the process at once."""
+    """Raise `Interrupted` at the first of these signals; a second one ends the process at once.
+
+    A signal that is ignored, as `nohup` asks, stays so.
+    """
 
     def stop(number: int, frame: FrameType | None) -> None:  # noqa: ARG001 - the signal's own
         for one in numbers:
@@ -29,4 +32,5 @@ def raise_on_signals(*numbers: signal.Signals) -> None:
         raise Interrupted(number)
 
     for one in numbers:
-        signal.signal(one, stop)
+        if signal.getsignal(one) != signal.SIG_IGN:
+            signal.signal(one, stop)

@@ -1,5 +1,6 @@
 import hashlib
 import os
+from pathlib import Path
 
 import pytest
 
@@ -49,6 +50,12 @@ def test_the_sum_of_photographs_is_of_names_and_bytes(tmp_path):
 def test_an_input_that_is_malformed_has_no_images_and_no_error(make_run, content):
     folder = make_run(images=content.encode("latin-1"))
     assert Input.of("RUN", folder).images == ()
+
+
+def test_a_name_that_is_no_text_has_a_sum(tmp_path):
+    (tmp_path / "mud").mkdir()
+    Path(os.fsdecode(os.fsencode(tmp_path / "mud") + b"/\xff.jpg")).write_bytes(b"")
+    assert len(Input.of("PATCHES", tmp_path).sha256(with_images=False)) == 64
 
 
 def test_what_is_no_file_is_not_opened(make_run, tmp_path):

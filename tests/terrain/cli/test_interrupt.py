@@ -12,6 +12,7 @@ from odometry.outputs.manifest import read_manifest
 
 SETUP = """
 import os, signal, resource
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may have it ignored
 from pathlib import Path
 from terrain.cli.main import main
 import odometry.simulation.record as record
