@@ -8,6 +8,7 @@ from typing import Any
 
 from odometry.errors import OutputError
 from odometry.io.files import atomic_write
+from odometry.io.structured import read_json
 from odometry.outputs.formats import PROGRAM, check_format
 
 NAME = f"{PROGRAM}.json"
@@ -61,9 +62,9 @@ def read_manifest(folder: Path) -> Manifest | None:
     if not file.is_file():
         return None
     try:
-        content = json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError) as error:
-        raise OutputError(f"{file}: cannot be read: {error}; {TO_DO}") from error
+        content = read_json(file, OutputError)
+    except OutputError as error:
+        raise OutputError(f"{error}; {TO_DO}") from error
     if not isinstance(content, dict) or content.get("program") != PROGRAM:
         raise OutputError(f"{file}: it is not of {PROGRAM}; {TO_DO}")
     check_format(file, content.get("format"), FORMAT, OutputError)

@@ -1,16 +1,16 @@
 """A single file as an output: it is replaced only if it says that the same verb made it."""
 
-import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
-from odometry.errors import OutputError
+from odometry.errors import OdometryError, OutputError
 from odometry.io.files import check_writable
+from odometry.io.structured import read_toml
 from odometry.outputs.inputs import RUN_FILES
 from odometry.outputs.leftovers import remove_temporaries
 from odometry.outputs.made import MADE_BY
 
-MOST_READ = 100_000_000  # bytes; a larger file is no set of ours
 SET_SOURCES_0_4 = {
     "identify": "identified by terrain-odometry",
     "identify-modes": "identify-modes of terrain-odometry",
@@ -50,20 +50,17 @@ def is_set_of(verb: str) -> Callable[[Path], bool]:
 
     def is_own(file: Path) -> bool:
         try:
-            if file.stat().st_size > MOST_READ:
-                return False
-            text = file.read_text(encoding="utf-8")
-            head = text.split("\n", 2)[:2]
-            return head[-1] == f"# {MADE_BY}{verb}" or _is_of_version_0_4(text, verb)
-        except (OSError, ValueError, RecursionError):
+            content = read_toml(file, OdometryError)
+            head = file.read_text(encoding="utf-8").split("\n", 2)[:2]
+        except (OdometryError, OSError):
             return False
+        return head[-1] == f"# {MADE_BY}{verb}" or _is_of_version_0_4(content, verb)
 
     return is_own
 
 
-def _is_of_version_0_4(text: str, verb: str) -> bool:
+def _is_of_version_0_4(content: Mapping[str, Any], verb: str) -> bool:
     """Whether all tables name the source that version 0.4 gave to what it identified."""
-    content = tomllib.loads(text)
     terrains = content.get("terrain")
     tables = [content.get("modes"), *(terrains.values() if isinstance(terrains, dict) else ())]
     sources = [str(table.get("source", "")) for table in tables if isinstance(table, dict)]

@@ -4,12 +4,13 @@ Version 0.4 left no manifest in its output folders. They are known by their resu
 what lies in them only files of these names are taken for the program's own.
 """
 
-import json
 from collections.abc import Callable
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
+from odometry.errors import OdometryError
+from odometry.io.structured import read_json
 from odometry.outputs.formats import PROGRAM
 
 RUN_NAMES = (
@@ -60,8 +61,8 @@ def files_of_version_0_4(folder: Path, verb: str) -> tuple[str, ...]:
 
 def _content(file: Path) -> dict[str, Any]:
     try:
-        content = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
-    except (OSError, ValueError, RecursionError):
+        content = read_json(file, OdometryError)
+    except OdometryError:
         return {}
     return content if isinstance(content, dict) else {}
 

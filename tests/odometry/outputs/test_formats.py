@@ -3,7 +3,7 @@ import tomllib
 import pytest
 
 from odometry.errors import ParameterError
-from odometry.outputs.formats import check_format, check_text_format, format_line, stated_format
+from odometry.outputs.formats import check_first_line, check_format, format_line, stated_format
 
 
 def test_the_line_is_a_comment_that_gives_back_kind_and_version():
@@ -19,8 +19,11 @@ def test_no_version_is_an_error(stated):
         check_format("file", stated, 2, ParameterError)
 
 
-def test_a_newer_version_is_named_and_an_older_one_read():
-    check_text_format("file", "x = 3\n", 1, ParameterError)
-    check_text_format("file", format_line("mode set", 1), 2, ParameterError)
-    with pytest.raises(ParameterError, match="file: made by a newer version of terrain-odometry"):
-        check_text_format("file", format_line("mode set", 3), 2, ParameterError)
+def test_a_newer_version_is_named_and_an_older_one_read(tmp_path):
+    file = tmp_path / "set.toml"
+    for text in ("x = 3\n", "", "\xff", format_line("mode set", 1)):
+        file.write_text(text, encoding="latin-1")
+        check_first_line(file, 2, ParameterError)
+    file.write_text(format_line("mode set", 3))
+    with pytest.raises(ParameterError, match=r"set\.toml: made by a newer version of terrain-odo"):
+        check_first_line(file, 2, ParameterError)
