@@ -23,6 +23,7 @@ from .parameters import ParameterSet, TerrainParameters, read_parameters, write_
 from .pipeline import ConstantTerrain, Replay, replay
 from .run import Frame, Robot, Run
 from .run_inputs import inputs_of
+from .run_span import Span, cut_run
 from .simulation.contact.drive import simulate_contact
 from .spatial_trajectory import SpatialTrajectory
 from .trajectory import Trajectory
@@ -45,11 +46,13 @@ __all__ = [
     "Replay",
     "Robot",
     "Run",
+    "Span",
     "SpatialTrajectory",
     "TerrainParameters",
     "Trajectory",
     "check_recording",
     "compare",
+    "cut_run",
     "dead_reckon",
     "dead_reckon_in_space",
     "find_gap",

@@ -13,8 +13,11 @@ from odometry.errors import ParameterError
 from odometry.io.files import atomic_write
 from odometry.io.structured import read_toml
 from odometry.models.catalogue import MODELS, OPTIONAL_NAMES, PARAMETER_NAMES
+from odometry.outputs.formats import check_first_line, format_line
 from odometry.parameter_covariance import covariance_of_table, finite_number
 from odometry.run import UNKNOWN
+
+FORMAT = 1  # of a file that this program writes, in its first line
 
 
 @dataclass(frozen=True)
@@ -71,9 +74,11 @@ def read_parameters(file: str | Path) -> ParameterSet:
     ------
     ParameterError
         Naming file, table and key: not TOML, an unknown model or key, a parameter missing or
-        not a finite number, a covariance that is not symmetric and positive semi-definite.
+        not a finite number, a covariance that is not symmetric and positive semi-definite; a
+        file of a newer format.
     """
     file = Path(file)
+    check_first_line(file, FORMAT, ParameterError)
     content = read_toml(file, ParameterError)
     unknown = sorted(set(content) - {"vehicle", "terrain"})
     if unknown:
@@ -93,14 +98,18 @@ def read_parameters(file: str | Path) -> ParameterSet:
     )
 
 
-def write_parameters(file: str | Path, parameters: ParameterSet) -> None:
-    """Write a parameter set; `read_parameters` gives it back."""
+def write_parameters(file: str | Path, parameters: ParameterSet, comment: str = "") -> None:
+    """Write a parameter set; `read_parameters` gives it back.
+
+    `comment` holds whole lines that begin with `#`, and goes below the line of the format.
+    """
     content: dict[str, Any] = {}
     if parameters.vehicle:
         content["vehicle"] = dict(parameters.vehicle)
     content["terrain"] = {name: _table(of) for name, of in parameters.terrains.items()}
     with atomic_write(Path(file)) as part:
-        part.write_text(tomli_w.dumps(content), encoding="utf-8")
+        head = format_line("parameter set", FORMAT) + comment
+        part.write_text(head + tomli_w.dumps(content), encoding="utf-8")
 
 
 def _terrain(table: Any, name: str, where: str) -> TerrainParameters:

@@ -1,6 +1,8 @@
 """The demonstration: every step of the main job on the shipped data."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from odometry.run import Run
 from terrain.classification.training import train
@@ -13,7 +15,7 @@ WITH, WITHOUT = "with terrain classification", "without terrain classification"
 
 
 def run_demo(
-    out: str | Path, *, show_progress: bool = False
+    out: str | Path, *, about: Mapping[str, Any] | None = None, show_progress: bool = False
 ) -> tuple[dict[str, RunResult], list[Path]]:
     """Train on the shipped patches, replay the shipped run with and without vision, report.
 
@@ -22,6 +24,8 @@ def run_demo(
     out : path
         Gets terrain.model, the results with vision and the page; the results without vision go
         to its folder `without_vision`.
+    about : Mapping, optional
+        What made the results; its keys are added to each result.json.
     show_progress : bool
 
     Returns
@@ -37,6 +41,7 @@ def run_demo(
     parameters = run.folder / "parameters.toml"
     seen = run_odometry(run, model=model, parameters=parameters, show_progress=show_progress)
     blind = run_odometry(run, parameters=parameters, show_progress=show_progress)
-    written = [model, *write_results(seen, out), *write_results(blind, out / "without_vision")]
+    written = [model, *write_results(seen, out, about)]
+    written += write_results(blind, out / "without_vision", about)
     written += write_report(seen, out, compared_with={WITHOUT: blind})
     return {WITH: seen, WITHOUT: blind}, written

@@ -1,6 +1,7 @@
 """The output folder of a run: tables, trajectories, numbers, what was learned."""
 
 import json
+from collections.abc import Mapping
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,8 @@ from odometry.io.csv_table import write_csv_table
 from odometry.io.files import atomic_write
 from odometry.io.structured import read_json
 from odometry.io.tum import write_tum
+from odometry.outputs.formats import check_format
+from odometry.outputs.manifest import check_finished
 from odometry.parameters import write_parameters
 from odometry.trajectory import Trajectory
 from terrain.errors import ResultError
@@ -28,7 +31,9 @@ ERRORS = (  # of each trajectory in it, and which number of each the tables show
 )
 
 
-def write_results(result: RunResult, out: str | Path) -> list[Path]:
+def write_results(
+    result: RunResult, out: str | Path, about: Mapping[str, Any] | None = None
+) -> list[Path]:
     """Write everything but figures and page.
 
     Parameters
@@ -36,6 +41,8 @@ def write_results(result: RunResult, out: str | Path) -> list[Path]:
     result : RunResult
     out : path
         Made if it is missing; files of an earlier run are replaced one by one.
+    about : Mapping, optional
+        What made the result; its keys are added to result.json.
 
     Returns
     -------
@@ -65,7 +72,7 @@ def write_results(result: RunResult, out: str | Path) -> list[Path]:
         names.append("terrain.csv")
     for name in {"learned.toml", "terrain.csv"} - set(names):
         (out / name).unlink(missing_ok=True)  # of an earlier run
-    text = json.dumps(result_table(result), indent=2, allow_nan=False)
+    text = json.dumps(result_table(result) | dict(about or {}), indent=2, allow_nan=False)
     with atomic_write(out / "result.json") as part:
         part.write_text(text + "\n", encoding="utf-8")
     return [out / name for name in (*names, "result.json")]
@@ -171,11 +178,15 @@ def read_errors(folder: str | Path) -> dict[str, Any]:
     Raises
     ------
     ResultError
-        If the folder has no result of `run`.
+        If the folder has no result of `run`, or one of a newer format.
+    OutputError
+        If `run` was stopped while it wrote the folder.
     """
     file = Path(folder) / "result.json"
+    check_finished(file.parent)
     content = read_json(file, ResultError)
     try:
+        check_format(file, content.get("format", FORMAT), FORMAT, ResultError)
         for errors in content["errors"].values():
             for name, statistic in ERRORS:
                 _check_error(errors[name][statistic])

@@ -2,6 +2,7 @@
 
 import json
 import re
+from collections.abc import Mapping
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
@@ -21,7 +22,9 @@ from odometry.parameters import write_parameters
 FORMAT = 1  # of comparison.json
 
 
-def write_comparison(comparison: Comparison, out: str | Path) -> list[Path]:
+def write_comparison(
+    comparison: Comparison, out: str | Path, about: Mapping[str, Any] | None = None
+) -> list[Path]:
     """Write everything but figures and page.
 
     Parameters
@@ -29,6 +32,8 @@ def write_comparison(comparison: Comparison, out: str | Path) -> list[Path]:
     comparison : Comparison
     out : path
         Folder; made if it is missing.
+    about : Mapping, optional
+        What made the comparison; its keys are added to comparison.json.
 
     Returns
     -------
@@ -38,7 +43,8 @@ def write_comparison(comparison: Comparison, out: str | Path) -> list[Path]:
         each.
     """
     out = Path(out)
-    text = json.dumps(comparison_table(comparison), indent=2, allow_nan=False)
+    content = comparison_table(comparison) | dict(about or {})
+    text = json.dumps(content, indent=2, allow_nan=False)
     with atomic_write(out / "comparison.json") as part:
         part.write_text(text + "\n", encoding="utf-8")
     _write_windows(out / "windows.csv", comparison)

@@ -1,6 +1,7 @@
 """gap.json and the extended model as files."""
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,14 +17,18 @@ from odometry.io.files import atomic_write
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN
 
+FORMAT = 1  # of gap.json
 LEAST_LATENCY_S = 5e-3  # less is nothing that a model must know
 
 
-def write_gap(result: GapResult, out: Path) -> list[Path]:
-    """Write gap.json and model.toml into a folder, which is made if it is missing."""
-    out.mkdir(parents=True, exist_ok=True)
+def write_gap(result: GapResult, out: Path, about: Mapping[str, Any] | None = None) -> list[Path]:
+    """Write gap.json and model.toml into a folder, which is made if it is missing.
+
+    `about` says what made the result; its keys are added to gap.json.
+    """
+    content = {"format": FORMAT, **content_of(result), **(about or {})}
     with atomic_write(out / "gap.json") as part:
-        part.write_text(json.dumps(content_of(result), indent=2) + "\n", encoding="utf-8")
+        part.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
     write_parameters(out / "model.toml", extended_model(result))
     return [out / "gap.json", out / "model.toml"]
 

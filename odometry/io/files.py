@@ -1,11 +1,15 @@
 """Files that are whole or absent: written under a temporary name, then renamed."""
 
+import errno
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from odometry.errors import OutputError
+
+# a full disk, a quota, the largest size of a file, a disk that fails or may not be written to
+NOT_WRITTEN = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EROFS)
 
 
 @contextmanager
@@ -22,13 +26,22 @@ def atomic_write(path: Path) -> Iterator[Path]:
     Path
         Where to write. It keeps the suffix of `path`, so that libraries which choose a
         format by suffix work. It is removed if the block raises.
+
+    Raises
+    ------
+    OutputError
+        Naming `path`, if the disk is full or fails while it is written.
     """
     path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         yield temporary
         temporary.replace(path)
+    except OSError as error:
+        if error.errno not in NOT_WRITTEN:
+            raise
+        raise OutputError(f"cannot write {path}: {error.strerror}") from error
     finally:
         temporary.unlink(missing_ok=True)
 

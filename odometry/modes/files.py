@@ -23,7 +23,9 @@ COUNTS = ("stretches", "told", "false_switches")
 STATES = {"velocity": ("vx", "wz"), "traction": ("x", "y", "yaw", "wz")}
 
 
-def write_modes(followed: Followed, out: Path) -> list[Path]:
+def write_modes(
+    followed: Followed, out: Path, about: Mapping[str, Any] | None = None
+) -> list[Path]:
     """Write modes.csv and result.json, with sight also modes_with_sight.csv.
 
     Parameters
@@ -31,6 +33,8 @@ def write_modes(followed: Followed, out: Path) -> list[Path]:
     followed : Followed
     out : Path
         Made if it is missing; files of an earlier run are replaced one by one.
+    about : Mapping, optional
+        What made the result; its keys are added to result.json.
 
     Returns
     -------
@@ -47,7 +51,7 @@ def write_modes(followed: Followed, out: Path) -> list[Path]:
         seen = {"seen": np.where(followed.seen_labels == UNKNOWN, "", followed.seen_labels)}
         write_csv_table(sighted, columns_of(followed, followed.sighted) | seen)
         written.append(sighted)
-    text = json.dumps(content_of(followed), indent=2, allow_nan=False)
+    text = json.dumps(content_of(followed) | dict(about or {}), indent=2, allow_nan=False)
     with atomic_write(written[1]) as part:
         part.write_text(text + "\n", encoding="utf-8")
     return written

@@ -15,7 +15,9 @@ from odometry.io.files import atomic_write
 from odometry.io.structured import read_toml
 from odometry.modes.traction import TractionModes
 from odometry.modes.velocity import VelocityModes
+from odometry.outputs.formats import check_first_line, format_line
 
+FORMAT = 1  # of the file, in its first line
 DWELL_S = 20.0  # of a mode of which nothing else is said
 LARGEST, SMALLEST = 1e9, 1e-18  # of a number, and of one above 0: a standard deviation of 1e-9
 IS_OF_SIGN: dict[str, Callable[[FloatArray], BoolArray]] = {
@@ -81,8 +83,11 @@ class ModeSet:
         return self.modes.names
 
 
-def write_mode_set(file: Path, mode_set: ModeSet) -> None:
-    """Write a set of modes: [modes], and a table [mode.NAME] for each."""
+def write_mode_set(file: Path, mode_set: ModeSet, comment: str = "") -> None:
+    """Write a set of modes: [modes], and a table [mode.NAME] for each.
+
+    `comment` holds whole lines that begin with `#`, and goes below the line of the format.
+    """
     modes = mode_set.modes
     head: dict[str, Any] = {"kind": modes.kind, "source": mode_set.source}
     head |= {one.name: _plain(getattr(modes, one.name)) for one in HEAD[modes.kind]}
@@ -92,7 +97,8 @@ def write_mode_set(file: Path, mode_set: ModeSet) -> None:
         for row, name in enumerate(modes.names)
     }
     with atomic_write(file) as part:
-        part.write_text(tomli_w.dumps({"modes": head, "mode": tables}), encoding="utf-8")
+        text = tomli_w.dumps({"modes": head, "mode": tables})
+        part.write_text(format_line("mode set", FORMAT) + comment + text, encoding="utf-8")
 
 
 def read_mode_set(file: Path) -> ModeSet:
@@ -102,8 +108,9 @@ def read_mode_set(file: Path) -> ModeSet:
     ------
     ParameterError
         Naming file, table and key: not TOML, an unknown or missing key, a number that is not
-        finite, a shape or a variance that cannot be.
+        finite, a shape or a variance that cannot be, a newer format.
     """
+    check_first_line(Path(file), FORMAT, ParameterError)
     content = read_toml(Path(file), ParameterError)
     head, tables = content.get("modes"), content.get("mode")
     if not isinstance(head, dict) or head.get("kind") not in list(KINDS):

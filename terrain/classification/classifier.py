@@ -1,10 +1,10 @@
 """The terrain classifier: SFTA features, a scaler and k nearest neighbours, with rejection."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -183,8 +183,11 @@ class TerrainClassifier:
             dict(zip(self.classes_, probabilities.tolist(), strict=True)),
         )
 
-    def save(self, path: str | Path) -> None:
-        """Write the classifier to one file of arrays and JSON; see `persistence`."""
+    def save(self, path: str | Path, made: Mapping[str, Any] | None = None) -> None:
+        """Write the classifier to one file of arrays and JSON; see `persistence`.
+
+        `made` says what made it, and is kept in the file.
+        """
         settings = ModelSettings(
             self.preset,
             self.colour_,
@@ -196,7 +199,7 @@ class TerrainClassifier:
             self.rejection_distance_,
             self._features,
         )
-        write_model(Path(path), settings.to_table(), self._neighbours.arrays())
+        write_model(Path(path), settings.to_table(), self._neighbours.arrays(), made)
 
     @classmethod
     def load(cls, path: str | Path) -> Self:

@@ -21,6 +21,7 @@ from odometry.arrays import AnyArray
 from odometry.io.files import atomic_write
 from odometry.io.input_file import read_bytes
 from odometry.io.structured import parsed_json
+from odometry.outputs.formats import check_format
 from terrain.errors import ModelFileError
 
 FORMAT = "terrain-odometry classifier"
@@ -32,14 +33,23 @@ ZIP_ERRORS = (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, V
 NPY_ERRORS = (ValueError, SyntaxError, TypeError, RecursionError, MemoryError, tokenize.TokenError)
 
 
-def write_model(path: Path, settings: Mapping[str, Any], arrays: Mapping[str, AnyArray]) -> None:
-    """Write settings (JSON values) and arrays (numeric); the same content gives the same bytes."""
+def write_model(
+    path: Path,
+    settings: Mapping[str, Any],
+    arrays: Mapping[str, AnyArray],
+    made: Mapping[str, Any] | None = None,
+) -> None:
+    """Write settings (JSON values) and arrays (numeric); the same content gives the same bytes.
+
+    `made` says what made the model; it is kept in the header, and no reader needs it.
+    """
     members = {f"{name}.npy": _to_npy(arrays[name]) for name in sorted(arrays)}
     header = {
         "format": FORMAT,
         "version": VERSION,
         "settings": dict(settings),
         "sha256": {name: hashlib.sha256(data).hexdigest() for name, data in members.items()},
+        "made": dict(made or {}),
     }
     text = json.dumps(header, indent=1, sort_keys=True, allow_nan=False).encode()
     members = {HEADER: text, CHECKSUM: hashlib.sha256(text).hexdigest().encode()} | members
@@ -72,6 +82,15 @@ def read_model(path: Path) -> tuple[dict[str, Any], dict[str, AnyArray]]:
     }
 
 
+def is_model(path: Path) -> bool:
+    """Whether a file is a whole model file of a format that this program reads."""
+    try:
+        read_model(path)
+    except ModelFileError:
+        return False
+    return True
+
+
 def _stored_members(path: Path, archive: zipfile.ZipFile, size: int) -> dict[str, bytes]:
     entries = archive.infolist()
     claimed = sum(entry.file_size for entry in entries)
@@ -92,10 +111,7 @@ def _read_header(path: Path, members: Mapping[str, bytes]) -> dict[str, Any]:
         raise ModelFileError(f"{error}; not a model file") from error
     if not isinstance(header, dict) or header.get("format") != FORMAT:
         raise ModelFileError(f"{path}: {HEADER} does not say '{FORMAT}'; not a model file")
-    if header.get("version") != VERSION:
-        raise ModelFileError(
-            f"{path}: format version {header.get('version')}; this program reads version {VERSION}"
-        )
+    check_format(path, header.get("version"), VERSION, ModelFileError)
     for table in ("settings", "sha256"):
         if not isinstance(header.get(table), dict):
             raise ModelFileError(f"{path}: {HEADER} has no table '{table}'; damaged")

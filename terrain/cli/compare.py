@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING
 import click
 
 from terrain.cli.options import MODEL_NAMES, window_options
+from terrain.cli.recordings import span_options
 from terrain.cli.results import print_table, print_written
 
 if TYPE_CHECKING:
     from odometry.comparison.result import Comparison
+    from odometry.run_span import Span
     from odometry.windows.config import WindowConfig
 
 FOLDER = click.Path(file_okay=False, path_type=Path)
@@ -31,6 +33,7 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
     "--train", multiple=True, metavar="RUN", type=FOLDER, help="Identify on this run; repeat."
 )
 @window_options
+@span_options
 @click.option(
     "--evaluation-horizon",
     "horizons_m",
@@ -69,6 +72,7 @@ def compare(
     training_horizons_m: tuple[float, ...],
     terrain: str | None,
     seed: int,
+    span: "Span",
 ) -> None:
     """Compare kinematic models on the run folders RUN, by robot and terrain.
 
@@ -86,9 +90,9 @@ def compare(
     from odometry.comparison.errors import ComparisonError
     from odometry.comparison.files import write_comparison
     from odometry.identification.config import SolverConfig
-    from odometry.io.files import check_writable
     from odometry.report.comparison_page import write_comparison_report
-    from odometry.run import Run
+    from terrain.cli.outputs import about, claim_folder
+    from terrain.cli.recordings import read_runs
 
     config = ComparisonConfig(
         training=windows,
@@ -97,13 +101,11 @@ def compare(
         training_horizons_m=training_horizons_m,
         seed=seed,
     )
-    if out.resolve() in {folder.resolve() for folder in (*folders, *train)}:
-        raise click.UsageError("--out is one of the run folders; choose another folder")
-    check_writable(out)
+    output = claim_folder(out)
     comparison = compare_models(
-        [Run.read(folder) for folder in folders],
+        read_runs(folders, span),
         models,
-        train=[Run.read(folder) for folder in train],
+        train=read_runs(train, span),
         terrain=terrain,
         config=config,
         show_progress=True,
@@ -114,12 +116,14 @@ def compare(
             + [r for p in comparison.places for s in comparison.summaries_at(p) for r in s.reasons]
         )
         raise ComparisonError(f"there is nothing to compare: {'; '.join(reasons)}")
-    written = write_comparison(comparison, out) + write_comparison_report(comparison, out)
+    with output.writing() as part:
+        write_comparison(comparison, part, about(output.made))
+        write_comparison_report(comparison, part)
     for reason in comparison.left_out.values():
         click.echo(f"Note: left out: {reason}", err=True)
     _print_errors(comparison)
     _print_training_horizons(comparison)
-    print_written(written, out)
+    print_written(out)
     click.echo(f"Next: open {out / 'report.html'}")
 
 

@@ -20,11 +20,14 @@ def demo(out: Path) -> None:
     Example:
       terrain-odometry demo --out demo
     """
+    from terrain.cli.outputs import about, claim_folder
     from terrain.cli.results import print_errors, print_written
     from terrain.demo import run_demo
 
+    output = claim_folder(out)
     click.echo("Training on the shipped patches, then replaying the shipped run twice ...")
-    results, written = run_demo(out, show_progress=True)
+    with output.writing() as part:
+        results, _ = run_demo(part, about=about(output.made), show_progress=True)
     print_errors(results)
-    print_written(written, out)
+    print_written(out)
     click.echo(f"Next: open {out / 'report.html'}")

@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING
 import click
 
 from terrain.cli.options import MODEL_NAMES
+from terrain.cli.recordings import span_options
 from terrain.cli.results import print_table, print_written
 
 if TYPE_CHECKING:
     from odometry.gap.result import GapResult
+    from odometry.run_span import Span
 
 FOLDER = click.Path(file_okay=False, path_type=Path)
 
@@ -48,6 +50,7 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
     show_default=True,
     help="Duration of the windows over which the gap is taken [s].",
 )
+@span_options
 def gap(
     folders: tuple[Path, ...],
     *,
@@ -57,6 +60,7 @@ def gap(
     out: Path,
     terrain: str | None,
     horizon_s: float,
+    span: "Span",
 ) -> None:
     """Find which effect a model lacks on the run folders MEASURED, and add it.
 
@@ -71,24 +75,22 @@ def gap(
     from odometry.gap.config import GapConfig
     from odometry.gap.files import write_gap
     from odometry.gap.gap import find_gap
-    from odometry.io.files import check_writable
     from odometry.report.gap_page import write_gap_report
-    from odometry.run import Run
+    from terrain.cli.outputs import about, claim_folder
+    from terrain.cli.recordings import read_runs
 
-    if out.resolve() in {one.resolve() for one in (*folders, *calibration, *holdout)}:
-        raise click.UsageError("--out is one of the run folders; choose another folder")
-    check_writable(out)
+    output = claim_folder(out)
     config = GapConfig(horizon_s=horizon_s)
-    measured, known, held = (
-        [Run.read(folder) for folder in group] for group in (folders, calibration, holdout)
-    )
+    measured, known, held = (read_runs(group, span) for group in (folders, calibration, holdout))
     base, given = believed_model(model, measured, terrain)
     result = find_gap(
         measured, known, held, model=base, given=given, config=config, show_progress=True
     )
-    written = write_gap(result, out) + write_gap_report(result, out)
+    with output.writing() as part:
+        write_gap(result, part, about(output.made))
+        write_gap_report(result, part)
     _print_result(result)
-    print_written(written, out)
+    print_written(out)
     click.echo(
         f"Next: open {out / 'report.html'}; the extended model is {out / 'model.toml'}: "
         f"terrain-odometry compare RUN --model {out / 'model.toml'} --model {base.name} --out DIR"

@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING
 import click
 
 from terrain.cli.options import MODEL_NAMES, assignments, window_options
+from terrain.cli.recordings import span_options
 
 if TYPE_CHECKING:
     from odometry.identification.identification import Identified
+    from odometry.run_span import Span
     from odometry.windows.config import WindowConfig
 
 
@@ -34,6 +36,7 @@ if TYPE_CHECKING:
     help="Parameter set to write (TOML).",
 )
 @window_options
+@span_options
 @click.option("--fix", multiple=True, metavar="NAME=VALUE", help="Hold a parameter; repeat.")
 @click.option("--free", multiple=True, metavar="NAME", help="Identify a known one too; repeat.")
 @click.option("--terrain", metavar="NAME", help="Ground of runs that name none.")
@@ -78,6 +81,7 @@ def identify(
     starts: int,
     seed: int,
     profile: bool,
+    span: "Span",
 ) -> None:
     """Identify the parameters of a kinematic model from the run folders RUN.
 
@@ -93,16 +97,17 @@ def identify(
     from odometry.identification.config import SolverConfig
     from odometry.identification.identify import identify as identify_runs
     from odometry.identification.profile import with_profiles
-    from odometry.io.files import check_writable
+    from odometry.outputs.output_file import is_set_of
     from odometry.parameters import read_parameters, write_parameters
-    from odometry.run import Run
+    from terrain.cli.outputs import claim_file
+    from terrain.cli.recordings import read_runs
 
     if out.suffix != ".toml":
         raise click.UsageError(f"--out {out}: expected a name that ends in .toml")
-    check_writable(out.parent)
+    made = claim_file(out, is_set_of("identify"))
     solver_config = SolverConfig(loss=loss, starts=starts, seed=seed)
     found = identify_runs(
-        [Run.read(folder) for folder in folders],
+        read_runs(folders, span),
         read_parameters(model) if Path(model).suffix == ".toml" else model,
         fixed=assignments(fix),
         released=free,
@@ -117,7 +122,7 @@ def identify(
         _print_terrain(name, ground)
     found.require_determined()
     identified = found.to_parameter_set()
-    write_parameters(out, identified)
+    write_parameters(out, identified, made.to_comment())
     click.echo(f"Wrote {out}")
     named = f" --terrain {terrain}" if terrain else ""
     click.echo(

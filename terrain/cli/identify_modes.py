@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING
 import click
 
 from terrain.cli.options import Positive
+from terrain.cli.recordings import span_options
 from terrain.cli.results import print_table
 
 if TYPE_CHECKING:
     from odometry.modes.alike import Pair
     from odometry.modes.traction import TractionModes
     from odometry.modes.velocity import VelocityModes
+    from odometry.run_span import Span
 
 ALIKE_S = 5.0  # pairs that take longer to be told apart are named
 PAIRS = 4  # so many of them
@@ -53,6 +55,7 @@ SLOW_TIGHT_TURNS_M_S = ((0.05, 0.15), (0.15, 0.05))  # to the left, to the right
     show_default=True,
     help="Mean time in a mode [s].",
 )
+@span_options
 def identify_modes(
     folders: tuple[Path, ...],
     *,
@@ -62,6 +65,7 @@ def identify_modes(
     common_noise: bool,
     paper: bool,
     dwell: float,
+    span: "Span",
 ) -> None:
     """Identify the modes that the run folders RUN name, for `modes` to tell them apart.
 
@@ -75,13 +79,14 @@ def identify_modes(
     """
     import numpy as np
 
-    from odometry.io.files import check_writable
     from odometry.modes.alike import pairs
     from odometry.modes.identify_traction import identify_traction_modes
     from odometry.modes.identify_velocity import identify_velocity_modes
     from odometry.modes.mode_set import ModeSet, write_mode_set
     from odometry.modes.traction import TractionModes
-    from odometry.run import Run
+    from odometry.outputs.output_file import is_set_of
+    from terrain.cli.outputs import claim_file
+    from terrain.cli.recordings import read_runs
 
     for given, option in ((shared, "--shared"), (common_noise, "--common-noise")):
         if given and kind != "velocity":
@@ -94,8 +99,8 @@ def identify_modes(
         raise click.UsageError("--paper is for --kind traction")
     if out.suffix != ".toml":
         raise click.UsageError(f"--out {out}: expected a name that ends in .toml")
-    check_writable(out.parent)
-    runs = [Run.read(folder) for folder in folders]
+    made = claim_file(out, is_set_of("identify-modes"))
+    runs = read_runs(folders, span)
     modes: VelocityModes | TractionModes
     if kind == "velocity":
         modes = identify_velocity_modes(
@@ -112,7 +117,8 @@ def identify_modes(
     variant = "".join(f", {words}" for given, words in said if given)
     names = ", ".join(dict.fromkeys(run.name for run in runs))
     source = f"identify-modes of terrain-odometry{variant}: {names}"
-    write_mode_set(out, ModeSet(modes, np.full(len(modes.names), dwell), source))
+    mode_set = ModeSet(modes, np.full(len(modes.names), dwell), source)
+    write_mode_set(out, mode_set, made.to_comment())
     click.echo(f"Wrote {out}")
     click.echo(f"Next: terrain-odometry modes RUN --models {out} --out modes")
 

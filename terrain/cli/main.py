@@ -1,11 +1,13 @@
 """Entry point: finds the verb, and turns known errors into a message and an exit code."""
 
 import importlib
+import signal
 import sys
 
 import click
 
 from odometry.errors import OdometryError
+from terrain.cli.interrupt import Interrupted, raise_on_signals
 
 VERBS = {
     "check": "What is odd about recordings, before anything is fitted to them.",
@@ -58,9 +60,17 @@ def cli() -> None:
 
 
 def main() -> None:
-    """Run the command line; a known error prints one message and exits with 1."""
+    """Run the command line.
+
+    A known error prints one message and exits with 1; so does an interrupt, with 130, or 143 for
+    a request to terminate.
+    """
+    raise_on_signals(signal.SIGINT, signal.SIGTERM)
     try:
         cli()
+    except Interrupted as error:
+        click.echo(f"{error}: {error.left}", err=True)
+        sys.exit(error.exit_code)
     except (OdometryError, OSError) as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(1)

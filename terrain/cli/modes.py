@@ -6,12 +6,15 @@ from typing import TYPE_CHECKING
 
 import click
 
+from terrain.cli.recordings import span_options
 from terrain.cli.results import print_written
 
 if TYPE_CHECKING:
     from odometry.modes.followed import Followed
     from odometry.modes.mode_set import ModeSet
     from odometry.modes.track import ModesConfig
+    from odometry.outputs.output_folder import OutputFolder
+    from odometry.run_span import Span
 
 FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 FOLDER = click.Path(file_okay=False, path_type=Path)
@@ -40,8 +43,15 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
     show_default=True,
     help="Probability from which a mode is named; below it is undetermined.",
 )
+@span_options
 def modes(
-    folders: tuple[Path, ...], *, models: Path, out: Path, seen: Path | None, sure: float
+    folders: tuple[Path, ...],
+    *,
+    models: Path,
+    out: Path,
+    seen: Path | None,
+    sure: float,
+    span: "Span",
 ) -> None:
     """Tell on the run folders RUN, by motion alone, which mode the robot is in.
 
@@ -55,59 +65,74 @@ def modes(
       terrain-odometry modes my_run --models set.toml --out modes
       terrain-odometry modes my_run --models set.toml --seen results/terrain.csv --out modes
     """
-    from odometry.io.files import check_writable
     from odometry.modes.mode_set import read_mode_set
     from odometry.modes.track import ModesConfig
+    from terrain.cli.outputs import claim_folder
 
     if seen is not None and len(folders) > 1:
         raise click.UsageError(f"--seen is of one run; there are {len(folders)}")
-    if out.resolve() in {folder.resolve() for folder in folders}:
-        raise click.UsageError("--out is one of the run folders; choose another folder")
-    check_writable(out)
+    output = claim_folder(out)
     mode_set, config = read_mode_set(models), ModesConfig(sure=sure)
     if len(folders) == 1:
-        _one(folders[0], mode_set, config, seen, out)
+        _one(folders[0], mode_set, config, output, seen=seen, span=span)
     else:
-        _several(folders, mode_set, config, out)
+        _several(folders, mode_set, config, output, span=span)
 
 
 def _one(
-    folder: Path, mode_set: "ModeSet", config: "ModesConfig", seen: Path | None, out: Path
+    folder: Path,
+    mode_set: "ModeSet",
+    config: "ModesConfig",
+    output: "OutputFolder",
+    *,
+    seen: Path | None,
+    span: "Span",
 ) -> None:
     from odometry.modes.files import write_modes
     from odometry.modes.words import sentences
     from odometry.report.modes_page import write_modes_report
+    from terrain.cli.outputs import about
 
-    result = _followed(folder, mode_set, config, seen)
-    written = write_modes(result, out) + write_modes_report(result, out)
+    result = _followed(folder, mode_set, config, seen=seen, span=span)
+    with output.writing() as part:
+        write_modes(result, part, about(output.made))
+        write_modes_report(result, part)
     for sentence in sentences(result):
         click.echo(sentence)
-    print_written(written, out)
-    click.echo(f"Next: open {out / 'report.html'}")
+    print_written(output.out)
+    click.echo(f"Next: open {output.out / 'report.html'}")
 
 
 def _several(
-    folders: tuple[Path, ...], mode_set: "ModeSet", config: "ModesConfig", out: Path
+    folders: tuple[Path, ...],
+    mode_set: "ModeSet",
+    config: "ModesConfig",
+    output: "OutputFolder",
+    *,
+    span: "Span",
 ) -> None:
     """A folder for each run, and runs.csv; a run that fails is a row."""
     from odometry.errors import OdometryError
     from odometry.modes.files import write_modes, write_runs
     from odometry.modes.words import sentences
     from odometry.report.modes_page import write_modes_report
+    from terrain.cli.outputs import about
 
     rows: dict[str, Followed | str] = {}
-    for name, folder in zip(_names(folders), folders, strict=True):
-        try:
-            result = _followed(folder, mode_set, config, None)
-            write_modes(result, out / name)
-            write_modes_report(result, out / name)
-        except OdometryError as error:
-            rows[name] = str(error)
-            click.echo(f"{name}: failed: {error}")
-        else:
+    out = output.out
+    with output.writing() as part:
+        for name, folder in zip(_names(folders), folders, strict=True):
+            try:
+                result = _followed(folder, mode_set, config, seen=None, span=span)
+            except OdometryError as error:
+                rows[name] = str(error)
+                click.echo(f"{name}: failed: {error}")
+                continue
+            write_modes(result, part / name, about(output.made))
+            write_modes_report(result, part / name)
             rows[name] = result
             click.echo(f"{name}: {sentences(result)[0]}")
-    write_runs(rows, out / "runs.csv")
+        write_runs(rows, part / "runs.csv")
     done = [name for name, row in rows.items() if not isinstance(row, str)]
     click.echo(f"Wrote to {out}: runs.csv, and a folder each of {len(done)} runs")
     if done:
@@ -117,14 +142,19 @@ def _several(
 
 
 def _followed(
-    folder: Path, mode_set: "ModeSet", config: "ModesConfig", seen: Path | None
+    folder: Path,
+    mode_set: "ModeSet",
+    config: "ModesConfig",
+    *,
+    seen: Path | None,
+    span: "Span",
 ) -> "Followed":
     from odometry.errors import RunFolderError
     from odometry.modes.followed import followed
     from odometry.modes.sight import seen_grounds
-    from odometry.run import Run
+    from terrain.cli.recordings import read_run
 
-    run = Run.read(folder)
+    run = read_run(folder, span)
     grounds = () if seen is None else seen_grounds(seen, run)
     if seen is not None and not grounds:
         raise RunFolderError(f"{seen}: vision named no ground that {folder} gets to")

@@ -68,7 +68,10 @@ def print_table(rows: Sequence[Sequence[str]]) -> None:
         click.echo("  " + "  ".join(cells))
 
 
-def print_written(written: Sequence[Path], out: Path) -> None:
-    """Say which files were written."""
-    names = sorted(file.relative_to(out).as_posix() for file in written)
+def print_written(out: Path) -> None:
+    """Say which files an output folder got."""
+    from odometry.outputs.manifest import NAME, read_manifest
+
+    manifest = read_manifest(out)
+    names = sorted([*(manifest.files if manifest else ()), NAME])
     click.echo(f"Wrote to {out}: {', '.join(names)}")

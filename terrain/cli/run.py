@@ -1,8 +1,14 @@
 """`terrain-odometry run`: the main job."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
+
+from terrain.cli.recordings import span_options
+
+if TYPE_CHECKING:
+    from odometry.run_span import Span
 
 FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 FOLDER = click.Path(file_okay=False, path_type=Path)
@@ -17,6 +23,7 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
 @click.option("--terrain", metavar="NAME", help="In force until the first switch.")
 @click.option("--config", type=FILE, help="Settings (TOML): [filter] [region] [switch] ...")
 @click.option("--per-tread", is_flag=True, help="Classify the ground of each tread apart.")
+@span_options
 @click.option("--detect-jumps", is_flag=True, help="Watch the innovations for jumps of the ICRs.")
 def run(
     run_folder: Path,
@@ -29,6 +36,7 @@ def run(
     config: Path | None,
     per_tread: bool,
     detect_jumps: bool,
+    span: "Span",
 ) -> None:
     """Replay the run folder RUN and write terrain-aware odometry.
 
@@ -41,8 +49,9 @@ def run(
     """
     from dataclasses import replace
 
-    from odometry.io.files import check_writable
     from terrain.cli.hints import hints
+    from terrain.cli.outputs import about, claim_folder
+    from terrain.cli.recordings import read_run
     from terrain.cli.results import print_errors, print_sightings, print_written
     from terrain.config import Config
     from terrain.report.page import write_report
@@ -54,11 +63,9 @@ def run(
         settings = replace(settings, region=replace(settings.region, per_tread=True))
     if detect_jumps:
         settings = replace(settings, filter=replace(settings.filter, detect_jumps=True))
-    if out.resolve() == run_folder.resolve():
-        raise click.UsageError("--out is the run folder itself; choose another folder")
-    check_writable(out)
+    output = claim_folder(out, reads_images=model is not None and not no_vision)
     result = run_odometry(
-        run_folder,
+        read_run(run_folder, span),
         model=model,
         parameters=parameters,
         vision=not no_vision,
@@ -68,12 +75,14 @@ def run(
     )
     for hint in hints(result, vision=not no_vision):
         click.echo(f"Note: {hint}", err=True)
-    written = write_results(result, out) + write_report(result, out)
+    with output.writing() as part:
+        write_results(result, part, about(output.made))
+        write_report(result, part)
     print_errors({result.run.name: result})
     print_sightings(sighting_counts(result))
     for name, effects in result.effects.items():
         click.echo(f"Effects on {name}, in every trajectory but the ideal: {', '.join(effects)}")
-    print_written(written, out)
+    print_written(out)
     click.echo(f"Next: open {out / 'report.html'}")
-    if out / "learned.toml" in written and result.has_learned:
+    if result.learned.terrains and result.has_learned:
         click.echo(f"Next time: --parameters {out / 'learned.toml'} starts from what was learned")

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     "--out",
     required=True,
     type=click.Path(path_type=Path),
-    help="Run folder to make; must be missing or empty.",
+    help="Run folder to make: missing, empty, or made by an earlier `simulate`.",
 )
 @click.option(
     "--vehicle",
@@ -124,18 +124,15 @@ def simulate(
     """
     import numpy as np
 
-    from odometry.io.files import check_writable
     from odometry.simulation.contact.drive import simulate_contact
     from odometry.simulation.contact.vehicle import read_contact_vehicle
     from odometry.simulation.courses import STEP_S, make_course
-    from odometry.simulation.errors import SimulationError
     from odometry.simulation.record import ContactSensors, write_contact_run
+    from terrain.cli.outputs import claim_folder
 
     if traction and (friction is not None or law):
         raise click.UsageError("--traction says friction and law; leave out --friction and --law")
-    check_writable(out)
-    if out.exists() and any(out.iterdir()):
-        raise SimulationError(f"{out} is there already and not empty; choose another folder")
+    output = claim_folder(out)
     robot = read_contact_vehicle(_vehicle_file(vehicle), {"law": law} if law else {})
     if friction is not None:
         robot = robot.with_friction(friction)
@@ -158,7 +155,8 @@ def simulate(
     settings: dict[str, Any] = {"drive": drive, "max_speed_m_s": max_speed, "seed": seed}
     noise = np.random.default_rng(streams[1])
     named = None if len(pieces) > 1 else terrain
-    write_contact_run(out, truth, ContactSensors(), noise, terrain=named, settings=settings)
+    with output.writing() as part:
+        write_contact_run(part, truth, ContactSensors(), noise, terrain=named, settings=settings)
     name = robot.robot.get("name", vehicle)
     click.echo(
         f"Wrote the run {out}: {truth.stamps_s[-1]:.0f} s of {name}, drive {drive}, "

@@ -11,7 +11,7 @@ import click
     "--out",
     required=True,
     type=click.Path(path_type=Path),
-    help="Folder to make; must be missing or empty.",
+    help="Folder to make: missing, empty, or made by an earlier `synthesise`.",
 )
 @click.option(
     "--seed",
@@ -66,10 +66,12 @@ def synthesise(
       terrain-odometry synthesise --out my_run --seed 3
       terrain-odometry synthesise --out my_run --photos my_photos --zone asphalt --zone sand
     """
+    from terrain.cli.outputs import claim_folder
     from terrain.synthesis.files import read_camera, read_robot
     from terrain.synthetic import SynthesisConfig
     from terrain.synthetic import synthesise as make_run
 
+    output = claim_folder(out)
     given: dict[str, Any] = {
         "zones": zones or None,
         "zone_length_m": zone_length,
@@ -80,7 +82,8 @@ def synthesise(
     }
     chosen = {name: value for name, value in given.items() if value is not None}
     config = SynthesisConfig(seed=seed, **chosen)
-    make_run(out, config, photos=photos, progress=True)
+    with output.writing() as part:
+        make_run(part, config, photos=photos, progress=True)
     click.echo(
         f"Wrote the run {out}, {out / 'patches'} ({config.patch_size_px} px, "
         f"{config.metres_per_pixel:g} m per pixel) and {out / 'parameters.toml'}."

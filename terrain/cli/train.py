@@ -59,10 +59,11 @@ def train(
     Example:
       terrain-odometry train my_photos --out ground.model --metres-per-pixel 0.002
     """
-    from odometry.io.files import check_writable
+    from terrain.classification.persistence import is_model
     from terrain.classification.training import train as train_classifier
+    from terrain.cli.outputs import claim_file
 
-    check_writable(out.parent)
+    made = claim_file(out, is_model)
     training = train_classifier(
         patches,
         preset=preset,
@@ -87,7 +88,7 @@ def train(
             "Colour is left out: patches are grey, or most of a class are, or the preset is.",
             err=True,
         )
-    classifier.save(out)
+    classifier.save(out, made.to_table())
     click.echo(_summary(classifier, loaded.photos))
     click.echo(f"\nWrote {out}. Next: terrain-odometry classify {out} IMAGE...")
 

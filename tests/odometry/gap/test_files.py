@@ -17,6 +17,7 @@ from odometry.parameters import read_parameters
 
 NUMBER = (int, float)
 FORM = {
+    "format": int,
     "verdict": str,
     "effects": [
         {

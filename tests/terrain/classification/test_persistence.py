@@ -97,7 +97,10 @@ def test_missing_and_foreign_files_are_refused(tmp_path):
 
 
 def test_other_formats_and_newer_versions_are_named(file):
-    refused(rewritten(file, lambda header, _: header.update(version=2)), "version 2.*version 1")
+    refused(
+        rewritten(file, lambda header, _: header.update(version=2)),
+        "newer version.*format 2.*up to 1",
+    )
     refused(rewritten(file, lambda header, _: header.update(format="other")), "does not say")
 
 

@@ -1,7 +1,6 @@
 """What the commands print of results."""
 
-from pathlib import Path
-
+from odometry.outputs.manifest import Manifest
 from terrain.cli.results import (
     error_cells,
     print_errors,
@@ -43,10 +42,12 @@ def test_errors_are_those_of_the_scores_and_name_the_reference(curvy_run, capsys
         assert rows[f"a run: {name}"] == f"{score.final_position_m:.4f}"
 
 
-def test_files_are_named_within_their_folder(capsys):
-    out = Path("some") / "out"
-    print_written([out / "result.json", out / "figures" / "a.png"], out)
-    assert capsys.readouterr().out == f"Wrote to {out}: figures/a.png, result.json\n"
+def test_files_are_named_within_their_folder(tmp_path, capsys):
+    Manifest("run", "finished", ("figures/a.png", "result.json")).write(tmp_path)
+    print_written(tmp_path)
+    assert capsys.readouterr().out == (
+        f"Wrote to {tmp_path}: figures/a.png, result.json, terrain-odometry.json\n"
+    )
 
 
 def test_images_are_counted_by_what_they_said(capsys):

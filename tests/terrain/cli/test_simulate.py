@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from odometry.errors import OdometryError
 from odometry.run import Run
 from odometry.simulation.courses import COURSE_NAMES
-from odometry.simulation.errors import SimulationError
 from terrain.cli.simulate import simulate
 
 
@@ -90,7 +90,7 @@ def test_a_wrong_vehicle_and_a_full_folder_are_named_before_anything_is_made(tmp
         (tmp_path / "full", [], "not empty"),
     ):
         answer = invoke(out, *arguments)
-        with pytest.raises(SimulationError, match=message):
+        with pytest.raises(OdometryError, match=message):
             raise answer.exception
     assert not (tmp_path / "run").exists()
 

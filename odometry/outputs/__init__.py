@@ -1,0 +1,1 @@
+"""Files and folders that this program makes: what made them, and whether they are whole."""

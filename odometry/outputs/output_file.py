@@ -1,0 +1,67 @@
+"""A single file as an output: it is replaced only if it says that the same verb made it."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from odometry.errors import OdometryError, OutputError
+from odometry.io.files import check_writable
+from odometry.io.structured import read_toml
+from odometry.outputs.inputs import RUN_FILES
+from odometry.outputs.leftovers import remove_temporaries
+from odometry.outputs.made import MADE_BY
+
+SET_SOURCES_0_4 = {
+    "identify": "identified by terrain-odometry",
+    "identify-modes": "identify-modes of terrain-odometry",
+}
+
+
+def claim_file(out: Path, is_own: Callable[[Path], bool], verb: str) -> None:
+    """Check before long work that a file may be made or replaced; clean up after a killed run.
+
+    Parameters
+    ----------
+    out : Path
+    is_own : callable
+        Whether a file that is there was made by the same verb.
+    verb : str
+        For the message.
+
+    Raises
+    ------
+    OutputError
+        If the file is there and not the verb's own, would stand for a file of a run folder, or
+        its folder cannot be written to.
+    """
+    check_writable(out.parent)
+    if out.name in RUN_FILES and (out.parent / "run.toml").exists():
+        raise OutputError(f"{out}: {out.parent} is a run folder, and {out.name} a file of its own")
+    if (out.exists() or out.is_symlink()) and not (out.is_file() and is_own(out)):
+        raise OutputError(
+            f"{out} is there already, and `{verb}` did not make it; choose another --out, or "
+            "delete it"
+        )
+    remove_temporaries(out.parent, lambda name: name == out.name)
+
+
+def is_set_of(verb: str) -> Callable[[Path], bool]:
+    """Whether a TOML file says in its comments, or as version 0.4 did, that `verb` made it."""
+
+    def is_own(file: Path) -> bool:
+        try:
+            content = read_toml(file, OdometryError)
+            head = file.read_text(encoding="utf-8").split("\n", 2)[:2]
+        except (OdometryError, OSError):
+            return False
+        return head[-1] == f"# {MADE_BY}{verb}" or _is_of_version_0_4(content, verb)
+
+    return is_own
+
+
+def _is_of_version_0_4(content: Mapping[str, Any], verb: str) -> bool:
+    """Whether all tables name the source that version 0.4 gave to what it identified."""
+    terrains = content.get("terrain")
+    tables = [content.get("modes"), *(terrains.values() if isinstance(terrains, dict) else ())]
+    sources = [str(table.get("source", "")) for table in tables if isinstance(table, dict)]
+    return bool(sources) and all(one.startswith(SET_SOURCES_0_4[verb]) for one in sources)

@@ -1,0 +1,145 @@
+"""Where the commands write: claimed before any work, with what made it."""
+
+import shlex
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from click.core import ParameterSource
+
+if TYPE_CHECKING:
+    from odometry.outputs.inputs import Input
+    from odometry.outputs.made import Made
+    from odometry.outputs.output_folder import OutputFolder
+
+OUT = "out"  # the option of every command that writes
+
+
+def claim_folder(out: Path, *, reads_images: bool = False) -> "OutputFolder":
+    """Claim the folder `--out` for the command that runs; see `odometry.outputs`.
+
+    Raises
+    ------
+    click.UsageError
+        If `--out` is or holds an input.
+    OutputError
+        If it holds what another program or command made, or an input is unfinished.
+    """
+    from odometry.outputs.output_folder import claim_folder as claim
+
+    inputs = _inputs(click.get_current_context())
+    place = out.resolve()
+    for one in inputs:
+        folders = {file.parent.resolve() for file in (*one.files, *one.images, one.path)}
+        named = {one.path.resolve(), *folders}
+        if any(place == path or place in path.parents for path in named):
+            raise click.UsageError(
+                f"--out {out} is or holds the input {one.path}; choose another folder"
+            )
+    return claim(out, made_by(inputs, reads_images=reads_images))
+
+
+def claim_file(out: Path, is_own: Callable[[Path], bool]) -> "Made":
+    """Claim the file `--out` for the command that runs; what made it is returned.
+
+    Raises
+    ------
+    click.UsageError
+        If `--out` is an input or a file of one.
+    OutputError
+        If it is there and `is_own` denies it, or an input is unfinished.
+    """
+    from odometry.outputs.output_file import claim_file as claim
+
+    context = click.get_current_context()
+    inputs = _inputs(context)
+    place = out.resolve()
+    for one in inputs:
+        if any(place == file.resolve() for file in (one.path, *one.files)):
+            raise click.UsageError(
+                f"--out {out} is the input {one.path}, or a file of it; choose another file"
+            )
+    claim(out, is_own, _verb(context))
+    return made_by(inputs)
+
+
+def about(made: "Made") -> dict[str, Any]:
+    """What the commands add to a result file."""
+    return {"made": made.to_table()}
+
+
+def made_by(inputs: "list[Input]", *, reads_images: bool = False) -> "Made":
+    """Verb, command and settings of the command that runs, and the sums of its inputs."""
+    from odometry.outputs.made import Made, installed_packages
+
+    context = click.get_current_context()
+    settings = {
+        parameter.name: [value for value in _values(context, parameter) if _path(value) is None]
+        for parameter in context.command.params
+        if parameter.name is not None and parameter.name != OUT
+    }
+    sums = [(i.role, str(i.path), i.sha256(with_images=reads_images)) for i in inputs]
+    return Made(_verb(context), _command(context), settings, tuple(sums), installed_packages())
+
+
+def _verb(context: click.Context) -> str:
+    return str(context.command.name)
+
+
+def _inputs(context: click.Context) -> "list[Input]":
+    """Files and folders that the command names, of no unfinished output."""
+    from odometry.outputs.inputs import Input
+    from odometry.outputs.manifest import check_finished
+
+    inputs = []
+    for parameter in context.command.params:
+        if parameter.name == OUT:
+            continue
+        for value in _values(context, parameter):
+            path = _path(value)
+            if path is not None:
+                check_finished(path)
+                inputs.append(Input.of(_role(parameter), path))
+    return inputs
+
+
+def _path(value: object) -> Path | None:
+    """The path that a value names, None where it is a name or a number."""
+    if isinstance(value, Path):
+        return value
+    if isinstance(value, str) and value.endswith(".toml"):
+        return Path(value)
+    return None
+
+
+def _values(context: click.Context, parameter: click.Parameter) -> list[Any]:
+    value = context.params.get(str(parameter.name))
+    if value is None:
+        return []
+    return list(value) if isinstance(value, tuple) else [value]
+
+
+def _role(parameter: click.Parameter) -> str:
+    if isinstance(parameter, click.Option):
+        return parameter.opts[-1]
+    return (parameter.metavar or str(parameter.name)).rstrip(".")
+
+
+def _command(context: click.Context) -> str:
+    """The command as it was given, `--out` left out."""
+    words = ["terrain-odometry", _verb(context)]
+    for parameter in context.command.params:
+        given = context.get_parameter_source(str(parameter.name)) == ParameterSource.COMMANDLINE
+        if given and parameter.name != OUT:
+            words += _words(parameter, _values(context, parameter))
+    return shlex.join(words)
+
+
+def _words(parameter: click.Parameter, values: list[Any]) -> Iterator[str]:
+    for value in values:
+        if isinstance(parameter, click.Option):
+            yield parameter.opts[-1]
+            if parameter.is_flag:
+                continue
+        yield str(value)

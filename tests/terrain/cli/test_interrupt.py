@@ -1,0 +1,118 @@
+"""Interrupts, a full disk and a closed pipe: one line that is true, and the right exit code."""
+
+import os
+import resource
+import signal
+import subprocess
+import sys
+
+import pytest
+
+from odometry.outputs.manifest import read_manifest
+
+SETUP = """
+import os, signal, resource
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may have it ignored
+from pathlib import Path
+from terrain.cli.main import main
+import odometry.simulation.record as record
+from odometry.outputs.output_folder import OutputFolder
+"""
+STOP = "os.kill(os.getpid(), signal.{signal})"
+WHILE = {
+    "working": """
+import terrain.cli.simulate
+def stop(*a, **k):
+    {stop}
+import odometry.simulation.contact.drive as drive
+drive.simulate_contact = stop
+""",
+    "writing": """
+kept = record.write_run_folder
+def write(*a):
+    kept(*a)
+    {stop}
+record.write_run_folder = write
+""",
+    "moving": """
+kept = Path.replace
+def replace(self, target):
+    moved = kept(self, target)
+    if str(target).endswith("pose.csv") and ".unfinished" not in str(target):
+        {stop}
+    return moved
+Path.replace = replace
+""",
+}
+
+
+def simulate(setup, out, seed="1", **options):
+    program = f"{SETUP}\n{setup}\nmain()"
+    arguments = ["simulate", "--out", out, "--duration", "3", "--seed", seed]
+    return subprocess.run(
+        [sys.executable, "-c", program, *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        check=False,
+        **options,
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "code", "word"), [("SIGINT", 130, "Interrupted"), ("SIGTERM", 143, "Terminated")]
+)
+@pytest.mark.parametrize("moment", WHILE)
+def test_an_interrupt_says_in_one_line_what_it_left(tmp_path, name, code, word, moment):
+    out = tmp_path / "run"
+    answer = simulate(WHILE[moment].format(stop=STOP.format(signal=name)), out)
+    assert answer.returncode == code, answer.stderr
+    if moment == "moving":
+        assert answer.stderr == f"{word}: {out} is unfinished: run the command again\n"
+        assert read_manifest(out).state == "unfinished"
+        assert simulate("", out).returncode == 0
+        assert read_manifest(out).state == "finished"
+    else:
+        said = f"nothing was written to {out}" if moment == "writing" else "nothing was written"
+        assert answer.stderr == f"{word}: {said}\n"
+        assert not out.exists()
+
+
+def test_an_interrupt_over_an_earlier_result_keeps_it(tmp_path):
+    out = tmp_path / "run"
+    assert simulate("", out).returncode == 0
+    before = {path: path.read_bytes() for path in out.iterdir()}
+    stop = WHILE["writing"].format(stop=STOP.format(signal="SIGINT"))
+    answer = simulate(stop, out, seed="2")
+    assert answer.stderr == f"Interrupted: {out} holds the earlier result, unchanged\n"
+    assert {path: path.read_bytes() for path in out.iterdir()} == before
+
+
+def test_a_second_interrupt_ends_the_process_at_once(tmp_path):
+    twice = f"try:\n        {STOP}\n    finally:\n        {STOP}"
+    answer = simulate(WHILE["working"].format(stop=twice.format(signal="SIGINT")), tmp_path / "run")
+    assert answer.returncode == -signal.SIGINT
+
+
+def test_a_full_disk_names_the_file_and_leaves_nothing(tmp_path):
+    """The limit on the size of a file stands for the disk: the same call fails."""
+    out = tmp_path / "run"
+    answer = simulate("resource.setrlimit(resource.RLIMIT_FSIZE, (4000, 4000))", out)
+    assert answer.returncode == 1
+    assert answer.stderr == f"Error: cannot write {out / 'odometry.csv'}: File too large\n"
+    assert not out.exists()
+    assert resource.getrlimit(resource.RLIMIT_FSIZE)[0] != 4000
+
+
+def test_a_closed_pipe_is_no_message(tmp_path):
+    """What reads the output has ended before the first line."""
+    reading, writing = os.pipe()
+    os.close(reading)
+    program = "from terrain.cli.main import main; main()"
+    answer = subprocess.run(
+        [sys.executable, "-c", program, "evaluate", "--json", str(tmp_path)],
+        stdout=writing,
+        stderr=subprocess.PIPE,
+        check=False,
+    )
+    os.close(writing)
+    assert answer.stderr == b""
