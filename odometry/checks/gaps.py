@@ -41,8 +41,8 @@ def gaps(evidence: Evidence) -> Iterator[Finding]:
             "clock_set",
             clock,
             reason="the robot does not move on meanwhile",
-            cause="The clock jumps: it was set ahead while recording (time synchronisation), or the "
-            "recording was paused",
+            cause="The clock jumps: it was set ahead while recording (time synchronisation), or "
+            "the recording was paused",
             remedy="Cut the recording there with --from and --to",
         )
 

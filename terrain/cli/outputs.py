@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
+from terrain.cli.recordings import checks_made
+
 if TYPE_CHECKING:
     from odometry.outputs.inputs import Input
     from odometry.outputs.made import Made
@@ -65,8 +67,9 @@ def claim_file(out: Path, is_own: Callable[[Path], bool]) -> "Made":
 
 
 def about(made: "Made") -> dict[str, Any]:
-    """What the commands add to a result file."""
-    return {"made": made.to_table()}
+    """What the commands add to a result file: what made it, and what its runs' checks found."""
+    checks = [report.to_table() for report in checks_made()]
+    return {"made": made.to_table(), "check": checks}
 
 
 def made_by(inputs: "list[Input]", *, reads_images: bool = False) -> "Made":

@@ -9,8 +9,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
+    from odometry.checks.finding import CheckReport
     from odometry.run import Run
     from odometry.run_span import Span
+
+CHECKS = "terrain.checks"  # key of the reports in click's context
 
 
 def span_options(command: Callable[..., None]) -> Callable[..., None]:
@@ -42,19 +45,49 @@ def span_options(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def read_runs(folders: Sequence[Path], span: "Span") -> "list[Run]":
-    """Read run folders in their order, each cut to the span.
+    """Read run folders in their order, each cut to the span and checked.
 
     Raises
     ------
     RunFolderError
-        If a folder is not as the format says, or nothing of it lies in the span.
+        If a folder is not as the format says, cannot be used as it is, or nothing of it lies in
+        the span.
     """
     return [read_run(folder, span) for folder in folders]
 
 
-def read_run(folder: Path, span: "Span") -> "Run":
-    """Read one run folder, cut to the span."""
+def read_run(folder: Path, span: "Span", *, images: bool = False) -> "Run":
+    """Read one run folder, cut to the span; say what its check finds, and remember it.
+
+    Parameters
+    ----------
+    folder : Path
+    span : Span
+    images : bool
+        Whether the camera and its images are checked as well.
+    """
+    from odometry.checks.finding import Level
+    from odometry.checks.recording import check_recording
+    from odometry.errors import RunFolderError
     from odometry.run import Run
     from odometry.run_span import cut_run
+    from terrain.checks.recording import check_run
 
-    return cut_run(Run.read(folder), span)
+    run = cut_run(Run.read(folder), span)
+    report = check_run(run) if images else check_recording(run)
+    refused = report.at(Level.REFUSED)
+    if refused:
+        raise RunFolderError(f"{folder}: {refused[0].line.removeprefix('refused: ')}")
+    for finding in report.findings:
+        said = "Warning" if finding.level is Level.WARNING else "Note"
+        click.echo(f"{said}: {folder}: {finding.line.partition(': ')[2]}", err=True)
+    context = click.get_current_context(silent=True)
+    if context is not None:
+        context.meta.setdefault(CHECKS, []).append(report)
+    return run
+
+
+def checks_made() -> "list[CheckReport]":
+    """Reports of the runs that the command has read."""
+    found: list[CheckReport] = click.get_current_context().meta.get(CHECKS, [])
+    return found

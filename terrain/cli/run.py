@@ -51,7 +51,7 @@ def run(
 
     from terrain.cli.hints import hints
     from terrain.cli.outputs import about, claim_folder
-    from terrain.cli.recordings import read_run
+    from terrain.cli.recordings import checks_made, read_run
     from terrain.cli.results import print_errors, print_sightings, print_written
     from terrain.config import Config
     from terrain.report.page import write_report
@@ -65,7 +65,7 @@ def run(
         settings = replace(settings, filter=replace(settings.filter, detect_jumps=True))
     output = claim_folder(out, reads_images=model is not None and not no_vision)
     result = run_odometry(
-        read_run(run_folder, span),
+        read_run(run_folder, span, images=model is not None and not no_vision),
         model=model,
         parameters=parameters,
         vision=not no_vision,
@@ -84,5 +84,10 @@ def run(
         click.echo(f"Effects on {name}, in every trajectory but the ideal: {', '.join(effects)}")
     print_written(out)
     click.echo(f"Next: open {out / 'report.html'}")
-    if result.learned.terrains and result.has_learned:
+    if any(report.misleads for report in checks_made()):
+        click.echo(
+            f"learned.toml is not recommended: the recording has warnings (terrain-odometry check "
+            f"{run_folder})"
+        )
+    elif result.learned.terrains and result.has_learned:
         click.echo(f"Next time: --parameters {out / 'learned.toml'} starts from what was learned")
