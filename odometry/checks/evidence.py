@@ -14,6 +14,7 @@ from odometry.checks.spikes import without_spikes
 from odometry.run import Run
 
 MOVING = 0.1  # share of the ordinary fastest speed above which the robot moves
+MOST_TURN_RAD = 2.5  # between two poses, from which whole turns may be lost
 DEGREES_RAD_S = 7.0  # no robot turns faster: the gyroscope is in degrees per second
 MOST_OUTLIERS = 0.3  # share of the poses: where more are far from the others, none can be left out
 CLEARLY = 0.3  # difference of concentrations or squared correlations that decides
@@ -237,21 +238,28 @@ class Evidence:
         return relation(m.gyroscope_rad, m.difference_m, m.lasts_s)
 
     @cached_property
+    def pose_turn_rad(self) -> FloatArray:
+        """Measured turn (K,), NaN where the robot may have turned by more than half a turn."""
+        by_gyroscope = self.turn_rad(self.motion)
+        sure = ~(np.abs(by_gyroscope) > MOST_TURN_RAD)
+        return np.asarray(np.where(sure, self.motion.turn_rad, np.nan))
+
+    @cached_property
     def pose_turn_by_treads(self) -> Relation | None:
         """Measured turn from the travel of the left and of the right tread."""
         m = self.motion
-        return relation(m.turn_rad, m.left_m, m.right_m)
+        return relation(self.pose_turn_rad, m.left_m, m.right_m)
 
     @cached_property
     def pose_turn_by_difference(self) -> Relation | None:
         """Measured turn from the difference of the treads' travel."""
-        return relation(self.motion.turn_rad, self.motion.difference_m)
+        return relation(self.pose_turn_rad, self.motion.difference_m)
 
     @cached_property
     def pose_turn_by_gyroscope(self) -> Relation | None:
         """Measured turn from that of the gyroscope, and its bias."""
         m = self.motion
-        return relation(m.turn_rad, m.gyroscope_rad, m.lasts_s)
+        return relation(self.pose_turn_rad, m.gyroscope_rad, m.lasts_s)
 
     def run_time_s(self, stamp_s: float) -> float:
         """Time from the first row of odometry.csv."""

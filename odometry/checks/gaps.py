@@ -10,6 +10,7 @@ from odometry.checks.finding import Finding, Level
 from odometry.windows.gaps import odometry_gaps
 
 OFTEN = 20
+FEW = 0.3  # share of the long holds that are gaps: where there are fewer, it is a log of changes
 LONG_S, LONG_PERIODS = 1.0, 20.0  # a hold longer than both may be a gap
 MISSED_M = 0.3  # of motion that the held speeds do not have
 STOOD = 0.3  # share of the motion at the held speed below which the robot stood: the clock was set
@@ -20,9 +21,10 @@ def gaps(evidence: Evidence) -> Iterator[Finding]:
     stamps_s = evidence.stamps_s
     lasts_s = np.diff(stamps_s)
     long = np.flatnonzero(lasts_s > max(LONG_S, LONG_PERIODS * evidence.period_s))
-    if len(long) > OFTEN and float(lasts_s[long].sum()) > 0.2 * evidence.duration_s:
-        yield _bursts(evidence, lasts_s[long])
     found = odometry_gaps(evidence.run)
+    of_changes = len(found) < FEW * len(long)
+    if len(long) > OFTEN and not of_changes:
+        yield _bursts(evidence, lasts_s[long])
     clock = [span for span in found.spans_s if _clock_was_set(evidence, span)]
     lost = [span for span in found.spans_s if not any(span is other for other in clock)]
     if lost:
@@ -31,6 +33,7 @@ def gaps(evidence: Evidence) -> Iterator[Finding]:
             evidence,
             "odometry_gap",
             lost,
+            level=Level.NOTE if of_changes else Level.WARNING,
             reason=reason,
             cause="Rows of odometry.csv are lost: a true gap (the logger or the bus stopped)",
             remedy="Windows do not cross it; cut with --from and --to",
@@ -40,6 +43,7 @@ def gaps(evidence: Evidence) -> Iterator[Finding]:
             evidence,
             "clock_set",
             clock,
+            level=Level.WARNING,
             reason="the robot does not move on meanwhile",
             cause="The clock jumps: it was set ahead while recording (time synchronisation), or "
             "the recording was paused",
@@ -64,6 +68,7 @@ def _finding(
     name: str,
     spans_s: list[FloatArray],
     *,
+    level: Level,
     reason: str,
     cause: str,
     remedy: str,
@@ -72,7 +77,7 @@ def _finding(
     first_s, first_end_s = spans_s[0]
     return Finding(
         name,
-        Level.WARNING,
+        level,
         f"odometry.csv has no rows for {whole_s:.1f} s in {len(spans_s)} places (first for "
         f"{first_end_s - first_s:.2f} s at {evidence.run_time_s(first_s):.1f} s): {reason}",
         cause,

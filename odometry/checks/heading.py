@@ -10,6 +10,7 @@ from odometry.checks.motion import Motion
 
 FAR = 0.3  # share of the usual longest distance from which the course of a window is known
 STRAIGHT_RAD = (0.3, 0.6, 1.0)  # windows that turn less have a course; the first with enough
+ON_THE_SPOT = 0.15  # share of the tread travel that is common: below, the robot has no course
 LEAST_WINDOWS = 10
 CONSISTENT = 0.8  # concentration from which yaw and course belong together
 
@@ -72,6 +73,9 @@ def _far_and_straight(motion: Motion, turn_rad: FloatArray) -> BoolArray | None:
     if known.sum() < LEAST_WINDOWS:
         return None
     far = known & (distance > FAR * np.quantile(distance[known], 0.95))
+    faster = np.maximum(np.abs(motion.left_m), np.abs(motion.right_m))
+    if np.nansum(np.abs(motion.mean_m[far])) < ON_THE_SPOT * np.nansum(faster[far]):
+        return None
     for limit in STRAIGHT_RAD:
         chosen = far & ~(np.abs(turn_rad) > limit)
         if chosen.sum() >= LEAST_WINDOWS * (1.5 if limit < STRAIGHT_RAD[-1] else 1.0):

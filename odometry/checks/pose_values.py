@@ -72,7 +72,7 @@ def _frame(evidence: Evidence, positions: FloatArray) -> Iterator[Finding]:
 
 def _coarse(positions: FloatArray) -> Iterator[Finding]:
     steps = [step for column in positions.T if (step := _grid(column)) is not None]
-    if steps and max(steps) > COARSE_M:
+    if len(steps) == 2 and max(steps) > COARSE_M:
         yield _finding(
             "coarse_positions",
             f"positions come in steps of {max(steps):.3g} m",
@@ -102,6 +102,8 @@ def _interpolated(stamps_s: FloatArray, positions: FloatArray) -> Iterator[Findi
     if moving.sum() < 20:
         return
     change = np.hypot(*np.diff(velocity, axis=0).T)[moving]
+    if np.quantile(change, 0.98) < 0.05 * np.median(speed):
+        return  # a steady drive on a straight line: poses between two others say nothing more
     share = float(np.mean(change < 1e-3 * speed[1:][moving]))
     if share > INTERPOLATED:
         yield Finding(

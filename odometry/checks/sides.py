@@ -84,7 +84,7 @@ def _offset(evidence: Evidence) -> Iterator[Finding]:
     m = evidence.motion
     if _reads_zero(evidence) or not _turns_both_ways(m):
         return
-    turn = relation(m.turn_rad, m.left_m, m.right_m, m.lasts_s)
+    turn = relation(evidence.pose_turn_rad, m.left_m, m.right_m, m.lasts_s)
     if turn is None or not turn.certain(2, TIMES) or turn.explained < HELD:
         return
     offset = float(turn.coefficients[2] / np.mean(np.abs(turn.coefficients[:2])))

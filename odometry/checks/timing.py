@@ -16,6 +16,8 @@ CERTAIN = 4.0  # standard deviations
 MOST_LAG_S = 2.0
 CLOCK = 0.03  # relative difference of clocks that is searched for
 LEAST_DRIFT_S = 0.2  # over the recording
+LEAST_DRIFT = 1e-3  # relative: quartz clocks differ by less
+OF_PERIOD = 0.25  # of the pose period, by which interpolated poses may seem late
 
 
 def timing(evidence: Evidence) -> Iterator[Finding]:
@@ -26,13 +28,17 @@ def timing(evidence: Evidence) -> Iterator[Finding]:
         for late, early in (("pose", "gyroscope"), ("pose", "treads"), ("treads", "gyroscope"))
         if late in signals
         and early in signals
-        and (lag := _lag(evidence, signals[late], signals[early])) is not None
+        and (lag := _lag(evidence, signals, late, early)) is not None
     }
     drifting = _drifting(evidence, lags)
     if drifting:
         yield from _clocks(evidence, drifting)
         return
-    late = {pair: lag for pair, lag in lags.items() if _is_late(lag)}
+    late = {
+        pair: lag
+        for pair, lag in lags.items()
+        if _is_late(lag, OF_PERIOD * _pose_period_s(evidence) * ("pose" in pair))
+    }
     yield from _late(lags, late)
 
 
@@ -56,12 +62,19 @@ def _between(at_s: FloatArray, stamps_s: FloatArray, heading: FloatArray) -> Flo
     return np.asarray(np.interp(at_s, stamps_s, heading, left=np.nan, right=np.nan))
 
 
-def _lag(evidence: Evidence, late: Signal, early: Signal) -> Lag | None:
+def _pose_period_s(evidence: Evidence) -> float:
+    if evidence.run.pose is None or len(evidence.run.pose) < 2:
+        return 0.0
+    return float(np.median(np.diff(evidence.run.pose.stamps_s)))
+
+
+def _lag(
+    evidence: Evidence, signals: dict[str, Signal], late_name: str, early_name: str
+) -> Lag | None:
     start_s, end_s = float(evidence.stamps_s[0]), float(evidence.stamps_s[-1])
-    period_s = 0.0
-    if evidence.run.pose is not None and len(evidence.run.pose) > 1:
-        period_s = float(np.median(np.diff(evidence.run.pose.stamps_s)))
+    period_s = _pose_period_s(evidence) if "pose" in (late_name, early_name) else 0.0
     width_s = max(0.5, 2 * period_s, 2 * evidence.period_s)
+    late, early = signals[late_name], signals[early_name]
     found = lag_between(late, early, (start_s, end_s), width_s, MOST_LAG_S)
     if found is not None and found.pieces >= 5:
         return found
@@ -90,11 +103,14 @@ def _drifts(evidence: Evidence, lag: Lag) -> bool:
         lag.pieces >= 5
         and abs(lag.drift) > CERTAIN * lag.drift_sigma
         and abs(lag.drift) * evidence.duration_s > LEAST_DRIFT_S
+        and abs(lag.drift) > LEAST_DRIFT
     )
 
 
-def _is_late(lag: Lag) -> bool:
-    return abs(lag.seconds) > LEAST_LAG_S and abs(lag.seconds) > CERTAIN * lag.sigma_s
+def _is_late(lag: Lag, allowed_s: float) -> bool:
+    return (
+        abs(lag.seconds) > max(LEAST_LAG_S, allowed_s) and abs(lag.seconds) > CERTAIN * lag.sigma_s
+    )
 
 
 def _clocks(evidence: Evidence, drifting: dict[tuple[str, str], Lag]) -> Iterator[Finding]:

@@ -116,7 +116,7 @@ def _targets(evidence: Evidence) -> Iterator[tuple[Motion, FloatArray]]:
     if evidence.yaw_rate is not None:
         yield evidence.uniform, evidence.uniform.gyroscope_rad
     if evidence.yaw_measured:
-        yield evidence.motion, evidence.motion.turn_rad
+        yield evidence.motion, evidence.pose_turn_rad
         yield evidence.motion, evidence.forward_m
 
 
