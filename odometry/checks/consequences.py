@@ -24,7 +24,10 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
         {"gyroscope_unit", "track_width", "pose_late", "yaw_is_course", "yaw_jumps"}
     ),
     "noisy_positions": POSES | YAW | {"tread_unit", "yaw_jumps", "far_sensor", "pose_outliers"},
-    "treads_are_twist": TREADS | POSES | {"treads_unequal", "tread_left_reversed"},
+    "treads_are_twist": TREADS
+    | POSES
+    | {"treads_unequal", "tread_left_reversed", "treads_swapped", "treads_both_reversed"}
+    | {"far_sensor", "tread_right_reversed", "treads_unrelated", "yaw_backwards"},
     "treads_unequal": frozenset({"pose_jumps"}),
     "treads_are_counters": TREADS
     | POSES
@@ -66,7 +69,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "tread_unit": frozenset({"track_width", "slip_in_turns", "slip"}),
     "slip": frozenset({"pose_late", "treads_late"}),
     "slip_in_turns": frozenset({"treads_late"}),
-    "frozen_poses": frozenset({"pose_jumps", "pose_late"}),
+    "frozen_poses": frozenset({"pose_jumps", "pose_late", "yaw_jumps", "slip_episodes"}),
     "coarse_speeds": frozenset({"stuck_encoder"}),
 }
 

@@ -50,7 +50,7 @@ def _frozen(
     spans = constant_spans(stamps_s, positions, max(FROZEN_S, 3 * period_s))
     driven_m = np.interp(spans, stamps_s, travel_m)
     moved_m = driven_m[:, 1] - driven_m[:, 0] if len(spans) else np.empty(0)
-    odd = moved_m > 0.3 * evidence.fastest_m_s * (spans[:, 1] - spans[:, 0])
+    odd = moved_m > 0.15 * evidence.fastest_m_s * (spans[:, 1] - spans[:, 0])
     spans, moved_m = spans[odd], moved_m[odd]
     if not len(spans):
         return

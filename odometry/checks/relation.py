@@ -63,16 +63,14 @@ def relation(target: FloatArray, *columns: FloatArray) -> Relation | None:
     measured = np.isfinite(target) & np.isfinite(design).all(axis=1)
     if measured.sum() < LEAST_WINDOWS or np.linalg.matrix_rank(design[measured]) < len(columns):
         return None
-    kept = measured.copy()
-    coefficients: FloatArray = np.zeros(len(columns))
+    coefficients, kept = _least_absolute(design, target, measured), measured
     for _ in range(ROUNDS):
-        coefficients = np.asarray(np.linalg.lstsq(design[kept], target[kept], rcond=None)[0], float)
         residuals = target - design @ coefficients
         scale = 1.4826 * np.median(np.abs(residuals[measured]))
         before, kept = kept, measured & (np.abs(residuals) <= CUTOFF * scale + 1e-12)
         if kept.sum() < LEAST_WINDOWS or np.linalg.matrix_rank(design[kept]) < len(columns):
             kept = before
-            break
+        coefficients = _least_squares(design[kept], target[kept])
         if (kept == before).all():
             break
     residuals = target - design @ coefficients
@@ -88,6 +86,21 @@ def relation(target: FloatArray, *columns: FloatArray) -> Relation | None:
         residuals,
         1 - float(np.sum(residuals[measured] ** 2) / max(np.sum(target[measured] ** 2), 1e-300)),
     )
+
+
+def _least_squares(design: FloatArray, target: FloatArray) -> FloatArray:
+    return np.asarray(np.linalg.lstsq(design, target, rcond=None)[0], dtype=np.float64)
+
+
+def _least_absolute(design: FloatArray, target: FloatArray, measured: BoolArray) -> FloatArray:
+    """A start that a third of outliers does not move: least absolute residuals, by weights."""
+    design, target = design[measured], target[measured]
+    coefficients = _least_squares(design, target)
+    for _ in range(ROUNDS):
+        away = np.abs(target - design @ coefficients)
+        weights = 1 / np.sqrt(np.maximum(away, 1e-3 * np.mean(away) + 1e-12))
+        coefficients = _least_squares(design * weights[:, None], target * weights)
+    return coefficients
 
 
 def _correlation(a: FloatArray, b: FloatArray) -> float:

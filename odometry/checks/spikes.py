@@ -16,8 +16,9 @@ def spikes(values: FloatArray) -> BoolArray:
     """
     if len(values) < 10:
         return np.zeros(len(values), dtype=np.bool_)
-    usual_step = np.quantile(np.abs(np.diff(values)), 0.99)
-    fastest = np.quantile(np.abs(values), 0.99)
+    ordinary = min(0.99, 1 - 2 * LONGEST / len(values))  # one spike is not to be ordinary
+    usual_step = np.quantile(np.abs(np.diff(values)), ordinary)
+    fastest = np.quantile(np.abs(values), ordinary)
     least = max(NEIGHBOURS * float(usual_step), OF_FASTEST * float(fastest), 1e-9)
     found = np.zeros(len(values), dtype=np.bool_)
     for length in range(1, LONGEST + 1):

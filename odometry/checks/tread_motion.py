@@ -53,6 +53,8 @@ def _contradicted(evidence: Evidence, span: FloatArray, side: int) -> bool:
     """
     begin_s, end_s = span
     rows = within(evidence.stamps_s, span[None])
+    if rows.sum() * evidence.period_s < 0.5 * (end_s - begin_s):
+        return False  # a gap, or one long hold
     if np.ptp(evidence.speeds_m_s[rows, 1 - side]) < OTHER_MOVES * evidence.fastest_m_s:
         return False
     for motion, target in _targets(evidence):

@@ -10,9 +10,9 @@ from odometry.checks.finding import Finding, Level
 from odometry.checks.spikes import spikes
 
 COARSE = 0.1  # a step of the readings as a share of the ordinary fastest speed
-LEAST_CHANGES = 30  # of a tread speed, and as a share of the rows: else it is a held command
+LEAST_CHANGES = 15  # of a tread speed, and as a share of the rows: else it is a held command
 DROPPED = 0.001  # share of samples that are lost, from which it is a warning
-CHANGING = 0.02
+CHANGING = 0.005
 SATURATED = 0.05  # share of rows at the very largest value
 
 
@@ -76,7 +76,7 @@ def _step(values: FloatArray) -> float | None:
     counts = changes / step
     single = float(np.mean(np.abs(counts - 1) < 0.05))
     whole = float(np.mean(np.abs(counts - np.round(counts)) < 0.05 + 0.01 * counts))
-    return step if whole > 0.95 and single > 0.2 else None
+    return step if whole > 0.95 and single > 0.1 else None
 
 
 def _saturated(evidence: Evidence) -> Iterator[Finding]:

@@ -66,6 +66,16 @@ CAUSES = (
         "Measure it, in metres",
     ),
     (
+        r"\[sensors\] pose",
+        "The place of the sensor is in mm or cm, not metres",
+        "Write [sensors] pose in metres, in the robot frame",
+    ),
+    (
+        r"\[sensors\] imu",
+        "The attitude of the sensor is in degrees, not radians",
+        "Write [sensors] imu as roll, pitch and yaw in radians",
+    ),
+    (
         r"is not a file in|is absolute|outside",
         "Image files are missing, were moved, or are named by a path of another computer",
         "Name images by paths inside the run folder",

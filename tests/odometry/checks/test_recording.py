@@ -1,0 +1,133 @@
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from odometry.checks.catalogue import CATALOGUE
+from odometry.checks.finding import Level
+from odometry.checks.recording import check_recording
+from odometry.run import Run
+from tests.odometry.checks.faulty import FAULTS, gyroscope, put, treads
+
+RECORDINGS = ("warthog_grass_20240729_1404", "warthog_grass_20240729_1446")
+ROOT = Path(__file__).parents[3]
+SIDES = ("tread_left_reversed", "tread_right_reversed")  # made from the name of the side
+CLEAN = (
+    *("warthog_grass_20240729_1404", "warthog_grass_20240729_1446", "warthog_grass_20240808_1556"),
+    *("husky_tile_20231212_1616_s00", "marmotte_boreal_20240125_1215_s00"),
+    *("marmotte_boreal_20240125_1215_s02", "marmotte_boreal_20240125_1215_s04"),
+)
+
+
+@pytest.fixture(scope="module")
+def recording(shared_data):
+    read = {}
+
+    def of(name):
+        if name not in read:
+            read[name] = Run.read(shared_data / "motion" / name)
+        return read[name]
+
+    return of
+
+
+@pytest.mark.parametrize("name", CLEAN)
+def test_a_clean_recording_has_no_warning(recording, name):
+    report = check_recording(recording(name))
+    assert not report.misleads, [finding.line for finding in report.findings]
+
+
+@pytest.mark.parametrize("name", RECORDINGS)
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_fault_is_named_first(recording, fault, name):
+    report = check_recording(FAULTS[fault](recording(name)))
+    assert report.misleads
+    assert report.findings[0].name == fault, [finding.line for finding in report.findings]
+
+
+def test_every_finding_has_a_row_in_the_catalogue():
+    """Names are the literals that stand alone on a line where a Finding is made."""
+    assert set(FAULTS) <= set(CATALOGUE)
+    files = [file for file in (ROOT / "odometry/checks").glob("*.py") if file.stem != "catalogue"]
+    code = "\n".join(file.read_text(encoding="utf-8") for file in files)
+    assert [name for name in CATALOGUE if f'"{name}"' not in code and name not in SIDES] == []
+    made = re.findall(r'(?:Finding|_finding|_refused|_imu)\(\s*"([a-z_]+)"', code)
+    assert set(made) - set(CATALOGUE) == set()
+    assert len(made) > 50
+
+
+def test_a_gyroscope_bias_is_a_note(recording):
+    run = gyroscope(recording("husky_tile_20231212_1616_s00"), lambda rate: rate + 0.03)
+    report = check_recording(run)
+    (bias,) = (finding for finding in report.findings if finding.name == "gyroscope_bias")
+    assert (bias.level, report.misleads) == (Level.NOTE, False)
+    assert "+0.014" in bias.seen  # -0.0157 rad/s are in the recording
+
+
+def test_a_delay_is_measured_with_its_uncertainty(recording):
+    run = recording("husky_tile_20231212_1616_s00")
+    before, after = (
+        check_recording(put(run, "pose", t=run.pose["t"] + shift)) for shift in (0.3, 0.5)
+    )
+    found = [report.findings[0].seen for report in (before, after)]
+    lags = [float(words.split(" is ")[1].split(" +- ")[0]) for words in found]
+    assert lags[1] - lags[0] == pytest.approx(0.2, abs=0.01)
+
+
+def test_without_poses_what_cannot_be_told_is_said_so(recording):
+    run = replace(recording(RECORDINGS[0]), pose=None)
+    report = check_recording(treads(run, lambda left, right: (right, left)))
+    assert report.findings[0].name == "treads_or_gyroscope_reversed"
+    assert "cannot be distinguished" in report.findings[0].cause
+    assert any("no measured poses" in reason for reason in report.skipped)
+
+
+def test_a_log_of_changes_is_clean(recording):
+    run = recording(RECORDINGS[0])
+    speeds = run.odometry.stack("v_left", "v_right")
+    kept = np.append(True, (np.diff(speeds, axis=0) != 0).any(axis=1))
+    columns = {name: column[kept] for name, column in run.odometry.columns.items()}
+    table = replace(run.odometry, columns=columns, lines=run.odometry.lines[kept])
+    assert kept.mean() < 0.9
+    assert not check_recording(replace(run, odometry=table)).misleads
+
+
+def test_a_repeated_row_is_a_note(recording, tmp_path):
+    folder = recording(RECORDINGS[0]).folder
+    for file in ("run.toml", "odometry.csv", "pose.csv"):
+        (tmp_path / file).write_text((folder / file).read_text())
+    lines = (tmp_path / "odometry.csv").read_text().splitlines()
+    lines.insert(101, lines[100])
+    (tmp_path / "odometry.csv").write_text("\n".join(lines) + "\n")
+    report = check_recording(tmp_path)
+    (repeated,) = report.findings
+    assert (repeated.name, repeated.level) == ("repeated_stamps", Level.NOTE)
+    assert "row 102" in repeated.seen
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "words"),
+    [
+        ("odometry.csv", "t;v_left;v_right\n0;1;1\n1;1;1\n", "semicolons"),
+        ("odometry.csv", "0.1,1.5,1.5\n0.2,1.5,1.5\n", "header"),
+        ("odometry.csv", "time,left,right\n0,1,1\n1,1,1\n", "other names"),
+        ("odometry.csv", "t,v_left,v_right\n0,1,1\n2,1,1\n1,1,1\n", "order of time"),
+        ("odometry.csv", "t,v_left,v_right\n0,1,1\n1,,1\n", "empty"),
+        ("odometry.csv", "t,v_left,v_right\n2024-01-01T10:00:00,1,1\n", "dates"),
+        ("run.toml", "[robot]\ntrack_width = -1\n", "negative"),
+    ],
+)
+def test_a_folder_that_cannot_be_read_is_refused_with_its_cause(make_run, file, text, words):
+    folder = make_run()
+    (folder / file).write_text(text)
+    (finding,) = check_recording(folder).findings
+    assert finding.level is Level.REFUSED
+    assert words in finding.cause
+
+
+def test_a_short_recording_is_not_judged(make_run):
+    report = check_recording(make_run())
+    assert report.findings == ()
+    assert report.skipped
