@@ -10,6 +10,7 @@ from odometry.checks.finding import Finding, Level
 from odometry.windows.gaps import odometry_gaps
 
 OFTEN = 20
+MOST = 0.6  # share of the long holds that are gaps, from which rows come in bursts
 FEW = 0.3  # share of the long holds that are gaps: where there are fewer, it is a log of changes
 LONG_S, LONG_PERIODS = 1.0, 20.0  # a hold longer than both may be a gap
 MISSED_M = 0.3  # of motion that the held speeds do not have
@@ -23,7 +24,7 @@ def gaps(evidence: Evidence) -> Iterator[Finding]:
     long = np.flatnonzero(lasts_s > max(LONG_S, LONG_PERIODS * evidence.period_s))
     found = odometry_gaps(evidence.run)
     of_changes = len(found) < FEW * len(long)
-    if len(long) > OFTEN and not of_changes:
+    if len(long) > OFTEN and len(found) > MOST * len(long):
         yield _bursts(evidence, lasts_s[long])
     clock = [span for span in found.spans_s if _clock_was_set(evidence, span)]
     lost = [span for span in found.spans_s if not any(span is other for other in clock)]

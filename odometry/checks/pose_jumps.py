@@ -12,7 +12,7 @@ from odometry.checks.spans import runs_of, within
 
 LEAST_JUMP_M = 0.4
 JUMP_TIMES = 7.0  # the usual change of the difference to dead reckoning over the same time
-LEAST_YAW_JUMP_RAD = np.radians(20)
+LEAST_YAW_JUMP_RAD = np.radians(25)
 JITTER_S = 0.4  # by which poses that came in bursts were late
 LOST_S = 0.3  # around a jump, in which treads that read zero are its cause
 NEAR_S, FAR_S = 0.25, 1.25  # of a jump: between them its two sides are compared

@@ -91,12 +91,12 @@ def _offset(evidence: Evidence) -> Iterator[Finding]:
     if abs(offset) < LEAST_OFFSET_M_S:
         return
     forward = relation(evidence.forward_m, m.left_m, m.right_m, m.lasts_s)
-    along = 0.0
-    if forward is not None and forward.certain(2, 3.0):
-        along = float(forward.coefficients[2])
-    tread = "The left or the right tread has"
-    if along:
-        tread = f"The {'left' if (along < 0) == (offset > 0) else 'right'} tread has"
+    if forward is None or not forward.certain(2, 3.0):
+        return  # a turn alone may as well be slip that differs from side to side
+    along = float(forward.coefficients[2])
+    if not 0.5 < abs(along / (forward.coefficients[:2].mean() * offset)) < 2.0:
+        return
+    tread = f"The {'left' if (along < 0) == (offset > 0) else 'right'} tread has"
     yield Finding(
         "tread_offset",
         Level.WARNING,

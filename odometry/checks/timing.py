@@ -102,7 +102,7 @@ def _drifts(evidence: Evidence, lag: Lag) -> bool:
     return (
         lag.pieces >= 5
         and abs(lag.drift) > CERTAIN * lag.drift_sigma
-        and abs(lag.drift) * evidence.duration_s > LEAST_DRIFT_S
+        and abs(lag.drift) * evidence.duration_s > max(LEAST_DRIFT_S, _pose_period_s(evidence))
         and abs(lag.drift) > LEAST_DRIFT
     )
 

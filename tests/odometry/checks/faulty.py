@@ -57,7 +57,7 @@ def jump(run, size):
 
 def frozen(run):
     count = len(run.pose)
-    begin, end = int(0.5 * count), int(0.7 * count)
+    begin, end = int(0.2 * count), int(0.4 * count)
     columns = {name: run.pose[name].copy() for name in ("x", "y", "yaw")}
     for column in columns.values():
         column[begin:end] = column[begin]
