@@ -10,7 +10,7 @@ from odometry.checks.finding import Finding, Level
 from odometry.checks.lag import Lag, Signal, lag_between
 
 LEAST_LAG_S = (
-    0.13  # good lidar poses were found up to 0.11 s early after constant delays were removed
+    0.15  # good lidar poses were found up to 0.11 s early after constant delays were removed
 )
 CERTAIN = 4.0  # standard deviations
 MOST_LAG_S = 2.0
