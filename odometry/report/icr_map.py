@@ -126,7 +126,7 @@ def _draw_robot(axes: Axes, robot: Robot) -> None:
     axes.plot(0, 0, "+", color="#777777", markersize=7, zorder=1)
 
 
-def _draw_box(axes: Axes, y: float, size_m: tuple[float, float], **look: str) -> None:
+def _draw_box(axes: Axes, y: float, size_m: tuple[float, float], **look: Any) -> None:
     """A rectangle around (x = 0, y), of this width and length."""
     corner = (y - size_m[0] / 2, -size_m[1] / 2)
     axes.add_patch(Rectangle(corner, *size_m, linewidth=0.8, zorder=0.8, **look))
