@@ -23,7 +23,7 @@ def test_a_set_that_says_which_verb_made_it_is_that_verbs_own(tmp_path, made):
     claim(file)
     write_set(file, comment=made.to_comment())
     claim(file, "run")
-    with pytest.raises(OutputError, match="`identify` did not make it; choose another --out"):
+    with pytest.raises(OutputError, match="`identify` did not make it; choose another file"):
         claim(file)
 
 
