@@ -105,6 +105,7 @@ def plot_icrs(
     frame = frame_of(measured.icrs, robot, fitted)
     axes.set_aspect("equal", adjustable="box")
     axes.set(xlim=(frame.left, frame.right), ylim=(frame.back, frame.front))
+    axes.set_axisbelow(True)
     axes.grid(visible=True)
     axes.set(xlabel="y, to the left [m]", ylabel="x, forward [m]")
     return frame

@@ -69,9 +69,10 @@ def test_medians_of_random_commands_are_true_and_slip_parts_the_sides(tmp_path):
     assert right.icrs[0] > TRUE_ICRS[0] + 0.003
 
 
-def test_standard_deviations_are_those_of_noise(tmp_path):
+@pytest.mark.parametrize("speeds", [(0.1, 0.7), (-0.9, 1.1)], ids=["curves", "spins"])
+def test_standard_deviations_are_those_of_noise(tmp_path, speeds):
     """Poses with noise, steady speeds: 95 % of the errors lie within 1.96 standard deviations."""
-    run = noisy(drive(tmp_path / "run", held(*[(0.1, 0.7), (0.8, 0.0)] * 30)), seed=2)
+    run = noisy(drive(tmp_path / "run", held(*[speeds, speeds[::-1]] * 30)), seed=2)
     measured = measured_icrs([run], CONFIG, alphas=ALPHAS)
     steady = np.abs(measured.start_s % 5 - 2) < 1.9
     off = (measured.icrs - TRUE_ICRS)[steady, 2] / measured.sigmas_m[steady, 2]
