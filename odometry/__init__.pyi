@@ -10,6 +10,10 @@ from .evaluation.fitness import fitness
 from .evaluation.open_loop import measured_poses, open_loop
 from .evaluation.relative import EvaluationConfig, position_errors, relative_errors
 from .gap.gap import find_gap
+from .geometry.steepest_slope import steepest_slope
+from .icrs.measured import measured_icrs
+from .icrs.medians import icr_medians
+from .icrs.points import icr_covariances, icr_indices, icrs_of_twist, turn_is_told
 from .identification.identify import identify
 from .io.run_folder import write_run_folder
 from .io.tum import read_spatial_tum, read_tum, write_spatial_tum, write_tum
@@ -58,10 +62,15 @@ __all__ = [
     "find_gap",
     "fitness",
     "follow_modes",
+    "icr_covariances",
+    "icr_indices",
+    "icr_medians",
+    "icrs_of_twist",
     "identify",
     "identify_traction_modes",
     "identify_velocity_modes",
     "inputs_of",
+    "measured_icrs",
     "measured_poses",
     "open_loop",
     "position_errors",
@@ -72,6 +81,8 @@ __all__ = [
     "relative_errors",
     "replay",
     "simulate_contact",
+    "steepest_slope",
+    "turn_is_told",
     "write_mode_set",
     "write_parameters",
     "write_run_folder",

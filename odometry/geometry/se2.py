@@ -28,6 +28,25 @@ def exp(displacement: FloatArray) -> FloatArray:
     return _end(along, across, angle, chord * np.cos(half), chord**2 * half)
 
 
+def log(pose: FloatArray) -> FloatArray:
+    """The constant displacement whose `exp` is a pose.
+
+    Parameters
+    ----------
+    pose : (..., 3)
+        Of the end in the body frame at the start; yaw is not wrapped, less than a whole turn.
+
+    Returns
+    -------
+    (..., 3)
+        v_x dt [m], v_y dt [m] and omega dt [rad].
+    """
+    x, y, angle = np.moveaxis(np.asarray(pose, dtype=np.float64), -1, 0)
+    along, across = _rotate(x, y, -angle / 2)  # an arc ends half its angle aside of its start
+    chord = np.sinc(angle / (2 * np.pi))
+    return np.stack([along / chord, across / chord, angle], axis=-1)
+
+
 def compose(first: FloatArray, second: FloatArray) -> FloatArray:
     """The pose `second`, given in the frame of `first`, in the frame of `first`'s parent."""
     first, second = np.asarray(first), np.asarray(second)

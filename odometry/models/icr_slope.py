@@ -6,6 +6,7 @@ from enum import IntEnum
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.geometry.steepest_slope import paper_attitude
 from odometry.models.base import KinematicModel, Linearised, Parameter, Stages
 from odometry.models.icr import (
     ALPHAS,
@@ -133,7 +134,7 @@ def _shifted(values: FloatArray, inputs: Inputs) -> _Shifted:
     effective = np.broadcast_to(values[..., ALPHAS] * inputs.tread_speeds_m_s, (*stack, 2))
     forward = effective.mean(axis=-1)
     spare = np.maximum(values[..., Column.V_MAX] - np.abs(forward), 0)
-    roll, pitch = _paper_attitude(inputs)
+    roll, pitch = paper_attitude(inputs.roll_rad, inputs.pitch_rad)
     direction = np.sign(effective[..., 1] - effective[..., 0])  # eq. 8
     ring = direction * pitch  # eq. 5-6; y = -x_ICR
     lobe = direction * np.sign(pitch) * np.maximum(np.abs(pitch) - np.abs(roll), 0)  # eq. 9-10
@@ -154,16 +155,6 @@ def _shifted(values: FloatArray, inputs: Inputs) -> _Shifted:
 
 def _twist(shifted: _Shifted) -> FloatArray:
     return icr_twist(shifted.limited, shifted.effective_speeds)
-
-
-def _paper_attitude(inputs: Inputs) -> tuple[FloatArray, FloatArray]:
-    """Roll and pitch of Martinez 2024: about Y forward, then X right; nose up is positive.
-
-    Exact: both rotations give the body axes the same heights.
-    """
-    sine = np.cos(inputs.pitch_rad) * np.sin(inputs.roll_rad)
-    cosine = np.cos(inputs.pitch_rad) * np.cos(inputs.roll_rad)
-    return np.arcsin(sine), np.arctan2(-np.sin(inputs.pitch_rad), cosine)
 
 
 def _effective_speed_jacobian(shifted: _Shifted) -> FloatArray:

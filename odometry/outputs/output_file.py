@@ -11,6 +11,7 @@ from odometry.outputs.inputs import RUN_FILES
 from odometry.outputs.leftovers import remove_temporaries
 from odometry.outputs.made import MADE_BY
 
+HEAD_BYTES = 4096  # of a PNG file, with its texts
 SET_SOURCES_0_4 = {
     "identify": "identified by terrain-odometry",
     "identify-modes": "identify-modes of terrain-odometry",
@@ -39,7 +40,7 @@ def claim_file(out: Path, is_own: Callable[[Path], bool], verb: str) -> None:
         raise OutputError(f"{out}: {out.parent} is a run folder, and {out.name} a file of its own")
     if (out.exists() or out.is_symlink()) and not (out.is_file() and is_own(out)):
         raise OutputError(
-            f"{out} is there already, and `{verb}` did not make it; choose another --out, or "
+            f"{out} is there already, and `{verb}` did not make it; choose another file, or "
             "delete it"
         )
     remove_temporaries(out.parent, lambda name: name == out.name)
@@ -55,6 +56,24 @@ def is_set_of(verb: str) -> Callable[[Path], bool]:
         except (OdometryError, OSError):
             return False
         return head[-1] == f"# {MADE_BY}{verb}" or _is_of_version_0_4(content, verb)
+
+    return is_own
+
+
+def picture_source(verb: str) -> str:
+    """What a picture that `verb` made says of itself: `save_figure` writes it."""
+    return f"{MADE_BY}{verb}\n"
+
+
+def is_picture_of(verb: str) -> Callable[[Path], bool]:
+    """Whether a PNG file says in its texts that `verb` made it."""
+
+    def is_own(file: Path) -> bool:
+        try:
+            with file.open("rb") as opened:
+                return picture_source(verb).encode() in opened.read(HEAD_BYTES)
+        except OSError:
+            return False
 
     return is_own
 

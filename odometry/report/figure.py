@@ -22,7 +22,12 @@ _STYLE = {
 
 
 def save_figure(
-    file: Path, size_in: tuple[float, float], draw: Callable[[Figure], None], dpi: int = 150
+    file: Path,
+    size_in: tuple[float, float],
+    draw: Callable[[Figure], None],
+    dpi: int = 150,
+    *,
+    source: str | None = None,
 ) -> Path:
     """Make a figure, let `draw` fill it, and write it.
 
@@ -35,6 +40,8 @@ def save_figure(
     draw : callable
         Called once with the empty figure. Settings of the user's own matplotlib do not reach it.
     dpi : int
+    source : str or None
+        What made it, kept as text in the file.
 
     Returns
     -------
@@ -46,5 +53,5 @@ def save_figure(
         FigureCanvasAgg(figure)
         draw(figure)
         with atomic_write(file) as part:
-            figure.savefig(part, dpi=dpi, metadata={"Software": None})
+            figure.savefig(part, dpi=dpi, metadata={"Software": None, "Source": source})
     return file

@@ -35,6 +35,12 @@ if TYPE_CHECKING:
     type=click.Path(dir_okay=False, path_type=Path),
     help="Parameter set to write (TOML).",
 )
+@click.option(
+    "--picture",
+    metavar="FILE.png",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Draw the ICRs of every turn over the robot, beside those of the model.",
+)
 @window_options
 @span_options
 @click.option("--fix", multiple=True, metavar="NAME=VALUE", help="Hold a parameter; repeat.")
@@ -73,6 +79,7 @@ def identify(
     *,
     model: str,
     out: Path,
+    picture: Path | None,
     windows: "WindowConfig",
     fix: tuple[str, ...],
     free: tuple[str, ...],
@@ -106,8 +113,11 @@ def identify(
         raise click.UsageError(f"--out {out}: expected a name that ends in .toml")
     made = claim_file(out, is_set_of("identify"))
     solver_config = SolverConfig(loss=loss, starts=starts, seed=seed)
+    if picture is not None:
+        _claim_picture(picture)
+    runs = read_runs(folders, span)
     found = identify_runs(
-        read_runs(folders, span),
+        runs,
         read_parameters(model) if Path(model).suffix == ".toml" else model,
         fixed=assignments(fix),
         released=free,
@@ -124,6 +134,12 @@ def identify(
     identified = found.to_parameter_set()
     write_parameters(out, identified, made.to_comment())
     click.echo(f"Wrote {out}")
+    if picture is not None:
+        from odometry.outputs.output_file import picture_source
+        from odometry.report.icr_picture import save_identified_icrs
+
+        save_identified_icrs(picture, runs, found, terrain, source=picture_source("identify"))
+        click.echo(f"Wrote {picture}")
     named = f" --terrain {terrain}" if terrain else ""
     click.echo(
         f"Next, on a run that is not among these: terrain-odometry compare RUN{named} "
@@ -131,6 +147,14 @@ def identify(
     )
     if all(table.model in ICR_FORM_MODELS for table in identified.terrains.values()):
         click.echo(f"or:   terrain-odometry run RUN --parameters {out} --out results")
+
+
+def _claim_picture(picture: Path) -> None:
+    from odometry.outputs.output_file import claim_file, is_picture_of
+
+    if picture.suffix != ".png":
+        raise click.UsageError(f"--picture {picture}: expected a name that ends in .png")
+    claim_file(picture, is_picture_of("identify"), "identify")
 
 
 def _print_terrain(name: str, found: "Identified") -> None:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from odometry.outputs.made import Made
     from odometry.outputs.output_folder import OutputFolder
 
-OUT = "out"  # the option of every command that writes
+OUTPUTS = ("out", "picture")  # options that name what a command writes
 
 
 def claim_folder(out: Path, *, reads_images: bool = False) -> "OutputFolder":
@@ -80,7 +80,7 @@ def made_by(inputs: "list[Input]", *, reads_images: bool = False) -> "Made":
     settings = {
         parameter.name: [value for value in _values(context, parameter) if _path(value) is None]
         for parameter in context.command.params
-        if parameter.name is not None and parameter.name != OUT
+        if parameter.name is not None and parameter.name not in OUTPUTS
     }
     sums = [(i.role, str(i.path), i.sha256(with_images=reads_images)) for i in inputs]
     return Made(_verb(context), _command(context), settings, tuple(sums), installed_packages())
@@ -97,7 +97,7 @@ def _inputs(context: click.Context) -> "list[Input]":
 
     inputs = []
     for parameter in context.command.params:
-        if parameter.name == OUT:
+        if parameter.name in OUTPUTS:
             continue
         for value in _values(context, parameter):
             path = _path(value)
@@ -130,11 +130,11 @@ def _role(parameter: click.Parameter) -> str:
 
 
 def _command(context: click.Context) -> str:
-    """The command as it was given, `--out` left out."""
+    """The command as it was given, outputs left out."""
     words = ["terrain-odometry", _verb(context)]
     for parameter in context.command.params:
         given = context.get_parameter_source(str(parameter.name)) == ParameterSource.COMMANDLINE
-        if given and parameter.name != OUT:
+        if given and parameter.name not in OUTPUTS:
             words += _words(parameter, _values(context, parameter))
     return shlex.join(words)
 

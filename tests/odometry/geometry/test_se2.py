@@ -29,6 +29,13 @@ def test_exp_is_the_matrix_exponential(step):
     np.testing.assert_allclose(matrix(se2.exp(step)), expm(generator), rtol=0, atol=1e-11)
 
 
+@given(displacement)
+def test_log_turns_exp_round(step):
+    step[2] *= 0.85  # within a whole turn
+    atol = 1e-11 / np.abs(np.sinc(step[2] / (2 * np.pi)))
+    np.testing.assert_allclose(se2.log(se2.exp(step)), step, rtol=0, atol=atol)
+
+
 def test_exp_of_a_quarter_turn_to_the_left():
     """A quarter of a circle of radius 2 ends 2 ahead and 2 to the left."""
     np.testing.assert_allclose(

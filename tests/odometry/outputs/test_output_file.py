@@ -3,8 +3,14 @@ import subprocess
 import pytest
 
 from odometry.errors import OutputError
-from odometry.outputs.output_file import claim_file, is_set_of
+from odometry.outputs.output_file import (
+    claim_file,
+    is_picture_of,
+    is_set_of,
+    picture_source,
+)
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
+from odometry.report.figure import save_figure
 
 ICR = {"y_left": 0.3, "y_right": -0.3, "x_icr": 0.0}
 
@@ -23,7 +29,7 @@ def test_a_set_that_says_which_verb_made_it_is_that_verbs_own(tmp_path, made):
     claim(file)
     write_set(file, comment=made.to_comment())
     claim(file, "run")
-    with pytest.raises(OutputError, match="`identify` did not make it; choose another --out"):
+    with pytest.raises(OutputError, match="`identify` did not make it; choose another file"):
         claim(file)
 
 
@@ -72,3 +78,15 @@ def test_what_a_killed_run_left_is_removed(tmp_path):
     left.write_text("half")
     claim(tmp_path / "set.toml")
     assert not left.exists()
+
+
+def test_a_picture_says_which_verb_made_it(tmp_path):
+    file = save_figure(
+        tmp_path / "a.png", (1, 1), lambda _: None, source=picture_source("identify")
+    )
+    claim_file(file, is_picture_of("identify"), "identify")
+    with pytest.raises(OutputError, match="did not make it"):
+        claim_file(file, is_picture_of("ident"), "ident")
+    save_figure(file, (1, 1), lambda _: None)
+    with pytest.raises(OutputError, match="did not make it"):
+        claim_file(file, is_picture_of("identify"), "identify")

@@ -225,3 +225,27 @@ def test_a_file_that_cannot_be_written_is_one_message(command, curvy_run, tmp_pa
     (tmp_path / "file").write_text("")
     answer = command(curvy_run, *SHORT, "--out", tmp_path / "file" / "set.toml")
     assert_refused(command, answer, "Error: ", "file")
+
+
+def test_a_picture_is_drawn_where_asked_and_part_of_no_identity(command, curvy_run, tmp_path):
+    picture = tmp_path / "icrs.png"
+    assert command(curvy_run, *SHORT)[0] == 0
+    without = command.out.read_bytes()
+    for _ in range(2):
+        code, output, _ = command(curvy_run, *SHORT, "--picture", picture)
+        assert code == 0
+        assert f"Wrote {picture}" in output
+    assert command.out.read_bytes() == without
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(("name", "code"), [("photo.png", 1), ("photo.jpg", 2)])
+def test_a_picture_that_cannot_be_written_is_refused_first(
+    command, curvy_run, tmp_path, name, code
+):
+    (tmp_path / name).write_bytes(b"a photograph")
+    found, _, messages = command(curvy_run, *SHORT, "--picture", tmp_path / name)
+    assert found == code
+    assert name in messages
+    assert not command.out.exists()
+    assert (tmp_path / name).read_bytes() == b"a photograph"
