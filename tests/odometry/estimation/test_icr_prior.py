@@ -94,7 +94,7 @@ def test_half_the_uncertainty_of_a_width_is_that_of_each_side(model, values, nam
     [
         ({"k": 0.9, "m": 0.0}, "expected both above 0"),
         ({"k": 0.0, "m": 1.0}, "expected both above 0"),
-        ({"k": 0.9, "m": -1.0}, "m = -1.0, expected a finite number from 0.0"),
+        ({"k": 0.9, "m": -1.0}, "m = -1.0, expected a finite number from 0"),
     ],
 )
 def test_a_traction_mode_without_a_width_is_an_error(mode, expected):
