@@ -72,7 +72,7 @@ def _offset(evidence: Evidence, heading: Heading) -> Iterator[Finding]:
             "yaw_off_by_90",
             seen,
             f"Yaw is off by {round(degrees / 90) * 90:.0f} degrees (another axis is called "
-            "forward, or yaw counts from another axis)",
+            "forward, yaw counts from another axis, or x and y are swapped)",
             f"Add {np.sign(degrees) * np.pi / 2:+.4f} rad to yaw",
         )
     else:

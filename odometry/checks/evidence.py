@@ -163,9 +163,10 @@ class Evidence:
         if not found:
             return None
         plain, reversed_ = found["radians"], found["radians, reversed"]
-        best = max(plain, reversed_, key=lambda heading: heading.concentration)
-        clear = abs(plain.concentration - reversed_.concentration) > CLEARLY
-        return best if best.concentration >= CONSISTENT and clear else None
+        best = plain  # also where the robot drove to and fro along one line, and both readings fit
+        if reversed_.concentration > plain.concentration + CLEARLY:
+            best = reversed_
+        return best if best.concentration >= CONSISTENT else None
 
     @cached_property
     def best_concentration(self) -> float | None:
