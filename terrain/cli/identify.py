@@ -106,7 +106,7 @@ def identify(
     from odometry.identification.profile import with_profiles
     from odometry.outputs.output_file import is_set_of
     from odometry.parameters import read_parameters, write_parameters
-    from terrain.cli.outputs import claim_file
+    from terrain.cli.outputs import claim_file, comment
     from terrain.cli.recordings import read_runs
 
     if out.suffix != ".toml":
@@ -132,7 +132,7 @@ def identify(
         _print_terrain(name, ground)
     found.require_determined()
     identified = found.to_parameter_set()
-    write_parameters(out, identified, made.to_comment())
+    write_parameters(out, identified, comment(made))
     click.echo(f"Wrote {out}")
     if picture is not None:
         from odometry.outputs.output_file import picture_source

@@ -85,7 +85,7 @@ def identify_modes(
     from odometry.modes.mode_set import ModeSet, write_mode_set
     from odometry.modes.traction import TractionModes
     from odometry.outputs.output_file import is_set_of
-    from terrain.cli.outputs import claim_file
+    from terrain.cli.outputs import claim_file, comment
     from terrain.cli.recordings import read_runs
 
     for given, option in ((shared, "--shared"), (common_noise, "--common-noise")):
@@ -118,7 +118,7 @@ def identify_modes(
     names = ", ".join(dict.fromkeys(run.name for run in runs))
     source = f"identify-modes of terrain-odometry{variant}: {names}"
     mode_set = ModeSet(modes, np.full(len(modes.names), dwell), source)
-    write_mode_set(out, mode_set, made.to_comment())
+    write_mode_set(out, mode_set, comment(made))
     click.echo(f"Wrote {out}")
     click.echo(f"Next: terrain-odometry modes RUN --models {out} --out modes")
 

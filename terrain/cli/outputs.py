@@ -72,6 +72,18 @@ def about(made: "Made") -> dict[str, Any]:
     return {"made": made.to_table(), "check": checks}
 
 
+def comment(made: "Made") -> str:
+    """The same as comment lines of TOML, warnings of the check alone."""
+    from odometry.checks.finding import Level
+
+    lines = [
+        f"# check of {report.name}: {' '.join(finding.line.split())}\n"
+        for report in checks_made()
+        for finding in report.at(Level.WARNING)
+    ]
+    return made.to_comment() + "".join(lines)
+
+
 def made_by(inputs: "list[Input]", *, reads_images: bool = False) -> "Made":
     """Verb, command and settings of the command that runs, and the sums of its inputs."""
     from odometry.outputs.made import Made, installed_packages

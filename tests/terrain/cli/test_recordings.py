@@ -1,15 +1,20 @@
 """`--from` and `--to` reach every verb that reads runs, and cut all of them."""
 
 import json
+import shutil
 from importlib import import_module
 from pathlib import Path
 
+import click
 import pytest
 from click.testing import CliRunner
 
+from odometry.checks.finding import CheckReport, Finding, Level
 from odometry.errors import RunFolderError
+from odometry.outputs.made import Made
 from odometry.run_span import Span
-from terrain.cli.recordings import read_runs
+from terrain.cli.outputs import comment
+from terrain.cli.recordings import CHECKS, read_runs
 from terrain.cli.run import run
 
 VERBS = ("run", "identify", "compare", "gap", "identify_modes", "modes")
@@ -47,3 +52,46 @@ def test_nothing_left_is_an_error(curvy_run, tmp_path):
     answer = CliRunner().invoke(run, arguments)
     assert isinstance(answer.exception, RunFolderError)
     assert "the run lasts 12.000 s" in str(answer.exception)
+
+
+def test_what_the_check_warns_of_is_said_and_kept(curvy_run, tmp_path):
+    """One absurd sample: the run goes on, and what was learned is not recommended."""
+    folder = tmp_path / "spiked"
+    shutil.copytree(curvy_run, folder)
+    lines = (folder / "odometry.csv").read_text().splitlines()
+    cells = lines[60].split(",")
+    cells[lines[0].split(",").index("v_left")] = "50"
+    lines[60] = ",".join(cells)
+    (folder / "odometry.csv").write_text("\n".join(lines) + "\n")
+    answer = CliRunner().invoke(run, [str(folder), "--out", str(tmp_path / "out")])
+    assert answer.exit_code == 0, answer.output
+    assert f"Warning: {folder}: " in answer.stderr
+    assert "up to 50 m/s (row 61)" in answer.stderr
+    assert "learned.toml is not recommended" in answer.stdout
+    (report,) = json.loads((tmp_path / "out" / "result.json").read_text())["check"]
+    assert (report["misleads"], report["findings"][0]["name"]) == (True, "absurd_speed")
+
+
+def test_a_refused_run_stops_every_verb(curvy_run, tmp_path):
+    folder = tmp_path / "milliseconds"
+    shutil.copytree(curvy_run, folder)
+    for file in folder.glob("*.csv"):
+        head, *rows = file.read_text().splitlines()
+        cells = [row.split(",", 1) for row in rows]
+        text = [head, *(f"{1e9 * float(stamp):.0f},{rest}" for stamp, rest in cells)]
+        file.write_text("\n".join(text) + "\n")
+    answer = CliRunner().invoke(run, [str(folder), "--out", str(tmp_path / "out")])
+    assert isinstance(answer.exception, RunFolderError)
+    assert "nanoseconds" in str(answer.exception)
+    assert not (tmp_path / "out" / "result.json").exists()
+
+
+def test_a_set_says_what_the_check_warned_of():
+    finding = Finding("slip", Level.WARNING, "seen", "cause", "remedy")
+    note = Finding("epoch_stamps", Level.NOTE, "seen", "cause", "remedy")
+    made = Made("identify", "identify a --model icr", {}, (), {})
+    with click.Context(click.Command("identify")) as context:
+        context.meta[CHECKS] = [CheckReport(Path("a"), (finding, note))]
+        lines = comment(made).splitlines()
+    assert lines[-1] == "# check of a: warning: seen. cause. remedy."
+    assert "\n".join(lines[:-1]) + "\n" == made.to_comment()
