@@ -14,7 +14,6 @@ CATALOGUE: dict[str, str] = {
     "clock_set": "a clock that was set while recording",
     "track_width": "track width far from the width that turns imply",
     "sensor_place": "[sensors] pose in mm",
-    "sensor_attitude": "[sensors] imu in degrees",
     "terrain_names": "two spellings of one terrain",
     # Treads
     "tread_unit": "tread speeds in rad/s, RPM, mm/s, ticks ...",

@@ -68,8 +68,8 @@ class Evidence:
     @cached_property
     def gyroscope_file(self) -> str:
         """The file in which the yaw rate stands."""
-        in_imu = self.run.imu is not None and "gyro_z" in self.run.imu
-        return "imu.csv" if in_imu else "odometry.csv"
+        found = self.run.yaw_rate
+        return "odometry.csv" if found is None else found.file
 
     @cached_property
     def positions_measured(self) -> BoolArray | None:

@@ -26,8 +26,11 @@ def gaps(evidence: Evidence) -> Iterator[Finding]:
     of_changes = len(found) < FEW * len(long)
     if len(long) > OFTEN and len(found) > MOST * len(long):
         yield _bursts(evidence, lasts_s[long])
-    clock = [span for span in found.spans_s if _clock_was_set(evidence, span)]
-    lost = [span for span in found.spans_s if not any(span is other for other in clock)]
+    was_set = [_clock_was_set(evidence, span) for span in found.spans_s]
+    clock, lost = (
+        [span for span, was in zip(found.spans_s, was_set, strict=True) if was is kind]
+        for kind in (True, False)
+    )
     if lost:
         reason = str(found.reasons[0])
         yield _finding(

@@ -167,11 +167,11 @@ def _window(
 
 def _spaced(pose_s: FloatArray, rows: IntArray) -> IntArray:
     """Rows at least WINDOW_S apart."""
-    chosen: list[int] = []
-    for row in rows:
-        if not chosen or pose_s[row] - pose_s[chosen[-1]] >= WINDOW_S - 1e-6:
-            chosen.append(int(row))
-    return np.array(chosen, dtype=np.int64)
+    stamps_s, chosen, place = pose_s[rows], [], 0
+    while place < len(rows):
+        chosen.append(place)
+        place = int(np.searchsorted(stamps_s, stamps_s[place] + WINDOW_S - 1e-6))
+    return np.asarray(rows[chosen], dtype=np.int64)
 
 
 def _held(stamps_s: FloatArray, values: FloatArray) -> Callable[[FloatArray], FloatArray]:

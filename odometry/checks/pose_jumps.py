@@ -15,6 +15,7 @@ JUMP_TIMES = 7.0  # the usual change of the difference to dead reckoning over th
 LEAST_YAW_JUMP_RAD = np.radians(25)
 JITTER_S = 0.4  # by which poses that came in bursts were late
 LOST_S = 0.3  # around a jump, in which treads that read zero are its cause
+BLOCK = 1_000_000  # values whose medians are taken at a time
 NEAR_S, FAR_S = 0.25, 1.25  # of a jump: between them its two sides are compared
 
 
@@ -154,11 +155,18 @@ def _step_sizes(stamps_s: FloatArray, off: FloatArray) -> FloatArray:
         np.searchsorted(stamps_s, stamps_s + shift_s)
         for shift_s in (-far_s, -near_s, near_s, far_s)
     ]
-    found = np.full(len(stamps_s), np.nan)
-    for i in range(len(stamps_s)):
-        a, b, c, d = (int(edge[i]) for edge in edges)
-        if b - a >= 2 and d - c >= 2:
-            found[i] = np.hypot(*(np.median(off[c:d], axis=0) - np.median(off[a:b], axis=0)))
+    before, after = (_medians(off, *edges[i : i + 2]) for i in (0, 2))
+    return np.asarray(np.hypot(*(after - before).T))
+
+
+def _medians(values: FloatArray, first: IntArray, last: IntArray) -> FloatArray:
+    """Medians (K, 2) of values (M, 2) from `first` to before `last` (K,); NaN of less than two."""
+    found, sizes = np.full((len(first), 2), np.nan), last - first
+    for size in np.unique(sizes[sizes >= 2]):
+        windows = np.lib.stride_tricks.sliding_window_view(values, size, axis=0)
+        rows = np.flatnonzero(sizes == size)
+        for some in np.array_split(rows, 1 + len(rows) * size // BLOCK):
+            found[some] = np.median(windows[first[some]], axis=-1)
     return found
 
 
