@@ -141,6 +141,8 @@ def _print_training_horizons(comparison: "Comparison") -> None:
 
 def _print_errors(comparison: "Comparison") -> None:
     """Print one row a place and model, what they were identified on, and what that says."""
+    from odometry.windows.left_out import words
+
     rows: list[tuple[str, ...]] = [
         (
             *("robot", "terrain", "over", "model", "windows"),
@@ -171,5 +173,8 @@ def _print_errors(comparison: "Comparison") -> None:
         for summary in comparison.summaries_at(place):
             for remark in comparison.remarks_at(place, summary):
                 click.echo(f"  Note: {summary.model}: {remark}")
+        left_out = comparison.windows_left_out_at(place)
+        if left_out:
+            click.echo(f"  Note: in these runs {words(left_out)}")
         for sentence in comparison.sentences_at(place):
             click.echo(f"  {sentence}")

@@ -106,7 +106,8 @@ def identify(
     from odometry.identification.profile import with_profiles
     from odometry.outputs.output_file import is_set_of
     from odometry.parameters import read_parameters, write_parameters
-    from terrain.cli.outputs import claim_file, comment
+    from odometry.windows.left_out import words
+    from terrain.cli.outputs import claim_file, claim_picture, comment
     from terrain.cli.recordings import read_runs
 
     if out.suffix != ".toml":
@@ -114,7 +115,9 @@ def identify(
     made = claim_file(out, is_set_of("identify"))
     solver_config = SolverConfig(loss=loss, starts=starts, seed=seed)
     if picture is not None:
-        _claim_picture(picture)
+        if picture.suffix != ".png":
+            raise click.UsageError(f"--picture {picture}: expected a name that ends in .png")
+        claim_picture(picture)
     runs = read_runs(folders, span)
     found = identify_runs(
         runs,
@@ -130,6 +133,8 @@ def identify(
         found = with_profiles(found, solver_config)
     for name, ground in found.grounds.items():
         _print_terrain(name, ground)
+    if found.left_out:
+        click.echo(f"Note: {words(found.left_out)}", err=True)
     found.require_determined()
     identified = found.to_parameter_set()
     write_parameters(out, identified, comment(made))
@@ -147,14 +152,6 @@ def identify(
     )
     if all(table.model in ICR_FORM_MODELS for table in identified.terrains.values()):
         click.echo(f"or:   terrain-odometry run RUN --parameters {out} --out results")
-
-
-def _claim_picture(picture: Path) -> None:
-    from odometry.outputs.output_file import claim_file, is_picture_of
-
-    if picture.suffix != ".png":
-        raise click.UsageError(f"--picture {picture}: expected a name that ends in .png")
-    claim_file(picture, is_picture_of("identify"), "identify")
 
 
 def _print_terrain(name: str, found: "Identified") -> None:

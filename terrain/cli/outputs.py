@@ -66,6 +66,21 @@ def claim_file(out: Path, is_own: Callable[[Path], bool]) -> "Made":
     return made_by(inputs)
 
 
+def claim_picture(picture: Path) -> None:
+    """Claim the file `--picture` for the command that runs.
+
+    Raises
+    ------
+    OutputError
+        If it is there and the same command did not draw it.
+    """
+    from odometry.outputs.output_file import claim_file as claim
+    from odometry.outputs.output_file import is_picture_of
+
+    verb = _verb(click.get_current_context())
+    claim(picture, is_picture_of(verb), verb)
+
+
 def about(made: "Made") -> dict[str, Any]:
     """What the commands add to a result file: what made it, and what its runs' checks found."""
     checks = [report.to_table() for report in checks_made()]

@@ -70,6 +70,21 @@ def test_pictures_go_into_a_folder_or_a_file(curvy_run, faulty, tmp_path):
     assert (tmp_path / "one.png").exists()
 
 
+def test_a_picture_replaces_its_own_kind_alone(curvy_run, tmp_path):
+    """A foreign picture is refused before any work, in a folder of pictures too."""
+    mine = tmp_path / "mine.png"
+    mine.write_bytes(b"\x89PNG a photograph")
+    shutil.copy(mine, tmp_path / f"{curvy_run.name}.png")
+    for place in (mine, tmp_path):
+        answer = invoke(curvy_run, "--picture", place)
+        assert answer.exit_code == 1
+        assert "`check` did not make it" in str(answer.exception)
+        assert answer.stdout == ""
+    assert mine.read_bytes() == b"\x89PNG a photograph"
+    for _ in range(2):
+        assert invoke(curvy_run, "--picture", tmp_path / "one.png").exit_code == 0
+
+
 def test_one_file_for_several_runs_is_a_wrong_command_line(curvy_run, faulty, tmp_path):
     answer = invoke(curvy_run, faulty, "--picture", tmp_path / "one.png")
     assert answer.exit_code == 2
