@@ -1,6 +1,5 @@
-"""Every finding of a check: one row, what it says."""
+"""Every finding of the checks of this package: one row, what it says."""
 
-# Those of the camera are in terrain/checks; `tests/odometry/checks` holds both sides together.
 CATALOGUE: dict[str, str] = {
     # Files, stamps and run.toml
     "unreadable": "a file is not as the format says",

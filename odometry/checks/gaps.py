@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level
+from odometry.checks.finding import Finding, Level, counted
 from odometry.windows.gaps import odometry_gaps
 
 OFTEN = 20
@@ -82,8 +82,8 @@ def _finding(
     return Finding(
         name,
         level,
-        f"odometry.csv has no rows for {whole_s:.1f} s in {len(spans_s)} places (first for "
-        f"{first_end_s - first_s:.2f} s at {evidence.run_time_s(first_s):.1f} s): {reason}",
+        f"odometry.csv has no rows for {whole_s:.1f} s in {counted(len(spans_s), 'place')} (first "
+        f"for {first_end_s - first_s:.2f} s at {evidence.run_time_s(first_s):.1f} s): {reason}",
         cause,
         remedy,
         tuple((evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in spans_s),

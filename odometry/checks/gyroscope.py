@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level
+from odometry.checks.finding import Finding, Level, counted
 from odometry.checks.spans import constant_spans
 from odometry.checks.spikes import spikes
 
@@ -145,8 +145,8 @@ def _absurd(evidence: Evidence) -> Iterator[Finding]:
         yield Finding(
             "absurd_yaw_rate",
             Level.WARNING,
-            f"gyro_z of {found.file} jumps out and back in {int(far.sum())} samples, up to "
-            f"{rates[far][np.argmax(np.abs(rates[far]))]:.4g} rad/s",
+            f"gyro_z of {found.file} jumps out and back in {counted(int(far.sum()), 'sample')}, "
+            f"up to {rates[far][np.argmax(np.abs(rates[far]))]:.4g} rad/s",
             "Single corrupt samples of the gyroscope (outliers, spikes)",
             "Remove these rows",
             tuple((evidence.run_time_s(s),) * 2 for s in found.stamps_s[far]),

@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level
+from odometry.checks.finding import Finding, Level, counted
 from odometry.checks.heading import READINGS
 from odometry.checks.spans import runs_of, within
 
@@ -50,8 +50,8 @@ def jumps(
         yield Finding(
             "slip_episodes",
             Level.NOTE,
-            f"{len(stood)} times the treads drive on while the poses hardly move (first by "
-            f"{step[stood[0]]:.2f} m at {evidence.run_time_s(stamps_s[stood[0]]):.1f} s)",
+            f"the treads drive on while the poses hardly move ({counted(len(stood), 'time')}, "
+            f"first by {step[stood[0]]:.2f} m at {evidence.run_time_s(stamps_s[stood[0]]):.1f} s)",
             "The robot is stuck or slips while its wheels spin, or poses are frozen for a moment",
             "Judge by what the robot drove on; cut with --from and --to",
             tuple((evidence.run_time_s(stamps_s[i]),) * 2 for i in stood),
@@ -63,7 +63,8 @@ def jumps(
             "treads_frozen",
             Level.WARNING,
             f"poses move by up to {step[lost].max():.2f} m while both treads read zero "
-            f"({len(lost)} times, first at {evidence.run_time_s(stamps_s[lost[0]]):.1f} s)",
+            f"({counted(len(lost), 'time')}, first at "
+            f"{evidence.run_time_s(stamps_s[lost[0]]):.1f} s)",
             "Odometry is lost: the log writes zeros (a motor driver or bus that stopped); or the "
             "robot was pushed, carried or slid, or poses jump",
             "Cut the recording with --from and --to",
@@ -77,9 +78,8 @@ def jumps(
     yield Finding(
         "pose_jumps",
         Level.WARNING,
-        f"poses jump {len(peaks)} times against what treads and yaw say, and stay: {places}"
-        + (" ..." if len(peaks) > 3 else "")
-        + f" (usual: {usual:.2g} m)",
+        f"poses jump against what treads and yaw say, and stay, {counted(len(peaks), 'time')}: "
+        f"{places}" + (" ..." if len(peaks) > 3 else "") + f" (usual: {usual:.2g} m)",
         "Poses jump: the reference was relocalised, or its map or fix changed",
         "Number the stretches between jumps in a column `window`, or cut with --from and --to",
         tuple((evidence.run_time_s(stamps_s[i]),) * 2 for i in peaks),
@@ -112,7 +112,7 @@ def yaw_jumps(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
     yield Finding(
         "yaw_jumps",
         Level.WARNING,
-        f"yaw of pose.csv jumps {len(peaks)} times against the gyroscope, and stays: "
+        f"yaw of pose.csv jumps against the gyroscope, and stays, {counted(len(peaks), 'time')}: "
         + ", ".join(
             f"{np.degrees(step[i]):.0f} degrees at {evidence.run_time_s(stamps_s[i]):.1f} s"
             for i in peaks[:3]

@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level
+from odometry.checks.finding import Finding, Level, counted
 from odometry.run import Run
 from odometry.table import Table
 
@@ -115,8 +115,8 @@ def stamps(evidence: Evidence) -> Iterator[Finding]:
             yield Finding(
                 "repeated_stamps",
                 Level.WARNING if share > 0.2 else Level.NOTE,
-                f"{len(dropped)} rows of {name} repeat the stamp of the row before "
-                f"({100 * share:.2g} %; row {first}) and were dropped",
+                f"{name} repeats the stamp of the row before in {counted(len(dropped), 'row')} "
+                f"({100 * share:.2g} %; row {first}), and they were dropped",
                 "The logger wrote a stamp twice"
                 if share <= 0.2
                 else "Stamps have too few digits, or two recordings were merged",

@@ -62,8 +62,8 @@ class Signals:
 def velocity_signals(run: Run) -> Signals:
     """Speed and yaw rate (N, 2) at the stamps of odometry.csv.
 
-    The yaw rate is that of the gyroscope, or wz of velocity.csv; the speed is vx of velocity.csv, and else not
-    measured: what wheels say of it is the input.
+    The yaw rate is that of the gyroscope, or wz of velocity.csv; the speed is vx of velocity.csv,
+    and else not measured: what wheels say of it is the input.
 
     Raises
     ------

@@ -39,7 +39,7 @@ def test_findings_by_run_and_an_unreadable_folder_between(curvy_run, faulty, tmp
     assert answer.exit_code == 1
     lines = answer.stdout.splitlines()
     place = lines.index(f"{faulty}:")
-    assert lines[place + 1].startswith("  warning: 1 samples of v_left jump")
+    assert lines[place + 1].startswith("  warning: v_left jumps out and back in 1 sample,")
     assert lines[place + 1].count(". ") >= 2  # seen. cause. remedy.
     place = lines.index(f"{tmp_path / 'nowhere'}:")
     assert lines[place + 1].startswith("  refused: ")
