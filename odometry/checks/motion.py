@@ -115,7 +115,7 @@ def integrals(
 
 
 def motion_between(run: Run, of: Integrals, poses_used: BoolArray | None) -> Motion:
-    """Cut a run into windows of about a second, between measured poses where there are any.
+    """Cut a run into windows of half a second, between measured poses where there are any.
 
     Parameters
     ----------
@@ -143,7 +143,8 @@ def _between_poses(run: Run, of: Integrals, rows: IntArray) -> Motion:
     lasts_s = pose_s[last] - pose_s[first]
     near = lasts_s <= LONGEST * max(WINDOW_S, float(np.median(np.diff(pose_s))))
     if "window" in run.pose:
-        near &= run.pose["window"][first] == run.pose["window"][last]
+        window = np.nan_to_num(run.pose["window"])
+        near &= window[first] == window[last]
     first, last = first[near], last[near]
     positions, yaw = run.pose.stack("x", "y"), run.pose["yaw"]
     return _window(

@@ -81,9 +81,16 @@ def claim_picture(picture: Path) -> None:
     claim(picture, is_picture_of(verb), verb)
 
 
-def about(made: "Made") -> dict[str, Any]:
-    """What the commands add to a result file: what made it, and what its runs' checks found."""
-    checks = [report.to_table() for report in checks_made()]
+def about(made: "Made", folder: Path | None = None) -> dict[str, Any]:
+    """What the commands add to a result file: what made it, and what its runs' checks found.
+
+    Parameters
+    ----------
+    made : Made
+    folder : Path, optional
+        The one run of the result; else it is of all that were read.
+    """
+    checks = [one.to_table() for one in checks_made() if folder in (None, one.folder)]
     return {"made": made.to_table(), "check": checks}
 
 

@@ -9,6 +9,7 @@ import pytest
 from odometry.checks.catalogue import CATALOGUE
 from odometry.checks.consequences import CONSEQUENCES
 from odometry.checks.evidence import Evidence
+from odometry.checks.finding import Level
 from odometry.checks.motion import motion_between
 from odometry.checks.pose_jumps import _step_sizes
 from odometry.checks.recording import check_recording
@@ -120,6 +121,35 @@ def test_a_clock_that_was_set_is_not_told_as_lost_rows_too():
     names = [finding.name for finding in check_recording(run).findings]
     assert "clock_set" in names
     assert "odometry_gap" not in names
+
+
+def test_images_and_poses_may_be_rare():
+    """One image in half a minute, as of a time-lapse; stamps in ms would lie elsewhere."""
+    run = drive(6000, *DRIVES["curves"])
+    rare = table({"t": np.arange(0.0, 300.0, 30.0), "x": np.zeros(10), "y": np.zeros(10)})
+    report = check_recording(replace(run, truth=rare))
+    assert not [finding for finding in report.findings if finding.level is Level.REFUSED]
+    odd = replace(rare, columns={**rare.columns, "t": 1000 * rare.stamps_s + 1})
+    (refused,) = check_recording(replace(run, truth=odd)).findings
+    assert (refused.level, refused.name) == (Level.REFUSED, "stamp_unit")
+
+
+def test_a_log_of_changes_may_hold_its_commands_for_long():
+    held_s = np.array([4.0, 1.0, 9.0, 3.0, 20.0, 2.0, 5.0, 1.0, 12.0, 3.0, 8.0, 2.0])
+    t = np.cumsum(held_s)
+    speeds = np.where(np.arange(12) % 2, 0.2, 0.8)
+    odometry = table({"t": t, "v_left": speeds, "v_right": speeds[::-1]})
+    run = Run(Path("made"), Robot(0.6), {}, odometry)
+    assert not [f for f in check_recording(run).findings if f.level is Level.REFUSED]
+    even = replace(odometry, columns={**odometry.columns, "t": 50.0 * np.arange(12)})
+    (refused,) = check_recording(replace(run, odometry=even)).findings
+    assert refused.name == "stamp_unit"
+
+
+def test_an_empty_column_window_parts_nothing():
+    run = drive(600, *DRIVES["curves"])
+    empty = Evidence(changed(run, "pose", window=None))
+    assert len(empty.motion) == len(Evidence(run).motion) > 50
 
 
 def test_consequences_are_of_the_catalogue():

@@ -1,6 +1,7 @@
 """`compare`: from run folders to tables, sentences and a page."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -42,6 +43,17 @@ def runs(tmp_path):
 
 def invoke(*arguments):
     return CliRunner().invoke(compare, list(map(str, arguments)))
+
+
+def test_windows_that_were_left_out_are_counted(runs, tmp_path):
+    """Five seconds without poses in one run."""
+    file = tmp_path / "run_0" / "pose.csv"
+    header, *lines = file.read_text().splitlines()
+    kept = [line for line in lines if not 8 < float(line.split(",")[0]) < 13]
+    file.write_text("\n".join([header, *kept]) + "\n")
+    answer = invoke(*runs, "--model", "icr_symmetric", "--out", tmp_path / "out")
+    wanted = r"^  Note: in these runs \d+ windows? left out: gap of pose.csv \(\d+\)$"
+    assert re.search(wanted, answer.stdout, re.M)
 
 
 def test_a_row_for_each_model_then_what_it_means(runs, tmp_path):

@@ -1,5 +1,6 @@
 """`identify`: from run folders to a parameter set, or a refusal that says why."""
 
+import re
 import shutil
 import sys
 
@@ -39,6 +40,18 @@ def test_the_parameters_are_shown_and_written(command, curvy_run):
     assert "curvy" in table.source
     assert f"Wrote {command.out}" in output
     assert "\nNext, on a run that is not among these: terrain-odometry compare " in output
+
+
+def test_windows_that_were_left_out_are_counted(command, curvy_run, tmp_path):
+    """Two seconds without poses."""
+    shutil.copytree(curvy_run, tmp_path / "gap")
+    file = tmp_path / "gap" / "pose.csv"
+    header, *lines = file.read_text().splitlines()
+    kept = [line for line in lines if not 10 < float(line.split(",")[0]) < 12]
+    file.write_text("\n".join([header, *kept]) + "\n")
+    code, _, messages = command(tmp_path / "gap", *SHORT)
+    assert code == 0
+    assert re.search(r"^Note: \d+ windows? left out: gap of pose.csv \(\d+\)$", messages, re.M)
 
 
 def test_values_intervals_and_errors_are_shown(command, curvy_run, tmp_path):
