@@ -86,7 +86,13 @@ def _next(reports: Mapping[Path, "CheckReport"], files: Mapping[Path, Path]) -> 
     if not odd:
         runs = " ".join(map(str, reports))
         return f"Next: {look}terrain-odometry identify {runs} --model icr --out my_robot.toml"
-    look = look or ("" if files else f"terrain-odometry check {' '.join(odd)} --picture pictures; ")
+    readable = [
+        str(folder)
+        for folder, report in reports.items()
+        if report.misleads and not report.at(Level.REFUSED)
+    ]
+    if readable and not files:
+        look = f"terrain-odometry check {' '.join(readable)} --picture pictures; "
     return f"Next: {look}mend or leave out {', '.join(odd)}, and check again"
 
 

@@ -48,6 +48,18 @@ def test_findings_by_run_and_an_unreadable_folder_between(curvy_run, faulty, tmp
     assert f"{faulty}, {tmp_path / 'nowhere'}" in lines[-1]
 
 
+def test_a_picture_is_proposed_only_of_what_can_be_read(faulty, tmp_path):
+    nowhere = tmp_path / "nowhere"
+    last = invoke(faulty, nowhere).stdout.splitlines()[-1]
+    assert f"check {faulty} --picture pictures; mend or leave out {faulty}, {nowhere}" in last
+    last = invoke(nowhere).stdout.splitlines()[-1]
+    assert last == f"Next: mend or leave out {nowhere}, and check again"
+
+
+def test_a_file_is_no_run_folder(faulty):
+    assert "this is a file; expected a run folder" in invoke(faulty / "pose.csv").stdout
+
+
 def test_json_is_one_array_and_nothing_else(curvy_run, faulty, tmp_path):
     answer = invoke(curvy_run, faulty, tmp_path / "nowhere", "--json")
     clean, odd, refused = json.loads(answer.stdout)
