@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from odometry.comparison.errors import ComparisonError
 from odometry.io.run_folder import write_run_folder
 from terrain.cli.compare import compare
 
@@ -132,9 +131,10 @@ def test_a_run_without_poses_is_left_out_with_a_note(runs, tmp_path):
     assert "run_1" in answer.stderr
 
 
-def test_an_unknown_model_is_a_known_error(runs, tmp_path):
+def test_an_unknown_model_is_a_usage_error(runs, tmp_path):
     answer = invoke(*runs, "--model", "bicycle", "--out", tmp_path / "out")
-    assert isinstance(answer.exception, ComparisonError)
+    assert answer.exit_code == 2
+    assert "'bicycle'; known: differential_drive" in answer.stderr
     assert not (tmp_path / "out").exists()
 
 
