@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import MODEL_NAMES, assignments, window_options
+from terrain.cli.options import MODEL_NAMES, assignments, require_model, window_options
 from terrain.cli.recordings import span_options
 
 if TYPE_CHECKING:
-    from odometry.identification.identification import Identified
+    from odometry.identification.identification import Identification, Identified
     from odometry.run_span import Span
     from odometry.windows.config import WindowConfig
 
@@ -112,6 +112,7 @@ def identify(
 
     if out.suffix != ".toml":
         raise click.UsageError(f"--out {out}: expected a name that ends in .toml")
+    require_model(model)
     made = claim_file(out, is_set_of("identify"))
     solver_config = SolverConfig(loss=loss, starts=starts, seed=seed)
     if picture is not None:
@@ -135,7 +136,7 @@ def identify(
         _print_terrain(name, ground)
     if found.left_out:
         click.echo(f"Note: {words(found.left_out)}", err=True)
-    found.require_determined()
+    _require_determined(found)
     identified = found.to_parameter_set()
     write_parameters(out, identified, comment(made))
     click.echo(f"Wrote {out}")
@@ -152,6 +153,27 @@ def identify(
     )
     if all(table.model in ICR_FORM_MODELS for table in identified.terrains.values()):
         click.echo(f"or:   terrain-odometry run RUN --parameters {out} --out results")
+
+
+def _require_determined(found: "Identification") -> None:
+    """Refuse a fit that is no answer; what the check warned of is the likeliest reason."""
+    from odometry.checks.finding import Level
+    from odometry.identification.errors import IdentificationError
+    from terrain.cli.recordings import checks_made
+
+    try:
+        found.require_determined()
+    except IdentificationError as error:
+        causes = [
+            f"\n  {report.folder}: {warning.cause}. {warning.remedy}."
+            for report in checks_made()
+            for warning in report.at(Level.WARNING)
+        ]
+        if not causes:
+            raise
+        raise IdentificationError(
+            f"{error}\nMend first what the check warned of:{''.join(causes)}"
+        ) from error
 
 
 def _print_terrain(name: str, found: "Identified") -> None:

@@ -101,6 +101,16 @@ def test_speeds_a_third_of_the_true_are_refused_with_the_reason(command, curvy_r
     assert_refused(command, answer, "alpha ended at its bound 2", "another unit")
 
 
+def test_a_refusal_says_what_the_check_warned_of(command, curvy_run, tmp_path):
+    swapped = shutil.copytree(curvy_run, tmp_path / "swapped")
+    text = (swapped / "odometry.csv").read_text()
+    for old, new in (("v_left", "swap"), ("v_right", "v_left"), ("swap", "v_right")):
+        text = text.replace(old, new)
+    (swapped / "odometry.csv").write_text(text)
+    answer = command(swapped, *SHORT)
+    assert_refused(command, answer, "Mend first what the check warned of", "swapped")
+
+
 def test_fixed_parameters_are_held(command, curvy_run):
     code, output, _ = command(
         curvy_run, *SHORT, "--fix", "alpha_left=1", "--fix", "alpha_right=1.0"
@@ -205,7 +215,8 @@ def test_what_cannot_be_done_is_one_message_and_exit_code_1(command, curvy_run, 
 
 
 def test_an_unknown_model_is_told_with_the_known_ones(command, curvy_run):
-    assert_refused(command, command(curvy_run, model="icrs"), "'icrs'", "icr_symmetric")
+    answer = command(curvy_run, model="icrs")
+    assert_refused(command, answer, "'icrs'", "did you mean icr?", "icr_symmetric", code=2)
 
 
 @pytest.mark.parametrize(
