@@ -15,6 +15,7 @@ JUMP_TIMES = 7.0  # the usual change of the difference to dead reckoning over th
 LEAST_YAW_JUMP_RAD = np.radians(25)
 JITTER_S = 0.4  # by which poses that came in bursts were late
 LOST_S = 0.3  # around a jump, in which treads that read zero are its cause
+SHOWN = 3  # jumps that are named
 BLOCK = 1_000_000  # values whose medians are taken at a time
 NEAR_S, FAR_S = 0.25, 1.25  # of a jump: between them its two sides are compared
 
@@ -30,7 +31,8 @@ def jumps(
     scale = evidence.metres_per_metre
     if scale is None:
         return
-    off = _without_window_changes(evidence, rows, positions - _reckoned(evidence, rows, scale))
+    reckoned = _reckoned(evidence, rows, scale)
+    off = _without_window_changes(evidence, rows, positions - reckoned)
     step = _step_sizes(stamps_s, off)
     speed = _rate(travel_m, stamps_s)
     known = np.isfinite(step) & ~within(stamps_s - evidence.stamps_s[0], _widened(frozen_s))
@@ -41,49 +43,63 @@ def jumps(
     jitter_m = JITTER_S * speed * scale
     odd = known & (step > np.maximum(JUMP_TIMES * usual, LEAST_JUMP_M * scale + jitter_m))
     peaks = [begin + int(np.argmax(step[begin:end])) for begin, end in runs_of(odd)]
-    if not peaks:
-        return
-    reckoned = _reckoned(evidence, rows, scale)
     stood = [i for i in peaks if _stood(stamps_s, positions, reckoned, i)]
     peaks = [i for i in peaks if i not in stood]
-    if stood:
-        yield Finding(
-            "slip_episodes",
-            Level.NOTE,
-            f"the treads drive on while the poses hardly move ({counted(len(stood), 'time')}, "
-            f"first by {step[stood[0]]:.2f} m at {evidence.run_time_s(stamps_s[stood[0]]):.1f} s)",
-            "The robot is stuck or slips while its wheels spin, or poses are frozen for a moment",
-            "Judge by what the robot drove on; cut with --from and --to",
-            tuple((evidence.run_time_s(stamps_s[i]),) * 2 for i in stood),
-        )
     lost = [i for i in peaks if _lost_treads(evidence, stamps_s[i])]
     peaks = [i for i in peaks if i not in lost]
+    if stood:
+        yield _slip_episodes(evidence, stamps_s[stood], float(step[stood[0]]))
     if lost:
-        yield Finding(
-            "treads_frozen",
-            Level.WARNING,
-            f"poses move by up to {step[lost].max():.2f} m while both treads read zero "
-            f"({counted(len(lost), 'time')}, first at "
-            f"{evidence.run_time_s(stamps_s[lost[0]]):.1f} s)",
-            "Odometry is lost: the log writes zeros (a motor driver or bus that stopped); or the "
-            "robot was pushed, carried or slid, or poses jump",
-            "Cut the recording with --from and --to",
-            tuple((evidence.run_time_s(stamps_s[i]),) * 2 for i in lost),
-        )
-    if not peaks:
-        return
-    places = ", ".join(
-        f"{step[i]:.3g} m at {evidence.run_time_s(stamps_s[i]):.1f} s" for i in peaks[:3]
+        yield _lost_odometry(evidence, stamps_s[lost], float(step[lost].max()))
+    if peaks:
+        yield _pose_jumps(evidence, stamps_s[peaks], step[peaks], usual)
+
+
+def _slip_episodes(evidence: Evidence, at_s: FloatArray, first_m: float) -> Finding:
+    return Finding(
+        "slip_episodes",
+        Level.NOTE,
+        f"the treads drive on while the poses hardly move ({counted(len(at_s), 'time')}, first by "
+        f"{first_m:.2f} m at {evidence.run_time_s(at_s[0]):.1f} s)",
+        "The robot is stuck or slips while its wheels spin, or poses are frozen for a moment",
+        "Judge by what the robot drove on; cut with --from and --to",
+        _moments(evidence, at_s),
     )
-    yield Finding(
+
+
+def _lost_odometry(evidence: Evidence, at_s: FloatArray, farthest_m: float) -> Finding:
+    return Finding(
+        "treads_frozen",
+        Level.WARNING,
+        f"poses move by up to {farthest_m:.2f} m while both treads read zero "
+        f"({counted(len(at_s), 'time')}, first at {evidence.run_time_s(at_s[0]):.1f} s)",
+        "Odometry is lost: the log writes zeros (a motor driver or bus that stopped); or the "
+        "robot was pushed, carried or slid, or poses jump",
+        "Cut the recording with --from and --to",
+        _moments(evidence, at_s),
+    )
+
+
+def _pose_jumps(
+    evidence: Evidence, at_s: FloatArray, steps_m: FloatArray, usual_m: float
+) -> Finding:
+    places = ", ".join(
+        f"{step_m:.3g} m at {evidence.run_time_s(stamp_s):.1f} s"
+        for step_m, stamp_s in zip(steps_m[:SHOWN], at_s[:SHOWN], strict=True)
+    )
+    return Finding(
         "pose_jumps",
         Level.WARNING,
-        f"poses jump against what treads and yaw say, and stay, {counted(len(peaks), 'time')}: "
-        f"{places}" + (" ..." if len(peaks) > 3 else "") + f" (usual: {usual:.2g} m)",
+        f"poses jump against what treads and yaw say, and stay, {counted(len(at_s), 'time')}: "
+        f"{places}{' ...' if len(at_s) > SHOWN else ''} (usual: {usual_m:.2g} m)",
         "Poses jump: the reference was relocalised, or its map or fix changed",
         "Number the stretches between jumps in a column `window`, or cut with --from and --to",
-        tuple((evidence.run_time_s(stamps_s[i]),) * 2 for i in peaks),
+        _moments(evidence, at_s),
     )
+
+
+def _moments(evidence: Evidence, at_s: FloatArray) -> tuple[tuple[float, float], ...]:
+    return tuple((evidence.run_time_s(stamp_s),) * 2 for stamp_s in at_s)
 
 
 def yaw_jumps(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
@@ -115,11 +131,11 @@ def yaw_jumps(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
         f"yaw of pose.csv jumps against the gyroscope, and stays, {counted(len(peaks), 'time')}: "
         + ", ".join(
             f"{np.degrees(step[i]):.0f} degrees at {evidence.run_time_s(stamps_s[i]):.1f} s"
-            for i in peaks[:3]
+            for i in peaks[:SHOWN]
         ),
         "Yaw jumps: the heading of the reference was corrected or lost (magnetometer, antennas)",
         "Number the stretches between jumps in a column `window`, or cut with --from and --to",
-        tuple((evidence.run_time_s(stamps_s[i]),) * 2 for i in peaks),
+        _moments(evidence, stamps_s[peaks]),
     )
 
 
