@@ -60,7 +60,7 @@ class Comparison:
 
     def windows_left_out_at(self, place: Place) -> Counter[str]:
         """How many windows of the runs of a place there are not, by reason."""
-        return summed(each.windows.left_out for each in self.evaluations if place.holds(each))
+        return summed(each.windows.left_out for each in self.evaluations_at(place))
 
     @property
     def places(self) -> tuple[Place, ...]:

@@ -29,7 +29,7 @@ NAMES: dict[str, tuple[str, ...]] = {
     "demo": (*RUN_NAMES, "terrain.model", *(f"without_vision/{name}" for name in RUN_NAMES)),
     "gap": ("gap.json", "model.toml", "report.html", "figures/gap_*.png"),
     "compare": (
-        *("comparison.json", "windows.csv", "report.html"),
+        *("comparison.json", "windows.csv", "training_horizons.csv", "report.html"),
         *("parameters/*.toml", "parameters/*/*.toml"),
         *(f"figures/{name}_*.png" for name in ("errors", "speed_plane", "horizons", "rotation")),
         "figures/training_horizons_*.png",
