@@ -9,7 +9,7 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.heading import CONSISTENT, Heading, across_m, along_m, headings
 from odometry.checks.motion import Integrals, Motion, integrals, motion_between
 from odometry.checks.pose_cleaning import pose_outliers
-from odometry.checks.relation import Relation, relation
+from odometry.checks.relation import LEAST_WINDOWS, Relation, relation
 from odometry.checks.spikes import without_spikes
 from odometry.run import Run
 
@@ -216,7 +216,19 @@ class Evidence:
         """Distance between positions from the mean travel, both without sign, for lack of yaw."""
         m = self.motion
         turning = np.abs(m.difference_m) > np.abs(m.mean_m)
+        if self._scattered(~turning):
+            return None
         return relation(np.where(turning, np.nan, m.distance_m), np.abs(m.mean_m))
+
+    def _scattered(self, chosen: BoolArray) -> bool:
+        """Whether noise makes displacements long: they differ from one to the next by as much."""
+        m = self.motion
+        next_to = chosen[1:] & chosen[:-1] & (m.start_s[1:] == m.end_s[:-1])
+        next_to &= np.abs(m.mean_m[1:]) > MOVING * np.quantile(np.abs(m.mean_m), 0.9)
+        if next_to.sum() < LEAST_WINDOWS:
+            return False
+        change = np.hypot(*np.diff(m.moved_m, axis=0).T)[next_to]
+        return bool(np.median(change) > np.median(m.distance_m[1:][next_to]))
 
     @cached_property
     def metres_per_metre(self) -> float | None:

@@ -31,6 +31,8 @@ def jumps(
         return
     off = _without_window_changes(evidence, rows, positions - _reckoned(evidence, rows, scale))
     step = _step_sizes(stamps_s, off)
+    if evidence.heading is None:
+        step = np.maximum(step - scale * _driven_m(stamps_s, travel_m), 0.0)
     speed = _rate(travel_m, stamps_s)
     known = np.isfinite(step) & ~within(stamps_s - evidence.stamps_s[0], _widened(frozen_s))
     if known.sum() < 20:
@@ -160,6 +162,13 @@ def _step_sizes(stamps_s: FloatArray, off: FloatArray) -> FloatArray:
         if b - a >= 2 and d - c >= 2:
             found[i] = np.hypot(*(np.median(off[c:d], axis=0) - np.median(off[a:b], axis=0)))
     return found
+
+
+def _driven_m(stamps_s: FloatArray, travel_m: FloatArray) -> FloatArray:
+    """Tread travel (M,) over the time from which `_step_sizes` takes its medians."""
+    far_s = max(FAR_S, NEAR_S + 3 * float(np.median(np.diff(stamps_s))))
+    before, after = (np.interp(stamps_s + s, stamps_s, travel_m) for s in (-far_s, far_s))
+    return np.asarray(after - before)
 
 
 def _without_window_changes(

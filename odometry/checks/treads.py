@@ -125,16 +125,27 @@ def _dropped(evidence: Evidence) -> Iterator[Finding]:
         )
 
 
+def _extent(positions: FloatArray) -> tuple[float, float]:
+    """Width [m] of positions (M, 2) without their farthest tenth, and their noise [m]."""
+    if len(positions) < 10:
+        return 0.0, 0.0
+    low, high = np.quantile(positions, [0.05, 0.95], axis=0)
+    noise = np.median(np.abs(np.diff(positions, axis=0))) * 1.4826 / np.sqrt(2)
+    return float(np.hypot(*(high - low))), float(noise)
+
+
 def _idle(evidence: Evidence) -> Iterator[Finding]:
     """Treads that do not move."""
     if evidence.fastest_m_s > 1e-3:
         return
-    moved = ""
-    if evidence.positions_measured is not None:
-        moved = f" while poses move by {float(np.nansum(evidence.motion.distance_m)):.3g} m"
+    moved, level = "", Level.WARNING
+    if evidence.run.pose is not None and evidence.poses_used is not None:
+        extent_m, noise_m = _extent(evidence.run.pose.stack("x", "y")[evidence.poses_used])
+        moved = f" while poses lie within {extent_m:.3g} m"
+        level = Level.NOTE if extent_m < max(6 * noise_m, 0.1) else level
     yield Finding(
         "treads_still",
-        Level.WARNING,
+        level,
         f"the fastest tread speed is {evidence.fastest_m_s:.3g} m/s{moved}",
         "The robot was stationary, carried or pushed, or the columns are empty or in km/s",
         "Record a drive",
