@@ -16,6 +16,7 @@ CATALOGUE: dict[str, str] = {
     "sensor_place": "[sensors] pose in mm",
     "sensor_attitude": "[sensors] imu in degrees",
     "terrain_names": "two spellings of one terrain",
+    "sensors_disagree": "sensors differ, and no cause can be told",
     # Treads
     "tread_unit": "tread speeds in rad/s, RPM, mm/s, ticks ...",
     "scale": "tread speeds or positions scaled",

@@ -26,6 +26,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "noisy_positions": POSES | YAW | {"tread_unit", "yaw_jumps", "far_sensor", "pose_outliers"},
     "treads_are_twist": TREADS
     | POSES
+    | {"pose_mirrored", "gyroscope_reversed", "treads_or_gyroscope_reversed"}
     | {"treads_unequal", "tread_left_reversed", "treads_swapped", "treads_both_reversed"}
     | {"far_sensor", "tread_right_reversed", "treads_unrelated", "yaw_backwards"},
     "treads_unequal": frozenset({"pose_jumps"}),

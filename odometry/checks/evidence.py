@@ -7,12 +7,13 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.heading import CONSISTENT, Heading, across_m, along_m, headings
-from odometry.checks.motion import Integrals, Motion, integrals, motion_between
+from odometry.checks.motion import Integrals, Motion, integrals, motion_between, scattered
 from odometry.checks.pose_cleaning import pose_outliers
-from odometry.checks.relation import LEAST_WINDOWS, Relation, relation
+from odometry.checks.relation import Relation, relation
 from odometry.checks.spikes import without_spikes
 from odometry.run import Run
 
+LONGER_S = (1.0, 2.0)
 MOVING = 0.1  # share of the ordinary fastest speed above which the robot moves
 MOST_TURN_RAD = 2.5  # between two poses, from which whole turns may be lost
 DEGREES_RAD_S = 7.0  # no robot turns faster: the gyroscope is in degrees per second
@@ -103,8 +104,16 @@ class Evidence:
 
     @cached_property
     def raw_motion(self) -> Motion:
-        """Windows of half a second, between new poses where there are any; yaw as it stands."""
-        return motion_between(self.run, self.integrals, self.poses_used)
+        """Windows between new poses where there are any; yaw as it stands.
+
+        Half a second, or longer where the noise of the positions is more than what was driven.
+        """
+        found = motion_between(self.run, self.integrals, self.poses_used)
+        for window_s in LONGER_S:
+            if not scattered(found):
+                break
+            found = motion_between(self.run, self.integrals, self.poses_used, window_s)
+        return found
 
     @cached_property
     def uniform(self) -> Motion:
@@ -216,19 +225,9 @@ class Evidence:
         """Distance between positions from the mean travel, both without sign, for lack of yaw."""
         m = self.motion
         turning = np.abs(m.difference_m) > np.abs(m.mean_m)
-        if self._scattered(~turning):
+        if scattered(m):
             return None
         return relation(np.where(turning, np.nan, m.distance_m), np.abs(m.mean_m))
-
-    def _scattered(self, chosen: BoolArray) -> bool:
-        """Whether noise makes displacements long: they differ from one to the next by as much."""
-        m = self.motion
-        next_to = chosen[1:] & chosen[:-1] & (m.start_s[1:] == m.end_s[:-1])
-        next_to &= np.abs(m.mean_m[1:]) > MOVING * np.quantile(np.abs(m.mean_m), 0.9)
-        if next_to.sum() < LEAST_WINDOWS:
-            return False
-        change = np.hypot(*np.diff(m.moved_m, axis=0).T)[next_to]
-        return bool(np.median(change) > np.median(m.distance_m[1:][next_to]))
 
     @cached_property
     def metres_per_metre(self) -> float | None:
@@ -237,6 +236,18 @@ class Evidence:
             if found is not None and found.certain():
                 return abs(found.slope)
         return None
+
+    @cached_property
+    def arm_share(self) -> float:
+        """By what share an antenna at the robot's edge is faster than its centre all the time.
+
+        Where the robot turns to both sides it is nothing.
+        """
+        m = self.motion
+        turned = np.nansum(self.turn_rad(m) * np.sign(m.mean_m))
+        arm_m = max(self.run.robot.length or 0.0, self.run.robot.track_width) / 2
+        travel_m = float(np.sum(np.abs(m.mean_m)))
+        return min(arm_m * abs(float(turned)) / travel_m, 1.0) if travel_m > 0 else 0.0
 
     @cached_property
     def gyroscope_by_treads(self) -> Relation | None:

@@ -66,7 +66,7 @@ def jumps(
             f"poses move by up to {step[lost].max():.2f} m while both treads read zero "
             f"({len(lost)} times, first at {evidence.run_time_s(stamps_s[lost[0]]):.1f} s)",
             "Odometry is lost: the log writes zeros (a motor driver or bus that stopped); or the "
-            "robot was pushed, carried or slid, or poses jump",
+            "robot was pushed, carried or slid, or poses jump, or these are commands and it coasts",
             "Cut the recording with --from and --to",
             tuple((evidence.run_time_s(stamps_s[i]),) * 2 for i in lost),
         )

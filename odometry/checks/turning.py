@@ -56,7 +56,9 @@ def sense(
         alone = by_difference is None or _explains_more(by_treads, by_difference)
         if shares.min() > 0.2 * shares.max() and (left != right or alone):
             return SIGNS[int(left), int(right)]
-    if by_difference is not None and by_difference.certain() and by_difference.correlation > 0.5:
+    if by_difference is None or (by_treads.distinct and _explains_more(by_treads, by_difference)):
+        return Sense.UNKNOWN
+    if by_difference.certain() and by_difference.correlation > 0.5:
         return Sense.AGREES if by_difference.slope > 0 else Sense.OPPOSITE
     return Sense.UNKNOWN
 

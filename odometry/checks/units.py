@@ -6,6 +6,7 @@ import numpy as np
 
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
+from odometry.checks.relation import Relation, pieces
 from odometry.checks.turning import Sense, gyroscope_sense, pose_sense
 from odometry.checks.unit_tables import (
     ORDINARY_FORWARD,
@@ -36,7 +37,8 @@ def units(evidence: Evidence) -> Iterator[Finding]:
     width, turn_tight, gyroscope_factor = _width_factor(evidence)
     if gyroscope_factor:
         yield _gyroscope_unit(evidence, gyroscope_factor)
-    if forward is not None and not FORWARD[0] <= forward <= FORWARD[1]:
+    low, high = FORWARD[0] * (1 - evidence.arm_share), FORWARD[1] * (1 + evidence.arm_share)
+    if forward is not None and not low <= forward <= high:
         yield _along(evidence, forward, forward_tight, width)
     if width is not None and not WIDTH[0] <= width <= WIDTH[1]:
         yield _across(evidence, forward, width, turn_tight)
@@ -70,8 +72,26 @@ def _width_factor(evidence: Evidence) -> tuple[float | None, bool, float | None]
     ):
         known = found is not None and found.certain() and found.explained > HALF
         if found is not None and known and of in (Sense.AGREES, Sense.OPPOSITE):
-            return scale / (abs(found.slope) * track), found.correlation > TIGHT, factor
+            width = scale / (abs(found.slope) * track)
+            odd = not WIDTH[0] <= width <= WIDTH[1]
+            if odd and not all(_odd(scale / (of * track)) for of in _slopes(evidence, found)):
+                return None, False, factor  # a part of the recording alone makes it odd
+            return width, found.correlation > TIGHT, factor
     return None, False, factor
+
+
+def _odd(width: float) -> bool:
+    """Whether a width of a piece of the recording is odd, with less certainty than of all."""
+    return not 1.2 * WIDTH[0] <= width <= 0.7 * WIDTH[1]
+
+
+def _slopes(evidence: Evidence, found: Relation) -> list[float]:
+    """Turn per difference of the treads in the pieces of the recording that tell it."""
+    m = evidence.uniform
+    told = pieces(m.gyroscope_rad, m.difference_m, m.lasts_s)
+    if found is evidence.pose_turn_by_difference:
+        told = pieces(evidence.pose_turn_rad, evidence.motion.difference_m)
+    return [abs(of.slope) for of in told if of.certain() and of.explained > HALF]
 
 
 def _gyroscope_factor(evidence: Evidence) -> float | None:
