@@ -10,12 +10,13 @@ from odometry.checks.heading import headings
 from odometry.checks.turning import lasting_turn_rad
 
 SPAN_S = 15.0  # over which headings of gyroscope and poses are compared
-APART_RAD = 0.35  # good recordings stay below 0.21 (nine in ten spans)
+APART_RAD = 0.3  # good recordings stay below 0.21 (nine in ten spans)
 OF_TURN = 0.03  # of all turns within a span, by which a gyroscope may differ
 LEAST_SPANS = 10
 SCALE = 0.1  # of the turns, by which gyroscope and measured yaw differ
 CERTAIN = 5.0  # standard deviations
 LEAST_TURN_RAD = 3.0  # range of the heading from which turns are compared
+LEAST_SCALED_RAD = 1.0  # the same, for the ratio of a gyroscope
 ALIKE = 0.3  # share of the changing part of the turns that the treads explain at least
 LEAST_WINDOWS = 30
 PIECES = 8  # of the recording, in each of which yaw has one offset to the course
@@ -59,7 +60,7 @@ def _scales(evidence: Evidence) -> str:
         return ""
     if abs(fit.slope - 1) < SCALE + CERTAIN * fit.slope_sigma:
         return ""
-    if _lasting_rad(evidence) < LEAST_TURN_RAD:
+    if lasting_turn_rad(evidence.pose_turn_rad, evidence.motion.lasts_s) < LEAST_SCALED_RAD:
         return ""
     return (
         f"measured yaw turns by {fit.slope:.3f} +- {fit.slope_sigma:.3f} times what the gyroscope "
@@ -145,7 +146,3 @@ def _treads_unlike(evidence: Evidence) -> Iterator[str]:
                 f"the treads explain {100 * max(share, 0.0):.0f} % of the changing turns of {name} "
                 "(slip alone leaves more on most terrain)"
             )
-
-
-def _lasting_rad(evidence: Evidence) -> float:
-    return lasting_turn_rad(evidence.pose_turn_rad, evidence.motion.lasts_s)

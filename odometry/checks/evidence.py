@@ -18,6 +18,7 @@ MOVING = 0.1  # share of the ordinary fastest speed above which the robot moves
 MOST_TURN_RAD = 2.5  # between two poses, from which whole turns may be lost
 DEGREES_RAD_S = 7.0  # no robot turns faster: the gyroscope is in degrees per second
 MOST_OUTLIERS = 0.3  # share of the poses: where more are far from the others, none can be left out
+MOST_SHARP = 0.8  # share of the windows in sharp turns, from which these are used as well
 CLEARLY = 0.3  # difference of concentrations or squared correlations that decides
 
 
@@ -224,7 +225,8 @@ class Evidence:
     def distance_by_mean(self) -> Relation | None:
         """Distance between positions from the mean travel, both without sign, for lack of yaw."""
         m = self.motion
-        turning = np.abs(m.difference_m) > np.abs(m.mean_m)
+        sharp = np.abs(m.difference_m) / np.maximum(np.abs(m.mean_m), 1e-12)
+        turning = sharp > (1.0 if np.mean(sharp > 1.0) < MOST_SHARP else 2.0)
         if scattered(m):
             return None
         return relation(np.where(turning, np.nan, m.distance_m), np.abs(m.mean_m))

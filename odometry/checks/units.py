@@ -99,7 +99,11 @@ def _gyroscope_factor(evidence: Evidence) -> float | None:
     by_gyroscope = evidence.pose_turn_by_gyroscope
     if by_gyroscope is not None and by_gyroscope.certain() and by_gyroscope.explained > TIGHT:
         factor = 1 / abs(by_gyroscope.slope)
-        return factor if not 0.7 < factor < 1.4 else None
+        m = evidence.motion
+        told = pieces(evidence.pose_turn_rad, m.gyroscope_rad, m.lasts_s)
+        parts = [1 / abs(of.slope) for of in told if of.certain()]
+        lasts = all((part > 1.2 if factor > 1 else part < 0.85) for part in parts)
+        return factor if lasts and not 0.7 < factor < 1.4 else None
     found, rate = evidence.gyroscope_by_difference, evidence.yaw_rate
     if evidence.yaw_measured or found is None or rate is None or not found.certain():
         return None
