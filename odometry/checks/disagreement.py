@@ -18,6 +18,7 @@ CERTAIN = 5.0  # standard deviations
 LEAST_TURN_RAD = 3.0  # range of the heading from which turns are compared
 LEAST_SCALED_RAD = 1.0  # the same, for the ratio of a gyroscope
 ALIKE = 0.3  # share of the changing part of the turns that the treads explain at least
+CHANGING = 0.1  # share of the squared turns that changes, from which it is compared
 LEAST_WINDOWS = 30
 PIECES = 8  # of the recording, in each of which yaw has one offset to the course
 PIECE_HELD = 0.9  # concentration in a piece
@@ -137,8 +138,12 @@ def _treads_unlike(evidence: Evidence) -> Iterator[str]:
             continue
         if lasting_turn_rad(turns, motion.lasts_s) < LEAST_TURN_RAD:
             continue
-        columns = columns[known] - columns[known].mean(axis=0)
+        columns = columns[known]
+        whole = float(np.sum(columns[:, 3] ** 2))
+        columns = columns - columns.mean(axis=0)
         design, target = columns[:, :3], columns[:, 3]
+        if np.sum(target**2) < CHANGING * whole:
+            continue  # a steady turn: what changes is slip
         left = target - design @ np.linalg.lstsq(design, target, rcond=None)[0]
         share = 1 - float(np.sum(left**2) / max(np.sum(target**2), 1e-300))
         if share < ALIKE:

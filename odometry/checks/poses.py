@@ -125,7 +125,7 @@ def _lever_arm(evidence: Evidence) -> Iterator[Finding]:
     told = pieces((evidence.sideways_m, evidence.forward_m)[place], *columns)
     size = (x_m, -y_m)[place]
     swings = [of.coefficients[place] / size for of in told if of.certain(place)]
-    if far > limit_m and swings and min(swings) > LASTING:
+    if far > limit_m and len(swings) > 1 and min(swings) > LASTING:
         yield Finding(
             "far_sensor",
             Level.WARNING,

@@ -17,6 +17,7 @@ UNRELATED = (
 
 HELD = 0.9  # share of the turns explained from which less is compared with less
 TIMES_MORE = 3.0
+WIDE = 3.0  # track widths as which a robot turns at most, but for snow
 
 
 class Sense(Enum):
@@ -78,11 +79,16 @@ def lasting_turn_rad(turns: FloatArray, lasts_s: FloatArray) -> float:
     return float(np.ptp(heading - np.polyval(np.polyfit(at_s, heading, 1), at_s)))
 
 
+def _lasting_by_treads_rad(evidence: Evidence) -> float:
+    m, width_m = evidence.uniform, WIDE * evidence.run.robot.track_width
+    return lasting_turn_rad(m.difference_m / width_m, m.lasts_s)
+
+
 def gyroscope_sense(evidence: Evidence) -> Sense:
     """How the gyroscope's turns come from the treads."""
     m = evidence.uniform
     turned = float(np.nansum(np.abs(m.gyroscope_rad)))
-    lasting = lasting_turn_rad(m.gyroscope_rad, m.lasts_s)
+    lasting = max(lasting_turn_rad(m.gyroscope_rad, m.lasts_s), _lasting_by_treads_rad(evidence))
     return sense(evidence.gyroscope_by_treads, evidence.gyroscope_by_difference, turned, lasting)
 
 
@@ -90,7 +96,7 @@ def pose_sense(evidence: Evidence) -> Sense:
     """How measured turns come from the treads."""
     m = evidence.motion
     turned = float(np.nansum(np.abs(m.turn_rad)))
-    lasting = lasting_turn_rad(m.turn_rad, m.lasts_s)
+    lasting = max(lasting_turn_rad(m.turn_rad, m.lasts_s), _lasting_by_treads_rad(evidence))
     return sense(evidence.pose_turn_by_treads, evidence.pose_turn_by_difference, turned, lasting)
 
 
