@@ -226,7 +226,8 @@ class Evidence:
         """Distance between positions from the mean travel, both without sign, for lack of yaw."""
         m = self.motion
         sharp = np.abs(m.difference_m) / np.maximum(np.abs(m.mean_m), 1e-12)
-        turning = sharp > (1.0 if np.mean(sharp > 1.0) < MOST_SHARP else 2.0)
+        some = np.mean(sharp > 1.0) < MOST_SHARP or np.mean(sharp > 2.0) > 1 - MOST_SHARP
+        turning = sharp > (1.0 if some else 2.0)
         if scattered(m):
             return None
         return relation(np.where(turning, np.nan, m.distance_m), np.abs(m.mean_m))
