@@ -42,10 +42,13 @@ class YawRate(NamedTuple):
     stamps_s : (N,)
     yaw_rate_rad_s : (N,)
         Finite.
+    file : str
+        Name of the file that they stand in.
     """
 
     stamps_s: FloatArray
     yaw_rate_rad_s: FloatArray
+    file: str
 
 
 def sensors_of(settings: Mapping[str, Any], where: str) -> Sensors:
@@ -73,13 +76,13 @@ def preferred_yaw_rate(imu: Table | None, odometry: Table, sensors: Sensors) -> 
     `sensors.imu_rad`, which needs all three; where one is absent and roll or pitch is stated,
     imu.csv tells no yaw rate.
     """
-    tables = [(imu, _imu_rates(imu, sensors))] if imu is not None else []
+    tables = [(imu, _imu_rates(imu, sensors), "imu.csv")] if imu is not None else []
     if "gyro_z" in odometry:
-        tables.append((odometry, odometry["gyro_z"]))
-    for table, rates in tables:
+        tables.append((odometry, odometry["gyro_z"], "odometry.csv"))
+    for table, rates, file in tables:
         there = np.isfinite(rates)
         if there.any():
-            return YawRate(table.stamps_s[there], rates[there])
+            return YawRate(table.stamps_s[there], rates[there], file)
     return None
 
 

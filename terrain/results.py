@@ -184,6 +184,8 @@ def read_errors(folder: str | Path) -> dict[str, Any]:
     """
     file = Path(folder) / "result.json"
     check_finished(file.parent)
+    if not file.exists():
+        raise ResultError(f"{folder} has no result.json; expected a folder that `run` wrote")
     content = read_json(file, ResultError)
     try:
         check_format(file, content.get("format", FORMAT), FORMAT, ResultError)

@@ -158,7 +158,7 @@ def _watcher(
         raise RunFolderError(
             f"{run.folder}: a model was given, but the run has no "
             f"{'images.csv' if run.images is None else '[camera] in run.toml'}; "
-            "leave the model out or turn vision off"
+            "a model (--model) reads images: leave it out, or turn vision off (--no-vision)"
         )
     camera = Camera.from_table(run.settings["camera"], str(run.folder / "run.toml"))
     classifier = (

@@ -76,14 +76,16 @@ def synthesise(
     icrs_m = {name: icrs[name] for name in dict.fromkeys((*config.zones, *sets.terrains))}
     view = View.of(config.camera)
     patches = render_patches(config, view, sets.patches, rngs[5])
-    write_patches(out / "patches", tqdm(patches, "patches", disable=not progress), config)
+    write_patches(
+        out / "patches", tqdm(patches, "patches", disable=None if progress else True), config
+    )
     drive = _drive(config, ground, np.array([icrs_m[t] for t in ground.terrains]), rngs[2])
     tables = motion_tables(config, drive, rngs[3])
 
     shown = range(0, len(drive.stamps_s), config.samples_between("image_rate_hz"))
     tables["images"] = _images_table(drive, ground, config.camera, shown)
     frames = _frames(drive, shown, Scene(view, ground, textures), rngs[4])
-    bar = tqdm(frames, "images", len(shown), disable=not progress)
+    bar = tqdm(frames, "images", len(shown), disable=None if progress else True)
     for name, frame in zip(tables["images"]["file"], bar, strict=True):
         with atomic_write(out / str(name)) as part:
             part.write_bytes(encode_jpeg(frame, config.jpeg_quality))

@@ -48,6 +48,8 @@ def _against_gravity(evidence: Evidence, roll: FloatArray, pitch: FloatArray) ->
         odometry["accel_y"] - forward * turn_rate,
     )
     smooth = [_smoothed(evidence, values) for values in (*expected, *measured)]
+    if not all(np.isfinite(values).any() for values in smooth):
+        return
     slow = np.abs(_smoothed(evidence, forward * turn_rate)) < 0.3
     if (swapped := _swapped(smooth, slow)) is not None:
         yield swapped
@@ -68,7 +70,8 @@ def _swapped(smooth: list[FloatArray], slow: BoolArray) -> Finding | None:
     ones = np.ones(len(x))
     explained = []
     for expected, measured in ((by_pitch, x), (by_roll, y), (by_roll, x), (by_pitch, y)):
-        fit = relation(np.where(slow, measured - np.median(measured), np.nan), expected, ones)
+        middle = np.median(measured[np.isfinite(measured)])
+        fit = relation(np.where(slow, measured - middle, np.nan), expected, ones)
         explained.append(0.0 if fit is None else fit.correlation * (abs(fit.slope) > 0.5))
     straight, crossed = min(explained[:2]), min(explained[2:])
     if crossed < 0.8 or max(explained[:2]) > 0.5:

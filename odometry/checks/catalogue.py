@@ -1,6 +1,5 @@
-"""Every finding of a check: one row, what it says."""
+"""Every finding of the checks of this package: one row, what it says."""
 
-# Those of the camera are in terrain/checks; `tests/odometry/checks` holds both sides together.
 CATALOGUE: dict[str, str] = {
     # Files, stamps and run.toml
     "unreadable": "a file is not as the format says",
@@ -14,7 +13,6 @@ CATALOGUE: dict[str, str] = {
     "clock_set": "a clock that was set while recording",
     "track_width": "track width far from the width that turns imply",
     "sensor_place": "[sensors] pose in mm",
-    "sensor_attitude": "[sensors] imu in degrees",
     "terrain_names": "two spellings of one terrain",
     "sensors_disagree": "sensors differ, and no cause can be told",
     # Treads

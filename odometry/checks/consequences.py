@@ -46,7 +46,6 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "odometry_gap": frozenset({"pose_jumps"}),
     "clock_set": frozenset({"pose_jumps"}),
     "imu_mount": frozenset({"gyroscope_reversed", "gyroscope_unrelated"}),
-    "pose_restarts": frozenset({"pose_jumps"}),
     "treads_still": TREADS | POSES,
     "treads_unrelated": TREADS | YAW | {"pose_late", "treads_late", "clocks_apart"},
     "poses_unrelated": (POSES - {"clocks_apart"})

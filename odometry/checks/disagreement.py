@@ -90,7 +90,8 @@ def _headings_apart(evidence: Evidence) -> str:
     last = last[first]
     whole = stamps_s[last] - stamps_s[first] < 1.2 * SPAN_S
     if "window" in pose:
-        whole &= pose["window"][rows][first] == pose["window"][rows][last]
+        window = np.nan_to_num(pose["window"][rows])
+        whole &= window[first] == window[last]
     first, last = first[whole], last[whole]
     if len(first) == 0 or np.ptp(stamps_s[first]) < LEAST_SPANS:
         return ""

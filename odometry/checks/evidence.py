@@ -5,141 +5,21 @@ from functools import cached_property
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray
+from odometry.arrays import FloatArray
 from odometry.checks.heading import CONSISTENT, Heading, across_m, along_m, headings
-from odometry.checks.motion import Integrals, Motion, integrals, motion_between, scattered
-from odometry.checks.pose_cleaning import pose_outliers
+from odometry.checks.motion import Motion, scattered
+from odometry.checks.recorded import Recorded
 from odometry.checks.relation import Relation, relation
-from odometry.checks.spikes import without_spikes
-from odometry.run import Run
 
-LONGER_S = (1.0, 2.0)
-MOVING = 0.1  # share of the ordinary fastest speed above which the robot moves
+MOST_SHARP = 0.8  # share of the windows in sharp turns, from which these are used as well
 MOST_TURN_RAD = 2.5  # between two poses, from which whole turns may be lost
 DEGREES_RAD_S = 7.0  # no robot turns faster: the gyroscope is in degrees per second
-MOST_OUTLIERS = 0.3  # share of the poses: where more are far from the others, none can be left out
-MOST_SHARP = 0.8  # share of the windows in sharp turns, from which these are used as well
 CLEARLY = 0.3  # difference of concentrations or squared correlations that decides
 
 
 @dataclass(frozen=True)
-class Evidence:
+class Evidence(Recorded):
     """A run, and relations between its sensors. All properties are made once, when asked for."""
-
-    run: Run
-
-    @cached_property
-    def stamps_s(self) -> FloatArray:
-        """Stamps (N,) of odometry.csv."""
-        return self.run.odometry.stamps_s
-
-    @cached_property
-    def period_s(self) -> float:
-        """Usual period of odometry.csv."""
-        return float(np.median(np.diff(self.stamps_s))) if len(self.stamps_s) > 1 else 0.0
-
-    @cached_property
-    def duration_s(self) -> float:
-        """Time from the first to the last row of odometry.csv."""
-        return float(self.stamps_s[-1] - self.stamps_s[0])
-
-    @cached_property
-    def speeds_m_s(self) -> FloatArray:
-        """Tread speeds (N, 2) without spikes."""
-        odometry = self.run.odometry
-        return np.stack([without_spikes(odometry[n]) for n in ("v_left", "v_right")], axis=-1)
-
-    @cached_property
-    def fastest_m_s(self) -> float:
-        """Ordinary fastest tread speed: 99 in 100 are slower."""
-        return float(np.quantile(np.abs(self.speeds_m_s).max(axis=1), 0.99))
-
-    @cached_property
-    def moving(self) -> BoolArray:
-        """Rows (N,) of odometry.csv at which a tread moves."""
-        return np.asarray(np.abs(self.speeds_m_s).max(axis=1) > MOVING * self.fastest_m_s)
-
-    @cached_property
-    def yaw_rate(self) -> tuple[FloatArray, FloatArray] | None:
-        """Stamps (G,) and yaw rates (G,) of the gyroscope, spikes left out."""
-        found = self.run.yaw_rate
-        if found is None or len(found.stamps_s) < 2:
-            return None
-        return found.stamps_s, without_spikes(found.yaw_rate_rad_s)
-
-    @cached_property
-    def gyroscope_file(self) -> str:
-        """The file in which the yaw rate stands."""
-        in_imu = self.run.imu is not None and "gyro_z" in self.run.imu
-        return "imu.csv" if in_imu else "odometry.csv"
-
-    @cached_property
-    def positions_measured(self) -> BoolArray | None:
-        """Rows (M,) of pose.csv with x and y; None where fewer than ten have them."""
-        if self.run.pose is None:
-            return None
-        measured = np.isfinite(self.run.pose.stack("x", "y")).all(axis=1)
-        return np.asarray(measured) if measured.sum() >= 10 else None
-
-    @cached_property
-    def pose_outliers(self) -> BoolArray:
-        """Rows (M,) of pose.csv whose position leaves the way and comes back."""
-        if self.positions_measured is None or self.run.pose is None:
-            return np.zeros(0, dtype=np.bool_)
-        found = np.zeros(len(self.positions_measured), dtype=np.bool_)
-        rows = np.flatnonzero(self.positions_measured)
-        found[rows[pose_outliers(self.run.pose.stack("x", "y")[rows])]] = True
-        return found
-
-    @cached_property
-    def yaw_measured(self) -> bool:
-        """Whether most measured positions have a yaw."""
-        if self.positions_measured is None or self.run.pose is None:
-            return False
-        return bool(np.isfinite(self.run.pose["yaw"][self.positions_measured]).mean() > 0.5)
-
-    @cached_property
-    def integrals(self) -> Integrals:
-        """Tread travel and gyroscope heading."""
-        return integrals(self.run, self.speeds_m_s, self.yaw_rate)
-
-    @cached_property
-    def raw_motion(self) -> Motion:
-        """Windows between new poses where there are any; yaw as it stands.
-
-        Half a second, or longer where the noise of the positions is more than what was driven.
-        """
-        found = motion_between(self.run, self.integrals, self.poses_used)
-        for window_s in LONGER_S:
-            if not scattered(found):
-                break
-            found = motion_between(self.run, self.integrals, self.poses_used, window_s)
-        return found
-
-    @cached_property
-    def uniform(self) -> Motion:
-        """Windows of a second over the whole of odometry.csv, without poses."""
-        return motion_between(self.run, self.integrals, None)
-
-    @cached_property
-    def _new_poses(self) -> BoolArray:
-        """Rows (M,) of pose.csv that differ from the row before: the others repeat it."""
-        if self.run.pose is None:
-            return np.zeros(0, dtype=np.bool_)
-        values = self.run.pose.stack("x", "y", "yaw")
-        same = (np.diff(values, axis=0) == 0) | np.isnan(values[1:])
-        return np.concatenate([[True], ~same.all(axis=1)])
-
-    @cached_property
-    def poses_used(self) -> BoolArray | None:
-        """Rows (M,) of pose.csv that are new and no outliers; None without poses."""
-        used = self.positions_measured
-        if used is None or self.run.pose is None:
-            return None
-        if self.pose_outliers.mean() < MOST_OUTLIERS:
-            used = used & ~self.pose_outliers
-        used = used & self._new_poses
-        return used & np.isfinite(self.run.pose["yaw"]) if self.yaw_measured else used
 
     @cached_property
     def yaw_in_degrees(self) -> bool:
@@ -162,7 +42,7 @@ class Evidence:
 
     @cached_property
     def motion(self) -> Motion:
-        """Windows of about a second, between poses where there are any; yaw in radians."""
+        """Windows of half a second or more, between poses where there are any; yaw in radians."""
         raw = self.raw_motion
         return raw.with_yaw(np.radians) if self.yaw_in_degrees else raw
 
@@ -225,6 +105,8 @@ class Evidence:
     def distance_by_mean(self) -> Relation | None:
         """Distance between positions from the mean travel, both without sign, for lack of yaw."""
         m = self.motion
+        if len(m) == 0:
+            return None
         sharp = np.abs(m.difference_m) / np.maximum(np.abs(m.mean_m), 1e-12)
         some = np.mean(sharp > 1.0) < MOST_SHARP or np.mean(sharp > 2.0) > 1 - MOST_SHARP
         turning = sharp > (1.0 if some else 2.0)
@@ -287,7 +169,3 @@ class Evidence:
         """Measured turn from that of the gyroscope, and its bias."""
         m = self.motion
         return relation(self.pose_turn_rad, m.gyroscope_rad, m.lasts_s)
-
-    def run_time_s(self, stamp_s: float) -> float:
-        """Time from the first row of odometry.csv."""
-        return float(stamp_s - self.stamps_s[0])

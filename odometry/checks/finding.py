@@ -105,6 +105,11 @@ class CheckReport:
         }
 
 
+def counted(count: int, noun: str) -> str:
+    """A number and a noun: 1 row, 2 rows."""
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
 def in_order(findings: Iterable[Finding]) -> tuple[Finding, ...]:
     """Most severe first; findings of one level keep their order."""
     rank = list(Level)

@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level
+from odometry.checks.finding import Finding, Level, counted
 from odometry.windows.gaps import odometry_gaps
 
 OFTEN = 20
@@ -26,8 +26,11 @@ def gaps(evidence: Evidence) -> Iterator[Finding]:
     of_changes = len(found) < FEW * len(long)
     if len(long) > OFTEN and len(found) > MOST * len(long):
         yield _bursts(evidence, lasts_s[long])
-    clock = [span for span in found.spans_s if _clock_was_set(evidence, span)]
-    lost = [span for span in found.spans_s if not any(span is other for other in clock)]
+    was_set = [_clock_was_set(evidence, span) for span in found.spans_s]
+    clock, lost = (
+        [span for span, was in zip(found.spans_s, was_set, strict=True) if was is kind]
+        for kind in (True, False)
+    )
     if lost:
         reason = str(found.reasons[0])
         yield _finding(
@@ -79,8 +82,8 @@ def _finding(
     return Finding(
         name,
         level,
-        f"odometry.csv has no rows for {whole_s:.1f} s in {len(spans_s)} places (first for "
-        f"{first_end_s - first_s:.2f} s at {evidence.run_time_s(first_s):.1f} s): {reason}",
+        f"odometry.csv has no rows for {whole_s:.1f} s in {counted(len(spans_s), 'place')} (first "
+        f"for {first_end_s - first_s:.2f} s at {evidence.run_time_s(first_s):.1f} s): {reason}",
         cause,
         remedy,
         tuple((evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in spans_s),

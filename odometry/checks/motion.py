@@ -123,7 +123,7 @@ def integrals(
 def motion_between(
     run: Run, of: Integrals, poses_used: BoolArray | None, window_s: float = WINDOW_S
 ) -> Motion:
-    """Cut a run into windows of about a second, between measured poses where there are any.
+    """Cut a run into windows of half a second, between measured poses where there are any.
 
     Parameters
     ----------
@@ -167,7 +167,8 @@ def _between_poses(run: Run, of: Integrals, rows: IntArray, window_s: float) -> 
     lasts_s = pose_s[last] - pose_s[first]
     near = lasts_s <= LONGEST * max(window_s, float(np.median(np.diff(pose_s))))
     if "window" in run.pose:
-        near &= run.pose["window"][first] == run.pose["window"][last]
+        window = np.nan_to_num(run.pose["window"])
+        near &= window[first] == window[last]
     first, last = first[near], last[near]
     positions, yaw = run.pose.stack("x", "y"), run.pose["yaw"]
     return _window(
@@ -191,11 +192,11 @@ def _window(
 
 def _spaced(pose_s: FloatArray, rows: IntArray, apart_s: float) -> IntArray:
     """Rows at least so far apart."""
-    chosen: list[int] = []
-    for row in rows:
-        if not chosen or pose_s[row] - pose_s[chosen[-1]] >= apart_s - 1e-6:
-            chosen.append(int(row))
-    return np.array(chosen, dtype=np.int64)
+    stamps_s, chosen, place = pose_s[rows], [], 0
+    while place < len(rows):
+        chosen.append(place)
+        place = int(np.searchsorted(stamps_s, stamps_s[place] + apart_s - 1e-6))
+    return np.asarray(rows[chosen], dtype=np.int64)
 
 
 def _held(stamps_s: FloatArray, values: FloatArray) -> Callable[[FloatArray], FloatArray]:

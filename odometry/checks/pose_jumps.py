@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level
+from odometry.checks.finding import Finding, Level, counted
 from odometry.checks.heading import READINGS
 from odometry.checks.spans import runs_of, within
 
@@ -15,6 +15,7 @@ JUMP_TIMES = 7.0  # the usual change of the difference to dead reckoning over th
 LEAST_YAW_JUMP_RAD = np.radians(25)
 JITTER_S = 0.4  # by which poses that came in bursts were late
 LOST_S = 0.3  # around a jump, in which treads that read zero are its cause
+BLOCK = 1_000_000  # values whose medians are taken at a time
 NEAR_S, FAR_S = 0.25, 1.25  # of a jump: between them its two sides are compared
 
 
@@ -51,8 +52,8 @@ def jumps(
         yield Finding(
             "slip_episodes",
             Level.NOTE,
-            f"{len(stood)} times the treads drive on while the poses hardly move (first by "
-            f"{step[stood[0]]:.2f} m at {evidence.run_time_s(stamps_s[stood[0]]):.1f} s)",
+            f"the treads drive on while the poses hardly move ({counted(len(stood), 'time')}, "
+            f"first by {step[stood[0]]:.2f} m at {evidence.run_time_s(stamps_s[stood[0]]):.1f} s)",
             "The robot is stuck or slips while its wheels spin, or poses are frozen for a moment",
             "Judge by what the robot drove on; cut with --from and --to",
             tuple((evidence.run_time_s(stamps_s[i]),) * 2 for i in stood),
@@ -64,7 +65,8 @@ def jumps(
             "treads_frozen",
             Level.WARNING,
             f"poses move by up to {step[lost].max():.2f} m while both treads read zero "
-            f"({len(lost)} times, first at {evidence.run_time_s(stamps_s[lost[0]]):.1f} s)",
+            f"({counted(len(lost), 'time')}, first at "
+            f"{evidence.run_time_s(stamps_s[lost[0]]):.1f} s)",
             "Odometry is lost: the log writes zeros (a motor driver or bus that stopped); or the "
             "robot was pushed, carried or slid, or poses jump, or these are commands and it coasts",
             "Cut the recording with --from and --to",
@@ -78,9 +80,8 @@ def jumps(
     yield Finding(
         "pose_jumps",
         Level.WARNING,
-        f"poses jump {len(peaks)} times against what treads and yaw say, and stay: {places}"
-        + (" ..." if len(peaks) > 3 else "")
-        + f" (usual: {usual:.2g} m)",
+        f"poses jump against what treads and yaw say, and stay, {counted(len(peaks), 'time')}: "
+        f"{places}" + (" ..." if len(peaks) > 3 else "") + f" (usual: {usual:.2g} m)",
         "Poses jump: the reference was relocalised, or its map or fix changed",
         "Number the stretches between jumps in a column `window`, or cut with --from and --to",
         tuple((evidence.run_time_s(stamps_s[i]),) * 2 for i in peaks),
@@ -113,7 +114,7 @@ def yaw_jumps(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
     yield Finding(
         "yaw_jumps",
         Level.WARNING,
-        f"yaw of pose.csv jumps {len(peaks)} times against the gyroscope, and stays: "
+        f"yaw of pose.csv jumps against the gyroscope, and stays, {counted(len(peaks), 'time')}: "
         + ", ".join(
             f"{np.degrees(step[i]):.0f} degrees at {evidence.run_time_s(stamps_s[i]):.1f} s"
             for i in peaks[:3]
@@ -156,11 +157,18 @@ def _step_sizes(stamps_s: FloatArray, off: FloatArray) -> FloatArray:
         np.searchsorted(stamps_s, stamps_s + shift_s)
         for shift_s in (-far_s, -near_s, near_s, far_s)
     ]
-    found = np.full(len(stamps_s), np.nan)
-    for i in range(len(stamps_s)):
-        a, b, c, d = (int(edge[i]) for edge in edges)
-        if b - a >= 2 and d - c >= 2:
-            found[i] = np.hypot(*(np.median(off[c:d], axis=0) - np.median(off[a:b], axis=0)))
+    before, after = (_medians(off, *edges[i : i + 2]) for i in (0, 2))
+    return np.asarray(np.hypot(*(after - before).T))
+
+
+def _medians(values: FloatArray, first: IntArray, last: IntArray) -> FloatArray:
+    """Medians (K, 2) of values (M, 2) from `first` to before `last` (K,); NaN of less than two."""
+    found, sizes = np.full((len(first), 2), np.nan), last - first
+    for size in np.unique(sizes[sizes >= 2]):
+        windows = np.lib.stride_tricks.sliding_window_view(values, size, axis=0)
+        rows = np.flatnonzero(sizes == size)
+        for some in np.array_split(rows, 1 + len(rows) * size // BLOCK):
+            found[some] = np.median(windows[first[some]], axis=-1)
     return found
 
 

@@ -181,7 +181,8 @@ def _yaw_is_course(evidence: Evidence, rows: IntArray, positions: FloatArray) ->
 def _quaternion(evidence: Evidence) -> Iterator[Finding]:
     """The z of a quaternion in place of yaw: its sine of half the heading fits the course."""
     raw = evidence.raw_motion
-    if not np.nanmax(np.abs(raw.yaw_rad)) <= 1.0001 or np.nanmax(np.abs(raw.yaw_rad)) < 0.3:
+    largest = float(np.max(np.abs(raw.yaw_rad), initial=0.0, where=np.isfinite(raw.yaw_rad)))
+    if not 0.3 <= largest <= 1.0001:
         return
     read = raw.with_yaw(lambda z: 2 * np.arcsin(np.clip(z, -1.0, 1.0)))
     plain, half = (headings(m, evidence.turn_rad(m)).get("radians") for m in (raw, read))

@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level
+from odometry.checks.finding import Finding, Level, counted
 from odometry.checks.pose_jumps import jumps, yaw_jumps
 from odometry.checks.relation import pieces, relation
 from odometry.checks.spans import constant_spans, runs_of
@@ -59,8 +59,9 @@ def _frozen(
     yield Finding(
         "frozen_poses",
         Level.WARNING,
-        f"poses repeat the same position for {lasts_s:.1f} s in {len(spans)} stretches (first at "
-        f"{evidence.run_time_s(spans[0, 0]):.1f} s) while the treads travel {moved_m.sum():.2f} m",
+        f"poses repeat the same position for {lasts_s:.1f} s in {counted(len(spans), 'place')} "
+        f"(first at {evidence.run_time_s(spans[0, 0]):.1f} s) while the treads travel "
+        f"{moved_m.sum():.2f} m",
         "Poses are frozen: the reference was lost and its last value went on; or the robot was "
         "stuck while its treads turned",
         "Leave these poses empty",
@@ -82,7 +83,7 @@ def _repeated(positions: FloatArray, travel_m: FloatArray) -> Iterator[Finding]:
             "repeated_poses",
             Level.WARNING,
             f"{100 * share:.0f} % of the poses repeat the one before while the treads move (up to "
-            f"{longest} times)",
+            f"{counted(longest, 'time')})",
             "Poses are repeated: the reference is slower than its log, which holds the last value "
             "(frozen between updates)",
             "Keep the rows in which the pose is new",
@@ -100,8 +101,8 @@ def _outliers(evidence: Evidence) -> Iterator[Finding]:
     yield Finding(
         "pose_outliers",
         Level.WARNING if share > OUTLIERS or len(found) > 5 else Level.NOTE,
-        f"{len(found)} poses ({100 * share:.2g} %) lie up to {away.max():.3g} m away from their "
-        "neighbours and come back",
+        f"{counted(len(found), 'pose')} ({100 * share:.2g} %) up to {away.max():.3g} m away from "
+        "the neighbours, and back again",
         "Outliers of the reference (multipath, a wrong match)",
         "Leave these poses empty; the filter's gate refuses them and fits weigh them down",
         tuple((evidence.run_time_s(s),) * 2 for s in pose.stamps_s[found]),

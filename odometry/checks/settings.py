@@ -15,49 +15,33 @@ GRAVITY_M_S2 = 9.81
 
 
 def settings(evidence: Evidence) -> Iterator[Finding]:
-    """Places and attitudes of sensors, the axes of the IMU by gravity, names of terrain."""
+    """The place of the pose sensor, the axes of the IMU by gravity, names of terrain."""
     yield from _sensors(evidence)
     yield from _gravity(evidence)
     yield from _terrain_names(evidence)
 
 
 def _sensors(evidence: Evidence) -> Iterator[Finding]:
-    sensors = evidence.run.settings.get("sensors", {})
-    pose, imu = _numbers(sensors, "pose"), _numbers(sensors, "imu")
-    if pose is not None and np.abs(pose).max() > FARTHEST_M:
+    pose_m = evidence.run.sensors.pose_m
+    if pose_m is not None and max(map(abs, pose_m)) > FARTHEST_M:
         yield Finding(
             "sensor_place",
             Level.WARNING,
-            f"[sensors] pose = {pose.tolist()} m",
+            f"[sensors] pose = {list(pose_m)} m",
             "The place of the sensor is in mm or cm, not metres",
             "Write it in metres, in the robot frame",
         )
-    if imu is not None and np.abs(imu).max() > 2 * np.pi:
-        yield Finding(
-            "sensor_attitude",
-            Level.WARNING,
-            f"[sensors] imu = {imu.tolist()} rad",
-            "The attitude of the sensor is in degrees",
-            "Write roll, pitch and yaw in radians",
-        )
-
-
-def _numbers(table: object, name: str) -> np.ndarray | None:
-    values = table.get(name) if isinstance(table, dict) else None
-    if not isinstance(values, list) or not all(isinstance(v, int | float) for v in values):
-        return None
-    return np.array(values, dtype=np.float64) if values else None
 
 
 def _gravity(evidence: Evidence) -> Iterator[Finding]:
     imu = evidence.run.imu
     names = ("accel_x", "accel_y", "accel_z")
-    if imu is None or not all(name in imu for name in names):
+    if imu is None or not all(name in imu and np.isfinite(imu[name]).any() for name in names):
         return
     x, y, z = (float(np.nanmedian(imu[name])) for name in names)
     size = float(np.linalg.norm([x, y, z]))
     seen = f"accelerations of imu.csv are ({x:.2f}, {y:.2f}, {z:.2f}) in the median"
-    stated = _numbers(evidence.run.settings.get("sensors", {}), "imu") is not None
+    stated = evidence.run.sensors.imu_rad is not None
     if 0.8 < size < 1.2:
         yield _imu("imu_unit", seen, "Accelerations are in g, not m/s2", "Multiply by 9.81")
     elif size < 0.5:

@@ -6,13 +6,15 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level
+from odometry.checks.finding import Finding, Level, counted
 from odometry.run import Run
 from odometry.table import Table
 
-LONGEST_PERIOD_S = 20.0  # no recording of poses or images is slower
-LONGEST_ODOMETRY_PERIOD_S = 2.5  # nor one of treads
-SHORTEST_PERIOD_S = 2e-5  # nor faster
+LONGEST_PERIOD_S = 20.0  # poses or images are hardly slower, where odometry.csv is of another time
+LONGEST_ODOMETRY_PERIOD_S = 2.5  # nor are treads that are logged evenly
+EVEN = 3.0  # ratio of a long to a short step below which a log is even: no log of changes
+LONGEST_HOLD_S = 1000.0  # nobody holds a command for longer, usually
+SHORTEST_PERIOD_S = 2e-5  # nor is any log faster
 EPOCH_S = 1e8  # stamps above count from 1970 (1e8 s is in 1973)
 USUAL_PERIODS_S = (0.002, 2.0)
 STAMP_UNITS = (("nanoseconds", 1e9), ("microseconds", 1e6), ("milliseconds", 1e3))
@@ -41,7 +43,7 @@ def unreadable_stamps(run: Run) -> Iterator[Finding]:
         )
         return
     for name, table in tables.items():
-        unit = _stamp_unit(name, table.stamps_s)
+        unit = _stamp_unit(name, table.stamps_s, odometry_s)
         if unit:
             period = float(np.median(np.diff(table.stamps_s)))
             yield _refused(
@@ -51,15 +53,21 @@ def unreadable_stamps(run: Run) -> Iterator[Finding]:
                 f"Stamps are in {unit}, not seconds",
                 "Convert the column t to seconds",
             )
-    if any(_stamp_unit(name, table.stamps_s) for name, table in tables.items()):
+    if any(_stamp_unit(name, table.stamps_s, odometry_s) for name, table in tables.items()):
         return
     for name, table in tables.items():
         if name != "odometry.csv":
             yield from _apart(name, table.stamps_s, odometry_s)
 
 
-def _stamp_unit(name: str, stamps_s: FloatArray) -> str:
-    """The unit of stamps that cannot be seconds; "" where they may be."""
+def _stamp_unit(name: str, stamps_s: FloatArray, odometry_s: FloatArray) -> str:
+    """The unit of stamps that cannot be seconds; "" where they may be.
+
+    Stamps of another file that lie in the time of odometry.csv have its unit, however rare they
+    are; and treads that are logged on change may be held for long.
+    """
+    if name != "odometry.csv" and _share_inside(stamps_s, odometry_s) > 0.5:
+        return ""
     if len(stamps_s) < 3:
         epoch = float(np.abs(stamps_s).max())
         return next((name for name, factor in STAMP_UNITS if epoch > 1e10 * factor / 1e3), "")
@@ -68,6 +76,9 @@ def _stamp_unit(name: str, stamps_s: FloatArray) -> str:
     longest_s = LONGEST_ODOMETRY_PERIOD_S if odometry else LONGEST_PERIOD_S
     if SHORTEST_PERIOD_S <= period <= longest_s:
         return ""
+    short_s, long_s = np.quantile(np.diff(stamps_s), [0.1, 0.9])
+    if name == "odometry.csv" and period < LONGEST_HOLD_S and long_s > EVEN * short_s:
+        return ""
     if period < SHORTEST_PERIOD_S:
         return "a unit longer than seconds (hours, days)"
     low, high = USUAL_PERIODS_S
@@ -75,9 +86,13 @@ def _stamp_unit(name: str, stamps_s: FloatArray) -> str:
     return " or ".join(fitting) or "another unit"
 
 
+def _share_inside(stamps_s: FloatArray, odometry_s: FloatArray) -> float:
+    return float(np.mean((stamps_s >= odometry_s[0]) & (stamps_s <= odometry_s[-1])))
+
+
 def _apart(name: str, stamps_s: FloatArray, odometry_s: FloatArray) -> Iterator[Finding]:
     begin_s, end_s = float(odometry_s[0]), float(odometry_s[-1])
-    inside = float(np.mean((stamps_s >= begin_s) & (stamps_s <= end_s)))
+    inside = _share_inside(stamps_s, odometry_s)
     if inside == 0:
         offset_s = float(stamps_s[0] - begin_s)
         hours = offset_s / 3600
@@ -115,8 +130,8 @@ def stamps(evidence: Evidence) -> Iterator[Finding]:
             yield Finding(
                 "repeated_stamps",
                 Level.WARNING if share > 0.2 else Level.NOTE,
-                f"{len(dropped)} rows of {name} repeat the stamp of the row before "
-                f"({100 * share:.2g} %; row {first}) and were dropped",
+                f"{name} repeats the stamp of the row before in {counted(len(dropped), 'row')} "
+                f"({100 * share:.2g} %; row {first}), and they were dropped",
                 "The logger wrote a stamp twice"
                 if share <= 0.2
                 else "Stamps have too few digits, or two recordings were merged",

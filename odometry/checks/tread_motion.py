@@ -4,17 +4,19 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.motion import Motion
-from odometry.checks.relation import relation
+from odometry.checks.relation import Relation, relation
 from odometry.checks.spans import constant_spans, within
 
 STUCK_S = 2.0
 BOTH_STUCK_S = 1.0
 OTHER_MOVES = 0.05  # of the ordinary fastest speed, by which the other tread changes meanwhile
 CONTRADICTED = 5.0  # times the usual residual
+SHORT = 0.1  # share of the windows: a span of fewer hardly moves a robust fit to all of them
+SURELY = 0.1  # of the ordinary motion of a window: what a span that goes with the treads is off by
 
 
 def tread_motion(evidence: Evidence) -> Iterator[Finding]:
@@ -57,8 +59,10 @@ def _contradicted(evidence: Evidence, span: FloatArray, side: int) -> bool:
         return False  # a gap, or one long hold
     if np.ptp(evidence.speeds_m_s[rows, 1 - side]) < OTHER_MOVES * evidence.fastest_m_s:
         return False
-    for motion, target in _targets(evidence):
+    for motion, target, of_all in _targets(evidence):
         inside = (motion.start_s >= begin_s) & (motion.end_s <= end_s)
+        if _is_as_elsewhere(target, of_all, inside):
+            continue
         outside = ~within((motion.start_s + motion.end_s) / 2, span[None])
         if inside.sum() < 2:
             continue
@@ -98,10 +102,10 @@ def _both_still(evidence: Evidence) -> Iterator[Finding]:
 
 def _differs(evidence: Evidence, span: FloatArray) -> bool:
     """Whether the measured motion in a span changes, or differs from that of the held speeds."""
-    for motion, target in _targets(evidence):
-        inside = (motion.start_s >= span[0]) & (motion.end_s <= span[1]) & np.isfinite(target)
+    for motion, target, of_all in _targets(evidence):
         known = np.isfinite(target)
-        if inside.sum() < 1:
+        inside = (motion.start_s >= span[0]) & (motion.end_s <= span[1]) & known
+        if inside.sum() < 1 or _is_as_elsewhere(target, of_all, inside):
             continue
         fit = relation(np.where(inside, np.nan, target), motion.left_m, motion.right_m)
         if fit is None or fit.explained < 0.7:
@@ -114,24 +118,36 @@ def _differs(evidence: Evidence, span: FloatArray) -> bool:
     return False
 
 
-def _targets(evidence: Evidence) -> Iterator[tuple[Motion, FloatArray]]:
+def _is_as_elsewhere(target: FloatArray, of_all: Relation | None, inside: BoolArray) -> bool:
+    """Whether some windows surely go with the treads, by the relation of all windows.
+
+    A short span hardly moves a robust fit: most spans need no fit of their own. So the work grows
+    with their number, not with its square.
+    """
+    if of_all is None or inside.sum() > SHORT * len(target):
+        return False
+    off, size = np.abs(of_all.residuals[inside]), np.quantile(np.abs(target[of_all.kept]), 0.9)
+    return bool(np.isfinite(off).any() and np.nanmedian(off) < SURELY * size)
+
+
+def _targets(evidence: Evidence) -> Iterator[tuple[Motion, FloatArray, Relation | None]]:
+    """Measured motions of windows, and how they come from both treads."""
     if evidence.yaw_rate is not None:
-        yield evidence.uniform, evidence.uniform.gyroscope_rad
+        yield evidence.uniform, evidence.uniform.gyroscope_rad, evidence.gyroscope_by_treads
     if evidence.yaw_measured:
-        yield evidence.motion, evidence.pose_turn_rad
-        yield evidence.motion, evidence.forward_m
+        yield evidence.motion, evidence.pose_turn_rad, evidence.pose_turn_by_treads
+        yield evidence.motion, evidence.forward_m, evidence.forward_by_treads
 
 
 def _counters(evidence: Evidence) -> Iterator[Finding]:
     """Columns whose changes, not whose values, are the motion."""
-    for motion, target in _targets(evidence):
+    for motion, target, plain in _targets(evidence):
         rows = [
             np.clip(np.searchsorted(evidence.stamps_s, at_s, side="right") - 1, 0, None)
             for at_s in (motion.start_s, motion.end_s)
         ]
         left, right = (evidence.run.odometry[n] for n in ("v_left", "v_right"))
         changed = relation(target, left[rows[1]] - left[rows[0]], right[rows[1]] - right[rows[0]])
-        plain = relation(target, motion.left_m, motion.right_m)
         if changed is None or changed.explained < 0.8:
             continue
         if plain is None or plain.explained < 0.5:

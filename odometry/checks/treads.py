@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level
+from odometry.checks.finding import Finding, Level, counted
 from odometry.checks.spikes import spikes
 from odometry.checks.turning import lasting_turn_rad
 
@@ -40,9 +40,10 @@ def _absurd(evidence: Evidence) -> Iterator[Finding]:
         yield Finding(
             "absurd_speed",
             Level.WARNING,
-            f"{len(rows)} samples of {name} jump out and back, up to {values[worst]:.4g} m/s (row "
-            f"{evidence.run.odometry.lines[worst]}), where {evidence.fastest_m_s:.3g} m/s is the "
-            f"ordinary fastest; they move the odometer by {travel_m.sum():.3g} m",
+            f"{name} jumps out and back in {counted(len(rows), 'sample')}, up to "
+            f"{values[worst]:.4g} m/s (row {evidence.run.odometry.lines[worst]}), where "
+            f"{evidence.fastest_m_s:.3g} m/s is the ordinary fastest; this moves the odometer by "
+            f"{travel_m.sum():.3g} m",
             "Single corrupt samples (an outlier or spike: a counter that overflowed, a lost byte)",
             "Remove these rows: the speed before them holds meanwhile",
             tuple(
@@ -121,8 +122,8 @@ def _dropped(evidence: Evidence) -> Iterator[Finding]:
         yield Finding(
             "dropped_speeds",
             Level.WARNING if total > 5 and share > DROPPED else Level.NOTE,
-            f"{total} samples of tread speed are zero between two of full speed (v_left "
-            f"{counts['v_left']}, v_right {counts['v_right']})",
+            f"tread speeds are zero between two of full speed in {counted(total, 'sample')} "
+            f"(v_left {counts['v_left']}, v_right {counts['v_right']})",
             "Samples drop out: zeros are written where a message was lost",
             "Remove these rows: the speed before them holds meanwhile",
             tuple((span, span) for span in sorted(spans)),

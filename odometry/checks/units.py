@@ -8,6 +8,12 @@ from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.relation import Relation, pieces
 from odometry.checks.turning import Sense, gyroscope_sense, pose_sense
+from odometry.checks.unit_findings import (
+    gyroscope_unit,
+    too_fast,
+    track_against_body,
+    tread_unit,
+)
 from odometry.checks.unit_tables import (
     ORDINARY_FORWARD,
     POSITION_UNITS,
@@ -36,15 +42,15 @@ def units(evidence: Evidence) -> Iterator[Finding]:
     forward, forward_tight = _forward_factor(evidence)
     width, turn_tight, gyroscope_factor = _width_factor(evidence)
     if gyroscope_factor:
-        yield _gyroscope_unit(evidence, gyroscope_factor)
+        yield gyroscope_unit(evidence, gyroscope_factor)
     low, high = FORWARD[0] * (1 - evidence.arm_share), FORWARD[1] * (1 + evidence.arm_share)
     if forward is not None and not low <= forward <= high:
         yield _along(evidence, forward, forward_tight, width)
     if width is not None and not WIDTH[0] <= width <= WIDTH[1]:
         yield _across(evidence, forward, width, turn_tight)
     elif evidence.fastest_m_s > PLAUSIBLE_M_S and forward is None:
-        yield _too_fast(evidence)
-    elif (stated := _track_against_body(evidence)) is not None:
+        yield too_fast(evidence)
+    elif (stated := track_against_body(evidence)) is not None:
         yield stated
 
 
@@ -112,23 +118,6 @@ def _gyroscope_factor(evidence: Evidence) -> float | None:
     return 180 / np.pi if degrees else None
 
 
-def _gyroscope_unit(evidence: Evidence, factor: float) -> Finding:
-    degrees = abs(np.log(factor * np.pi / 180)) < 0.3
-    cause = (
-        "The gyroscope is in degrees per second"
-        if degrees
-        else "The gyroscope has a wrong scale (another unit or full-scale range)"
-    )
-    return Finding(
-        "gyroscope_unit",
-        Level.WARNING,
-        f"gyro_z of {evidence.gyroscope_file} is {factor:.3g} times the turn rate that poses or "
-        "treads have",
-        cause,
-        "Convert gyro_z to rad/s",
-    )
-
-
 def _along(evidence: Evidence, forward: float, tight: bool, width: float | None) -> Finding:
     """Robot and treads move at different speeds along the way."""
     seen = f"the robot moves {forward:.3g} m for each m of tread travel"
@@ -145,7 +134,7 @@ def _along(evidence: Evidence, forward: float, tight: bool, width: float | None)
         tread = Unit("encoder ticks or motor RPM (before the gearbox)", 1 / forward)
         tread_fits = True
     if tread is not None and tread_fits and (tight or extreme):
-        return _tread_unit(seen, tread, evidence)
+        return tread_unit(seen, tread, evidence)
     if (
         position is not None
         and (tight or extreme)
@@ -186,7 +175,7 @@ def _across(evidence: Evidence, forward: float | None, width: float, tight: bool
     )
     body = evidence.run.robot.width
     if forward is None and evidence.fastest_m_s > PLAUSIBLE_M_S:
-        return _too_fast(evidence)
+        return too_fast(evidence)
     tread = matching(
         tread_units(evidence.run.robot.wheel_radius, evidence.period_s),
         lambda unit: ORDINARY_WIDTH * unit.factor / width,
@@ -194,7 +183,7 @@ def _across(evidence: Evidence, forward: float | None, width: float, tight: bool
     body_fits = body is not None and 0.5 * body <= track <= 1.1 * body
     very_tight = _turns_explained(evidence) > VERY_TIGHT
     if forward is None and very_tight and width > WIDTH[1] and tread is not None and body_fits:
-        return _tread_unit(
+        return tread_unit(
             f"{seen}; there are no positions to say more", tread, evidence, sure=False
         )
     if width > WIDTH[1] and (forward is None or not tight) and body_fits:
@@ -234,57 +223,3 @@ def _turns_explained(evidence: Evidence) -> float:
     """Share of the turns that the difference of the treads explains."""
     found = evidence.gyroscope_by_difference or evidence.pose_turn_by_difference
     return found.explained if found is not None else 0.0
-
-
-def _too_fast(evidence: Evidence) -> Finding:
-    radius = evidence.run.robot.wheel_radius
-    fitting = [
-        unit
-        for unit in tread_units(radius)
-        if 0.2 <= evidence.fastest_m_s / unit.factor <= 5.0 and unit.factor > 1
-    ]
-    words = " or ".join(unit.words for unit in fitting) or "another unit than m/s"
-    return Finding(
-        "tread_unit",
-        Level.WARNING,
-        f"treads run at up to {evidence.fastest_m_s:.4g} m/s, and no positions say how far the "
-        "robot moved",
-        f"Tread speeds are in {words}",
-        "Convert v_left and v_right to m/s: wheel rate times radius",
-    )
-
-
-def _tread_unit(seen: str, unit: Unit, evidence: Evidence, *, sure: bool = True) -> Finding:
-    others = "" if sure else "; or heavy slip in turns (snow), or a wrong track_width"
-    if 1 / 4 < unit.factor < 4:
-        alike = [
-            other.words
-            for other in tread_units(evidence.run.robot.wheel_radius, evidence.period_s)
-            if other is not unit and 0.8 < other.factor / unit.factor < 1.25
-        ]
-        half = "half" if unit.factor < 1 else "twice"
-        others += "".join(f", or {words}" for words in alike)
-        others += (
-            f"; or scaled by {unit.factor:.2g} (wheel diameter for radius gives {half} the speed; "
-            "gear ratio): these cannot be distinguished"
-        )
-    return Finding(
-        "tread_unit",
-        Level.WARNING,
-        f"{seen}; treads run at up to {evidence.fastest_m_s:.4g} m/s",
-        f"Tread speeds are in {unit.words}, not m/s{others}",
-        "Convert v_left and v_right to m/s: wheel rate times radius",
-    )
-
-
-def _track_against_body(evidence: Evidence) -> Finding | None:
-    robot = evidence.run.robot
-    if robot.width is None or 0.4 * robot.width <= robot.track_width <= 1.1 * robot.width:
-        return None
-    return Finding(
-        "track_width",
-        Level.WARNING,
-        f"track_width is {robot.track_width:g} m, and the robot is {robot.width:g} m wide",
-        "track_width or width of run.toml is wrong",
-        "Measure the distance between the middles of the left and the right treads, in metres",
-    )

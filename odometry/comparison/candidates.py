@@ -136,7 +136,7 @@ class IdentifiedModel(Candidate):
             self.model,
             fit.values,
             fit.names,
-            fit.covariance,
+            fit.normal_covariance,
             f"identified by terrain-odometry from {len(windows)} windows of {split.training_names}",
             tuple(open_.words() for open_ in fit.undetermined),
             tuple(f"{name} ended at the edge of its search range" for name in fit.at_bound),

@@ -1,5 +1,6 @@
 """The result of a comparison."""
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -12,6 +13,7 @@ from odometry.comparison.summary import Place, Summary, summarise
 from odometry.comparison.training_horizons import HorizonErrors
 from odometry.comparison.whole_runs import RunFitness
 from odometry.parameters import ParameterSet
+from odometry.windows.left_out import summed
 
 
 @dataclass(frozen=True)
@@ -55,6 +57,10 @@ class Comparison:
         return tuple(
             dict.fromkeys((each.split.robot, each.split.terrain) for each in self.split_models)
         )
+
+    def windows_left_out_at(self, place: Place) -> Counter[str]:
+        """How many windows of the runs of a place there are not, by reason."""
+        return summed(each.windows.left_out for each in self.evaluations if place.holds(each))
 
     @property
     def places(self) -> tuple[Place, ...]:

@@ -1,5 +1,6 @@
 """What an identification finds."""
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -58,6 +59,11 @@ class Identification:
     robot: Robot
     grounds: Mapping[str, Identified]
     window_config: WindowConfig
+
+    @property
+    def left_out(self) -> Counter[str]:
+        """How many windows of the runs there are not, by reason, on all grounds together."""
+        return next(iter(self.grounds.values())).fit.windows.left_out
 
     def require_determined(self) -> None:
         """Raise IdentificationError, with numbers, where a fit is no answer.

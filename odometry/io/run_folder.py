@@ -35,7 +35,8 @@ def read_settings(folder: Path) -> dict[str, Any]:
         If the folder or the file is missing, or as `odometry.io.structured.read_toml`.
     """
     if not folder.is_dir():
-        raise RunFolderError(f"{folder}: there is no such folder; expected a run folder")
+        seen = "this is a file" if folder.exists() else "there is no such folder"
+        raise RunFolderError(f"{folder}: {seen}; expected a run folder")
     file = folder / "run.toml"
     if not file.exists():
         raise RunFolderError(f"{file}: missing; a run folder needs run.toml")

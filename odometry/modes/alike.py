@@ -43,8 +43,8 @@ def pairs(modes: VelocityModes | TractionModes, runs: Sequence[Run]) -> tuple[Pa
     if isinstance(modes, VelocityModes):
         seconds = _velocity_seconds(modes, speeds, step_s)
     else:
-        has_gyro = any("gyro_z" in run.odometry for run in runs)
-        seconds = _traction_seconds(modes, speeds, step_s if has_gyro else np.inf)
+        heard = any(run.yaw_rate is not None for run in runs)
+        seconds = _traction_seconds(modes, speeds, step_s if heard else np.inf)
     seconds = np.maximum(seconds, seconds.T)
     found = [
         Pair((first, modes.names[j]), float(seconds[i, j]))

@@ -8,7 +8,6 @@ from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import RunFolderError
 from odometry.grounds import terrains_of
 from odometry.run import Run
-from odometry.table import Table
 from odometry.windows.gaps import odometry_gaps
 from odometry.windows.turns import continuous_yaw
 
@@ -63,8 +62,8 @@ class Signals:
 def velocity_signals(run: Run) -> Signals:
     """Speed and yaw rate (N, 2) at the stamps of odometry.csv.
 
-    The yaw rate is gyro_z, or wz of velocity.csv; the speed is vx of velocity.csv, and else not
-    measured: what wheels say of it is the input.
+    The yaw rate is that of the gyroscope, or wz of velocity.csv; the speed is vx of velocity.csv,
+    and else not measured: what wheels say of it is the input.
 
     Raises
     ------
@@ -72,17 +71,17 @@ def velocity_signals(run: Run) -> Signals:
         If the run has no yaw rate.
     """
     stamps_s = run.odometry.stamps_s
-    if "gyro_z" in run.odometry:
-        omega = run.odometry["gyro_z"]
-    elif run.velocity is not None and np.isfinite(run.velocity["wz"]).any():
-        omega = _nearest(run.velocity, "wz", stamps_s)
-    else:
+    omega = yaw_rates_of(run)
+    if omega is None and run.velocity is not None and np.isfinite(run.velocity["wz"]).any():
+        omega = _nearest(run.velocity.stamps_s, run.velocity["wz"], stamps_s)
+    if omega is None:
         raise RunFolderError(
-            f"{run.folder}: no yaw rate; expected gyro_z in odometry.csv or wz in velocity.csv"
+            f"{run.folder}: no yaw rate; expected gyro_z in odometry.csv or imu.csv, or wz in "
+            "velocity.csv"
         )
     speed = np.full(len(stamps_s), np.nan)
     if run.velocity is not None:
-        speed = _nearest(run.velocity, "vx", stamps_s)
+        speed = _nearest(run.velocity.stamps_s, run.velocity["vx"], stamps_s)
     measured = np.column_stack([speed, omega])
     speeds = run.odometry.stack("v_left", "v_right")
     return Signals(stamps_s, speeds, measured, terrains_of(run), odometry_gaps(run).spans_s)
@@ -91,7 +90,7 @@ def velocity_signals(run: Run) -> Signals:
 def pose_signals(run: Run) -> Signals:
     """Pose and yaw rate (N, 4) at the stamps of odometry.csv and pose.csv, merged.
 
-    The yaw rate is gyro_z, where it was recorded.
+    The yaw rate is that of the gyroscope, where there is one.
 
     Raises
     ------
@@ -110,11 +109,25 @@ def pose_signals(run: Run) -> Signals:
     rows = np.searchsorted(odometry_s, stamps_s, side="right") - 1
     measured = np.full((len(stamps_s), 4), np.nan)
     measured[np.searchsorted(stamps_s, pose_s[inside]), :3] = poses
-    if "gyro_z" in run.odometry:
-        measured[np.searchsorted(stamps_s, odometry_s), 3] = run.odometry["gyro_z"]
+    yaw_rates = yaw_rates_of(run)
+    if yaw_rates is not None:
+        measured[np.searchsorted(stamps_s, odometry_s), 3] = yaw_rates
     speeds = run.odometry.stack("v_left", "v_right")[rows]
     gaps_s = odometry_gaps(run).spans_s
     return Signals(stamps_s, speeds, measured, terrains_of(run)[rows], gaps_s)
+
+
+def yaw_rates_of(run: Run) -> FloatArray | None:
+    """Measured yaw rates (N,) [rad/s] at the stamps of odometry.csv, NaN where there is none near.
+
+    Those of `Run.yaw_rate`; None without.
+    """
+    found = run.yaw_rate
+    if found is None:
+        return None
+    if found.file == "odometry.csv":
+        return np.asarray(run.odometry["gyro_z"])
+    return _nearest(found.stamps_s, found.yaw_rate_rad_s, run.odometry.stamps_s)
 
 
 def accelerations_m_s2(stamps_s: FloatArray, tread_speeds_m_s: FloatArray) -> FloatArray:
@@ -150,16 +163,14 @@ def forward_speed_m_s(run: Run) -> FloatArray | None:
     return np.where(lasts_s > 0, ahead / np.where(lasts_s > 0, lasts_s, 1.0), np.nan)
 
 
-def _nearest(table: Table, column: str, stamps_s: FloatArray) -> FloatArray:
-    """Values (N,) of a column at its nearest rows; NaN where none is within half a period."""
+def _nearest(measured_s: FloatArray, measured: FloatArray, stamps_s: FloatArray) -> FloatArray:
+    """Values (N,) of the nearest measured ones (M,); NaN where none is within half a period."""
     values = np.full(len(stamps_s), np.nan)
-    if column not in table:
-        return values
     period_s = float(np.median(np.diff(stamps_s))) if len(stamps_s) > 1 else 0.0
-    rows = np.searchsorted(table.stamps_s, stamps_s)
+    rows = np.searchsorted(measured_s, stamps_s)
     for shift in (-1, 0):
-        near = np.clip(rows + shift, 0, len(table) - 1)
-        far_s: FloatArray = np.abs(table.stamps_s[near] - stamps_s)
+        near = np.clip(rows + shift, 0, len(measured_s) - 1)
+        far_s: FloatArray = np.abs(measured_s[near] - stamps_s)
         fill = np.flatnonzero(np.isnan(values) & (far_s <= period_s / 2))
-        values[fill] = table[column][near[fill]]
+        values[fill] = measured[near[fill]]
     return values

@@ -35,7 +35,7 @@ def answer_words(followed: Followed, track: ModeTrack) -> str:
 
 def percent(share: float) -> str:
     """A share as words."""
-    return "-" if np.isnan(share) else f"{100 * share:.0f} %"
+    return "-" if np.isnan(share) else f"{round(100 * share)} %"
 
 
 def disagreement_words(one: tuple[float, float, str, str]) -> str:

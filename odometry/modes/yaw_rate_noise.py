@@ -8,7 +8,7 @@ from scipy.optimize import nnls
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.modes.response import BLOCK_S, LEAST_VARIANCE, block_means
-from odometry.modes.signals import STANDING_M_S, accelerations_m_s2
+from odometry.modes.signals import STANDING_M_S, accelerations_m_s2, yaw_rates_of
 from odometry.modes.traction import lagged, twists_of
 from odometry.run import Run
 
@@ -75,11 +75,12 @@ class YawRateNoise:
 
 def heard_of(run: Run, rows: IntArray) -> Heard | None:
     """Rows of a run without a gap; None without a gyroscope, or where it did not drive."""
-    if "gyro_z" not in run.odometry:
+    measured = yaw_rates_of(run)
+    if measured is None:
         return None
     stamps_s = run.odometry.stamps_s[rows]
     speeds = run.odometry.stack("v_left", "v_right")[rows]
-    yaw_rates = run.odometry["gyro_z"][rows]
+    yaw_rates = measured[rows]
     driving = np.isfinite(yaw_rates) & (np.abs(speeds).max(axis=1) > STANDING_M_S)
     if driving.sum() < 2:
         return None

@@ -32,6 +32,7 @@ NAMES: dict[str, tuple[str, ...]] = {
         *("comparison.json", "windows.csv", "report.html"),
         *("parameters/*.toml", "parameters/*/*.toml"),
         *(f"figures/{name}_*.png" for name in ("errors", "speed_plane", "horizons", "rotation")),
+        "figures/training_horizons_*.png",
     ),
     "modes": (*MODES_NAMES, "runs.csv", *(f"*/{name}" for name in MODES_NAMES)),
     "simulate": ("run.toml", *RECORDING_NAMES),

@@ -64,7 +64,11 @@ def plot_yaw_rates(axes: Axes, evidence: Evidence, marks: Marks) -> None:
     uniform, motion = evidence.uniform, evidence.motion
     width_m, how = effective_width_m(evidence)
     lines = {
-        f"treads (over {width_m:.3g} m, {how})": (uniform, uniform.difference_m / width_m, _LEFT)
+        f"treads (effective width {width_m:.3g} m, {how})": (
+            uniform,
+            uniform.difference_m / width_m,
+            _LEFT,
+        )
     }
     if evidence.yaw_rate is not None:
         lines["gyroscope"] = (uniform, uniform.gyroscope_rad, _GYROSCOPE)

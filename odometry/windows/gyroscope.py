@@ -37,14 +37,11 @@ class Gyroscope:
 
 
 def gyroscope_of(run: Run) -> Gyroscope | None:
-    """The gyroscope of imu.csv, else that of odometry.csv; None without two samples."""
-    for table in (run.imu, run.odometry):
-        if table is None or "gyro_z" not in table:
-            continue
-        measured = np.isfinite(table["gyro_z"])
-        if measured.sum() > 1:
-            return _integrated(table.stamps_s[measured], table["gyro_z"][measured])
-    return None
+    """The gyroscope of `Run.yaw_rate`; None without two samples."""
+    found = run.yaw_rate
+    if found is None or len(found.stamps_s) < 2:
+        return None
+    return _integrated(found.stamps_s, found.yaw_rate_rad_s)
 
 
 def _integrated(stamps_s: FloatArray, rates_rad_s: FloatArray) -> Gyroscope:

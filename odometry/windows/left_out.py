@@ -41,7 +41,8 @@ def summed(parts: Iterable[Counter[str]]) -> Counter[str]:
 
 def words(left_out: Counter[str]) -> str:
     """One line, the most frequent reason first; empty where nothing was left out."""
-    if not left_out.total():
+    total = left_out.total()
+    if not total:
         return ""
-    of = ", ".join(f"{count} {reason}" for reason, count in left_out.most_common())
-    return f"{left_out.total()} windows left out: {of}"
+    of = ", ".join(f"{reason} ({count})" for reason, count in left_out.most_common())
+    return f"{total} {'window' if total == 1 else 'windows'} left out: {of}"

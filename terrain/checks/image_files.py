@@ -6,7 +6,7 @@ from itertools import groupby
 
 import numpy as np
 
-from odometry.checks.finding import Finding, Level
+from odometry.checks.finding import Finding, Level, counted
 from odometry.run import Run
 from terrain.checks.sampled import SampledImage
 from terrain.image_size import PIXELS
@@ -97,7 +97,7 @@ def outside_of_odometry(run: Run) -> Iterator[Finding]:
         yield Finding(
             "images_outside",
             Level.NOTE,
-            f"{before} images lie before and {after} after the stamps of odometry.csv (of "
+            f"{counted(before, 'image')} before and {after} after the stamps of odometry.csv (of "
             f"{len(stamps_s)})",
             "The camera was recorded for longer than the treads, or odometry.csv was cut",
             "Nothing to do: these images are not used",

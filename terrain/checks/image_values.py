@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage
-from odometry.checks.finding import Finding, Level
+from odometry.checks.finding import Finding, Level, counted
 from terrain.images import to_grey
 
 MOST = 0.5  # share of the images of which something must hold
@@ -101,7 +101,7 @@ def image_values(found: Sequence[Values]) -> Iterator[Finding]:
 def _deep(deep: Sequence[Values]) -> Finding:
     largest = max(values.largest for values in deep)
     bits = max(largest.bit_length(), 1)
-    seen = f"{len(deep)} images have 16 bits, and the largest value is {largest}"
+    seen = f"{counted(len(deep), 'image')} of 16 bits, where the largest value is {largest}"
     if bits > 14:
         return Finding(
             "images_16_bit",

@@ -92,5 +92,5 @@ def feature_matrix(
     images: Sequence[ByteImage], settings: FeatureSettings, progress: bool = False
 ) -> FloatArray:
     """Return the features of each patch as a row, shape (patches, features)."""
-    bar = tqdm(images, desc="features", unit="patch", disable=not progress)
+    bar = tqdm(images, desc="features", unit="patch", disable=None if progress else True)
     return np.array([patch_features(image, settings) for image in bar])

@@ -42,9 +42,12 @@ def check(
     """
     from terrain.checks.recording import check_run
     from terrain.classification.classifier import TerrainClassifier
+    from terrain.cli.outputs import claim_picture
     from terrain.report.check_figure import write_check_figure
 
     files = _picture_files(folders, picture) if picture is not None else {}
+    for file in files.values():
+        claim_picture(file)
     classifier = TerrainClassifier.load(model) if model is not None else None
     reports = {}
     for folder in dict.fromkeys(folders):
@@ -83,23 +86,25 @@ def _next(reports: Mapping[Path, "CheckReport"], files: Mapping[Path, Path]) -> 
     if not odd:
         runs = " ".join(map(str, reports))
         return f"Next: {look}terrain-odometry identify {runs} --model icr --out my_robot.toml"
-    look = look or ("" if files else f"terrain-odometry check {' '.join(odd)} --picture pictures; ")
+    readable = [
+        str(folder)
+        for folder, report in reports.items()
+        if report.misleads and not report.at(Level.REFUSED)
+    ]
+    if readable and not files:
+        look = f"terrain-odometry check {' '.join(readable)} --picture pictures; "
     return f"Next: {look}mend or leave out {', '.join(odd)}, and check again"
 
 
 def _picture_files(folders: tuple[Path, ...], picture: Path) -> dict[Path, Path]:
     """One file a run; runs of the same name are numbered."""
-    from odometry.io.files import check_writable
-
     runs = list(dict.fromkeys(folders))
     if picture.suffix.lower() == ".png":
         if len(runs) > 1:
             raise click.UsageError(
                 f"--picture {picture} is one file; name a folder for several runs"
             )
-        check_writable(picture.parent)
         return {runs[0]: picture}
-    check_writable(picture)
     files: dict[Path, Path] = {}
     for folder in runs:
         name = folder.resolve().name

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import MODEL_NAMES, window_options
+from terrain.cli.options import MODEL_NAMES, require_model, window_options
 from terrain.cli.recordings import span_options
 from terrain.cli.results import print_table, print_written
 
@@ -50,8 +50,8 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
     multiple=True,
     type=float,
     metavar="H",
-    help="Identify also over this wheel travel [m], and show which training horizon suits which "
-    "evaluation horizon; repeat. Each costs as many fits as the comparison itself.",
+    help="Identify also over windows of this wheel travel [m]; repeat. Shows which of these "
+    "training horizons suits which evaluation horizon; each costs as many fits as the comparison.",
 )
 @click.option("--terrain", metavar="NAME", help="Terrain of runs that name none.")
 @click.option(
@@ -101,6 +101,8 @@ def compare(
         training_horizons_m=training_horizons_m,
         seed=seed,
     )
+    for model in models:
+        require_model(model)
     output = claim_folder(out)
     comparison = compare_models(
         read_runs(folders, span),
@@ -141,6 +143,8 @@ def _print_training_horizons(comparison: "Comparison") -> None:
 
 def _print_errors(comparison: "Comparison") -> None:
     """Print one row a place and model, what they were identified on, and what that says."""
+    from odometry.windows.left_out import words
+
     rows: list[tuple[str, ...]] = [
         (
             *("robot", "terrain", "over", "model", "windows"),
@@ -171,5 +175,8 @@ def _print_errors(comparison: "Comparison") -> None:
         for summary in comparison.summaries_at(place):
             for remark in comparison.remarks_at(place, summary):
                 click.echo(f"  Note: {summary.model}: {remark}")
+        left_out = comparison.windows_left_out_at(place)
+        if left_out:
+            click.echo(f"  Note: in these runs {words(left_out)}")
         for sentence in comparison.sentences_at(place):
             click.echo(f"  {sentence}")

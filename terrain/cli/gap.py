@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import MODEL_NAMES
+from terrain.cli.options import MODEL_NAMES, require_model
 from terrain.cli.recordings import span_options
 from terrain.cli.results import print_table, print_written
 
@@ -79,6 +79,7 @@ def gap(
     from terrain.cli.outputs import about, claim_folder
     from terrain.cli.recordings import read_runs
 
+    require_model(model)
     output = claim_folder(out)
     config = GapConfig(horizon_s=horizon_s)
     measured, known, held = (read_runs(group, span) for group in (folders, calibration, holdout))
@@ -91,10 +92,11 @@ def gap(
         write_gap_report(result, part)
     _print_result(result)
     print_written(out)
-    click.echo(
-        f"Next: open {out / 'report.html'}; the extended model is {out / 'model.toml'}: "
-        f"terrain-odometry compare RUN --model {out / 'model.toml'} --model {base.name} --out DIR"
+    extended = (
+        f"; the extended model is {out / 'model.toml'}: terrain-odometry compare RUN "
+        f"--model {out / 'model.toml'} --model {base.name} --out DIR"
     )
+    click.echo(f"Next: open {out / 'report.html'}{extended if result.effects else ''}")
 
 
 def _print_result(result: "GapResult") -> None:

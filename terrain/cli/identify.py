@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import MODEL_NAMES, assignments, window_options
+from terrain.cli.options import MODEL_NAMES, assignments, require_model, window_options
 from terrain.cli.recordings import span_options
 
 if TYPE_CHECKING:
-    from odometry.identification.identification import Identified
+    from odometry.identification.identification import Identification, Identified
     from odometry.run_span import Span
     from odometry.windows.config import WindowConfig
 
@@ -106,15 +106,19 @@ def identify(
     from odometry.identification.profile import with_profiles
     from odometry.outputs.output_file import is_set_of
     from odometry.parameters import read_parameters, write_parameters
-    from terrain.cli.outputs import claim_file, comment
+    from odometry.windows.left_out import words
+    from terrain.cli.outputs import claim_file, claim_picture, comment
     from terrain.cli.recordings import read_runs
 
     if out.suffix != ".toml":
         raise click.UsageError(f"--out {out}: expected a name that ends in .toml")
+    require_model(model)
     made = claim_file(out, is_set_of("identify"))
     solver_config = SolverConfig(loss=loss, starts=starts, seed=seed)
     if picture is not None:
-        _claim_picture(picture)
+        if picture.suffix != ".png":
+            raise click.UsageError(f"--picture {picture}: expected a name that ends in .png")
+        claim_picture(picture)
     runs = read_runs(folders, span)
     found = identify_runs(
         runs,
@@ -130,7 +134,9 @@ def identify(
         found = with_profiles(found, solver_config)
     for name, ground in found.grounds.items():
         _print_terrain(name, ground)
-    found.require_determined()
+    if found.left_out:
+        click.echo(f"Note: {words(found.left_out)}", err=True)
+    _require_determined(found)
     identified = found.to_parameter_set()
     write_parameters(out, identified, comment(made))
     click.echo(f"Wrote {out}")
@@ -149,12 +155,25 @@ def identify(
         click.echo(f"or:   terrain-odometry run RUN --parameters {out} --out results")
 
 
-def _claim_picture(picture: Path) -> None:
-    from odometry.outputs.output_file import claim_file, is_picture_of
+def _require_determined(found: "Identification") -> None:
+    """Refuse a fit that is no answer; what the check warned of is the likeliest reason."""
+    from odometry.checks.finding import Level
+    from odometry.identification.errors import IdentificationError
+    from terrain.cli.recordings import checks_made
 
-    if picture.suffix != ".png":
-        raise click.UsageError(f"--picture {picture}: expected a name that ends in .png")
-    claim_file(picture, is_picture_of("identify"), "identify")
+    try:
+        found.require_determined()
+    except IdentificationError as error:
+        causes = [
+            f"\n  {report.folder}: {warning.cause}. {warning.remedy}."
+            for report in checks_made()
+            for warning in report.at(Level.WARNING)
+        ]
+        if not causes:
+            raise
+        raise IdentificationError(
+            f"{error}\nMend first what the check warned of:{''.join(causes)}"
+        ) from error
 
 
 def _print_terrain(name: str, found: "Identified") -> None:

@@ -3,6 +3,7 @@
 import importlib
 import signal
 import sys
+from difflib import get_close_matches
 
 import click
 
@@ -41,6 +42,15 @@ class LazyGroup(click.Group):
         module = importlib.import_module(f"terrain.cli.{name}")
         command: click.Command = getattr(module, name)
         return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """The verb that is meant; the nearest one is named where there is no such verb."""
+        near = get_close_matches(args[0], VERBS, n=1)
+        if args[0] not in VERBS and near:
+            ctx.fail(f"No such command {args[0]!r}. Did you mean {near[0]!r}?")
+        return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
         """List the verbs without importing them."""

@@ -128,13 +128,13 @@ def _several(
                 rows[name] = str(error)
                 click.echo(f"{name}: failed: {error}")
                 continue
-            write_modes(result, part / name, about(output.made))
+            write_modes(result, part / name, about(output.made, folder))
             write_modes_report(result, part / name)
             rows[name] = result
             click.echo(f"{name}: {sentences(result)[0]}")
         write_runs(rows, part / "runs.csv")
     done = [name for name, row in rows.items() if not isinstance(row, str)]
-    click.echo(f"Wrote to {out}: runs.csv, and a folder each of {len(done)} runs")
+    click.echo(f"Wrote to {out}: runs.csv, and a folder of each run that was followed")
     if done:
         click.echo(f"Next: open {out / done[0] / 'report.html'}")
     if len(done) < len(rows):

@@ -2,7 +2,9 @@
 
 import math
 from collections.abc import Callable, Sequence
+from difflib import get_close_matches
 from functools import wraps
+from pathlib import Path
 from typing import Any
 
 import click
@@ -28,6 +30,18 @@ class Positive(click.FloatRange):
         if math.isnan(number):
             self.fail("nan is no number above zero", param, ctx)
         return number
+
+
+def require_model(text: str) -> None:
+    """Raise click's error unless it names a model or ends in .toml, before any run is read."""
+    if text in MODEL_NAMES or Path(text).suffix == ".toml":
+        return
+    near = get_close_matches(text, MODEL_NAMES, n=1)
+    meant = f"did you mean {near[0]}? Known: " if near else "known: "
+    raise click.BadParameter(
+        f"there is no model {text!r}; {meant}{', '.join(MODEL_NAMES)}, or a parameter set (.toml)",
+        param_hint="--model",
+    )
 
 
 def assignments(texts: Sequence[str]) -> dict[str, float]:

@@ -66,9 +66,31 @@ def claim_file(out: Path, is_own: Callable[[Path], bool]) -> "Made":
     return made_by(inputs)
 
 
-def about(made: "Made") -> dict[str, Any]:
-    """What the commands add to a result file: what made it, and what its runs' checks found."""
-    checks = [report.to_table() for report in checks_made()]
+def claim_picture(picture: Path) -> None:
+    """Claim the file `--picture` for the command that runs.
+
+    Raises
+    ------
+    OutputError
+        If it is there and the same command did not draw it.
+    """
+    from odometry.outputs.output_file import claim_file as claim
+    from odometry.outputs.output_file import is_picture_of
+
+    verb = _verb(click.get_current_context())
+    claim(picture, is_picture_of(verb), verb)
+
+
+def about(made: "Made", folder: Path | None = None) -> dict[str, Any]:
+    """What the commands add to a result file: what made it, and what its runs' checks found.
+
+    Parameters
+    ----------
+    made : Made
+    folder : Path, optional
+        The one run of the result; else it is of all that were read.
+    """
+    checks = [one.to_table() for one in checks_made() if folder in (None, one.folder)]
     return {"made": made.to_table(), "check": checks}
 
 

@@ -39,6 +39,10 @@ def span_options(command: Callable[..., None]) -> Callable[..., None]:
     def with_span(*, from_s: float, to_s: float, **others: Any) -> None:
         from odometry.run_span import Span
 
+        if from_s >= to_s:
+            raise click.UsageError(
+                f"--from {from_s:g} --to {to_s:g}: expected an end after the start"
+            )
         command(span=Span(from_s, to_s), **others)
 
     return with_span

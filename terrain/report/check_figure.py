@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import CheckReport, Level
+from odometry.outputs.output_file import picture_source
 from odometry.report.check_plots import (
     marks_of,
     plot_measured_path,
@@ -71,7 +72,7 @@ def write_check_figure(report: CheckReport, file: Path) -> Path | None:
         if shown is not None:
             _draw_ground(axes(0.53, 0.5, _RIGHT, 2.8), run, shown)
 
-    return save_figure(file, (_WIDTH_IN, height_in), draw)
+    return save_figure(file, (_WIDTH_IN, height_in), draw, source=picture_source("check"))
 
 
 def _write_findings(figure: Figure, title: str, lines: list[str]) -> None:

@@ -52,7 +52,8 @@ def test_without_a_gyroscope_there_is_no_yaw_rate(make_run):
 
 
 def test_the_gyroscope_of_odometry_without_what_was_not_measured(make_run):
-    stamps_s, rates = Run.read(make_run(odometry=ODOMETRY)).yaw_rate
+    stamps_s, rates, file = Run.read(make_run(odometry=ODOMETRY)).yaw_rate
+    assert file == "odometry.csv"
     assert (stamps_s.tolist(), rates.tolist()) == ([0.0, 0.2], [0.1, 0.3])
 
 

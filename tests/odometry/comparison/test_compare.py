@@ -12,6 +12,7 @@ from odometry.comparison.errors import ComparisonError
 from odometry.comparison.statistics import between
 from odometry.errors import ConfigError, ParameterError
 from odometry.identification.config import SolverConfig
+from odometry.identification.identify import identify
 from odometry.models.catalogue import MODELS
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
 from odometry.run import Run
@@ -52,6 +53,19 @@ def test_models_that_are_the_same_cannot_be_distinguished_and_a_wrong_one_is(
     for summary in comparison.summaries_at(comparison.places[0]):
         (remark,) = comparison.remarks_at(comparison.places[0], summary)
         assert "may have been identified on these very runs" in remark
+
+
+def test_parameter_sets_are_those_of_identify(grass, quick):
+    """With intervals of few degrees of freedom taken into the covariance."""
+    compared = compare(grass, ["icr_symmetric"], config=quick)
+    ((_, of_compare),) = compared.parameters.items()
+    of_identify = identify(
+        grass, "icr_symmetric", window_config=quick.training, solver_config=quick.solver
+    ).to_parameter_set()
+    for name, table in of_identify.terrains.items():
+        same = of_compare.terrains[name]
+        assert same.values == pytest.approx(table.values, rel=1e-9)
+        np.testing.assert_allclose(same.covariance, table.covariance, rtol=1e-6)
 
 
 def test_identified_models_find_the_truth_and_the_ideal_one_errs(compared, bench):

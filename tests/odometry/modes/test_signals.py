@@ -43,6 +43,15 @@ def test_yaw_rate_of_the_gyroscope_and_no_speed(run):
     assert signals.labels.tolist() == ["ice"] * 5
 
 
+def test_the_yaw_rate_of_imu_csv_goes_to_the_nearest_stamp(run):
+    imu = table(t=[0.02, 0.11, 0.28, 0.6], gyro_z=[0.5, NAN, 0.7, 0.9])
+    signals = velocity_signals(without_gyro(run, imu=imu))
+    np.testing.assert_array_equal(signals.measured[:, 1], [0.5, NAN, NAN, 0.7, NAN])
+    pose = table(t=[0.1, 0.25], x=[1.0, 2.0], y=[4.0, 5.0], yaw=[7.0, 8.0])
+    merged = pose_signals(without_gyro(run, imu=imu, pose=pose))
+    np.testing.assert_array_equal(merged.measured[:, 3], [0.5, NAN, NAN, NAN, 0.7, NAN])
+
+
 def test_velocities_go_to_the_nearest_stamp_alone(run):
     velocity = table(t=[0.02, 0.14, 0.29, 2.0], vx=[1.0, 2.0, 3.0, 9.0], wz=[0.1, NAN, 0.3, 9.0])
     signals = velocity_signals(without_gyro(run, velocity=velocity))

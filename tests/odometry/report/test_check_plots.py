@@ -88,7 +88,11 @@ def test_yaw_rates_of_three_sensors_lie_on_each_other(axes):
     treads, gyroscope, poses = (line[np.isfinite(line).all(axis=1)] for line in drawn)
     assert treads == pytest.approx(gyroscope, abs=1e-3)
     assert np.interp(poses[:, 0], *gyroscope.T) == pytest.approx(poses[:, 1], abs=0.05)
-    assert names(axes) == ["treads (over 0.9 m, estimated from the poses)", "gyroscope", "poses"]
+    assert names(axes) == [
+        "treads (effective width 0.9 m, estimated from the poses)",
+        "gyroscope",
+        "poses",
+    ]
     assert axes.get_ylabel() == "yaw rate [rad/s]"
 
 

@@ -32,7 +32,8 @@ def test_a_window_counts_under_the_first_break_that_it_straddles():
 
 def test_words_begin_with_the_most_frequent_reason():
     counts = summed([Counter(seldom=1), Counter(often=3), Counter(often=1)])
-    assert words(counts) == "5 windows left out: 4 often, 1 seldom"
+    assert words(counts) == "5 windows left out: often (4), seldom (1)"
+    assert words(Counter(once=1)) == "1 window left out: once (1)"
     assert words(Counter()) == ""
 
 
@@ -74,10 +75,10 @@ def test_an_error_says_which_reason_was_the_most_frequent(winding):
     """Every pose is a window of its source."""
     alone = with_pose(winding, window=np.arange(len(winding.pose), dtype=float))
     with pytest.raises(
-        WindowError, match=r"; \d+ windows left out: \d+ change of `window`; choose"
+        WindowError, match=r"; \d+ windows left out: change of `window` \(\d+\); choose"
     ):
         windows_of([alone], WindowConfig())
     with pytest.raises(
-        WindowError, match=r"; \d+ windows left out: \d+ change of `window`; choose"
+        WindowError, match=r"; \d+ windows left out: change of `window` \(\d+\); choose"
     ):
         dense_windows_of(alone, 2.0)

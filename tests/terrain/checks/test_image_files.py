@@ -82,7 +82,7 @@ def test_images_outside_of_odometry(faulty, shift_s, told):
     found = list(outside_of_odometry(Run.read(faulty.folder)))
     assert bool(found) is told
     if found:
-        assert "0 images lie before and 5 after" in found[0].seen
+        assert "0 images before and 5 after" in found[0].seen
 
 
 def test_samples_are_few_and_reach_both_ends():

@@ -39,13 +39,25 @@ def test_findings_by_run_and_an_unreadable_folder_between(curvy_run, faulty, tmp
     assert answer.exit_code == 1
     lines = answer.stdout.splitlines()
     place = lines.index(f"{faulty}:")
-    assert lines[place + 1].startswith("  warning: 1 samples of v_left jump")
+    assert lines[place + 1].startswith("  warning: v_left jumps out and back in 1 sample,")
     assert lines[place + 1].count(". ") >= 2  # seen. cause. remedy.
     place = lines.index(f"{tmp_path / 'nowhere'}:")
     assert lines[place + 1].startswith("  refused: ")
     assert f"{curvy_run}: no findings" in lines
     assert lines[-1].startswith("Next: ")
     assert f"{faulty}, {tmp_path / 'nowhere'}" in lines[-1]
+
+
+def test_a_picture_is_proposed_only_of_what_can_be_read(faulty, tmp_path):
+    nowhere = tmp_path / "nowhere"
+    last = invoke(faulty, nowhere).stdout.splitlines()[-1]
+    assert f"check {faulty} --picture pictures; mend or leave out {faulty}, {nowhere}" in last
+    last = invoke(nowhere).stdout.splitlines()[-1]
+    assert last == f"Next: mend or leave out {nowhere}, and check again"
+
+
+def test_a_file_is_no_run_folder(faulty):
+    assert "this is a file; expected a run folder" in invoke(faulty / "pose.csv").stdout
 
 
 def test_json_is_one_array_and_nothing_else(curvy_run, faulty, tmp_path):
@@ -68,6 +80,21 @@ def test_pictures_go_into_a_folder_or_a_file(curvy_run, faulty, tmp_path):
     assert f"look at {tmp_path / 'pictures'};" in answer.stdout.splitlines()[-1]
     invoke(curvy_run, "--picture", tmp_path / "one.png")
     assert (tmp_path / "one.png").exists()
+
+
+def test_a_picture_replaces_its_own_kind_alone(curvy_run, tmp_path):
+    """A foreign picture is refused before any work, in a folder of pictures too."""
+    mine = tmp_path / "mine.png"
+    mine.write_bytes(b"\x89PNG a photograph")
+    shutil.copy(mine, tmp_path / f"{curvy_run.name}.png")
+    for place in (mine, tmp_path):
+        answer = invoke(curvy_run, "--picture", place)
+        assert answer.exit_code == 1
+        assert "`check` did not make it" in str(answer.exception)
+        assert answer.stdout == ""
+    assert mine.read_bytes() == b"\x89PNG a photograph"
+    for _ in range(2):
+        assert invoke(curvy_run, "--picture", tmp_path / "one.png").exit_code == 0
 
 
 def test_one_file_for_several_runs_is_a_wrong_command_line(curvy_run, faulty, tmp_path):

@@ -1,12 +1,12 @@
 """`compare`: from run folders to tables, sentences and a page."""
 
 import json
+import re
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from odometry.comparison.errors import ComparisonError
 from odometry.io.run_folder import write_run_folder
 from terrain.cli.compare import compare
 
@@ -42,6 +42,17 @@ def runs(tmp_path):
 
 def invoke(*arguments):
     return CliRunner().invoke(compare, list(map(str, arguments)))
+
+
+def test_windows_that_were_left_out_are_counted(runs, tmp_path):
+    """Five seconds without poses in one run."""
+    file = tmp_path / "run_0" / "pose.csv"
+    header, *lines = file.read_text().splitlines()
+    kept = [line for line in lines if not 8 < float(line.split(",")[0]) < 13]
+    file.write_text("\n".join([header, *kept]) + "\n")
+    answer = invoke(*runs, "--model", "icr_symmetric", "--out", tmp_path / "out")
+    wanted = r"^  Note: in these runs \d+ windows? left out: gap of pose.csv \(\d+\)$"
+    assert re.search(wanted, answer.stdout, re.M)
 
 
 def test_a_row_for_each_model_then_what_it_means(runs, tmp_path):
@@ -120,9 +131,10 @@ def test_a_run_without_poses_is_left_out_with_a_note(runs, tmp_path):
     assert "run_1" in answer.stderr
 
 
-def test_an_unknown_model_is_a_known_error(runs, tmp_path):
+def test_an_unknown_model_is_a_usage_error(runs, tmp_path):
     answer = invoke(*runs, "--model", "bicycle", "--out", tmp_path / "out")
-    assert isinstance(answer.exception, ComparisonError)
+    assert answer.exit_code == 2
+    assert "'bicycle'; known: differential_drive" in answer.stderr
     assert not (tmp_path / "out").exists()
 
 

@@ -80,7 +80,7 @@ def test_a_missing_folder_is_a_row(tmp_path, results):
         evaluate, [str(tmp_path / "absent"), results("good", finished(1.0))]
     )
     assert answer.exit_code == 1
-    assert "failed: " in answer.output
+    assert "no result.json; expected a folder that `run` wrote" in answer.output
     assert "1.0000" in answer.output
 
 

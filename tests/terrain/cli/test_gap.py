@@ -154,7 +154,7 @@ def test_results_are_not_written_into_a_run_folder(command, case, which):
 
 
 def test_an_unknown_model_is_refused_with_those_there_are(command, tmp_path):
-    refused(command(model="unicycle"), tmp_path, "unicycle", "icr_symmetric")
+    refused(command(model="unicycle"), tmp_path, "unicycle", "icr_symmetric", code=2)
 
 
 def test_of_a_set_with_several_grounds_one_must_be_said(command, tmp_path):

@@ -1,5 +1,6 @@
 """`identify`: from run folders to a parameter set, or a refusal that says why."""
 
+import re
 import shutil
 import sys
 
@@ -39,6 +40,18 @@ def test_the_parameters_are_shown_and_written(command, curvy_run):
     assert "curvy" in table.source
     assert f"Wrote {command.out}" in output
     assert "\nNext, on a run that is not among these: terrain-odometry compare " in output
+
+
+def test_windows_that_were_left_out_are_counted(command, curvy_run, tmp_path):
+    """Two seconds without poses."""
+    shutil.copytree(curvy_run, tmp_path / "gap")
+    file = tmp_path / "gap" / "pose.csv"
+    header, *lines = file.read_text().splitlines()
+    kept = [line for line in lines if not 10 < float(line.split(",")[0]) < 12]
+    file.write_text("\n".join([header, *kept]) + "\n")
+    code, _, messages = command(tmp_path / "gap", *SHORT)
+    assert code == 0
+    assert re.search(r"^Note: \d+ windows? left out: gap of pose.csv \(\d+\)$", messages, re.M)
 
 
 def test_values_intervals_and_errors_are_shown(command, curvy_run, tmp_path):
@@ -86,6 +99,16 @@ def test_speeds_a_third_of_the_true_are_refused_with_the_reason(command, curvy_r
     (slow / "odometry.csv").write_text(text)
     answer = command(slow, "--horizon", "0.2", "--starts", "1", model="icr_symmetric")
     assert_refused(command, answer, "alpha ended at its bound 2", "another unit")
+
+
+def test_a_refusal_says_what_the_check_warned_of(command, curvy_run, tmp_path):
+    swapped = shutil.copytree(curvy_run, tmp_path / "swapped")
+    text = (swapped / "odometry.csv").read_text()
+    for old, new in (("v_left", "swap"), ("v_right", "v_left"), ("swap", "v_right")):
+        text = text.replace(old, new)
+    (swapped / "odometry.csv").write_text(text)
+    answer = command(swapped, *SHORT)
+    assert_refused(command, answer, "Mend first what the check warned of", "swapped")
 
 
 def test_fixed_parameters_are_held(command, curvy_run):
@@ -192,7 +215,8 @@ def test_what_cannot_be_done_is_one_message_and_exit_code_1(command, curvy_run, 
 
 
 def test_an_unknown_model_is_told_with_the_known_ones(command, curvy_run):
-    assert_refused(command, command(curvy_run, model="icrs"), "'icrs'", "icr_symmetric")
+    answer = command(curvy_run, model="icrs")
+    assert_refused(command, answer, "'icrs'", "did you mean icr?", "icr_symmetric", code=2)
 
 
 @pytest.mark.parametrize(

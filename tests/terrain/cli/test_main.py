@@ -74,3 +74,9 @@ def test_an_unknown_verb_is_a_usage_error():
     answer = command("fly")
     assert answer.returncode == 2
     assert "No such command 'fly'" in answer.stderr
+
+
+def test_the_nearest_verb_is_named():
+    answer = command("chek")
+    assert answer.returncode == 2
+    assert "No such command 'chek'. Did you mean 'check'?" in answer.stderr

@@ -132,6 +132,8 @@ def test_several_runs_get_a_folder_each_and_a_failed_one_a_row(make, models, tmp
     assert rows["drive"]["told"] == rows["drive_2"]["told"] == "2"
     for name in ("drive", "drive_2"):
         assert files_of(out / name) >= {"modes.csv", "result.json", "report.html"}
+        (check,) = json.loads((out / name / "result.json").read_text())["check"]  # its own alone
+        assert check["run"] == "drive"
     assert not (out / "blind").exists()
     assert answer.stdout.rstrip().endswith(f"Next: open {out / 'drive' / 'report.html'}")
 

@@ -54,6 +54,13 @@ def test_nothing_left_is_an_error(curvy_run, tmp_path):
     assert "the run lasts 12.000 s" in str(answer.exception)
 
 
+def test_an_end_before_the_start_is_a_wrong_command_line(curvy_run, tmp_path):
+    arguments = [str(curvy_run), "--out", str(tmp_path / "out"), "--from", "9", "--to", "3"]
+    answer = CliRunner().invoke(run, arguments)
+    assert answer.exit_code == 2
+    assert "--from 9 --to 3: expected an end after the start" in answer.stderr
+
+
 def test_what_the_check_warns_of_is_said_and_kept(curvy_run, tmp_path):
     """One absurd sample: the run goes on, and what was learned is not recommended."""
     folder = tmp_path / "spiked"

@@ -1,0 +1,82 @@
+"""What is said of a unit that was taken for another."""
+
+import numpy as np
+
+from odometry.checks.evidence import Evidence
+from odometry.checks.finding import Finding, Level
+from odometry.checks.unit_tables import Unit, tread_units
+
+
+def gyroscope_unit(evidence: Evidence, factor: float) -> Finding:
+    """A yaw rate that is too large by a factor."""
+    degrees = abs(np.log(factor * np.pi / 180)) < 0.3
+    cause = (
+        "The gyroscope is in degrees per second"
+        if degrees
+        else "The gyroscope has a wrong scale (another unit or full-scale range)"
+    )
+    return Finding(
+        "gyroscope_unit",
+        Level.WARNING,
+        f"gyro_z of {evidence.gyroscope_file} is {factor:.3g} times the turn rate that poses or "
+        "treads have",
+        cause,
+        "Convert gyro_z to rad/s",
+    )
+
+
+def too_fast(evidence: Evidence) -> Finding:
+    """Tread speeds that no robot has, where no position says more."""
+    radius = evidence.run.robot.wheel_radius
+    fitting = [
+        unit
+        for unit in tread_units(radius)
+        if 0.2 <= evidence.fastest_m_s / unit.factor <= 5.0 and unit.factor > 1
+    ]
+    words = " or ".join(unit.words for unit in fitting) or "another unit than m/s"
+    return Finding(
+        "tread_unit",
+        Level.WARNING,
+        f"treads run at up to {evidence.fastest_m_s:.4g} m/s, and no positions say how far the "
+        "robot moved",
+        f"Tread speeds are in {words}",
+        "Convert v_left and v_right to m/s: wheel rate times radius",
+    )
+
+
+def tread_unit(seen: str, unit: Unit, evidence: Evidence, *, sure: bool = True) -> Finding:
+    """Tread speeds in another unit, and what else the factor may be."""
+    others = "" if sure else "; or heavy slip in turns (snow), or a wrong track_width"
+    if 1 / 4 < unit.factor < 4:
+        alike = [
+            other.words
+            for other in tread_units(evidence.run.robot.wheel_radius, evidence.period_s)
+            if other is not unit and 0.8 < other.factor / unit.factor < 1.25
+        ]
+        half = "half" if unit.factor < 1 else "twice"
+        others += "".join(f", or {words}" for words in alike)
+        others += (
+            f"; or scaled by {unit.factor:.2g} (wheel diameter for radius gives {half} the speed; "
+            "gear ratio): these cannot be distinguished"
+        )
+    return Finding(
+        "tread_unit",
+        Level.WARNING,
+        f"{seen}; treads run at up to {evidence.fastest_m_s:.4g} m/s",
+        f"Tread speeds are in {unit.words}, not m/s{others}",
+        "Convert v_left and v_right to m/s: wheel rate times radius",
+    )
+
+
+def track_against_body(evidence: Evidence) -> Finding | None:
+    """A track width that does not go with the width of the robot."""
+    robot = evidence.run.robot
+    if robot.width is None or 0.4 * robot.width <= robot.track_width <= 1.1 * robot.width:
+        return None
+    return Finding(
+        "track_width",
+        Level.WARNING,
+        f"track_width is {robot.track_width:g} m, and the robot is {robot.width:g} m wide",
+        "track_width or width of run.toml is wrong",
+        "Measure the distance between the middles of the left and the right treads, in metres",
+    )
