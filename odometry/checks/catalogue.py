@@ -14,6 +14,7 @@ CATALOGUE: dict[str, str] = {
     "track_width": "track width far from the width that turns imply",
     "sensor_place": "[sensors] pose in mm",
     "terrain_names": "two spellings of one terrain",
+    "sensors_disagree": "sensors differ, and no cause can be told",
     # Treads
     "tread_unit": "tread speeds in rad/s, RPM, mm/s, ticks ...",
     "scale": "tread speeds or positions scaled",

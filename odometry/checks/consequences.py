@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from odometry.checks.finding import Finding
+from odometry.checks.finding import Finding, Level
 
 POSES = frozenset({"pose_late", "pose_jumps", "clocks_apart", "slip", "scale", "position_unit"})
 YAW = frozenset({"yaw_backwards", "yaw_off_by_90", "yaw_offset", "yaw_unrelated"})
@@ -23,9 +23,12 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "poses_are_wheel_odometry": frozenset(
         {"gyroscope_unit", "track_width", "pose_late", "yaw_is_course", "yaw_jumps"}
     ),
-    "noisy_positions": POSES | YAW | {"tread_unit", "yaw_jumps", "far_sensor", "pose_outliers"},
+    "noisy_positions": frozenset({"pose_late", "pose_jumps", "clocks_apart", "slip"})
+    | YAW
+    | {"yaw_jumps", "far_sensor", "pose_outliers"},
     "treads_are_twist": TREADS
     | POSES
+    | {"pose_mirrored", "gyroscope_reversed", "treads_or_gyroscope_reversed"}
     | {"treads_unequal", "tread_left_reversed", "treads_swapped", "treads_both_reversed"}
     | {"far_sensor", "tread_right_reversed", "treads_unrelated", "yaw_backwards"},
     "treads_unequal": frozenset({"pose_jumps"}),
@@ -38,7 +41,8 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "uneven_stamps": frozenset({"odometry_gap"}),
     "saturated_speed": frozenset({"stuck_encoder", "pose_jumps", "treads_frozen"})
     | {"treads_unequal", "tread_offset", "slip", "scale"},
-    "treads_frozen": frozenset({"pose_jumps", "slip", "odometry_gap", "turns_at_rest"}),
+    "treads_frozen": frozenset({"pose_jumps", "slip", "odometry_gap", "turns_at_rest"})
+    | {"far_sensor", "track_width", "treads_unequal", "tread_offset"},
     "odometry_gap": frozenset({"pose_jumps"}),
     "clock_set": frozenset({"pose_jumps"}),
     "imu_mount": frozenset({"gyroscope_reversed", "gyroscope_unrelated"}),
@@ -77,4 +81,6 @@ def without_consequences(findings: Sequence[Finding]) -> list[Finding]:
     """The findings of which none explains another."""
     names = {finding.name for finding in findings}
     told = {follows for name in names for follows in CONSEQUENCES.get(name, ())}
+    if any(f.level is not Level.NOTE and f.name != "sensors_disagree" for f in findings):
+        told.add("sensors_disagree")  # it is for what has no name
     return [finding for finding in findings if finding.name not in told]

@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
-from odometry.checks.heading import Heading
+from odometry.checks.heading import CONSISTENT, Heading, headings
 from odometry.checks.turning import Sense, gyroscope_sense, pose_sense
 
 OFF_RAD = np.radians(15)  # a lateral ICR or a sensor that is turned a little is no fault
@@ -51,7 +51,9 @@ def _turns_agree(evidence: Evidence) -> bool:
 
 def _offset(evidence: Evidence, heading: Heading) -> Iterator[Finding]:
     offset, degrees = heading.offset_rad, float(np.degrees(heading.offset_rad))
-    if abs(offset) < OFF_RAD or heading.forwards < LEAST_FORWARDS:
+    if abs(offset) < OFF_RAD + np.arctan(evidence.arm_share):
+        return
+    if heading.forwards < LEAST_FORWARDS:
         return
     seen = (
         f"the course of pose.csv lies {degrees:.0f} degrees from its yaw while the treads drive "
@@ -64,7 +66,7 @@ def _offset(evidence: Evidence, heading: Heading) -> Iterator[Finding]:
             "yaw_backwards",
             seen,
             "Yaw is off by 180 degrees (sensor mounted backwards), or the treads are swapped and "
-            "both have the wrong sign: these look alike",
+            f"both have the wrong sign: these look alike{_as_well(evidence)}",
             "Add pi to yaw, or mend the treads",
         )
     elif abs(abs(degrees) - 90) < 20:
@@ -72,7 +74,7 @@ def _offset(evidence: Evidence, heading: Heading) -> Iterator[Finding]:
             "yaw_off_by_90",
             seen,
             f"Yaw is off by {round(degrees / 90) * 90:.0f} degrees (another axis is called "
-            "forward, yaw counts from another axis, or x and y are swapped)",
+            f"forward, yaw counts from another axis, or x and y are swapped){_as_well(evidence)}",
             f"Add {np.sign(degrees) * np.pi / 2:+.4f} rad to yaw",
         )
     else:
@@ -80,9 +82,23 @@ def _offset(evidence: Evidence, heading: Heading) -> Iterator[Finding]:
             "yaw_offset",
             seen,
             f"Yaw is off by {degrees:.0f} degrees: the sensor is turned on the robot, or yaw "
-            "counts from another axis than x (a compass not corrected, grid against true north)",
+            "counts from another axis than x (a compass not corrected, grid against true north)"
+            f"{_as_well(evidence)}",
             f"Add {offset:+.4f} rad to yaw, or let `gap` name a heading_offset",
         )
+
+
+def _as_well(evidence: Evidence) -> str:
+    """Other causes where the drive does not tell them from an offset."""
+    more = ""
+    found = headings(evidence.motion, evidence.turn_rad(evidence.motion))
+    if found and found["radians, reversed"].concentration > CONSISTENT:
+        more += "; or yaw is reversed or positions are mirrored: one straight line does not tell"
+    if pose_sense(evidence) is Sense.UNKNOWN:
+        more += "; or both treads have the wrong sign, if it is by 180 degrees"
+    if evidence.arm_share > np.tan(OFF_RAD) / 2:
+        more += "; or positions are late against yaw, as the robot turns to one side all the time"
+    return more
 
 
 def _finding(name: str, seen: str, cause: str, remedy: str) -> Finding:

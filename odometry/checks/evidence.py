@@ -7,10 +7,11 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.heading import CONSISTENT, Heading, across_m, along_m, headings
-from odometry.checks.motion import Motion
+from odometry.checks.motion import Motion, scattered
 from odometry.checks.recorded import Recorded
 from odometry.checks.relation import Relation, relation
 
+MOST_SHARP = 0.8  # share of the windows in sharp turns, from which these are used as well
 MOST_TURN_RAD = 2.5  # between two poses, from which whole turns may be lost
 DEGREES_RAD_S = 7.0  # no robot turns faster: the gyroscope is in degrees per second
 CLEARLY = 0.3  # difference of concentrations or squared correlations that decides
@@ -104,7 +105,13 @@ class Evidence(Recorded):
     def distance_by_mean(self) -> Relation | None:
         """Distance between positions from the mean travel, both without sign, for lack of yaw."""
         m = self.motion
-        turning = np.abs(m.difference_m) > np.abs(m.mean_m)
+        if len(m) == 0:
+            return None
+        sharp = np.abs(m.difference_m) / np.maximum(np.abs(m.mean_m), 1e-12)
+        some = np.mean(sharp > 1.0) < MOST_SHARP or np.mean(sharp > 2.0) > 1 - MOST_SHARP
+        turning = sharp > (1.0 if some else 2.0)
+        if scattered(m):
+            return None
         return relation(np.where(turning, np.nan, m.distance_m), np.abs(m.mean_m))
 
     @cached_property
@@ -114,6 +121,18 @@ class Evidence(Recorded):
             if found is not None and found.certain():
                 return abs(found.slope)
         return None
+
+    @cached_property
+    def arm_share(self) -> float:
+        """By what share an antenna at the robot's edge is faster than its centre all the time.
+
+        Where the robot turns to both sides it is nothing.
+        """
+        m = self.motion
+        turned = np.nansum(self.turn_rad(m) * np.sign(m.mean_m))
+        arm_m = max(self.run.robot.length or 0.0, self.run.robot.track_width) / 2
+        travel_m = float(np.sum(np.abs(m.mean_m)))
+        return min(arm_m * abs(float(turned)) / travel_m, 1.0) if travel_m > 0 else 0.0
 
     @cached_property
     def gyroscope_by_treads(self) -> Relation | None:

@@ -59,16 +59,17 @@ def lag_between(
     """
     count = int(np.clip((span_s[1] - span_s[0]) / LEAST_PIECE_S, 1, PIECES))
     edges_s = np.linspace(span_s[0], span_s[1], count + 1)
-    lags, middles, correlations = [], [], []
+    lags, middles, correlations, sigmas = [], [], [], []
     for begin_s, stop_s in pairwise(edges_s.tolist()):
         found = _peak(late, early, (begin_s, stop_s), width_s, most_s)
         if found is not None:
             lags.append(found[0])
             correlations.append(found[1])
+            sigmas.append(_peak_sigma_s(found[1], stop_s - begin_s, width_s))
             middles.append((begin_s + stop_s) / 2)
     if len(lags) < 3:
         return None
-    return _summarised(np.array(lags), np.array(middles), np.array(correlations))
+    return _summarised(np.array(lags), np.array(middles), np.array(correlations), np.array(sigmas))
 
 
 def _peak(
@@ -123,12 +124,24 @@ def _correlation(a: FloatArray, b: FloatArray) -> float:
     return float(np.sum(a * b) / size) if size > 1e-9 else float("nan")
 
 
-def _summarised(lags: FloatArray, middles: FloatArray, correlations: FloatArray) -> Lag:
+def _peak_sigma_s(correlation: float, lasts_s: float, width_s: float) -> float:
+    """Standard deviation of one peak: rates over `width_s` are so many independent samples.
+
+    The bound of time delay estimation, for signals whose band is that of the width (Carter 1987).
+    """
+    noise = max(1 - correlation**2, 0.0) / correlation**2
+    return float(width_s * np.sqrt(noise * width_s / lasts_s))
+
+
+def _summarised(
+    lags: FloatArray, middles: FloatArray, correlations: FloatArray, sigmas: FloatArray
+) -> Lag:
     """Median lag, and a line through the pieces by the medians of slopes (Theil and Sen)."""
     i, j = np.triu_indices(len(lags), 1)
     drift = float(np.median((lags[j] - lags[i]) / (middles[j] - middles[i])))
     left = lags - np.median(lags) - drift * (middles - np.median(middles))
     spread = 1.4826 * float(np.median(np.abs(left - np.median(left)))) + GRID_S / 10
+    spread = max(spread, float(np.median(sigmas)))  # few pieces may agree by chance
     span = float(np.sqrt(np.sum((middles - middles.mean()) ** 2)))
     return Lag(
         float(np.median(lags)),

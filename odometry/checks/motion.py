@@ -1,7 +1,7 @@
 """What treads, gyroscope and poses say of the motion between the same stamps."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -9,6 +9,8 @@ from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.run import Run
 
 WINDOW_S = 0.5  # long against the jitter of stamps, short against a turn
+LEAST_PAIRS = 8
+MOVING = 0.1  # share of the fast windows above which the robot moves
 LONGEST = (
     3.0  # windows longer than this many times WINDOW_S, or the usual pose period, are left out
 )
@@ -42,6 +44,10 @@ class Motion:
 
     def __len__(self) -> int:
         return len(self.start_s)
+
+    def rows(self, chosen: IntArray) -> "Motion":
+        """The same with only the chosen windows."""
+        return Motion(*(getattr(self, field.name)[chosen] for field in fields(self)))
 
     @property
     def lasts_s(self) -> FloatArray:
@@ -114,7 +120,9 @@ def integrals(
     )
 
 
-def motion_between(run: Run, of: Integrals, poses_used: BoolArray | None) -> Motion:
+def motion_between(
+    run: Run, of: Integrals, poses_used: BoolArray | None, window_s: float = WINDOW_S
+) -> Motion:
     """Cut a run into windows of half a second, between measured poses where there are any.
 
     Parameters
@@ -123,25 +131,41 @@ def motion_between(run: Run, of: Integrals, poses_used: BoolArray | None) -> Mot
     of : Integrals
     poses_used : (M,) or None
         Which rows of pose.csv count.
+    window_s : float
+        Least length of a window.
     """
     odometry_s = run.odometry.stamps_s
     if run.pose is not None and poses_used is not None and poses_used.sum() >= 2:
         pose_s = run.pose.stamps_s
         inside = poses_used & (pose_s >= odometry_s[0]) & (pose_s <= odometry_s[-1])
-        rows = _spaced(pose_s, np.flatnonzero(inside))
+        rows = _spaced(pose_s, np.flatnonzero(inside), window_s)
         if len(rows) >= 2:
-            return _between_poses(run, of, rows)
-    edges_s = np.arange(odometry_s[0], odometry_s[-1], WINDOW_S)
+            return _between_poses(run, of, rows, window_s)
+    edges_s = np.arange(odometry_s[0], odometry_s[-1], window_s)
     nothing = np.full((max(len(edges_s) - 1, 0), 2), np.nan)
     return _window(edges_s[:-1], edges_s[1:], of, nothing, nothing)
 
 
-def _between_poses(run: Run, of: Integrals, rows: IntArray) -> Motion:
+def scattered(motion: Motion) -> bool:
+    """Whether noise makes displacements long: they differ from one to the next by as much."""
+    moving = np.abs(motion.mean_m) > np.abs(motion.difference_m)
+    if len(motion) < LEAST_PAIRS:
+        return False
+    moving &= np.abs(motion.mean_m) > MOVING * np.quantile(np.abs(motion.mean_m), 0.9)
+    pairs = moving[1:] & moving[:-1] & (motion.start_s[1:] == motion.end_s[:-1])
+    pairs &= np.isfinite(motion.distance_m[1:] + motion.distance_m[:-1])
+    if pairs.sum() < LEAST_PAIRS:
+        return False
+    change = np.hypot(*np.diff(motion.moved_m, axis=0).T)[pairs]
+    return bool(np.median(change) > np.median(motion.distance_m[1:][pairs]))
+
+
+def _between_poses(run: Run, of: Integrals, rows: IntArray, window_s: float) -> Motion:
     assert run.pose is not None  # noqa: S101 - for the type checker: the caller has looked
     first, last = rows[:-1], rows[1:]
     pose_s = run.pose.stamps_s
     lasts_s = pose_s[last] - pose_s[first]
-    near = lasts_s <= LONGEST * max(WINDOW_S, float(np.median(np.diff(pose_s))))
+    near = lasts_s <= LONGEST * max(window_s, float(np.median(np.diff(pose_s))))
     if "window" in run.pose:
         window = np.nan_to_num(run.pose["window"])
         near &= window[first] == window[last]
@@ -166,12 +190,12 @@ def _window(
     return Motion(start_s, end_s, left, right, gyroscope, moved, yaw)
 
 
-def _spaced(pose_s: FloatArray, rows: IntArray) -> IntArray:
-    """Rows at least WINDOW_S apart."""
+def _spaced(pose_s: FloatArray, rows: IntArray, apart_s: float) -> IntArray:
+    """Rows at least so far apart."""
     stamps_s, chosen, place = pose_s[rows], [], 0
     while place < len(rows):
         chosen.append(place)
-        place = int(np.searchsorted(stamps_s, stamps_s[place] + WINDOW_S - 1e-6))
+        place = int(np.searchsorted(stamps_s, stamps_s[place] + apart_s - 1e-6))
     return np.asarray(rows[chosen], dtype=np.int64)
 
 

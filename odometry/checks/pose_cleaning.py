@@ -31,8 +31,17 @@ def pose_outliers(positions: FloatArray) -> BoolArray:
     begins, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
     found = np.zeros(count, dtype=np.bool_)
     for begin, end in zip(begins, ends, strict=True):
-        found[begin:end] = end - begin <= LONGEST
+        short = end - begin <= LONGEST
+        found[begin:end] = short and _comes_back(positions, away, int(begin), int(end))
     return found
+
+
+def _comes_back(positions: FloatArray, away: FloatArray, begin: int, end: int) -> bool:
+    """Whether the poses beside a span are near each other: else the robot drove on."""
+    if begin == 0 or end == len(positions):
+        return True
+    apart = float(np.hypot(*(positions[end] - positions[begin - 1])))
+    return apart < float(away[begin:end].max())
 
 
 def _unit(step: float) -> float:

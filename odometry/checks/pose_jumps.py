@@ -34,6 +34,8 @@ def jumps(
     reckoned = _reckoned(evidence, rows, scale)
     off = _without_window_changes(evidence, rows, positions - reckoned)
     step = _step_sizes(stamps_s, off)
+    if evidence.heading is None:
+        step = np.maximum(step - scale * _driven_m(stamps_s, travel_m), 0.0)
     speed = _rate(travel_m, stamps_s)
     known = np.isfinite(step) & ~within(stamps_s - evidence.stamps_s[0], _widened(frozen_s))
     if known.sum() < 20:
@@ -74,7 +76,7 @@ def _lost_odometry(evidence: Evidence, at_s: FloatArray, farthest_m: float) -> F
         f"poses move by up to {farthest_m:.2f} m while both treads read zero "
         f"({counted(len(at_s), 'time')}, first at {evidence.run_time_s(at_s[0]):.1f} s)",
         "Odometry is lost: the log writes zeros (a motor driver or bus that stopped); or the "
-        "robot was pushed, carried or slid, or poses jump",
+        "robot was pushed, carried or slid, or poses jump, or these are commands and it coasts",
         "Cut the recording with --from and --to",
         _moments(evidence, at_s),
     )
@@ -184,6 +186,13 @@ def _medians(values: FloatArray, first: IntArray, last: IntArray) -> FloatArray:
         for some in np.array_split(rows, 1 + len(rows) * size // BLOCK):
             found[some] = np.median(windows[first[some]], axis=-1)
     return found
+
+
+def _driven_m(stamps_s: FloatArray, travel_m: FloatArray) -> FloatArray:
+    """Tread travel (M,) over the time from which `_step_sizes` takes its medians."""
+    far_s = max(FAR_S, NEAR_S + 3 * float(np.median(np.diff(stamps_s))))
+    before, after = (np.interp(stamps_s + s, stamps_s, travel_m) for s in (-far_s, far_s))
+    return np.asarray(after - before)
 
 
 def _without_window_changes(

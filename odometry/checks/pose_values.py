@@ -119,9 +119,10 @@ def _noisy(evidence: Evidence, stamps_s: FloatArray, positions: FloatArray) -> I
     """Noise by second differences of neighbours, which smooth driving hardly has."""
     second = positions[2:] - 2 * positions[1:-1] + positions[:-2]
     scale = evidence.metres_per_metre or 1.0
-    unit = scale if not 1 / 30 < scale < 30 else 1.0
-    sigma = 1.4826 * float(np.median(np.abs(second))) / np.sqrt(6.0) / unit
-    step_m = evidence.fastest_m_s * float(np.median(np.diff(stamps_s)))
+    sigma = 1.4826 * float(np.median(np.abs(second))) / np.sqrt(6.0)
+    step_m = scale * evidence.fastest_m_s * float(np.median(np.diff(stamps_s)))
+    if not 1 / 30 < scale < 30:  # in another unit: which of both is, is not known here
+        sigma, step_m = min(sigma, sigma / scale), 0.0
     if sigma > NOISY_M and sigma > 0.3 * step_m:
         yield Finding(
             "noisy_positions",

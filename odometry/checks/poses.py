@@ -8,13 +8,14 @@ from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, counted
 from odometry.checks.pose_jumps import jumps, yaw_jumps
-from odometry.checks.relation import relation
+from odometry.checks.relation import pieces, relation
 from odometry.checks.spans import constant_spans, runs_of
 
 FROZEN_S = 1.5
 OFTEN = 10  # stretches of repeated poses, from which the log repeats by habit
 REPEATED = 0.3  # share of poses equal to the one before while the treads move
 LEAST_ARM_M = 0.6
+LASTING = 0.4  # share of the swing that each piece of the recording has
 OUTLIERS = 0.01  # share of poses that go out and back, from which it is a warning
 
 
@@ -120,13 +121,18 @@ def _lever_arm(evidence: Evidence) -> Iterator[Finding]:
     sure = sideways.certain(0, 8.0), forward.certain(1, 8.0)
     far = max(abs(x_m) * sure[0], abs(y_m) * sure[1])
     limit_m = max(LEAST_ARM_M, (evidence.run.robot.length or 1.0) / 2)
-    if far > limit_m:
+    place = 0 if far == abs(x_m) else 1
+    columns = (turn,) if place == 0 else (m.mean_m, turn)
+    told = pieces((evidence.sideways_m, evidence.forward_m)[place], *columns)
+    size = (x_m, -y_m)[place]
+    swings = [of.coefficients[place] / size for of in told if of.certain(place)]
+    if far > limit_m and len(swings) > 1 and min(swings) > LASTING:
         yield Finding(
             "far_sensor",
             Level.WARNING,
             f"measured positions swing with the turns as if {x_m:+.2f} m ahead and {y_m:+.2f} m to "
             f"the left of the centre of the treads, more than {limit_m:.2f} m",
             "The sensor is mounted far from the centre (a lever arm), or the frame of the poses is "
-            "not that of the robot",
+            "not that of the robot, or positions are late against yaw (filtered)",
             f"State its place: [sensors] pose = [{x_m:.2f}, {y_m:.2f}, 0.0]",
         )

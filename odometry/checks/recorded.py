@@ -6,11 +6,12 @@ from functools import cached_property
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.checks.motion import Integrals, Motion, integrals, motion_between
+from odometry.checks.motion import Integrals, Motion, integrals, motion_between, scattered
 from odometry.checks.pose_cleaning import pose_outliers
 from odometry.checks.spikes import without_spikes
 from odometry.run import Run
 
+LONGER_S = (1.0, 2.0)  # windows
 MOST_OUTLIERS = 0.3  # share of the poses: where more are far from the others, none can be left out
 
 
@@ -92,8 +93,16 @@ class Recorded:
 
     @cached_property
     def raw_motion(self) -> Motion:
-        """Windows of half a second or more, between new poses where there are any; raw yaw."""
-        return motion_between(self.run, self.integrals, self.poses_used)
+        """Windows of half a second or more, between new poses where there are any; raw yaw.
+
+        Longer where the noise of the positions is more than what was driven.
+        """
+        found = motion_between(self.run, self.integrals, self.poses_used)
+        for window_s in LONGER_S:
+            if not scattered(found):
+                break
+            found = motion_between(self.run, self.integrals, self.poses_used, window_s)
+        return found
 
     @cached_property
     def uniform(self) -> Motion:

@@ -9,6 +9,7 @@ from odometry.checks.agreement import agreement, yaw_against_course
 from odometry.checks.attitude import attitude
 from odometry.checks.consequences import without_consequences
 from odometry.checks.course import course
+from odometry.checks.disagreement import sensors_disagree
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import CheckReport, Finding, Level, in_order
 from odometry.checks.gaps import gaps
@@ -77,6 +78,7 @@ def check_recording(run: Run | str | Path) -> CheckReport:
     evidence = Evidence(run)
     with np.errstate(over="ignore", invalid="ignore"):
         found = [*refused, *(finding for check in CHECKS for finding in check(evidence))]
+        found += sensors_disagree(evidence, found)
     return CheckReport(run.folder, in_order(without_consequences(found)), tuple(_skipped(evidence)))
 
 

@@ -9,6 +9,12 @@ from odometry.arrays import BoolArray, FloatArray
 ROUNDS = 8
 CUTOFF = 3.0  # standard deviations, estimated by the median, beyond which a window is left out
 LEAST_WINDOWS = 8  # below, nothing is said
+# Treads differ from what they read by a few parts in a hundred (rounding, play, slip of a moment).
+# Where columns are this near to multiples of each other, that alone decides their shares, unless
+# what they differ by explains the target.
+LEAST_ANGLE_RAD = 0.05
+EXPLAINS = 0.5  # share of the residuals that is left when what they differ by is used
+PIECES = 4
 
 
 @dataclass(frozen=True)
@@ -28,6 +34,8 @@ class Relation:
         NaN where not measured.
     explained : float
         Share of the squares of the target that the fit explains, outliers included.
+    distinct : bool
+        Whether the data tell the shares of the columns: else no coefficient is certain.
     """
 
     coefficients: FloatArray
@@ -37,6 +45,7 @@ class Relation:
     measured: int
     residuals: FloatArray
     explained: float
+    distinct: bool
 
     @property
     def slope(self) -> float:
@@ -50,7 +59,8 @@ class Relation:
 
     def certain(self, place: int = 0, times: float = 5.0) -> bool:
         """Whether a coefficient differs from zero by so many standard deviations."""
-        return bool(abs(self.coefficients[place]) > times * self.sigmas[place])
+        apart = abs(self.coefficients[place]) > times * self.sigmas[place]
+        return bool(self.distinct and apart)
 
 
 def relation(target: FloatArray, *columns: FloatArray) -> Relation | None:
@@ -85,7 +95,34 @@ def relation(target: FloatArray, *columns: FloatArray) -> Relation | None:
         int(measured.sum()),
         residuals,
         1 - float(np.sum(residuals[measured] ** 2) / max(np.sum(target[measured] ** 2), 1e-300)),
+        _distinct(design[kept], target[kept]),
     )
+
+
+def pieces(target: FloatArray, *columns: FloatArray) -> list[Relation]:
+    """The same relation in each quarter of the windows, those of which it says something."""
+    known = np.flatnonzero(np.isfinite(target) & np.isfinite(np.stack(columns)).all(axis=0))
+    found = (
+        relation(target[rows], *(column[rows] for column in columns))
+        for rows in np.array_split(known, PIECES)
+    )
+    return [piece for piece in found if piece is not None]
+
+
+def _distinct(design: FloatArray, target: FloatArray) -> bool:
+    """Whether the weakest direction of the scaled columns is wide, or explains the target.
+
+    Scaled singular values: Belsley, Kuh and Welsch 1980, chapter 3.
+    """
+    lengths = np.linalg.norm(design, axis=0)
+    if not (lengths > 0).all():
+        return False
+    directions, sizes, _ = np.linalg.svd(design / lengths, full_matrices=False)
+    if sizes[-1] > LEAST_ANGLE_RAD * sizes[0]:
+        return True
+    parts = directions.T @ target
+    left = max(float(np.sum(target**2) - np.sum(parts**2)), 0.0)
+    return left < EXPLAINS * (left + float(parts[-1] ** 2))
 
 
 def _least_squares(design: FloatArray, target: FloatArray) -> FloatArray:

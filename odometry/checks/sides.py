@@ -4,10 +4,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from odometry.checks.disagreement import disagreement
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.motion import Motion
-from odometry.checks.relation import Relation, relation
+from odometry.checks.relation import Relation, pieces, relation
 
 UNEQUAL = (
     1.15  # ratio of the treads' shares in turns; real ones have 0.94 to 1.07 where terrain holds
@@ -15,6 +16,7 @@ UNEQUAL = (
 LEAST_OFFSET_M_S = 0.03
 TIMES = 5.0  # standard deviations
 HELD = 0.9  # share of the turns explained where terrain holds
+LASTING = 0.4  # share of the logarithm of a ratio that each piece of the recording has
 TWIST = 0.15  # share of the turn that may come from the other column
 
 
@@ -27,12 +29,12 @@ def sides(evidence: Evidence) -> Iterator[Finding]:
     if twist or turn is None:
         return
     offset = list(_offset(evidence))
-    yield from offset or _unequal(turn, forward)
+    yield from offset or _unequal(evidence, turn, forward)
 
 
 def _twist(turn: Relation | None, forward: Relation | None) -> Iterator[Finding]:
     """v_left holds the speed, v_right the turn rate, or the other way round."""
-    if turn is None or turn.correlation < 0.9:
+    if turn is None or not turn.distinct or turn.correlation < 0.9:
         return
     for speed, rate, names in ((0, 1, ("v_left", "v_right")), (1, 0, ("v_right", "v_left"))):
         of_speed, of_rate = turn.coefficients[speed], turn.coefficients[rate]
@@ -56,7 +58,7 @@ def _only(forward: Relation, speed: int, rate: int) -> bool:
     return bool(abs(forward.coefficients[rate]) < 0.3 * abs(forward.coefficients[speed]))
 
 
-def _unequal(turn: Relation, forward: Relation | None) -> Iterator[Finding]:
+def _unequal(evidence: Evidence, turn: Relation, forward: Relation | None) -> Iterator[Finding]:
     if turn.explained < HELD or not (turn.certain(0, TIMES) and turn.certain(1, TIMES)):
         return
     left, right = np.abs(turn.coefficients)
@@ -67,6 +69,12 @@ def _unequal(turn: Relation, forward: Relation | None) -> Iterator[Finding]:
         other = float(abs(forward.coefficients[0] / forward.coefficients[1]))
         if (other - 1) * (ratio - 1) < 0:
             return
+    if not _lasts(evidence, ratio):
+        yield disagreement(
+            f"a metre of the left tread turns the robot {ratio:.3g} times as much as one of the "
+            "right, but not all the time"
+        )
+        return
     side = "right" if ratio > 1 else "left"
     yield Finding(
         "treads_unequal",
@@ -77,6 +85,19 @@ def _unequal(turn: Relation, forward: Relation | None) -> Iterator[Finding]:
         "much against the other (unit, wheel radius, gear, ticks of one side, a flat tyre)",
         "Compare both sides on a straight drive",
     )
+
+
+def _lasts(evidence: Evidence, ratio: float) -> bool:
+    """Whether each piece of the recording that tells has the ratio of the whole."""
+    m, turns = evidence.uniform, evidence.uniform.gyroscope_rad
+    if evidence.gyroscope_by_treads is None:
+        m, turns = evidence.motion, evidence.pose_turn_rad
+    told = [
+        abs(float(piece.coefficients[0] / piece.coefficients[1]))
+        for piece in pieces(turns, m.left_m, m.right_m)
+        if piece.certain(0, TIMES) and piece.certain(1, TIMES)
+    ]
+    return all(np.log(of) / np.log(ratio) > LASTING for of in told)
 
 
 def _offset(evidence: Evidence) -> Iterator[Finding]:

@@ -157,13 +157,22 @@ def _file(sensor: str) -> str:
 
 
 def _finding(name: str, sensor: str, other: str, lag: Lag) -> Finding:
-    word = "late" if lag.seconds > 0 else "early"
+    word, opposite = ("late", "early") if lag.seconds > 0 else ("early", "late")
+    more = ""
+    if {sensor, other} == {"pose", "the treads"}:
+        more = f"; or those of the treads are {opposite}: without a gyroscope this cannot be told"
+        if lag.seconds > 0:
+            more += " (v_left and v_right may be commands, which the robot follows later)"
+    elif name == "treads_late" and lag.seconds < 0:
+        more = "; or v_left and v_right are commands, which the robot follows later"
+    elif name == "treads_late":
+        more = "; or the speeds are smoothed (a low-pass filter)"
     return Finding(
         name,
         Level.WARNING,
         f"the yaw rate of {_file(sensor)} is {abs(lag.seconds):.3f} +- {lag.sigma_s:.3f} s {word} "
         f"against {other} (correlation {lag.correlation:.2f})",
         f"Stamps of {_file(sensor)} are {word}: a delay of the sensor, its filter or its "
-        "transport, or stamps at arrival",
+        f"transport, or stamps at arrival{more}",
         f"Subtract {lag.seconds:+.3f} s from the stamps of the {_file(sensor)}",
     )

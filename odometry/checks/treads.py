@@ -8,10 +8,13 @@ from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, counted
 from odometry.checks.spikes import spikes
+from odometry.checks.turning import lasting_turn_rad
 
 COARSE = 0.1  # a step of the readings as a share of the ordinary fastest speed
 LEAST_CHANGES = 15  # of a tread speed, and as a share of the rows: else it is a held command
 DROPPED = 0.001  # share of samples that are lost, from which it is a warning
+STILL_RAD = 0.1  # range of the heading of a robot that stands
+STOP_S = 0.3  # no robot stops and is at full speed again within
 CHANGING = 0.005
 SATURATED = 0.05  # share of rows at the very largest value
 
@@ -110,6 +113,7 @@ def _dropped(evidence: Evidence) -> Iterator[Finding]:
         zero = (np.abs(values[1:-1]) < 1e-9) & (np.abs(values[:-2]) > 0.1 * evidence.fastest_m_s)
         zero &= np.abs(values[2:]) > 0.1 * evidence.fastest_m_s
         zero &= np.sign(values[:-2]) == np.sign(values[2:])
+        zero &= np.diff(evidence.stamps_s)[1:] < STOP_S
         counts[name] = int(zero.sum())
         spans += [evidence.run_time_s(s) for s in evidence.stamps_s[1:-1][zero]]
     total = sum(counts.values())
@@ -126,16 +130,32 @@ def _dropped(evidence: Evidence) -> Iterator[Finding]:
         )
 
 
+def _extent(positions: FloatArray) -> tuple[float, float]:
+    """Width [m] of positions (M, 2) without their farthest tenth, and their noise [m]."""
+    if len(positions) < 10:
+        return 0.0, 0.0
+    low, high = np.quantile(positions, [0.05, 0.95], axis=0)
+    noise = np.median(np.abs(np.diff(positions, axis=0))) * 1.4826 / np.sqrt(2)
+    return float(np.hypot(*(high - low))), float(noise)
+
+
 def _idle(evidence: Evidence) -> Iterator[Finding]:
     """Treads that do not move."""
     if evidence.fastest_m_s > 1e-3:
         return
-    moved = ""
-    if evidence.positions_measured is not None:
-        moved = f" while poses move by {float(np.nansum(evidence.motion.distance_m)):.3g} m"
+    moved, level = "", Level.WARNING
+    if evidence.run.pose is not None and evidence.poses_used is not None:
+        extent_m, noise_m = _extent(evidence.run.pose.stack("x", "y")[evidence.poses_used])
+        moved = f" while poses lie within {extent_m:.3g} m"
+        level = Level.NOTE if extent_m < max(10 * noise_m, 0.1) else level
+    elif evidence.yaw_rate is not None:
+        m = evidence.uniform
+        turned_rad = lasting_turn_rad(m.gyroscope_rad, m.lasts_s)
+        moved = f" while the gyroscope turns by {turned_rad:.2g} rad"
+        level = Level.NOTE if turned_rad < STILL_RAD else level
     yield Finding(
         "treads_still",
-        Level.WARNING,
+        level,
         f"the fastest tread speed is {evidence.fastest_m_s:.3g} m/s{moved}",
         "The robot was stationary, carried or pushed, or the columns are empty or in km/s",
         "Record a drive",

@@ -6,6 +6,7 @@ import numpy as np
 
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
+from odometry.checks.relation import Relation, pieces
 from odometry.checks.turning import Sense, gyroscope_sense, pose_sense
 from odometry.checks.unit_findings import (
     gyroscope_unit,
@@ -42,7 +43,8 @@ def units(evidence: Evidence) -> Iterator[Finding]:
     width, turn_tight, gyroscope_factor = _width_factor(evidence)
     if gyroscope_factor:
         yield gyroscope_unit(evidence, gyroscope_factor)
-    if forward is not None and not FORWARD[0] <= forward <= FORWARD[1]:
+    low, high = FORWARD[0] * (1 - evidence.arm_share), FORWARD[1] * (1 + evidence.arm_share)
+    if forward is not None and not low <= forward <= high:
         yield _along(evidence, forward, forward_tight, width)
     if width is not None and not WIDTH[0] <= width <= WIDTH[1]:
         yield _across(evidence, forward, width, turn_tight)
@@ -76,8 +78,26 @@ def _width_factor(evidence: Evidence) -> tuple[float | None, bool, float | None]
     ):
         known = found is not None and found.certain() and found.explained > HALF
         if found is not None and known and of in (Sense.AGREES, Sense.OPPOSITE):
-            return scale / (abs(found.slope) * track), found.correlation > TIGHT, factor
+            width = scale / (abs(found.slope) * track)
+            odd = not WIDTH[0] <= width <= WIDTH[1]
+            if odd and not all(_odd(scale / (of * track)) for of in _slopes(evidence, found)):
+                return None, False, factor  # a part of the recording alone makes it odd
+            return width, found.correlation > TIGHT, factor
     return None, False, factor
+
+
+def _odd(width: float) -> bool:
+    """Whether a width of a piece of the recording is odd, with less certainty than of all."""
+    return not 1.2 * WIDTH[0] <= width <= 0.7 * WIDTH[1]
+
+
+def _slopes(evidence: Evidence, found: Relation) -> list[float]:
+    """Turn per difference of the treads in the pieces of the recording that tell it."""
+    m = evidence.uniform
+    told = pieces(m.gyroscope_rad, m.difference_m, m.lasts_s)
+    if found is evidence.pose_turn_by_difference:
+        told = pieces(evidence.pose_turn_rad, evidence.motion.difference_m)
+    return [abs(of.slope) for of in told if of.certain() and of.explained > HALF]
 
 
 def _gyroscope_factor(evidence: Evidence) -> float | None:
@@ -85,7 +105,11 @@ def _gyroscope_factor(evidence: Evidence) -> float | None:
     by_gyroscope = evidence.pose_turn_by_gyroscope
     if by_gyroscope is not None and by_gyroscope.certain() and by_gyroscope.explained > TIGHT:
         factor = 1 / abs(by_gyroscope.slope)
-        return factor if not 0.7 < factor < 1.4 else None
+        m = evidence.motion
+        told = pieces(evidence.pose_turn_rad, m.gyroscope_rad, m.lasts_s)
+        parts = [1 / abs(of.slope) for of in told if of.certain()]
+        lasts = all((part > 1.2 if factor > 1 else part < 0.85) for part in parts)
+        return factor if lasts and not 0.7 < factor < 1.4 else None
     found, rate = evidence.gyroscope_by_difference, evidence.yaw_rate
     if evidence.yaw_measured or found is None or rate is None or not found.certain():
         return None

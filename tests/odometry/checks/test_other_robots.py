@@ -1,0 +1,130 @@
+"""Clean recordings of other robots, and oddities that have no name in the catalogue."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from odometry.checks.finding import Level
+from odometry.checks.pose_cleaning import pose_outliers
+from odometry.checks.recording import check_recording
+from odometry.checks.relation import relation
+from odometry.run import Robot, Run
+from odometry.table import Table
+from tests.odometry.checks.faulty import gyroscope, put
+
+PERIOD_S = 0.05
+WIDTH_M = 0.9  # effective, of a track width of 0.6 m
+
+
+def table(file, **columns):
+    return Table(Path(file), columns, np.arange(2, 2 + len(columns["t"])))
+
+
+def drive(speed_m_s, turn_rad_s, *, yaw_sigma=0.01, sigma_m=0.02, seed=0):
+    """A recording of a twist (N,) at 20 Hz with poses at 10 Hz."""
+    rng = np.random.default_rng(seed)
+    stamps = PERIOD_S * np.arange(len(speed_m_s))
+    yaw = np.cumsum(turn_rad_s) * PERIOD_S
+    x, y = (np.cumsum(speed_m_s * f(yaw)) * PERIOD_S for f in (np.cos, np.sin))
+    slip = 1 + 0.01 * rng.standard_normal((2, len(stamps)))
+    left, right = (
+        (speed_m_s + side * turn_rad_s * WIDTH_M / 2) / 0.93 * noise
+        for side, noise in zip((-1, 1), slip, strict=True)
+    )
+    noise = rng.standard_normal((3, len(stamps[::2])))
+    pose = table(
+        "pose.csv",
+        t=stamps[::2],
+        x=x[::2] + sigma_m * noise[0],
+        y=y[::2] + sigma_m * noise[1],
+        yaw=np.angle(np.exp(1j * (yaw[::2] + yaw_sigma * noise[2]))),
+    )
+    gyro = turn_rad_s + 0.003 * rng.standard_normal(len(stamps))
+    odometry = table("odometry.csv", t=stamps, v_left=left, v_right=right, gyro_z=gyro)
+    return Run(Path("somewhere"), Robot(track_width=0.6), {}, odometry, pose)
+
+
+def winding(count=2400):
+    at_s = PERIOD_S * np.arange(count)
+    return drive(1 + 0.3 * np.sin(at_s / 7), 0.5 * np.sin(at_s / 3) + 0.2 * np.sin(at_s / 1.3))
+
+
+def without_gyroscope(run):
+    columns = {name: c for name, c in run.odometry.columns.items() if name != "gyro_z"}
+    return replace(run, odometry=replace(run.odometry, columns=columns))
+
+
+CLEAN = {
+    "winding": winding,
+    "one circle": lambda: drive(np.full(1200, 0.8), np.full(1200, 0.3)),
+    "one straight row": lambda: drive(np.full(1200, 0.8), np.zeros(1200), yaw_sigma=0.03),
+    "a row without gyroscope": lambda: without_gyroscope(
+        drive(np.full(1200, 0.5), np.zeros(1200), yaw_sigma=0.03)
+    ),
+    "turns on the spot": lambda: drive(
+        np.zeros(2400), 0.6 * np.sign(np.sin(PERIOD_S * np.arange(2400) / 3))
+    ),
+    "noisy positions": lambda: drive(
+        np.full(1200, 0.5), 0.3 * np.sin(PERIOD_S * np.arange(1200) / 3), sigma_m=1.0
+    ),
+    "stationary": lambda: drive(np.zeros(600), np.zeros(600)),
+    "two short moves": lambda: drive(
+        np.where(np.abs(np.arange(2400) % 1200 - 600) < 30, 1.0, 0.0), np.zeros(2400)
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CLEAN)
+def test_a_clean_drive_has_no_warning(name):
+    report = check_recording(CLEAN[name]())
+    assert not report.misleads, [finding.line for finding in report.findings]
+
+
+UNNAMED = {
+    "gyroscope scaled": lambda run: gyroscope(run, lambda rate: 0.85 * rate),
+    "gyroscope wanders": lambda run: gyroscope(
+        run, lambda rate: rate + 0.06 * np.sin(run.odometry["t"] / 8)
+    ),
+    "yaw of the poses drifts from their course": lambda run: put(
+        gyroscope(run, lambda rate: rate + 0.01), "pose", yaw=run.pose["yaw"] + 0.01 * run.pose["t"]
+    ),
+}
+
+
+@pytest.mark.parametrize("name", UNNAMED)
+def test_what_has_no_name_is_a_disagreement(name):
+    run = drive(*turning_much())
+    assert not check_recording(run).misleads
+    (warning,) = check_recording(UNNAMED[name](run)).at(Level.WARNING)
+    assert warning.name == "sensors_disagree"
+    assert "cannot be told" in warning.cause
+
+
+def turning_much():
+    at_s = PERIOD_S * np.arange(3600)
+    return 0.8 + 0.2 * np.sin(at_s / 5), 0.3 + 0.4 * np.sin(at_s / 6)
+
+
+def test_shares_of_steady_treads_are_not_certain(rng):
+    left = 1 + 0.01 * rng.standard_normal(200)
+    right = 2 + 0.01 * rng.standard_normal(200)
+    found = relation(0.5 + 0.01 * rng.standard_normal(200), left, right)
+    assert not found.distinct
+    assert not found.certain(0, 0.0)
+
+
+def test_small_differences_that_explain_the_target_are_certain(rng):
+    difference = 0.01 * rng.standard_normal(200)
+    found = relation(2 * difference, 1 - difference, 1 + difference)
+    assert found.distinct
+    assert found.coefficients == pytest.approx([-1.0, 1.0])
+
+
+def test_a_drive_between_two_stops_is_no_outlier():
+    x = np.concatenate([np.zeros(40), [1.5, 3.0], np.full(40, 4.5)])
+    positions = np.stack([x, np.zeros_like(x)], axis=-1)
+    assert not pose_outliers(positions).any()
+    positions[20] = 9.0
+    assert np.flatnonzero(pose_outliers(positions)).tolist() == [20]
