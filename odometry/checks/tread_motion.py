@@ -57,8 +57,9 @@ def _contradicted(evidence: Evidence, span: FloatArray, side: int) -> bool:
     rows = within(evidence.stamps_s, span[None])
     if rows.sum() * evidence.period_s < 0.5 * (end_s - begin_s):
         return False  # a gap, or one long hold
-    if np.ptp(evidence.speeds_m_s[rows, 1 - side]) < OTHER_MOVES * evidence.fastest_m_s:
-        return False
+    low, high = np.quantile(evidence.speeds_m_s[rows, 1 - side], (0.1, 0.9))
+    if high - low < OTHER_MOVES * evidence.fastest_m_s:
+        return False  # what changes at the edge of the span alone may be the end of the other's
     for motion, target, of_all in _targets(evidence):
         inside = (motion.start_s >= begin_s) & (motion.end_s <= end_s)
         if _is_as_elsewhere(target, of_all, inside):

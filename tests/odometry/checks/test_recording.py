@@ -66,6 +66,14 @@ def test_a_gyroscope_bias_is_a_note(recording):
     assert "+0.014" in bias.seen  # -0.0157 rad/s are in the recording
 
 
+def test_a_tread_that_stands_beside_a_stuck_one_is_not_accused(recording):
+    run = recording("warthog_grass_20240729_1404")
+    left = run.odometry["v_left"].copy()
+    left[700:1000] = left[700]
+    found = check_recording(put(run, "odometry", v_left=left)).findings
+    assert [finding.seen[:6] for finding in found if finding.name == "stuck_encoder"] == ["v_left"]
+
+
 def test_a_delay_is_measured_with_its_uncertainty(recording):
     run = recording("husky_tile_20231212_1616_s00")
     before, after = (
