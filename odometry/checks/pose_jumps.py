@@ -11,6 +11,7 @@ from odometry.checks.heading import READINGS
 from odometry.checks.spans import runs_of, within
 
 LEAST_JUMP_M = 0.4
+LEAST_WITHOUT_HEADING_M = 1.0  # where no heading says which way the robot drove, or it slides
 JUMP_TIMES = 7.0  # the usual change of the difference to dead reckoning over the same time
 LEAST_YAW_JUMP_RAD = np.radians(25)
 JITTER_S = 0.4  # by which poses that came in bursts were late
@@ -43,7 +44,8 @@ def jumps(
     moving = known & (speed > 0.2 * evidence.fastest_m_s)
     usual = 1.4826 * float(np.median(step[moving if moving.sum() > 20 else known]))
     jitter_m = JITTER_S * speed * scale
-    odd = known & (step > np.maximum(JUMP_TIMES * usual, LEAST_JUMP_M * scale + jitter_m))
+    least_m = LEAST_JUMP_M if evidence.heading is not None else LEAST_WITHOUT_HEADING_M
+    odd = known & (step > np.maximum(JUMP_TIMES * usual, least_m * scale + jitter_m))
     peaks = [begin + int(np.argmax(step[begin:end])) for begin, end in runs_of(odd)]
     stood = [i for i in peaks if _stood(stamps_s, positions, reckoned, i)]
     peaks = [i for i in peaks if i not in stood]
