@@ -41,6 +41,9 @@ class Residual(MotionEffect):
     knots: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
+        variable: object = self.variable  # a table of a file may hold anything
+        if not isinstance(variable, str):
+            raise ParameterError(f"variable = {variable!r}, expected a name")
         knots = [finite_number(knot, "knots: one") for knot in self.knots]
         if sorted(set(knots)) != knots:
             raise ParameterError(f"knots = {knots}, expected increasing numbers")

@@ -143,6 +143,8 @@ def contact_vehicle(robot: Mapping[str, Any], contact: Mapping[str, Any]) -> Con
     """
     table = dict(contact)
     places = np.array(table.pop("places"), dtype=np.float64)
+    if places.ndim != 1 or not len(places):
+        raise SimulationError(f"places = {places.tolist()}, expected 2 or more different places")
     friction = _friction(table, len(places))
     law = _law(table, float(friction.mean()))
     vehicle = ContactVehicle(

@@ -63,3 +63,8 @@ def test_a_variable_that_was_not_recorded_is_an_error():
 def test_a_term_that_is_none_is_an_error(term):
     with pytest.raises(ParameterError, match="has a term"):
         Residual("heading", (term,))
+
+
+def test_a_variable_that_is_no_name_is_refused():
+    with pytest.raises(ParameterError, match="expected a name"):
+        Residual({"a": 1})

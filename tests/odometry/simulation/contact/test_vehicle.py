@@ -51,6 +51,7 @@ def test_friction_of_each_contact_and_another_mean(make_vehicle):
         ({"friction": -0.1}, "friction = -0.1"),
         ({"height": -0.1}, "height = -0.1"),
         ({"modulus": 0.0}, "modulus = 0.0"),
+        ({"places": []}, "expected 2 or more different places"),
         ({"places": [0.1]}, "expected 2 or more different places"),
         ({"places": [0.1, 0.1, 0.2]}, "expected 2 or more different places"),
         ({"patch_length": None, "track_length": 0.5}, "distance from entry"),
