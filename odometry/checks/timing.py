@@ -167,6 +167,8 @@ def _finding(name: str, sensor: str, other: str, lag: Lag) -> Finding:
         more = "; or v_left and v_right are commands, which the robot follows later"
     elif name == "treads_late":
         more = "; or the speeds are smoothed (a low-pass filter)"
+    if sensor == "pose":
+        more += "; or yaw is bent by something else (magnetic), which can look alike"
     return Finding(
         name,
         Level.WARNING,
