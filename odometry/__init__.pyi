@@ -9,6 +9,7 @@ from .estimation.icr_ekf import IcrEkf
 from .evaluation.fitness import fitness
 from .evaluation.open_loop import measured_poses, open_loop
 from .evaluation.relative import EvaluationConfig, position_errors, relative_errors
+from .frames import Frame
 from .gap.gap import find_gap
 from .geometry.steepest_slope import steepest_slope
 from .icrs.measured import measured_icrs
@@ -24,8 +25,9 @@ from .modes.identify_velocity import identify_velocity_modes
 from .modes.mode_set import ModeSet, read_mode_set, write_mode_set
 from .modes.track import ModeTrack, follow_modes
 from .parameters import ParameterSet, TerrainParameters, read_parameters, write_parameters
-from .pipeline import ConstantTerrain, Replay, replay
-from .run import Frame, Robot, Run
+from .pipeline import ConstantTerrain, replay
+from .replay import Replay
+from .run import Robot, Run
 from .run_inputs import inputs_of
 from .run_span import Span, cut_run
 from .simulation.contact.drive import simulate_contact

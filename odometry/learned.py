@@ -7,7 +7,7 @@ import numpy as np
 from odometry.estimation.estimate import Estimate, IcrBelief
 from odometry.models.catalogue import ICR_NAMES
 from odometry.parameters import ParameterSet, TerrainParameters
-from odometry.pipeline import Replay
+from odometry.replay import Replay
 
 MUCH_SURER = 2.0  # times less variance
 

@@ -12,7 +12,8 @@ from odometry.estimation.icr_ekf import IcrEkf
 from odometry.evaluation.score import Score, reference_of, score
 from odometry.learned import learned_parameters
 from odometry.parameters import ParameterSet, read_parameters
-from odometry.pipeline import ConstantTerrain, Replay, replay
+from odometry.pipeline import ConstantTerrain, replay
+from odometry.replay import Replay
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
 from odometry.trajectory import Trajectory
 from terrain.camera import Camera

@@ -7,9 +7,10 @@ import numpy as np
 
 from odometry.arrays import ByteImage, FloatArray
 from odometry.estimation.estimate import Estimate
+from odometry.frames import Frame
 from odometry.geometry import se2
 from odometry.models.icr import icr_twist
-from odometry.run import UNKNOWN, Frame, Run
+from odometry.run import UNKNOWN, Run
 from terrain.camera import Camera
 from terrain.classification.classifier import Classification, TerrainClassifier
 from terrain.errors import CameraError, ImageError

@@ -14,9 +14,9 @@ from odometry.estimation.estimate import Estimate, IcrBelief, Innovation
 from odometry.estimation.gaussian import gate_threshold, normalised_squared, project_into
 from odometry.estimation.icr_prior import prior_belief
 from odometry.estimation.pose_kalman import PoseKalman, pose_residual
+from odometry.frames import Frame
 from odometry.geometry.angles import wrap
 from odometry.parameters import ParameterSet
-from odometry.run import Frame
 
 SIDES = np.array([[0.0, 0.0, 0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, -1.0, 0.0]])
 GAP_DENSITY = np.array([25.0, 25.0, 9.0, 0.0, 0.0, 0.0])  # [m^2/s], [rad^2/s]: all may happen

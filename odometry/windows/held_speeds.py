@@ -12,8 +12,8 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.dead_reckoning import dead_reckon
 from odometry.geometry import se2
+from odometry.gyroscope import gyroscope_of
 from odometry.run import Run
-from odometry.windows.gyroscope import gyroscope_of
 from odometry.windows.measured_poses import measured_poses
 from odometry.windows.robust import slope
 from odometry.windows.spans import touched
@@ -85,7 +85,7 @@ class _Blocks:
 
 def gyroscope_evidence(run: Run, holds_s: FloatArray) -> Evidence:
     """Measured yaw rates beside those of the tread speeds, for holds (H, 2) from stamp to stamp."""
-    gyroscope = gyroscope_of(run)
+    gyroscope = gyroscope_of(run.yaw_rate)
     if gyroscope is None:
         return _silent(len(holds_s))
     begin_s = gyroscope.stamps_s

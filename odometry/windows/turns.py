@@ -17,10 +17,10 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.geometry.angles import wrap
+from odometry.gyroscope import gyroscope_of
 from odometry.run import Run
 from odometry.windows.close_pairs import FASTEST, POSE_RAD, close_pairs, fastest_rad, unseen
 from odometry.windows.gaps import odometry_gaps
-from odometry.windows.gyroscope import gyroscope_of
 from odometry.windows.tread_travel import tread_travel
 from odometry.windows.turns_by_gyroscope import turns_by_gyroscope
 from odometry.windows.turns_by_treads import turn_per_metre, turns_by_treads
@@ -82,7 +82,11 @@ def _predictions(
     run: Run, stamps_s: FloatArray, yaw_rad: FloatArray
 ) -> Iterator[tuple[FloatArray, FloatArray]]:
     """Turns (M - 1,) between neighbours, and how far each may be off, the best first."""
-    width_m, travel, gyroscope = run.robot.track_width, tread_travel(run), gyroscope_of(run)
+    width_m, travel, gyroscope = (
+        run.robot.track_width,
+        tread_travel(run),
+        gyroscope_of(run.yaw_rate),
+    )
     gaps_s = odometry_gaps(run).spans_s
     pairs = close_pairs(travel, width_m, stamps_s, yaw_rad, gaps_s)
     if gyroscope is not None:

@@ -6,8 +6,8 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.geometry.angles import wrap
+from odometry.gyroscope import Gyroscope
 from odometry.windows.close_pairs import POSE_RAD, ClosePairs
-from odometry.windows.gyroscope import Gyroscope
 from odometry.windows.robust import slope, spread
 
 SCALES = (0.8, 1.25)  # of a gyroscope that can be right

@@ -2,10 +2,11 @@ import numpy as np
 import pytest
 
 from odometry.estimation.icr_ekf import IcrEkf
+from odometry.frames import Frame
 from odometry.learned import learned_parameters
 from odometry.parameters import ParameterSet, TerrainParameters, read_parameters, write_parameters
 from odometry.pipeline import replay
-from odometry.run import Frame, Run
+from odometry.run import Run
 
 BEFORE = ParameterSet(
     {

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from odometry.estimation.estimate import Estimate
-from odometry.run import Frame, Run
+from odometry.frames import Frame
+from odometry.run import Run
 from terrain.camera import Camera
 from terrain.classification.classifier import Classification
 from terrain.errors import CameraError

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.run import Run
+from odometry.sensors import YawRate
 
 SILENT_S = 0.5  # between two samples: a turn between them is not known
 
@@ -35,16 +35,21 @@ class Gyroscope:
         outside_s = outside_s + np.maximum(end_s - self.stamps_s[-1], 0.0)
         return np.stack([turn, gross, off, silent_s + outside_s])
 
+    def mean_rates_rad_s(self, stamps_s: FloatArray) -> FloatArray:
+        """Mean yaw rate (N,) from the stamp before to each of N stamps.
 
-def gyroscope_of(run: Run) -> Gyroscope | None:
-    """The gyroscope of `Run.yaw_rate`; None without two samples."""
-    found = run.yaw_rate
-    if found is None or len(found.stamps_s) < 2:
+        NaN at the first, and where the gyroscope was silent for more than half of the time.
+        """
+        turn_rad, _, _, silent_s = self.between(stamps_s[:-1], stamps_s[1:])
+        steps_s = np.diff(stamps_s)
+        return np.append(np.nan, np.where(silent_s > steps_s / 2, np.nan, turn_rad / steps_s))
+
+
+def gyroscope_of(yaw_rate: YawRate | None) -> Gyroscope | None:
+    """The integrals over measured yaw rates; None without two samples."""
+    if yaw_rate is None or len(yaw_rate.stamps_s) < 2:
         return None
-    return _integrated(found.stamps_s, found.yaw_rate_rad_s)
-
-
-def _integrated(stamps_s: FloatArray, rates_rad_s: FloatArray) -> Gyroscope:
+    stamps_s, rates_rad_s = yaw_rate.stamps_s, yaw_rate.yaw_rate_rad_s
     steps_s = np.diff(stamps_s)
     steps = np.column_stack(
         [
