@@ -17,6 +17,11 @@ def inputs_of(run: Run) -> Inputs:
     Roll and pitch are level where they were not recorded; accelerations are None unless both
     were.
     """
+    return inputs_with_heading(run, _heading(run))
+
+
+def inputs_with_heading(run: Run, heading_rad: FloatArray | None) -> Inputs:
+    """As `inputs_of`, with the headings (N,) that were found before; None where none is known."""
     speeds = run.odometry.stack("v_left", "v_right")
     stamps_s = run.odometry.stamps_s
     return Inputs(
@@ -25,7 +30,7 @@ def inputs_of(run: Run) -> Inputs:
         _accelerations(run),
         stamps_s - stamps_s[0],
         terrains_of(run),
-        _heading(run),
+        heading_rad,
         _wheel_angles(run),
     )
 

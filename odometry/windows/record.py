@@ -8,7 +8,7 @@ from odometry.arrays import AnyArray, FloatArray, IntArray
 from odometry.grounds import terrains_of
 from odometry.models.inputs import Inputs
 from odometry.run import Run
-from odometry.run_inputs import inputs_of
+from odometry.run_inputs import inputs_with_heading
 from odometry.windows.config import WindowConfig
 from odometry.windows.errors import WindowError
 from odometry.windows.gaps import odometry_gaps
@@ -87,13 +87,15 @@ def record_of(run: Run, config: WindowConfig) -> Record:
     pose_s, poses, windows = pose_s[inside], poses[inside], windows[inside]
     stamps_s = np.unique(np.concatenate([odometry_s, pose_s]))
     rows = np.searchsorted(odometry_s, stamps_s, side="right") - 1
-    inputs = replace(inputs_of(run).rows(rows), time_s=stamps_s - odometry_s[0])
+    turns = counted_turns(run, pose_s, poses[:, 2])
+    heading_rad = np.interp(odometry_s, pose_s, turns.yaw_rad)
+    inputs = inputs_with_heading(run, heading_rad).rows(rows)
+    inputs = replace(inputs, time_s=stamps_s - odometry_s[0])
     speed = np.abs(inputs.tread_speeds_m_s).mean(axis=1)
     travel_m = np.concatenate([[0.0], np.cumsum(speed[:-1] * np.diff(stamps_s))])
     samples = np.searchsorted(stamps_s, pose_s)
     terrains = terrains_of(run)[rows]
     changes = np.concatenate([[0], np.cumsum(terrains[1:] != terrains[:-1])])[samples]
-    turns = counted_turns(run, pose_s, poses[:, 2])
     longest_s = max(config.pose_gap_s, POSE_PERIODS * np.median(np.diff(pose_s)))
     breaks = np.select(
         [

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from odometry.run import UNKNOWN, Run
+from odometry.run_inputs import inputs_of
+from odometry.windows.close_pairs import close_pairs
 from odometry.windows.config import WindowConfig
 from odometry.windows.errors import WindowError
 from odometry.windows.left_out import UNKNOWN_TURNS
@@ -205,3 +207,24 @@ def test_one_row_of_odometry_is_too_few(make_run):
     folder = make_run(odometry=odometry([0.0]), pose=pose([0.0, 0.1]))
     with pytest.raises(WindowError, match="1 measured poses"):
         record_of(Run.read(folder), CONFIG)
+
+
+def test_turns_are_counted_once_and_headings_are_those_of_the_run(make_run, monkeypatch):
+    """Between the poses of a robot that turns by 0.1 rad/s."""
+    stamps_s = np.arange(0.0, 100.0, 0.25)
+    yaw = (0.1 * stamps_s + 3.0 + np.pi) % (2 * np.pi) - np.pi
+    rows = "".join(f"{t},0,0,{a}\n" for t, a in zip(stamps_s[1::2], yaw[1::2], strict=True))
+    treads = "".join(f"{t},-0.02,0.02\n" for t in stamps_s)
+    folder = make_run(
+        settings=SETTINGS, odometry=f"t,v_left,v_right\n{treads}", pose=f"t,x,y,yaw\n{rows}"
+    )
+    run, counts = Run.read(folder), []
+    found = inputs_of(run).heading_rad
+    monkeypatch.setattr(
+        "odometry.windows.turns.close_pairs", lambda *of: counts.append(1) or close_pairs(*of)
+    )
+    record = record_of(run, CONFIG)
+    assert len(counts) == 1
+    inside = stamps_s[1:-1]
+    np.testing.assert_allclose(record.inputs.heading_rad[1:-1], 0.1 * inside + 3.0, atol=1e-9)
+    np.testing.assert_allclose(found[1:-1], 0.1 * inside + 3.0, atol=1e-9)
