@@ -77,12 +77,15 @@ def _cut_held(table: Table, from_s: float, to_s: float) -> Table:
     first, last = np.searchsorted(stamps_s, [from_s, to_s], side="right") - 1
     before = [first] if first >= 0 and stamps_s[first] < from_s else []
     after = [last] if last >= 0 and stamps_s[last] < to_s < stamps_s[-1] else []
-    chosen = np.array([*before, *rows, *after], dtype=np.int64)
-    columns = {name: column[chosen] for name, column in table.columns.items()}
-    held_s = np.clip(columns["t"], from_s, to_s)
+    held = table.rows(np.array([*before, *rows, *after], dtype=np.int64))
+    held_s = np.clip(held.stamps_s, from_s, to_s)
     if after:
         held_s[-1] = to_s
-    return replace(table, columns={**columns, "t": held_s}, lines=table.lines[chosen])
+    return replace(
+        held,
+        columns={**held.columns, "t": held_s},
+        repeated_lines=table.rows(rows).repeated_lines,
+    )
 
 
 def _cut(table: Table, from_s: float, to_s: float) -> Table | None:

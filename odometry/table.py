@@ -53,7 +53,10 @@ class Table:
         """The named columns side by side, (N, len(names))."""
         return np.stack([self[name] for name in names], axis=-1)
 
-    def rows(self, chosen: slice) -> "Table":
-        """The same table with only the chosen rows."""
+    def rows(self, chosen: slice | IntArray) -> "Table":
+        """The same table with only the chosen rows, and the dropped lines that repeated them."""
         columns = {name: column[chosen] for name, column in self.columns.items()}
-        return replace(self, columns=columns, lines=self.lines[chosen])
+        lines = self.lines[chosen]
+        repeats_of = self.lines[np.searchsorted(self.lines, self.repeated_lines) - 1]
+        repeated = self.repeated_lines[np.isin(repeats_of, lines)]
+        return replace(self, columns=columns, lines=lines, repeated_lines=repeated)

@@ -87,3 +87,18 @@ def test_nothing_left_says_how_long_the_run_is(a_run, span):
 def test_a_span_that_is_none_is_an_error(from_s, to_s):
     with pytest.raises(RunFolderError, match="expected a start of 0 or more"):
         Span(from_s, to_s)
+
+
+def test_dropped_lines_outside_of_the_span_are_left_out(make_run):
+    """Lines 3, 5 and 8 repeat rows at 100, 101 and 105 s; the row at 100 s is held at the cut."""
+    lines = ODOMETRY.splitlines()
+    repeated = [lines[0], *(line for row in lines[1:] for line in (row, row))]
+    del repeated[6]  # the row at 104 s once
+    pose = POSE.replace("101.0,2,0,0\n", "101.0,2,0,0\n101.0,2,0,0\n")
+    run = Run.read(make_run(odometry="\n".join(repeated) + "\n", pose=pose))
+    assert run.odometry.repeated_lines.tolist() == [3, 5, 8]
+    part = cut_run(run, Span(0.5, 4.5))
+    assert part.odometry.lines.tolist() == [2, 4, 6, 6]
+    assert part.odometry.repeated_lines.tolist() == [5]
+    assert part.pose.repeated_lines.tolist() == [5]
+    assert cut_run(run, Span(3.0, 4.5)).pose.repeated_lines.tolist() == []
