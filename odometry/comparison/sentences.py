@@ -1,6 +1,6 @@
-"""What a comparison says in sentences."""
+"""What a comparison says in sentences: each names the errors of which it speaks."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import permutations
 
 from odometry.comparison.statistics import Difference, between
@@ -9,7 +9,7 @@ from odometry.comparison.whole_runs import RunFitness
 from odometry.evaluation.fitness import Fitness, pooled_fitness
 
 EFFECTIVE_WIDTH = "icr_symmetric"
-CLEARLY_LESS = 0.95  # of a median: less than this share of it says another order than the means
+CLEARLY_LESS = 0.95  # of a median or of J/N: less than this share of it says another order
 
 
 def sentences(
@@ -30,20 +30,19 @@ def sentences(
     fitness : sequence of RunFitness
         Of the runs of the place.
     """
-    where = f"on {place.terrain}"
     complete = _complete(summaries)
     said = []
     for quantity in QUANTITIES:
         of_quantity = [each for each in found if each.quantity == quantity]
         if len(complete) > 1:
-            said += _best(where, quantity, complete, of_quantity)
+            said += _best(place, quantity, complete, of_quantity)
     said += contradictions(place, summaries, fitness)
     if EFFECTIVE_WIDTH in complete and len(complete) > 1:
-        said += _effective_width(where, list(complete), found)
+        said += _effective_width(place, list(complete), found, fitness)
     for summary in summaries:
         if not summary.complete:
             reasons = "; ".join(summary.reasons)
-            said.append(f"{summary.model} is not in this comparison {where}: {reasons}.")
+            said.append(f"{summary.model} is not in this comparison on {place.terrain}: {reasons}.")
     return said
 
 
@@ -63,8 +62,9 @@ def _complete(summaries: Sequence[Summary]) -> dict[str, Summary]:
 
 
 def _best(
-    where: str, quantity: str, complete: Mapping[str, Summary], found: Sequence[Difference]
+    place: Place, quantity: str, complete: Mapping[str, Summary], found: Sequence[Difference]
 ) -> list[str]:
+    where = f"over {place.horizon_m:g} m on {place.terrain} in {quantity}"
     best = min(complete, key=lambda model: complete[model].means[quantity])
     error = f"{complete[best].means[quantity]:.4f} {QUANTITIES[quantity]}"
     tied = [
@@ -74,10 +74,10 @@ def _best(
         and difference.interval.holds_zero
     ]
     if not tied:
-        return [f"{best} errs least {where} in {quantity}, {error}; every other model errs more."]
+        return [f"{best} errs least {where}, {error}; every other model errs more."]
     return [
-        f"{best} errs least {where} in {quantity}, {error}.",
-        f"{best} cannot be distinguished {where} in {quantity} from {'; '.join(tied)}.",
+        f"{best} errs least {where}, {error}.",
+        f"{best} cannot be distinguished {where} from {'; '.join(tied)}.",
     ]
 
 
@@ -105,22 +105,17 @@ def _whole_runs(
     place: Place, complete: Mapping[str, Summary], fitness: Sequence[RunFitness]
 ) -> list[str]:
     """Models that err less than others over windows, and more on whole runs."""
-    runs: dict[str, dict[str, Fitness]] = {}
-    for each in fitness:
-        runs.setdefault(each.run, {})[each.model] = each.fitness
-    of_all = [of_run for of_run in runs.values() if set(complete) <= set(of_run)]
+    of_all = _whole_runs_of_all(list(complete), fitness)
     if not of_all:
         return []
-    pooled = {m: pooled_fitness([of_run[m] for of_run in of_all]) for m in complete}
+    pooled = _pooled(complete, of_all)
     said = []
     for model, summary in complete.items():
         better = [
-            f"{other} ({pooled[other]:.3g}; on "
-            f"{sum(of_run[model].mean > of_run[other].mean for of_run in of_all)} of "
-            f"{len(of_all)} runs)"
+            f"{other} ({pooled[other]:.3g}; on {_lost(model, other, of_all)})"
             for other in complete
             if summary.means["translation"] < complete[other].means["translation"]
-            and pooled[other] < pooled[model]
+            and pooled[other] < CLEARLY_LESS * pooled[model]
         ]
         if better:
             said.append(
@@ -131,8 +126,16 @@ def _whole_runs(
     return said
 
 
-def _effective_width(where: str, models: Sequence[str], found: Sequence[Difference]) -> list[str]:
-    """Say in which quantities nothing beats a fitted effective width."""
+def _effective_width(
+    place: Place,
+    models: Sequence[str],
+    found: Sequence[Difference],
+    fitness: Sequence[RunFitness],
+) -> list[str]:
+    """In which quantities no model is shown to beat a fitted effective width over windows.
+
+    Whole runs on which one does are named in the same sentence.
+    """
     beaten = {
         each.quantity
         for each in found
@@ -143,7 +146,38 @@ def _effective_width(where: str, models: Sequence[str], found: Sequence[Differen
     unbeaten = [quantity for quantity in QUANTITIES if quantity not in beaten]
     if not unbeaten:
         return []
-    return [
-        f"Nothing beats a fitted effective width ({EFFECTIVE_WIDTH}) {where} in "
-        f"{' or '.join(unbeaten)}."
+    said = (
+        f"Over {place.horizon_m:g} m no model is shown to beat a fitted effective width "
+        f"({EFFECTIVE_WIDTH}) on {place.terrain} in {' or '.join(unbeaten)}"
+    )
+    of_all = _whole_runs_of_all(models, fitness)
+    pooled = _pooled(models, of_all) if of_all else {}
+    better = [
+        f"{model} (J/N {pooled[model]:.3g} against {pooled[EFFECTIVE_WIDTH]:.3g}; on "
+        f"{_lost(EFFECTIVE_WIDTH, model, of_all)})"
+        for model in pooled
+        if pooled[model] < CLEARLY_LESS * pooled[EFFECTIVE_WIDTH]
     ]
+    also = f"; on whole runs these err less: {', '.join(better)}" if better else ""
+    return [f"{said}{also}."]
+
+
+def _whole_runs_of_all(
+    models: Sequence[str], fitness: Sequence[RunFitness]
+) -> list[dict[str, Fitness]]:
+    """Of each run that has a fitness of all models, these by model."""
+    runs: dict[str, dict[str, Fitness]] = {}
+    for each in fitness:
+        runs.setdefault(each.run, {})[each.model] = each.fitness
+    return [of_run for of_run in runs.values() if set(models) <= set(of_run)]
+
+
+def _pooled(models: Iterable[str], of_all: Sequence[Mapping[str, Fitness]]) -> dict[str, float]:
+    """J / N of each model over the poses of all these runs."""
+    return {model: pooled_fitness([of_run[model] for of_run in of_all]) for model in models}
+
+
+def _lost(model: str, other: str, of_all: Sequence[Mapping[str, Fitness]]) -> str:
+    """On how many runs a model errs more than another one."""
+    lost = sum(of_run[model].mean > of_run[other].mean for of_run in of_all)
+    return f"{lost} of {len(of_all)} runs"
