@@ -79,7 +79,12 @@ def compare(
     evaluations, not_evaluated = evaluate_all(split_models, config)
     names = tuple(candidate.label for candidate in candidates)
     by_training_horizon = training_horizon_errors(
-        planned, identified, config, split_models if known else on_all, show_progress=show_progress
+        planned,
+        identified,
+        config,
+        split_models if known else on_all,
+        (evaluations, not_evaluated),
+        show_progress=show_progress,
     )
     return Comparison(
         models=names,

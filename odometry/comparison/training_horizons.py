@@ -1,6 +1,6 @@
 """Training horizon against evaluation horizon (Baril 2020 Fig. 4)."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -10,11 +10,13 @@ from tqdm import tqdm
 
 from odometry.comparison.candidates import IdentifiedModel
 from odometry.comparison.config import ComparisonConfig
-from odometry.comparison.evaluation import evaluate_all
+from odometry.comparison.evaluation import Evaluation, NotEvaluated, evaluate_all
 from odometry.comparison.fitting import SplitModels, fit_models
 from odometry.comparison.split import Split
 from odometry.comparison.summary import COLUMNS, Place, Summary, summarise
 from odometry.io.csv_table import write_csv_table
+
+Evaluated = tuple[Sequence[Evaluation], Sequence[NotEvaluated]]
 
 AS_GOOD = 1.05  # times the least median error: no worse in practice
 
@@ -40,45 +42,57 @@ def training_horizon_errors(
     candidates: Sequence[IdentifiedModel],
     config: ComparisonConfig,
     fitted: Sequence[SplitModels],
+    compared: Evaluated,
     *,
     show_progress: bool,
 ) -> tuple[HorizonErrors, ...]:
     """Identify models with each training horizon, and evaluate them over each horizon.
 
     The windows of an evaluation horizon are the same for every training horizon. Models of which
-    nothing is identified are left out.
+    nothing is identified are left out. The horizon of the comparison itself takes part, too.
 
     Parameters
     ----------
     planned : sequence of Split
     candidates : sequence of IdentifiedModel
     config : ComparisonConfig
+        Where it asks for no training horizons, there are no errors.
     fitted : sequence of SplitModels
         Where the searches start.
+    compared : Evaluation and NotEvaluated
+        Of the comparison: its models were identified with `config.training`.
     show_progress : bool
     """
     free = [each for each in candidates if not all(p.known for p in each.model.parameters)]
-    terrains = dict.fromkeys((split.robot, split.terrain) for split in planned)
+    labels = [each.label for each in free]
+    own_m, asked = config.training.horizon_m, config.training_horizons_m
     found = []
+    if asked and not config.training.horizon_s:
+        found += [HorizonErrors(own_m, summary) for summary in _summaries(compared, labels, config)]
+        asked = tuple(horizon_m for horizon_m in asked if horizon_m != own_m)
     for training_m in tqdm(
-        config.training_horizons_m,
-        desc="training horizons",
-        unit="horizon",
-        disable=None if show_progress else True,
+        asked, desc="training horizons", unit="horizon", disable=None if show_progress else True
     ):
         training = replace(config.training, horizon_m=training_m, horizon_s=0.0)
         here = replace(config, training=training)
         models = fit_models(planned, free, here, fitted_to_all=fitted, show_progress=False)
-        evaluations, not_evaluated = evaluate_all(models, here)
-        for robot, terrain in terrains:
-            for horizon_m in config.evaluated_m:
-                place = Place(robot, terrain, horizon_m)
-                at_place = [each for each in evaluations if place.holds(each)]
-                found += [
-                    HorizonErrors(training_m, summarise(place, at_place, not_evaluated, each.label))
-                    for each in free
-                ]
-    return tuple(found)
+        summaries = _summaries(evaluate_all(models, here), labels, here)
+        found += [HorizonErrors(training_m, summary) for summary in summaries]
+    return tuple(sorted(found, key=lambda each: each.training_m))
+
+
+def _summaries(
+    evaluated: Evaluated, models: Sequence[str], config: ComparisonConfig
+) -> Iterator[Summary]:
+    """Errors of these models by robot, terrain and evaluation horizon."""
+    evaluations, not_evaluated = evaluated
+    places = [(each.robot, each.terrain) for each in evaluations]
+    places += [(each.robot, each.terrain) for each in not_evaluated]
+    for robot, terrain in dict.fromkeys(places):
+        for horizon_m in config.evaluated_m:
+            place = Place(robot, terrain, horizon_m)
+            here = [each for each in evaluations if place.holds(each)]
+            yield from (summarise(place, here, not_evaluated, model) for model in models)
 
 
 def best_training_horizons(
@@ -103,16 +117,32 @@ def best_training_horizons(
 
 
 def horizon_sentence(model: str, errors: Sequence[HorizonErrors], quantity: str) -> str:
-    """Which training horizons suit which evaluation horizon."""
-    every = tuple(sorted({each.training_m for each in errors}))
+    """Which training horizon (`--horizon`) errs least over which evaluation horizons."""
+    tried = sorted({each.training_m for each in errors if each.summary.complete})
+    over: dict[tuple[float, ...], list[str]] = {}
+    for evaluation_m, best_m in best_training_horizons(errors, quantity).items():
+        over.setdefault(best_m, []).append(f"{evaluation_m:g}")
+    if not over:
+        return f"{model}, {quantity}: no training horizon could be evaluated."
     parts = [
-        f"{'any' if best_m == every else ', '.join(f'{h:g}' for h in best_m)} for {evaluation_m:g}"
-        for evaluation_m, best_m in best_training_horizons(errors, quantity).items()
+        f"over {_listed(horizons, 'and')} m "
+        + (
+            "all err alike"
+            if list(best_m) == tried
+            else f"{_listed([f'{h:g}' for h in best_m], 'or')} m errs least"
+        )
+        for best_m, horizons in over.items()
     ]
     return (
-        f"{model}, {quantity}: training horizons [m] with the least median error, or up to "
-        f"{AS_GOOD - 1:.0%} more, for each evaluation horizon [m]: {'; '.join(parts) or 'none'}."
+        f"{model}, {quantity}, identified over windows of "
+        f"{_listed([f'{h:g}' for h in tried], 'or')} m: {'; '.join(parts)} (medians within "
+        f"{AS_GOOD - 1:.0%} count as alike)."
     )
+
+
+def _listed(words: Sequence[str], last: str) -> str:
+    """Words with commas, and `last` before the last one."""
+    return f" {last} ".join(part for part in (", ".join(words[:-1]), words[-1]) if part)
 
 
 def write_training_horizons(file: Path, errors: Sequence[HorizonErrors]) -> None:

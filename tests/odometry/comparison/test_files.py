@@ -93,10 +93,14 @@ def test_errors_by_training_horizon_can_be_read_back(grass, quick, tmp_path):
     files = write_comparison(comparison, tmp_path)
     assert tmp_path / "training_horizons.csv" in files
     with (tmp_path / "training_horizons.csv").open(newline="") as file:
-        rows = {float(row["evaluation_horizon"]): row for row in csv.DictReader(file)}
-    assert len(rows) == 5  # of 900 m there is none
-    for each in comparison.by_training_horizon[:5]:
-        row, summary = rows[each.summary.place.horizon_m], each.summary
+        rows = {
+            (float(row["training_horizon"]), float(row["evaluation_horizon"])): row
+            for row in csv.DictReader(file)
+        }
+    assert len(rows) == 10  # of 1 m and of the 2 m of the comparison; of 900 m there is none
+    for each in (each for each in comparison.by_training_horizon if each.training_m == 1.0):
+        summary = each.summary
+        row = rows[each.training_m, summary.place.horizon_m]
         assert (row["robot"], row["terrain"], row["model"]) == ("rover", "grass", "icr_symmetric")
         assert (float(row["training_horizon"]), int(row["windows"])) == (1.0, summary.windows)
         low, median, high = summary.quartiles["rotation"]
