@@ -13,6 +13,7 @@ from odometry.effects.tables import model_of, table_of
 from odometry.errors import ParameterError
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fitters import fitter
+from odometry.identification.plausibility import refusals
 from odometry.models.base import KinematicModel
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.windows.windows import Windows
@@ -132,6 +133,12 @@ class IdentifiedModel(Candidate):
             window_config=config.training,
             solver_config=config.solver,
         )(windows, near)
+        refused = refusals(fit)
+        if refused:
+            raise IdentificationError(
+                f"it does not explain what was recorded: {'; '.join(refused)}; see "
+                "`terrain-odometry check`"
+            )
         return Predictor(
             self.model,
             fit.values,

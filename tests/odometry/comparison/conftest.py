@@ -9,6 +9,7 @@ import pytest
 from odometry.comparison.config import ComparisonConfig
 from odometry.identification.config import SolverConfig
 from odometry.io.run_folder import write_run_folder
+from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
 from odometry.run import Run
 
 SYMMETRIC = {"y_left": 0.4, "y_right": -0.4, "x_icr": 0.0, "alpha_left": 1.0, "alpha_right": 1.0}
@@ -80,6 +81,12 @@ def write(
     return folder
 
 
+def write_set(file, model, values, terrain="grass", **more):
+    """Write a parameter set of one terrain; its file name as a candidate."""
+    write_parameters(file, ParameterSet({terrain: TerrainParameters(model, values, **more)}))
+    return str(file)
+
+
 @pytest.fixture(scope="session")
 def bench():
     """The functions and numbers above."""
@@ -90,7 +97,9 @@ def bench():
         symmetric=SYMMETRIC,
         track_width=TRACK_WIDTH,
         varied=varied,
+        width={"alpha": 1.0, "b_hat": 0.8},
         write=write,
+        write_set=write_set,
     )
 
 

@@ -6,24 +6,15 @@ import numpy as np
 import pytest
 
 from odometry.comparison.candidates import IdentifiedModel
-from odometry.comparison.compare import candidates_named, compare
+from odometry.comparison.compare import compare
 from odometry.comparison.config import ComparisonConfig
-from odometry.comparison.errors import ComparisonError
 from odometry.comparison.statistics import between
-from odometry.errors import ConfigError, ParameterError
 from odometry.identification.config import SolverConfig
 from odometry.identification.identify import identify
 from odometry.models.catalogue import MODELS
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
-
-WIDTH = {"alpha": 1.0, "b_hat": 0.8}
-
-
-def write_set(file, model, values, terrain="grass", **more):
-    write_parameters(file, ParameterSet({terrain: TerrainParameters(model, values, **more)}))
-    return str(file)
 
 
 @pytest.fixture(scope="module")
@@ -36,9 +27,9 @@ def test_models_that_are_the_same_cannot_be_distinguished_and_a_wrong_one_is(
 ):
     """A robot whose ICRs are symmetric: `icr` and `icr_symmetric` predict the same motion."""
     models = [
-        write_set(tmp_path / "icr.toml", "icr", bench.symmetric),
-        write_set(tmp_path / "width.toml", "icr_symmetric", WIDTH),
-        write_set(tmp_path / "wrong.toml", "icr_symmetric", {"alpha": 1.0, "b_hat": 0.9}),
+        bench.write_set(tmp_path / "icr.toml", "icr", bench.symmetric),
+        bench.write_set(tmp_path / "width.toml", "icr_symmetric", bench.width),
+        bench.write_set(tmp_path / "wrong.toml", "icr_symmetric", {"alpha": 1.0, "b_hat": 0.9}),
     ]
     comparison = compare(grass, models, config=quick)
     found = comparison.differences_at(comparison.places[0])
@@ -76,7 +67,7 @@ def test_identified_models_find_the_truth_and_the_ideal_one_errs(compared, bench
     found = compared.differences_at(place)[0::2]
     assert between(found, "icr", "differential_drive").interval.high < 0
     table = compared.parameters["rover", "icr_symmetric"].terrains["grass"]
-    assert table.values == pytest.approx(WIDTH, abs=0.01)
+    assert table.values == pytest.approx(bench.width, abs=0.01)
     assert table.covariance_order == ("alpha", "b_hat")
     assert "run_0, run_1, run_2" in table.source
     ideal = compared.parameters["rover", "differential_drive"].terrains["grass"]
@@ -181,45 +172,6 @@ def test_grounds_within_one_run_have_models_of_their_own(tmp_path, bench, quick)
     assert {f.run for f in comparison.fitness} == {"run_0", "run_1"}
 
 
-def test_a_model_that_fails_is_a_row_with_its_reason(grass, quick, tmp_path):
-    """`icr_slope` needs tilted ground, a set of ice has no grass, an effect is not known."""
-    models = [
-        "icr_symmetric",
-        "icr_slope",
-        write_set(tmp_path / "ice.toml", "icr_symmetric", WIDTH, terrain="ice"),
-        write_set(tmp_path / "more.toml", "icr_symmetric", WIDTH, effects=({"name": "a"},)),
-    ]
-    comparison = compare(grass[:2], models, config=quick)
-    place = comparison.places[0]
-    rows = {summary.model: summary for summary in comparison.summaries_at(place)}
-    assert rows["icr_symmetric"].complete
-    expected = {
-        "icr_slope": "0 windows are tilted",
-        "ice": "no terrain 'grass'; it has ice",
-        "more": "effects[0]: effect a/None, expected one of",
-    }
-    for model, words in expected.items():
-        assert rows[model].windows == 0
-        assert words in rows[model].reasons[0]
-        assert any(model in line and words in line for line in comparison.sentences_at(place))
-
-
-def test_a_fit_that_leaves_something_open_is_evaluated_and_flagged(tmp_path, bench, quick):
-    """Straight ahead, nothing tells the width."""
-    runs = [
-        Run.read(bench.write(tmp_path / f"run_{i}", np.full((400, 2), 0.5), seed=i))
-        for i in range(2)
-    ]
-    comparison = compare(runs, ["icr_symmetric"], config=quick)
-    place = comparison.places[0]
-    (summary,) = comparison.summaries_at(place)
-    assert summary.complete
-    (remark,) = comparison.remarks_at(place, summary)
-    assert remark.startswith("not determined in 2 of 2 identifications, such as b_hat")
-    table = comparison.parameters["rover", "icr_symmetric"].terrains["grass"]
-    assert "not determined: b_hat" in table.source
-
-
 def test_a_candidate_of_ones_own_may_hold_values_and_see_fewer_windows(grass, quick):
     """Every second window or so, from the first to the last of what may be seen."""
     held = IdentifiedModel(MODELS["icr_symmetric"], {"b_hat": 0.7}, most_windows=9)
@@ -233,68 +185,6 @@ def test_a_candidate_of_ones_own_may_hold_values_and_see_fewer_windows(grass, qu
     assert few.on(comparison.split_models[0].split, quick).values["b_hat"] == pytest.approx(
         0.8, abs=0.02
     )
-
-
-def test_runs_without_poses_are_left_out(grass, quick):
-    blind = replace(grass[0], pose=None)
-    comparison = compare([blind, *grass[1:]], ["differential_drive"], config=quick)
-    (reason,) = comparison.left_out.values()
-    assert "needs pose.csv" in reason
-    assert {evaluation.run for evaluation in comparison.evaluations} == {"run_1", "run_2"}
-    with pytest.raises(ComparisonError, match=r"no run to compare on\n.*needs pose.csv"):
-        compare([blind], ["differential_drive"], config=quick)
-    with pytest.raises(ComparisonError, match=r"no run to compare on\n.*needs pose.csv"):
-        compare(grass[1:], ["differential_drive"], train=[blind], config=quick)
-
-
-def test_a_robot_that_training_does_not_know_has_no_model(grass, quick):
-    other = replace(grass[2], robot=replace(grass[2].robot, track_width=0.7))
-    comparison = compare(grass[:1], ["icr_symmetric"], train=[other], config=quick)
-    (summary,) = comparison.summaries_at(comparison.places[0])
-    assert summary.reasons == ("run_0: no run of --train is of this robot on this terrain",)
-
-
-def test_without_a_long_enough_run_there_is_a_row_that_says_so(grass, quick):
-    comparison = compare(
-        grass[:2], ["differential_drive"], config=replace(quick, horizons_m=(900.0,))
-    )
-    (summary,) = comparison.summaries_at(comparison.places[0])
-    assert summary.windows == 0
-    assert "no window of 900 m" in summary.reasons[0]
-
-
-@pytest.mark.parametrize(
-    ("names", "words"),
-    [
-        (["bicycle"], "no model 'bicycle'; known: differential_drive"),
-        ([], "expected one or more"),
-        (["icr", "icr"], "each name once"),
-    ],
-)
-def test_names_that_are_no_candidates(names, words):
-    with pytest.raises(ComparisonError, match=words):
-        candidates_named(names)
-
-
-def test_a_file_that_is_no_parameter_set(tmp_path):
-    (tmp_path / "a.toml").write_text("x = 1")
-    with pytest.raises(ParameterError, match="unknown table"):
-        candidates_named([str(tmp_path / "a.toml")])
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        {"horizons_m": ()},
-        {"horizons_m": (0.0,)},
-        {"horizons_m": (2.0, 2.0)},
-        {"draws": 5},
-        {"block_m": 0.0},
-    ],
-)
-def test_settings_that_mean_nothing(wrong):
-    with pytest.raises(ConfigError):
-        ComparisonConfig(**wrong)
 
 
 def test_settings_reach_the_identification(grass):
