@@ -5,9 +5,10 @@ from typing import TYPE_CHECKING
 
 import click
 
+from terrain.cli.comparison_text import print_comparison
 from terrain.cli.options import MODEL_NAMES, require_model, window_options
 from terrain.cli.recordings import span_options
-from terrain.cli.results import print_table, print_written
+from terrain.cli.results import print_written
 
 if TYPE_CHECKING:
     from odometry.comparison.result import Comparison
@@ -50,8 +51,9 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
     multiple=True,
     type=float,
     metavar="H",
-    help="Identify also over windows of this wheel travel [m]; repeat. Shows which of these "
-    "training horizons suits which evaluation horizon; each costs as many fits as the comparison.",
+    help="Identify over windows of this wheel travel [m] as well as over those of --horizon (2 m "
+    "if not given); repeat. Says which of these errs least over which evaluation horizon; each "
+    "costs as many fits as the comparison.",
 )
 @click.option("--terrain", metavar="NAME", help="Terrain of runs that name none.")
 @click.option(
@@ -87,7 +89,6 @@ def compare(
     """
     from odometry.comparison.compare import compare as compare_models
     from odometry.comparison.config import ComparisonConfig
-    from odometry.comparison.errors import ComparisonError
     from odometry.comparison.files import write_comparison
     from odometry.identification.config import SolverConfig
     from odometry.report.comparison_page import write_comparison_report
@@ -112,71 +113,24 @@ def compare(
         config=config,
         show_progress=True,
     )
-    if not any(s.windows for p in comparison.places for s in comparison.summaries_at(p)):
-        reasons = dict.fromkeys(
-            [*comparison.left_out.values()]
-            + [r for p in comparison.places for s in comparison.summaries_at(p) for r in s.reasons]
-        )
-        raise ComparisonError(f"there is nothing to compare: {'; '.join(reasons)}")
+    _require_a_row(comparison)
     with output.writing() as part:
         write_comparison(comparison, part, about(output.made))
         write_comparison_report(comparison, part)
     for reason in comparison.left_out.values():
         click.echo(f"Note: left out: {reason}", err=True)
-    _print_errors(comparison)
-    _print_training_horizons(comparison)
+    print_comparison(comparison)
     print_written(out)
     click.echo(f"Next: open {out / 'report.html'}")
 
 
-def _print_training_horizons(comparison: "Comparison") -> None:
-    """Print which training horizons suit which evaluation horizon, a line a model and quantity."""
-    from odometry.comparison.summary import QUANTITIES
-    from odometry.comparison.training_horizons import horizon_sentence
+def _require_a_row(comparison: "Comparison") -> None:
+    """Raise ComparisonError, with the reasons, where no model was evaluated."""
+    from odometry.comparison.errors import ComparisonError
 
-    for robot, terrain in comparison.robots_and_terrains:
-        for model, errors in comparison.horizon_errors_of(robot, terrain).items():
-            for quantity in QUANTITIES:
-                said = horizon_sentence(model, errors, quantity)
-                click.echo(f"{robot} on {terrain}: {said}")
-
-
-def _print_errors(comparison: "Comparison") -> None:
-    """Print one row a place and model, what they were identified on, and what that says."""
-    from odometry.windows.left_out import words
-
-    rows: list[tuple[str, ...]] = [
-        (
-            *("robot", "terrain", "over", "model", "windows"),
-            *("m per m: mean", "median", "deg per m: mean", "median", ""),
-        )
-    ]
-    for place in comparison.places:
-        for summary in comparison.summaries_at(place):
-            errors = (
-                statistic.get(quantity)
-                for quantity in ("translation", "rotation")
-                for statistic in (summary.means, summary.medians)
-            )
-            cells = ["-" if error is None else f"{error:.4f}" for error in errors]
-            remark = "see below" if comparison.remarks_at(place, summary) else ""
-            over = f"{place.horizon_m:g} m"
-            where = (place.robot, place.terrain, over, summary.model, str(summary.windows))
-            rows.append((*where, *cells, remark))
-    click.echo("Held-out errors, per metre of wheel travel:")
-    print_table(rows)
-    click.echo("Runs were held out from models that were identified on:")
-    for models in comparison.split_models:
-        split = models.split
-        held_out = ", ".join(part.name for part in split.held_out)
-        click.echo(f"  {split.robot} on {split.terrain}: {held_out}: {split.training_names}")
-    for place in comparison.places:
-        click.echo(f"{place.title}:")
-        for summary in comparison.summaries_at(place):
-            for remark in comparison.remarks_at(place, summary):
-                click.echo(f"  Note: {summary.model}: {remark}")
-        left_out = comparison.windows_left_out_at(place)
-        if left_out:
-            click.echo(f"  Note: in these runs {words(left_out)}")
-        for sentence in comparison.sentences_at(place):
-            click.echo(f"  {sentence}")
+    summaries = [s for place in comparison.places for s in comparison.summaries_at(place)]
+    if any(summary.windows for summary in summaries):
+        return
+    failed = (f"{s.model}: {reason}" for s in summaries for reason in s.reasons)
+    reasons = dict.fromkeys([*comparison.left_out.values(), *failed])
+    raise ComparisonError("\n  ".join(["there is nothing to compare", *reasons]))

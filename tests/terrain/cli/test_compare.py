@@ -72,7 +72,7 @@ def test_a_row_for_each_model_then_what_it_means(runs, tmp_path):
         assert float(row[8]) == pytest.approx(model["rotation_deg_per_m"]["mean"], abs=5e-5)
         assert float(row[9]) == pytest.approx(model["rotation_deg_per_m"]["median"], abs=5e-5)
     assert "rover on grass: run_0: run_1" in answer.stdout
-    assert "icr_symmetric errs least on grass in translation" in answer.stdout
+    assert "icr_symmetric errs least over 2 m on grass in translation" in answer.stdout
     assert answer.stdout.rstrip().endswith(f"Next: open {out / 'report.html'}")
     wrote = answer.stdout.split(f"Wrote to {out}: ")[1].splitlines()[0].split(", ")
     assert set(wrote) == {
@@ -106,7 +106,7 @@ def test_training_horizons_are_shown_and_written(runs, tmp_path):
     options = ["--model", "icr_symmetric", "--training-horizon", "1", "--training-horizon", "4"]
     answer = invoke(*runs, *options, "--out", out)
     assert answer.exit_code == 0, answer.output
-    assert "icr_symmetric, translation: training horizons [m] with the least" in answer.stdout
+    assert "icr_symmetric, translation, identified over windows of 1, 2 or 4 m: " in answer.stdout
     assert "training_horizons.csv" in answer.stdout
     assert (out / "figures" / "training_horizons_rover_grass_icr_symmetric.png").is_file()
     assert "training and evaluation horizon" in (out / "report.html").read_text(encoding="utf-8")
