@@ -31,29 +31,41 @@ def reference_path(run):
 
 def ideal_drive(run, start_s, start):
     """What an ideal differential drive of the stated track width would do."""
-    yaw_rates = (run.odometry["v_right"] - run.odometry["v_left"]) / run.robot.track_width
-    return _reckoned(run, yaw_rates, start_s, start)
+    half = run.robot.track_width / 2
+    return icr_drive(run, {"y_left": half, "y_right": -half, "x_icr": 0.0}, start_s, start)
+
+
+def icr_drive(run, values, start_s, start):
+    """The treads alone, with ICRs and slip factors that do not change."""
+    left = values.get("alpha_left", 1.0) * run.odometry["v_left"]
+    right = values.get("alpha_right", 1.0) * run.odometry["v_right"]
+    y_left, y_right = values["y_left"], values["y_right"]
+    ahead = (right * y_left - left * y_right) / (y_left - y_right)
+    turning = (right - left) / (y_left - y_right)
+    return _reckoned(run, (ahead, -values["x_icr"] * turning, turning), start_s, start)
 
 
 def gyroscope_drive(run, start_s, start):
     """Mean wheel speed along the heading of the gyroscope as recorded; None without one."""
     if "gyro_z" not in run.odometry or not np.isfinite(run.odometry["gyro_z"]).all():
         return None
-    return _reckoned(run, run.odometry["gyro_z"], start_s, start)
+    ahead = (run.odometry["v_left"] + run.odometry["v_right"]) / 2
+    return _reckoned(run, (ahead, 0.0 * ahead, run.odometry["gyro_z"]), start_s, start)
 
 
-def _reckoned(run, yaw_rates, start_s, start):
-    stamps_s = run.odometry.stamps_s
-    left, right = run.odometry["v_left"], run.odometry["v_right"]
+def _reckoned(run, twists, start_s, start):
+    """From speeds ahead, to the left and of yaw at each row of odometry.csv."""
+    stamps_s, (ahead, aside, turning) = run.odometry.stamps_s, twists
     x, y, yaw = start
     stamps, poses = [start_s], [(x, y, yaw)]
     first = bisect_right(stamps_s, start_s)
     for row in range(first - 1, len(stamps_s) - 1):
         step_s = stamps_s[row + 1] - stamps[-1]
-        way_m, turn_rad = (left[row] + right[row]) / 2 * step_s, yaw_rates[row] * step_s
-        x += way_m * math.cos(yaw + turn_rad / 2)
-        y += way_m * math.sin(yaw + turn_rad / 2)
-        yaw += turn_rad
+        middle = yaw + turning[row] * step_s / 2
+        cosine, sine = math.cos(middle), math.sin(middle)
+        x += (cosine * ahead[row] - sine * aside[row]) * step_s
+        y += (sine * ahead[row] + cosine * aside[row]) * step_s
+        yaw += turning[row] * step_s
         stamps.append(stamps_s[row + 1])
         poses.append((x, y, yaw))
     return Path(np.array(stamps), np.array(poses))

@@ -1,0 +1,60 @@
+"""The simulation of the estimation studies against closed forms."""
+
+import numpy as np
+import pytest
+
+from tests.studies.estimation_consistency import covariances_of, squared
+from tests.studies.estimation_reckoning import Path, icr_drive, position_errors_m
+from tests.studies.estimation_simulation import STEP_S, Noise, drive, frames_of, loop, run_of, weave
+
+ICRS = np.array([0.45, -0.40, -0.05])
+VALUES = dict(zip(("y_left", "y_right", "x_icr"), ICRS, strict=True))
+NOISE = Noise(position=0.01, yaw=0.01, pose_m=0.02, pose_rad=0.01, gyro=0.002, gyro_bias=0.01)
+
+
+def test_a_loop_closes_with_its_own_icrs_and_the_reckoning_follows_it():
+    speeds = loop(300.0, ICRS)
+    one = drive(speeds, ICRS, Noise(), np.random.default_rng(0))
+    assert np.hypot(*one.states[-1, :2]) < 6.0  # the ramps cost a little of 300 m
+    assert np.ptp(one.states[:, 0]) > 10.0
+    path = icr_drive(run_of(one, gyroscope=False), VALUES, 0.0, np.zeros(3))
+    reference = Path(one.stamps_s, one.states[:, :3])
+    assert position_errors_m(path, reference).max() < 0.01
+
+
+def test_a_turn_has_the_radius_that_its_icrs_prescribe():
+    speeds = np.tile([0.4, 0.8], (400, 1))
+    one = drive(speeds, ICRS, Noise(), np.random.default_rng(0))
+    rate = 0.4 / 0.85
+    centre = np.array([0.05 * -1.0, (0.8 * 0.45 + 0.4 * 0.40) / 0.85 / rate])
+    distance = np.hypot(*(one.states[:, :2] - centre).T)
+    np.testing.assert_allclose(distance, distance[0], atol=1e-9)
+
+
+def test_noise_has_the_size_that_was_asked():
+    rng = np.random.default_rng(1)
+    one = drive(weave(400.0, rng), ICRS, NOISE, rng, pose_every=1)
+    assert np.std(one.poses[:, :2] - one.states[:, :2]) == pytest.approx(0.02, rel=0.05)
+    true_rates = np.diff(one.states[:, 2]) / STEP_S
+    off = one.yaw_rates[1:] - true_rates
+    assert off.mean() == pytest.approx(one.bias, abs=0.001)
+    assert np.std(off) == pytest.approx(0.002 / np.sqrt(STEP_S), rel=0.05)
+
+
+def test_frames_and_run_tell_the_same():
+    rng = np.random.default_rng(2)
+    one = drive(weave(10.0, rng), ICRS, NOISE, rng)
+    told = list(run_of(one, gyroscope=True).frames())
+    for frame, from_run in zip(frames_of(one, gyroscope=True), told, strict=False):
+        assert frame.stamp_s == pytest.approx(from_run.stamp_s)
+        np.testing.assert_array_equal(frame.tread_speeds_m_s, from_run.tread_speeds_m_s)
+        assert (frame.pose is None) == (from_run.pose is None)
+
+
+def test_covariances_are_read_by_the_names_of_their_columns():
+    table = {f"sigma_{name}": np.array([size]) for name, size in (("x", 1), ("y", 2), ("yaw", 3))}
+    assert covariances_of({}) is None
+    covariance = covariances_of(table | {"covariance_x_y": np.array([0.5])})[0]
+    np.testing.assert_array_equal(covariance, [[1, 0.5, 0], [0.5, 4, 0], [0, 0, 9]])
+    assert squared(np.array([1.0, 2.0, 0.0]), np.diag([1.0, 4.0, 9.0])) == pytest.approx(2.0)
+    assert np.isnan(squared(np.zeros(3), np.zeros((3, 3))))

@@ -1,0 +1,170 @@
+"""Whether the filter errs as much as it says: NEES and NIS over seeds, in simulation.
+
+    python tests/studies/estimation_consistency.py [--seeds 20] [--duration 60] [--gyroscope]
+
+True ICRs are drawn from the prior that the filter is given; pose and ICRs wander by the process
+noise of its settings, poses are measured with theirs. Then the mean of N runs lies within the
+95 % bounds of chi-squared (Bar-Shalom, Li and Kirubarajan 2001, 5.4.2) at 95 % of the steps. The
+steps of one run are dependent, so that the whole mean spreads more than the bounds printed.
+Open loop: the odometer's error under the covariance in odometer.csv after 5, 20 and 100 m.
+"""
+
+import argparse
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2
+from tqdm import tqdm
+
+from odometry.estimation.config import IcrEkfConfig
+from odometry.estimation.icr_ekf import IcrEkf
+from odometry.parameters import ParameterSet, TerrainParameters
+from tests.studies.estimation_outputs import outputs_of
+from tests.studies.estimation_simulation import (
+    TRACK_WIDTH_M,
+    Noise,
+    drive,
+    frames_of,
+    run_of,
+    weave,
+)
+
+ICRS = np.array([0.42, -0.38, -0.05])
+ICR_SIGMA_M = 0.05
+NAMES = ("y_left", "y_right", "x_icr")
+HORIZONS_M = (5.0, 20.0, 100.0)
+GYRO_NOISE, GYRO_BIAS = 0.002, 0.01  # rad/s per root of second; rad/s
+
+
+@dataclass(frozen=True)
+class Squares:
+    """Normalised squared errors of one run at its steps; NaN where nothing is told."""
+
+    pose: np.ndarray
+    state: np.ndarray
+    innovation: np.ndarray
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seeds", type=int, default=20)
+    parser.add_argument("--duration", type=float, default=60.0)
+    parser.add_argument("--gyroscope", action="store_true")
+    arguments = parser.parse_args()
+    runs = [
+        closed_loop(seed, arguments.duration, gyroscope=arguments.gyroscope)
+        for seed in tqdm(range(arguments.seeds), "closed loop")
+    ]
+    for name, degrees in (("pose", 3), ("state", 6), ("innovation", 3)):
+        print_line(name, np.stack([getattr(run, name) for run in runs]), degrees)
+    open_loops = [
+        open_loop(seed, gyroscope=arguments.gyroscope)
+        for seed in tqdm(range(arguments.seeds), "open loop")
+    ]
+    if open_loops[0] is None:
+        print("open loop: odometer.csv has no covariance")
+        return
+    for column, horizon_m in zip(np.array(open_loops).T, HORIZONS_M, strict=True):
+        print_line(f"odometer after {horizon_m:.0f} m", column[:, None], 3)
+
+
+def parameters():
+    """The prior: a table with a covariance."""
+    values = dict(zip(NAMES, ICRS.tolist(), strict=True))
+    covariance = ICR_SIGMA_M**2 * np.eye(3)
+    return ParameterSet({"ground": TerrainParameters("icr", values, NAMES, covariance)})
+
+
+def matching_noise(config, *, gyroscope):
+    """The noise that the settings of the filter speak of."""
+    return Noise(
+        position=config.position_noise,
+        yaw=config.yaw_noise,
+        icr_m=config.icr_noise_widths * TRACK_WIDTH_M,
+        pose_m=config.position_sigma_m,
+        pose_rad=config.yaw_sigma_rad,
+        gyro=GYRO_NOISE if gyroscope else 0.0,
+        gyro_bias=GYRO_BIAS if gyroscope else 0.0,
+    )
+
+
+def closed_loop(seed, duration_s, *, gyroscope):
+    """NEES of pose (3) and of pose and ICRs (6), and NIS, of one run of frames."""
+    rng, config = np.random.default_rng(seed), IcrEkfConfig()
+    icrs = ICRS + rng.normal(0, ICR_SIGMA_M, 3)
+    noise = matching_noise(config, gyroscope=gyroscope)
+    one = drive(weave(duration_s, rng), icrs, noise, rng)
+    first, *frames = frames_of(one, gyroscope=gyroscope)
+    ekf = IcrEkf(TRACK_WIDTH_M, parameters(), config)
+    estimates = [ekf.start(first, "ground")]
+    for frame in frames:
+        estimates.append(ekf.step(estimates[-1], frame, "ground"))
+    pose, state = [], []
+    for estimate, truth in zip(estimates, one.states, strict=True):
+        error = estimate.mean[:6] - truth
+        error[2] = np.angle(np.exp(1j * error[2]))
+        pose.append(squared(error[:3], estimate.covariance[:3, :3]))
+        state.append(squared(error, estimate.covariance[:6, :6]))
+    innovations = [e.innovation.normalised_squared if e.innovation else np.nan for e in estimates]
+    return Squares(np.array(pose), np.array(state), np.array(innovations))
+
+
+def open_loop(seed, *, gyroscope):
+    """Normalised squared errors (3,) of the odometer after each horizon; None without covariance.
+
+    The run has poses for its first 40 s, so that the odometer knows its ICRs as it would.
+    """
+    rng, config = np.random.default_rng([seed, 1]), IcrEkfConfig()
+    icrs = ICRS + rng.normal(0, ICR_SIGMA_M, 3)
+    one = drive(weave(150.0, rng), icrs, matching_noise(config, gyroscope=gyroscope), rng)
+    table = outputs_of(run_of(one, gyroscope=gyroscope), parameters=parameters()).tables["odometer"]
+    covariances = covariances_of(table)
+    if covariances is None:
+        return None
+    travel = np.r_[0.0, np.cumsum(np.abs(one.speeds_m_s[:-1]).mean(axis=1) * np.diff(one.stamps_s))]
+    found = []
+    for horizon_m in HORIZONS_M:
+        row = int(np.searchsorted(table["t"], np.interp(horizon_m, travel, one.stamps_s)))
+        truth = one.states[np.searchsorted(one.stamps_s, table["t"][row]), :3]
+        error = np.array([table[name][row] for name in ("x", "y", "yaw")]) - truth
+        error[2] = np.angle(np.exp(1j * error[2]))
+        found.append(squared(error, covariances[row]))
+    return found
+
+
+def covariances_of(table):
+    """Covariances (N, 3, 3) of x, y, yaw from columns sigma_* and covariance_*_*, if there."""
+    names = ("x", "y", "yaw")
+    if any(f"sigma_{name}" not in table for name in names):
+        return None
+    sigmas = np.stack([table[f"sigma_{name}"] for name in names], axis=-1)
+    covariances = np.einsum("ni,ij->nij", np.square(sigmas), np.eye(3))
+    for i, one in enumerate(names):
+        for j, other in enumerate(names[:i]):
+            column = table.get(f"covariance_{other}_{one}")
+            if column is not None:
+                covariances[:, i, j] = covariances[:, j, i] = column
+    return covariances
+
+
+def squared(error, covariance):
+    """Squared Mahalanobis length; NaN where the covariance is singular."""
+    if np.linalg.cond(covariance) > 1e14:
+        return np.nan
+    return float(error @ np.linalg.solve(covariance, error))
+
+
+def print_line(name, squares, degrees):
+    """Mean over runs and steps, and at how many steps the mean over runs lies in the bounds."""
+    told = np.isfinite(squares).all(axis=0)
+    means = squares[:, told].mean(axis=0)
+    low, high = chi2.ppf([0.025, 0.975], degrees * len(squares)) / len(squares)
+    inside = np.mean((means >= low) & (means <= high))
+    print(f"{name:22} expected {degrees}: mean {means.mean():.2f}, bounds of a step "
+          f"{low:.2f} to {high:.2f}, {inside:.1%} of {told.sum()} steps inside, "
+          f"medians {np.median(squares[:, told]):.2f} "
+          f"(expected {chi2.ppf(0.5, degrees):.2f})")  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()
