@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import click
 
 from terrain.cli.comparison_text import print_comparison
-from terrain.cli.options import MODEL_NAMES, require_model, window_options
+from terrain.cli.options import MODEL_NAMES, OUTPUT, require_model, window_options
 from terrain.cli.recordings import span_options
 from terrain.cli.results import print_written
 
@@ -29,7 +29,7 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
     metavar="NAME",
     help=f"{', '.join(MODEL_NAMES)}, or a parameter set (.toml) to take as it is; repeat.",
 )
-@click.option("--out", required=True, type=FOLDER, help="Folder for the results.")
+@click.option("--out", required=True, metavar="DIR", type=OUTPUT, help="Folder for the results.")
 @click.option(
     "--train", multiple=True, metavar="RUN", type=FOLDER, help="Identify on this run; repeat."
 )

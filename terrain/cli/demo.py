@@ -4,13 +4,16 @@ from pathlib import Path
 
 import click
 
+from terrain.cli.options import OUTPUT
+
 
 @click.command()
 @click.option(
     "--out",
     default=Path("terrain-odometry-demo"),
     show_default=True,
-    type=click.Path(file_okay=False, path_type=Path),
+    metavar="DIR",
+    type=OUTPUT,
     help="Folder for the results.",
 )
 def demo(out: Path) -> None:

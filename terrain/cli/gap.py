@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import MODEL_NAMES, require_model
+from terrain.cli.options import MODEL_NAMES, OUTPUT, require_model
 from terrain.cli.recordings import span_options
 from terrain.cli.results import print_table, print_written
 
@@ -41,7 +41,7 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
     help=f"The model believed so far: {', '.join(MODEL_NAMES)} to identify, or a parameter set "
     "to take as it is.",
 )
-@click.option("--out", required=True, type=FOLDER, help="Folder for the results.")
+@click.option("--out", required=True, metavar="DIR", type=OUTPUT, help="Folder for the results.")
 @click.option("--terrain", metavar="NAME", help="Ground of the set to take, where it has several.")
 @click.option(
     "--horizon-s",

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import MODEL_NAMES, assignments, require_model, window_options
+from terrain.cli.options import MODEL_NAMES, OUTPUT, assignments, require_model, window_options
 from terrain.cli.recordings import span_options
 
 if TYPE_CHECKING:
@@ -32,13 +32,14 @@ if TYPE_CHECKING:
 @click.option(
     "--out",
     required=True,
-    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="SET.toml",
+    type=OUTPUT,
     help="Parameter set to write (TOML).",
 )
 @click.option(
     "--picture",
     metavar="FILE.png",
-    type=click.Path(dir_okay=False, path_type=Path),
+    type=OUTPUT,
     help="Draw the ICRs of every turn over the robot, beside those of the model.",
 )
 @window_options

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import Positive
+from terrain.cli.options import OUTPUT, Positive
 from terrain.cli.recordings import span_options
 from terrain.cli.results import print_table
 
@@ -31,7 +31,8 @@ SLOW_TIGHT_TURNS_M_S = ((0.05, 0.15), (0.15, 0.05))  # to the left, to the right
 @click.option(
     "--out",
     required=True,
-    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="SET.toml",
+    type=OUTPUT,
     help="Set of modes to write (TOML).",
 )
 @click.option(

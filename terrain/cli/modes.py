@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from terrain.cli.options import OUTPUT
 from terrain.cli.recordings import span_options
 from terrain.cli.results import print_written
 
@@ -29,7 +30,7 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
     type=FILE,
     help="Set of modes made by `identify-modes`.",
 )
-@click.option("--out", required=True, type=FOLDER, help="Folder for the results.")
+@click.option("--out", required=True, metavar="DIR", type=OUTPUT, help="Folder for the results.")
 @click.option(
     "--seen",
     metavar="TERRAIN.csv",

@@ -16,6 +16,10 @@ MODEL_NAMES = (
 )
 
 
+# What exists at the place of an output is judged where it is claimed, with one exit code.
+OUTPUT = click.Path(path_type=Path)
+
+
 class Positive(click.FloatRange):
     """A number well above zero that is finite: click lets nan and inf pass."""
 

@@ -23,11 +23,11 @@ def claim_folder(out: Path, *, reads_images: bool = False) -> "OutputFolder":
 
     Raises
     ------
-    click.UsageError
-        If `--out` is or holds an input.
     OutputError
-        If it holds what another program or command made, or an input is unfinished.
+        If `--out` is or holds an input, or holds what another program or command made, or an
+        input is unfinished.
     """
+    from odometry.errors import OutputError
     from odometry.outputs.output_folder import claim_folder as claim
 
     inputs = _inputs(click.get_current_context())
@@ -36,7 +36,7 @@ def claim_folder(out: Path, *, reads_images: bool = False) -> "OutputFolder":
         folders = {file.parent.resolve() for file in (*one.files, *one.images, one.path)}
         named = {one.path.resolve(), *folders}
         if any(place == path or place in path.parents for path in named):
-            raise click.UsageError(
+            raise OutputError(
                 f"--out {out} is or holds the input {one.path}; choose another folder"
             )
     return claim(out, made_by(inputs, reads_images=reads_images))
@@ -47,11 +47,11 @@ def claim_file(out: Path, is_own: Callable[[Path], bool]) -> "Made":
 
     Raises
     ------
-    click.UsageError
-        If `--out` is an input or a file of one.
     OutputError
-        If it is there and `is_own` denies it, or an input is unfinished.
+        If `--out` is an input or a file of one, or is there and `is_own` denies it, or an input
+        is unfinished.
     """
+    from odometry.errors import OutputError
     from odometry.outputs.output_file import claim_file as claim
 
     context = click.get_current_context()
@@ -59,7 +59,7 @@ def claim_file(out: Path, is_own: Callable[[Path], bool]) -> "Made":
     place = out.resolve()
     for one in inputs:
         if any(place == file.resolve() for file in (one.path, *one.files)):
-            raise click.UsageError(
+            raise OutputError(
                 f"--out {out} is the input {one.path}, or a file of it; choose another file"
             )
     claim(out, is_own, _verb(context))

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from terrain.cli.options import OUTPUT
 from terrain.cli.recordings import span_options
 
 if TYPE_CHECKING:
@@ -16,7 +17,7 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
 
 @click.command()
 @click.argument("run_folder", metavar="RUN", type=FOLDER)
-@click.option("--out", required=True, type=FOLDER, help="Folder for the results.")
+@click.option("--out", required=True, metavar="DIR", type=OUTPUT, help="Folder for the results.")
 @click.option("--model", type=FILE, help="Classifier made by `train`; without it, no vision.")
 @click.option("--parameters", type=FILE, help="Parameter set: ICRs by terrain (TOML).")
 @click.option("--no-vision", is_flag=True, help="Keep one terrain in force throughout.")

@@ -5,12 +5,15 @@ from typing import Any
 
 import click
 
+from terrain.cli.options import OUTPUT
+
 
 @click.command()
 @click.option(
     "--out",
     required=True,
-    type=click.Path(path_type=Path),
+    metavar="RUN",
+    type=OUTPUT,
     help="Folder to make: missing, empty, or made by an earlier `synthesise`.",
 )
 @click.option(

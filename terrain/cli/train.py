@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import Positive
+from terrain.cli.options import OUTPUT, Positive
 
 if TYPE_CHECKING:
     from terrain.classification.classifier import TerrainClassifier
@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 @click.argument("patches", type=click.Path(path_type=Path))
 @click.option(
     "--out",
-    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="MODEL",
+    type=OUTPUT,
     required=True,
     help="The model file.",
 )

@@ -8,6 +8,7 @@ from importlib.metadata import version
 import pytest
 from click.testing import CliRunner
 
+from odometry.errors import OdometryError
 from odometry.outputs.manifest import Manifest, read_manifest
 from odometry.parameters import read_parameters
 from terrain.cli.evaluate import evaluate
@@ -24,8 +25,8 @@ def invoke(verb, *arguments):
 def refused(verb, *arguments):
     """The message of a command that must not do any work."""
     answer = invoke(verb, *arguments)
-    assert answer.exit_code in (1, 2), answer.output
-    return answer.stderr if answer.exit_code == 2 else str(answer.exception)
+    assert isinstance(answer.exception, OdometryError), answer.output
+    return str(answer.exception)
 
 
 def contents(folder):
