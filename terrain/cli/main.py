@@ -46,16 +46,25 @@ class LazyGroup(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """The verb that is meant; the nearest one is named where there is no such verb."""
-        near = get_close_matches(args[0], VERBS, n=1)
-        if args[0] not in VERBS and near:
-            ctx.fail(f"No such command {args[0]!r}. Did you mean {near[0]!r}?")
+        """The verb that is meant; the nearest ones are named where there is no such verb."""
+        if args[0] not in VERBS:
+            ctx.fail(f"No such command {args[0]!r}. {_meant(args[0])}")
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
         """List the verbs without importing them."""
         with formatter.section("Verbs"):
             formatter.write_dl(list(VERBS.items()))
+
+
+def _meant(word: str) -> str:
+    """The verbs that someone may mean who writes `word`; all where none is near."""
+    plain = word.lower().replace("_", "-")
+    begun = [verb for verb in VERBS if plain and (verb.startswith(plain) or plain.startswith(verb))]
+    near = [plain] if plain in VERBS else [*get_close_matches(plain, VERBS, n=2), *begun]
+    if not near:
+        return f"Verbs: {', '.join(VERBS)}"
+    return f"Did you mean {' or '.join(map(repr, dict.fromkeys(near)))}?"
 
 
 @click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})

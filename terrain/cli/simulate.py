@@ -2,20 +2,20 @@
 
 from math import radians
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
-if TYPE_CHECKING:
-    from odometry.simulation.contact.traction import Traction
-    from odometry.simulation.contact.vehicle import ContactVehicle
+from terrain.cli.options import OUTPUT
+from terrain.cli.simulated_robot import VEHICLES, robot_named, traction_named
 
 
 @click.command()
 @click.option(
     "--out",
     required=True,
-    type=click.Path(path_type=Path),
+    metavar="RUN",
+    type=OUTPUT,
     help="Run folder to make: missing, empty, or made by an earlier `simulate`.",
 )
 @click.option(
@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     default="husky_like",
     show_default=True,
     metavar="NAME|FILE",
-    help="auriga_alpha, lazaro, j8, warthog_like, husky_like, or a TOML file with [robot] and "
-    "[contact].",
+    help=f"{', '.join(VEHICLES)}, or a TOML file with [robot] and [contact].",
 )
 @click.option(
     "--drive",
@@ -125,7 +124,6 @@ def simulate(
     import numpy as np
 
     from odometry.simulation.contact.drive import simulate_contact
-    from odometry.simulation.contact.vehicle import read_contact_vehicle
     from odometry.simulation.courses import STEP_S, make_course
     from odometry.simulation.record import ContactSensors, write_contact_run
     from terrain.cli.outputs import claim_folder
@@ -133,9 +131,7 @@ def simulate(
     if traction and (friction is not None or law):
         raise click.UsageError("--traction says friction and law; leave out --friction and --law")
     output = claim_folder(out)
-    robot = read_contact_vehicle(_vehicle_file(vehicle), {"law": law} if law else {})
-    if friction is not None:
-        robot = robot.with_friction(friction)
+    robot = robot_named(vehicle, friction, law)
     streams = np.random.SeedSequence(seed).spawn(2)
     course = make_course(
         drive,
@@ -146,15 +142,14 @@ def simulate(
         uphill_rad=radians(slope_direction),
         rng=np.random.default_rng(streams[0]),
     )
-    pieces = [_piece(robot, one) for one in traction]
+    pieces = [traction_named(robot, one) for one in traction]
     truth = simulate_contact(
         robot, course.tread_speeds_m_s, STEP_S, ground=course.ground, traction=pieces
     )
-    if pieces:
-        terrain = pieces[0].name
+    names = [piece.name for piece in pieces] or [terrain]
+    named = names[0] if len(names) == 1 else None
     settings: dict[str, Any] = {"drive": drive, "max_speed_m_s": max_speed, "seed": seed}
     noise = np.random.default_rng(streams[1])
-    named = None if len(pieces) > 1 else terrain
     with output.writing() as part:
         write_contact_run(part, truth, ContactSensors(), noise, terrain=named, settings=settings)
     name = robot.robot.get("name", vehicle)
@@ -162,46 +157,15 @@ def simulate(
         f"Wrote the run {out}: {truth.stamps_s[-1]:.0f} s of {name}, drive {drive}, "
         f"slope {slope:g} degrees."
     )
-    click.echo("Next:")
-    if len(pieces) > 1:
-        click.echo(f"  terrain-odometry modes {out} --models MODES.toml --out modes")
-    else:
-        click.echo(f"  terrain-odometry identify {out} --model icr --out {terrain}.toml")
+    click.echo(_next(out, named))
 
 
-def _piece(robot: "ContactVehicle", text: str) -> "Traction":
-    """The ground or the slipping wheels of NAME[@SECONDS]."""
-    from odometry.simulation.skid_traction import (
-        GROUNDS,
-        WHEEL_MODES,
-        ground_traction,
-        wheel_mode_name,
-        wheel_traction,
-    )
-
-    name, _, start = text.partition("@")
-    try:
-        from_s = float(start or 0.0)
-    except ValueError:
-        raise click.UsageError(f"--traction {text}: {start!r} is no number of seconds") from None
-    if name in GROUNDS:
-        return ground_traction(robot, name, from_s)
-    wheels = {wheel_mode_name(mode): mode for mode in WHEEL_MODES}
-    if name not in wheels:
-        raise click.UsageError(
-            f"--traction {text}: expected one of {', '.join((*GROUNDS, *wheels))}"
+def _next(out: Path, terrain: str | None) -> str:
+    """What to do with the run; it has several tractions where it has no one terrain."""
+    if terrain is None:
+        return (
+            "Next: terrain-odometry identify-modes RUN... --out modes.toml, with a run of each "
+            "traction (simulate --traction NAME, once each), then\n"
+            f"      terrain-odometry modes {out} --models modes.toml --out modes"
         )
-    return wheel_traction(robot, wheels[name], from_s)
-
-
-def _vehicle_file(name: str) -> Path:
-    """The shipped file of that name, else `name` itself as a path."""
-    from odometry.simulation.errors import SimulationError
-    from terrain.shipped import shipped_data
-
-    folder = shipped_data() / "vehicles"
-    for file in (folder / f"{name}.toml", Path(name)):
-        if file.is_file():
-            return file
-    names = ", ".join(file.stem for file in sorted(folder.glob("*.toml")))
-    raise SimulationError(f"--vehicle {name}: neither a file nor one of {names}")
+    return f"Next: terrain-odometry identify {out} --model icr --out my_robot.toml"

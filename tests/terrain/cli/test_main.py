@@ -5,6 +5,9 @@ import subprocess
 import sys
 
 import pytest
+from click.testing import CliRunner
+
+from terrain.cli.main import cli
 
 VERBS = ("check", "train", "classify", "run", "evaluate", "synthesise")
 VERBS += ("simulate", "identify", "compare", "gap")
@@ -76,7 +79,18 @@ def test_an_unknown_verb_is_a_usage_error():
     assert "No such command 'fly'" in answer.stderr
 
 
-def test_the_nearest_verb_is_named():
-    answer = command("chek")
-    assert answer.returncode == 2
-    assert "No such command 'chek'. Did you mean 'check'?" in answer.stderr
+@pytest.mark.parametrize(
+    ("word", "meant"),
+    [
+        ("chek", "Did you mean 'check'?"),
+        ("Identify", "Did you mean 'identify'?"),
+        ("identify_modes", "Did you mean 'identify-modes'?"),
+        ("ident", "Did you mean 'identify' or 'identify-modes'?"),
+        ("synthesize", "Did you mean 'synthesise'?"),
+        ("fly", f"Verbs: {', '.join(VERBS)}"),
+    ],
+)
+def test_the_nearest_verbs_are_named(word, meant):
+    answer = CliRunner().invoke(cli, [word])
+    assert answer.exit_code == 2
+    assert answer.stderr.splitlines()[-1] == f"Error: No such command {word!r}. {meant}"

@@ -8,6 +8,10 @@ from odometry.errors import OdometryError
 from odometry.run import Run
 from odometry.simulation.courses import COURSE_NAMES
 from terrain.cli.simulate import simulate
+from terrain.cli.simulated_robot import VEHICLES
+from terrain.shipped import shipped_data
+
+PIONEER = shipped_data() / "vehicles" / "pioneer_like.toml"
 
 
 def invoke(out, *arguments):
@@ -31,7 +35,8 @@ def test_the_run_can_be_read_and_holds_what_was_asked(tmp_path):
     tilt = run.odometry.stack("roll", "pitch")[:20].mean(axis=0)
     np.testing.assert_allclose(np.rad2deg(tilt), [2.0, -3.464], atol=0.2)  # 4 degrees, up to 30
     assert f"Wrote the run {out}: 6 s of j8" in answer.output
-    assert f"terrain-odometry identify {out} --model icr" in answer.output.split("Next:")[1]
+    command = f"Next: terrain-odometry identify {out} --model icr --out my_robot.toml"
+    assert answer.output.splitlines()[-1] == command
 
 
 def test_the_seed_changes_the_drive_and_the_same_one_repeats_it(tmp_path):
@@ -66,6 +71,11 @@ def test_the_choice_of_drives_is_that_of_the_courses():
     assert tuple(options["drive"].type.choices) == COURSE_NAMES
 
 
+def test_the_vehicles_that_are_offered_are_those_that_can_be_simulated():
+    files = sorted(shipped_data().glob("vehicles/*.toml"))
+    assert tuple(f.stem for f in files if "[contact]" in f.read_text()) == VEHICLES
+
+
 def test_a_vehicle_of_ones_own(tmp_path):
     (tmp_path / "mine.toml").write_text(
         "[robot]\ntrack_width = 0.5\nmass = 30.0\n[contact]\nyaw_inertia = 2.0\nx_cm = 0.0\n"
@@ -86,7 +96,9 @@ def test_a_wrong_vehicle_and_a_full_folder_are_named_before_anything_is_made(tmp
             ["--vehicle", "tank"],
             "neither a file nor one of auriga_alpha, husky_like",
         ),
-        (tmp_path / "run", ["--vehicle", "pioneer_like"], r"table \[contact\] is missing"),
+        (tmp_path / "run", ["--vehicle", "husky"], "warthog_like; did you mean husky_like?"),
+        (tmp_path / "run", ["--vehicle", "pioneer_like"], "neither a file nor one of"),
+        (tmp_path / "run", ["--vehicle", str(PIONEER)], r"table \[contact\] is missing"),
         (tmp_path / "full", [], "not empty"),
     ):
         answer = invoke(out, *arguments)
@@ -103,7 +115,9 @@ def test_traction_is_named_by_the_truth_and_by_run_toml_where_it_is_one(tmp_path
     assert set(one.truth["terrain"]) == {"grass"}
     answer = invoke(tmp_path / "two", "--traction", "none", "--traction", "all@2.0")
     assert answer.exit_code == 0, answer.output
-    assert "terrain-odometry modes" in answer.output
+    first, second = answer.output.splitlines()[-2:]
+    assert first.startswith("Next: terrain-odometry identify-modes RUN... --out modes.toml")
+    assert f"terrain-odometry modes {tmp_path / 'two'} --models modes.toml" in second
     two = Run.read(tmp_path / "two")
     assert two.terrain is None
     assert (two.truth["terrain"] == np.where(two.truth.stamps_s < 2.0 - 1e-9, "none", "all")).all()
