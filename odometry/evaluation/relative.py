@@ -6,6 +6,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.config import require_positive
+from odometry.evaluation.course import course_headings
 from odometry.evaluation.horizons import spatial_horizons
 from odometry.geometry import se2
 from odometry.geometry.angles import continuous_difference
@@ -44,7 +45,7 @@ class RelativeErrors:
         travel.
     rotation_per_m : (K,)
         Absolute difference of the two turns, rad per metre of wheel travel; whole turns count,
-        so that it may be above pi per horizon.
+        so that it may be above pi per horizon. NaN where the reference has no yaw.
     """
 
     start_s: FloatArray
@@ -58,16 +59,26 @@ def relative_errors(
     travel_s: FloatArray,
     travel_m: FloatArray,
     config: EvaluationConfig,
+    reference_yaw_rad: FloatArray | None = None,
 ) -> RelativeErrors:
     """Compare motions over spatial horizons (CONVENTIONS, "Horizons and errors").
+
+    Where the reference has no yaw at the start of a window, its heading there is the one that its
+    course tells over a horizon before and a horizon after, see `course.course_headings`; where
+    that tells none, there is no window.
 
     Parameters
     ----------
     trajectory, reference : Trajectory
-        Compared at the reference's stamps that the trajectory covers.
+        Compared at the reference's stamps that the trajectory covers. The yaw of the reference
+        may be NaN.
     travel_s, travel_m : (M,)
         Wheel travel over time.
     config : EvaluationConfig
+    reference_yaw_rad : (N,), optional
+        Yaw of the reference with whole turns counted, as `windows.turns.counted_turns` gives it.
+        Without it the error of yaw is taken to change by less than half a turn from one stamp of
+        the reference to the next.
 
     Returns
     -------
@@ -77,20 +88,46 @@ def relative_errors(
     both = trajectory.covers(reference.stamps_s)
     if both.sum() < 2:
         return RelativeErrors(np.empty(0), np.empty(0), np.empty(0))
-    stamps_s, true_poses = reference.stamps_s[both], reference.poses[both]
+    stamps_s, true_poses = reference.stamps_s[both], reference.poses[both].copy()
     poses = trajectory.at(stamps_s).poses
     travelled = np.interp(stamps_s, travel_s, travel_m)
     first, last = spatial_horizons(travelled, config.horizon_m, config.stride_m).T
-    error = se2.between(
-        se2.between(true_poses[first], true_poses[last]), se2.between(poses[first], poses[last])
+    if reference_yaw_rad is None:
+        yaw_errors = _continuous_where_measured(poses[:, 2], true_poses[:, 2])
+    else:
+        own = np.unwrap(trajectory.poses[:, 2])
+        yaw_errors = np.interp(stamps_s, trajectory.stamps_s, own) - reference_yaw_rad[both]
+    headings = true_poses[first, 2]
+    unknown = ~np.isfinite(headings)
+    headings[unknown] = course_headings(
+        poses, true_poses, travelled, first[unknown], config.horizon_m
     )
-    yaw_errors = continuous_difference(poses[:, 2], true_poses[:, 2])
+    told = np.isfinite(headings)
+    first, last = first[told], last[told]
+    true_starts = np.column_stack([true_poses[first, :2], headings[told]])
+    true_ends, ends = (
+        _seen_from(true_starts, true_poses[last]),
+        _seen_from(poses[first], poses[last]),
+    )
     length = travelled[last] - travelled[first]
     return RelativeErrors(
         stamps_s[first],
-        np.hypot(error[:, 0], error[:, 1]) / length,
+        np.hypot(*(ends - true_ends).T) / length,
         np.abs(yaw_errors[last] - yaw_errors[first]) / length,
     )
+
+
+def _seen_from(poses: FloatArray, places: FloatArray) -> FloatArray:
+    """Positions (K, 2) of places (K, 2 or more) in the frames of poses (K, 3)."""
+    return se2.transform(se2.inverse(poses), places[:, :2])
+
+
+def _continuous_where_measured(yaw: FloatArray, true_yaw: FloatArray) -> FloatArray:
+    """Differences (N,) of yaw with whole turns counted, NaN where it was not measured."""
+    differences = np.full(len(yaw), np.nan)
+    measured = np.isfinite(true_yaw)
+    differences[measured] = continuous_difference(yaw[measured], true_yaw[measured])
+    return differences
 
 
 def position_errors(trajectory: Trajectory, reference: Trajectory) -> tuple[FloatArray, FloatArray]:

@@ -6,9 +6,15 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.evaluation.relative import EvaluationConfig, position_errors, relative_errors
+from odometry.evaluation.relative import (
+    EvaluationConfig,
+    RelativeErrors,
+    position_errors,
+    relative_errors,
+)
 from odometry.run import Run
 from odometry.trajectory import Trajectory
+from odometry.windows.turns import counted_turns
 
 
 @dataclass(frozen=True)
@@ -23,7 +29,8 @@ class Score:
         Quartiles (25, 50, 75 %) of the position error in metres per metre of wheel travel.
     mean_translation_per_m : float or None
     rotation_deg_per_m : (3,) or None
-        Quartiles of the heading error, degrees per metre of wheel travel.
+        Quartiles of the heading error, degrees per metre of wheel travel; None where the
+        reference has no yaw.
     mean_rotation_deg_per_m : float or None
     mean_position_m, final_position_m, median_position_m : float or None
         Distance from the reference: mean and median over all its stamps, and at the last.
@@ -61,24 +68,40 @@ class Score:
 
 
 def reference_of(run: Run) -> tuple[str, Trajectory] | None:
-    """The trajectory that a run is compared with: truth.csv, else pose.csv, else none."""
+    """The trajectory that a run is compared with: truth.csv, else pose.csv, else none.
+
+    It holds the rows with x and y; the yaw of a row without one is NaN.
+    """
     for name, table in (("truth", run.truth), ("pose", run.pose)):
         if table is None:
             continue
         poses = table.stack("x", "y", "yaw")
-        measured = np.isfinite(poses).all(axis=1)
+        measured = np.isfinite(poses[:, :2]).all(axis=1)
         if measured.sum() >= 2:
             return name, Trajectory(table.stamps_s[measured], poses[measured])
     return None
+
+
+def window_errors(
+    run: Run, trajectory: Trajectory, reference: Trajectory, config: EvaluationConfig
+) -> RelativeErrors:
+    """Relative errors of a trajectory of a run, the reference's turns counted by the run."""
+    yaw = reference.poses[:, 2]
+    measured = np.isfinite(yaw)
+    continuous = np.full(len(yaw), np.nan)
+    if measured.any():
+        turns = counted_turns(run, reference.stamps_s[measured], yaw[measured])
+        continuous[measured] = turns.yaw_rad
+    return relative_errors(
+        trajectory, reference, run.odometry.stamps_s, run.wheel_travel_m, config, continuous
+    )
 
 
 def score(
     run: Run, trajectory: Trajectory, reference: Trajectory, config: EvaluationConfig
 ) -> Score:
     """Errors of a trajectory of a run against a reference."""
-    relative = relative_errors(
-        trajectory, reference, run.odometry.stamps_s, run.wheel_travel_m, config
-    )
+    relative = window_errors(run, trajectory, reference, config)
     _, distances = position_errors(trajectory, reference)
     position: dict[str, Any] = (
         {
@@ -91,13 +114,13 @@ def score(
     )
     if not len(relative.start_s):
         return Score(0, **position)
-    rotation = np.degrees(relative.rotation_per_m)
+    rotation = np.degrees(relative.rotation_per_m[np.isfinite(relative.rotation_per_m)])
     return Score(
         len(relative.start_s),
         np.percentile(relative.translation_per_m, [25, 50, 75]),
         float(relative.translation_per_m.mean()),
-        np.percentile(rotation, [25, 50, 75]),
-        float(rotation.mean()),
+        np.percentile(rotation, [25, 50, 75]) if len(rotation) else None,
+        float(rotation.mean()) if len(rotation) else None,
         **position,
     )
 

@@ -98,3 +98,41 @@ def test_rows_that_were_not_measured_are_left_out(make_run):
 def test_without_two_poses_there_is_no_reference(make_run):
     assert reference_of(Run.read(make_run())) is None
     assert reference_of(Run.read(make_run(pose="t,x,y,yaw\n0,1,1,1\n1,,,\n"))) is None
+
+
+def test_positions_without_yaw_are_a_reference(make_run):
+    run = Run.read(make_run(pose="t,x,y,yaw\n0,1,1,\n1,2,1,\n2,3,3,1\n"))
+    name, reference = reference_of(run)
+    assert name == "pose"
+    np.testing.assert_array_equal(reference.poses[:, 2], [np.nan, np.nan, 1.0])
+
+
+def test_without_yaw_there_is_no_heading_error(straight_run):
+    true = line(1.0)
+    positions = Trajectory(true.stamps_s, true.poses * [1.0, 1.0, np.nan])
+    found = score(straight_run, line(0.9, drift=0.01), positions, CONFIG)
+    assert found.windows == 11  # they start 5 to 15 m from the first position
+    assert found.mean_rotation_deg_per_m is None
+    assert found.rotation_deg_per_m is None
+    assert found.to_table()["rotation_deg_per_m"]["mean"] is None
+    assert found.final_position_m == pytest.approx(2.0)
+
+
+def test_turns_between_sparse_poses_are_counted_by_the_gyroscope(make_run):
+    """A spin of 4.1 rad/s seen once a second, and an odometer that misses all of it."""
+    t = np.arange(0, 20.01, 0.05)
+    turn = 4.1 * np.clip(t - 5, 0, 10)  # it stands still, spins for 10 s and stands
+    rate = np.where((t > 5) & (t < 15), 4.1, 0.0)
+    rows = "".join(f"{s:.2f},{-w / 4},{w / 4},{w}\n" for s, w in zip(t, rate, strict=True))
+    seconds = np.arange(0, 20.5, 1.0)
+    yaw = np.interp(seconds, t, turn)
+    pose = "".join(
+        f"{s},0,0,{np.angle(np.exp(1j * a))}\n" for s, a in zip(seconds, yaw, strict=True)
+    )
+    run = Run.read(make_run(odometry="t,v_left,v_right,gyro_z\n" + rows, pose="t,x,y,yaw\n" + pose))
+    still = Trajectory(t, np.zeros((len(t), 3)))
+    _, reference = reference_of(run)
+    found = score(run, still, reference, EvaluationConfig(horizon_m=10.0, stride_m=100.0))
+    assert found.windows == 1
+    length_m = run.wheel_travel_m[np.searchsorted(t, 15.0)]
+    assert np.radians(found.mean_rotation_deg_per_m) == pytest.approx(41 / length_m, rel=0.02)
