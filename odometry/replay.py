@@ -10,6 +10,8 @@ from odometry.estimation.estimate import Estimate
 from odometry.models.icr import icr_twist
 from odometry.trajectory import Trajectory
 
+GYRO_BIAS = 6  # its place in the state
+
 
 @dataclass(frozen=True)
 class Replay:
@@ -52,18 +54,81 @@ class Replay:
         """The filter's poses, corrected by measurements."""
         return Trajectory(self.stamps_s, self.means[:, :3])
 
-    def odometer(self) -> Trajectory:
-        """The model integrated open loop with the ICRs held at each moment, never corrected.
+    @property
+    def tread_speeds_m_s(self) -> FloatArray:
+        """Measured tread speeds (N, 2) in force from each stamp on; NaN where not known."""
+        return np.stack([estimate.tread_speeds_m_s for estimate in self.estimates])
 
-        The effects of the parameter set are part of the model.
+    @property
+    def yaw_rates_rad_s(self) -> FloatArray:
+        """Yaw rates (N - 1,) of the gyroscope from each stamp to the next; NaN where silent."""
+        return np.array([estimate.yaw_rate_rad_s for estimate in self.estimates[1:]])
+
+    @property
+    def has_gyroscope(self) -> bool:
+        """Whether a gyroscope told a yaw rate anywhere."""
+        return bool(np.isfinite(self.yaw_rates_rad_s).any())
+
+    def open_loop(self, track_width: float) -> dict[str, Trajectory]:
+        """All trajectories that no pose corrects, the simplest first.
+
+        `differential_drive` and `odometer`; where there is a gyroscope, also `gyroscope` and
+        `odometer_without_gyroscope`.
         """
+        found = {"differential_drive": self.differential_drive(track_width)}
+        if self.has_gyroscope:
+            found["gyroscope"] = self.gyroscope(track_width)
+            found["odometer_without_gyroscope"] = self.odometer_without_gyroscope()
+        return found | {"odometer": self.odometer()}
+
+    def odometer(self) -> Trajectory:
+        """The model integrated open loop with what was held at each moment, never corrected.
+
+        Where the gyroscope told the yaw rate, the robot is turned by it, less the bias held. The
+        effects of the parameter set are part of the model.
+        """
+        twists = np.stack([estimate.twist for estimate in self.estimates])
+        by_gyroscope = self._turned_by_gyroscope()
+        told = np.isfinite(by_gyroscope).all(axis=1)
+        twists[:-1][told] = by_gyroscope[told]
+        return self._reckon(twists)
+
+    def odometer_without_gyroscope(self) -> Trajectory:
+        """The same, the robot turned by its treads throughout."""
         return self._reckon(np.stack([estimate.twist for estimate in self.estimates]))
+
+    def gyroscope(self, track_width: float) -> Trajectory:
+        """Mean wheel speed along the heading of the gyroscope as recorded: nothing is fitted.
+
+        Where the gyroscope was silent, the ideal differential drive turns.
+        """
+        twists = icr_twist(ideal_icrs(track_width), np.nan_to_num(self.tread_speeds_m_s))
+        told = np.isfinite(self.yaw_rates_rad_s)
+        twists[:-1, 2][told] = self.yaw_rates_rad_s[told]
+        return self._reckon(twists)
 
     def differential_drive(self, track_width: float) -> Trajectory:
         """The same integration with an ideal differential drive."""
-        icrs = np.array([track_width / 2, -track_width / 2, 0.0])
-        speeds = np.stack([estimate.tread_speeds_m_s for estimate in self.estimates])
-        return self._reckon(icr_twist(icrs, np.nan_to_num(speeds)))
+        return self._reckon(
+            icr_twist(ideal_icrs(track_width), np.nan_to_num(self.tread_speeds_m_s))
+        )
+
+    def _turned_by_gyroscope(self) -> FloatArray:
+        """Twists (N - 1, 3) whose omega is measured; NaN where it or the treads are not known."""
+        held = self.estimates[:-1]
+        added = np.stack([estimate.added_twist for estimate in held])
+        effective = np.stack([estimate.effective_speeds_m_s for estimate in held])
+        y_left, y_right, x_icr = self.means[:-1, 3:6].T
+        bias = self.means[:-1, GYRO_BIAS] if self.means.shape[1] > GYRO_BIAS else 0.0
+        omega = self.yaw_rates_rad_s - bias - added[:, 2]
+        # v_x = alpha v + y omega of either tread (Baril 2020 eq. 4 to 6), the mean of both
+        v_x = effective.mean(axis=1) + (y_left + y_right) / 2 * omega
+        return np.asarray(added + np.column_stack([v_x, -x_icr * omega, omega]))
 
     def _reckon(self, twists: FloatArray) -> Trajectory:
         return dead_reckon(self.stamps_s, twists, self.means[0, :3])
+
+
+def ideal_icrs(track_width: float) -> FloatArray:
+    """ICRs (3,) of treads that do not slip."""
+    return np.array([track_width / 2, -track_width / 2, 0.0])

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from odometry.estimation.estimate import STATE_NAMES
+from odometry.evaluation.withheld import JUDGED_EVERY_S, SILENT_S
 from odometry.io.csv_table import write_csv_table
 from odometry.io.files import atomic_write
 from odometry.io.structured import read_json
@@ -20,6 +21,7 @@ from odometry.trajectory import Trajectory
 from terrain.errors import ResultError
 from terrain.run_odometry import RunResult
 from terrain.switch_delay import switch_delays
+from terrain.verdicts import remarks
 from terrain.watcher import Sighting
 
 FORMAT = 1  # of result.json
@@ -93,7 +95,11 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "wheel_travel_m": float(result.run.wheel_travel_m[-1]),
         "reference": result.reference_name or None,
         "horizon_m": result.config.evaluation.horizon_m,
-        "errors": {name: score.to_table() for name, score in result.scores.items()},
+        "gyroscope": result.replay.has_gyroscope,
+        "errors": error_tables(result),
+        "off_at_the_end_m": result.off_at_the_end_m,
+        "remarks": remarks(result.scores, result.off_at_the_end_m),
+        "withheld": _withheld(result),
         "switches": _switches(result),
         "missed_changes": _missed_changes(result),
         "sightings": sighting_counts(result),
@@ -108,6 +114,14 @@ def result_table(result: RunResult) -> dict[str, Any]:
     }
 
 
+def error_tables(result: RunResult) -> dict[str, dict[str, Any]]:
+    """Errors by trajectory, and what each is against."""
+    against = {name: judged.against for name, judged in result.judged.items()}
+    return {
+        name: {"against": against[name]} | score.to_table() for name, score in result.scores.items()
+    }
+
+
 def sighting_counts(result: RunResult) -> dict[str, int]:
     """How often each label, or each reason for none, was given."""
     counts: dict[str, int] = {}
@@ -115,6 +129,19 @@ def sighting_counts(result: RunResult) -> dict[str, int]:
         word = sighting.label or f"no label: {sighting.reason}"
         counts[word] = counts.get(word, 0) + 1
     return dict(sorted(counts.items()))
+
+
+def _withheld(result: RunResult) -> dict[str, Any] | None:
+    """By which poses the estimate was judged, where it saw the others."""
+    if result.second is None:
+        return None
+    withheld = result.second.withheld
+    return {
+        "poses": withheld.poses,
+        "judged": len(withheld.judged),
+        "every_s": JUDGED_EVERY_S,
+        "silent_s": SILENT_S,
+    }
 
 
 def _pose_columns(trajectory: Trajectory) -> dict[str, Any]:

@@ -9,16 +9,19 @@ from odometry.effects.measured import robot_run, shared_measurement
 from odometry.errors import ParameterError, RunFolderError
 from odometry.estimation.corrections import corrections_of
 from odometry.estimation.icr_ekf import IcrEkf
+from odometry.evaluation.relative import position_errors
 from odometry.evaluation.score import Score, reference_of, score
+from odometry.evaluation.withheld import TerrainsOf, withhold
 from odometry.learned import learned_parameters
 from odometry.parameters import ParameterSet, read_parameters
-from odometry.pipeline import ConstantTerrain, replay
+from odometry.pipeline import ConstantTerrain, Estimator, replay
 from odometry.replay import Replay
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
 from odometry.trajectory import Trajectory
 from terrain.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config
+from terrain.judged import Judged, SecondReplay, judged_trajectories
 from terrain.watcher import TerrainWatcher
 
 
@@ -42,9 +45,13 @@ class RunResult:
         "truth", "pose" or "" where there is none.
     reference : Trajectory or None
     scores : dict of str to Score
-        By trajectory: odometer, differential_drive, and estimate where there is a truth.
+        By trajectory: differential_drive, gyroscope, odometer_without_gyroscope (both only where
+        there is one), odometer, and estimate where `judged` holds it.
     learned : ParameterSet
         `parameters` with what the filter learned in place of what it visited.
+    second : SecondReplay or None
+        The run replayed without the poses that judge the estimate; None where there is a truth,
+        or too few poses.
     """
 
     run: Run
@@ -57,6 +64,28 @@ class RunResult:
     reference: Trajectory | None
     scores: dict[str, Score]
     learned: ParameterSet
+    second: SecondReplay | None = None
+
+    @property
+    def judged(self) -> dict[str, Judged]:
+        """Every trajectory that can be judged fairly, with the poses that judge it."""
+        return judged_trajectories(
+            self.replay,
+            self.run.robot.track_width,
+            self.reference_name,
+            self.reference,
+            self.second,
+        )
+
+    @property
+    def off_at_the_end_m(self) -> dict[str, float]:
+        """Distance of each trajectory, as delivered, from the reference at its last stamp."""
+        if self.reference is None:
+            return {}
+        lines = self.replay.open_loop(self.run.robot.track_width)
+        lines["estimate"] = self.replay.trajectory()
+        distances = {name: position_errors(line, self.reference)[1] for name, line in lines.items()}
+        return {name: float(found[-1]) for name, found in distances.items() if len(found)}
 
     @property
     def effects(self) -> dict[str, list[str]]:
@@ -121,6 +150,10 @@ def run_odometry(
         run, estimator, watcher or ConstantTerrain(initial), show_progress=show_progress
     )
     reference_name, reference = reference_of(run) or ("", None)
+    second = None
+    if reference_name == "pose":
+        second = _second_replay(run, estimator, result, show_progress=show_progress)
+    judged = judged_trajectories(result, run.robot.track_width, reference_name, reference, second)
     return RunResult(
         run,
         config,
@@ -130,9 +163,24 @@ def run_odometry(
         result,
         reference_name,
         reference,
-        _scores(run, result, reference_name, reference, config),
+        {
+            name: score(run, of.trajectory, of.reference, config.evaluation)
+            for name, of in judged.items()
+        },
         learned_parameters(parameters, result, run.name),
+        second,
     )
+
+
+def _second_replay(
+    run: Run, estimator: Estimator, first: Replay, *, show_progress: bool
+) -> SecondReplay | None:
+    """Replay without the poses that judge; no image is looked at twice."""
+    withheld = withhold(run, float(first.stamps_s[0]), float(first.stamps_s[-1]))
+    if withheld is None:
+        return None
+    again = replay(withheld.run, estimator, TerrainsOf(first), show_progress=show_progress)
+    return SecondReplay(withheld, again)
 
 
 def _sensor_effects(parameters: ParameterSet) -> tuple[Added, ...]:
@@ -168,21 +216,3 @@ def _watcher(
     return TerrainWatcher(
         run, camera, classifier, initial, region=config.region, switch=config.switch
     )
-
-
-def _scores(
-    run: Run, result: Replay, reference_name: str, reference: Trajectory | None, config: Config
-) -> dict[str, Score]:
-    """The filter has seen pose.csv: against it only the open-loop trajectories are judged."""
-    if reference is None:
-        return {}
-    trajectories = {
-        "odometer": result.odometer(),
-        "differential_drive": result.differential_drive(run.robot.track_width),
-    }
-    if reference_name == "truth":
-        trajectories["estimate"] = result.trajectory()
-    return {
-        name: score(run, trajectory, reference, config.evaluation)
-        for name, trajectory in trajectories.items()
-    }

@@ -1,5 +1,6 @@
 """What a filter believes at one stamp."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -77,6 +78,8 @@ class Estimate:
         Whether a jump of the ICRs was detected at this stamp.
     learned : Mapping[str, IcrBelief]
         What was last believed on the terrains that were left.
+    yaw_rate_rad_s : float
+        Mean of the gyroscope's yaw rate since the estimate before; NaN where it was silent.
     """
 
     stamp_s: float
@@ -92,6 +95,7 @@ class Estimate:
     recent: tuple[float, ...] = ()
     jumped: bool = False
     learned: Mapping[str, IcrBelief] = field(default_factory=dict)
+    yaw_rate_rad_s: float = math.nan
 
     @property
     def belief(self) -> IcrBelief:

@@ -116,6 +116,7 @@ class IcrEkf:
             mean=mean,
             covariance=covariance,
             tread_speeds_m_s=frame.tread_speeds_m_s,
+            yaw_rate_rad_s=frame.yaw_rate_rad_s,
             innovation=None,
             jumped=False,
         )

@@ -59,6 +59,7 @@ def relative_errors(
     travel_s: FloatArray,
     travel_m: FloatArray,
     config: EvaluationConfig,
+    *,
     reference_yaw_rad: FloatArray | None = None,
 ) -> RelativeErrors:
     """Compare motions over spatial horizons (CONVENTIONS, "Horizons and errors").

@@ -92,8 +92,9 @@ def window_errors(
     if measured.any():
         turns = counted_turns(run, reference.stamps_s[measured], yaw[measured])
         continuous[measured] = turns.yaw_rad
+    travel_s, travel_m = run.odometry.stamps_s, run.wheel_travel_m
     return relative_errors(
-        trajectory, reference, run.odometry.stamps_s, run.wheel_travel_m, config, continuous
+        trajectory, reference, travel_s, travel_m, config, reference_yaw_rad=continuous
     )
 
 

@@ -55,6 +55,6 @@ def _rows(name: str, result: dict[str, Any]) -> list[tuple[str, ...]]:
         return [(name, "nothing to compare with", *empty)]
     against = str(result.get("reference") or "-")
     return [
-        (name, trajectory, against, *error_cells(errors))
+        (name, trajectory, errors.get("against", against), *error_cells(errors))
         for trajectory, errors in result["errors"].items()
     ]

@@ -30,6 +30,18 @@ def print_errors(results: Mapping[str, "RunResult"]) -> None:
         f"per metre over {first.config.evaluation.horizon_m:g} m of wheel travel:"
     )
     print_table([HEADER, *rows])
+    for name, result in results.items():
+        for line in _beside_errors(result):
+            click.echo(line if len(results) == 1 else f"{name}: {line}")
+
+
+def _beside_errors(result: "RunResult") -> list[str]:
+    """What the table does not say: how the estimate is judged, what is missing, what is better."""
+    from terrain.verdicts import NO_GYROSCOPE, judged_by, remarks
+
+    judged = [f"The estimate is judged by {judged_by(result.second)}"] if result.second else []
+    missing = [] if result.replay.has_gyroscope else [NO_GYROSCOPE]
+    return [*judged, *missing, *remarks(result.scores, result.off_at_the_end_m)]
 
 
 def print_sightings(counts: Mapping[str, int]) -> None:

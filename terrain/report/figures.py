@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from odometry.evaluation.relative import position_errors, relative_errors
+from odometry.evaluation.relative import position_errors
+from odometry.evaluation.score import window_errors
 from odometry.evaluation.stretches import Stretch, stretches
 from odometry.report.figure import save_figure
 from odometry.report.html import Picture
@@ -53,10 +54,9 @@ def path_picture(lines: ReportLines, tints: Tints, folder: Path) -> Picture:
 
 def position_picture(lines: ReportLines, folder: Path) -> Picture | None:
     """Position errors over time; None where nothing can be judged."""
-    reference = lines.result.reference
-    if reference is None:
-        return None
-    errors = {name: position_errors(line, reference) for name, line in lines.judged().items()}
+    errors = {
+        name: position_errors(of.trajectory, of.reference) for name, of in lines.judged().items()
+    }
     errors = {name: error for name, error in errors.items() if len(error[0])}
     if not errors:
         return None
@@ -77,22 +77,17 @@ def position_picture(lines: ReportLines, folder: Path) -> Picture | None:
 def distribution_picture(lines: ReportLines, folder: Path) -> Picture | None:
     """Errors per metre of all horizons; None where there is no whole horizon."""
     result = lines.result
-    if result.reference is None:
-        return None
     relative = {
-        name: relative_errors(
-            line,
-            result.reference,
-            result.run.odometry.stamps_s,
-            result.run.wheel_travel_m,
-            result.config.evaluation,
-        )
-        for name, line in lines.judged().items()
+        name: window_errors(result.run, of.trajectory, of.reference, result.config.evaluation)
+        for name, of in lines.judged().items()
     }
     if not any(len(errors.start_s) for errors in relative.values()):
         return None
     translation = {name: 100 * errors.translation_per_m for name, errors in relative.items()}
-    rotation = {name: np.degrees(errors.rotation_per_m) for name, errors in relative.items()}
+    rotation = {
+        name: np.degrees(errors.rotation_per_m[np.isfinite(errors.rotation_per_m)])
+        for name, errors in relative.items()
+    }
 
     height_in = 0.8 + 0.45 * len(relative)
 

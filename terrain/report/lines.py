@@ -10,9 +10,17 @@ from odometry.evaluation.score import Score, score
 from odometry.models.catalogue import ICR_NAMES
 from odometry.report.palette import REFERENCE_STYLE, LineStyle, line_styles
 from odometry.trajectory import Trajectory
+from terrain.judged import Judged
 from terrain.run_odometry import RunResult
 
-ODOMETER, IDEAL, FILTER = "odometer", "differential drive", "filter"
+LABELS = {
+    "differential_drive": "differential drive",
+    "gyroscope": "gyroscope, mean speed",
+    "odometer_without_gyroscope": "odometer without gyroscope",
+    "odometer": "odometer",
+    "estimate": "estimate",
+}
+IDEAL, GYROSCOPE, _, ODOMETER, ESTIMATE = LABELS.values()
 REFERENCE_NAMES = {"truth": "truth", "pose": "measured pose"}
 ICR_COORDINATES = ICR_NAMES[:3]  # y_left, y_right, x_icr
 IcrLine = tuple[FloatArray, FloatArray, FloatArray]
@@ -37,38 +45,38 @@ class ReportLines:
         """What the errors are against, as a reader would say."""
         return REFERENCE_NAMES.get(self.result.reference_name, "")
 
-    def judged(self) -> dict[str, Trajectory]:
-        """Trajectories that may be judged: the filter has seen pose.csv, but not the truth."""
-        replay = self.result.replay
-        lines = {
-            ODOMETER: replay.odometer(),
-            IDEAL: replay.differential_drive(self.result.run.robot.track_width),
+    def judged(self) -> dict[str, Judged]:
+        """Trajectories that can be judged fairly, and the poses that judge them."""
+        result = self.result
+        if result.reference is None:
+            return {}
+        own = {LABELS[name]: of for name, of in result.judged.items()}
+        others = {
+            name: Judged(line, result.reference, result.reference_name)
+            for name, line in self._other_odometers().items()
         }
-        if self.result.reference_name == "truth":
-            lines[FILTER] = replay.trajectory()
-        return lines | self._other_odometers()
+        return own | others
 
     def scores(self) -> dict[str, Score]:
         """Score of each judged trajectory; none without a reference."""
         result = self.result
-        if result.reference is None:
-            return {}
         return {
-            name: score(result.run, line, result.reference, result.config.evaluation)
-            for name, line in self.judged().items()
+            name: score(result.run, of.trajectory, of.reference, result.config.evaluation)
+            for name, of in self.judged().items()
         }
 
     def paths(self) -> dict[str, Trajectory]:
         """Trajectories to be drawn, the reference first so that it lies below."""
-        replay, lines = self.result.replay, {}
-        if self.result.reference is not None:
-            lines[self.reference_name] = self.result.reference
-        lines |= self.judged() | {FILTER: replay.trajectory()}
-        return lines
+        result, lines = self.result, {}
+        if result.reference is not None:
+            lines[self.reference_name] = result.reference
+        own = result.replay.open_loop(result.run.robot.track_width)
+        lines |= {LABELS[name]: line for name, line in own.items()}
+        return lines | self._other_odometers() | {ESTIMATE: result.replay.trajectory()}
 
     def icr_lines(self, coordinate: int) -> dict[str, IcrLine]:
         """Stamps, values and sigmas of one ICR coordinate (0, 1, 2) by each result."""
-        replays = {"estimate": self.result.replay} | {
+        replays = {ESTIMATE: self.result.replay} | {
             name: other.replay for name, other in self.compared_with.items()
         }
         return {
@@ -86,12 +94,13 @@ class ReportLines:
         return (truth.stamps_s[known], truth[name][known]) if known.any() else None
 
     def styles(self) -> dict[str, LineStyle]:
-        """A style for every name; the estimate of a result looks like its odometer."""
+        """A style for every name; the ICRs of a compared result look like its odometer."""
         others = [other_odometer(name) for name in self.compared_with]
-        styles = line_styles([ODOMETER, IDEAL, FILTER, *others])
-        estimates = {name: styles[other_odometer(name)] for name in self.compared_with}
+        first = [ODOMETER, IDEAL, ESTIMATE]
+        styles = line_styles([*first, *others, *(n for n in LABELS.values() if n not in first)])
+        icrs = {name: styles[other_odometer(name)] for name in self.compared_with}
         references = dict.fromkeys(REFERENCE_NAMES.values(), REFERENCE_STYLE)
-        return {**estimates, "estimate": styles[ODOMETER], **styles, **references}
+        return {**icrs, **styles, **references}
 
     def _other_odometers(self) -> dict[str, Trajectory]:
         return {

@@ -7,9 +7,18 @@ import numpy as np
 
 from odometry.evaluation.score import Score
 from odometry.report.html import Grid
-from terrain.report.lines import ICR_COORDINATES, IDEAL, ODOMETER, ReportLines, other_odometer
+from terrain.report.lines import (
+    GYROSCOPE,
+    ICR_COORDINATES,
+    IDEAL,
+    LABELS,
+    ODOMETER,
+    ReportLines,
+    other_odometer,
+)
 from terrain.run_odometry import RunResult
 from terrain.switch_delay import SwitchDelay, switch_delays, true_stretches
+from terrain.verdicts import NO_GYROSCOPE, judged_by, remarks
 
 NOTHING = "\N{EN DASH}"
 
@@ -29,18 +38,21 @@ def headline(lines: ReportLines, scores: Mapping[str, Score]) -> str:
             f"The run is shorter than the {horizon_m:g} m of wheel travel over which errors per "
             "metre are taken: there are none."
         )
-    rivals = {f"an ideal {IDEAL}": scores[IDEAL]} | {
-        name: scores[other_odometer(name)] for name in lines.compared_with
-    }
+    rivals = {f"an ideal {IDEAL}": scores[IDEAL]}
+    if GYROSCOPE in scores:
+        rivals["gyroscope with mean wheel speed"] = scores[GYROSCOPE]
+    rivals |= {name: scores[other_odometer(name)] for name in lines.compared_with}
     parts = [
         f"{_less(own, of.mean_translation_per_m)} than {name} ({_cm(of.mean_translation_per_m)})"
         for name, of in rivals.items()
         if of.mean_translation_per_m is not None
     ]
-    return (
+    compared = (
         f"Over stretches of {horizon_m:g} m the odometer errs by {_cm(own)} per metre of wheel "
         f"travel against the {lines.reference_name}: {', '.join(parts)}."
     )
+    by_name = {name: scores[label] for name, label in LABELS.items() if label in scores}
+    return " ".join([compared, *remarks(by_name, result.off_at_the_end_m)])
 
 
 def error_table(lines: ReportLines, scores: Mapping[str, Score]) -> Grid:
@@ -136,15 +148,22 @@ def notes(lines: ReportLines) -> list[str]:
         "the filter held at each moment; no measurement corrects its pose.",
         f"The {IDEAL} does the same without slip, with the track width of "
         f"{result.run.robot.track_width:g} m.",
+        *_gyroscope_notes(result),
         f"Errors per metre are taken over {evaluation.horizon_m:g} m of wheel travel, the mean of "
         f"both treads, starting anew every {evaluation.stride_m:g} m.",
     ]
+    if result.reference is not None and not np.isfinite(result.reference.poses[:, 2]).all():
+        found.append(
+            "Where the reference has no yaw, its heading at the start of a stretch is the one that "
+            f"best turns the {evaluation.horizon_m:g} m before and after onto its positions."
+        )
     if result.reference_name == "pose":
         found.append(
             "Errors are against pose.csv, whose own noise is in them. The filter has seen these "
-            "poses, so it is not judged; the odometer's ICRs were learned from those that came "
-            "before each moment."
+            "poses; the odometer's ICRs were learned from those that came before each moment."
         )
+    if result.second is not None:
+        found.append(f"The estimate is judged by {judged_by(result.second)}")
     if result.reference_name == "truth":
         found.append("Errors are against truth.csv, which no estimator has seen.")
     if result.watcher is None:
@@ -155,6 +174,17 @@ def notes(lines: ReportLines) -> list[str]:
             "terrain; below zero it came early."
         )
     return found
+
+
+def _gyroscope_notes(result: RunResult) -> list[str]:
+    if not result.replay.has_gyroscope:
+        return [NO_GYROSCOPE]
+    return [
+        "Where the gyroscope tells the yaw rate, the odometer is turned by it, less the bias that "
+        "the filter held; the odometer without gyroscope is turned by the treads.",
+        "The gyroscope row drives the mean of both tread speeds along the heading of the "
+        "gyroscope as recorded: nothing is fitted.",
+    ]
 
 
 def _icrs(parameters: Any) -> list[str]:

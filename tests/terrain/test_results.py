@@ -171,7 +171,10 @@ def test_the_errors_of_result_json_are_those_of_the_tables(curvy_out, curvy_run)
     found = content["errors"]["odometer"]["position_m"]
     assert found["mean"] == pytest.approx(distances.mean(), abs=1e-6)
     assert found["final"] == pytest.approx(distances[-1], abs=1e-6)
-    assert "estimate" not in content["errors"]
+    assert content["errors"]["estimate"]["against"] == "withheld pose"
+    assert content["withheld"] == {"poses": 30, "judged": 6, "every_s": 2.0, "silent_s": 1.0}
+    assert content["gyroscope"] is False
+    assert content["off_at_the_end_m"]["odometer"] == pytest.approx(distances[-1], abs=1e-6)
     assert content["filter"]["poses"] == len(pose) - 1  # the first starts the filter
     assert content["duration_s"] == pytest.approx(12.0)
 

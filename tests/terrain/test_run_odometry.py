@@ -157,16 +157,66 @@ def test_images_of_another_size_than_the_cameras_name_image_and_setting(
 
 
 def test_what_there_is_to_judge_by_decides_what_is_judged(tmp_path, world, curvy_run):
-    """The filter has seen pose.csv, so only truth.csv may judge it."""
+    """The filter has seen pose.csv, so only truth.csv or poses withheld from it may judge it."""
     by_pose = run_odometry(curvy_run)
     assert by_pose.reference_name == "pose"
-    assert set(by_pose.scores) == {"odometer", "differential_drive"}
+    assert set(by_pose.scores) == {"odometer", "differential_drive", "estimate"}
+    assert by_pose.judged["estimate"].against == "withheld pose"
     by_truth = run_odometry(world.drive_curves(tmp_path / "truth", truth=True))
     assert by_truth.reference_name == "truth"
     assert set(by_truth.scores) == {"odometer", "differential_drive", "estimate"}
     by_nothing = run_odometry(world.drive_curves(tmp_path / "nothing", pose=False))
     assert (by_nothing.reference_name, by_nothing.reference) == ("", None)
     assert by_nothing.scores == {}
+
+
+def with_gyroscope(folder, bias=0.0):
+    """The winding drive with the yaw rate that its ICRs give it, and a bias."""
+    header, *rows = (folder / "odometry.csv").read_text().split()
+    lines = [f"{header},gyro_z"]
+    for row in rows:
+        _, left, right = (float(cell) for cell in row.split(","))
+        lines.append(f"{row},{(right - left) / (0.26 + 0.24) + bias:.9g}")
+    (folder / "odometry.csv").write_text("\n".join(lines) + "\n")
+    return folder
+
+
+def test_a_gyroscope_adds_its_rows_and_they_stand_side_by_side(tmp_path, world):
+    result = run_odometry(with_gyroscope(world.drive_curves(tmp_path / "run", truth=True)))
+    assert list(result.scores) == [
+        "differential_drive",
+        "gyroscope",
+        "odometer_without_gyroscope",
+        "odometer",
+        "estimate",
+    ]
+    truth = result.run.truth.stack("x", "y", "yaw")
+    by_gyroscope = result.judged["gyroscope"].trajectory.poses
+    turned = np.exp(1j * by_gyroscope[:, 2])  # held from row to row, where it is interpolated
+    np.testing.assert_allclose(turned, np.exp(1j * truth[:, 2]), atol=0.06)
+    # mean wheel speed knows nothing of x_icr nor of the middle between the treads' ICRs
+    assert result.scores["gyroscope"].final_position_m > 0.02
+    assert (
+        result.scores["odometer"].final_position_m
+        < result.scores["differential_drive"].final_position_m
+    )
+
+
+def test_the_second_replay_sees_the_withheld_poses_no_more_than_the_first_saw_a_truth(
+    across_run, classifier
+):
+    """Its terrains are those of the first, and no image is looked at for it."""
+    result = run_odometry(across_run, model=classifier, terrain="gravel")
+    assert result.second.replay.terrains == result.replay.terrains
+    assert len(result.watcher.sightings) == len(result.run.images)
+    kept = np.isfinite(result.second.withheld.run.pose["x"])
+    assert kept.sum() + result.second.withheld.poses == len(result.run.pose)
+    assert result.run.pose["x"][~kept] == pytest.approx(world_x(result, ~kept))
+
+
+def world_x(result, rows):
+    """The run itself keeps its poses."""
+    return 0.5 * result.run.pose.stamps_s[rows]
 
 
 def test_truth_is_for_scoring_alone(tmp_path, world):

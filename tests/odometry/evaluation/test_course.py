@@ -69,7 +69,7 @@ def test_a_robot_that_turns_on_the_spot_tells_no_course():
     assert len(errors(spin, without_yaw(spin)).start_s) == 0
 
 
-def test_where_some_rows_have_yaw_it_is_taken(rng):
+def test_where_some_rows_have_yaw_it_is_taken():
     """The first three metres: their windows start too early to have a course before them."""
     truth, ours = curve(0.02), curve(0.03, 1.1)
     partly = truth.poses.copy()

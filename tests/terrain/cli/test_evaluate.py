@@ -43,6 +43,16 @@ def test_a_row_for_each_trajectory_of_each_run(results):
     assert lines[2].split() == [without, "odometer", "pose", "-", *numbers[1:6], "-"]
 
 
+def test_a_row_says_what_it_is_against(results):
+    content = finished(0.0123)
+    estimate = {"against": "withheld pose"} | content["errors"]["odometer"]
+    content["errors"] |= {"estimate": estimate}
+    answer = CliRunner().invoke(evaluate, [results("a", content)])
+    lines = answer.output.splitlines()
+    assert " pose " in lines[1]
+    assert "withheld pose" in lines[2]
+
+
 def test_a_run_without_a_reference_says_so(results):
     folder = results("blind", {"reference": None, "horizon_m": 5.0, "errors": {}})
     answer = CliRunner().invoke(evaluate, [folder])

@@ -36,8 +36,10 @@ def test_errors_are_those_of_the_scores_and_name_the_reference(curvy_run, capsys
     lines = capsys.readouterr().out.splitlines()
     assert "against pose.csv" in lines[0]
     assert "5 m of wheel travel" in lines[0]
-    rows = {line.split("  ")[1]: line.split()[-1] for line in lines[2:]}
-    assert set(rows) == {"a run: odometer", "a run: differential_drive"}
+    rows = {line.split("  ")[1]: line.split()[-1] for line in lines[2:5]}
+    assert set(rows) == {"a run: odometer", "a run: differential_drive", "a run: estimate"}
+    assert lines[5].startswith("The estimate is judged by 6 poses, one every 2 s")
+    assert lines[6].startswith("The run has no gyroscope")
     for name, score in result.scores.items():
         assert rows[f"a run: {name}"] == f"{score.final_position_m:.4f}"
 

@@ -9,7 +9,7 @@ from terrain.config import Config
 from terrain.report.words import NOTHING, error_table, headline
 
 LINES = SimpleNamespace(
-    result=SimpleNamespace(config=Config()),
+    result=SimpleNamespace(config=Config(), off_at_the_end_m={}),
     reference_name="measured pose",
     compared_with={"without vision": None, "tuned": None},
 )
@@ -38,6 +38,16 @@ def test_the_first_sentence_says_how_much_less_or_more():
         "Over stretches of 5 m the odometer errs by 2.0 cm per metre of wheel travel against the "
         "measured pose: 90% less than an ideal differential drive (20.0 cm), 75% less than "
         "without vision (8.0 cm), 25% more than tuned (1.6 cm)."
+    )
+
+
+def test_the_first_sentences_say_where_the_simple_is_better():
+    own = scores(0.02, 0.2, 0.08, 0.016) | {"gyroscope, mean speed": errs(0.015)}
+    lead = headline(LINES, own)
+    assert "33% more than gyroscope with mean wheel speed (1.5 cm)" in lead
+    assert lead.endswith(
+        "The gyroscope with mean wheel speed, which needs no fit, is better here: 1.50 against "
+        "2.00 cm per metre of wheel travel."
     )
 
 

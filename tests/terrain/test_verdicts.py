@@ -1,0 +1,45 @@
+"""Sentences about where the simple does as well or better, from scores made by hand."""
+
+import pytest
+
+from odometry.evaluation.score import Score
+from terrain.verdicts import remarks, simple_is_better, worse_at_the_end
+
+
+def scores(**errors):
+    return {name: Score(9, None, error) for name, error in errors.items()}
+
+
+def test_nothing_is_said_where_the_odometer_is_best():
+    assert simple_is_better(scores(differential_drive=0.3, gyroscope=0.05, odometer=0.04)) == []
+    assert worse_at_the_end({"differential_drive": 3.0, "odometer": 1.0, "estimate": 0.1}) == []
+
+
+def test_the_best_of_the_simple_ones_is_named():
+    (sentence,) = simple_is_better(scores(differential_drive=0.06, gyroscope=0.044, odometer=0.076))
+    assert sentence == (
+        "The gyroscope with mean wheel speed, which needs no fit, is better here: "
+        "4.40 against 7.60 cm per metre of wheel travel."
+    )
+    (sentence,) = simple_is_better(scores(differential_drive=0.06, odometer=0.076))
+    assert sentence.startswith("The ideal differential drive")
+
+
+@pytest.mark.parametrize("missing", ["differential_drive", "odometer"])
+def test_without_windows_nothing_is_compared(missing):
+    errors = {"differential_drive": 0.01, "odometer": 0.02} | {missing: None}
+    assert simple_is_better(scores(**errors)) == []
+
+
+def test_each_that_ends_farther_off_than_the_ideal_drive_is_named():
+    off_m = {"differential_drive": 8.2, "gyroscope": 9.0, "odometer": 30.0, "estimate": 51.7}
+    odometer, estimate = worse_at_the_end(off_m)
+    assert odometer == (
+        "The odometer ends farther off than the ideal differential drive: 30.00 against 8.20 m."
+    )
+    assert estimate.startswith("The estimate ends farther off")
+    assert worse_at_the_end({}) == []
+
+
+def test_where_nothing_is_judged_nothing_is_remarked():
+    assert remarks({}, {"differential_drive": 1.0, "estimate": 2.0}) == []
