@@ -31,6 +31,27 @@ def report(terrain: str, found: Identified) -> list[str]:
     return [*lines, NO_HELD_OUT] if found.held_out is None else lines
 
 
+def in_short(terrain: str, found: Identified) -> str:
+    """A fit in one line: windows, residuals, and identified values without intervals."""
+    fit = found.fit
+    values = [
+        f"{name} = {fit.values[name]:.4g}{_doubt(fit, name)}"
+        for name in (*fit.names, *fit.by_trial)
+    ]
+    return (
+        f"[{terrain}] {fit.model.name}, {len(fit.windows)} windows, residuals {fit.scale:.2f} "
+        f"times the noise: {', '.join(values)}"
+    )
+
+
+def _doubt(fit: Fit, name: str) -> str:
+    if name in fit.by_trial:
+        return " (by trial)"
+    if name in fit.open_names:
+        return " (open)"
+    return " (at its bound)" if name in fit.at_bound else ""
+
+
 def correlations(fit: Fit, least: float = LEAST_CORRELATION) -> list[tuple[str, str, float]]:
     """Pairs of identified parameters and their correlation, the largest first.
 

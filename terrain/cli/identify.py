@@ -1,15 +1,18 @@
 """`terrain-odometry identify`: the parameters of a model from recorded runs."""
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from terrain.cli.identification_text import print_identification, require_determined
 from terrain.cli.options import MODEL_NAMES, OUTPUT, assignments, require_model, window_options
 from terrain.cli.recordings import span_options
 
 if TYPE_CHECKING:
-    from odometry.identification.identification import Identification, Identified
+    from odometry.outputs.made import Made
+    from odometry.parameters import ParameterSet
     from odometry.run_span import Span
     from odometry.windows.config import WindowConfig
 
@@ -46,7 +49,7 @@ if TYPE_CHECKING:
 @span_options
 @click.option("--fix", multiple=True, metavar="NAME=VALUE", help="Hold a parameter; repeat.")
 @click.option("--free", multiple=True, metavar="NAME", help="Identify a known one too; repeat.")
-@click.option("--terrain", metavar="NAME", help="Ground of runs that name none.")
+@click.option("--terrain", metavar="NAME", help="Terrain of runs that name none.")
 @click.option(
     "--loss",
     type=click.Choice(["huber", "squares", "linear"]),
@@ -94,32 +97,23 @@ def identify(
     """Identify the parameters of a kinematic model from the run folders RUN.
 
     Runs are cut into windows of equal wheel travel; the parameters are those whose dead reckoning
-    ends nearest to the measured poses. One table is written for each ground that the runs name.
+    ends nearest to the measured poses. One table is written for each terrain that the runs name.
     Parameters that the runs cannot tell are named, and nothing is written then.
 
     \b
     Example:
       terrain-odometry identify grass_1 grass_2 asphalt_1 --model icr --out set.toml
     """
-    from odometry.estimation.icr_prior import ICR_FORM_MODELS
     from odometry.identification.config import SolverConfig
     from odometry.identification.identify import identify as identify_runs
     from odometry.identification.profile import with_profiles
-    from odometry.outputs.output_file import is_set_of
     from odometry.parameters import read_parameters, write_parameters
-    from odometry.windows.left_out import words
-    from terrain.cli.outputs import claim_file, claim_picture, comment
+    from terrain.cli.outputs import comment
     from terrain.cli.recordings import read_runs
 
-    if out.suffix != ".toml":
-        raise click.UsageError(f"--out {out}: expected a name that ends in .toml")
     require_model(model)
-    made = claim_file(out, is_set_of("identify"))
+    made = _claimed(out, picture)
     solver_config = SolverConfig(loss=loss, starts=starts, seed=seed)
-    if picture is not None:
-        if picture.suffix != ".png":
-            raise click.UsageError(f"--picture {picture}: expected a name that ends in .png")
-        claim_picture(picture)
     runs = read_runs(folders, span)
     found = identify_runs(
         runs,
@@ -131,13 +125,10 @@ def identify(
         solver_config=solver_config,
         show_progress=True,
     )
+    require_determined(found)
     if profile:
         found = with_profiles(found, solver_config)
-    for name, ground in found.grounds.items():
-        _print_terrain(name, ground)
-    if found.left_out:
-        click.echo(f"Note: {words(found.left_out)}", err=True)
-    _require_determined(found)
+    print_identification(found)
     identified = found.to_parameter_set()
     write_parameters(out, identified, comment(made))
     click.echo(f"Wrote {out}")
@@ -147,64 +138,32 @@ def identify(
 
         save_identified_icrs(picture, runs, found, terrain, source=picture_source("identify"))
         click.echo(f"Wrote {picture}")
-    named = f" --terrain {terrain}" if terrain else ""
-    click.echo(
+    click.echo(_next(identified, out, terrain))
+
+
+def _claimed(out: Path, picture: Path | None) -> "Made":
+    """Claim the files that are going to be written; what makes them is returned."""
+    from odometry.outputs.output_file import is_set_of
+    from terrain.cli.outputs import claim_file, claim_picture
+
+    for option, file, suffix in (("--out", out, ".toml"), ("--picture", picture, ".png")):
+        if file is not None and file.suffix != suffix:
+            raise click.UsageError(f"{option} {file}: expected a name that ends in {suffix}")
+    made = claim_file(out, is_set_of("identify"))
+    if picture is not None:
+        claim_picture(picture)
+    return made
+
+
+def _next(identified: "ParameterSet", out: Path, terrain: str | None) -> str:
+    """What to do with the parameter set."""
+    from odometry.estimation.icr_prior import ICR_FORM_MODELS
+
+    named = f" --terrain {shlex.quote(terrain)}" if terrain else ""
+    said = (
         f"Next, on a run that is not among these: terrain-odometry compare RUN{named} "
         f"--model {out} --model differential_drive --out comparison"
     )
     if all(table.model in ICR_FORM_MODELS for table in identified.terrains.values()):
-        click.echo(f"or:   terrain-odometry run RUN --parameters {out} --out results")
-
-
-def _require_determined(found: "Identification") -> None:
-    """Refuse a fit that is no answer; what the check warned of is the likeliest reason."""
-    from odometry.checks.finding import Level
-    from odometry.identification.errors import IdentificationError
-    from terrain.cli.recordings import checks_made
-
-    try:
-        found.require_determined()
-    except IdentificationError as error:
-        causes = [
-            f"\n  {report.folder}: {warning.cause}. {warning.remedy}."
-            for report in checks_made()
-            for warning in report.at(Level.WARNING)
-        ]
-        if not causes:
-            raise
-        raise IdentificationError(
-            f"{error}\nMend first what the check warned of:{''.join(causes)}"
-        ) from error
-
-
-def _print_terrain(name: str, found: "Identified") -> None:
-    """Print the report of one terrain; what to doubt goes to standard error."""
-    from odometry.identification.plausibility import notes
-    from odometry.identification.report import report
-
-    click.echo("\n".join(report(name, found)))
-    for words in (*notes(found.fit), *_assumed(found), *_no_gain(found)):
-        click.echo(f"Note: {words}", err=True)
-
-
-def _assumed(found: "Identified") -> list[str]:
-    fit = found.fit
-    names = [n for n in fit.values if n not in (*fit.names, *fit.by_trial, *found.given)]
-    if not names:
-        return []
-    return [
-        f"{', '.join(names)}: assumed from [robot] of run.toml or by rule of thumb; "
-        "--fix NAME=VALUE says better"
-    ]
-
-
-def _no_gain(found: "Identified") -> list[str]:
-    if found.held_out is None or (
-        found.held_out.translation_per_m.mean() < found.ideal.translation_per_m.mean()
-        and found.held_out.rotation_per_m.mean() < found.ideal.rotation_per_m.mean()
-    ):
-        return []
-    return [
-        "held out, it errs no less than no model at all: too little data, or an effect that this "
-        "model does not have"
-    ]
+        said += f"\nor:   terrain-odometry run RUN --parameters {out} --out results"
+    return said

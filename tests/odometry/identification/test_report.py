@@ -7,7 +7,7 @@ import pytest
 
 from odometry.identification.config import SolverConfig
 from odometry.identification.identify import identify
-from odometry.identification.report import correlations, report
+from odometry.identification.report import correlations, in_short, report
 
 
 @pytest.fixture(scope="module")
@@ -61,3 +61,20 @@ def test_what_has_no_interval_says_why(found):
     lines = report("gravel", replace(found, fit=fit, held_out=None))
     assert "at its bound" in next(line for line in lines if "alpha_left" in line)
     assert any("No held-out error" in line for line in lines)
+
+
+def test_a_fit_in_short_names_what_is_identified_and_what_to_doubt(found):
+    doubted = replace(found, fit=replace(found.fit, at_bound=("y_left",), by_trial=("x_icr",)))
+    line = in_short("gravel", doubted)
+    start, values = line.split(" times the noise: ")
+    assert start == (
+        f"[gravel] icr, {len(found.fit.windows)} windows, residuals {found.fit.scale:.2f}"
+    )
+    of = found.fit.values
+    assert values.split(", ") == [
+        f"y_left = {of['y_left']:.4g} (at its bound)",
+        f"y_right = {of['y_right']:.4g}",
+        f"alpha_left = {of['alpha_left']:.4g}",
+        f"alpha_right = {of['alpha_right']:.4g}",
+        "x_icr = 0.06 (by trial)",
+    ]

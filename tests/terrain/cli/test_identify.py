@@ -173,6 +173,30 @@ def test_a_straight_run_is_refused_with_names_and_nothing_is_written(command, ac
     assert_refused(command, answer, "Error: ", "y_left", "y_right", "x_icr", "[ground]")
 
 
+def test_a_refusal_begins_with_the_reason_and_ends_with_the_fit_in_a_line(command, across_run):
+    _, output, messages = command(across_run, *SHORT)
+    assert output == ""
+    said = messages[messages.index("Error: ") :].rstrip().splitlines()
+    assert said[0].startswith("Error: the runs cannot tell these parameters apart")
+    place = said.index("Nothing is written. The fit that is refused:")
+    assert re.match(
+        r"  \[ground\] icr, \d+ windows, residuals .*y_left = .* \(open\)", said[place + 1]
+    )
+    assert len(said[place:]) <= 3
+
+
+def test_windows_that_are_shorter_than_asked_are_explained(command, curvy_run, tmp_path):
+    """Poses that were chained over half a second each."""
+    chained = shutil.copytree(curvy_run, tmp_path / "chained")
+    header, *lines = (chained / "pose.csv").read_text().splitlines()
+    rows = [f"{line},{int(2 * float(line.split(',')[0]))}" for line in lines]
+    (chained / "pose.csv").write_text("\n".join([f"{header},window", *rows]) + "\n")
+    code, _, messages = command(chained, "--starts", "1")
+    assert code == 0
+    assert "windows are shorter than the 2 m asked for (0." in messages
+    assert "`window` of pose.csv changes that often" in messages
+
+
 def test_a_refusal_leaves_an_earlier_file_alone(command, across_run):
     command.out.write_text("earlier")
     assert command(across_run, *SHORT)[0] == 1
