@@ -12,7 +12,7 @@ from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.excitation import ordinary_sizes, undetermined
 from odometry.identification.fitted import Fit
-from odometry.identification.problem import PROBLEMS, Problem
+from odometry.identification.problem import PROBLEMS, Problem, by_name, start_values
 from odometry.identification.solve import Solution, solve
 from odometry.identification.uncertainty import parameter_uncertainty, residual_scale
 from odometry.models.base import KinematicModel
@@ -62,7 +62,7 @@ def fit(
     ParameterError
         If a name is no parameter of the model, or a fixed value is out of bounds.
     """
-    values = _start(model, robot, fixed, released, near or {})
+    values = start_values(model, robot, fixed, released, near or {})
     if near is not None:
         solver_config = replace(solver_config, starts=1)
     free = np.array(
@@ -81,24 +81,7 @@ def fit(
     for place in np.flatnonzero(free & in_sign):
         problem, solution = try_values(problem, solution, sizes, int(place), solver_config)
     found = _finish(problem, solution, sizes[problem.free], free & in_sign, solver_config)
-    return replace(found, start=_by_name(model, values))
-
-
-def _start(
-    model: KinematicModel,
-    robot: Robot,
-    fixed: Mapping[str, float],
-    released: frozenset[str],
-    near: Mapping[str, float],
-) -> FloatArray:
-    names = {parameter.name for parameter in model.parameters}
-    for name in sorted({*fixed, *released} - names):
-        raise ParameterError(
-            f"{name!r} is no parameter of {model.name!r}; it has {', '.join(sorted(names))}"
-        )
-    for name in sorted(released & set(fixed)):
-        raise ParameterError(f"{name!r} is both fixed and free; expected one of them")
-    return model.pack({**model.guess(robot), **near, **fixed})
+    return replace(found, start=by_name(model, values))
 
 
 def _finish(
@@ -123,7 +106,7 @@ def _finish(
     uncertainty = parameter_uncertainty(problem, solution, sizes)
     return Fit(
         model=problem.model,
-        values=_by_name(problem.model, values),
+        values=by_name(problem.model, values),
         names=problem.names,
         covariance=uncertainty.covariance,
         freedom=uncertainty.freedom,
@@ -146,7 +129,3 @@ def _finish(
         windows=problem.windows,
         start={},
     )
-
-
-def _by_name(model: KinematicModel, values: FloatArray) -> dict[str, float]:
-    return {p.name: float(value) for p, value in zip(model.parameters, values, strict=True)}

@@ -9,6 +9,8 @@ from odometry.arrays import FloatArray
 from odometry.identification.excitation import Undetermined
 from odometry.identification.intervals import NORMAL, Interval, deviations_within
 from odometry.models.base import KinematicModel
+from odometry.windows.stretch_noise import StretchNoise
+from odometry.windows.stretches import Stretches
 from odometry.windows.windows import Windows
 
 
@@ -34,18 +36,21 @@ class Fit:
     at_bound : tuple of str
         Parameters that ended at the edge of where the search may look.
     residuals : (K, 3)
-        Predicted less measured motion: along, across [m], yaw [rad].
+        Predicted less measured motion: along, across [m], yaw [rad]; of stretches (K, R), see
+        `shape_residuals`.
     weights : (K,)
         1 where a window counts in full, less where it is an outlier.
     scale : float
         How many times larger the residuals are than the poses' stated noise explains.
     agreeing, starts : int
         How many of the starts found this minimum.
-    windows : Windows
+    windows : Windows or Stretches
     start : Mapping of name to float
         Where the first search started.
     profiled : Mapping of name to Interval
         Intervals that were found by profiling (`profile.with_profiles`); others are symmetric.
+    noise : StretchNoise or None
+        What the residuals of positions show; None of poses, whose noise is stated.
     """
 
     model: KinematicModel
@@ -61,9 +66,22 @@ class Fit:
     scale: float
     agreeing: int
     starts: int
-    windows: Windows
+    windows: Windows | Stretches
     start: Mapping[str, float]
     profiled: Mapping[str, Interval] = field(default_factory=dict)
+    noise: StretchNoise | None = None
+
+    @property
+    def noun(self) -> str:
+        """What the rows of residuals belong to."""
+        return "windows" if self.noise is None else "stretches"
+
+    @property
+    def compared_with(self) -> str:
+        """The noise that `scale` is a multiple of."""
+        if self.noise is None:
+            return "the poses' stated noise"
+        return f"the noise found of positions ({self.noise.position_m:.2g} m)"
 
     @property
     def open_names(self) -> frozenset[str]:

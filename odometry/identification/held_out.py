@@ -7,13 +7,14 @@ import numpy as np
 from odometry.arrays import IntArray
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
-from odometry.windows.window_errors import WindowErrors, window_errors
+from odometry.windows.stretches import Stretches
+from odometry.windows.window_errors import WindowErrors, errors_over
 from odometry.windows.windows import Windows
 
 MOST_FOLDS = 10  # fits that judge a model: more cost time, and tell little more
 
 
-def by_runs(windows: Windows) -> IntArray:
+def by_runs(windows: Windows | Stretches) -> IntArray:
     """Parts (K,) to hold out in turn: the runs, or ten groups of runs where there are more.
 
     Runs that were given one after the other are in one group: they are often parts of one drive.
@@ -23,7 +24,7 @@ def by_runs(windows: Windows) -> IntArray:
     return np.asarray(groups[[runs[run] for run in windows.run]], dtype=np.int64)
 
 
-def by_halves(windows: Windows) -> IntArray:
+def by_halves(windows: Windows | Stretches) -> IntArray:
     """Parts (K,) to hold out in turn: the first and the second half of every run.
 
     Windows that reach into the other half are in neither: -1.
@@ -39,13 +40,15 @@ def by_halves(windows: Windows) -> IntArray:
 
 
 def held_out_errors(
-    windows: Windows, parts: IntArray, fit_to: Callable[[Windows], Fit]
+    windows: Windows | Stretches,
+    parts: IntArray,
+    fit_to: Callable[[Windows | Stretches], Fit],
 ) -> WindowErrors:
     """Errors of every window that is in a part, under the model fitted to the other parts.
 
     Parameters
     ----------
-    windows : Windows
+    windows : Windows or Stretches
     parts : (K,)
         -1 for windows that take no part.
     fit_to : callable
@@ -63,7 +66,7 @@ def held_out_errors(
     for part in numbers:
         here = parts == part
         fitted = fit_to(windows.where((parts >= 0) & ~here))
-        errors = window_errors(fitted.model, fitted.packed, windows.where(here))
+        errors = errors_over(fitted.model, fitted.packed, windows.where(here))
         translation[here], rotation[here] = errors.translation_per_m, errors.rotation_per_m
     judged = parts >= 0
     return WindowErrors(translation[judged], rotation[judged])

@@ -100,7 +100,8 @@ class Identification:
         for terrain, found in self.grounds.items():
             runs = ", ".join(dict.fromkeys(map(str, found.fit.windows.run)))
             source = (
-                f"identified by terrain-odometry from {len(found.fit.windows)} windows of {runs}"
+                f"identified by terrain-odometry from {len(found.fit.windows)} {found.fit.noun} of "
+                f"{runs}"
             )
             terrains[terrain] = found.to_parameters(source)
         return ParameterSet(terrains, {"name": self.robot.name} if self.robot.name else {})

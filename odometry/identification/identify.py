@@ -16,13 +16,15 @@ from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
 from odometry.identification.fitters import FitTo, fitter
+from odometry.identification.from_positions import windows_or_stretches
 from odometry.identification.held_out import MOST_FOLDS, by_halves, by_runs, held_out_errors
 from odometry.identification.identification import Identification, Identified
 from odometry.models.catalogue import MODELS
 from odometry.run import UNKNOWN, Robot, Run
 from odometry.runs import check_no_run_twice
 from odometry.windows.config import WindowConfig
-from odometry.windows.window_errors import WindowErrors, window_errors
+from odometry.windows.stretches import Stretches
+from odometry.windows.window_errors import WindowErrors, errors_over
 from odometry.windows.windows import Windows, windows_of
 
 
@@ -42,7 +44,7 @@ def identify(
     Parameters
     ----------
     runs : sequence of Run
-        Of one robot, with poses.
+        Of one robot, with poses; or with positions, where fewer than half of them have a yaw.
     model : str, KinematicModel or ParameterSet
         A name of the catalogue; or a set, of which the models are taken with their effects and
         with what they know of the robot, and all else is identified anew.
@@ -72,7 +74,7 @@ def identify(
     check_no_run_twice(runs)
     robot = robot_of(runs)
     named = [with_named_ground(run, terrain) for run in runs]
-    windows = windows_of(named, window_config)
+    windows = windows_or_stretches(named, window_config)
     asked = {
         str(name): asked_on(str(name), model, robot) for name in dict.fromkeys(windows.terrain)
     }
@@ -111,18 +113,23 @@ def _windows_on(
     ground: str,
     effects: Sequence[Added],
     runs: Sequence[Run],
-    as_seen: Windows,
+    as_seen: Windows | Stretches,
     config: WindowConfig,
-) -> Windows:
+) -> Windows | Stretches:
     """Windows on one ground, with the poses of the robot where the sensor reports others."""
     windows = as_seen
     if on_measurement(effects):
+        if isinstance(windows, Stretches):
+            raise IdentificationError(
+                f"[{ground}] the set has effects on the measured pose, which are undone where yaw "
+                "was measured; pose.csv has positions alone: state [sensors] pose instead"
+            )
         windows = windows_of([robot_run(run, effects) for run in runs], config)
     return windows.where(windows.terrain == ground)
 
 
 def _counted(fit_to: FitTo, bar: tqdm) -> FitTo:
-    def counted(windows: Windows, near: Mapping[str, float] | None = None) -> Fit:
+    def counted(windows: Windows | Stretches, near: Mapping[str, float] | None = None) -> Fit:
         fitted = fit_to(windows, near)
         bar.update()
         return fitted
@@ -155,15 +162,15 @@ def robot_of(runs: Sequence[Run]) -> Robot:
 
 
 def _identified(
-    windows: Windows, fit_to: FitTo, robot: Robot, given: Mapping[str, float]
+    windows: Windows | Stretches, fit_to: FitTo, robot: Robot, given: Mapping[str, float]
 ) -> Identified:
     fitted = fit_to(windows)
-    ideal = window_errors(MODELS["differential_drive"], np.array([robot.track_width]), windows)
+    ideal = errors_over(MODELS["differential_drive"], np.array([robot.track_width]), windows)
     return Identified(fitted, *_held_out(windows, fit_to, fitted.values), ideal, given)
 
 
 def _held_out(
-    windows: Windows, fit_to: FitTo, near: Mapping[str, float]
+    windows: Windows | Stretches, fit_to: FitTo, near: Mapping[str, float]
 ) -> tuple[WindowErrors | None, str]:
     """Errors by runs, else by halves of every run, and which it was.
 

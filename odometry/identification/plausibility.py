@@ -27,7 +27,7 @@ def refusals(fit: Fit) -> tuple[str, ...]:
     parameters = {parameter.name: parameter for parameter in fit.model.parameters}
     return tuple(
         f"{name} ended at its bound {fit.values[name]:.4g}, and the residuals are {fit.scale:.1f} "
-        "times the poses' stated noise"
+        f"times {fit.compared_with}"
         for name in fit.at_bound
         if not _is_neutral(parameters[name], fit.values[name])
     )

@@ -1,36 +1,41 @@
 """The loss of an identification: squared Mahalanobis distances of windows (Baril 2020 eq. 13)."""
 
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
+from odometry.errors import ParameterError
 from odometry.models.base import KinematicModel
+from odometry.run import Robot
 from odometry.windows.motion import linearised_window_motion, window_motion
 from odometry.windows.noise import window_covariances
+from odometry.windows.stretches import Stretches
 from odometry.windows.windows import Windows
 
 REMEMBERED = 2  # a search asks again at its last point, or the one before
 
 
 @dataclass(frozen=True)
-class Problem:
+class AnyProblem(ABC):
     """Which parameters of a model are free, and the windows that shall tell them.
 
     Attributes
     ----------
     model : KinematicModel
-    windows : Windows
+    windows : Windows or Stretches
     values : (P,)
         All parameters; the free ones are ignored.
     free : (P,) of bool
-    variances : (3,)
-        Of a measured pose.
+    variances : (V,)
+        Of the noise that is supposed.
     """
 
     model: KinematicModel
-    windows: Windows
+    windows: Windows | Stretches
     values: FloatArray
     free: BoolArray
     variances: FloatArray
@@ -58,24 +63,27 @@ class Problem:
 
     @property
     def whitening(self) -> FloatArray:
-        """Factors (K, 3, 3) by which residuals enter the loss: those of the stated noise."""
+        """Factors (K, R, R) by which residuals enter the loss: those of the supposed noise."""
         return self.noise_whitening
 
+    @property
+    @abstractmethod
+    def numbers_per_window(self) -> int:
+        """Measured numbers of a window: the freedom of its squared Mahalanobis distance."""
+
     @cached_property
+    @abstractmethod
     def noise_whitening(self) -> FloatArray:
-        """Inverse Cholesky factors (K, 3, 3) of the windows' stated covariances."""
-        covariances = window_covariances(self.windows, self.variances)
-        return np.asarray(np.linalg.inv(np.linalg.cholesky(covariances)))
+        """Factors (K, R, R) by which residuals of the supposed noise become white."""
 
     def residuals(self, chosen: FloatArray) -> FloatArray:
-        """Predicted less measured motion (K, 3); turns count in full."""
+        """Predicted less measured numbers (K, R); turns count in full."""
         if chosen.tobytes() in self._recent:
             return self._recent[chosen.tobytes()][0]
-        predicted = window_motion(self.model, self.complete(chosen), self.windows)
-        return np.asarray(predicted - self.windows.measured)
+        return self._residuals(chosen)
 
     def jacobian(self, chosen: FloatArray) -> FloatArray:
-        """Derivative (K, 3, F) of the residuals by the free parameters."""
+        """Derivative (K, R, F) of the residuals by the free parameters."""
         return self.linearised(chosen)[1]
 
     def linearised(self, chosen: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -84,21 +92,49 @@ class Problem:
         if key not in self._recent:
             while len(self._recent) >= REMEMBERED:
                 self._recent.pop(next(iter(self._recent)))
-            self._recent[key] = self._linearised(chosen)
+            found = self._linearised(chosen)
+            for array in found:
+                array.setflags(write=False)  # it will be handed out again
+            self._recent[key] = found
         return self._recent[key]
 
     @cached_property
     def _recent(self) -> dict[bytes, tuple[FloatArray, FloatArray]]:
         return {}
 
+    @abstractmethod
+    def _residuals(self, chosen: FloatArray) -> FloatArray: ...
+
+    @abstractmethod
+    def _linearised(self, chosen: FloatArray) -> tuple[FloatArray, FloatArray]: ...
+
+
+@dataclass(frozen=True)
+class Problem(AnyProblem):
+    """Of windows between poses; `variances` (3,) are those of a measured pose."""
+
+    windows: Windows
+
+    @property
+    def numbers_per_window(self) -> int:
+        """See `AnyProblem.numbers_per_window`."""
+        return 3
+
+    @cached_property
+    def noise_whitening(self) -> FloatArray:
+        """Inverse Cholesky factors (K, 3, 3) of the windows' stated covariances."""
+        covariances = window_covariances(self.windows, self.variances)
+        return np.asarray(np.linalg.inv(np.linalg.cholesky(covariances)))
+
+    def _residuals(self, chosen: FloatArray) -> FloatArray:
+        predicted = window_motion(self.model, self.complete(chosen), self.windows)
+        return np.asarray(predicted - self.windows.measured)
+
     def _linearised(self, chosen: FloatArray) -> tuple[FloatArray, FloatArray]:
         predicted, by_parameters = linearised_window_motion(
             self.model, self.complete(chosen), self.windows
         )
-        found = predicted - self.windows.measured, by_parameters[:, :, self.free]
-        for array in found:
-            array.setflags(write=False)  # it will be handed out again
-        return found
+        return predicted - self.windows.measured, by_parameters[:, :, self.free]
 
 
 class PaperProblem(Problem):
@@ -106,8 +142,37 @@ class PaperProblem(Problem):
 
     @property
     def whitening(self) -> FloatArray:
-        """See `Problem.whitening`."""
+        """See `AnyProblem.whitening`."""
         return np.broadcast_to(np.eye(3), (len(self.windows), 3, 3))
+
+
+def start_values(
+    model: KinematicModel,
+    robot: Robot,
+    fixed: Mapping[str, float],
+    released: frozenset[str],
+    near: Mapping[str, float],
+) -> FloatArray:
+    """All parameters (P,) where a search starts: fixed ones, else near ones, else guessed.
+
+    Raises
+    ------
+    ParameterError
+        If a name is no parameter of the model, or both fixed and released.
+    """
+    names = {parameter.name for parameter in model.parameters}
+    for name in sorted({*fixed, *released} - names):
+        raise ParameterError(
+            f"{name!r} is no parameter of {model.name!r}; it has {', '.join(sorted(names))}"
+        )
+    for name in sorted(released & set(fixed)):
+        raise ParameterError(f"{name!r} is both fixed and free; expected one of them")
+    return model.pack({**model.guess(robot), **near, **fixed})
+
+
+def by_name(model: KinematicModel, values: FloatArray) -> dict[str, float]:
+    """Parameters (P,) by their names."""
+    return {p.name: float(value) for p, value in zip(model.parameters, values, strict=True)}
 
 
 PROBLEMS: dict[str, type[Problem]] = {

@@ -5,17 +5,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq, least_squares
 
-from odometry.arrays import FloatArray
+from odometry.arrays import BoolArray, FloatArray
 from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.excitation import ordinary_sizes
 from odometry.identification.fit import Fit
 from odometry.identification.identification import Identification
 from odometry.identification.intervals import Interval, deviations_within
-from odometry.identification.problem import PROBLEMS, Problem
+from odometry.identification.problem import PROBLEMS, AnyProblem
+from odometry.identification.stretch_problem import StretchProblem
 from odometry.run import Robot
 from odometry.windows.config import WindowConfig
 from odometry.windows.noise import pose_variances
+from odometry.windows.stretches import Stretches
 
 NEAR = 1e-3  # of a standard deviation: how closely the ends are searched
 FARTHEST = 50.0  # half widths of the symmetric interval; beyond, there is no end
@@ -44,9 +46,7 @@ def _profiled(
             f"{fit.model.name!r} is fitted in stages, and has no one loss to profile"
         )
     free = np.array([parameter.name in fit.names for parameter in fit.model.parameters])
-    problem = PROBLEMS[solver_config.loss](
-        fit.model, fit.windows, fit.packed, free, pose_variances(window_config)
-    )
+    problem = _problem(fit, free, window_config, solver_config)
     sizes = ordinary_sizes(fit.model, robot)
     blurred = {*fit.open_names, *fit.at_bound}
     return replace(
@@ -59,7 +59,19 @@ def _profiled(
     )
 
 
-def profile_interval(fit: Fit, name: str, problem: Problem, sizes: FloatArray) -> Interval:
+def _problem(
+    fit: Fit, free: BoolArray, window_config: WindowConfig, solver_config: SolverConfig
+) -> AnyProblem:
+    of = fit.windows
+    if not isinstance(of, Stretches):
+        variances = pose_variances(window_config)
+        return PROBLEMS[solver_config.loss](fit.model, of, fit.packed, free, variances)
+    if fit.noise is None:
+        raise IdentificationError("a fit to stretches without its noise cannot be profiled")
+    return StretchProblem(fit.model, of, fit.packed, free, fit.noise.variances)
+
+
+def profile_interval(fit: Fit, name: str, problem: AnyProblem, sizes: FloatArray) -> Interval:
     """The 95 % interval of one parameter of a fit by its profile.
 
     It holds the values at which the least loss over the other parameters is above the best by
@@ -73,7 +85,7 @@ def profile_interval(fit: Fit, name: str, problem: Problem, sizes: FloatArray) -
     fit : Fit
     name : str
         One of its identified parameters.
-    problem : Problem
+    problem : AnyProblem
         With the values of the fit, and its identified parameters free.
     sizes : (P,)
         Ordinary sizes of all parameters.
@@ -102,7 +114,7 @@ class _Profile:
 
     fit: Fit
     name: str
-    problem: Problem
+    problem: AnyProblem
     sizes: FloatArray
     inflation: float
 
@@ -150,9 +162,9 @@ class _Profile:
         )
         return float(2 * solved.cost)
 
-    def _root(self, problem: Problem) -> FloatArray:
+    def _root(self, problem: AnyProblem) -> FloatArray:
         return np.asarray(np.sqrt(self.fit.weights)[:, None, None] * problem.whitening)
 
-    def _whitened(self, problem: Problem, chosen: FloatArray) -> FloatArray:
+    def _whitened(self, problem: AnyProblem, chosen: FloatArray) -> FloatArray:
         residuals = problem.residuals(chosen)
         return np.asarray(np.einsum("kij,kj->ki", self._root(problem), residuals)).ravel()

@@ -39,7 +39,7 @@ def in_short(terrain: str, found: Identified) -> str:
         for name in (*fit.names, *fit.by_trial)
     ]
     return (
-        f"[{terrain}] {fit.model.name}, {len(fit.windows)} windows, residuals {fit.scale:.2f} "
+        f"[{terrain}] {fit.model.name}, {len(fit.windows)} {fit.noun}, residuals {fit.scale:.2f} "
         f"times the noise: {', '.join(values)}"
     )
 
@@ -80,11 +80,11 @@ def _statistics(fit: Fit) -> list[tuple[str, ...]]:
     length = fit.windows.travel_m.mean()
     weighed_down = int(np.sum(fit.weights < 1))
     rows: list[tuple[str, ...]] = [
-        ("data", f"{len(fit.windows)} windows of {length:.2f} m in {runs} run(s)"),
-        ("measured numbers", f"{3 * len(fit.windows)}"),
+        ("data", f"{len(fit.windows)} {fit.noun} of {length:.2f} m in {runs} run(s)"),
+        ("measured numbers", f"{fit.residuals.size}"),
         ("free parameters", f"{len(fit.names) + len(fit.by_trial)}"),
-        ("residuals", f"{fit.scale:.2f} times the poses' stated noise"),
-        ("outlying windows", f"{weighed_down} weighed down"),
+        ("residuals", f"{fit.scale:.2f} times {fit.compared_with}"),
+        (f"outlying {fit.noun}", f"{weighed_down} weighed down"),
         ("starts", f"{fit.agreeing} of {fit.starts} agree"),
     ]
     if len(fit.names):

@@ -11,6 +11,7 @@ from odometry.windows.left_out import (
     POSE_GAP,
     UNKNOWN_TURNS,
 )
+from odometry.windows.stretches import Stretches
 from odometry.windows.windows import Windows
 
 FEW = 0.1  # share of the windows that may be shorter without a word
@@ -24,8 +25,13 @@ WHY = {
 }
 
 
-def short_windows(windows: Windows, config: WindowConfig) -> str:
-    """How many windows are shorter than the horizon, and what cuts them; "" where few are."""
+def short_windows(windows: Windows | Stretches, config: WindowConfig) -> str:
+    """How many windows are shorter than the horizon, and what cuts them; "" where few are.
+
+    Stretches of positions are as long as they have to be.
+    """
+    if isinstance(windows, Stretches):
+        return ""
     asked, unit, length = config.horizon_m, "m", windows.travel_m
     if config.horizon_s:
         asked, unit, length = config.horizon_s, "s", _durations_s(windows)

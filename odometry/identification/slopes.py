@@ -78,7 +78,7 @@ def fit_in_two_stages(
             break
     free = np.isin([p.name for p in model.parameters], (*flat.names, *sloped.names))
     problem = PROBLEMS[solver_config.loss](
-        model, sloped.windows, sloped.packed, free, pose_variances(window_config)
+        model, windows.where(tilted), sloped.packed, free, pose_variances(window_config)
     )
     return _joined(flat, sloped, windows, tilted, problem)
 

@@ -8,9 +8,9 @@ from scipy.stats import chi2
 
 from odometry.arrays import FloatArray
 from odometry.identification.config import SolverConfig
-from odometry.identification.problem import Problem
+from odometry.identification.problem import AnyProblem
 
-CUTOFF = float(np.sqrt(chi2.ppf(0.95, 3)))  # Huber's, of a Mahalanobis distance in three dimensions
+INSIDE = 0.95  # of normal Mahalanobis distances: those that Huber's function squares
 REWEIGHTINGS = 20
 SAME_WEIGHT = 1e-2
 EVALUATIONS = 60  # of the loss in one search
@@ -41,14 +41,16 @@ class Solution:
     agreeing: int
 
 
-def solve(problem: Problem, start: FloatArray, sizes: FloatArray, config: SolverConfig) -> Solution:
+def solve(
+    problem: AnyProblem, start: FloatArray, sizes: FloatArray, config: SolverConfig
+) -> Solution:
     """Search from `start` (F,) and from further starts around it.
 
     Every start is a search for the least squares; from the best, outliers are weighed down.
 
     Parameters
     ----------
-    problem : Problem
+    problem : AnyProblem
     start, sizes : (F,)
         Where to start, and the ordinary size of each parameter.
     config : SolverConfig
@@ -71,26 +73,27 @@ def solve(problem: Problem, start: FloatArray, sizes: FloatArray, config: Solver
     return Solution(chosen, weights, loss(problem, chosen, config), agreeing)
 
 
-def loss(problem: Problem, chosen: FloatArray, config: SolverConfig) -> float:
+def loss(problem: AnyProblem, chosen: FloatArray, config: SolverConfig) -> float:
     """Sum of squared Mahalanobis distances (Baril 2020 eq. 13), or of Huber's function of them."""
     if config.loss != "huber":
         return _squares(problem, chosen)
     distances = _distances(problem, chosen)
-    scale = _scale(distances)
+    scale, cutoff = _scale(distances, problem), _cutoff(problem)
     scaled = distances / scale
-    inside = scaled <= CUTOFF
-    rho = np.where(inside, scaled**2, 2 * CUTOFF * scaled - CUTOFF**2)
+    inside = scaled <= cutoff
+    rho = np.where(inside, scaled**2, 2 * cutoff * scaled - cutoff**2)
     return float(np.sum(rho) * scale**2)
 
 
 def _reweighted(
-    problem: Problem, chosen: FloatArray, sizes: FloatArray
+    problem: AnyProblem, chosen: FloatArray, sizes: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Parameters (F,) and weights (K,) that belong together: Huber's loss by repeated squares."""
     weights = np.ones(len(problem.windows))
     for _ in range(REWEIGHTINGS):
         distances = _distances(problem, chosen)
-        before, weights = weights, np.minimum(1.0, CUTOFF * _scale(distances) / distances)
+        largest = _cutoff(problem) * _scale(distances, problem)
+        before, weights = weights, np.minimum(1.0, largest / distances)
         if np.abs(weights - before).max() < SAME_WEIGHT:
             break
         chosen = _least_squares(problem, chosen, sizes, weights, FEW_EVALUATIONS)
@@ -98,7 +101,7 @@ def _reweighted(
 
 
 def _least_squares(
-    problem: Problem, start: FloatArray, sizes: FloatArray, weights: FloatArray, evaluations: int
+    problem: AnyProblem, start: FloatArray, sizes: FloatArray, weights: FloatArray, evaluations: int
 ) -> FloatArray:
     root = np.sqrt(weights)[:, None, None] * problem.whitening
 
@@ -108,7 +111,7 @@ def _least_squares(
 
     def jacobian(chosen: FloatArray) -> FloatArray:
         _, found = problem.linearised(chosen)
-        return np.asarray(root @ found).reshape(3 * len(problem.windows), len(chosen))
+        return np.asarray(root @ found).reshape(-1, len(chosen))
 
     solved = least_squares(
         residuals, start, jacobian, bounds=problem.bounds(), x_scale=sizes, max_nfev=evaluations
@@ -116,16 +119,21 @@ def _least_squares(
     return np.asarray(solved.x)
 
 
-def _squares(problem: Problem, chosen: FloatArray) -> float:
+def _squares(problem: AnyProblem, chosen: FloatArray) -> float:
     return float(np.sum(_distances(problem, chosen) ** 2))
 
 
-def _distances(problem: Problem, chosen: FloatArray) -> FloatArray:
+def _distances(problem: AnyProblem, chosen: FloatArray) -> FloatArray:
     """Mahalanobis distances (K,)."""
     whitened = np.einsum("kij,kj->ki", problem.whitening, problem.residuals(chosen))
     return np.asarray(np.maximum(np.linalg.norm(whitened, axis=1), 1e-12))
 
 
-def _scale(distances: FloatArray) -> float:
+def _scale(distances: FloatArray, problem: AnyProblem) -> float:
     """How many times larger the residuals are than stated, by their median."""
-    return float(np.median(distances) / np.sqrt(chi2.median(3)))
+    return float(np.median(distances) / np.sqrt(chi2.median(problem.numbers_per_window)))
+
+
+def _cutoff(problem: AnyProblem) -> float:
+    """Huber's, of a Mahalanobis distance in as many dimensions as a window has numbers."""
+    return float(np.sqrt(chi2.ppf(INSIDE, problem.numbers_per_window)))

@@ -10,7 +10,7 @@ STRETCH = 5  # windows: some 20 s, over which slip wanders
 DETERMINED_ALONE = 1 - 1e-6  # a direction in which one group has all of the information
 
 
-def groups_alike(run: AnyArray) -> IntArray | None:
+def groups_alike(run: AnyArray, stretch: int = STRETCH) -> IntArray | None:
     """Group (K,) of each window, in which a model may err alike: runs, else stretches of them.
 
     None where there are too few of both to tell a spread.
@@ -19,6 +19,8 @@ def groups_alike(run: AnyArray) -> IntArray | None:
     ----------
     run : (K,) of str
         Of each window, in the order of time.
+    stretch : int
+        Windows of a stretch of a run.
     """
     names = list(dict.fromkeys(run.tolist()))
     if len(names) >= FEWEST_RUNS:
@@ -26,7 +28,7 @@ def groups_alike(run: AnyArray) -> IntArray | None:
     groups, count = np.zeros(len(run), dtype=np.int64), 0
     for name in names:
         here = np.flatnonzero(run == name)
-        stretches = max(1, len(here) // STRETCH)
+        stretches = max(1, len(here) // stretch)
         groups[here] = count + np.arange(len(here)) * stretches // len(here)
         count += stretches
     return groups if count >= FEWEST_STRETCHES else None

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.arrays import FloatArray, IntArray
+from odometry.arrays import FloatArray
 from odometry.identification.problem import Problem
 from odometry.identification.residual_freedom import residual_freedom
 from odometry.identification.solve import Solution
@@ -85,7 +85,9 @@ def parameter_uncertainty(problem: Problem, solution: Solution, sizes: FloatArra
     freedom = 1 / np.sum(shares**2 / freedoms[:, None], axis=0)
     groups = groups_alike(problem.windows.run)
     if groups is not None:
-        covariance, freedom = _with_spread(groups, near, covariance, freedom)
+        residuals = np.einsum("kij,kj->ki", near.root, near.residuals)
+        between = spread_between(groups, near.root @ near.jacobian, residuals)
+        covariance, freedom = grown(covariance, freedom, *between)
     covariance = sizes[:, None] * covariance * sizes
     return Uncertainty(np.asarray((covariance + covariance.T) / 2), freedom)
 
@@ -149,12 +151,10 @@ def _overlap(windows: Windows) -> float:
     return float(covered.sum() / np.count_nonzero(covered))
 
 
-def _with_spread(
-    groups: IntArray, near: Linearised, covariance: FloatArray, freedom: FloatArray
+def grown(
+    covariance: FloatArray, freedom: FloatArray, between: FloatArray, between_freedom: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Covariance and degrees of freedom with variances between groups where they are larger."""
-    residuals = np.einsum("kij,kj->ki", near.root, near.residuals)
-    between, between_freedom = spread_between(groups, near.root @ near.jacobian, residuals)
+    """Covariance (F, F) and degrees of freedom (F,), by the variances between groups if larger."""
     within = np.maximum(np.diag(covariance), np.finfo(float).tiny)
     growth = np.sqrt(np.maximum(between / within, 1.0))
     freedom = np.where(between > within, between_freedom, freedom)

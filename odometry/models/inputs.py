@@ -36,6 +36,8 @@ class Inputs:
         Measured yaw, interpolated and not wrapped; None without measured poses.
     wheel_angles_rad : (..., 2) or None
         Turned since the start, left and right; None where the wheel radius is not stated.
+    yaw_rate_rad_s : (...) or None
+        Of a gyroscope less its bias, for whoever carries the yaw by it; no model reads it.
     """
 
     tread_speeds_m_s: FloatArray
@@ -46,6 +48,7 @@ class Inputs:
     terrain: AnyArray | None = None
     heading_rad: FloatArray | None = None
     wheel_angles_rad: FloatArray | None = None
+    yaw_rate_rad_s: FloatArray | None = None
 
     def __post_init__(self) -> None:
         speeds = np.asarray(self.tread_speeds_m_s)

@@ -8,7 +8,7 @@ inside with the samples last, so that sums along them are fast.
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -16,14 +16,24 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.geometry import se2
 from odometry.geometry.angles import sine_and_cosine
 from odometry.geometry.levelled import Tilt, level_step_jacobian, level_steps
-from odometry.models.base import KinematicModel
+from odometry.models.base import Linearised
 from odometry.models.inputs import Inputs
 from odometry.windows.windows import Windows
 
 BLOCK = 16384  # samples at a time
 
 
-def window_motion(model: KinematicModel, values: FloatArray, windows: Windows) -> FloatArray:
+class Moving(Protocol):
+    """What predicts twists: a model, or one whose yaw something else carries."""
+
+    def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """See `KinematicModel.twist`."""
+
+    def linearised(self, values: FloatArray, inputs: Inputs) -> Linearised:
+        """See `KinematicModel.linearised`."""
+
+
+def window_motion(model: Moving, values: FloatArray, windows: Windows) -> FloatArray:
     """Predicted pose (K, 3) at the end of each window in the level frame of its start.
 
     Every step is the exact arc of the twist in force, seen in the level frame (Martinez 2024
@@ -51,7 +61,7 @@ def level_path(twists: FloatArray, steps_s: FloatArray, inputs: Inputs) -> Float
 
 
 def linearised_window_motion(
-    model: KinematicModel, values: FloatArray, windows: Windows
+    model: Moving, values: FloatArray, windows: Windows
 ) -> tuple[FloatArray, FloatArray]:
     """`window_motion` (K, 3), to rounding, and its derivative (K, 3, P) by the parameters."""
     twists, by_parameters = model.linearised(values, windows.inputs)
@@ -71,9 +81,7 @@ def linearised_window_motion(
     return motion, derivative
 
 
-def window_motion_jacobian(
-    model: KinematicModel, values: FloatArray, windows: Windows
-) -> FloatArray:
+def window_motion_jacobian(model: Moving, values: FloatArray, windows: Windows) -> FloatArray:
     """Derivative (K, 3, P) of `window_motion` by the parameters."""
     return linearised_window_motion(model, values, windows)[1]
 

@@ -1,10 +1,11 @@
 """A run as windows are cut from it: inputs that hold between stamps, and measured poses."""
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
-from odometry.arrays import AnyArray, FloatArray, IntArray
+from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.grounds import terrains_of
 from odometry.models.inputs import Inputs
 from odometry.run import Run
@@ -19,10 +20,11 @@ from odometry.windows.left_out import (
     POSE_GAP,
     UNKNOWN_TURNS,
 )
-from odometry.windows.measured_poses import measured_poses
+from odometry.windows.measured_poses import measured_poses, measured_positions
 from odometry.windows.spans import touched
 from odometry.windows.turns import counted_turns
 
+LEAST_POSITIONS = 4  # of a shape: three tell a bend and nothing of how it goes on
 POSE_PERIODS = 5.0  # poses farther apart than this many usual periods are a gap
 
 
@@ -76,19 +78,60 @@ def record_of(run: Run, config: WindowConfig) -> Record:
     WindowError
         If the run has no two measured poses within the time of its odometry.
     """
-    odometry_s = run.odometry.stamps_s
-    pose_s, poses, windows = measured_poses(run)
-    inside = (pose_s >= odometry_s[0]) & (pose_s <= odometry_s[-1])
-    if inside.sum() < 2:
+    stamps_s, poses, chains = _within_odometry(run, *measured_poses(run))
+    if len(stamps_s) < 2:
         raise WindowError(
-            f"{run.folder}: {int(inside.sum())} measured poses within the time of odometry.csv, "
-            "expected two or more: a window needs pose.csv"
+            f"{run.folder}: {len(stamps_s)} measured poses within the time of odometry.csv, "
+            "expected two or more: a window between poses needs x, y and yaw in pose.csv"
         )
-    pose_s, poses, windows = pose_s[inside], poses[inside], windows[inside]
+    turns = counted_turns(run, stamps_s, poses[:, 2])
+    poses = np.column_stack([poses[:, :2], turns.yaw_rad])
+    return _record(run, config, _Poses(stamps_s, poses, chains, turns.known))
+
+
+def position_record_of(run: Run, config: WindowConfig) -> Record:
+    """Merge odometry and measured positions of a run; yaw of its poses is NaN.
+
+    Raises
+    ------
+    WindowError
+        If the run has fewer than LEAST_POSITIONS positions within the time of its odometry.
+    """
+    stamps_s, positions, chains = _within_odometry(run, *measured_positions(run))
+    if len(stamps_s) < LEAST_POSITIONS:
+        raise WindowError(
+            f"{run.folder}: {len(stamps_s)} measured positions within the time of odometry.csv, "
+            f"expected {LEAST_POSITIONS} or more: the shape of a path needs x and y in pose.csv"
+        )
+    poses = np.column_stack([positions, np.full(len(positions), np.nan)])
+    known = np.ones(len(poses) - 1, dtype=np.bool_)
+    return _record(run, config, _Poses(stamps_s, poses, chains, known))
+
+
+def _within_odometry(
+    run: Run, stamps_s: FloatArray, places: FloatArray, chains: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    odometry_s = run.odometry.stamps_s
+    inside = (stamps_s >= odometry_s[0]) & (stamps_s <= odometry_s[-1])
+    return stamps_s[inside], places[inside], chains[inside]
+
+
+class _Poses(NamedTuple):
+    """Stamps (M,), poses (M, 3) and source windows (M,), and between which turns are known."""
+
+    stamps_s: FloatArray
+    poses: FloatArray
+    chains: FloatArray
+    known: BoolArray  # (M - 1,)
+
+
+def _record(run: Run, config: WindowConfig, measured: _Poses) -> Record:
+    pose_s, poses, chains, known = measured
+    odometry_s = run.odometry.stamps_s
     stamps_s = np.unique(np.concatenate([odometry_s, pose_s]))
     rows = np.searchsorted(odometry_s, stamps_s, side="right") - 1
-    turns = counted_turns(run, pose_s, poses[:, 2])
-    heading_rad = np.interp(odometry_s, pose_s, turns.yaw_rad)
+    yaw_rad = poses[:, 2]
+    heading_rad = None if np.isnan(yaw_rad).any() else np.interp(odometry_s, pose_s, yaw_rad)
     inputs = inputs_with_heading(run, heading_rad).rows(rows)
     inputs = replace(inputs, time_s=stamps_s - odometry_s[0])
     speed = np.abs(inputs.tread_speeds_m_s).mean(axis=1)
@@ -101,12 +144,11 @@ def record_of(run: Run, config: WindowConfig) -> Record:
         [
             touched(odometry_gaps(run).spans_s, pose_s[:-1], pose_s[1:]),
             np.diff(pose_s) > longest_s,
-            windows[1:] != windows[:-1],
+            chains[1:] != chains[:-1],
             changes[1:] != changes[:-1],
-            ~turns.known,
+            ~known,
         ],
         [ODOMETRY_GAP, POSE_GAP, CHANGE_OF_WINDOW, CHANGE_OF_TERRAIN, UNKNOWN_TURNS],
         "",
     ).astype(object)
-    poses = np.column_stack([poses[:, :2], turns.yaw_rad])
     return Record(run, stamps_s, inputs, travel_m, poses, samples, breaks, terrains[samples])

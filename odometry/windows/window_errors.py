@@ -7,6 +7,8 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.models.base import KinematicModel
 from odometry.windows.motion import window_motion
+from odometry.windows.stretch_motion import shape_errors
+from odometry.windows.stretches import Stretches
 from odometry.windows.windows import Windows
 
 
@@ -24,6 +26,15 @@ class WindowErrors:
 
     translation_per_m: FloatArray
     rotation_per_m: FloatArray
+
+
+def errors_over(
+    model: KinematicModel, values: FloatArray, windows: Windows | Stretches
+) -> WindowErrors:
+    """`window_errors`, or those of the shapes of stretches (`stretch_motion.shape_errors`)."""
+    if isinstance(windows, Stretches):
+        return WindowErrors(*shape_errors(model, values, windows))
+    return window_errors(model, values, windows)
 
 
 def window_errors(model: KinematicModel, values: FloatArray, windows: Windows) -> WindowErrors:

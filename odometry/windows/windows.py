@@ -61,6 +61,11 @@ class Windows:
     def __len__(self) -> int:
         return len(self.first)
 
+    def integrated(self, rates: FloatArray) -> FloatArray:
+        """Integral (K,) of rates (N,) over the samples of each window."""
+        sums = np.concatenate([[0.0], np.cumsum(rates * self.steps_s)])
+        return np.asarray(sums[self.last] - sums[self.first])
+
     def where(self, chosen: BoolArray) -> "Windows":
         """The chosen (K,) windows, with the samples that they need."""
         first, last = self.first[chosen], self.last[chosen]
@@ -103,6 +108,11 @@ def windows_of(runs: Sequence[Run], config: WindowConfig) -> Windows:
     ]
     if not sum(map(len, parts)):
         raise WindowError(_no_window(runs, config, summed(part.left_out for part in parts)))
+    return laid_together(parts)
+
+
+def laid_together(parts: Sequence[Windows]) -> Windows:
+    """Windows of several runs, samples and poses numbered on."""
     samples = np.cumsum([0, *(len(part.steps_s) for part in parts[:-1])])
     poses = np.cumsum([0, *(1 + part.last_pose.max(initial=-1) for part in parts[:-1])])
     return Windows(

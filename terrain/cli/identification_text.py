@@ -10,6 +10,7 @@ if TYPE_CHECKING:
 
 def print_identification(found: "Identification") -> None:
     """Print the report of each terrain; what to doubt goes to standard error."""
+    from odometry.identification.from_positions import how_told
     from odometry.identification.plausibility import notes
     from odometry.identification.report import report
     from odometry.identification.short_windows import short_windows
@@ -18,8 +19,13 @@ def print_identification(found: "Identification") -> None:
     for name, of_terrain in found.grounds.items():
         click.echo("\n".join(report(name, of_terrain)))
         short = short_windows(of_terrain.fit.windows, found.window_config)
-        doubts = (*notes(of_terrain.fit), *_assumed(of_terrain), *_no_gain(of_terrain), short)
-        for doubt in filter(None, doubts):
+        doubts = (
+            *notes(of_terrain.fit),
+            *_assumed(of_terrain),
+            *_no_gain(of_terrain),
+            short,
+        )
+        for doubt in filter(None, (*how_told(of_terrain.fit), *doubts)):
             click.echo(f"Note: {doubt}", err=True)
     if found.left_out:
         click.echo(f"Note: {words(found.left_out)}", err=True)

@@ -297,3 +297,21 @@ def test_a_picture_that_cannot_be_written_is_refused_first(
     assert name in messages
     assert not command.out.exists()
     assert (tmp_path / name).read_bytes() == b"a photograph"
+
+
+def test_positions_without_yaw_are_enough(command, curvy_run, tmp_path):
+    """The yaw column emptied: what was done instead is said, and what positions cannot tell."""
+    bare = shutil.copytree(curvy_run, tmp_path / "gnss")
+    header, *lines = (bare / "pose.csv").read_text().splitlines()
+    place = header.split(",").index("yaw")
+    rows = [line.split(",") for line in lines]
+    for row in rows:
+        row[place] = ""
+    (bare / "pose.csv").write_text("\n".join([header, *map(",".join, rows)]) + "\n")
+    code, output, messages = command(bare, "--starts", "1")
+    assert code == 0, messages
+    assert read_parameters(command.out).terrains["ground"].values == pytest.approx(TRUTH, abs=5e-3)
+    assert "stretches of gnss" in read_parameters(command.out).terrains["ground"].source
+    assert "times the noise found of positions" in output
+    assert "Note: positions without yaw: " in messages
+    assert "Note: [sensors] pose is not stated" in messages

@@ -1,0 +1,83 @@
+"""Runs of which positions without yaw were measured: how long stretches of them have to be."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from odometry.identification.config import SolverConfig
+from odometry.identification.fitted import Fit
+from odometry.identification.stretch_fit import fit_stretches
+from odometry.models.catalogue import MODELS
+from odometry.run import Robot, Run
+from odometry.windows.config import WindowConfig
+from odometry.windows.measured_poses import lacks_yaw
+from odometry.windows.stretch_noise import UNKNOWN_NOISE, StretchNoise
+from odometry.windows.stretches import MOST_POSITIONS, Stretches, stretches_of
+from odometry.windows.windows import Windows, windows_of
+
+LEAST_M, LEAST_BY_TREADS_M = 5.0, 10.0  # wheel travel; where treads alone tell turns, more
+MOST_M = 50.0
+DIRECTION_RAD = 0.02  # how well positions must tell the direction of a stretch
+LINE = np.sqrt(12 / MOST_POSITIONS)  # of n evenly spaced positions, by noise over length
+SIMPLE = "icr_symmetric"  # the model under which the noise is found
+
+
+def windows_or_stretches(runs: Sequence[Run], config: WindowConfig) -> Windows | Stretches:
+    """Windows between poses; stretches of positions where one of the runs lacks yaw.
+
+    Raises
+    ------
+    WindowError
+        See `windows_of` and `stretches_of`.
+    IdentificationError
+        If the noise of the positions cannot be told.
+    """
+    if not any(map(lacks_yaw, runs)):
+        return windows_of(runs, config)
+    return stretches_for(runs, config)
+
+
+def stretches_for(runs: Sequence[Run], config: WindowConfig) -> Stretches:
+    """Stretches so long that their positions tell in which direction they lie.
+
+    The noise of the positions is found from a simple model on stretches of LEAST_BY_TREADS_M. A
+    horizon of `config` that is longer than these stretches is taken instead.
+    """
+    tried = stretches_of(runs, max(LEAST_BY_TREADS_M, config.horizon_m), config)
+    length_m = max(length_for(noise_of(tried, runs[0].robot), tried), config.horizon_m)
+    return stretches_of(runs, length_m, config)
+
+
+def noise_of(of: Stretches, robot: Robot) -> StretchNoise:
+    """The noise of stretches, beside a simple model identified on them."""
+    fitted = fit_stretches(
+        MODELS[SIMPLE], of, robot, fixed={}, solver_config=SolverConfig(starts=2)
+    )
+    return fitted.noise or UNKNOWN_NOISE
+
+
+def length_for(noise: StretchNoise, of: Stretches) -> float:
+    """Wheel travel [m] over which positions of this noise tell a direction to DIRECTION_RAD."""
+    least_m = LEAST_BY_TREADS_M if of.turns_rad is None else LEAST_M
+    return float(np.clip(LINE * noise.position_m / DIRECTION_RAD, least_m, MOST_M))
+
+
+def how_told(fit: Fit) -> tuple[str, ...]:
+    """Sentences for a reader: what a fit to positions rests on, and what these cannot tell."""
+    of, noise = fit.windows, fit.noise
+    if noise is None or not isinstance(of, Stretches):
+        return ()
+    turns = "the treads alone" if of.turns_rad is None else "the gyroscope"
+    told = (
+        f"positions without yaw: the shapes of {len(of)} stretches of {of.travel_m.mean():.1f} m "
+        f"count, for positions with a noise of {noise.position_m:.2g} m; between positions the "
+        f"yaw is carried by {turns}"
+    )
+    if of.arm_stated:
+        return (told,)
+    return (
+        told,
+        "[sensors] pose is not stated, so the antenna is taken to be at the robot's origin; an "
+        "antenna ahead of it looks exactly like a smaller x_icr, one to the left like smaller "
+        "y_left and y_right",
+    )
