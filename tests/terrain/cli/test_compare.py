@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from odometry.errors import OutputError
 from odometry.io.run_folder import write_run_folder
 from terrain.cli.compare import compare
 
@@ -140,5 +141,5 @@ def test_an_unknown_model_is_a_usage_error(runs, tmp_path):
 
 def test_a_run_folder_is_no_place_for_results(runs):
     answer = invoke(*runs, "--out", runs[1])
-    assert answer.exit_code == 2
-    assert "choose another folder" in answer.output
+    with pytest.raises(OutputError, match="choose another folder"):
+        raise answer.exception

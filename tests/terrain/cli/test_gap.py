@@ -148,7 +148,7 @@ def test_results_are_not_written_into_a_run_folder(command, case, which):
     folder = getattr(case, which)
     before = sorted(folder.iterdir())
     code, _, messages = command(out=folder)
-    assert code == 2
+    assert code == 1
     assert "choose another folder" in messages
     assert sorted(folder.iterdir()) == before
 
