@@ -19,6 +19,7 @@ from odometry.outputs.manifest import check_finished
 from odometry.parameters import write_parameters
 from odometry.trajectory import Trajectory
 from terrain.errors import ResultError
+from terrain.odometer_uncertainty import covariance_columns, uncertainty_table
 from terrain.run_odometry import RunResult
 from terrain.switch_delay import switch_delays
 from terrain.verdicts import remarks
@@ -55,7 +56,8 @@ def write_results(
     out = Path(out)
     replay = result.replay
     odometer, estimate = replay.odometer(), replay.trajectory()
-    write_csv_table(out / "odometer.csv", _pose_columns(odometer))
+    covariances = covariance_columns(result.uncertainty)
+    write_csv_table(out / "odometer.csv", _pose_columns(odometer) | covariances)
     means, sigmas = replay.means.T, replay.sigmas.T
     write_csv_table(
         out / "estimate.csv",
@@ -100,6 +102,7 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "off_at_the_end_m": result.off_at_the_end_m,
         "remarks": remarks(result.scores, result.off_at_the_end_m),
         "withheld": _withheld(result),
+        "odometer_uncertainty": uncertainty_table(result.uncertainty),
         "switches": _switches(result),
         "missed_changes": _missed_changes(result),
         "sightings": sighting_counts(result),

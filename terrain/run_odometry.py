@@ -9,6 +9,7 @@ from odometry.effects.measured import robot_run, shared_measurement
 from odometry.errors import ParameterError, RunFolderError
 from odometry.estimation.corrections import corrections_of
 from odometry.estimation.icr_ekf import IcrEkf
+from odometry.evaluation.odometer_uncertainty import OdometerUncertainty, odometer_uncertainty
 from odometry.evaluation.relative import position_errors
 from odometry.evaluation.score import Score, reference_of, score
 from odometry.evaluation.withheld import TerrainsOf, withhold
@@ -49,6 +50,8 @@ class RunResult:
         there is one), odometer, and estimate where `judged` holds it.
     learned : ParameterSet
         `parameters` with what the filter learned in place of what it visited.
+    uncertainty : OdometerUncertainty
+        Covariance of the odometer along the run.
     second : SecondReplay or None
         The run replayed without the poses that judge the estimate; None where there is a truth,
         or too few poses.
@@ -64,6 +67,7 @@ class RunResult:
     reference: Trajectory | None
     scores: dict[str, Score]
     learned: ParameterSet
+    uncertainty: OdometerUncertainty
     second: SecondReplay | None = None
 
     @property
@@ -168,6 +172,7 @@ def run_odometry(
             for name, of in judged.items()
         },
         learned_parameters(parameters, result, run.name),
+        odometer_uncertainty(run, result, reference if reference_name == "truth" else None),
         second,
     )
 

@@ -27,6 +27,7 @@ from terrain.report.words import (
     notes,
     settings_table,
     switch_table,
+    uncertainty_grid,
 )
 from terrain.run_odometry import RunResult
 from terrain.switch_delay import true_stretches
@@ -69,6 +70,7 @@ def write_report(
     tints = _tints(result)
     sections = [
         Section("Errors", _errors(lines, folder)),
+        Section("Uncertainty of the odometer", _uncertainty(result)),
         Section("Path", [path_picture(lines, tints, folder)]),
         Section("Terrain", _terrain(result, tints, folder)),
         Section("Centres of rotation", [icr_picture(lines, folder), icr_table(result)]),
@@ -90,6 +92,11 @@ def _errors(lines: ReportLines, folder: Path) -> list[Block]:
         return []
     pictures = (position_picture(lines, folder), distribution_picture(lines, folder))
     return [error_table(lines, scores), *(picture for picture in pictures if picture)]
+
+
+def _uncertainty(result: RunResult) -> list[Block]:
+    grid = uncertainty_grid(result)
+    return [] if grid is None else [grid]
 
 
 def _terrain(result: RunResult, tints: Tints, folder: Path) -> list[Block]:

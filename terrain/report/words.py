@@ -5,8 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from odometry.evaluation.open_loop_consistency import OpenLoopConsistency
 from odometry.evaluation.score import Score
 from odometry.report.html import Grid
+from terrain.odometer_uncertainty import verdict
 from terrain.report.lines import (
     GYROSCOPE,
     ICR_COORDINATES,
@@ -87,6 +89,25 @@ def error_table(lines: ReportLines, scores: Mapping[str, Score]) -> Grid:
     )
 
 
+def uncertainty_grid(result: RunResult) -> Grid | None:
+    """Standard deviations of the odometer by distance, and whether they are right."""
+    of = result.uncertainty
+    checks = {check.distance_m: check for check in of.checks}
+    rows = [
+        (
+            f"{distance_m:g}",
+            *(f"{sigma:.3f}" for sigma in (x, y)),
+            f"{np.degrees(yaw):.2f}",
+            *(_checked(checks[distance_m]) if distance_m in checks else [NOTHING] * 3),
+        )
+        for distance_m, (x, y, yaw) in of.sigmas.items()
+    ]
+    if not rows:
+        return None
+    header = ("after [m]", "sigma x [m]", "sigma y [m]", "sigma yaw [°]", "NEES", "95% bounds")
+    return Grid((*header, "covariance is"), rows, f"The odometer's covariance: {of.source}.")
+
+
 def switch_table(result: RunResult) -> Grid | None:
     """Every change of the terrain in force, then the true changes that were missed."""
     delays = switch_delays(result)
@@ -162,6 +183,16 @@ def notes(lines: ReportLines) -> list[str]:
             "Errors are against pose.csv, whose own noise is in them. The filter has seen these "
             "poses; the odometer's ICRs were learned from those that came before each moment."
         )
+    if result.uncertainty.checks:
+        found.append(
+            "NEES is the odometer's squared error over its covariance, of motions over a distance "
+            "anywhere in the run: 3 is expected of x, y and yaw. "
+            + (
+                "It is taken against the truth."
+                if result.reference_name == "truth"
+                else "Each half of the run is judged by the noise measured on the other half."
+            )
+        )
     if result.second is not None:
         found.append(f"The estimate is judged by {judged_by(result.second)}")
     if result.reference_name == "truth":
@@ -185,6 +216,11 @@ def _gyroscope_notes(result: RunResult) -> list[str]:
         "The gyroscope row drives the mean of both tread speeds along the heading of the "
         "gyroscope as recorded: nothing is fitted.",
     ]
+
+
+def _checked(check: OpenLoopConsistency) -> tuple[str, str, str]:
+    low, high = check.bounds
+    return f"{check.mean:.1f}", f"{low:.1f} to {high:.1f}", verdict(check)
 
 
 def _icrs(parameters: Any) -> list[str]:

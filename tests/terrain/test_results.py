@@ -72,7 +72,12 @@ def test_every_promised_file_is_written_and_nothing_else(across_result, curvy_re
 
 
 def test_columns_are_those_of_the_format(across_out):
-    assert columns(across_out / "odometer.csv")[0] == POSE
+    covariances = ["covariance_x_y", "covariance_x_yaw", "covariance_y_yaw"]
+    assert columns(across_out / "odometer.csv")[0] == [
+        *POSE,
+        *("sigma_x", "sigma_y", "sigma_yaw"),
+        *covariances,
+    ]
     sigmas = [f"sigma_{name}" for name in STATE[1:]]
     assert columns(across_out / "estimate.csv")[0] == STATE + sigmas
     assert columns(across_out / "terrain.csv")[0][:5] == TERRAIN
@@ -177,6 +182,21 @@ def test_the_errors_of_result_json_are_those_of_the_tables(curvy_out, curvy_run)
     assert content["off_at_the_end_m"]["odometer"] == pytest.approx(distances[-1], abs=1e-6)
     assert content["filter"]["poses"] == len(pose) - 1  # the first starts the filter
     assert content["duration_s"] == pytest.approx(12.0)
+
+
+def test_the_covariance_of_the_odometer_is_in_its_table_and_by_distance(curvy_out, curvy_result):
+    names = ["sigma_x", "sigma_y", "sigma_yaw", "covariance_x_y", "covariance_x_yaw"]
+    found = numbers(curvy_out / "odometer.csv", [*names, "covariance_y_yaw"])
+    matrices = curvy_result.uncertainty.covariances
+    np.testing.assert_allclose(found[:, 0] ** 2, matrices[:, 0, 0], atol=1e-8)
+    np.testing.assert_allclose(found[:, 5], matrices[:, 1, 2], atol=1e-8)
+    content = strict((curvy_out / "result.json").read_text())["odometer_uncertainty"]
+    (after,) = content["after"]  # the drive is of 6 m
+    assert after["distance_m"] == 5.0
+    row = np.searchsorted(curvy_result.run.wheel_travel_m, 5.0)
+    assert after["sigma_yaw_rad"] == pytest.approx(found[row, 2], rel=0.05)
+    assert "too short" in content["source"]
+    assert content["nees"] == []
 
 
 @pytest.mark.parametrize("poses", [True, False])

@@ -1,0 +1,121 @@
+"""The noise of an open-loop odometer, measured between poses of its run."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import nnls
+
+from odometry.arrays import FloatArray, IntArray
+from odometry.evaluation.horizons import spatial_horizons
+from odometry.evaluation.open_loop_errors import COMPONENTS, SOURCES, OpenLoopPath
+from odometry.geometry import se2
+from odometry.geometry.angles import wrap
+
+LENGTHS_M = (2.0, 5.0, 10.0, 20.0, 50.0)  # wheel travel of the stretches
+STRETCHES_IN_RUN = 4  # a length is measured where so many lie end to end
+STRIDE = 0.25  # from start to start, in lengths
+FEWEST = 8  # stretches of the shortest length
+RESOLUTION = np.array([1e-6, 1e-8])  # variances below which no pose is known: 1 mm, 0.1 mrad
+
+
+@dataclass(frozen=True)
+class OdometerNoise:
+    """Variances of an odometer's errors.
+
+    Attributes
+    ----------
+    variances : (12,)
+        By `SOURCES`: of random errors per metre of wheel travel and per radian turned, of
+        constant ones per square metre and per square radian; m^2 or rad^2.
+    reference : (2,)
+        Of the poses that it was measured against: position [m^2] and yaw [rad^2].
+    stretches : int
+        How many it was measured on.
+    longest_m : float
+        The greatest length of these.
+    """
+
+    variances: FloatArray
+    reference: FloatArray
+    stretches: int
+    longest_m: float
+
+    def without_reference(self) -> "OdometerNoise":
+        """The same, to be compared with poses that have no noise."""
+        return replace(self, reference=RESOLUTION)
+
+
+USUAL_NOISE = OdometerNoise(
+    np.square([0.24, 0.22, 0.12, 0.09, 0.002, 0.08, 0.07, 0.14, 0.05, 0.21, 0.003, 0.013]),
+    np.square([0.14, 0.075]),
+    stretches=0,
+    longest_m=0.0,
+)  # mean variances of the 19 recordings of data/motion by which settings are chosen
+
+
+def motion_errors(
+    poses: FloatArray, true_poses: FloatArray, first: IntArray, last: IntArray
+) -> FloatArray:
+    """Motions (K, 3) from first to last poses less the true ones, both seen from the first."""
+    ours, true = (se2.between(each[first], each[last]) for each in (poses, true_poses))
+    errors = ours - true
+    errors[:, 2] = wrap(errors[:, 2])
+    return np.asarray(errors)
+
+
+def measured_noise(
+    path: OpenLoopPath, rows: IntArray, reference: FloatArray
+) -> OdometerNoise | None:
+    """Find the variances by which an odometer errs as it does.
+
+    Squared errors of stretches of several lengths are the sum of what each source adds, weighed
+    alike for each length: least squares over variances of 0 or more (the method of moments for
+    variance components; Rao and Kleffe 1988, Estimation of Variance Components, 1.3).
+
+    Parameters
+    ----------
+    path : OpenLoopPath
+    rows : (M,)
+        Poses of the path at which there is a reference.
+    reference : (M, 3)
+
+    Returns
+    -------
+    OdometerNoise or None
+        None where there are too few stretches.
+    """
+    if len(rows) < 2:
+        return None
+    travelled = path.travel_m[rows]
+    squares, units, stretches, longest_m = [], [], 0, 0.0
+    for length_m in LENGTHS_M:
+        if travelled[-1] - travelled[0] < STRETCHES_IN_RUN * length_m:
+            break
+        first, last = spatial_horizons(travelled, length_m, STRIDE * length_m).T
+        if len(first) < FEWEST:
+            break
+        errors = np.square(motion_errors(path.poses[rows], reference, first, last))
+        scale = (errors.mean(axis=0) + RESOLUTION[[0, 0, 1]]) * np.sqrt(len(first))
+        by_source = path.unit_covariances(rows[first], rows[last])
+        diagonal = np.swapaxes(np.diagonal(by_source, axis1=2, axis2=3), 1, 2)
+        unit = np.concatenate([diagonal, _by_reference(reference, first, last)], axis=2)
+        squares.append((errors / scale).ravel())
+        units.append((unit / scale[:, None]).reshape(-1, unit.shape[-1]))
+        stretches, longest_m = stretches + len(first), length_m
+    if not stretches:
+        return None
+    table = np.concatenate(units)
+    size = np.maximum(np.linalg.norm(table, axis=0), np.finfo(float).tiny)
+    found = nnls(table / size, np.concatenate(squares))[0] / size
+    noise = np.maximum(found[len(SOURCES) :], RESOLUTION)
+    return OdometerNoise(found[: len(SOURCES)], noise, stretches, longest_m)
+
+
+def _by_reference(reference: FloatArray, first: IntArray, last: IntArray) -> FloatArray:
+    """Variances (K, 3, 2) of a motion's x, y, yaw by those of position and yaw at both ends."""
+    moved = se2.between(reference[first], reference[last])
+    found = np.zeros((len(first), len(COMPONENTS), 2))
+    found[:, :2, 0] = 2.0
+    found[:, 0, 1], found[:, 1, 1] = moved[:, 1] ** 2, moved[:, 0] ** 2  # the first yaw is a lever
+    found[:, 2, 1] = 2.0
+    return found

@@ -1,0 +1,136 @@
+"""How far the open-loop odometer of a replay may be off, as measured on its own run."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import FloatArray, IntArray
+from odometry.evaluation.odometer_noise import USUAL_NOISE, OdometerNoise, measured_noise
+from odometry.evaluation.open_loop_consistency import (
+    DISTANCES_M,
+    OpenLoopConsistency,
+    consistency_by_halves,
+    open_loop_consistency,
+)
+from odometry.evaluation.open_loop_errors import OpenLoopPath
+from odometry.replay import Replay
+from odometry.run import Run
+from odometry.trajectory import Trajectory
+
+
+@dataclass(frozen=True)
+class OdometerUncertainty:
+    """Covariance of an odometer, where it comes from, and whether it was found right.
+
+    Attributes
+    ----------
+    covariances : (N, 3, 3)
+        Of x, y [m], yaw [rad] in the frame of the odometer, at each pose; the first is that of
+        the pose at which the odometer starts.
+    sigmas : dict of float to (3,)
+        Standard deviations after so many metres of wheel travel.
+    noise : OdometerNoise or None
+        None where the filter took in no pose: then the covariance is the filter's own.
+    source : str
+        Where the covariance comes from, in words.
+    checks : tuple of OpenLoopConsistency
+        NEES by distance; empty where nothing can judge.
+    """
+
+    covariances: FloatArray
+    sigmas: dict[float, FloatArray]
+    noise: OdometerNoise | None
+    source: str
+    checks: tuple[OpenLoopConsistency, ...]
+
+
+def odometer_uncertainty(
+    run: Run, replay: Replay, truth: Trajectory | None = None
+) -> OdometerUncertainty:
+    """The covariance of the odometer along a replay, and its check.
+
+    The noise of the odometer is measured between the poses that the filter accepted. It is
+    checked against the truth where there is one, else each half of the run against its poses by
+    the noise of the other half.
+
+    Parameters
+    ----------
+    run : Run
+        That was replayed.
+    replay : Replay
+    truth : Trajectory, optional
+        Of truth.csv; it checks, and nothing is measured by it.
+    """
+    path = path_of(replay)
+    rows, poses = accepted_poses(run, replay)
+    if not len(rows):
+        covariances = np.stack([estimate.covariance[:3, :3] for estimate in replay.estimates])
+        return OdometerUncertainty(
+            covariances,
+            _after(path, covariances),
+            None,
+            "that of the filter, which took in no pose: its noise settings and what is known of "
+            "the parameters",
+            (),
+        )
+    noise = measured_noise(path, rows, poses)
+    if noise is None:
+        noise = USUAL_NOISE
+        source = "usual values of other recordings: the run is too short to measure its own"
+    else:
+        source = (
+            f"measured on {noise.stretches} stretches of up to {noise.longest_m:g} m between the "
+            "poses of the run"
+        )
+    covariances = path.carried(replay.estimates[0].covariance[:3, :3], noise.variances)
+    if truth is not None:
+        checks = open_loop_consistency(path, *_true_poses(replay, truth), noise.without_reference())
+    else:
+        checks = consistency_by_halves(path, rows, poses)
+    return OdometerUncertainty(covariances, _after(path, covariances), noise, source, tuple(checks))
+
+
+def path_of(replay: Replay) -> OpenLoopPath:
+    """The odometer of a replay with the travel of its treads."""
+    speeds = np.nan_to_num(replay.tread_speeds_m_s)[:-1]
+    steps_s = np.diff(replay.stamps_s)
+    travel, signed = (
+        np.append(0.0, np.cumsum(each.mean(axis=1) * steps_s)) for each in (np.abs(speeds), speeds)
+    )
+    return OpenLoopPath(replay.odometer().poses, travel, signed)
+
+
+def accepted_poses(run: Run, replay: Replay) -> tuple[IntArray, FloatArray]:
+    """Frames (M,) of a replay whose pose the filter accepted, and these poses (M, 3).
+
+    A yaw that was not measured is the filter's.
+    """
+    accepted = np.array(
+        [e.innovation is not None and e.innovation.accepted for e in replay.estimates]
+    )
+    if run.pose is None or not accepted.any():
+        return np.empty(0, dtype=np.int64), np.empty((0, 3))
+    rows = np.flatnonzero(accepted)
+    rows = rows[np.isin(replay.stamps_s[rows], run.pose.stamps_s)]
+    at = np.searchsorted(run.pose.stamps_s, replay.stamps_s[rows])
+    poses = run.pose.stack("x", "y", "yaw")[at]
+    poses[:, 2] = np.where(np.isfinite(poses[:, 2]), poses[:, 2], replay.means[rows, 2])
+    placed = np.isfinite(poses).all(axis=1)
+    return rows[placed], poses[placed]
+
+
+def _true_poses(replay: Replay, truth: Trajectory) -> tuple[IntArray, FloatArray]:
+    rows = np.flatnonzero(truth.covers(replay.stamps_s))
+    poses = truth.at(replay.stamps_s[rows]).poses
+    known = np.isfinite(poses).all(axis=1)
+    return rows[known], poses[known]
+
+
+def _after(path: OpenLoopPath, covariances: FloatArray) -> dict[float, FloatArray]:
+    """Standard deviations (3,) of x, y, yaw after each distance that the path holds."""
+    rows = {distance_m: np.searchsorted(path.travel_m, distance_m) for distance_m in DISTANCES_M}
+    return {
+        distance_m: np.sqrt(np.diag(covariances[row]))
+        for distance_m, row in rows.items()
+        if row < len(covariances)
+    }

@@ -1,0 +1,47 @@
+"""The odometer's covariance in tables and words."""
+
+import numpy as np
+import pytest
+
+from odometry.evaluation.odometer_noise import USUAL_NOISE
+from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
+from odometry.evaluation.open_loop_consistency import OpenLoopConsistency
+from terrain.odometer_uncertainty import covariance_columns, uncertainty_table, verdict
+
+
+def check(mean):
+    return OpenLoopConsistency(5.0, 40, 10, mean, np.array([1.7, 4.7]))
+
+
+@pytest.mark.parametrize(
+    ("mean", "word"), [(3.0, "consistent"), (9.0, "too small"), (0.5, "too large")]
+)
+def test_a_verdict_says_which_way_a_covariance_errs(mean, word):
+    assert verdict(check(mean)) == word
+
+
+def test_columns_hold_deviations_and_covariances():
+    matrix = np.array([[4.0, 0.1, 0.2], [0.1, 9.0, 0.3], [0.2, 0.3, 0.25]])
+    of = OdometerUncertainty(matrix[None], {}, None, "", ())
+    found = {name: float(column[0]) for name, column in covariance_columns(of).items()}
+    assert found == {
+        "sigma_x": 2.0,
+        "sigma_y": 3.0,
+        "sigma_yaw": 0.5,
+        "covariance_x_y": 0.1,
+        "covariance_x_yaw": 0.2,
+        "covariance_y_yaw": 0.3,
+    }
+
+
+def test_the_table_names_its_sources_and_what_was_found():
+    of = OdometerUncertainty(
+        np.eye(3)[None], {5.0: np.array([0.1, 0.2, 0.03])}, USUAL_NOISE, "usual", (check(3.0),)
+    )
+    table = uncertainty_table(of)
+    assert table["after"] == [
+        {"distance_m": 5.0, "sigma_x_m": 0.1, "sigma_y_m": 0.2, "sigma_yaw_rad": 0.03}
+    ]
+    assert table["sigma_by_source"]["random_x_per_m"] == pytest.approx(0.24)
+    (nees,) = table["nees"]
+    assert (nees["mean"], nees["expected"], nees["verdict"]) == (3.0, 3, "consistent")
