@@ -1,17 +1,26 @@
 """Where the robot will be: the piece of ground to classify (Chen 2023, 3.2.2)."""
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.config import require_positive
+from odometry.config import require, require_positive
 from odometry.geometry import se2
 from odometry.run import Robot
 from terrain.camera import Camera
+from terrain.rectangle import Rectangle
+from terrain.shown import is_shown, largest_shown
 
-STEPS = 400  # places tried along the predicted motion
-SIDE_POINTS = 8  # points tried on each side of the rectangle
+__all__ = ["Rectangle", "Region", "RegionConfig", "predict_region"]
+
+STEPS = 300  # places tried along the predicted motion
+POINTS = 7  # along each side of the footprint; odd, so that its middle is one of them
+GRADES = 4  # of the share in sight, from all of the footprint to the least share
+TRIES = 10  # places of a grade that are tried for one that can be classified
+COARSE = "the image is too coarse there"
 
 
 @dataclass(frozen=True)
@@ -23,7 +32,10 @@ class RegionConfig:
     footprint_scale : float
         The footprint is made larger by this factor (Chen 2023: 1.2).
     ahead_s : float
-        How far ahead in time; 0 means the smallest for which the region lies in the image.
+        How far ahead in time; 0 means the smallest for which all of the footprint is in sight,
+        or else as much of it as there is in view.
+    least_share : float
+        There is no region unless the image shows the middle of the footprint and so much of it.
     most_ahead_s, most_ahead_lengths : float
         Limits of that search, in time and in robot lengths of wheel travel.
     coarsest : float
@@ -35,6 +47,7 @@ class RegionConfig:
 
     footprint_scale: float = 1.2
     ahead_s: float = 0.0
+    least_share: float = 0.4
     most_ahead_s: float = 60.0
     most_ahead_lengths: float = 6.0
     coarsest: float = 2.5
@@ -44,27 +57,8 @@ class RegionConfig:
         require_positive(self, "footprint_scale", "most_ahead_s", "most_ahead_lengths", "coarsest")
         if self.ahead_s != 0:
             require_positive(self, "ahead_s")
-
-
-@dataclass(frozen=True)
-class Rectangle:
-    """A rectangle on the ground, its sides along the axes of the robot frame now [m]."""
-
-    x_min: float
-    x_max: float
-    y_min: float
-    y_max: float
-
-    @property
-    def corners(self) -> FloatArray:
-        """Corners (4, 2), far left first, clockwise as seen in the image."""
-        return np.array(
-            [
-                [self.x_max, self.y_max],
-                [self.x_max, self.y_min],
-                [self.x_min, self.y_min],
-                [self.x_min, self.y_max],
-            ]
+        require(
+            0 < self.least_share <= 1, f"least_share = {self.least_share}, expected above 0, to 1"
         )
 
 
@@ -74,10 +68,9 @@ class Region:
 
     Attributes
     ----------
-    rectangle : Rectangle
-        Round the footprint.
-    tread_rectangles : (Rectangle, Rectangle)
-        Round its left and its right half.
+    rectangles : tuple of Rectangle
+        The ground to classify: the largest rectangle that the image shows of the rectangle
+        round the footprint; with `per_tread`, of those round its left and its right half.
     ahead_s : float
     distance_ahead_m : float
         Wheel travel until the robot is there.
@@ -85,17 +78,58 @@ class Region:
         The robot then, in the robot frame now.
     """
 
-    rectangle: Rectangle
-    tread_rectangles: tuple[Rectangle, Rectangle]
+    rectangles: tuple[Rectangle, ...]
     ahead_s: float
     distance_ahead_m: float
     pose_ahead: FloatArray
 
+    @property
+    def place(self) -> FloatArray:
+        """The middle (2,) of the ground to classify, in the robot frame now [m]."""
+        return self.rectangle.middle
+
+    @property
+    def rectangle(self) -> Rectangle:
+        """Round all of `rectangles`."""
+        corners = np.concatenate([rectangle.corners for rectangle in self.rectangles])
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        return Rectangle(float(low[0]), float(high[0]), float(low[1]), float(high[1]))
+
+
+@dataclass(frozen=True)
+class _Part:
+    """The footprint or one half of it: its middle (2,) in the robot frame, length and width."""
+
+    middle_m: FloatArray
+    length_m: float
+    width_m: float
+
+    def bounds(self, pose: FloatArray) -> Rectangle:
+        """The rectangle round it at a pose (3,), along the axes of the robot frame now (eq. 22)."""
+        sine, cosine = abs(np.sin(pose[2])), abs(np.cos(pose[2]))
+        along_x = self.width_m * sine + self.length_m * cosine  # H_p
+        along_y = self.width_m * cosine + self.length_m * sine  # L_p
+        middle = se2.transform(pose, self.middle_m)
+        return Rectangle.round(middle, np.array([along_x, along_y]) / 2)
+
+    def points(self) -> FloatArray:
+        """Points spread over it (POINTS**2, 2), corners included, in the robot frame."""
+        share = np.linspace(-0.5, 0.5, POINTS)
+        points = np.stack(np.meshgrid(share * self.length_m, share * self.width_m), axis=-1)
+        return np.asarray(self.middle_m + points.reshape(-1, 2))
+
 
 def predict_region(
-    robot: Robot, camera: Camera, twist: FloatArray, wheel_speed_m_s: float, config: RegionConfig
+    robot: Robot,
+    camera: Camera,
+    twist: FloatArray,
+    wheel_speed_m_s: float,
+    config: RegionConfig,
+    *,
+    coarsest_m: float = inf,
+    unsuited: Callable[[Rectangle], str] = lambda _: "",
 ) -> Region | str:
-    """Carry the footprint ahead, put a rectangle round it, and see that the image holds it.
+    """Carry the footprint ahead until it is in sight, and keep of it what the image shows.
 
     Parameters
     ----------
@@ -103,10 +137,14 @@ def predict_region(
         Length and width default to the track width.
     camera : Camera
     twist : (3,)
-        Body twist by the current ICRs and the commanded tread speeds.
+        Body twist that is believed at the commanded tread speeds.
     wheel_speed_m_s : float
         Mean of |v_left| and |v_right|.
     config : RegionConfig
+    coarsest_m : float
+        Ground of which a pixel covers more than this is as good as out of sight.
+    unsuited : callable
+        Why a rectangle cannot be classified, or ""; the region is the first that can.
 
     Returns
     -------
@@ -115,63 +153,59 @@ def predict_region(
     """
     if wheel_speed_m_s <= 0:
         return "the robot stands"
-    length = robot.length or robot.track_width
-    latest_s = min(config.most_ahead_s, config.most_ahead_lengths * length / wheel_speed_m_s)
-    if config.ahead_s > 0:
-        ahead_s = np.array([config.ahead_s])
-    else:
-        ahead_s = np.linspace(0.0, latest_s, STEPS)
+    ahead_s = _times_ahead_s(robot, wheel_speed_m_s, config)
     poses = se2.exp(twist * ahead_s[:, None])
-    footprint = _footprint(robot, config.footprint_scale)
-    half_sizes = _half_sizes(footprint, poses[:, 2])
-    low, high = poses[:, :2] - half_sizes, poses[:, :2] + half_sizes
-    seen = camera.in_image(camera.ground_to_pixels(_outline(low, high))).all(axis=1)
-    if not seen.any():
-        return "the region lies outside the image"
-    first = int(seen.argmax())
-    time_s = float(ahead_s[first])
-    return Region(
-        _rectangle(poses[first, :2], half_sizes[first]),
-        _tread_rectangles(poses[first], footprint),
-        time_s,
-        wheel_speed_m_s * time_s,
-        poses[first],
-    )
+    parts = _parts(robot, config)
+    shares = _shares(camera, poses, parts, coarsest_m)
+    reasons = []
+    for place in _places(shares, config.least_share):
+        rectangles = [
+            largest_shown(camera, part.bounds(poses[place]), coarsest_m) for part in parts
+        ]
+        reasons = [reason for reason in map(unsuited, rectangles) if reason]
+        if not reasons:
+            time_s = float(ahead_s[place])
+            return Region(tuple(rectangles), time_s, wheel_speed_m_s * time_s, poses[place])
+    if reasons:
+        return reasons[0]
+    in_image = _shares(camera, poses, parts) >= config.least_share
+    return COARSE if in_image.any() else "the region lies outside the image"
 
 
-def _footprint(robot: Robot, scale: float) -> tuple[float, float]:
-    """Length W_1 and width B_1 of the enlarged footprint."""
-    return scale * (robot.length or robot.track_width), scale * (robot.width or robot.track_width)
+def _times_ahead_s(robot: Robot, wheel_speed_m_s: float, config: RegionConfig) -> FloatArray:
+    if config.ahead_s > 0:
+        return np.array([config.ahead_s])
+    length_m = robot.length or robot.track_width
+    latest_s = min(config.most_ahead_s, config.most_ahead_lengths * length_m / wheel_speed_m_s)
+    return np.linspace(0.0, latest_s, STEPS)
 
 
-def _rectangle(centre: FloatArray, half_size: FloatArray) -> Rectangle:
-    (x_min, y_min), (x_max, y_max) = centre - half_size, centre + half_size
-    return Rectangle(float(x_min), float(x_max), float(y_min), float(y_max))
+def _parts(robot: Robot, config: RegionConfig) -> tuple[_Part, ...]:
+    """The enlarged footprint, of length W_1 and width B_1, or its left and its right half."""
+    length_m = config.footprint_scale * (robot.length or robot.track_width)
+    width_m = config.footprint_scale * (robot.width or robot.track_width)
+    if not config.per_tread:
+        return (_Part(np.zeros(2), length_m, width_m),)
+    aside = np.array([0.0, width_m / 4])
+    return _Part(aside, length_m, width_m / 2), _Part(-aside, length_m, width_m / 2)
 
 
-def _tread_rectangles(
-    pose: FloatArray, footprint: tuple[float, float]
-) -> tuple[Rectangle, Rectangle]:
-    """Rectangles round the left and the right half of the footprint at a pose (3,)."""
-    length, width = footprint
-    half_size = _half_sizes((length, width / 2), pose[2])
-    left, right = se2.transform(pose, np.array([[0.0, width / 4], [0.0, -width / 4]]))
-    return _rectangle(left, half_size), _rectangle(right, half_size)
+def _shares(
+    camera: Camera, poses: FloatArray, parts: tuple[_Part, ...], coarsest_m: float = inf
+) -> FloatArray:
+    """The share (N,) of the parts that is in sight at poses (N, 3), 0 where a middle is not.
+
+    Of several parts that of which the least is in sight.
+    """
+    shares = np.ones(len(poses))
+    for part in parts:
+        shown = is_shown(camera, se2.transform(poses[:, None], part.points()), coarsest_m)
+        shares = np.minimum(shares, shown[:, POINTS**2 // 2] * shown.mean(axis=1))
+    return shares
 
 
-def _half_sizes(footprint: tuple[float, float], yaw: FloatArray) -> FloatArray:
-    """Half the sides (..., 2) of the bounding rectangle along x and y (eq. 22)."""
-    length, width = footprint
-    sine, cosine = np.abs(np.sin(yaw)), np.abs(np.cos(yaw))
-    along_x = width * sine + length * cosine  # H_p
-    along_y = width * cosine + length * sine  # L_p
-    return np.stack([along_x, along_y], axis=-1) / 2
-
-
-def _outline(low: FloatArray, high: FloatArray) -> FloatArray:
-    """Points (N, 4 * SIDE_POINTS, 2) round each rectangle: a curved lens makes sides bulge."""
-    rising = np.arange(SIDE_POINTS) / SIDE_POINTS
-    start, end = np.zeros(SIDE_POINTS), np.ones(SIDE_POINTS)
-    x = np.concatenate([rising, end, 1 - rising, start])
-    y = np.concatenate([start, rising, end, 1 - rising])
-    return np.asarray(low[:, None] + np.stack([x, y], axis=-1) * (high - low)[:, None])
+def _places(shares: FloatArray, least_share: float) -> Iterator[int]:
+    """Places to try: the first ones where all is in sight, then where less is, to the least."""
+    for share in np.linspace(1.0, least_share, GRADES):
+        places = np.flatnonzero(shares >= share - 1e-9)
+        yield from places[:: max(1, -(-len(places) // TRIES))]

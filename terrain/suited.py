@@ -1,10 +1,12 @@
 """Whether a rectangle of the ground can be compared with the training patches."""
 
+import math
+
 import numpy as np
 
 from terrain.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
-from terrain.region import Rectangle
+from terrain.region import COARSE, Rectangle
 from terrain.warp import ground_sampling_m, view_shape
 
 
@@ -30,5 +32,11 @@ def unsuited(
     if min(view_shape(rectangle, scale)) < size_px:
         return "the region is smaller than a training patch"
     if ground_sampling_m(camera, rectangle)[1] > coarsest * scale:
-        return "the image is too coarse there"
+        return COARSE
     return ""
+
+
+def coarsest_m(classifier: TerrainClassifier, coarsest: float) -> float:
+    """How much ground a pixel may cover at the most for a classifier [m]; see `RegionConfig`."""
+    scale = classifier.metres_per_pixel
+    return math.inf if scale is None else coarsest * scale

@@ -1,6 +1,6 @@
 """The watcher: frame and estimate in, the name of the terrain in force out."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -9,14 +9,13 @@ from odometry.arrays import ByteImage, FloatArray
 from odometry.estimation.estimate import Estimate
 from odometry.frames import Frame
 from odometry.geometry import se2
-from odometry.models.icr import icr_twist
 from odometry.run import UNKNOWN, Run
 from terrain.camera import Camera
 from terrain.classification.classifier import Classification, TerrainClassifier
 from terrain.errors import CameraError, ImageError
 from terrain.images import read_image
 from terrain.region import Rectangle, Region, RegionConfig, predict_region
-from terrain.suited import unsuited
+from terrain.suited import coarsest_m, unsuited
 from terrain.switch import Sight, Switch, SwitchConfig, SwitchEvent
 from terrain.warp import ground_view, pixel_view
 
@@ -120,8 +119,9 @@ class TerrainWatcher:
     def look(self, frame: Frame, estimate: Estimate) -> Sighting:
         """Classify the region ahead in the image of a frame.
 
-        An image that cannot be read, or one of another size among good ones, is a sighting
-        without a label, so that one bad file does not end a long run.
+        An image that cannot be read, a grey one where the classifier needs colour, or one of
+        another size among good ones, is a sighting without a label, so that one bad file does
+        not end a long run.
 
         Raises
         ------
@@ -131,17 +131,20 @@ class TerrainWatcher:
         if frame.image is None:
             raise ValueError(f"the frame at {frame.stamp_s} s has no image")
         name = frame.image.relative_to(self._run.folder).as_posix()
-        speeds = np.nan_to_num(frame.tread_speeds_m_s)
-        twist = icr_twist(estimate.mean[3:], estimate.alphas * speeds)
+        if not np.all(np.isfinite(frame.tread_speeds_m_s)):
+            return Sighting(frame.stamp_s, name, reason="the tread speeds are not known")
+        commanded = replace(estimate, tread_speeds_m_s=frame.tread_speeds_m_s)
         region = predict_region(
-            self._run.robot, self._camera, twist, float(np.abs(speeds).mean()), self._region
+            self._run.robot,
+            self._camera,
+            commanded.twist,
+            float(np.abs(frame.tread_speeds_m_s).mean()),
+            self._region,
+            coarsest_m=coarsest_m(self.classifier, self._region.coarsest),
+            unsuited=self._unsuited,
         )
         if isinstance(region, str):
             return Sighting(frame.stamp_s, name, reason=region)
-        rectangles = region.tread_rectangles if self._region.per_tread else (region.rectangle,)
-        reason = next(filter(None, map(self._unfit, rectangles)), "")
-        if reason:
-            return Sighting(frame.stamp_s, name, region=region, reason=reason)
         try:
             image = read_image(frame.image)
         except ImageError:
@@ -149,7 +152,10 @@ class TerrainWatcher:
         if not self._is_of_size(image, frame.image):
             reason = "the image is not of the camera's size"
             return Sighting(frame.stamp_s, name, region=region, reason=reason)
-        answers = self.classifier.classify([self._view(image, r) for r in rectangles])
+        if self.classifier.colour_ and image.ndim != 3:
+            reason = "the image is grey, the model was trained with colour"
+            return Sighting(frame.stamp_s, name, region=region, reason=reason)
+        answers = self.classifier.classify([self._view(image, r) for r in region.rectangles])
         return _sighting(frame.stamp_s, name, region, answers)
 
     def _is_of_size(self, image: ByteImage, file: Path) -> bool:
@@ -162,8 +168,7 @@ class TerrainWatcher:
             raise CameraError(f"{file}: {error}; see [camera] image_size in run.toml") from error
         return True
 
-    def _unfit(self, rectangle: Rectangle) -> str:
-        """Why a rectangle cannot be compared with the training patches, or ""."""
+    def _unsuited(self, rectangle: Rectangle) -> str:
         return unsuited(self.classifier, self._camera, rectangle, self._region.coarsest)
 
     def _view(self, image: ByteImage, rectangle: Rectangle) -> ByteImage:
@@ -189,6 +194,6 @@ def _sight(sighting: Sighting, region: Region, pose: FloatArray, travel_m: float
         sighting.label,
         sighting.stamp_s,
         travel_m,
-        se2.transform(pose, region.pose_ahead[:2]),
+        se2.transform(pose, region.place),
         region.distance_ahead_m,
     )

@@ -17,6 +17,7 @@ MOST = 0.5
 MOVING = 0.05  # of the fastest tread speed
 ORDINARY_WIDTH = 1.8  # effective width in track widths, the middle of robots that were measured
 SMALLEST_PX = 16  # of a side of the region: SFTA of smaller patches says nothing of texture
+WHOLE = RegionConfig(least_share=1.0)  # a camera as it should be shows all of it
 OUTSIDE, TINY = "outside the image", f"smaller than {SMALLEST_PX} pixels"
 
 
@@ -60,8 +61,8 @@ def straight_ahead(camera: Camera, robot: Robot) -> Region | str:
 
 
 def seen_region(camera: Camera, robot: Robot, twist: FloatArray, speed_m_s: float) -> Region | str:
-    """The region by a twist (3,) if the image shows it large enough, else the reason."""
-    region = predict_region(robot, camera, twist, speed_m_s, RegionConfig())
+    """The whole region by a twist (3,) if the image shows it large enough, else the reason."""
+    region = predict_region(robot, camera, twist, speed_m_s, WHOLE)
     if isinstance(region, str):
         return OUTSIDE
     pixels = camera.ground_to_pixels(region.rectangle.corners)

@@ -34,7 +34,7 @@ MOUNTS = {
     "height z is in cm": [0.2, 0.0, 55.0, ROLL, PITCH, YAW],
     "z are in cm": [20.0, 0.0, 55.0, ROLL, PITCH, YAW],
     "degrees, and x, y and z are in mm": [200.0, 0.0, 550.0, 0.57, 48.7, 1.1],
-    "pitch and roll are exchanged": [X, Y, 1.2, 0.7, 0.0, 0.0],
+    "pitch and roll are exchanged": [X, Y, 1.3, 0.7, 0.0, 0.0],
 }
 
 

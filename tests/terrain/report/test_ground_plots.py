@@ -40,7 +40,7 @@ def pixel(x, y):
 
 
 def region(rectangle):
-    return Region(rectangle, (rectangle, rectangle), 1.0, 0.5, np.zeros(3))
+    return Region((rectangle,), 1.0, 0.5, np.zeros(3))
 
 
 def test_lines_of_the_grid_are_half_a_metre_apart(image_axes):

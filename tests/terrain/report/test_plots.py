@@ -24,7 +24,7 @@ from terrain.whole_image import Cell
 
 TINTS = {"$ice^$": "#112233", "snow": "#445566", "unknown": "#dddddd"}
 RECTANGLE = Rectangle(0.6, 0.9, -0.15, 0.15)
-REGION = Region(RECTANGLE, (RECTANGLE, RECTANGLE), 2.0, 1.0, np.array([0.75, 0.0, 0.0]))
+REGION = Region((RECTANGLE,), 2.0, 1.0, np.array([0.75, 0.0, 0.0]))
 
 
 @pytest.fixture

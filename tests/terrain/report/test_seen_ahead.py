@@ -16,7 +16,7 @@ from terrain.watcher import Sighting
 STAMPS_S = np.arange(0.0, 20.5, 0.5)  # at 0.5 m/s; snow from 10 s on
 ROWS = np.arange(len(STAMPS_S)) + 2
 RECTANGLE = Rectangle(0.8, 1.2, -0.2, 0.2)
-REGION = Region(RECTANGLE, (RECTANGLE, RECTANGLE), 2.0, 1.0, np.array([1.0, 0.0, 0.0]))
+REGION = Region((RECTANGLE,), 2.0, 1.0, np.array([1.0, 0.0, 0.0]))
 
 
 def seen(stamp_s, label):

@@ -1,0 +1,85 @@
+"""Which ground an image shows, finely enough, and the largest rectangle of it."""
+
+from math import inf
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray, IntArray
+from terrain.camera import Camera
+from terrain.rectangle import Rectangle
+
+CELLS = 16  # along each side of a rectangle of which a part is shown
+STEP_M = 1e-3  # of the differences that say how finely ground is shown
+
+
+def is_shown(camera: Camera, points: FloatArray, coarsest_m: float = inf) -> BoolArray:
+    """Whether an image shows points of the ground, and finely enough.
+
+    Parameters
+    ----------
+    camera : Camera
+    points : (..., 2)
+        In the robot frame [m].
+    coarsest_m : float
+        A pixel may cover so much ground at the most, in its coarsest direction.
+
+    Returns
+    -------
+    (...) booleans
+    """
+    pixels = camera.ground_to_pixels(points)
+    shown = camera.in_image(pixels)
+    if coarsest_m == inf:
+        return shown
+    by_x, by_y = (
+        (camera.ground_to_pixels(points + STEP_M * axis) - pixels) / STEP_M for axis in np.eye(2)
+    )
+    return np.asarray(shown & (_smallest_stretch(by_x, by_y) * coarsest_m >= 1))
+
+
+def largest_shown(camera: Camera, rectangle: Rectangle, coarsest_m: float = inf) -> Rectangle:
+    """The largest part of a rectangle, itself a rectangle, that an image shows whole.
+
+    Its sides lie on a grid of CELLS by CELLS cells; all of it where the image shows all.
+
+    Parameters
+    ----------
+    camera : Camera
+    rectangle : Rectangle
+    coarsest_m : float
+        See `is_shown`.
+
+    Returns
+    -------
+    Rectangle
+        Of no size where the image shows no cell whole.
+    """
+    x = np.linspace(rectangle.x_min, rectangle.x_max, CELLS + 1)
+    y = np.linspace(rectangle.y_min, rectangle.y_max, CELLS + 1)
+    points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
+    corners = is_shown(camera, points, coarsest_m)
+    cells = corners[1:, 1:] & corners[1:, :-1] & corners[:-1, 1:] & corners[:-1, :-1]
+    first_x, end_x, first_y, end_y = _largest_block(cells)
+    return Rectangle(float(x[first_x]), float(x[end_x]), float(y[first_y]), float(y[end_y]))
+
+
+def _smallest_stretch(by_x: FloatArray, by_y: FloatArray) -> FloatArray:
+    """The smaller singular value of the matrices whose columns are given (..., 2) [px/m]."""
+    squares = (by_x**2).sum(axis=-1) + (by_y**2).sum(axis=-1)
+    area = by_x[..., 0] * by_y[..., 1] - by_x[..., 1] * by_y[..., 0]
+    spread = np.sqrt(np.maximum(squares**2 - 4 * area**2, 0.0))
+    return np.asarray(np.sqrt(np.maximum(squares - spread, 0.0) / 2))
+
+
+def _largest_block(cells: BoolArray) -> IntArray:
+    """First and end row, first and end column of the largest block of true cells (n, n)."""
+    if not cells.any():
+        return np.zeros(4, dtype=int)
+    count = np.zeros(np.add(cells.shape, 1), dtype=int)  # of true cells above and left
+    count[1:, 1:] = cells.cumsum(axis=0).cumsum(axis=1)
+    first, end = np.triu_indices(len(cells) + 1, k=1)
+    rows = count[end] - count[first]  # (pairs of rows, columns + 1)
+    inside = rows[:, end] - rows[:, first]
+    size = (end - first)[:, None] * (end - first)
+    row, column = np.unravel_index(np.where(inside == size, size, 0).argmax(), size.shape)
+    return np.array([first[row], end[row], first[column], end[column]])
