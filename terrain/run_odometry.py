@@ -22,6 +22,7 @@ from odometry.trajectory import Trajectory
 from terrain.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config
+from terrain.images_outside import add_images_outside
 from terrain.judged import Judged, SecondReplay, judged_trajectories
 from terrain.watcher import TerrainWatcher
 
@@ -153,6 +154,8 @@ def run_odometry(
     result = replay(
         run, estimator, watcher or ConstantTerrain(initial), show_progress=show_progress
     )
+    if watcher is not None and run.images is not None:
+        add_images_outside(watcher, run, run.images, result)
     reference_name, reference = reference_of(run) or ("", None)
     second = None
     if reference_name == "pose":
