@@ -42,7 +42,7 @@ def _is_much_surer(table: TerrainParameters | None, belief: IcrBelief) -> bool:
     if table is None or not set(ICR_NAMES[:3]) <= set(table.covariance_order):
         return False
     stated = float(np.trace(table.covariance_of(ICR_NAMES[:3])))
-    return MUCH_SURER * stated < float(np.trace(belief.covariance))
+    return MUCH_SURER * stated < float(np.trace(belief.covariance[:3, :3]))
 
 
 def _took_pose(estimate: Estimate) -> bool:
@@ -51,10 +51,11 @@ def _took_pose(estimate: Estimate) -> bool:
 
 def _table(belief: IcrBelief, source: str) -> TerrainParameters:
     values = [*belief.icrs.tolist(), *belief.alphas.tolist()]
+    learned = np.flatnonzero(np.diag(belief.covariance))  # slip factors may be held as given
     return TerrainParameters(
         "icr",
         dict(zip(ICR_NAMES, values, strict=True)),
-        ICR_NAMES[:3],
-        (belief.covariance + belief.covariance.T) / 2,
+        tuple(ICR_NAMES[k] for k in learned),
+        ((belief.covariance + belief.covariance.T) / 2)[np.ix_(learned, learned)],
         source,
     )

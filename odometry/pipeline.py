@@ -9,17 +9,20 @@ from tqdm import tqdm
 
 from odometry.errors import RunFolderError
 from odometry.estimation.estimate import Estimate
+from odometry.estimation.heading_search import INITIAL_YAW
 from odometry.frames import Frame
 from odometry.replay import Replay
 from odometry.run import Run
 from odometry.windows.gaps import odometry_gaps
 
+LEAST_YAW_SIGMA_RAD = 0.1  # of a yaw found before the replay
+
 
 class Estimator(Protocol):
     """A filter: it starts at a frame and steps from frame to frame."""
 
-    def start(self, frame: Frame, terrain: str) -> Estimate:
-        """The first estimate."""
+    def start(self, frame: Frame, terrain: str, *, yaw_sigma_rad: float | None = None) -> Estimate:
+        """The first estimate; `yaw_sigma_rad` is given where the yaw is no measured one."""
 
     def step(self, estimate: Estimate, frame: Frame, terrain: str) -> Estimate:
         """The next estimate."""
@@ -50,7 +53,10 @@ class ConstantTerrain:
 def replay(
     run: Run, estimator: Estimator, source: TerrainSource, *, show_progress: bool = False
 ) -> Replay:
-    """Replay a run frame by frame, from its first usable pose to the end of its odometry.
+    """Replay a run frame by frame, from its first usable position to the end of its odometry.
+
+    Where that position has no yaw, the first metres are replayed once before to find it, so that
+    all estimates are in the frame of the positions.
 
     Parameters
     ----------
@@ -63,13 +69,15 @@ def replay(
     Raises
     ------
     RunFolderError
-        If no frame has both tread speeds and, where the run has poses, a pose to start from.
+        If no frame has both tread speeds and, where the run has poses, a position to start from.
     """
     frames = _from_start(run)
     first = next(frames, None)
     if first is None:
-        raise RunFolderError(f"{run.folder}: no pose lies within the time of odometry.csv")
-    estimates = [estimator.start(first, source.initial)]
+        raise RunFolderError(
+            f"{run.folder}: no position of pose.csv lies within the time of odometry.csv"
+        )
+    estimates = [_first_estimate(run, first, estimator, source.initial)]
     source.terrain(first, estimates[0])  # its image is looked at; a switch takes effect next
     bar: Iterable[Frame] = tqdm(
         frames, desc=run.name, unit="frame", disable=None if show_progress else True
@@ -80,6 +88,27 @@ def replay(
     return Replay(tuple(estimates))
 
 
+def _first_estimate(run: Run, first: Frame, estimator: Estimator, terrain: str) -> Estimate:
+    """The start; where its yaw is not measured, with that found from the course of positions."""
+    estimate = start = estimator.start(first, terrain)
+    frames = _from_start(run)
+    next(frames)
+    while estimate.course is not None:
+        frame = next(frames, None)
+        if frame is None:
+            return start
+        estimate = estimator.step(estimate, frame, terrain)
+    if first.pose is None or estimate is start:
+        return start
+    (event,) = (event for event in estimate.events if event.kind == INITIAL_YAW)
+    yaw_rad, sigma_rad = event.values
+    pose = np.array([*first.pose[:2], yaw_rad])
+    # the positions that told the yaw come again: they are not to count twice
+    sigma_rad = max(LEAST_YAW_SIGMA_RAD, 2 * sigma_rad)
+    found = estimator.start(replace(first, pose=pose), terrain, yaw_sigma_rad=sigma_rad)
+    return replace(found, events=(event,))
+
+
 def _from_start(run: Run) -> Iterator[Frame]:
     """The frames from the first that can start a filter to the end of odometry.
 
@@ -87,13 +116,13 @@ def _from_start(run: Run) -> Iterator[Frame]:
     """
     gap_begins_s, gap_ends_s = odometry_gaps(run).spans_s.T
     has_pose = run.pose is not None and bool(
-        np.isfinite(run.pose.stack("x", "y", "yaw")).all(axis=1).any()
+        np.isfinite(run.pose.stack("x", "y")).all(axis=1).any()
     )
     started = False
     for frame in run.frames():
         moves = bool(np.all(np.isfinite(frame.tread_speeds_m_s)))
         if not started:
-            posed = frame.pose is not None and bool(np.all(np.isfinite(frame.pose)))
+            posed = frame.pose is not None and bool(np.all(np.isfinite(frame.pose[:2])))
             started = moves and (posed or not has_pose)
         in_gap = (gap_begins_s < frame.stamp_s) & (frame.stamp_s <= gap_ends_s)
         if started:

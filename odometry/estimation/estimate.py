@@ -7,9 +7,25 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.estimation.course import Course
+from odometry.estimation.filter_event import FilterEvent
+from odometry.estimation.noise_scale import NoiseScale
+from odometry.estimation.transition import ALPHA_LEFT, GYRO_BIAS, X_ICR, Y_LEFT
 from odometry.models.icr import icr_twist
 
-STATE_NAMES = ("x", "y", "yaw", "y_left", "y_right", "x_icr")
+STATE_NAMES = (
+    "x",
+    "y",
+    "yaw",
+    "y_left",
+    "y_right",
+    "x_icr",
+    "gyro_bias",
+    "alpha_left",
+    "alpha_right",
+)
+ICRS, ALPHAS = slice(Y_LEFT, X_ICR + 1), slice(ALPHA_LEFT, ALPHA_LEFT + 2)
+OF_TERRAIN = np.array([*range(9)[ICRS], *range(9)[ALPHAS]])  # what is another on each terrain
 
 
 @dataclass(frozen=True)
@@ -22,8 +38,8 @@ class IcrBelief:
         y_left, y_right, x_icr [m].
     alphas : (2,)
         Slip factors of the left and the right tread.
-    covariance : (3, 3)
-        Of `icrs`.
+    covariance : (5, 5)
+        Of `icrs` and `alphas`.
     """
 
     icrs: FloatArray
@@ -31,14 +47,14 @@ class IcrBelief:
     covariance: FloatArray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Innovation:
-    """What one measurement said against the prediction.
+    """What one measured pose said against the prediction.
 
     Attributes
     ----------
-    residual : (3,)
-        Measured less predicted x, y [m], yaw [rad], yaw wrapped.
+    residual : (m,)
+        Measured less predicted x, y [m], yaw [rad], yaw wrapped; without what was not measured.
     normalised_squared : float
         Squared Mahalanobis length of the residual.
     accepted : bool
@@ -50,57 +66,82 @@ class Innovation:
     accepted: bool
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Estimate:
     """Belief of the filter at one stamp.
 
     Attributes
     ----------
     stamp_s : float
-    mean : (6,)
-        x, y [m], yaw [rad] in the reference frame; y_left, y_right, x_icr [m] in the robot frame.
-    covariance : (6, 6)
-    alphas : (2,)
-        Slip factors in force.
+    mean : (9,)
+        x, y [m], yaw [rad] in the reference frame; y_left, y_right, x_icr [m] in the robot
+        frame; bias of the gyroscope [rad/s]; slip factors alpha_left, alpha_right.
+    covariance : (9, 9)
     tread_speeds_m_s : (2,)
         Measured tread speeds in force from this stamp on.
-    added_speeds_m_s, added_twist : (2,), (3,)
-        What the effects of the terrain change of these speeds, and of the twist of the ICRs.
     terrain : str
         The terrain in force.
+    yaw_rate_rad_s : float
+        Mean of the gyroscope's yaw rate since the estimate before, its bias included; NaN where
+        it was silent or not believed.
+    added_speeds_m_s, added_twist : (2,), (3,)
+        What the effects of the terrain change of these speeds, and of the twist of the ICRs.
     innovation : Innovation or None
-        None where nothing was measured at this stamp.
-    rejected_in_row : int
-        Measurements that failed the gate since the last that passed.
+        None where no pose was measured at this stamp.
+    refused : tuple of (m,)
+        Residuals of the latest poses that failed the gate since the last that passed.
     recent : tuple of float
         The latest normalised innovations squared, for the jump detector.
     jumped : bool
         Whether a jump of the ICRs was detected at this stamp.
     learned : Mapping[str, IcrBelief]
         What was last believed on the terrains that were left.
-    yaw_rate_rad_s : float
-        Mean of the gyroscope's yaw rate since the estimate before; NaN where it was silent.
+    scale : NoiseScale
+        How much larger than stated the noises are.
+    course : Course or None
+        The search for a heading that is not known yet: until it is found, the pose is dead
+        reckoning from the first position, with a yaw that starts at 0.
+    events : tuple of FilterEvent
+        What the filter noticed at this stamp.
     """
 
     stamp_s: float
     mean: FloatArray
     covariance: FloatArray
-    alphas: FloatArray
     tread_speeds_m_s: FloatArray
     terrain: str
+    yaw_rate_rad_s: float = math.nan
     added_speeds_m_s: FloatArray = field(default_factory=lambda: np.zeros(2))
     added_twist: FloatArray = field(default_factory=lambda: np.zeros(3))
     innovation: Innovation | None = None
-    rejected_in_row: int = 0
+    refused: tuple[FloatArray, ...] = ()
     recent: tuple[float, ...] = ()
     jumped: bool = False
     learned: Mapping[str, IcrBelief] = field(default_factory=dict)
-    yaw_rate_rad_s: float = math.nan
+    scale: NoiseScale = field(default_factory=NoiseScale)
+    course: Course | None = None
+    events: tuple[FilterEvent, ...] = ()
+
+    @property
+    def rejected_in_row(self) -> int:
+        """How many poses failed the gate since the last that passed, to the filter's patience."""
+        return len(self.refused)
+
+    @property
+    def alphas(self) -> FloatArray:
+        """Slip factors (2,) believed."""
+        return self.mean[ALPHAS]
+
+    @property
+    def gyro_bias_rad_s(self) -> float:
+        """Bias of the gyroscope believed."""
+        return float(self.mean[GYRO_BIAS])
 
     @property
     def belief(self) -> IcrBelief:
         """What is believed of the ICRs now."""
-        return IcrBelief(self.mean[3:], self.alphas, self.covariance[3:, 3:])
+        covariance = self.covariance[np.ix_(OF_TERRAIN, OF_TERRAIN)]
+        return IcrBelief(self.mean[ICRS], self.alphas, covariance)
 
     @property
     def effective_speeds_m_s(self) -> FloatArray:
@@ -109,7 +150,7 @@ class Estimate:
 
     @property
     def twist(self) -> FloatArray:
-        """Body twist (3,) at the tread speeds in force; zero where they are not known."""
+        """Body twist (3,) at the tread speeds in force, without a gyroscope; zero where unknown."""
         if not np.all(np.isfinite(self.tread_speeds_m_s)):
             return np.zeros(3)
-        return np.asarray(icr_twist(self.mean[3:], self.effective_speeds_m_s) + self.added_twist)
+        return np.asarray(icr_twist(self.mean[ICRS], self.effective_speeds_m_s) + self.added_twist)

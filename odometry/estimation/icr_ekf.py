@@ -1,8 +1,7 @@
 """Pose and ICR filter: an extended Kalman filter that is told the terrain (Chen 2023, 3.1-3.2)."""
 
+import math
 from collections.abc import Mapping
-from dataclasses import replace
-from typing import TypeGuard
 
 import numpy as np
 
@@ -10,21 +9,30 @@ from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.corrections import Correction
-from odometry.estimation.estimate import Estimate, IcrBelief, Innovation
-from odometry.estimation.gaussian import gate_threshold, normalised_squared, project_into
+from odometry.estimation.course import UNKNOWN_YAW_VARIANCE, Course
+from odometry.estimation.errors import EstimationError
+from odometry.estimation.estimate import OF_TERRAIN, Estimate, IcrBelief
 from odometry.estimation.icr_prior import prior_belief
-from odometry.estimation.pose_kalman import PoseKalman, pose_residual
+from odometry.estimation.measurement import (
+    Gaussian,
+    Place,
+    reference_point,
+    tread_yaw_rate,
+    velocity_measurement,
+)
+from odometry.estimation.pose_kalman import PoseKalman
+from odometry.estimation.pose_update import PoseUpdate
+from odometry.estimation.process_noise import ProcessNoise
+from odometry.estimation.transition import GYRO_BIAS, STATES, YAW, transition
+from odometry.estimation.tread_noise import huber_factor, tread_variance, velocity_variances
 from odometry.frames import Frame
-from odometry.geometry.angles import wrap
 from odometry.parameters import ParameterSet
 
-SIDES = np.array([[0.0, 0.0, 0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, -1.0, 0.0]])
-GAP_DENSITY = np.array([25.0, 25.0, 9.0, 0.0, 0.0, 0.0])  # [m^2/s], [rad^2/s]: all may happen
-LEAST_SIDE = 0.05  # of the track width; y_left and -y_right are kept above it
+NO_SPEEDS, NO_TWIST = np.zeros(2), np.zeros(3)
 
 
 class IcrEkf:
-    """Estimates x, y, yaw, y_left, y_right and x_icr from tread speeds and measured poses.
+    """Estimates pose, ICRs, bias of the gyroscope and slip factors of a skid-steer robot.
 
     Parameters
     ----------
@@ -35,6 +43,8 @@ class IcrEkf:
     config : IcrEkfConfig
     corrections : Mapping of terrain to Correction
         What the effects of the parameter set change along the run that is replayed.
+    lever_m : (x, y)
+        Place in the robot frame of the point whose position pose.csv measures.
 
     Raises
     ------
@@ -44,11 +54,14 @@ class IcrEkf:
     Notes
     -----
     A frame goes in with the name of the terrain that the robot is on; a new Estimate comes out,
-    and the one that went in is not changed. On a new name the ICRs are those last learned there
+    and the one that went in is not changed. Where there is a gyroscope, it turns the robot, and
+    the yaw rate of the treads is compared with it, which teaches y_left - y_right and the bias;
+    otherwise the treads turn it. On a new name ICRs and slip factors are those last learned there
     or those of the parameter set, whichever is the more certain, and their covariance is reset
-    to `reset_sigma_widths`, or to what was known before where that is less certain. A pose
-    with NaN is as good as none. Over a gap of odometry the speed that was held goes on, but where
-    the robot then is counts as not known, and the ICRs learn nothing of it.
+    to `reset_sigma_widths`, or to what was known before where that is less certain. Any part of a
+    pose may be NaN; where the first one has no yaw, the heading is found from the course of the
+    positions. Over a gap of odometry the speed that was held goes on, but where the robot then
+    is counts as not known, and nothing is learned of it.
     """
 
     def __init__(
@@ -57,144 +70,201 @@ class IcrEkf:
         parameters: ParameterSet | None = None,
         config: IcrEkfConfig | None = None,
         corrections: Mapping[str, Correction] | None = None,
+        lever_m: Place = (0.0, 0.0),
     ) -> None:
         self.track_width = track_width
         self.parameters = parameters or ParameterSet()
         self.config = config or IcrEkfConfig()
         self.corrections = corrections or {}
         self._require_corrections()
-        c = self.config
-        icr_noise = c.icr_noise_widths * track_width
-        self._density = np.square([*[c.position_noise] * 2, c.yaw_noise, *[icr_noise] * 3])
-        self._reset_sigma_m = c.reset_sigma_widths * track_width
-        self._gate = gate_threshold(c.gate_probability, 3)
-        self._jump = gate_threshold(c.jump_probability, 3 * c.jump_window)
-        self._kalman = PoseKalman(
-            np.diag(np.square([c.position_sigma_m, c.position_sigma_m, c.yaw_sigma_rad]))
-        )
+        self._reset_sigma_m = self.config.reset_sigma_widths * track_width
+        self._noise = ProcessNoise(self.config, track_width)
+        self._kalman = PoseKalman()
+        self._pose_update = PoseUpdate(self.config, track_width, self._kalman, lever_m)
+        self._lever_m = lever_m
 
-    def start(self, frame: Frame, terrain: str) -> Estimate:
-        """Start at a frame: at its pose, or at the origin where it has none."""
+    def start(self, frame: Frame, terrain: str, *, yaw_sigma_rad: float | None = None) -> Estimate:
+        """Start at a frame: at its pose, or at the origin where it has none.
+
+        Parameters
+        ----------
+        frame : Frame
+        terrain : str
+        yaw_sigma_rad : float, optional
+            Standard deviation of the yaw where it is not that of a measured one.
+        """
         belief = self._prior(terrain)
-        pose = frame.pose if _is_measured(frame.pose) else np.zeros(3)
-        covariance = np.zeros((6, 6))
-        covariance[:3, :3] = self._kalman.R
-        covariance[3:, 3:] = belief.covariance
-        estimate = Estimate(
-            stamp_s=frame.stamp_s,
-            mean=np.concatenate([pose, belief.icrs]),
-            covariance=covariance,
-            alphas=belief.alphas,
-            tread_speeds_m_s=frame.tread_speeds_m_s,
-            terrain=terrain,
-        )
-        return self._corrected(estimate, frame)
-
-    def step(self, estimate: Estimate, frame: Frame, terrain: str) -> Estimate:
-        """Predict to the frame's stamp, switch if the terrain is another, update by its pose."""
-        estimate = self._predict(estimate, frame)
-        if terrain != estimate.terrain:
-            estimate = self._switch(estimate, terrain)
-        estimate = self._corrected(estimate, frame)
-        return self._update(estimate, frame.pose) if _is_measured(frame.pose) else estimate
-
-    def _predict(self, estimate: Estimate, frame: Frame) -> Estimate:
-        step_s = frame.stamp_s - estimate.stamp_s
-        mean, covariance = estimate.mean, estimate.covariance
-        if np.all(np.isfinite(estimate.tread_speeds_m_s)):
-            mean, covariance = self._kalman.predicted(
-                mean,
-                covariance,
-                estimate.effective_speeds_m_s,
-                estimate.added_twist,
-                step_s=step_s,
-                density=self._density + GAP_DENSITY * frame.in_gap,
-            )
-        return replace(
-            estimate,
+        pose = np.full(3, math.nan) if frame.pose is None else frame.pose
+        pose = np.where(np.isfinite(pose), pose, math.nan)
+        placed, headed = not np.isnan(pose[:2]).any(), not math.isnan(pose[YAW])
+        mean, covariance = np.zeros(STATES), np.zeros((STATES, STATES))
+        covariance[:3, :3] = self._pose_update.covariance
+        if headed:
+            mean[YAW] = pose[YAW]
+        if placed:
+            mean[:2] = pose[:2] - reference_point(mean, self._lever_m)
+        course = None
+        if placed and not headed:
+            course = Course.begun(frame.stamp_s, pose[:2])
+            covariance[YAW, YAW] = UNKNOWN_YAW_VARIANCE
+        elif yaw_sigma_rad is not None:
+            covariance[YAW, YAW] = yaw_sigma_rad**2
+        mean[OF_TERRAIN] = *belief.icrs, *belief.alphas
+        covariance[np.ix_(OF_TERRAIN, OF_TERRAIN)] = belief.covariance
+        if self.config.use_gyroscope:
+            covariance[GYRO_BIAS, GYRO_BIAS] = self.config.bias_sigma_rad_s**2
+        added_speeds, added_twist = self._added(terrain, frame)
+        return Estimate(
             stamp_s=frame.stamp_s,
             mean=mean,
             covariance=covariance,
             tread_speeds_m_s=frame.tread_speeds_m_s,
-            yaw_rate_rad_s=frame.yaw_rate_rad_s,
-            innovation=None,
-            jumped=False,
-        )
-
-    def _switch(self, estimate: Estimate, terrain: str) -> Estimate:
-        learned = {**estimate.learned, estimate.terrain: estimate.belief}
-        belief = self._prior(terrain)
-        if terrain in learned and _is_more_certain(learned[terrain], belief):
-            belief = learned[terrain]
-        reset = self._reset_sigma_m**2 * np.eye(3)
-        if np.trace(belief.covariance) > np.trace(reset):
-            reset = belief.covariance
-        return replace(
-            estimate,
-            mean=np.concatenate([estimate.mean[:3], belief.icrs]),
-            covariance=_with_icr_block(estimate.covariance, reset),
-            alphas=belief.alphas,
             terrain=terrain,
-            learned=learned,
-            recent=(),
+            added_speeds_m_s=added_speeds,
+            added_twist=added_twist,
+            course=course,
         )
 
-    def _update(self, estimate: Estimate, pose: FloatArray) -> Estimate:
-        residual = pose_residual(pose, estimate.mean[:3])
-        expected = estimate.covariance[:3, :3] + self._kalman.R
-        squared = normalised_squared(residual, expected)
-        estimate = self._check_jump(estimate, squared)
-        accepted = squared <= self._gate
-        innovation = Innovation(residual, squared, accepted)
-        if not accepted:
-            return self._refuse(estimate, pose, innovation)
-        mean, covariance = self._kalman.updated(estimate.mean, estimate.covariance, pose)
-        least = np.full(2, LEAST_SIDE * self.track_width)
-        mean = project_into(mean, covariance, SIDES, least)
-        mean[2] = wrap(mean[2])
-        return replace(
-            estimate, mean=mean, covariance=covariance, innovation=innovation, rejected_in_row=0
-        )
+    def step(self, estimate: Estimate, frame: Frame, terrain: str) -> Estimate:
+        """Predict to the frame's stamp, switch if the terrain is another, update by what it says.
 
-    def _refuse(self, estimate: Estimate, pose: FloatArray, innovation: Innovation) -> Estimate:
-        rejected_in_row = estimate.rejected_in_row + 1
-        if rejected_in_row < self.config.gate_patience:
-            return replace(estimate, innovation=innovation, rejected_in_row=rejected_in_row)
-        covariance = np.zeros((6, 6))
-        covariance[:3, :3] = self._kalman.R
-        covariance[3:, 3:] = estimate.covariance[3:, 3:]
-        return replace(
-            estimate,
-            mean=np.concatenate([pose, estimate.mean[3:]]),
-            covariance=covariance,
-            innovation=innovation,
-            rejected_in_row=0,
-        )
-
-    def _check_jump(self, estimate: Estimate, squared: float) -> Estimate:
-        """Chen 2023, 3.2: where the ICRs mutate, the error covariance is reset.
-
-        A refused pose counts no more than the gate, so that one outlier alone is no jump.
+        Raises
+        ------
+        EstimationError
+            If the frame is older than the estimate.
         """
-        if not self.config.detect_jumps:
-            return estimate
-        recent = (*estimate.recent, min(squared, self._gate))[-self.config.jump_window :]
-        if len(recent) < self.config.jump_window or sum(recent) <= self._jump:
-            return replace(estimate, recent=recent)
-        reset = self._reset_sigma_m**2 * np.eye(3)
-        covariance = _with_icr_block(estimate.covariance, reset)
-        return replace(estimate, covariance=covariance, recent=(), jumped=True)
-
-    def _corrected(self, estimate: Estimate, frame: Frame) -> Estimate:
-        """The estimate with what effects change from this frame on."""
-        correction, row = self.corrections.get(estimate.terrain), frame.odometry_row
-        if correction is None or row < 0:
-            return replace(estimate, added_speeds_m_s=np.zeros(2), added_twist=np.zeros(3))
-        return replace(
-            estimate,
-            added_speeds_m_s=correction.speeds_m_s[row],
-            added_twist=correction.twists[row],
+        if frame.stamp_s < estimate.stamp_s:
+            raise EstimationError(
+                f"a frame of {frame.stamp_s} s came after the estimate of {estimate.stamp_s} s; "
+                "expected frames in time order (odometry.estimation.in_order puts late ones in "
+                "their place)"
+            )
+        yaw_rate = frame.yaw_rate_rad_s if self.config.use_gyroscope else math.nan
+        belief = self._predicted(estimate, frame, yaw_rate)
+        learned, recent = estimate.learned, estimate.recent
+        if terrain != estimate.terrain:
+            learned = {**learned, estimate.terrain: estimate.belief}
+            belief, recent = self._switched(belief, learned, terrain), ()
+        if frame.velocity is not None:
+            belief = self._with_velocity(belief, estimate, frame, yaw_rate)
+        seen = self._pose_update.seen(estimate, belief, frame, recent)
+        added_speeds, added_twist = self._added(terrain, frame)
+        return Estimate(
+            stamp_s=frame.stamp_s,
+            mean=seen.mean,
+            covariance=seen.covariance,
+            tread_speeds_m_s=frame.tread_speeds_m_s,
+            terrain=terrain,
+            yaw_rate_rad_s=yaw_rate,
+            added_speeds_m_s=added_speeds,
+            added_twist=added_twist,
+            innovation=seen.innovation,
+            refused=seen.refused,
+            recent=seen.recent,
+            jumped=seen.jumped,
+            learned=learned,
+            scale=seen.scale,
+            course=seen.course,
+            events=seen.events,
         )
+
+    def _predicted(self, estimate: Estimate, frame: Frame, yaw_rate: float) -> Gaussian:
+        """Eq. 7, and the yaw rate of the treads against the gyroscope over the same step."""
+        step_s, speeds = frame.stamp_s - estimate.stamp_s, estimate.tread_speeds_m_s
+        if math.isnan(speeds[0] + speeds[1]):
+            return estimate.mean, estimate.covariance
+        by_gyroscope = not math.isnan(yaw_rate)
+        mean, jacobian = transition(
+            estimate.mean,
+            speeds,
+            step_s,
+            yaw_rate_rad_s=yaw_rate,
+            added_speeds=estimate.added_speeds_m_s,
+            added_twist=estimate.added_twist,
+        )
+        noise = self._noise.over(
+            speeds,
+            step_s,
+            slip_scale=estimate.scale.slip,
+            by_gyroscope=by_gyroscope,
+            in_gap=frame.in_gap,
+        )
+        covariance = self._kalman.predicted(mean, jacobian, estimate.covariance, noise)
+        if by_gyroscope and step_s > 0 and not frame.in_gap:
+            return self._compared(mean, covariance, estimate, yaw_rate, step_s)
+        return mean, covariance
+
+    def _compared(
+        self,
+        mean: FloatArray,
+        covariance: FloatArray,
+        estimate: Estimate,
+        yaw_rate: float,
+        step_s: float,
+    ) -> Gaussian:
+        speeds = estimate.tread_speeds_m_s + estimate.added_speeds_m_s
+        measured = tread_yaw_rate(mean, speeds, yaw_rate - float(estimate.added_twist[YAW]))
+        variance = tread_variance(
+            estimate.tread_speeds_m_s, yaw_rate, self.track_width, estimate.scale.slip, step_s
+        )
+        variance *= huber_factor(measured, covariance, variance)
+        measured.covariance[0, 0] = variance
+        return self._kalman.updated(mean, covariance, measured)[:2]
+
+    def _switched(
+        self, belief: Gaussian, learned: Mapping[str, IcrBelief], terrain: str
+    ) -> Gaussian:
+        known = self._prior(terrain)
+        if terrain in learned and _is_more_certain(learned[terrain], known):
+            known = learned[terrain]
+        mean, covariance = belief[0].copy(), belief[1].copy()
+        mean[OF_TERRAIN] = *known.icrs, *known.alphas
+        covariance[OF_TERRAIN], covariance[:, OF_TERRAIN] = 0.0, 0.0
+        covariance[np.ix_(OF_TERRAIN, OF_TERRAIN)] = self._reset(known)
+        return mean, covariance
+
+    def _reset(self, known: IcrBelief) -> FloatArray:
+        """Chen 2023, 3.2.1: P_B, or what is known where that is less certain."""
+        reset = np.zeros((5, 5))
+        sigmas = (self._reset_sigma_m, self.config.reset_sigma_alpha)
+        for block, sigma in zip((slice(0, 3), slice(3, 5)), sigmas, strict=True):
+            wide = sigma**2 * np.eye(block.stop - block.start)
+            stated = known.covariance[block, block]
+            reset[block, block] = stated if np.trace(stated) > np.trace(wide) else wide
+        return reset
+
+    def _with_velocity(
+        self, belief: Gaussian, estimate: Estimate, frame: Frame, yaw_rate: float
+    ) -> Gaussian:
+        """Measured velocity against the tread speeds that led to it."""
+        speeds, step_s = estimate.tread_speeds_m_s, frame.stamp_s - estimate.stamp_s
+        if frame.velocity is None or step_s <= 0 or math.isnan(speeds[0] + speeds[1]):
+            return belief
+        variances = velocity_variances(
+            self.config,
+            speeds,
+            track_width=self.track_width,
+            slip_scale=estimate.scale.slip,
+            step_s=step_s,
+            yaw_rate=yaw_rate,
+        )
+        measured = velocity_measurement(
+            belief[0],
+            frame.velocity - estimate.added_twist,
+            speeds + estimate.added_speeds_m_s,
+            yaw_rate - float(estimate.added_twist[YAW]),
+            np.diag(variances),
+        )
+        if not len(measured.residual) or frame.in_gap:
+            return belief
+        return self._kalman.updated(*belief, measured)[:2]
+
+    def _added(self, terrain: str, frame: Frame) -> tuple[FloatArray, FloatArray]:
+        """What effects change from this frame on."""
+        correction, row = self.corrections.get(terrain), frame.odometry_row
+        if correction is None or row < 0:
+            return NO_SPEEDS, NO_TWIST
+        return correction.speeds_m_s[row], correction.twists[row]
 
     def _require_corrections(self) -> None:
         for name, table in self.parameters.terrains.items():
@@ -205,19 +275,14 @@ class IcrEkf:
                 )
 
     def _prior(self, terrain: str) -> IcrBelief:
-        return prior_belief(self.parameters, terrain, self.track_width, self._reset_sigma_m)
-
-
-def _with_icr_block(covariance: FloatArray, block: FloatArray) -> FloatArray:
-    changed = np.zeros((6, 6))
-    changed[:3, :3] = covariance[:3, :3]
-    changed[3:, 3:] = block
-    return changed
-
-
-def _is_measured(pose: FloatArray | None) -> TypeGuard[FloatArray]:
-    return pose is not None and bool(np.all(np.isfinite(pose)))
+        return prior_belief(
+            self.parameters,
+            terrain,
+            self.track_width,
+            self._reset_sigma_m,
+            self.config.reset_sigma_alpha,
+        )
 
 
 def _is_more_certain(one: IcrBelief, other: IcrBelief) -> bool:
-    return bool(np.trace(one.covariance) < np.trace(other.covariance))
+    return bool(np.trace(one.covariance[:3, :3]) < np.trace(other.covariance[:3, :3]))

@@ -1,20 +1,23 @@
-"""filterpy's extended Kalman filter for the state (x, y, yaw, y_left, y_right, x_icr)."""
+"""filterpy's extended Kalman filter for the state of `odometry.estimation.transition`."""
 
 import numpy as np
 from filterpy.kalman import ExtendedKalmanFilter
 
 from odometry.arrays import FloatArray
-from odometry.estimation.transition import process_noise, transition
-from odometry.geometry.angles import wrap
+from odometry.estimation.measurement import Measurement
+from odometry.estimation.transition import STATES
 
 
 class PoseKalman(ExtendedKalmanFilter):  # type: ignore[misc]
-    """filterpy's filter with the exact transition in place of F x."""
+    """filterpy's filter with the exact transition in place of F x.
 
-    def __init__(self, measurement_covariance: FloatArray) -> None:
-        super().__init__(dim_x=6, dim_z=3)
-        self.R = measurement_covariance  # Chen 2023 eq. 14
-        self.H = np.eye(3, 6)  # eq. 13
+    One of these serves one measurement size: filterpy keeps arrays of it.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(dim_x=STATES, dim_z=3)
+        self.Q = np.zeros((STATES, STATES))
+        self._places = np.arange(STATES)
 
     def predict_x(self, u: FloatArray) -> None:
         """Take `u`, the mean that `transition` has reached: filterpy's hook."""
@@ -23,31 +26,46 @@ class PoseKalman(ExtendedKalmanFilter):  # type: ignore[misc]
     def predicted(
         self,
         mean: FloatArray,
+        jacobian: FloatArray,
         covariance: FloatArray,
-        speeds: FloatArray,
-        added_twist: FloatArray,
-        *,
-        step_s: float,
-        density: FloatArray,
-    ) -> tuple[FloatArray, FloatArray]:
-        """Eq. 7 with the Jacobian of `transition`."""
-        self.x, self.P = mean, covariance
-        next_mean, self.F = transition(mean, speeds, step_s, added_twist)
-        self.Q = process_noise(self.F, density, step_s)
-        self.predict(next_mean)
-        return self.x, self.P
+        noise: FloatArray,
+    ) -> FloatArray:
+        """Covariance (9, 9) at the end of a step: Chen 2023 eq. 7.
+
+        Parameters
+        ----------
+        mean : (9,)
+            At the end.
+        jacobian : (9, 9)
+            Of the step.
+        covariance : (9, 9)
+            At its beginning.
+        noise : (9,)
+            Variance that white noise adds to each state over the step.
+
+        Notes
+        -----
+        Half of the noise goes in before the step and half after it: the trapezium rule for the
+        integral of F(s) Q F(s)^T. The first step of eq. 7 would make the answer depend on how
+        finely time is cut.
+        """
+        half = noise / 2
+        self.Q[self._places, self._places] = half
+        self.P = covariance + self.Q
+        self.F = jacobian
+        self.predict(mean)
+        return np.asarray(self.P)
 
     def updated(
-        self, mean: FloatArray, covariance: FloatArray, pose: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
-        """Eq. 14-15; the covariance in Joseph's form instead of eq. 16."""
+        self, mean: FloatArray, covariance: FloatArray, measured: Measurement
+    ) -> tuple[FloatArray, FloatArray, float]:
+        """Mean, covariance, normalised innovation squared: eq. 14-15, and Joseph's form of 16."""
         self.x, self.P = mean, covariance
-        self.update(pose, lambda _: self.H, lambda x: x[:3], residual=pose_residual)
-        return self.x, (self.P + self.P.T) / 2
-
-
-def pose_residual(measured: FloatArray, predicted: FloatArray) -> FloatArray:
-    """Measured less predicted pose (3,), yaw in (-pi, pi]."""
-    residual = measured - predicted
-    residual[2] = wrap(residual[2])
-    return residual
+        self.update(
+            measured.residual,
+            lambda _: measured.jacobian,
+            lambda _: measured.residual,
+            R=measured.covariance,
+            residual=lambda residual, _: residual,
+        )
+        return self.x, (self.P + self.P.T) / 2, float(self.y @ self.SI @ self.y)

@@ -1,5 +1,7 @@
 """Angles on the circle, in radians."""
 
+import math
+
 import numpy as np
 
 from odometry.arrays import FloatArray
@@ -9,6 +11,14 @@ def wrap(angle: FloatArray | float) -> FloatArray:
     """The same angle in (-pi, pi]."""
     wrapped = np.pi - np.mod(np.pi - np.asarray(angle, dtype=np.float64), 2 * np.pi)
     return np.where(wrapped == -np.pi, np.pi, wrapped)  # the remainder may round up to 2 pi
+
+
+def wrap_one(angle: float) -> float:
+    """`wrap` of one finite number, without an array."""
+    if -math.pi < angle <= math.pi:
+        return angle
+    wrapped = angle - 2 * math.pi * math.ceil((angle - math.pi) / (2 * math.pi))
+    return wrapped if wrapped > -math.pi else math.pi  # the quotient may round up
 
 
 def continuous_difference(yaw: FloatArray, reference_yaw: FloatArray) -> FloatArray:

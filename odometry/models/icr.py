@@ -123,7 +123,7 @@ class Icr(InvertibleModel):
 
     def icr_form(self, values: FloatArray) -> IcrForm:
         """The parameters themselves."""
-        return IcrForm(values[ICRS], values[ALPHAS], np.eye(3, 5))
+        return IcrForm(values[ICRS], values[ALPHAS], np.eye(5))
 
     def guess(self, robot: Robot) -> dict[str, float]:
         """Tread ICRs 1.5 times as far apart as the treads, no slip."""

@@ -15,8 +15,8 @@ class IcrForm:
         y_left, y_right, x_icr [m].
     alphas : (2,)
         Slip factors of the left and the right tread.
-    by_parameters : (3, P)
-        Derivative of the ICRs by the model's own parameters.
+    by_parameters : (5, P)
+        Derivative of the ICRs and slip factors by the model's own parameters.
     """
 
     icrs: FloatArray

@@ -43,7 +43,9 @@ class DifferentialDrive(InvertibleModel):
     def icr_form(self, values: FloatArray) -> IcrForm:
         """ICRs on the treads."""
         (width,) = values
-        return IcrForm(symmetric_icrs(width), np.ones(2), symmetric_icrs(1.0)[:, None])
+        return IcrForm(
+            symmetric_icrs(width), np.ones(2), np.append(symmetric_icrs(1.0), [0.0, 0.0])[:, None]
+        )
 
     def guess(self, robot: Robot) -> dict[str, float]:
         """The track width."""
@@ -86,8 +88,9 @@ class IcrSymmetric(InvertibleModel):
     def icr_form(self, values: FloatArray) -> IcrForm:
         """Half the width on each side."""
         alpha, width = values
-        alphas, by_width = np.array([alpha, alpha]), symmetric_icrs(1.0)
-        return IcrForm(symmetric_icrs(width), alphas, np.outer(by_width, [0.0, 1.0]))
+        by_parameters = np.zeros((5, 2))
+        by_parameters[:3, 1], by_parameters[3:, 0] = symmetric_icrs(1.0), 1.0
+        return IcrForm(symmetric_icrs(width), np.array([alpha, alpha]), by_parameters)
 
     def guess(self, robot: Robot) -> dict[str, float]:
         """A width of 1.5 track widths, no slip."""

@@ -73,9 +73,10 @@ class TractionMode(InvertibleModel):
         if m * k <= 0:
             raise ParameterError(f"k = {k} and m = {m}, expected both above 0")
         width = track_width * k / m
-        alphas, by_width = np.array([k, k]), symmetric_icrs(1.0)
-        width_by = [track_width / m, -width / m, k / m]
-        return IcrForm(symmetric_icrs(width), alphas, np.outer(by_width, width_by))
+        by_parameters = np.zeros((5, 3))
+        by_parameters[:3] = np.outer(symmetric_icrs(1.0), [track_width / m, -width / m, k / m])
+        by_parameters[3:, 0] = 1.0
+        return IcrForm(symmetric_icrs(width), np.array([k, k]), by_parameters)
 
     def guess(self, robot: Robot) -> dict[str, float]:
         """No loss forward, the turn rate of a width of 1.5 track widths."""

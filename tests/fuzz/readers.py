@@ -185,7 +185,7 @@ def _of_settings(folder):
         for name, table in given.terrains.items():
             model = model_of(table, run.robot, name)
             model.twist(model.pack(table.values), inputs_of(run))
-            prior_belief(given, name, 0.4, 0.1)
+            prior_belief(given, name, 0.4, 0.1, 0.05)
 
     yield _reader("parameter set", folder / "set.toml", SET.encode(), text_changed, use_set)
     for kind, make in (("velocity", velocity_set), ("traction", traction_set)):

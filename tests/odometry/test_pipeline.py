@@ -170,6 +170,6 @@ def test_a_filter_learns_nothing_of_a_gap_of_odometry(make_run):
 
 def test_what_a_replay_holds(make_run):
     result = replayed(Run.read(make_run(odometry=odometry_csv(STAMPS_S))))
-    assert result.means.shape == result.sigmas.shape == (17, 6)
+    assert result.means.shape == result.sigmas.shape == (17, 9)
     np.testing.assert_allclose(result.sigmas[5], np.sqrt(np.diag(result.estimates[5].covariance)))
     assert result.jumps.tolist() == [False] * 17

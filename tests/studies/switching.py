@@ -146,7 +146,7 @@ def settling(result: RunResult, change_s: float) -> tuple[float, float]:
     truth = run.truth.stack("y_left", "y_right", "x_icr")
     true_icrs = np.stack([np.interp(stamps_s, run.truth.stamps_s, c) for c in truth.T], axis=-1)
     width = (true_icrs[:, 0] - true_icrs[:, 1])[:, None]
-    near = (np.abs(result.replay.means[:, 3:] - true_icrs) <= SETTLED_SHARE * width).all(axis=1)
+    near = (np.abs(result.replay.means[:, 3:6] - true_icrs) <= SETTLED_SHARE * width).all(axis=1)
     later = true_changes_s(run)
     end_s = min([t for t in later if t > change_s], default=stamps_s[-1])
     for start in np.flatnonzero((stamps_s >= change_s) & (stamps_s <= end_s - SETTLED_S) & near):

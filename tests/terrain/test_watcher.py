@@ -78,9 +78,8 @@ def estimate_at(frame, before_s=0.0, icrs=(0.15, -0.15, 0.0), speeds=(0.5, 0.5))
     stamp_s = frame.stamp_s - before_s
     return Estimate(
         stamp_s,
-        np.array([0.5 * stamp_s, 0.0, 0.0, *icrs]),
-        1e-6 * np.eye(6),
-        np.ones(2),
+        np.array([0.5 * stamp_s, 0.0, 0.0, *icrs, 0.0, 1.0, 1.0]),
+        1e-6 * np.eye(9),
         np.array(speeds),
         "mud",
     )

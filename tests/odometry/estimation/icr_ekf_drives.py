@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from odometry.estimation.config import IcrEkfConfig
+from odometry.estimation.config import PAPER, IcrEkfConfig
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.frames import Frame
 from odometry.parameters import ParameterSet, TerrainParameters
@@ -23,8 +23,12 @@ def table(y_left, y_right, x_icr, sigma_m=None, **alphas):
     return TerrainParameters("icr", values, NAMES, sigma_m**2 * np.eye(3))
 
 
+FIXED_NOISE = PAPER | {"position_sigma_m": 0.02, "yaw_sigma_rad": 0.01}
+
+
 def filter_of(*, terrains=None, **settings):
-    return IcrEkf(WIDTH, ParameterSet(terrains or {}), IcrEkfConfig(**settings))
+    """Chen's own filter but for the settings."""
+    return IcrEkf(WIDTH, ParameterSet(terrains or {}), IcrEkfConfig(**FIXED_NOISE | settings))
 
 
 def driven(ekf, terrain="a", steps=30, estimate=None):

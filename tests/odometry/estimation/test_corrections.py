@@ -10,10 +10,9 @@ from odometry.effects.catalogue import added_effects
 from odometry.effects.corrected import Corrected
 from odometry.effects.measured import robot_run
 from odometry.errors import ParameterError
-from odometry.estimation.config import IcrEkfConfig
+from odometry.estimation.config import PAPER, IcrEkfConfig
 from odometry.estimation.corrections import corrections_of
 from odometry.estimation.icr_ekf import IcrEkf
-from odometry.estimation.transition import transition
 from odometry.learned import learned_parameters
 from odometry.models.catalogue import MODELS
 from odometry.parameters import ParameterSet, TerrainParameters
@@ -68,15 +67,15 @@ def posed(make_run):
 
 
 def replayed(run, source=None, **tables):
-    """Of poses so uncertain that none is refused."""
+    """Of poses so uncertain that none is refused, slip factors held as given."""
     parameters = ParameterSet(tables)
-    config = IcrEkfConfig(position_sigma_m=0.5, yaw_sigma_rad=0.3)
+    config = IcrEkfConfig(**PAPER, position_sigma_m=0.5, yaw_sigma_rad=0.3)
     estimator = IcrEkf(0.6, parameters, config, corrections_of(run, parameters))
     return replay(run, estimator, source or ConstantTerrain("a"))
 
 
 def assert_alike(one, other):
-    np.testing.assert_allclose(one.means, other.means, atol=1e-9)
+    np.testing.assert_allclose(one.means[:, :6], other.means[:, :6], atol=1e-9)
     np.testing.assert_allclose(one.sigmas, other.sigmas, atol=1e-9)
     np.testing.assert_allclose(one.odometer().poses, other.odometer().poses, atol=1e-9)
 
@@ -106,7 +105,7 @@ def test_what_the_motion_adds_stays_while_the_icrs_are_learned(posed):
     """A skid of 0.2 m at the ICRs of the set: -0.2 omega of v_y, whatever the filter holds."""
     result = replayed(posed, a=table(SKID))
     base = MODELS["icr"].twist(MODELS["icr"].pack(ICRS), inputs_of(posed))
-    learned = np.abs(result.means[-1, 3:] - [0.4, -0.3, 0.05]).max()
+    learned = np.abs(result.means[-1, 3:6] - [0.4, -0.3, 0.05]).max()
     assert learned > 0.01
     rows = np.searchsorted(STAMPS_S, result.stamps_s, side="right") - 1
     for estimate, row in zip(result.estimates, rows, strict=True):
@@ -166,18 +165,3 @@ def test_what_was_learned_keeps_its_effects(posed):
     assert learned.effects == (SCALE,)
     assert learned.values["y_left"] != ICRS["y_left"]
     assert learned_parameters(ParameterSet(), result, "r").terrains["a"].effects == ()
-
-
-def test_the_jacobian_of_a_step_holds_what_is_added():
-    """Central differences with a twist added."""
-    added, speeds = np.array([0.2, -0.3, 0.5]), np.array([0.4, 0.9])
-    state = np.array([1.0, -2.0, 0.7, 0.4, -0.5, 0.1])
-    _, jacobian = transition(state, speeds, 0.3, added)
-    ends = [
-        [transition(state + sign * 1e-6 * e, speeds, 0.3, added)[0] for e in np.eye(6)]
-        for sign in (1, -1)
-    ]
-    numeric = (np.array(ends[0]) - np.array(ends[1])).T / 2e-6
-    np.testing.assert_allclose(jacobian, numeric, atol=1e-8)
-    plain, _ = transition(state, speeds, 0.3)
-    assert np.abs(transition(state, speeds, 0.3, added)[0] - plain).max() > 0.05

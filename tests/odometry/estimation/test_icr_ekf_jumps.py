@@ -47,7 +47,7 @@ def test_a_jump_is_found_and_the_icr_block_reset(rng):
     assert jumps
     assert 100 <= jumps[0] <= 110
     assert estimates[jumps[0]].recent == ()
-    sigmas = [np.sqrt(np.diag(estimate.covariance)[3:]) for estimate in estimates]
+    sigmas = [np.sqrt(np.diag(estimate.covariance)[3:6]) for estimate in estimates]
     assert np.all(sigmas[jumps[0]] > 3 * sigmas[jumps[0] - 1])
     widths = [estimate.mean[3] - estimate.mean[4] for estimate in estimates]
     assert widths[-1] == pytest.approx(1.0, rel=0.05)

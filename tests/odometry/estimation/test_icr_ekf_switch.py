@@ -20,12 +20,12 @@ def test_a_switch_takes_the_table_and_resets_exactly_the_icr_block():
     terrains = {"a": table(0.4, -0.4, 0), "b": table(0.3, -0.35, 0.1, 0.02, alpha_left=0.9)}
     ekf = filter_of(terrains=terrains, reset_sigma_widths=0.3)
     before, after = switched(ekf, driven(ekf), "b")
-    assert np.abs(before.covariance[:3, 3:]).max() > 1e-4
-    np.testing.assert_array_equal(after.mean, [*before.mean[:3], 0.3, -0.35, 0.1])
+    assert np.abs(before.covariance[:3, 3:6]).max() > 1e-4
+    np.testing.assert_array_equal(after.mean, [*before.mean[:3], 0.3, -0.35, 0.1, 0, 0.9, 1])
     np.testing.assert_array_equal(after.covariance[:3, :3], before.covariance[:3, :3])
-    np.testing.assert_allclose(after.covariance[3:, 3:], 0.15**2 * np.eye(3), rtol=1e-12)
-    assert np.all(after.covariance[:3, 3:] == 0)
-    assert np.all(after.covariance[3:, :3] == 0)
+    np.testing.assert_allclose(after.covariance[3:6, 3:6], 0.15**2 * np.eye(3), rtol=1e-12)
+    assert np.all(after.covariance[:3, 3:6] == 0)
+    assert np.all(after.covariance[3:6, :3] == 0)
     np.testing.assert_array_equal(after.alphas, [0.9, 1])
     assert after.terrain == "b"
 
@@ -33,15 +33,15 @@ def test_a_switch_takes_the_table_and_resets_exactly_the_icr_block():
 def test_a_switch_to_a_terrain_without_a_table_takes_the_broad_prior():
     ekf = filter_of(terrains={"a": table(0.4, -0.4, 0)})
     _, after = switched(ekf, driven(ekf), "c")
-    np.testing.assert_allclose(after.mean[3:], [WIDTH / 2, -WIDTH / 2, 0])
-    np.testing.assert_allclose(after.covariance[3:, 3:], (WIDTH / 2) ** 2 * np.eye(3))
+    np.testing.assert_allclose(after.mean[3:6], [WIDTH / 2, -WIDTH / 2, 0])
+    np.testing.assert_allclose(after.covariance[3:6, 3:6], (WIDTH / 2) ** 2 * np.eye(3))
 
 
 def test_the_same_name_is_no_switch():
     ekf = filter_of(terrains={"a": table(0.4, -0.4, 0)})
     estimate = driven(ekf)
     assert estimate.learned == {}
-    assert np.abs(estimate.covariance[:3, 3:]).max() > 1e-4
+    assert np.abs(estimate.covariance[:3, 3:6]).max() > 1e-4
 
 
 @pytest.mark.parametrize(
@@ -55,12 +55,12 @@ def test_what_was_learned_comes_back_where_it_is_more_certain_than_the_table(
     ekf = filter_of(terrains=terrains)
     there = ekf.start(frame(0, (0, 0, 0), speeds=(0, 0)), "b")
     covariance = there.covariance.copy()
-    covariance[3:, 3:] = learned_sigma_m**2 * np.eye(3)
-    mean = np.array([0, 0, 0, 0.45, -0.4, 0.05])
+    covariance[3:6, 3:6] = learned_sigma_m**2 * np.eye(3)
+    mean = np.array([0, 0, 0, 0.45, -0.4, 0.05, 0, 1, 1])
     left = switched(ekf, replace(there, mean=mean, covariance=covariance), "a")[1]
-    np.testing.assert_array_equal(left.mean[3:], [0.4, -0.4, 0])
+    np.testing.assert_array_equal(left.mean[3:6], [0.4, -0.4, 0])
     back = switched(ekf, left, "b")[1]
-    np.testing.assert_array_equal(back.mean[3:], expected)
+    np.testing.assert_array_equal(back.mean[3:6], expected)
 
 
 def test_a_terrain_that_was_left_before_anything_was_learned_is_as_uncertain_as_ever():
@@ -68,7 +68,7 @@ def test_a_terrain_that_was_left_before_anything_was_learned_is_as_uncertain_as_
     ekf = filter_of(terrains={"a": table(0.4, -0.4, 0)})
     visited = driven(ekf, "c", 2, switched(ekf, driven(ekf), "c")[1])
     back = switched(ekf, driven(ekf, "a", 2, visited), "c")[1]
-    np.testing.assert_allclose(back.covariance[3:, 3:], (WIDTH / 2) ** 2 * np.eye(3))
+    np.testing.assert_allclose(back.covariance[3:6, 3:6], (WIDTH / 2) ** 2 * np.eye(3))
 
 
 def test_the_step_before_a_switch_is_predicted_with_the_old_icrs():

@@ -1,18 +1,23 @@
-"""The step of the state against finite differences, Chen's equation and fine integration."""
+"""The step of the state against finite differences, Chen's equation and a model's own arc."""
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.estimation.transition import process_noise, transition
-from odometry.models.icr import icr_twist_jacobian
+from odometry.estimation.transition import STATES, transition
+from odometry.geometry import se2
+from odometry.models.icr import icr_twist, icr_twist_jacobian
 
 length = st.floats(-20, 20)
 speed = st.floats(-2, 2)
 icrs = st.tuples(st.floats(0.2, 1), st.floats(-1, -0.2), st.floats(-0.5, 0.5))
-states = st.tuples(length, length, st.floats(-3.2, 3.2), icrs).map(
-    lambda s: np.array([*s[:3], *s[3]])
+alphas = st.tuples(st.floats(0.3, 1.2), st.floats(0.3, 1.2))
+states = st.tuples(
+    length, length, st.floats(-3.2, 3.2), icrs, st.floats(-0.1, 0.1), alphas | st.just((1.0, 1.0))
+).map(lambda s: np.array([*s[:3], *s[3], s[4], *s[5]]))
+yaw_rates = st.just(np.nan) | st.floats(-2, 2)
+added = st.tuples(*[st.floats(-0.1, 0.1)] * 5).map(
+    lambda a: {"added_speeds": np.array(a[:2]), "added_twist": np.array(a[2:])}
 )
 tread_speeds = (
     st.tuples(speed, speed)
@@ -29,19 +34,19 @@ def difference(one, other):
     return delta
 
 
-@given(states, tread_speeds, steps_s)
-def test_jacobian_is_the_derivative(state, speeds, step_s):
+@given(states, tread_speeds, steps_s, yaw_rates, added)
+def test_jacobian_is_the_derivative(state, speeds, step_s, yaw_rate, effects):
     """Central differences of 1e-6 around positions of 20 m: rounding below 1e-8."""
-    h = 1e-6
+    h, given_too = 1e-6, {"yaw_rate_rad_s": yaw_rate, **effects}
     columns = [
         difference(
-            transition(state + h * e, speeds, step_s)[0],
-            transition(state - h * e, speeds, step_s)[0],
+            transition(state + h * e, speeds, step_s, **given_too)[0],
+            transition(state - h * e, speeds, step_s, **given_too)[0],
         )
         / (2 * h)
-        for e in np.eye(6)
+        for e in np.eye(STATES)
     ]
-    jacobian = transition(state, speeds, step_s)[1]
+    jacobian = transition(state, speeds, step_s, **given_too)[1]
     np.testing.assert_allclose(jacobian, np.column_stack(columns), rtol=1e-6, atol=5e-8)
 
 
@@ -57,59 +62,50 @@ def test_equation_10_as_the_conventions_correct_it(state, speeds):
             [1, -1, 0],
         ]
     )
+    state[6:] = 0, 1, 1
     to_world = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
-    ours = to_world @ icr_twist_jacobian(state[3:], speeds)
+    ours = to_world @ icr_twist_jacobian(state[3:6], speeds)
     np.testing.assert_allclose(ours * [1, 1, -1], by_chens_icrs, rtol=0, atol=1e-11)
     step_s = 1e-6
-    in_the_limit = transition(state, speeds, step_s)[1][:3, 3:] / step_s
+    in_the_limit = transition(state, speeds, step_s)[1][:3, 3:6] / step_s
     np.testing.assert_allclose(in_the_limit * [1, 1, -1], by_chens_icrs, rtol=1e-4, atol=1e-3)
 
 
-@given(states, tread_speeds, steps_s, st.integers(2, 9))
-def test_splitting_a_step_changes_nothing(state, speeds, step_s, parts):
-    whole, jacobian = transition(state, speeds, step_s)
-    split, product = state, np.eye(6)
+@given(states, tread_speeds, steps_s, yaw_rates, st.integers(2, 9))
+def test_splitting_a_step_changes_nothing(state, speeds, step_s, yaw_rate, parts):
+    whole, jacobian = transition(state, speeds, step_s, yaw_rate_rad_s=yaw_rate)
+    split, product = state, np.eye(STATES)
     for _ in range(parts):
-        split, part = transition(split, speeds, step_s / parts)
+        split, part = transition(split, speeds, step_s / parts, yaw_rate_rad_s=yaw_rate)
         product = part @ product
     np.testing.assert_allclose(difference(split, whole), 0, atol=1e-11)
     np.testing.assert_allclose(product, jacobian, rtol=0, atol=1e-9)
 
 
 @given(states, tread_speeds, steps_s)
-def test_icrs_stay(state, speeds, step_s):
+def test_all_but_the_pose_stays(state, speeds, step_s):
     np.testing.assert_array_equal(transition(state, speeds, step_s)[0][3:], state[3:])
 
 
 def test_a_step_of_no_time_changes_nothing():
-    state = np.array([1, 2, 3, 0.4, -0.3, 0.1])
+    state = np.array([1, 2, 3, 0.4, -0.3, 0.1, 0.01, 0.9, 1.0])
     after, jacobian = transition(state, np.array([1.0, 2.0]), 0.0)
     np.testing.assert_allclose(after, state, atol=1e-15)
-    np.testing.assert_array_equal(jacobian, np.eye(6))
+    np.testing.assert_array_equal(jacobian, np.eye(STATES))
 
 
-DENSITY = np.array([1e-4, 1e-4, 1e-3, 1e-5, 1e-5, 1e-5])
+@given(states, tread_speeds, steps_s, added)
+def test_treads_turn_it_as_the_model_of_their_icrs_does(state, speeds, step_s, effects):
+    twist = icr_twist(state[3:6], state[7:] * (speeds + effects["added_speeds"]))
+    moved = se2.exp((twist + effects["added_twist"]) * step_s)
+    expected = np.append(se2.compose(state[:3], moved), state[3:])
+    after = transition(state, speeds, step_s, **effects)[0]
+    np.testing.assert_allclose(difference(after, expected), 0, atol=1e-12)
 
 
-def integrated_noise(state, speeds, step_s, parts=400):
-    """The integral of F(s) Q F(s)^T by midpoints, F from s to the end of the step."""
-    total = np.zeros((6, 6))
-    for i in range(parts):
-        middle, _ = transition(state, speeds, step_s * (i + 0.5) / parts)
-        to_end = transition(middle, speeds, step_s * (parts - i - 0.5) / parts)[1]
-        total += to_end @ np.diag(DENSITY) @ to_end.T * step_s / parts
-    return total
-
-
-@pytest.mark.parametrize("speeds", [(0.5, 0.5), (0.2, 0.9), (-0.5, 0.5)])
-def test_process_noise_is_the_integral_to_second_order(speeds):
-    """Halving the step divides the trapezium rule's error by eight: its order is dt^3 a step."""
-    state = np.array([0, 0, 0.7, 0.4, -0.3, 0.1])
-    errors = []
-    for step_s in (0.2, 0.1):
-        jacobian = transition(state, np.array(speeds), step_s)[1]
-        noise = process_noise(jacobian, DENSITY, step_s)
-        np.testing.assert_allclose(noise, noise.T, rtol=1e-12)
-        errors.append(np.abs(noise - integrated_noise(state, np.array(speeds), step_s)).max())
-    assert errors[0] < 1e-5
-    assert 6.5 < errors[0] / errors[1] < 9.5
+@given(states, tread_speeds, steps_s)
+def test_a_gyroscope_that_agrees_with_the_treads_changes_nothing(state, speeds, step_s):
+    omega = icr_twist(state[3:6], state[7:] * speeds)[2]
+    by_treads = transition(state, speeds, step_s)[0]
+    by_gyroscope = transition(state, speeds, step_s, yaw_rate_rad_s=omega + state[6])[0]
+    np.testing.assert_allclose(by_gyroscope, by_treads, atol=1e-12)

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.geometry.angles import continuous_difference, sine_and_cosine, wrap
+from odometry.geometry.angles import continuous_difference, sine_and_cosine, wrap, wrap_one
 
 
 def test_the_half_turn_is_positive():
@@ -54,3 +54,9 @@ def test_sine_and_cosine_of_quarter_turns_and_of_next_to_nothing():
     small = np.array([0.0, 1e-300, -1e-160, 1e-20, 1e-9])
     np.testing.assert_allclose(sine_and_cosine(small)[0], small, rtol=1e-15)
     assert np.all(sine_and_cosine(small)[1] == 1.0)
+
+
+@given(st.floats(-1e3, 1e3) | st.integers(-9, 9).map(lambda k: k * np.pi))
+def test_one_angle_wraps_as_an_array_does(angle):
+    assert -np.pi < wrap_one(angle) <= np.pi
+    assert np.exp(1j * wrap_one(angle)) == pytest.approx(np.exp(1j * float(wrap(angle))), abs=1e-9)

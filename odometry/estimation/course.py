@@ -1,0 +1,138 @@
+"""Unknown heading, found from the course of measured positions against dead reckoning."""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+
+LEAST_POSITIONS = 8
+LEAST_TRAVEL_M = 6.0  # turns to both sides, so that moving aside in them averages
+CERTAIN_SIGMA_RAD = 0.05  # 2.9 degrees
+ENOUGH_SIGMA_RAD = 0.25  # where treads turn the robot: more comes with their ICRs, by the filter
+CRAB_SIGMA_RAD = 0.02  # by which the robot moves aside of its heading while nothing is known of it
+UNKNOWN_YAW_VARIANCE = math.pi**2 / 3  # of an angle that may be any
+
+
+class Heading(NamedTuple):
+    """By what a dead-reckoned frame is to be turned and moved.
+
+    Attributes
+    ----------
+    yaw_rad, sigma_rad : float
+    centre_m, measured_m : (2,), (2,)
+        Mean dead-reckoned place, and the mean measured place that it belongs to.
+    position_sigma_m : float
+        Of one position against dead reckoning.
+    """
+
+    yaw_rad: float
+    sigma_rad: float
+    centre_m: FloatArray
+    measured_m: FloatArray
+    position_sigma_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class Course:
+    """Sums over measured positions p and the dead-reckoned places q of the same reference point.
+
+    Attributes
+    ----------
+    begin_s : float
+        Stamp of the first.
+    count : int
+    reckoned_m, measured_m : (2,), (2,)
+        Means of q and p.
+    last_reckoned_m, last_measured_m : (2,), (2,)
+    dot, cross : float
+        Sums of q . p and q x p about the means [m^2].
+    reckoned_square, measured_square : float
+        Sums of |q|^2 and |p|^2 about the means [m^2].
+    travel_m : float
+        Sum of the steps of q.
+    step_square : float
+        Sum of (|step of p| - |step of q|)^2 [m^2]: whatever the heading, it tells the noise.
+    """
+
+    begin_s: float
+    count: int
+    reckoned_m: FloatArray
+    measured_m: FloatArray
+    last_reckoned_m: FloatArray
+    last_measured_m: FloatArray
+    dot: float = 0.0
+    cross: float = 0.0
+    reckoned_square: float = 0.0
+    measured_square: float = 0.0
+    travel_m: float = 0.0
+    step_square: float = 0.0
+
+    @classmethod
+    def begun(cls, stamp_s: float, position_m: FloatArray) -> "Course":
+        """At the first position, where dead reckoning begins too."""
+        return cls(stamp_s, 1, position_m, position_m, position_m, position_m)
+
+    def with_position(self, reckoned_m: FloatArray, measured_m: FloatArray) -> "Course":
+        """The sums with one more pair (Welford's updates of means and products)."""
+        count = self.count + 1
+        q, p = reckoned_m - self.reckoned_m, measured_m - self.measured_m
+        left = self.count / count
+        reckoned_step_m = math.dist(reckoned_m, self.last_reckoned_m)
+        measured_step_m = math.dist(measured_m, self.last_measured_m)
+        return Course(
+            self.begin_s,
+            count,
+            self.reckoned_m + q / count,
+            self.measured_m + p / count,
+            reckoned_m,
+            measured_m,
+            self.dot + left * float(q @ p),
+            self.cross + left * float(q[0] * p[1] - q[1] * p[0]),
+            self.reckoned_square + left * float(q @ q),
+            self.measured_square + left * float(p @ p),
+            self.travel_m + reckoned_step_m,
+            self.step_square + (measured_step_m - reckoned_step_m) ** 2,
+        )
+
+    def heading(self, position_sigma_m: float, *, by_gyroscope: bool) -> Heading | None:
+        """The turn that fits best; None while it cannot be told.
+
+        Least squares over rotations and one scale, for treads that slip, about the means (Umeyama
+        1991 in the plane). Driving forward or
+        back makes no difference: dead reckoning knows the direction. The lengths of steps tell the
+        noise of positions where it is more than `position_sigma_m`. Residuals above it count as
+        errors of dead reckoning, which are of one piece: they do not average.
+        A gyroscope keeps the shape of the path, so that `CERTAIN_SIGMA_RAD` is asked for; treads
+        whose ICRs are not known yet do not, and `ENOUGH_SIGMA_RAD` must do.
+        """
+        if self.count < LEAST_POSITIONS or self.travel_m < LEAST_TRAVEL_M:
+            return None
+        fitted = math.hypot(self.dot, self.cross)
+        residual = self.measured_square - fitted**2 / self.reckoned_square
+        noise = max(position_sigma_m**2, self.step_square / (2 * (self.count - 1)))
+        excess = max(residual / (2 * self.count - 4) - noise, 0.0)
+        by_noise = (noise + excess * self.count) / self.reckoned_square
+        sigma = math.sqrt(by_noise + CRAB_SIGMA_RAD**2)
+        if sigma > (CERTAIN_SIGMA_RAD if by_gyroscope else ENOUGH_SIGMA_RAD):
+            return None
+        return Heading(
+            math.atan2(self.cross, self.dot),
+            sigma,
+            self.reckoned_m,
+            self.measured_m,
+            math.sqrt(noise + excess),
+        )
+
+
+def aligned(heading: Heading, pose: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """A dead-reckoned pose (3,) in the frame of the positions, and its covariance (3, 3)."""
+    cosine, sine = math.cos(heading.yaw_rad), math.sin(heading.yaw_rad)
+    q = pose[:2] - heading.centre_m
+    away = np.array([cosine * q[0] - sine * q[1], sine * q[0] + cosine * q[1]])
+    by_yaw = np.array([-away[1], away[0], 1.0])
+    covariance = np.outer(by_yaw, by_yaw) * heading.sigma_rad**2
+    covariance[[0, 1], [0, 1]] += heading.position_sigma_m**2
+    return np.append(heading.measured_m + away, pose[2] + heading.yaw_rad), covariance

@@ -1,0 +1,162 @@
+"""What a sensor measures less what the filter expects, its derivative and its noise."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray
+from odometry.estimation.transition import (
+    ALPHA_LEFT,
+    ALPHA_RIGHT,
+    GYRO_BIAS,
+    STATES,
+    X_ICR,
+    Y_LEFT,
+    Y_RIGHT,
+    YAW,
+    X,
+    Y,
+)
+from odometry.geometry.angles import wrap_one
+
+Place = tuple[float, float]
+Gaussian = tuple[FloatArray, FloatArray]
+
+
+class Measurement(NamedTuple):
+    """One measurement against the state that is believed.
+
+    Attributes
+    ----------
+    residual : (m,)
+        Measured less expected; an angle in (-pi, pi].
+    jacobian : (m, 9)
+        Derivative of what is expected by the state.
+    covariance : (m, m)
+        Of the measurement.
+    """
+
+    residual: FloatArray
+    jacobian: FloatArray
+    covariance: FloatArray
+
+    def part(self, chosen: BoolArray) -> "Measurement":
+        """Only the chosen entries (m,) of bool."""
+        return Measurement(
+            self.residual[chosen],
+            self.jacobian[chosen],
+            self.covariance[np.ix_(chosen, chosen)],
+        )
+
+
+def reference_point(mean: FloatArray, lever_m: Place) -> FloatArray:
+    """Place (2,) of a point `lever_m` of the robot frame in the reference frame."""
+    cosine, sine = math.cos(mean[YAW]), math.sin(mean[YAW])
+    ahead, aside = lever_m
+    return np.array(
+        [
+            mean[X] + cosine * ahead - sine * aside,
+            mean[Y] + sine * ahead + cosine * aside,
+        ]
+    )
+
+
+def pose_measurement(
+    mean: FloatArray, pose: FloatArray, covariance: FloatArray, lever_m: Place
+) -> Measurement:
+    """Of a measured pose, any part of which may be NaN.
+
+    Parameters
+    ----------
+    mean : (9,)
+    pose : (3,)
+        x, y of the reference point [m], yaw of the robot [rad].
+    covariance : (3, 3)
+    lever_m : (x, y)
+        Place of the reference point in the robot frame.
+    """
+    x, y, yaw = mean[:3].tolist()
+    at_x, at_y, at_yaw = pose.tolist()
+    jacobian = np.eye(3, STATES)
+    aside_x, aside_y = 0.0, 0.0
+    if lever_m != (0.0, 0.0):
+        cosine, sine = math.cos(yaw), math.sin(yaw)
+        aside_x = cosine * lever_m[0] - sine * lever_m[1]
+        aside_y = sine * lever_m[0] + cosine * lever_m[1]
+        jacobian[0, YAW], jacobian[1, YAW] = -aside_y, aside_x
+    turn = at_yaw - yaw
+    if math.isfinite(turn):
+        turn = wrap_one(turn)
+    away_x, away_y = at_x - x - aside_x, at_y - y - aside_y
+    measured = Measurement(np.array([away_x, away_y, turn]), jacobian, covariance)
+    if math.isfinite(away_x + away_y + turn):
+        return measured
+    return measured.part(np.isfinite(measured.residual))
+
+
+def tread_yaw_rate(mean: FloatArray, tread_speeds: FloatArray, yaw_rate: float) -> Measurement:
+    """Of the gyroscope's yaw rate against that of the treads, which has the noise.
+
+    Expected of the gyroscope: (alpha_right v_right - alpha_left v_left) / (y_left - y_right)
+    plus its bias. The covariance (1, 1) is left at zero.
+
+    Parameters
+    ----------
+    mean : (9,)
+    tread_speeds : (2,)
+        [m/s]
+    yaw_rate : float
+        [rad/s]
+    """
+    left, right = tread_speeds.tolist()
+    width = float(mean[Y_LEFT] - mean[Y_RIGHT])
+    omega = float(mean[ALPHA_RIGHT] * right - mean[ALPHA_LEFT] * left) / width
+    jacobian = np.zeros((1, STATES))
+    jacobian[0, 3:] = (-omega / width, omega / width, 0.0, 1.0, -left / width, right / width)
+    residual = np.array([yaw_rate - omega - mean[GYRO_BIAS]])
+    return Measurement(residual, jacobian, np.zeros((1, 1)))
+
+
+def velocity_measurement(
+    mean: FloatArray,
+    velocity: FloatArray,
+    tread_speeds: FloatArray,
+    yaw_rate: float,
+    covariance: FloatArray,
+) -> Measurement:
+    """Of a measured v_x, v_y [m/s] and omega [rad/s], any part of which may be NaN.
+
+    Parameters
+    ----------
+    mean : (9,)
+    velocity : (3,)
+    tread_speeds : (2,)
+        Before slip [m/s].
+    yaw_rate : float
+        Of the gyroscope [rad/s]; where it is NaN, the treads turn the robot.
+    covariance : (3, 3)
+    """
+    y_left, y_right, x_icr, bias, alpha_left, alpha_right = mean[Y_LEFT:].tolist()
+    left, right = tread_speeds.tolist()
+    by_omega = np.zeros(STATES)
+    if math.isnan(yaw_rate):
+        width = y_left - y_right
+        omega = (alpha_right * right - alpha_left * left) / width
+        by_omega[Y_LEFT], by_omega[Y_RIGHT] = -omega / width, omega / width
+        by_omega[ALPHA_LEFT], by_omega[ALPHA_RIGHT] = -left / width, right / width
+    else:
+        omega = yaw_rate - bias
+        by_omega[GYRO_BIAS] = -1.0
+    middle = (y_left + y_right) / 2
+    expected = np.array(
+        [(alpha_left * left + alpha_right * right) / 2 + middle * omega, -x_icr * omega, omega]
+    )
+    jacobian = np.outer([middle, -x_icr, 1.0], by_omega)
+    jacobian[0, Y_LEFT] += omega / 2
+    jacobian[0, Y_RIGHT] += omega / 2
+    jacobian[0, ALPHA_LEFT] += left / 2
+    jacobian[0, ALPHA_RIGHT] += right / 2
+    jacobian[1, X_ICR] -= omega
+    measured = Measurement(velocity - expected, jacobian, covariance)
+    return measured.part(np.isfinite(velocity))

@@ -1,0 +1,65 @@
+"""A filter that starts anew at the measured poses, after it refused them for long."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.estimation.filter_event import FilterEvent
+from odometry.estimation.measurement import Gaussian, Place, reference_point
+from odometry.estimation.transition import STATES, YAW
+
+MOST_APART = 0.4  # of the last residual: refused poses that agree lie no farther from it
+MOST_SIGMAS = 4.0
+SHARE = 0.6  # of the refused poses that must agree with the last
+LOST_YAW_RAD = 0.2  # how far the yaw may be off where positions alone were refused
+
+
+def agree(refused: Sequence[FloatArray], pose_covariance: FloatArray) -> bool:
+    """Whether refused poses say one thing, by their residuals (m,), rather than anything.
+
+    Outliers differ from each other as much as from the filter; poses that jumped and stayed,
+    or a filter that lost its way, differ by about the same from pose to pose.
+    """
+    last = refused[-1]
+    alike = [residual for residual in refused if len(residual) == len(last)]
+    sigmas = np.sqrt(np.diag(pose_covariance))
+    scaled = np.array(alike) / (sigmas if len(last) == 3 else sigmas[: len(last)])
+    most = MOST_APART * float(np.linalg.norm(scaled[-1])) + MOST_SIGMAS
+    near = np.linalg.norm(scaled - scaled[-1], axis=1) <= most
+    return int(near.sum()) >= SHARE * len(refused)
+
+
+def started_anew(
+    belief: Gaussian, pose: FloatArray, pose_covariance: FloatArray, lever_m: Place
+) -> Gaussian:
+    """The belief at a measured pose (3,), parts of which may be NaN; the rest stays."""
+    mean, covariance = belief[0].copy(), np.zeros((STATES, STATES))
+    covariance[3:, 3:] = belief[1][3:, 3:]
+    covariance[:3, :3] = pose_covariance
+    if math.isfinite(pose[YAW]):
+        mean[YAW] = pose[YAW]
+    else:
+        covariance[YAW, YAW] = belief[1][YAW, YAW] + LOST_YAW_RAD**2
+    if np.isfinite(pose[:2]).all():
+        mean[:2] = pose[:2] - (reference_point(mean, lever_m) - mean[:2])
+    else:
+        covariance[:2, :2] = belief[1][:2, :2]
+    return mean, covariance
+
+
+def new_start_event(refused: Sequence[FloatArray], stamp_s: float) -> FilterEvent:
+    """The event of a new start."""
+    last = refused[-1]
+    parts = [] if len(last) == 1 else [f"{math.hypot(*last[:2]):.2f} m"]
+    if len(last) != 2:
+        parts.append(f"{math.degrees(abs(last[-1])):.1f} degrees")
+    return FilterEvent(
+        "reinitialised",
+        stamp_s,
+        stamp_s,
+        f"{len(refused)} poses in a row were refused and agreed with each other, "
+        f"{' and '.join(parts)} from the filter: it started anew there (the poses jumped, or "
+        "treads and gyroscope lost their way)",
+    )

@@ -1,0 +1,164 @@
+"""What a measured pose changes: it is weighed, refused, or the filter starts anew at it."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.estimation.config import IcrEkfConfig
+from odometry.estimation.course import Course
+from odometry.estimation.estimate import ALPHAS, OF_TERRAIN, Estimate, Innovation
+from odometry.estimation.filter_event import FilterEvent
+from odometry.estimation.gaussian import gate_threshold, project_into
+from odometry.estimation.heading_search import searched
+from odometry.estimation.measurement import Gaussian, Measurement, Place, pose_measurement
+from odometry.estimation.new_start import agree, new_start_event, started_anew
+from odometry.estimation.noise_scale import NoiseScale, adapted
+from odometry.estimation.pose_kalman import PoseKalman
+from odometry.estimation.transition import ALPHA_LEFT, ALPHA_RIGHT, STATES, Y_LEFT, Y_RIGHT, YAW
+from odometry.frames import Frame
+from odometry.geometry.angles import wrap_one
+
+SIDES = np.zeros((2, STATES))
+SIDES[0, Y_LEFT], SIDES[1, Y_RIGHT] = 1.0, -1.0
+LEAST_SIDE = 0.05  # of the track width; y_left and -y_right are kept above it
+LEAST_ALPHA = 0.05
+
+
+class Seen(NamedTuple):
+    """The fields of an estimate that a pose changes, see `Estimate`."""
+
+    mean: FloatArray
+    covariance: FloatArray
+    innovation: Innovation | None
+    refused: tuple[FloatArray, ...]
+    recent: tuple[float, ...]
+    jumped: bool
+    scale: NoiseScale
+    course: Course | None
+    events: tuple[FilterEvent, ...] = ()
+
+
+class PoseUpdate:
+    """Takes measured poses in.
+
+    Parameters
+    ----------
+    config : IcrEkfConfig
+    track_width : float
+        [m]
+    kalman : PoseKalman
+    lever_m : (x, y)
+        Place of the measured point in the robot frame.
+    """
+
+    def __init__(
+        self, config: IcrEkfConfig, track_width: float, kalman: PoseKalman, lever_m: Place
+    ) -> None:
+        self.config = config
+        self.covariance = np.diag(  # Chen 2023 eq. 14
+            np.square([config.position_sigma_m, config.position_sigma_m, config.yaw_sigma_rad])
+        )
+        self.lever_m = lever_m
+        self._kalman = kalman
+        self._least_side_m = LEAST_SIDE * track_width
+        self._reset_variances = np.square(
+            [config.reset_sigma_widths * track_width] * 3 + [config.reset_sigma_alpha] * 2
+        )
+        self._gates, self._tails = (
+            [0.0, *(gate_threshold(probability, size) for size in (1, 2, 3))]
+            for probability in (config.gate_probability, config.tail_probability)
+        )
+        self._jump = gate_threshold(config.jump_probability, 3 * config.jump_window)
+
+    def seen(
+        self,
+        estimate: Estimate,
+        belief: Gaussian,
+        frame: Frame,
+        recent: tuple[float, ...],
+    ) -> Seen:
+        """What is believed after a measured pose (3,), parts of which may be NaN.
+
+        Parameters
+        ----------
+        estimate : Estimate
+            The one before.
+        belief : (9,), (9, 9)
+            Mean and covariance at the stamp.
+        frame : Frame
+        recent : tuple of float
+            See `Estimate`; empty after a switch.
+        """
+        if frame.pose is not None:
+            scaled = self.covariance * estimate.scale.pose
+            if estimate.course is not None:
+                found = searched(estimate.course, belief, frame, scaled, self.lever_m)
+                return self._nothing(estimate, found.belief, recent)._replace(
+                    course=found.course, events=found.events
+                )
+            measured = pose_measurement(belief[0], frame.pose, scaled, self.lever_m)
+            if len(measured.residual):
+                return self._taken(estimate, belief, measured, frame, recent)
+        return self._nothing(estimate, belief, recent)
+
+    def _nothing(self, estimate: Estimate, belief: Gaussian, recent: tuple[float, ...]) -> Seen:
+        return Seen(*belief, None, estimate.refused, recent, False, estimate.scale, estimate.course)
+
+    def _taken(
+        self,
+        estimate: Estimate,
+        belief: Gaussian,
+        measured: Measurement,
+        frame: Frame,
+        recent: tuple[float, ...],
+    ) -> Seen:
+        mean, covariance, squared = self._kalman.updated(*belief, measured)
+        size, scale = len(measured.residual), estimate.scale
+        if self.config.adapt_rate > 0:
+            scale = adapted(
+                scale, measured.residual, self._kalman.SI, squared, self.config.adapt_rate
+            )
+        jumped, gate = False, self._gates[size]
+        if self.config.detect_jumps and size == 3:
+            recent = (*recent, min(squared, gate))[-self.config.jump_window :]
+            jumped = len(recent) == self.config.jump_window and sum(recent) > self._jump
+            if jumped:
+                recent, belief = (), self._with_terrain_reset(belief)
+        accepted = squared <= gate
+        innovation = Innovation(measured.residual, squared, accepted)
+        if not accepted:
+            refused = (*estimate.refused, measured.residual)[-self.config.gate_patience :]
+            after = Seen(*belief, innovation, refused, recent, jumped, scale, None)
+            if len(refused) < self.config.gate_patience or not agree(refused, self.covariance):
+                return after
+            pose = np.asarray(frame.pose)
+            anew = started_anew(belief, pose, self.covariance * scale.pose, self.lever_m)
+            event = new_start_event(refused, frame.stamp_s)
+            return after._replace(mean=anew[0], covariance=anew[1], refused=(), events=(event,))
+        if jumped or squared > self._tails[size]:
+            factor = max(1.0, squared / self._tails[size])
+            heavy = measured._replace(covariance=measured.covariance * factor)
+            mean, covariance, _ = self._kalman.updated(*belief, heavy)
+        mean = self._bounded(mean, covariance)
+        return Seen(mean, covariance, innovation, (), recent, jumped, scale, None)
+
+    def _with_terrain_reset(self, belief: Gaussian) -> Gaussian:
+        """Chen 2023, 3.2: where the ICRs mutate, the error covariance is reset."""
+        covariance = belief[1].copy()
+        covariance[OF_TERRAIN], covariance[:, OF_TERRAIN] = 0.0, 0.0
+        covariance[OF_TERRAIN, OF_TERRAIN] = self._reset_variances
+        return belief[0], covariance
+
+    def _bounded(self, mean: FloatArray, covariance: FloatArray) -> FloatArray:
+        """Yaw in (-pi, pi], ICRs on their own sides of the robot, slip factors above zero."""
+        yaw = float(mean[YAW])
+        if abs(yaw) > math.pi:
+            mean[YAW] = wrap_one(yaw)
+        least = self._least_side_m
+        if mean[Y_LEFT] < least or mean[Y_RIGHT] > -least:
+            mean = project_into(mean, covariance, SIDES, np.full(2, least))
+        if min(mean[ALPHA_LEFT], mean[ALPHA_RIGHT]) < LEAST_ALPHA:
+            mean[ALPHAS] = np.maximum(mean[ALPHAS], LEAST_ALPHA)
+        return mean

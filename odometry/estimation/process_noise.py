@@ -1,0 +1,66 @@
+"""Variance that unmodelled motion adds to the state over a step."""
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.estimation.config import IcrEkfConfig
+from odometry.estimation.estimate import ALPHAS, ICRS
+from odometry.estimation.transition import GYRO_BIAS, STATES, YAW
+
+GAP_DENSITY = 25.0, 9.0  # [m^2/s], [rad^2/s]: while speeds are not known, all may happen
+
+
+class ProcessNoise:
+    """Variances per step of each state, from the settings of the filter.
+
+    Parameters
+    ----------
+    config : IcrEkfConfig
+    track_width : float
+        [m]
+    """
+
+    def __init__(self, config: IcrEkfConfig, track_width: float) -> None:
+        self._position = config.position_noise**2
+        self._yaw = config.yaw_noise**2
+        self._slip = config.slip_noise**2
+        self._yaw_by_slip = self._slip / track_width**2
+        self._gyro = config.gyro_noise**2
+        alpha_noise = config.alpha_noise if config.reset_sigma_alpha > 0 else 0.0
+        self._density = np.zeros(STATES)
+        self._density[ICRS] = (config.icr_noise_widths * track_width) ** 2
+        self._density[ALPHAS] = alpha_noise**2
+        if config.use_gyroscope:
+            self._density[GYRO_BIAS] = config.bias_noise**2
+
+    def over(
+        self,
+        tread_speeds: FloatArray,
+        step_s: float,
+        *,
+        slip_scale: float,
+        by_gyroscope: bool,
+        in_gap: bool,
+    ) -> FloatArray:
+        """Variances (9,) that a step adds.
+
+        Parameters
+        ----------
+        tread_speeds : (2,)
+            [m/s]; slip grows with the distance that they make.
+        step_s : float
+        slip_scale : float
+            Factor on the variance of slip.
+        by_gyroscope, in_gap : bool
+            Whether the gyroscope turns the robot, and whether the tread speeds are not known.
+        """
+        left, right = tread_speeds.tolist()
+        travel_per_s = (abs(left) + abs(right)) / 2 * slip_scale
+        density = self._density.copy()
+        density[:YAW] = self._position + self._slip * travel_per_s
+        density[YAW] = self._gyro if by_gyroscope else self._yaw + self._yaw_by_slip * travel_per_s
+        if in_gap:
+            density[:YAW] += GAP_DENSITY[0]
+            if not by_gyroscope:
+                density[YAW] += GAP_DENSITY[1]
+        return density * step_s

@@ -1,0 +1,55 @@
+"""How far treads can be off: variances of their yaw rate and speeds over a step."""
+
+import math
+
+from odometry.arrays import FloatArray
+from odometry.estimation.config import IcrEkfConfig
+from odometry.estimation.measurement import Measurement
+
+CORRELATED_S = 0.5  # slip stays about the same for so long
+STANDING_RAD_S, BY_SPEED, BY_TURN = 0.02, 0.05, 0.1  # sigma at rest, by speed over width, by turn
+HUBER_SQUARED = 4.0  # two standard deviations of a yaw rate of the treads
+
+
+def tread_variance(
+    tread_speeds: FloatArray, yaw_rate: float, track_width: float, slip_scale: float, step_s: float
+) -> float:
+    """Variance of the treads' yaw rate over a step [rad^2/s^2].
+
+    Slip is correlated over `CORRELATED_S`: shorter steps say less each, so that the answer does
+    not depend on how finely time is cut.
+    """
+    left, right = tread_speeds.tolist()
+    by_speed = BY_SPEED * (abs(left) + abs(right)) / 2 / track_width
+    variance = STANDING_RAD_S**2 + slip_scale * by_speed**2 + (BY_TURN * yaw_rate) ** 2
+    return float(variance * CORRELATED_S / step_s)
+
+
+def huber_factor(measured: Measurement, covariance: FloatArray, variance: float) -> float:
+    """Factor on the variance of one number: above 1 beyond two standard deviations."""
+    by_state = measured.jacobian[0]
+    expected = variance + float(by_state @ covariance @ by_state)
+    squared = float(measured.residual[0]) ** 2 / expected if expected > 0 else 0.0
+    return max(1.0, squared / HUBER_SQUARED)
+
+
+def velocity_variances(
+    config: IcrEkfConfig,
+    tread_speeds: FloatArray,
+    *,
+    track_width: float,
+    slip_scale: float,
+    step_s: float,
+    yaw_rate: float,
+) -> tuple[float, float, float]:
+    """Variances of measured v_x, v_y, omega against what treads and gyroscope say.
+
+    That of the sensor, and what slip adds to the step before it.
+    """
+    left, right = tread_speeds.tolist()
+    slip = config.slip_noise**2 * slip_scale * (abs(left) + abs(right)) / 2
+    of_position = (slip + config.position_noise**2) / step_s
+    of_turn = slip / track_width**2 + config.yaw_noise**2
+    of_yaw = config.gyro_noise**2 if not math.isnan(yaw_rate) else of_turn
+    of_velocity = config.velocity_sigma_m_s**2 + of_position
+    return of_velocity, of_velocity, config.yaw_rate_sigma_rad_s**2 + of_yaw / step_s
