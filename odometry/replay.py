@@ -7,10 +7,9 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray
 from odometry.dead_reckoning import dead_reckon
 from odometry.estimation.estimate import Estimate
+from odometry.estimation.transition import GYRO_BIAS
 from odometry.models.icr import icr_twist
 from odometry.trajectory import Trajectory
-
-GYRO_BIAS = 6  # its place in the state
 
 
 @dataclass(frozen=True)
@@ -31,12 +30,12 @@ class Replay:
 
     @property
     def means(self) -> FloatArray:
-        """States (N, 6)."""
+        """States (N, 9)."""
         return np.stack([estimate.mean for estimate in self.estimates])
 
     @property
     def sigmas(self) -> FloatArray:
-        """Standard deviations (N, 6)."""
+        """Standard deviations (N, 9)."""
         variances = [np.diag(estimate.covariance) for estimate in self.estimates]
         return np.sqrt(np.maximum(variances, 0.0))
 
@@ -119,8 +118,9 @@ class Replay:
         added = np.stack([estimate.added_twist for estimate in held])
         effective = np.stack([estimate.effective_speeds_m_s for estimate in held])
         y_left, y_right, x_icr = self.means[:-1, 3:6].T
-        bias = self.means[:-1, GYRO_BIAS] if self.means.shape[1] > GYRO_BIAS else 0.0
-        omega = self.yaw_rates_rad_s - bias - added[:, 2]
+        bias = self.means[:-1, GYRO_BIAS]
+        believed = np.array([estimate.believed_yaw_rate_rad_s for estimate in self.estimates[1:]])
+        omega = believed - bias - added[:, 2]
         # v_x = alpha v + y omega of either tread (Baril 2020 eq. 4 to 6), the mean of both
         v_x = effective.mean(axis=1) + (y_left + y_right) / 2 * omega
         return np.asarray(added + np.column_stack([v_x, -x_icr * omega, omega]))

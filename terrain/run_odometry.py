@@ -149,7 +149,8 @@ def run_odometry(
     initial = _initial_terrain(run, parameters, terrain)
     corrections = corrections_of(run, parameters)
     run = robot_run(run, _sensor_effects(parameters))
-    estimator = IcrEkf(run.robot.track_width, parameters, config.filter, corrections)
+    lever_m = run.sensors.pose_m[:2] if run.sensors.pose_m else (0.0, 0.0)
+    estimator = IcrEkf(run.robot.track_width, parameters, config.filter, corrections, lever_m)
     watcher = _watcher(run, model, initial, config) if vision and model is not None else None
     result = replay(
         run, estimator, watcher or ConstantTerrain(initial), show_progress=show_progress

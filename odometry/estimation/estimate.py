@@ -82,8 +82,10 @@ class Estimate:
     terrain : str
         The terrain in force.
     yaw_rate_rad_s : float
-        Mean of the gyroscope's yaw rate since the estimate before, its bias included; NaN where
-        it was silent or not believed.
+        Mean of the gyroscope's yaw rate since the estimate before, as recorded; NaN where it was
+        silent.
+    believed_yaw_rate_rad_s : float
+        The one that turned the robot since then, its bias included; NaN where the treads did.
     added_speeds_m_s, added_twist : (2,), (3,)
         What the effects of the terrain change of these speeds, and of the twist of the ICRs.
     innovation : Innovation or None
@@ -111,6 +113,7 @@ class Estimate:
     tread_speeds_m_s: FloatArray
     terrain: str
     yaw_rate_rad_s: float = math.nan
+    believed_yaw_rate_rad_s: float = math.nan
     added_speeds_m_s: FloatArray = field(default_factory=lambda: np.zeros(2))
     added_twist: FloatArray = field(default_factory=lambda: np.zeros(3))
     innovation: Innovation | None = None
