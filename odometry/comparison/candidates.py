@@ -8,7 +8,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.comparison.config import ComparisonConfig
-from odometry.comparison.split import Split, windows_of_parts
+from odometry.comparison.split import Split, training_windows
 from odometry.effects.tables import model_of, table_of
 from odometry.errors import ParameterError
 from odometry.identification.errors import IdentificationError
@@ -16,6 +16,7 @@ from odometry.identification.fitters import fitter
 from odometry.identification.plausibility import refusals
 from odometry.models.base import KinematicModel
 from odometry.parameters import ParameterSet, TerrainParameters
+from odometry.windows.stretches import Stretches
 from odometry.windows.windows import Windows
 
 AS_GIVEN = "taken as it is; it may have been identified on these very runs"
@@ -125,7 +126,7 @@ class IdentifiedModel(Candidate):
             return Predictor(self.model, values, (), np.empty((0, 0)), "known of the robot")
         if not split.training:
             raise IdentificationError("no run of --train is of this robot on this terrain")
-        windows = _thinned(windows_of_parts(split.training, config.training), self.most_windows)
+        windows = _thinned(training_windows(split.training, config.training), self.most_windows)
         fit = fitter(
             self.model,
             robot,
@@ -144,7 +145,8 @@ class IdentifiedModel(Candidate):
             fit.values,
             fit.names,
             fit.normal_covariance,
-            f"identified by terrain-odometry from {len(windows)} windows of {split.training_names}",
+            f"identified by terrain-odometry from {len(windows)} {fit.noun} of "
+            f"{split.training_names}",
             tuple(open_.words() for open_ in fit.undetermined),
             tuple(f"{name} ended at the edge of its search range" for name in fit.at_bound),
         )
@@ -186,7 +188,7 @@ class GivenParameters(Candidate):
         )
 
 
-def _thinned(windows: Windows, most: int | None) -> Windows:
+def _thinned(windows: Windows | Stretches, most: int | None) -> Windows | Stretches:
     if most is None or len(windows) <= most:
         return windows
     kept = np.zeros(len(windows), dtype=np.bool_)

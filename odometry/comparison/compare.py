@@ -1,6 +1,7 @@
 """Compare models on windows that they were not identified on."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from odometry.comparison.candidates import Candidate, GivenParameters, IdentifiedModel
@@ -18,6 +19,7 @@ from odometry.errors import OdometryError
 from odometry.grounds import with_named_ground
 from odometry.models.catalogue import MODELS
 from odometry.parameters import ParameterSet, TerrainParameters, read_parameters
+from odometry.positions.heading import FoundHeading, headed
 from odometry.run import Run
 from odometry.windows.record import record_of
 
@@ -62,12 +64,13 @@ def compare(
     """
     config = config or ComparisonConfig()
     candidates = candidates_named(models)
-    usable, left_out = _with_poses([with_named_ground(run, terrain) for run in runs], config)
-    known, not_used = _with_poses([with_named_ground(run, terrain) for run in train], config)
+    usable, left_out, found = _with_poses([with_named_ground(run, terrain) for run in runs], config)
+    known, not_used, _ = _with_poses([with_named_ground(run, terrain) for run in train], config)
     if not usable or (train and not known):
         raise ComparisonError(
             "\n  ".join(["no run to compare on", *(left_out | not_used).values()])
         )
+    config, notes = _told_by_positions(found, config)
     planned = splits(usable, known)
     identified = [each for each in candidates if isinstance(each, IdentifiedModel)]
     on_all = fit_models(
@@ -99,6 +102,7 @@ def compare(
         ),
         config=config,
         by_training_horizon=by_training_horizon,
+        notes=notes,
     )
 
 
@@ -134,16 +138,36 @@ def candidates_named(names: Sequence[str | Candidate]) -> tuple[Candidate, ...]:
     return tuple(found)
 
 
-def _with_poses(runs: Sequence[Run], config: ComparisonConfig) -> tuple[list[Run], dict[str, str]]:
-    """Runs that have measured poses, and by folder why others cannot be evaluated."""
+def _with_poses(
+    runs: Sequence[Run], config: ComparisonConfig
+) -> tuple[list[Run], dict[str, str], list[FoundHeading]]:
+    """Runs that have poses, by folder why others cannot be evaluated, and headings found."""
     usable, reasons = [], {}
+    found: list[FoundHeading] = []
     for run in runs:
         try:
-            record_of(run, config.training)
-            usable.append(run)
+            (with_yaw,), headings = headed([run])
+            record_of(with_yaw, config.training)
+            usable.append(with_yaw)
+            found += headings
         except OdometryError as error:
             reasons[str(run.folder)] = str(error)
-    return usable, reasons
+    return usable, reasons, found
+
+
+def _told_by_positions(
+    found: Sequence[FoundHeading], config: ComparisonConfig
+) -> tuple[ComparisonConfig, tuple[str, ...]]:
+    """Horizons over which positions without yaw tell errors, and what a reader should know."""
+    notes = [heading.words for heading in found]
+    least_m = max((heading.least_horizon_m for heading in found), default=0.0)
+    horizons_m = tuple(dict.fromkeys(max(each, least_m) for each in config.horizons_m))
+    if horizons_m != config.horizons_m:
+        notes.append(
+            f"errors are evaluated over {least_m:.3g} m and more: over less, the noise of the "
+            "positions is most of them"
+        )
+    return replace(config, horizons_m=horizons_m), tuple(notes)
 
 
 def _differences(

@@ -38,6 +38,8 @@ class Comparison:
     config : ComparisonConfig
     by_training_horizon : tuple of HorizonErrors
         Empty where no training horizons were asked for.
+    notes : tuple of str
+        What a reader should know of the runs.
     """
 
     models: tuple[str, ...]
@@ -50,6 +52,7 @@ class Comparison:
     parameters: Mapping[tuple[str, str], ParameterSet]
     config: ComparisonConfig
     by_training_horizon: tuple[HorizonErrors, ...] = ()
+    notes: tuple[str, ...] = ()
 
     @property
     def robots_and_terrains(self) -> tuple[tuple[str, str], ...]:

@@ -7,10 +7,13 @@ import numpy as np
 
 from odometry.arrays import BoolArray
 from odometry.grounds import terrains_of
+from odometry.identification.from_positions import stretches_for
 from odometry.run import Run
 from odometry.runs import check_no_run_twice, robot_labels, run_names
 from odometry.windows.config import WindowConfig
 from odometry.windows.errors import WindowError
+from odometry.windows.measured_poses import lacks_yaw
+from odometry.windows.stretches import Stretches
 from odometry.windows.windows import Windows, windows_of
 
 MOST_FOLDS = 10  # so that the cost of a comparison is linear in the number of runs
@@ -87,6 +90,21 @@ def windows_of_parts(parts: Sequence[Part], config: WindowConfig) -> Windows:
             f"{', '.join(part.name for part in parts)}; choose a shorter horizon"
         )
     return windows.where(here)
+
+
+def training_windows(parts: Sequence[Part], config: WindowConfig) -> Windows | Stretches:
+    """`windows_of_parts`, or stretches of positions where yaw was not measured.
+
+    Raises
+    ------
+    OdometryError
+        If there is none.
+    """
+    cut = [part.cut() for part in parts]
+    if not any(map(lacks_yaw, cut)):
+        return windows_of_parts(parts, config)
+    stretches = stretches_for(cut, config)
+    return stretches.where(stretches.terrain == parts[0].terrain)
 
 
 @dataclass(frozen=True, eq=False)

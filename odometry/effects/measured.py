@@ -8,6 +8,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base import MeasurementEffect
 from odometry.effects.corrected import Added, delay_s
+from odometry.effects.lever_arm import LeverArm
 from odometry.errors import ParameterError
 from odometry.geometry.angles import wrap
 from odometry.run import Run
@@ -49,19 +50,28 @@ def robot_poses(effects: Sequence[Added], seen: FloatArray) -> FloatArray:
 def robot_run(run: Run, effects: Sequence[Added]) -> Run:
     """The run with the poses of the robot in place of those that its sensor reports.
 
-    Stamps become those at which the poses were measured: all are moved by the same delay. A run
-    without poses, and one whose sensor has no such effect, is the run itself.
+    The lever arm that `[sensors]` states is undone first, and is stated no more. Stamps become
+    those at which the poses were measured: all are moved by the same delay. A run without poses,
+    and one whose sensor has no such effect and no lever arm, is the run itself.
     """
-    if run.pose is None or not on_measurement(effects):
+    stated = run.sensors.pose_m
+    if run.pose is None or not (stated or on_measurement(effects)):
         return run
-    poses = robot_poses(effects, run.pose.stack(*POSE_NAMES))
+    seen = run.pose.stack(*POSE_NAMES)
+    if stated is not None:
+        seen = LeverArm().robot_poses(np.array(stated[:2]), seen)
+    poses = robot_poses(effects, seen)
     poses[:, 2] = wrap(poses[:, 2])
     columns = {
         **run.pose.columns,
         "t": run.pose.stamps_s - delay_s(effects),
         **dict(zip(POSE_NAMES, np.ascontiguousarray(poses.T), strict=True)),
     }
-    return replace(run, pose=replace(run.pose, columns=columns))
+    sensors = {
+        key: value for key, value in run.settings.get("sensors", {}).items() if key != "pose"
+    }
+    settings = {**run.settings, "sensors": sensors}
+    return replace(run, settings=settings, pose=replace(run.pose, columns=columns))
 
 
 def _words(effects: Sequence[Added]) -> str:

@@ -1,6 +1,7 @@
 """Locate the gap, name what is missing, add it, and measure what that closes."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from tqdm import tqdm
@@ -20,11 +21,13 @@ from odometry.gap.statistic import floor_of, floor_there, gap_of
 from odometry.identification.identify import robot_of
 from odometry.models.base import KinematicModel
 from odometry.models.icr import Icr
+from odometry.positions.heading import Headed, headed
 from odometry.run import Run
 from odometry.runs import check_no_run_twice
 from odometry.windows.dense import DenseWindows, dense_windows_of, thinned
 
 WITHIN_95 = 1.96  # standard deviations
+SLOWEST_M_S = 0.05  # of a mean speed: a robot that stands has no horizon
 
 
 def find_gap(
@@ -72,6 +75,9 @@ def find_gap(
         )
     check_no_run_twice([*measured, *calibration, *holdout])
     robot = robot_of([*calibration, *measured, *holdout])
+    headings = headed([*measured, *calibration, *holdout])
+    measured, calibration, holdout = _dealt(headings.runs, len(measured), len(calibration))
+    config = for_positions(config, headings)
     known = calibrated(calibration, model or Icr(), robot, config, given)
     fitted_scenes, held_scenes = _scenes(measured, holdout, config)
     floor = floor_of(known.held_back, config.part_s)
@@ -106,7 +112,30 @@ def find_gap(
         measured_scenes=tuple(fitted_scenes),
         holdout_scenes=tuple(held_scenes),
         horizon_s=config.horizon_s,
+        notes=headings.notes,
     )
+
+
+def _dealt(
+    runs: Sequence[Run], measured: int, calibration: int
+) -> tuple[Sequence[Run], Sequence[Run], Sequence[Run]]:
+    """Measured, calibration and held-out runs of all, in this order."""
+    known = measured + calibration
+    return runs[:measured], runs[measured:known], runs[known:]
+
+
+def for_positions(config: GapConfig, headings: Headed) -> GapConfig:
+    """Longer windows where positions without yaw are too noisy for short ones.
+
+    At most half of a piece, so that pieces still hold windows.
+    """
+    speeds_m_s = [
+        each.run.wheel_travel_m[-1] / np.ptp(each.run.odometry.stamps_s) for each in headings.found
+    ]
+    if not speeds_m_s:
+        return config
+    needed_s = headings.least_horizon_m / max(min(speeds_m_s), SLOWEST_M_S)
+    return replace(config, horizon_s=max(config.horizon_s, min(needed_s, config.part_s / 2)))
 
 
 def _counting(bar: "tqdm[None]") -> Callable[[], None]:

@@ -90,6 +90,8 @@ class GapResult:
         The same, moved within what its calibration leaves open.
     measured_scenes, holdout_scenes : tuple of DenseWindows
     horizon_s : float
+    notes : tuple of str
+        What a reader should know of the runs.
     """
 
     verdict: str
@@ -104,6 +106,7 @@ class GapResult:
     measured_scenes: tuple[DenseWindows, ...]
     holdout_scenes: tuple[DenseWindows, ...]
     horizon_s: float
+    notes: tuple[str, ...] = ()
 
     @property
     def added(self) -> tuple[Added, ...]:

@@ -22,8 +22,8 @@ def shape_residuals(model: KinematicModel, values: FloatArray, of: Stretches) ->
     In turn the ways along x and y of the antenna from each first position, and, where a gyroscope
     carries the yaw, the turns from there.
     """
-    motion = window_motion(_carried(model, of), values, of.ends).reshape(len(of), of.steps, 3)
-    ways, _ = _antenna_ways(motion, of.arm_m)
+    motion = window_motion(carried(model, of), values, of.ends).reshape(len(of), of.steps, 3)
+    ways, _ = antenna_ways(motion, of.arm_m)
     off = _turned(ways, rotations(ways, of.measured)) - of.measured
     rows = off.reshape(len(of), -1)
     if of.turns_rad is None:
@@ -36,10 +36,10 @@ def linearised_shape_residuals(
     model: KinematicModel, values: FloatArray, of: Stretches
 ) -> tuple[FloatArray, FloatArray]:
     """`shape_residuals` (K, R) and their derivative (K, R, P) by the parameters."""
-    found, by_values = linearised_window_motion(_carried(model, of), values, of.ends)
+    found, by_values = linearised_window_motion(carried(model, of), values, of.ends)
     motion = found.reshape(len(of), of.steps, 3)
     by_values = by_values.reshape(len(of), of.steps, 3, -1)
-    ways, by_yaw = _antenna_ways(motion, of.arm_m)
+    ways, by_yaw = antenna_ways(motion, of.arm_m)
     change = by_values[:, :, :2] + by_yaw[..., None] * by_values[:, :, 2:]
     turn = rotations(ways, of.measured)
     laid = _turned(ways, turn)
@@ -66,7 +66,7 @@ def shape_errors(
     or where there is none, of its second half laid apart against its first, by half the travel.
     """
     motion = window_motion(model, values, of.ends).reshape(len(of), of.steps, 3)
-    ways, _ = _antenna_ways(motion, of.arm_m)
+    ways, _ = antenna_ways(motion, of.arm_m)
     off = _turned(ways, rotations(ways, of.measured)) - of.measured
     apart_m = np.sqrt(np.sum(off**2, axis=(1, 2)) / (of.steps + 1))
     if of.turns_rad is not None:
@@ -98,7 +98,8 @@ class _Carried:
         return Linearised(twists, by_parameters)
 
 
-def _carried(model: KinematicModel, of: Stretches) -> Moving:
+def carried(model: KinematicModel, of: Stretches) -> Moving:
+    """The model, or where there is a gyroscope the model with its yaw carried by that."""
     return model if of.turns_rad is None else _Carried(model)
 
 
@@ -121,7 +122,7 @@ def _rotation_change(laid: FloatArray, change: FloatArray, measured: FloatArray)
     return np.asarray(-np.einsum("kni,knip->kp", _perpendicular(middle), change) / cosine[:, None])
 
 
-def _antenna_ways(motion: FloatArray, arm_m: FloatArray) -> tuple[FloatArray, FloatArray]:
+def antenna_ways(motion: FloatArray, arm_m: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Ways (K, n, 2) of the antenna of a robot that moved so, and their derivative by its yaw."""
     cosine, sine = np.cos(motion[..., 2]), np.sin(motion[..., 2])
     turned = np.stack(

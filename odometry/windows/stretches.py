@@ -123,7 +123,7 @@ def stretches_of(runs: Sequence[Run], length_m: float, config: WindowConfig) -> 
         If a run has no positions, its antenna sits elsewhere than that of another, or there is no
         stretch in any of them.
     """
-    records = [_with_yaw_rates(position_record_of(run, config)) for run in runs]
+    records = [position_record_with_yaw_rates(run, config) for run in runs]
     found = [_spans(record, length_m, config) for record in records]
     sizes = np.concatenate([last - first for first, last, _ in found])
     if not len(sizes):
@@ -153,7 +153,9 @@ def _shared_arm(runs: Sequence[Run]) -> tuple[FloatArray, bool]:
     return np.array(stated or (0.0, 0.0))[:2], stated is not None
 
 
-def _with_yaw_rates(record: Record) -> Record:
+def position_record_with_yaw_rates(run: Run, config: WindowConfig) -> Record:
+    """`position_record_of`, its inputs with the gyroscope's yaw rates where there are any."""
+    record = position_record_of(run, config)
     rates = yaw_rates_of(record)
     return replace(record, inputs=replace(record.inputs, yaw_rate_rad_s=rates))
 

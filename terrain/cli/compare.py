@@ -117,6 +117,8 @@ def compare(
     with output.writing() as part:
         write_comparison(comparison, part, about(output.made))
         write_comparison_report(comparison, part)
+    for note in comparison.notes:
+        click.echo(f"Note: {note}", err=True)
     for reason in comparison.left_out.values():
         click.echo(f"Note: left out: {reason}", err=True)
     print_comparison(comparison)

@@ -87,6 +87,8 @@ def gap(
     result = find_gap(
         measured, known, held, model=base, given=given, config=config, show_progress=True
     )
+    for note in result.notes:
+        click.echo(f"Note: {note}", err=True)
     with output.writing() as part:
         write_gap(result, part, about(output.made))
         write_gap_report(result, part)

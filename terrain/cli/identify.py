@@ -134,9 +134,11 @@ def identify(
     click.echo(f"Wrote {out}")
     if picture is not None:
         from odometry.outputs.output_file import picture_source
+        from odometry.positions.heading import headed
         from odometry.report.icr_picture import save_identified_icrs
 
-        save_identified_icrs(picture, runs, found, terrain, source=picture_source("identify"))
+        with_yaw = headed(runs).runs
+        save_identified_icrs(picture, with_yaw, found, terrain, source=picture_source("identify"))
         click.echo(f"Wrote {picture}")
     click.echo(_next(identified, out, terrain))
 

@@ -86,6 +86,7 @@ def identify_modes(
     from odometry.modes.mode_set import ModeSet, write_mode_set
     from odometry.modes.traction import TractionModes
     from odometry.outputs.output_file import is_set_of
+    from terrain.cli.headings import with_turns
     from terrain.cli.outputs import claim_file, comment
     from terrain.cli.recordings import read_runs
 
@@ -101,7 +102,7 @@ def identify_modes(
     if out.suffix != ".toml":
         raise click.UsageError(f"--out {out}: expected a name that ends in .toml")
     made = claim_file(out, is_set_of("identify-modes"))
-    runs = read_runs(folders, span)
+    runs = with_turns(read_runs(folders, span))
     modes: VelocityModes | TractionModes
     if kind == "velocity":
         modes = identify_velocity_modes(

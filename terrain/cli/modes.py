@@ -153,9 +153,10 @@ def _followed(
     from odometry.errors import RunFolderError
     from odometry.modes.followed import followed
     from odometry.modes.sight import seen_grounds
+    from terrain.cli.headings import with_turns
     from terrain.cli.recordings import read_run
 
-    run = read_run(folder, span)
+    (run,) = with_turns([read_run(folder, span)])
     grounds = () if seen is None else seen_grounds(seen, run)
     if seen is not None and not grounds:
         raise RunFolderError(f"{seen}: vision named no ground that {folder} gets to")

@@ -1,0 +1,116 @@
+"""Runs whose positions were measured without yaw, with the yaw that these tell written in."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from odometry.geometry.angles import wrap
+from odometry.positions.carrier import carrier_of
+from odometry.positions.smoother import smoothed_poses
+from odometry.run import Run
+from odometry.windows.measured_poses import YAW_FOUND, lacks_yaw
+
+NOISE_LENGTHS = 28.0  # a window so many times longer than the noise errs by 0.05 m per m for it
+
+
+@dataclass(frozen=True)
+class FoundHeading:
+    """A run with found yaws, and how good they are.
+
+    Attributes
+    ----------
+    run : Run
+        pose.csv with a yaw in each row that has x and y within the time of odometry.csv, and a
+        column YAW_FOUND with its standard deviation [rad]. Its positions are as they were.
+    position_sigma_m : float
+        Of a measured position, as the shapes of stretches show it.
+    yaw_sigma_rad : float
+        Median of the column. Errors of neighbouring yaws are alike.
+    by_gyroscope : bool
+        Whether a gyroscope carried the yaw between positions, and not the treads.
+    """
+
+    run: Run
+    position_sigma_m: float
+    yaw_sigma_rad: float
+    by_gyroscope: bool
+
+    @property
+    def least_horizon_m(self) -> float:
+        """Wheel travel over which the noise of positions is a small error per metre."""
+        return NOISE_LENGTHS * self.position_sigma_m
+
+    @property
+    def words(self) -> str:
+        """A sentence for a reader."""
+        by = "by the gyroscope" if self.by_gyroscope else "by the treads alone"
+        return (
+            f"{self.run.folder}: yaw was not measured; it is found from positions with a noise of "
+            f"{self.position_sigma_m:.2g} m, to about {np.degrees(self.yaw_sigma_rad):.2g} "
+            f"degrees, and carried from one to the next {by}"
+        )
+
+
+class Headed(NamedTuple):
+    """Runs with a yaw, and the headings that were found for those that lacked one."""
+
+    runs: tuple[Run, ...]
+    found: tuple[FoundHeading, ...]
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """A sentence for each found heading."""
+        return tuple(each.words for each in self.found)
+
+    @property
+    def least_horizon_m(self) -> float:
+        """The longest of those of the found headings; 0 where none was found."""
+        return max((each.least_horizon_m for each in self.found), default=0.0)
+
+
+def headed(runs: Sequence[Run]) -> Headed:
+    """Runs with a yaw: `found_heading` of those that lack one.
+
+    Raises
+    ------
+    OdometryError
+        See `found_heading`.
+    """
+    found = {i: found_heading(run) for i, run in enumerate(runs) if needs_heading(run)}
+    with_yaw = tuple(found[i].run if i in found else run for i, run in enumerate(runs))
+    return Headed(with_yaw, tuple(found.values()))
+
+
+def needs_heading(run: Run) -> bool:
+    """Whether yaw is lacking and was not found."""
+    return lacks_yaw(run) and (run.pose is None or YAW_FOUND not in run.pose)
+
+
+def found_heading(run: Run) -> FoundHeading:
+    """Find the yaw of a run from its positions.
+
+    A model identified on the shapes of stretches (`identification.from_positions`) or the
+    gyroscope carries the robot between positions; a smoother puts its pose among all of them.
+
+    Raises
+    ------
+    OdometryError
+        If there are too few positions for a model, or they contradict the treads.
+    """
+    carrier = carrier_of(run)
+    smoothed = smoothed_poses(carrier)
+    sigma_rad = np.sqrt(smoothed.covariances[:, 2, 2])
+    if run.pose is None:
+        return FoundHeading(run, np.nan, np.nan, carrier.by_gyroscope)
+    rows = np.searchsorted(run.pose.stamps_s, carrier.record.pose_s)
+    yaw, sigma = np.full((2, len(run.pose)), np.nan)
+    yaw[rows], sigma[rows] = wrap(smoothed.poses[:, 2]), sigma_rad
+    columns = {**run.pose.columns, "yaw": yaw, YAW_FOUND: sigma}
+    return FoundHeading(
+        replace(run, pose=replace(run.pose, columns=columns)),
+        float(np.sqrt(carrier.position_variance_m2)),
+        float(np.median(sigma_rad)),
+        carrier.by_gyroscope,
+    )
