@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.evaluation.odometer_uncertainty import accepted_poses, odometer_uncertainty
 from odometry.pipeline import ConstantTerrain, replay
@@ -22,7 +23,8 @@ def drive(make_run, seconds, *, pose=True, slip=1.0, outlier=None):
         **({"pose": "t,x,y,yaw\n" + poses} if pose else {}),
     )
     run = Run.read(folder)
-    return run, replay(run, IcrEkf(0.5), ConstantTerrain("a"))
+    slip_as_given = IcrEkf(0.5, config=IcrEkfConfig(reset_sigma_alpha=0.0))
+    return run, replay(run, slip_as_given, ConstantTerrain("a"))
 
 
 def test_without_poses_it_is_the_filters_own(make_run):
