@@ -7,6 +7,7 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray
 from odometry.dead_reckoning import dead_reckon
 from odometry.estimation.estimate import Estimate
+from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.transition import GYRO_BIAS
 from odometry.models.icr import icr_twist
 from odometry.trajectory import Trajectory
@@ -48,6 +49,11 @@ class Replay:
     def jumps(self) -> BoolArray:
         """Where a jump of the ICRs was detected (N,)."""
         return np.array([estimate.jumped for estimate in self.estimates])
+
+    @property
+    def events(self) -> tuple[FilterEvent, ...]:
+        """What the filter noticed, in order of time."""
+        return tuple(event for estimate in self.estimates for event in estimate.events)
 
     def trajectory(self) -> Trajectory:
         """The filter's poses, corrected by measurements."""

@@ -7,7 +7,8 @@ from .demo import run_demo
 from .errors import TerrainError
 from .report.page import write_report
 from .results import read_errors, write_results
-from .run_odometry import RunResult, run_odometry
+from .run_odometry import run_odometry
+from .run_result import RunResult
 from .synthetic import SynthesisConfig, synthesise
 from .texture import SFTA, sfta
 

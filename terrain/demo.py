@@ -8,7 +8,8 @@ from odometry.run import Run
 from terrain.classification.training import train
 from terrain.report.page import write_report
 from terrain.results import write_results
-from terrain.run_odometry import RunResult, run_odometry
+from terrain.run_odometry import run_odometry
+from terrain.run_result import RunResult
 from terrain.shipped import shipped_data
 
 WITH, WITHOUT = "with terrain classification", "without terrain classification"

@@ -2,8 +2,12 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from odometry.evaluation.withheld import Withheld
+from odometry.geometry import se2
 from odometry.replay import Replay
+from odometry.run import Run
 from odometry.trajectory import Trajectory
 
 
@@ -38,8 +42,8 @@ class Judged:
 
 
 def judged_trajectories(
+    run: Run,
     replay: Replay,
-    track_width: float,
     reference_name: str,
     reference: Trajectory | None,
     second: SecondReplay | None,
@@ -52,12 +56,20 @@ def judged_trajectories(
     if reference is None:
         return {}
     found = {
-        name: Judged(trajectory, reference, reference_name)
-        for name, trajectory in replay.open_loop(track_width).items()
+        name: Judged(seen_by(run, reference_name, trajectory), reference, reference_name)
+        for name, trajectory in replay.open_loop(run.robot.track_width).items()
     }
     if reference_name == "truth":
         found["estimate"] = Judged(replay.trajectory(), reference, reference_name)
     elif second is not None:
-        estimate = second.replay.trajectory()
+        estimate = seen_by(run, reference_name, second.replay.trajectory())
         found["estimate"] = Judged(estimate, second.withheld.judged, "withheld pose")
     return found
+
+
+def seen_by(run: Run, reference_name: str, trajectory: Trajectory) -> Trajectory:
+    """A trajectory of the robot as its reference sees it: pose.csv holds the antenna's place."""
+    if reference_name != "pose" or run.sensors.pose_m is None:
+        return trajectory
+    places = se2.transform(trajectory.poses, np.array(run.sensors.pose_m[:2]))
+    return Trajectory(trajectory.stamps_s, np.column_stack([places, trajectory.poses[:, 2]]))

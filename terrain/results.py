@@ -2,14 +2,12 @@
 
 import json
 from collections.abc import Mapping
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from odometry.estimation.estimate import STATE_NAMES
-from odometry.evaluation.withheld import JUDGED_EVERY_S, SILENT_S
 from odometry.io.csv_table import write_csv_table
 from odometry.io.files import atomic_write
 from odometry.io.structured import read_json
@@ -19,13 +17,11 @@ from odometry.outputs.manifest import check_finished
 from odometry.parameters import write_parameters
 from odometry.trajectory import Trajectory
 from terrain.errors import ResultError
-from terrain.odometer_uncertainty import covariance_columns, uncertainty_table
-from terrain.run_odometry import RunResult
-from terrain.switch_delay import switch_delays
-from terrain.verdicts import remarks
+from terrain.odometer_uncertainty import covariance_columns
+from terrain.result_table import FORMAT, result_table
+from terrain.run_result import RunResult
 from terrain.watcher import Sighting
 
-FORMAT = 1  # of result.json
 ERRORS = (  # of each trajectory in it, and which number of each the tables show
     ("translation_m_per_m", "mean"),
     ("rotation_deg_per_m", "mean"),
@@ -82,71 +78,6 @@ def write_results(
     return [out / name for name in (*names, "result.json")]
 
 
-def result_table(result: RunResult) -> dict[str, Any]:
-    """The content of result.json: plain values, units in the names."""
-    innovations = [e.innovation for e in result.replay.estimates if e.innovation is not None]
-    squared = [innovation.normalised_squared for innovation in innovations]
-    return {
-        "format": FORMAT,
-        "program": f"terrain-odometry {version('terrain-odometry')}",
-        "run": result.run.name,
-        "vision": result.watcher is not None,
-        "initial_terrain": result.initial_terrain,
-        "effects": result.effects,
-        "duration_s": float(result.replay.stamps_s[-1] - result.replay.stamps_s[0]),
-        "wheel_travel_m": float(result.run.wheel_travel_m[-1]),
-        "reference": result.reference_name or None,
-        "horizon_m": result.config.evaluation.horizon_m,
-        "gyroscope": result.replay.has_gyroscope,
-        "errors": error_tables(result),
-        "off_at_the_end_m": result.off_at_the_end_m,
-        "remarks": remarks(result.scores, result.off_at_the_end_m),
-        "withheld": _withheld(result),
-        "odometer_uncertainty": uncertainty_table(result.uncertainty),
-        "switches": _switches(result),
-        "missed_changes": _missed_changes(result),
-        "sightings": sighting_counts(result),
-        "filter": {
-            "poses": len(innovations),
-            "poses_refused": sum(not innovation.accepted for innovation in innovations),
-            "median_normalised_innovation_squared": float(np.median(squared)) if squared else None,
-            "jumps_s": result.replay.stamps_s[result.replay.jumps].tolist(),
-        },
-        "learned": {name: dict(of.values) for name, of in result.learned.terrains.items()},
-        "config": result.config.to_table(),
-    }
-
-
-def error_tables(result: RunResult) -> dict[str, dict[str, Any]]:
-    """Errors by trajectory, and what each is against."""
-    against = {name: judged.against for name, judged in result.judged.items()}
-    return {
-        name: {"against": against[name]} | score.to_table() for name, score in result.scores.items()
-    }
-
-
-def sighting_counts(result: RunResult) -> dict[str, int]:
-    """How often each label, or each reason for none, was given."""
-    counts: dict[str, int] = {}
-    for sighting in result.watcher.sightings if result.watcher else ():
-        word = sighting.label or f"no label: {sighting.reason}"
-        counts[word] = counts.get(word, 0) + 1
-    return dict(sorted(counts.items()))
-
-
-def _withheld(result: RunResult) -> dict[str, Any] | None:
-    """By which poses the estimate was judged, where it saw the others."""
-    if result.second is None:
-        return None
-    withheld = result.second.withheld
-    return {
-        "poses": withheld.poses,
-        "judged": len(withheld.judged),
-        "every_s": JUDGED_EVERY_S,
-        "silent_s": SILENT_S,
-    }
-
-
 def _pose_columns(trajectory: Trajectory) -> dict[str, Any]:
     x, y, yaw = trajectory.poses.T
     return {"t": trajectory.stamps_s, "x": x, "y": y, "yaw": yaw}
@@ -168,33 +99,6 @@ def _write_terrain(file: Path, sightings: list[Sighting], in_force: list[str]) -
         columns["left"] = np.array([sighting.left for sighting in sightings])
         columns["right"] = np.array([sighting.right for sighting in sightings])
     write_csv_table(file, columns)
-
-
-def _switches(result: RunResult) -> list[dict[str, Any]]:
-    if result.watcher is None:
-        return []
-    delays = switch_delays(result)
-    return [
-        {
-            "terrain": event.terrain,
-            "stamp_s": event.stamp_s,
-            "seen_s": event.sight.stamp_s,
-            "distance_ahead_m": event.sight.distance_ahead_m,
-            "waited_s": event.waited_s,
-            "waited_m": event.waited_m,
-            "late_s": delay.late_s,
-            "late_m": delay.late_m,
-        }
-        for event, delay in zip(result.watcher.events, delays, strict=False)
-    ]
-
-
-def _missed_changes(result: RunResult) -> list[dict[str, Any]]:
-    """True changes of terrain that no switch answered."""
-    if result.watcher is None:
-        return []
-    missed = switch_delays(result)[len(result.watcher.events) :]
-    return [{"terrain": delay.terrain, "stamp_s": delay.true_s} for delay in missed]
 
 
 def read_errors(folder: str | Path) -> dict[str, Any]:

@@ -1,6 +1,5 @@
 """The main job: an image and odometry run goes in, terrain-aware odometry comes out."""
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from odometry.effects.catalogue import added_effects
@@ -9,103 +8,23 @@ from odometry.effects.measured import robot_run, shared_measurement
 from odometry.errors import ParameterError, RunFolderError
 from odometry.estimation.corrections import corrections_of
 from odometry.estimation.icr_ekf import IcrEkf
-from odometry.evaluation.odometer_uncertainty import OdometerUncertainty, odometer_uncertainty
-from odometry.evaluation.relative import position_errors
-from odometry.evaluation.score import Score, reference_of, score
+from odometry.evaluation.odometer_uncertainty import odometer_uncertainty
+from odometry.evaluation.score import reference_of, score
 from odometry.evaluation.withheld import TerrainsOf, withhold
 from odometry.learned import learned_parameters
 from odometry.parameters import ParameterSet, read_parameters
 from odometry.pipeline import ConstantTerrain, Estimator, replay
 from odometry.replay import Replay
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
-from odometry.trajectory import Trajectory
 from terrain.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config
 from terrain.images_outside import add_images_outside
-from terrain.judged import Judged, SecondReplay, judged_trajectories
+from terrain.judged import SecondReplay, judged_trajectories
+from terrain.run_result import RunResult
 from terrain.watcher import TerrainWatcher
 
-
-@dataclass(frozen=True)
-class RunResult:
-    """All that came out of one run.
-
-    Attributes
-    ----------
-    run : Run
-        With the poses of the robot: effects on the measurement are undone.
-    config : Config
-    parameters : ParameterSet
-        What was known before the run.
-    initial_terrain : str
-    watcher : TerrainWatcher or None
-        What was seen; None without vision.
-    replay : Replay
-        Estimates at every frame.
-    reference_name : str
-        "truth", "pose" or "" where there is none.
-    reference : Trajectory or None
-    scores : dict of str to Score
-        By trajectory: differential_drive, gyroscope, odometer_without_gyroscope (both only where
-        there is one), odometer, and estimate where `judged` holds it.
-    learned : ParameterSet
-        `parameters` with what the filter learned in place of what it visited.
-    uncertainty : OdometerUncertainty
-        Covariance of the odometer along the run.
-    second : SecondReplay or None
-        The run replayed without the poses that judge the estimate; None where there is a truth,
-        or too few poses.
-    """
-
-    run: Run
-    config: Config
-    parameters: ParameterSet
-    initial_terrain: str
-    watcher: TerrainWatcher | None
-    replay: Replay
-    reference_name: str
-    reference: Trajectory | None
-    scores: dict[str, Score]
-    learned: ParameterSet
-    uncertainty: OdometerUncertainty
-    second: SecondReplay | None = None
-
-    @property
-    def judged(self) -> dict[str, Judged]:
-        """Every trajectory that can be judged fairly, with the poses that judge it."""
-        return judged_trajectories(
-            self.replay,
-            self.run.robot.track_width,
-            self.reference_name,
-            self.reference,
-            self.second,
-        )
-
-    @property
-    def off_at_the_end_m(self) -> dict[str, float]:
-        """Distance of each trajectory, as delivered, from the reference at its last stamp."""
-        if self.reference is None:
-            return {}
-        lines = self.replay.open_loop(self.run.robot.track_width)
-        lines["estimate"] = self.replay.trajectory()
-        distances = {name: position_errors(line, self.reference)[1] for name, line in lines.items()}
-        return {name: float(found[-1]) for name, found in distances.items() if len(found)}
-
-    @property
-    def effects(self) -> dict[str, list[str]]:
-        """Names of the effects that were added, by terrain."""
-        return {
-            name: [str(effect["name"]) for effect in table.effects]
-            for name, table in self.parameters.terrains.items()
-            if table.effects
-        }
-
-    @property
-    def has_learned(self) -> bool:
-        """Whether `learned` differs from what was known before."""
-        before = self.parameters.terrains
-        return any(of is not before.get(name) for name, of in self.learned.terrains.items())
+__all__ = ["RunResult", "run_odometry"]
 
 
 def run_odometry(
@@ -161,7 +80,7 @@ def run_odometry(
     second = None
     if reference_name == "pose":
         second = _second_replay(run, estimator, result, show_progress=show_progress)
-    judged = judged_trajectories(result, run.robot.track_width, reference_name, reference, second)
+    judged = judged_trajectories(run, result, reference_name, reference, second)
     return RunResult(
         run,
         config,

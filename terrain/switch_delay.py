@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.evaluation.stretches import Stretch, stretches
-from terrain.run_odometry import RunResult
+from terrain.run_result import RunResult
 from terrain.switch import SwitchEvent
 
 

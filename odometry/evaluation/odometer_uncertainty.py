@@ -13,6 +13,7 @@ from odometry.evaluation.open_loop_consistency import (
     open_loop_consistency,
 )
 from odometry.evaluation.open_loop_errors import OpenLoopPath
+from odometry.geometry import se2
 from odometry.replay import Replay
 from odometry.run import Run
 from odometry.trajectory import Trajectory
@@ -103,7 +104,7 @@ def path_of(replay: Replay) -> OpenLoopPath:
 def accepted_poses(run: Run, replay: Replay) -> tuple[IntArray, FloatArray]:
     """Frames (M,) of a replay whose pose the filter accepted, and these poses (M, 3).
 
-    A yaw that was not measured is the filter's.
+    A yaw that was not measured is the filter's; the place is the robot's, not the antenna's.
     """
     accepted = np.array(
         [e.innovation is not None and e.innovation.accepted for e in replay.estimates]
@@ -115,6 +116,9 @@ def accepted_poses(run: Run, replay: Replay) -> tuple[IntArray, FloatArray]:
     at = np.searchsorted(run.pose.stamps_s, replay.stamps_s[rows])
     poses = run.pose.stack("x", "y", "yaw")[at]
     poses[:, 2] = np.where(np.isfinite(poses[:, 2]), poses[:, 2], replay.means[rows, 2])
+    if run.sensors.pose_m is not None:
+        lever_m = np.array(run.sensors.pose_m[:2])
+        poses[:, :2] += poses[:, :2] - se2.transform(poses, lever_m)
     placed = np.isfinite(poses).all(axis=1)
     return rows[placed], poses[placed]
 

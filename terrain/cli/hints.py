@@ -3,11 +3,14 @@
 from collections import Counter
 from collections.abc import Sequence
 
+from odometry.estimation.filter_event import FilterEvent
 from odometry.run import UNKNOWN
-from terrain.run_odometry import RunResult
+from terrain.filter_summary import event_line
+from terrain.run_result import RunResult
 from terrain.watcher import Sighting
 
 MANY_REFUSED = 0.1
+FEW_EVENTS = 10
 
 
 def hints(result: RunResult, *, vision: bool) -> list[str]:
@@ -27,6 +30,7 @@ def hints(result: RunResult, *, vision: bool) -> list[str]:
         ]
     if result.watcher is not None:
         found += _blind(result.watcher.sightings)
+    found += _events(result.replay.events)
     innovations = [e.innovation for e in result.replay.estimates if e.innovation is not None]
     refused = sum(not innovation.accepted for innovation in innovations)
     if refused > MANY_REFUSED * len(innovations):
@@ -35,6 +39,14 @@ def hints(result: RunResult, *, vision: bool) -> list[str]:
             "odometry.csv, jumps of the reference, or noise settings ([filter] of --config)?"
         )
     return found
+
+
+def _events(events: Sequence[FilterEvent]) -> list[str]:
+    """What the filter noticed, the first few in full."""
+    lines = [event_line(event) for event in events[:FEW_EVENTS]]
+    if len(events) > FEW_EVENTS:
+        lines.append(f"{len(events) - FEW_EVENTS} more events of the filter, see result.json")
+    return lines
 
 
 def _blind(sightings: Sequence[Sighting]) -> list[str]:

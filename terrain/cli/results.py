@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
-    from terrain.run_odometry import RunResult
+    from terrain.run_result import RunResult
 
 HEADER = (
     *("", "m per m: mean", "median", "deg per m: mean", "median"),

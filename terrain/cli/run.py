@@ -55,8 +55,10 @@ def run(
     from terrain.cli.recordings import checks_made, read_run
     from terrain.cli.results import print_errors, print_sightings, print_written
     from terrain.config import Config
+    from terrain.filter_summary import misleading
     from terrain.report.page import write_report
-    from terrain.results import sighting_counts, write_results
+    from terrain.result_table import sighting_counts
+    from terrain.results import write_results
     from terrain.run_odometry import run_odometry
 
     settings = Config.read(config) if config else Config()
@@ -90,5 +92,8 @@ def run(
             f"learned.toml is not recommended: the recording has warnings (terrain-odometry check "
             f"{run_folder})"
         )
+    elif result.has_learned and misleading(result.replay):
+        kinds = ", ".join(dict.fromkeys(event.kind for event in misleading(result.replay)))
+        click.echo(f"learned.toml is not recommended: the filter noticed {kinds} (see result.json)")
     elif result.learned.terrains and result.has_learned:
         click.echo(f"Next time: --parameters {out / 'learned.toml'} starts from what was learned")

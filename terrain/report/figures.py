@@ -18,7 +18,7 @@ from odometry.report.plots import (
     plot_position_errors,
 )
 from terrain.report.lines import ICR_COORDINATES, ReportLines
-from terrain.run_odometry import RunResult
+from terrain.run_result import RunResult
 from terrain.switch_delay import true_stretches
 
 _WIDTH_IN = 7.0

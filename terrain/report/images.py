@@ -13,7 +13,7 @@ from terrain.images import read_image
 from terrain.report.figures import Tints, in_force
 from terrain.report.plots import draw_cells, draw_region, plot_confusion, plot_image, plot_labels
 from terrain.report.seen_ahead import Confusion, around_switches
-from terrain.run_odometry import RunResult
+from terrain.run_result import RunResult
 from terrain.switch_delay import true_stretches
 from terrain.watcher import Sighting, TerrainWatcher
 from terrain.whole_image import classify_ground

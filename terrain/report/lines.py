@@ -10,8 +10,8 @@ from odometry.evaluation.score import Score, score
 from odometry.models.catalogue import ICR_NAMES
 from odometry.report.palette import REFERENCE_STYLE, LineStyle, line_styles
 from odometry.trajectory import Trajectory
-from terrain.judged import Judged
-from terrain.run_odometry import RunResult
+from terrain.judged import Judged, seen_by
+from terrain.run_result import RunResult
 
 LABELS = {
     "differential_drive": "differential drive",
@@ -52,7 +52,11 @@ class ReportLines:
             return {}
         own = {LABELS[name]: of for name, of in result.judged.items()}
         others = {
-            name: Judged(line, result.reference, result.reference_name)
+            name: Judged(
+                seen_by(result.run, result.reference_name, line),
+                result.reference,
+                result.reference_name,
+            )
             for name, line in self._other_odometers().items()
         }
         return own | others

@@ -20,16 +20,16 @@ from terrain.report.images import (
 )
 from terrain.report.lines import ReportLines
 from terrain.report.seen_ahead import confusion
-from terrain.report.words import (
+from terrain.report.tables import (
     error_table,
-    headline,
+    event_grid,
     icr_table,
-    notes,
     settings_table,
     switch_table,
     uncertainty_grid,
 )
-from terrain.run_odometry import RunResult
+from terrain.report.words import headline, notes
+from terrain.run_result import RunResult
 from terrain.switch_delay import true_stretches
 
 Block = Paragraph | Listing | Grid | Picture
@@ -70,7 +70,8 @@ def write_report(
     tints = _tints(result)
     sections = [
         Section("Errors", _errors(lines, folder)),
-        Section("Uncertainty of the odometer", _uncertainty(result)),
+        Section("Uncertainty of the odometer", _some(uncertainty_grid(result))),
+        Section("What the filter noticed", _some(event_grid(result))),
         Section("Path", [path_picture(lines, tints, folder)]),
         Section("Terrain", _terrain(result, tints, folder)),
         Section("Centres of rotation", [icr_picture(lines, folder), icr_table(result)]),
@@ -94,8 +95,7 @@ def _errors(lines: ReportLines, folder: Path) -> list[Block]:
     return [error_table(lines, scores), *(picture for picture in pictures if picture)]
 
 
-def _uncertainty(result: RunResult) -> list[Block]:
-    grid = uncertainty_grid(result)
+def _some(grid: Grid | None) -> list[Block]:
     return [] if grid is None else [grid]
 
 

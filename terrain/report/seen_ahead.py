@@ -8,7 +8,7 @@ import numpy as np
 from odometry.arrays import IntArray
 from odometry.evaluation.stretches import terrain_at
 from odometry.run import UNKNOWN
-from terrain.run_odometry import RunResult
+from terrain.run_result import RunResult
 from terrain.switch import SwitchEvent
 from terrain.switch_delay import true_stretches
 from terrain.watcher import Sighting

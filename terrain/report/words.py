@@ -1,28 +1,22 @@
-"""The words and tables of a report."""
+"""The words of a report."""
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
-from odometry.evaluation.open_loop_consistency import OpenLoopConsistency
 from odometry.evaluation.score import Score
-from odometry.report.html import Grid
-from terrain.odometer_uncertainty import verdict
 from terrain.report.lines import (
     GYROSCOPE,
-    ICR_COORDINATES,
     IDEAL,
     LABELS,
     ODOMETER,
     ReportLines,
     other_odometer,
 )
-from terrain.run_odometry import RunResult
-from terrain.switch_delay import SwitchDelay, switch_delays, true_stretches
+from terrain.report.tables import number
+from terrain.run_result import RunResult
+from terrain.switch_delay import true_stretches
 from terrain.verdicts import NO_GYROSCOPE, judged_by, remarks
-
-NOTHING = "\N{EN DASH}"
 
 
 def headline(lines: ReportLines, scores: Mapping[str, Score]) -> str:
@@ -55,109 +49,6 @@ def headline(lines: ReportLines, scores: Mapping[str, Score]) -> str:
     )
     by_name = {name: scores[label] for name, label in LABELS.items() if label in scores}
     return " ".join([compared, *remarks(by_name, result.off_at_the_end_m)])
-
-
-def error_table(lines: ReportLines, scores: Mapping[str, Score]) -> Grid:
-    """Errors by trajectory."""
-    return Grid(
-        (
-            "trajectory",
-            "position, mean [cm/m]",
-            "position, median [cm/m]",
-            "heading, mean [°/m]",
-            "heading, median [°/m]",
-            "off course, mean [m]",
-            "off course, median [m]",
-            "off course, at the end [m]",
-            "stretches",
-        ),
-        [
-            (
-                name,
-                _number(of.mean_translation_per_m, 2, 100),
-                _number(None if of.translation_per_m is None else of.translation_per_m[1], 2, 100),
-                _number(of.mean_rotation_deg_per_m, 2),
-                _number(None if of.rotation_deg_per_m is None else of.rotation_deg_per_m[1], 2),
-                _number(of.mean_position_m, 3),
-                _number(of.median_position_m, 3),
-                _number(of.final_position_m, 3),
-                str(of.windows),
-            )
-            for name, of in scores.items()
-        ],
-        f"Errors against the {lines.reference_name}.",
-    )
-
-
-def uncertainty_grid(result: RunResult) -> Grid | None:
-    """Standard deviations of the odometer by distance, and whether they are right."""
-    of = result.uncertainty
-    checks = {check.distance_m: check for check in of.checks}
-    rows = [
-        (
-            f"{distance_m:g}",
-            *(f"{sigma:.3f}" for sigma in (x, y)),
-            f"{np.degrees(yaw):.2f}",
-            *(_checked(checks[distance_m]) if distance_m in checks else [NOTHING] * 3),
-        )
-        for distance_m, (x, y, yaw) in of.sigmas.items()
-    ]
-    if not rows:
-        return None
-    header = ("after [m]", "sigma x [m]", "sigma y [m]", "sigma yaw [°]", "NEES", "95% bounds")
-    return Grid((*header, "covariance is"), rows, f"The odometer's covariance: {of.source}.")
-
-
-def switch_table(result: RunResult) -> Grid | None:
-    """Every change of the terrain in force, then the true changes that were missed."""
-    delays = switch_delays(result)
-    if result.watcher is None or not delays:
-        return None
-    known = bool(true_stretches(result))
-    events = result.watcher.events
-    header = ("terrain", "first seen [s]", "then ahead [m]", "in force [s]")
-    rows = [
-        (
-            event.terrain,
-            f"{event.sight.stamp_s:.2f}",
-            f"{event.sight.distance_ahead_m:.2f}",
-            f"{event.stamp_s:.2f}",
-            *(_against_truth(delay) if known else ()),
-        )
-        for event, delay in zip(events, delays, strict=False)
-    ]
-    rows += [
-        (d.terrain, "missed", *[NOTHING] * 2, *_against_truth(d)) for d in delays[len(events) :]
-    ]
-    truth = ("truly from [s]", "late by [s]", "late by [m]")
-    return Grid((*header, *truth) if known else header, rows)
-
-
-def icr_table(result: RunResult) -> Grid:
-    """ICRs by terrain: known before, learned, and the mean of the truth where that is known."""
-    rows = []
-    for name, learned in result.learned.terrains.items():
-        before = result.parameters.terrains.get(name)
-        if before is not None:
-            rows.append((name, "known before", *_icrs(before)))
-        if before is not learned:
-            rows.append((name, "learned", *_icrs(learned)))
-        true = _true_icrs(result, name)
-        if true:
-            rows.append((name, "truth, mean", *true))
-    return Grid(("terrain", "", *(f"{icr} [m]" for icr in ICR_COORDINATES)), rows,
-                "Instantaneous centres of rotation, ± one standard deviation.")  # fmt: skip
-
-
-def settings_table(result: RunResult) -> Grid:
-    """Every setting that was used."""
-    rows = [("run", result.run.name), ("terrain at the start", result.initial_terrain)]
-    rows += [
-        (f"{block}.{key}", str(value))
-        for block, table in result.config.to_table().items()
-        for key, value in table.items()
-    ]
-    return Grid(("setting", "value"), rows)
 
 
 def notes(lines: ReportLines) -> list[str]:
@@ -218,46 +109,8 @@ def _gyroscope_notes(result: RunResult) -> list[str]:
     ]
 
 
-def _checked(check: OpenLoopConsistency) -> tuple[str, str, str]:
-    low, high = check.bounds
-    return f"{check.mean:.1f}", f"{low:.1f} to {high:.1f}", verdict(check)
-
-
-def _icrs(parameters: Any) -> list[str]:
-    sigmas = dict(
-        zip(parameters.covariance_order, np.sqrt(np.diag(parameters.covariance)), strict=True)
-    )
-    return [
-        (
-            _number(parameters.values.get(icr), 3)
-            + (f" ± {sigmas[icr]:.3f}" if icr in sigmas else "")
-        )
-        for icr in ICR_COORDINATES
-    ]
-
-
-def _true_icrs(result: RunResult, terrain: str) -> list[str]:
-    truth = result.run.truth
-    if truth is None or "terrain" not in truth or not all(icr in truth for icr in ICR_COORDINATES):
-        return []
-    there = truth["terrain"] == terrain
-    return (
-        [_number(float(truth[icr][there].mean()), 3) for icr in ICR_COORDINATES]
-        if any(there)
-        else []
-    )
-
-
-def _against_truth(delay: SwitchDelay) -> tuple[str, str, str]:
-    return _number(delay.true_s, 2), _number(delay.late_s, 2), _number(delay.late_m, 2)
-
-
-def _number(value: float | None, digits: int, factor: float = 1.0) -> str:
-    return NOTHING if value is None else f"{factor * value:.{digits}f}"
-
-
 def _cm(metres: float | None) -> str:
-    return f"{_number(metres, 1, 100)} cm"
+    return f"{number(metres, 1, 100)} cm"
 
 
 def _less(own: float, other: float | None) -> str:

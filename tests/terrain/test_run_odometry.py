@@ -249,3 +249,22 @@ def test_terrains_not_visited_keep_their_tables(curvy_run):
 def test_a_run_folder_that_is_none_is_an_error(tmp_path):
     with pytest.raises(RunFolderError, match="no such folder"):
         run_odometry(tmp_path / "absent")
+
+
+def test_poses_of_an_antenna_are_compared_with_the_antenna(tmp_path, world):
+    """The same drive, its poses of the robot, or of a place 0.4 m ahead and 0.2 m left of it."""
+    plain = world.drive_curves(tmp_path / "plain")
+    moved = world.drive_curves(tmp_path / "moved")
+    world.write_toml(moved / "run.toml", robot=world.robot, sensors={"pose": [0.4, 0.2, 1.0]})
+    header, *rows = (plain / "pose.csv").read_text().split()
+    lines = [header]
+    for row in rows:
+        t, x, y, yaw = (float(cell) for cell in row.split(","))
+        place = complex(x, y) + complex(0.4, 0.2) * np.exp(1j * yaw)
+        lines.append(f"{t},{place.real:.12f},{place.imag:.12f},{yaw:.12f}")
+    (moved / "pose.csv").write_text("\n".join(lines) + "\n")
+    of_robot, of_antenna = run_odometry(plain), run_odometry(moved)
+    for name, score in of_robot.scores.items():
+        found = of_antenna.scores[name].final_position_m
+        assert found == pytest.approx(score.final_position_m, abs=0.05), name
+    assert of_antenna.off_at_the_end_m["estimate"] < 0.05

@@ -2,10 +2,13 @@
 
 from types import SimpleNamespace
 
+from odometry.estimation.filter_event import FilterEvent
 from terrain.cli.hints import hints
 
 
-def result(initial="gravel", tables=("gravel",), classes=None, images=True, refused=0):
+def result(
+    initial="gravel", tables=("gravel",), classes=None, *, images=True, refused=0, events=()
+):
     watcher = (
         None
         if classes is None
@@ -16,7 +19,9 @@ def result(initial="gravel", tables=("gravel",), classes=None, images=True, refu
         parameters=SimpleNamespace(terrains=dict.fromkeys(tables)),
         watcher=watcher,
         run=SimpleNamespace(images=images or None),
-        replay=SimpleNamespace(estimates=[estimate(True)] * 10 + [estimate(False)] * refused),
+        replay=SimpleNamespace(
+            estimates=[estimate(True)] * 10 + [estimate(False)] * refused, events=events
+        ),
     )
 
 
@@ -65,3 +70,15 @@ def test_vision_that_names_nothing_says_why():
     assert "the region lies outside the image (2), unlike any training patch (1)" in hint
     assert hints(sighted(outside, ("gravel", "")), vision=True) == []
     assert hints(sighted(), vision=True) == []
+
+
+def test_what_the_filter_noticed_is_said_the_first_ten_in_full():
+    jump = FilterEvent("reinitialised", 12.0, 14.5, "the poses jumped by 2.0 m")
+    assert hints(result(events=(jump,)), vision=False) == [
+        "12.0 to 14.5 s: the poses jumped by 2.0 m"
+    ]
+    spike = FilterEvent("spike", 3.0, 3.0, "a spike")
+    said = hints(result(events=(spike,) * 13), vision=False)
+    assert said[0] == "3.0 s: a spike"
+    assert len(said) == 11
+    assert said[-1].startswith("3 more events")

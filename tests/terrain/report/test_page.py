@@ -8,6 +8,8 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
+from odometry.estimation.filter_event import FilterEvent
+from odometry.evaluation.open_loop_consistency import OpenLoopConsistency
 from odometry.evaluation.relative import EvaluationConfig
 from odometry.evaluation.score import reference_of
 from odometry.run import Run
@@ -16,7 +18,7 @@ from odometry.trajectory import Trajectory
 from terrain.config import Config
 from terrain.report.lines import ReportLines
 from terrain.report.page import write_report
-from terrain.report.words import NOTHING
+from terrain.report.tables import NOTHING
 from terrain.run_odometry import run_odometry
 
 FIGURES = {"path", "position_errors", "error_per_metre", "labels", "confusion", "regions"}
@@ -206,6 +208,31 @@ def test_against_measured_poses_the_estimate_is_judged_by_withheld_ones(across_r
     assert "The run has no gyroscope" in read.text
     assert "late by [s]" not in read.text
     assert not (tmp_path / "figures" / "confusion.png").exists()
+
+
+def test_what_the_filter_noticed_is_listed(across_result, tmp_path):
+    event = FilterEvent("reinitialised", 3.0, 4.5, "it started anew")
+    first, *rest = across_result.replay.estimates
+    replay = dataclasses.replace(
+        across_result.replay, estimates=(dataclasses.replace(first, events=(event,)), *rest)
+    )
+    write_report(dataclasses.replace(across_result, replay=replay), tmp_path)
+    _, rows = Reader(tmp_path / "report.html").table("what was noticed")
+    assert rows == [["reinitialised", "3.00", "4.50", "it started anew"]]
+
+
+def test_the_uncertainty_of_the_odometer_is_listed(across_result, tmp_path):
+    of = dataclasses.replace(
+        across_result.uncertainty,
+        sigmas={5.0: np.array([0.1, 0.2, np.radians(3)]), 20.0: np.ones(3)},
+        checks=(OpenLoopConsistency(5.0, 40, 10, 9.0, np.array([1.7, 4.7])),),
+    )
+    write_report(dataclasses.replace(across_result, uncertainty=of), tmp_path)
+    read = Reader(tmp_path / "report.html")
+    _, rows = read.table("NEES")
+    assert rows[0] == ["5", "0.100", "0.200", "3.00", "9.0", "1.7 to 4.7", "too small"]
+    assert rows[1][4:] == [NOTHING] * 3
+    assert "Each half of the run is judged by the noise measured on the other half" in read.text
 
 
 def test_a_run_shorter_than_the_horizon_says_so(across_result, tmp_path):

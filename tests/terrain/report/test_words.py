@@ -6,7 +6,8 @@ import numpy as np
 
 from odometry.evaluation.score import Score
 from terrain.config import Config
-from terrain.report.words import NOTHING, error_table, headline
+from terrain.report.tables import NOTHING, error_table
+from terrain.report.words import headline
 
 LINES = SimpleNamespace(
     result=SimpleNamespace(config=Config(), off_at_the_end_m={}),

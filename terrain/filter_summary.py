@@ -1,0 +1,52 @@
+"""What the filter made of its measurements, and what it noticed of its sensors."""
+
+from typing import Any
+
+import numpy as np
+
+from odometry.estimation.filter_event import FilterEvent
+from odometry.estimation.heading_search import INITIAL_YAW
+from odometry.estimation.transition import GYRO_BIAS
+from odometry.replay import Replay
+
+HARMLESS = {INITIAL_YAW}  # kinds of events after which the filter may be believed all the same
+
+
+def filter_table(replay: Replay) -> dict[str, Any]:
+    """What result.json holds of the filter: plain values, units in the names."""
+    innovations = [e.innovation for e in replay.estimates if e.innovation is not None]
+    squared = [innovation.normalised_squared for innovation in innovations]
+    last = replay.estimates[-1]
+    yaw = next((event.values for event in replay.events if event.kind == INITIAL_YAW), None)
+    return {
+        "poses": len(innovations),
+        "poses_refused": sum(not innovation.accepted for innovation in innovations),
+        "median_normalised_innovation_squared": float(np.median(squared)) if squared else None,
+        "jumps_s": replay.stamps_s[replay.jumps].tolist(),
+        "gyro_bias_rad_s": float(last.mean[GYRO_BIAS]) if replay.has_gyroscope else None,
+        "sigma_gyro_bias_rad_s": (
+            float(replay.sigmas[-1, GYRO_BIAS]) if replay.has_gyroscope else None
+        ),
+        "initial_yaw": None if yaw is None else {"yaw_rad": yaw[0], "sigma_rad": yaw[1]},
+        "events": [
+            {
+                "kind": event.kind,
+                "begin_s": event.begin_s,
+                "end_s": event.end_s,
+                "text": event.text,
+            }
+            for event in replay.events
+        ],
+    }
+
+
+def misleading(replay: Replay) -> list[FilterEvent]:
+    """Events that say that the run misled the filter: what it learned is then in doubt."""
+    return [event for event in replay.events if event.kind not in HARMLESS]
+
+
+def event_line(event: FilterEvent) -> str:
+    """When and what, in one line."""
+    if event.end_s > event.begin_s:
+        return f"{event.begin_s:.1f} to {event.end_s:.1f} s: {event.text}"
+    return f"{event.begin_s:.1f} s: {event.text}"
