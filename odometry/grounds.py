@@ -1,4 +1,4 @@
-"""The ground of a run, row by row."""
+"""The terrain of a run, row by row."""
 
 from dataclasses import replace
 
@@ -9,7 +9,7 @@ from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
 
 
 def with_named_ground(run: Run, given: str | None) -> Run:
-    """The run with a name for every ground: `given`, or "ground", where nobody names it."""
+    """The run with a name for every terrain: `given`, or "ground", where nobody names it."""
     usual = run.terrain if run.terrain not in (None, UNKNOWN) else given or UNNAMED_TERRAIN
     settings = {**run.settings, "run": {**run.settings.get("run", {}), "terrain": usual}}
     odometry = run.odometry
@@ -21,7 +21,7 @@ def with_named_ground(run: Run, given: str | None) -> Run:
 
 
 def terrains_of(run: Run) -> AnyArray:
-    """Name of the ground (N,) at each row of odometry.csv.
+    """Name of the terrain (N,) at each row of odometry.csv.
 
     Its column `terrain` where there is one, else the run's; "unknown" where neither says.
     """

@@ -15,7 +15,7 @@ from odometry.io.run_folder import read_settings, read_tables
 from odometry.sensors import Sensors, YawRate, preferred_yaw_rate, sensors_of
 from odometry.table import Table
 
-UNKNOWN = "unknown"  # the reserved terrain name: nothing is known of this ground
+UNKNOWN = "unknown"  # the reserved terrain name: nothing is known of this terrain
 UNNAMED_TERRAIN = "ground"  # of a run where nobody names the terrain
 
 
@@ -80,7 +80,7 @@ class Run:
 
     @property
     def terrain(self) -> str | None:
-        """The ground of the whole run, where run.toml names one."""
+        """The terrain of the whole run, where run.toml names one."""
         name: str | None = self.settings.get("run", {}).get("terrain")
         return name
 

@@ -22,7 +22,7 @@ from terrain.warp import ground_view, pixel_view
 
 @dataclass(frozen=True)
 class Sighting:
-    """What one image said of the ground ahead.
+    """What one image said of the terrain ahead.
 
     Attributes
     ----------

@@ -116,7 +116,12 @@ def _place(comparison: Comparison, place: Place) -> dict[str, Any]:
 
 
 def _place_names(place: Place) -> dict[str, Any]:
-    return {"robot": place.robot, "ground": place.terrain, "horizon_m": place.horizon_m}
+    return {
+        "robot": place.robot,
+        "terrain": place.terrain,
+        "ground": place.terrain,  # its name before 0.6
+        "horizon_m": place.horizon_m,
+    }
 
 
 def _summary(summary: Summary) -> dict[str, Any]:
@@ -143,6 +148,7 @@ def _split(models: SplitModels) -> dict[str, Any]:
     split = models.split
     return {
         "robot": split.robot,
+        "terrain": split.terrain,
         "ground": split.terrain,
         "judged": [part.name for part in split.held_out],
         "seen": split.training_names,
@@ -180,6 +186,7 @@ def _columns(evaluation: Evaluation, model: str) -> dict[str, Any]:
     speeds_m_s = evaluation.mean_speeds_m_s
     names = {
         "robot": evaluation.robot,
+        "terrain": evaluation.terrain,
         "ground": evaluation.terrain,
         "run": evaluation.run,
         "model": model,

@@ -33,7 +33,7 @@ def shared_measurement(groups: Sequence[Sequence[Added]]) -> tuple[Added, ...]:
     for other in others:
         if _words(other) != _words(first):
             raise ParameterError(
-                f"effects on the measurement: {_words(first)} on one ground, {_words(other)} on "
+                f"effects on the measurement: {_words(first)} on one terrain, {_words(other)} on "
                 "another; expected those of one sensor"
             )
     return first

@@ -15,7 +15,7 @@ class SlopeByContact(ContactChange):
     name = "slope_sliding"
     equation = "twist + balance(speeds, roll, pitch) - balance(speeds, level)"
     looks_like = "turns on a slope that slide downhill"
-    needs = "roll and pitch on ground that is not level"
+    needs = "roll and pitch on terrain that is not level"
 
     def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the face
         """See `Effect.lacks`."""

@@ -9,7 +9,7 @@ from odometry.models.inputs import Inputs
 from odometry.run import Robot
 
 MODEL = IcrSlope()
-LEAST_TILT_RAD = 0.01  # of the steepest ground: less is level
+LEAST_TILT_RAD = 0.01  # of the steepest terrain: less is level
 
 
 class SlopeByIcr(MotionEffect):
@@ -26,7 +26,7 @@ class SlopeByIcr(MotionEffect):
     equation = "ICRs shifted by lambda_1 and lambda_2 times roll and pitch, less v_max - |v|"
     source = "Martinez 2024 eq. 1-11"
     looks_like = "turns on a slope that slide downhill, most while slow"
-    needs = "roll and pitch on ground that is not level; a base model with tread ICRs"
+    needs = "roll and pitch on terrain that is not level; a base model with tread ICRs"
 
     def __init__(self, half_width: float | None = None, half_length: float | None = None) -> None:
         self.half_width, self.half_length = half_width, half_length
@@ -77,4 +77,4 @@ def lacks_tilt(inputs: Inputs) -> str:
     """What is lacking where neither roll nor pitch is more than noise."""
     angles = (inputs.roll_rad, inputs.pitch_rad)
     steepest = max(np.percentile(np.abs(angle), 90) for angle in angles)
-    return "" if steepest > LEAST_TILT_RAD else "roll and pitch of ground that is not level"
+    return "" if steepest > LEAST_TILT_RAD else "roll and pitch of terrain that is not level"

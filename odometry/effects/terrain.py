@@ -21,7 +21,7 @@ LARGEST = {"m": 3.0, "": 0.9}
 
 @dataclass(frozen=True)
 class Terrain(MotionEffect):
-    """ICRs and slip factors of each of the named grounds are shifted by its own amounts.
+    """ICRs and slip factors of each of the named terrains are shifted by its own amounts.
 
     Attributes
     ----------
@@ -39,8 +39,8 @@ class Terrain(MotionEffect):
     form = "icr_by_label"
     equation = "(y_left, y_right, x_icr, alphas) -> the same + shifts of the label"
     source = "Chen 2023, Baril 2020 eq. 7"
-    looks_like = "errors that begin and end where the ground changes"
-    needs = "odometry.csv with a column terrain, or runs on several grounds"
+    looks_like = "errors that begin and end where the terrain changes"
+    needs = "odometry.csv with a column terrain, or runs on several terrains"
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
@@ -56,7 +56,7 @@ class Terrain(MotionEffect):
         if base.model.name != "icr":
             return "a base model with tread ICRs"
         if not self.labels or inputs.terrain is None:
-            return "labels of ground unlike that of the calibration"
+            return "labels of terrain unlike that of the calibration"
         return ""
 
     def twist(

@@ -16,12 +16,12 @@ def believed_model(
 ) -> tuple[KinematicModel, Mapping[str, float] | None]:
     """A model of the catalogue, and its parameters where `name` is a file of them.
 
-    Of a set with several grounds, that of `terrain`, else that which the runs name.
+    Of a set with several terrains, that of `terrain`, else that which the runs name.
 
     Raises
     ------
     GapError
-        If the set has no such ground, or effects already.
+        If the set has no such terrain, or effects already.
     ParameterError
         If there is no such model, or the file is no parameter set.
     """
@@ -33,7 +33,7 @@ def believed_model(
         wanted = next(iter(terrains))
     if wanted is None or wanted not in terrains:
         raise GapError(
-            f"{name}: no ground {wanted!r}; it has {', '.join(terrains)}; say which with --terrain"
+            f"{name}: no terrain {wanted!r}; it has {', '.join(terrains)}; say which with --terrain"
         )
     table = terrains[wanted]
     if table.effects:

@@ -4,7 +4,7 @@ from odometry.gap.explanation import Explanation
 from odometry.gap.result import Equivalent
 
 MARGIN = 6.0  # of evidence: less says nothing of which it is
-TELL_APART = "a run in which the two differ: other speeds, turns or ground"
+TELL_APART = "a run in which the two differ: other speeds, turns or terrain"
 
 
 def equivalents(found: Explanation) -> tuple[Equivalent, ...]:

@@ -58,9 +58,9 @@ def content_of(result: GapResult) -> dict[str, Any]:
 
 
 def extended_model(result: GapResult) -> ParameterSet:
-    """The base and its effects as a parameter set, one table a ground that any run names.
+    """The base and its effects as a parameter set, one table a terrain that any run names.
 
-    Grounds whose ICRs and slip differ are tables of their own; all other effects stand in each.
+    Terrains whose ICRs and slip differ are tables of their own; all other effects stand in each.
     """
     model = result.base.model
     names = [parameter.name for parameter in model.parameters]

@@ -48,7 +48,7 @@ def window_variables(
     - omega: yaw rate; curvature: omega by the forward speed; turn: left, straight or right;
     - lateral_acceleration: forward speed times yaw rate;
     - roll, pitch (nose down is positive);
-    - terrain: the ground at the middle.
+    - terrain: its name at the middle.
 
     At the middle of the window: heading, left_wheel_angle and right_wheel_angle. time: run time
     at its start. speed_before: of the treads, in force just before it (the previous command);

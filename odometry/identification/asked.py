@@ -1,4 +1,4 @@
-"""Which model is identified on which ground."""
+"""Which model is identified on which terrain."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -15,7 +15,7 @@ Wanted = str | KinematicModel | ParameterSet
 
 @dataclass(frozen=True)
 class Asked:
-    """A model to be identified on one ground.
+    """A model to be identified on one terrain.
 
     Attributes
     ----------
@@ -29,14 +29,14 @@ class Asked:
 
 
 def asked_on(ground: str, wanted: Wanted, robot: Robot) -> Asked:
-    """The model for a ground: of a parameter set, that of its table, its effects held.
+    """The model for a terrain: of a parameter set, that of its table, its effects held.
 
-    A set with one table is for every ground.
+    A set with one table is for every terrain.
 
     Raises
     ------
     ParameterError
-        If there is no such model or effect, or a set with several tables has none of the ground.
+        If there is no such model or effect, or a set with several tables has none of the terrain.
     """
     if isinstance(wanted, KinematicModel):
         return Asked(wanted)

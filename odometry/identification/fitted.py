@@ -16,7 +16,7 @@ from odometry.windows.windows import Windows
 
 @dataclass(frozen=True)
 class Fit:
-    """Parameters of one model on one ground.
+    """Parameters of one model on one terrain.
 
     Attributes
     ----------

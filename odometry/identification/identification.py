@@ -16,7 +16,7 @@ from odometry.windows.window_errors import WindowErrors
 
 @dataclass(frozen=True)
 class Identified:
-    """What runs tell of a model on one ground.
+    """What runs tell of a model on one terrain.
 
     Attributes
     ----------
@@ -25,7 +25,7 @@ class Identified:
     held_out : WindowErrors or None
         None where a part alone cannot be fitted.
     held_out_by : str
-        "runs": each by the others; "halves": each half of every run by the others, where a ground
+        "runs": each by the others; "halves": each half of every run by the others, where a terrain
         has one run or one run does not tell the model.
     ideal : WindowErrors
         Of the ideal differential drive on the same windows.
@@ -47,7 +47,7 @@ class Identified:
 
 @dataclass(frozen=True)
 class Identification:
-    """What runs tell of a model, by ground.
+    """What runs tell of a model, by terrain.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class Identification:
 
     @property
     def left_out(self) -> Counter[str]:
-        """How many windows of the runs there are not, by reason, on all grounds together."""
+        """How many windows of the runs there are not, by reason, on all terrains together."""
         return next(iter(self.grounds.values())).fit.windows.left_out
 
     def require_determined(self) -> None:
@@ -95,7 +95,7 @@ class Identification:
             )
 
     def to_parameter_set(self) -> ParameterSet:
-        """One table a ground, with covariances and where the values come from."""
+        """One table a terrain, with covariances and where the values come from."""
         terrains = {}
         for terrain, found in self.grounds.items():
             runs = ", ".join(dict.fromkeys(map(str, found.fit.windows.run)))

@@ -1,4 +1,4 @@
-"""Identify one model from recorded runs, ground by ground."""
+"""Identify one model from recorded runs, terrain by terrain."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -39,7 +39,7 @@ def identify(
     solver_config: SolverConfig | None = None,
     show_progress: bool = False,
 ) -> Identification:
-    """Fit a model to runs, one fit for each ground that they name.
+    """Fit a model to runs, one fit for each terrain that they name.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def identify(
     released : sequence of str
         Known parameters (the track width, the mass ...) to identify all the same.
     terrain : str, optional
-        The ground of runs that name none.
+        The terrain of runs that name none.
     window_config, solver_config : optional
     show_progress : bool
         Whether to draw a bar on standard error.
@@ -63,7 +63,7 @@ def identify(
     IdentificationError
         If the runs are of robots of different width, or too short, or lack poses.
     ParameterError
-        If there is no such model, effect or parameter, a set with several tables lacks a ground,
+        If there is no such model, effect or parameter, a set with several tables lacks a terrain,
         or `terrain` is the reserved name.
     RunFolderError
         If a run is given twice.
@@ -116,7 +116,7 @@ def _windows_on(
     as_seen: Windows | Stretches,
     config: WindowConfig,
 ) -> Windows | Stretches:
-    """Windows on one ground, with the poses of the robot where the sensor reports others."""
+    """Windows on one terrain, with the poses of the robot where the sensor reports others."""
     windows = as_seen
     if on_measurement(effects):
         if isinstance(windows, Stretches):

@@ -31,7 +31,7 @@ class Inputs:
     time_s : (...) or None
         Run time: since the first stamp of odometry.csv.
     terrain : (...) of str or None
-        Name of the ground.
+        Name of the terrain.
     heading_rad : (...) or None
         Measured yaw, interpolated and not wrapped; None without measured poses.
     wheel_angles_rad : (..., 2) or None

@@ -1,1 +1,1 @@
-"""Skid modes: which ground, or which slipping wheels, the motion itself speaks for."""
+"""Skid modes: which terrain, or which slipping wheels, the motion itself speaks for."""

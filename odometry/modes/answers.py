@@ -87,7 +87,7 @@ def false_switches(track: ModeTrack, sure: float) -> int:
 def disagreements(
     track: ModeTrack, sight: AnyArray, sure: float, lasting_s: float
 ) -> tuple[tuple[float, float, str, str], ...]:
-    """Where sight and feel name different grounds for long: from, to [s], seen, felt.
+    """Where sight and feel name different terrains for long: from, to [s], seen, felt.
 
     While one of them says nothing, a disagreement neither ends nor lasts.
 
@@ -96,7 +96,7 @@ def disagreements(
     track : ModeTrack
         Of motion alone.
     sight : (N,) of str
-        The ground that vision says the robot is on; "unknown" where it says nothing.
+        The terrain that vision says the robot is on; "unknown" where it says nothing.
     sure, lasting_s : float
     """
     felt = named_modes(track, sure)

@@ -97,7 +97,7 @@ class Followed:
 
     @property
     def seen_labels(self) -> AnyArray:
-        """What vision says (N,) of the ground below the robot; "unknown" where nothing."""
+        """What vision says (N,) of the terrain below the robot; "unknown" where nothing."""
         return seen_labels(self.seen, self.motion.stamps_s)
 
     @property

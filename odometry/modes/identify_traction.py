@@ -1,4 +1,4 @@
-"""Identify traction modes from runs: the gains of each ground that runs name, and the noise."""
+"""Identify traction modes from runs: the gains of each terrain that runs name, and the noise."""
 
 from collections.abc import Sequence
 
@@ -26,7 +26,7 @@ ROUNDS = 2  # of a fit weighted by the noise that the one before left
 def identify_traction_modes(
     runs: Sequence[Run], *, paper: bool = False, show_progress: bool = False
 ) -> TractionModes:
-    """Identify the gains and the noise of modes; a mode is a ground that the runs name.
+    """Identify the gains and the noise of modes; a mode is a terrain that the runs name.
 
     Nonlinear least squares of the measured motion over windows of 4 s (2 s where poses are chained
     for less) and of the measured yaw rates, each weighted by its noise, which is found from what

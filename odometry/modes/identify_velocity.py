@@ -13,7 +13,7 @@ from odometry.modes.stretches import stretches_by_label
 from odometry.modes.velocity import VelocityModes
 from odometry.run import UNKNOWN, Run
 
-LEAST_S = 10.0  # of a ground
+LEAST_S = 10.0  # of a terrain
 SPEED, OMEGA = range(2)  # rows of A and B, columns of a record
 FOLLOWS_SIGMA = 0.05  # error [m/s] of a speed that only the wheels tell
 FOLLOWING = 10.0 * np.array([[-1.0, 0.0, 0.5, 0.5], [0.0] * 4])  # which follows them in 0.1 s
@@ -27,7 +27,7 @@ def identify_velocity_modes(
     common_noise: bool = False,
     show_progress: bool = False,
 ) -> VelocityModes:
-    """Identify A, B and the noise of each ground that the runs name (Salvi 2024 eq. 2).
+    """Identify A, B and the noise of each terrain that the runs name (Salvi 2024 eq. 2).
 
     Each row of eq. 2 is fitted by itself: what it answers to what was measured of the other
     quantity and to the treads, simulated over whole stretches.
@@ -35,19 +35,19 @@ def identify_velocity_modes(
     Parameters
     ----------
     runs : sequence of Run
-        With a yaw rate; grounds as the runs name them.
+        With a yaw rate; terrains as the runs name them.
     shared : bool
-        One A and B for all grounds, which then differ in their noise alone (the paper's other
+        One A and B for all terrains, which then differ in their noise alone (the paper's other
         approach).
     common_noise : bool
-        The median noise for all grounds: then only the answer to the treads tells them apart, and
+        The median noise for all terrains: then only the answer to the treads tells them apart, and
         not how fast or how roughly the runs on each were driven.
     show_progress : bool
 
     Raises
     ------
     IdentificationError
-        If a run names no ground, or less than 10 s of one are recorded.
+        If a run names no terrain, or less than 10 s of one are recorded.
     RunFolderError
         If a run has no yaw rate.
     """
@@ -91,7 +91,7 @@ def _check(records: Mapping[str, Sequence[Record]]) -> None:
 
 
 def _records(run: Run, speed: FloatArray | None) -> Iterable[tuple[str, Record]]:
-    """Stretches of each ground at even times; speed (N,) as measured."""
+    """Stretches of each terrain at even times; speed (N,) as measured."""
     signals = velocity_signals(run)
     if speed is None:
         speed = signals.tread_speeds_m_s.mean(axis=1)
@@ -100,7 +100,7 @@ def _records(run: Run, speed: FloatArray | None) -> Iterable[tuple[str, Record]]
     for label, rows in stretches_by_label(run, signals.labels):
         if label == UNKNOWN:
             raise IdentificationError(
-                f"{run.folder}: rows {rows[0]} to {rows[-1]} of odometry.csv have no ground; "
+                f"{run.folder}: rows {rows[0]} to {rows[-1]} of odometry.csv have no terrain; "
                 "expected [run] terrain in run.toml or a column terrain"
             )
         known = rows[np.isfinite(table[rows]).all(axis=1)]

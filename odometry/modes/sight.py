@@ -1,4 +1,4 @@
-"""What vision says of the ground, as a prior on the modes."""
+"""What vision says of the terrain, as a prior on the modes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ PULLED_S = 1.0  # within which a mode that vision is sure of comes true, if moti
 
 @dataclass(frozen=True)
 class SeenGround:
-    """A ground that vision saw ahead, from when the robot is on it.
+    """A terrain that vision saw ahead, from when the robot is on it.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ def _when(run: Run, place_m: float) -> float:
 
 
 def seen_labels(seen: Sequence[SeenGround], stamps_s: FloatArray) -> AnyArray:
-    """The ground (N,) that vision says the robot is on; "unknown" before the first."""
+    """The terrain (N,) that vision says the robot is on; "unknown" before the first."""
     labels = np.array([UNKNOWN, *(one.label for one in seen)], dtype=object)
     return labels[np.searchsorted([one.stamp_s for one in seen], stamps_s, side="right")]
 

@@ -173,7 +173,7 @@ def follow_signals(
 
 
 def _moving(signals: Signals) -> BoolArray:
-    """Where (N,) a tread turned before the stamp: who stands learns nothing of the ground."""
+    """Where (N,) a tread turned before the stamp: who stands learns nothing of the terrain."""
     turning = np.abs(signals.tread_speeds_m_s).max(axis=1) > STANDING_M_S
     return np.append(False, turning[:-1])
 

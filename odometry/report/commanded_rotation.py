@@ -57,9 +57,9 @@ def plot_commanded_rotation(
     ----------
     axes : Axes
     found : CommandedRotation
-        On one ground.
+        On one terrain.
     others : sequence of CommandedRotation
-        On other grounds: their medians are thin grey lines.
+        On other terrains: their medians are thin grey lines.
     style : LineStyle
     """
     for other in others:

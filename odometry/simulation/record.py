@@ -54,7 +54,7 @@ def write_contact_run(
     rng : numpy.random.Generator
         Source of the noise.
     terrain : str, optional
-        Name of the ground of the whole run, for those who may know it.
+        Name of the terrain of the whole run, for those who may know it.
     settings : Mapping, optional
         What else made the run, kept in [simulation] of run.toml.
 

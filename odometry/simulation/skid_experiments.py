@@ -1,6 +1,6 @@
-"""The experiments of Salvi 2024 in the contact simulator: grounds and slipping wheels that change.
+"""The experiments of Salvi 2024 in the contact simulator: terrains and slipping wheels that change.
 
-Large traction changes are of the ground, small ones of the wheels that slip. A drive has no
+Large traction changes are of the terrain, small ones of the wheels that slip. A drive has no
 randomness of its own; many noisy runs can be recorded of one drive.
 """
 
@@ -35,7 +35,7 @@ def terrain_experiment(
     rng: np.random.Generator,
     sensors: ContactSensors = SENSORS,
 ) -> Run:
-    """A run over grounds one after another; the truth alone names them.
+    """A run over terrains one after another; the truth alone names them.
 
     Parameters
     ----------

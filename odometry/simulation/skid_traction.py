@@ -1,4 +1,4 @@
-"""Traction of Salvi 2024: three grounds, and the 16 combinations of four slipping wheels."""
+"""Traction of Salvi 2024: three terrains, and the 16 combinations of four slipping wheels."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ GROUNDS: Mapping[str, SkidGround] = {
     "grass": SkidGround(0.55, 0.006, 0.85),
     "crushed_concrete": SkidGround(0.35, 0.015, 0.6),
 }
-"""Friction as asked for; the rest is chosen by what is known of such grounds.
+"""Friction as asked for; the rest is chosen by what is known of such terrains.
 
 Moduli: under rubber on hard floors a millimetre and less (Yu, Chuy, Collins and Hollis 2010), 6 mm
 in clay at its maximum compaction, 10 mm in firm and 25 mm in loose sand (Wong, Theory of Ground
@@ -74,7 +74,7 @@ def wheel_traction(
 def ground_traction(vehicle: ContactVehicle, terrain: str, from_s: float = 0.0) -> Traction:
     """One of GROUNDS under all contacts."""
     if terrain not in GROUNDS:
-        raise SimulationError(f"no ground {terrain!r}; there are {', '.join(GROUNDS)}")
+        raise SimulationError(f"no terrain {terrain!r}; there are {', '.join(GROUNDS)}")
     ground = GROUNDS[terrain]
     friction = np.full(vehicle.friction.shape, ground.friction)
     law = Shear.for_modulus(ground.modulus_m, ground.friction)

@@ -62,7 +62,7 @@ class TerrainClassifier:
     metres_per_pixel : float, optional
         The scale of the patches on the ground; kept for those who cut patches for it.
     rejected_share : float
-        The share of known ground that may be called unknown: the rejection distance is this
+        The share of known terrain that may be called unknown: the rejection distance is this
         upper quantile of out-of-fold distances.
 
     Attributes

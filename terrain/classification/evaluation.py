@@ -65,7 +65,7 @@ def balanced_accuracy_interval(
 
 
 def rejection_roc_area(known_distances: FloatArray, unknown_distances: FloatArray) -> float:
-    """Return the probability that unknown ground is farther away than known ground."""
+    """Return the probability that unknown terrain is farther away than known terrain."""
     truth = np.repeat([0, 1], [len(known_distances), len(unknown_distances)])
     return float(roc_auc_score(truth, np.concatenate([known_distances, unknown_distances])))
 

@@ -24,7 +24,7 @@ def classify(model: Path, images: tuple[Path, ...], as_json: bool) -> None:
 
     \b
     Example:
-      terrain-odometry classify ground.model photo_1.jpg photo_2.jpg --json
+      terrain-odometry classify terrain.model photo_1.jpg photo_2.jpg --json
     """
     from terrain.classification.classifier import TerrainClassifier
 

@@ -42,7 +42,7 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
     "to take as it is.",
 )
 @click.option("--out", required=True, metavar="DIR", type=OUTPUT, help="Folder for the results.")
-@click.option("--terrain", metavar="NAME", help="Ground of the set to take, where it has several.")
+@click.option("--terrain", metavar="NAME", help="Terrain of the set to take, where it has several.")
 @click.option(
     "--horizon-s",
     type=float,

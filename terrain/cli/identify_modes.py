@@ -1,4 +1,4 @@
-"""`terrain-odometry identify-modes`: models of grounds or of slipping wheels from recorded runs."""
+"""`terrain-odometry identify-modes`: models of terrains or slipping wheels from recorded runs."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -40,7 +40,7 @@ SLOW_TIGHT_TURNS_M_S = ((0.05, 0.15), (0.15, 0.05))  # to the left, to the right
     type=click.Choice(["velocity", "traction"]),
     default="velocity",
     show_default=True,
-    help="Grounds, told by the yaw rate; or slipping wheels, told by the poses.",
+    help="Terrains, told by the yaw rate; or slipping wheels, told by the poses.",
 )
 @click.option("--shared", is_flag=True, help="Velocity: one model, with the noise of each mode.")
 @click.option(
@@ -71,7 +71,7 @@ def identify_modes(
     """Identify the modes that the run folders RUN name, for `modes` to tell them apart.
 
     A mode is a name of [run] terrain in run.toml or of the column terrain in odometry.csv: a
-    ground, or the wheels that slip. Every mode needs turns, traction modes to both sides.
+    terrain, or the wheels that slip. Every mode needs turns, traction modes to both sides.
 
     \b
     Example:

@@ -21,8 +21,8 @@ VERBS = {
     "identify": "Parameters of a kinematic model from recorded runs.",
     "compare": "Held-out errors of several models, side by side.",
     "gap": "Which effect a model lacks, and the gap closed.",
-    "identify-modes": "Models of grounds or of slipping wheels, to be told apart in motion.",
-    "modes": "Which ground, or which slipping wheels, the motion speaks for.",
+    "identify-modes": "Models of terrains or of slipping wheels, to be told apart in motion.",
+    "modes": "Which terrain, or which slipping wheels, the motion speaks for.",
     "demo": "Train, run and report on the shipped data.",
 }
 

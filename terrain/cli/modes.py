@@ -1,4 +1,4 @@
-"""`terrain-odometry modes`: which ground, or which slipping wheels, the motion speaks for."""
+"""`terrain-odometry modes`: which terrain, or which slipping wheels, the motion speaks for."""
 
 import sys
 from pathlib import Path
@@ -159,7 +159,7 @@ def _followed(
     (run,) = with_turns([read_run(folder, span)])
     grounds = () if seen is None else seen_grounds(seen, run)
     if seen is not None and not grounds:
-        raise RunFolderError(f"{seen}: vision named no ground that {folder} gets to")
+        raise RunFolderError(f"{seen}: vision named no terrain that {folder} gets to")
     return followed(run, mode_set, config, grounds, show_progress=True)
 
 

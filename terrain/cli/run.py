@@ -23,7 +23,7 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
 @click.option("--no-vision", is_flag=True, help="Keep one terrain in force throughout.")
 @click.option("--terrain", metavar="NAME", help="In force until the first switch.")
 @click.option("--config", type=FILE, help="Settings (TOML): [filter] [region] [switch] ...")
-@click.option("--per-tread", is_flag=True, help="Classify the ground of each tread apart.")
+@click.option("--per-tread", is_flag=True, help="Classify the terrain under each tread apart.")
 @span_options
 @click.option("--detect-jumps", is_flag=True, help="Watch the innovations for jumps of the ICRs.")
 def run(
@@ -41,7 +41,7 @@ def run(
 ) -> None:
     """Replay the run folder RUN and write terrain-aware odometry.
 
-    Reads images, tread speeds and poses in time order, classifies the ground ahead, switches the
+    Reads images, tread speeds and poses in time order, classifies the terrain ahead, switches the
     ICRs when the robot gets there, and writes trajectories, ICRs, terrain, figures and one page.
 
     \b

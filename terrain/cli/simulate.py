@@ -80,12 +80,12 @@ from terrain.cli.simulated_robot import VEHICLES, robot_named, traction_named
     "--traction",
     multiple=True,
     metavar="NAME[@SECONDS]",
-    help="A ground (asphalt, grass, crushed_concrete) or the wheels that slip (none, all, or e.g. "
+    help="A terrain (asphalt, grass, crushed_concrete) or the wheels that slip (none, all, or e.g. "
     "front_left-rear_left), from a time on; repeat. The truth names it, and run.toml where there "
     "is one.",
 )
 @click.option(
-    "--terrain", default="ground", show_default=True, metavar="TERRAIN", help="Name of the ground."
+    "--terrain", default="ground", show_default=True, metavar="TERRAIN", help="Name of the terrain."
 )
 @click.option(
     "--seed",

@@ -23,7 +23,7 @@ def robot_named(vehicle: str, friction: float | None, law: str | None) -> "Conta
 
 
 def traction_named(robot: "ContactVehicle", text: str) -> "Traction":
-    """The ground or the slipping wheels of NAME[@SECONDS]."""
+    """The terrain or the slipping wheels of NAME[@SECONDS]."""
     from odometry.simulation.skid_traction import (
         GROUNDS,
         WHEEL_MODES,

@@ -59,7 +59,7 @@ def synthesise(
 ) -> None:
     """Make a run folder, patches/ and parameters.toml, ready for train and run.
 
-    A simulated robot drives over zones of ground that are textured with photographs; its camera's
+    A simulated robot drives over zones of terrain that are textured with photographs; its camera's
     images, noisy odometry and poses are written with the truth. No photograph shows both in the
     run and in the patches: those of scikit-image are cut in halves, those of --photos are parted
     by photo_id.

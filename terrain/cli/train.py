@@ -58,7 +58,7 @@ def train(
 
     \b
     Example:
-      terrain-odometry train my_photos --out ground.model --metres-per-pixel 0.002
+      terrain-odometry train my_photos --out terrain.model --metres-per-pixel 0.002
     """
     from terrain.classification.persistence import is_model
     from terrain.classification.training import train as train_classifier
@@ -123,5 +123,5 @@ def _summary(classifier: "TerrainClassifier", photos: list[Path]) -> str:
         f"photograph's patches {balanced_accuracy(photo_codes, photo_answers):.3f}\n"
         f"chosen k {classifier.n_neighbors_}, rejection threshold "
         f"{classifier.rejection_distance_:.4g} ({100 * classifier.rejected_share:g} % of known "
-        "ground lies beyond)"
+        "terrain lies beyond)"
     )

@@ -38,7 +38,7 @@ def labels_picture(
         save_figure(folder / "labels.png", (_WIDTH_IN, 1.6 + 0.3 * len(tints)), draw),
         "What each image was taken for, over time, above the terrain in force.",
         f"What each of {len(watcher.sightings)} images was taken for ({labelled} had a label); the "
-        "paler, the less sure. A label speaks of the ground ahead and comes into force on arrival.",
+        "paler, the less sure. A label is of the terrain ahead and comes into force on arrival.",
     )
 
 

@@ -1,4 +1,4 @@
-"""Friction that changes during a drive: another ground, or wheels that begin to slip."""
+"""Friction that changes during a drive: another terrain, or wheels that begin to slip."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ class Traction:
     Attributes
     ----------
     name : str
-        What the truth calls it: a ground, or which wheels slip.
+        What the truth calls it: a terrain, or which wheels slip.
     from_s : float
         It holds from the first stamp at or after this time [s].
     friction : (..., 2, m) array

@@ -62,7 +62,7 @@ def test_of_several_grounds_the_asked_one_or_that_of_the_runs(runs, set_of):
 
 @pytest.mark.parametrize("terrain", [None, "stone"])
 def test_a_ground_that_is_not_there_is_refused_with_those_there_are(runs, set_of, terrain):
-    with pytest.raises(GapError, match=r"set\.toml: no ground.*grass, sand.*--terrain"):
+    with pytest.raises(GapError, match=r"set\.toml: no terrain.*grass, sand.*--terrain"):
         believed_model(set_of(grass=ICRS, sand=ICRS), runs, terrain)
 
 

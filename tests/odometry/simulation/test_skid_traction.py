@@ -81,5 +81,5 @@ def test_an_unknown_wheel_is_named(husky, wheels):
 
 
 def test_an_unknown_ground_is_named(husky):
-    with pytest.raises(SimulationError, match="no ground 'ice'; there are asphalt"):
+    with pytest.raises(SimulationError, match="no terrain 'ice'; there are asphalt"):
         ground_traction(husky, "ice")

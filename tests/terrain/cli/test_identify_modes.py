@@ -122,9 +122,9 @@ def test_an_option_of_the_other_kind_is_a_usage_error(grounds, out):
     [
         ({"gyro": False}, "velocity", "one: no yaw rate"),
         ({"poses": False}, "traction", r"one.*pose"),
-        ({"ground": None}, "velocity", "have no ground; expected .run. terrain"),
+        ({"ground": None}, "velocity", "have no terrain; expected .run. terrain"),
         ({"ground": None}, "traction", "names no mode; expected .run. terrain"),
-        ({"ground": "unknown"}, "velocity", "have no ground"),
+        ({"ground": "unknown"}, "velocity", "have no terrain"),
     ],
 )
 def test_runs_that_cannot_be_used_are_told(make, out, settings, kind, message):

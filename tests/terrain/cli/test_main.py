@@ -1,6 +1,7 @@
 """The command itself: help without slow imports, errors as one line."""
 
 import importlib.metadata
+import re
 import subprocess
 import sys
 
@@ -94,3 +95,11 @@ def test_the_nearest_verbs_are_named(word, meant):
     answer = CliRunner().invoke(cli, [word])
     assert answer.exit_code == 2
     assert answer.stderr.splitlines()[-1] == f"Error: No such command {word!r}. {meant}"
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_help_says_terrain_but_of_the_plane_that_a_camera_sees(verb):
+    text = " ".join(CliRunner().invoke(cli, [verb, "--help"]).output.split())
+    for plane in ("the ground in one image", "photographs on the ground", "[default: ground]"):
+        text = text.replace(plane, "")
+    assert not re.search(r"\bgrounds?\b", text, re.IGNORECASE)

@@ -165,7 +165,7 @@ def test_traction_modes_need_poses(make, tmp_path):
         (SEEN.replace("tar", "mud"), ParameterError, "'mud' .* is no mode; expected one of ice, t"),
         (SEEN.replace("0.9", "1.9"), ParameterError, "confidence 1.9"),
         ("t,label\n0,ice\n", RunFolderError, "'confidence' is missing"),
-        (SEEN.replace("0.5\n", "99\n"), RunFolderError, "named no ground that .*drive gets to"),
+        (SEEN.replace("0.5\n", "99\n"), RunFolderError, "named no terrain that .*drive gets to"),
     ],
 )
 def test_a_sight_that_cannot_be_used_is_told(with_sight, content, error, message):
