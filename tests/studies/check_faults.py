@@ -9,7 +9,8 @@ split; figures are stated of the second, whose drives the first does not have
 
 Noticed: a finding at the fault's level or a more severe one, which the clean recording does not
 have. Cause first: the first such refusal or warning (of a fault that is only noted: finding)
-names the cause, or that of a fault which the files cannot tell from it. An exception is a crash.
+names the cause, or that of a fault which the files cannot tell from it. Wrong: the first names
+another cause, and not that none can be told. An exception is a crash.
 """
 
 import argparse
@@ -33,13 +34,13 @@ def share(good, count):
 
 
 def print_faults(answers, quiet):
-    print(f"{'fault':36} {'level':8} cases noticed first anywhere crash")
+    print(f"{'fault':36} {'level':8} cases noticed first anywhere wrong crash")
     for key in dict.fromkeys(answer.key for answer in answers):
         of = [answer for answer in answers if answer.key == key]
         sums = [sum(map(bool, (getattr(a, n) for a in of))) for n in
-                ("noticed", "first", "anywhere", "crash")]  # fmt: skip
+                ("noticed", "first", "anywhere", "wrong", "crash")]  # fmt: skip
         print(f"{key:36} {FAULTS[key].level:8} {len(of):5} {sums[0]:7} {sums[1]:5} "
-              f"{sums[2]:8} {sums[3]:5}")  # fmt: skip
+              f"{sums[2]:8} {sums[3]:5} {sums[4]:5}")  # fmt: skip
         for answer in of:
             if not quiet and not (answer.noticed and answer.first):
                 print(f"    seed {answer.seed} on {answer.base}: {answer.crash.strip()}")
@@ -55,7 +56,7 @@ def print_totals(title, answers):
     if not answers:
         return
     print(title)
-    for name in ("noticed", "first", "anywhere"):
+    for name in ("noticed", "first", "anywhere", "wrong"):
         print(f"  {name:9} {share(sum(getattr(a, name) for a in answers), len(answers))}")
     noted = [a for a in answers if FAULTS[a.key].harmless]
     print(f"  harmless ones with a warning {sum(a.too_severe for a in noted)}/{len(noted)}, "

@@ -14,12 +14,16 @@ from tests.blind.faults.catalogue import FAULTS, make_case, right
 from tests.blind.faults.clean import VARIANTS, is_clean, make_clean
 from tests.blind.faults.fault import UnsuitableError
 
+UNNAMED = "sensors_disagree"  # what is said where no cause fits
 SEVERITY = {"note": 0, "warning": 1, "refused": 2}
 
 
 @dataclass(frozen=True)
 class Answer:
-    """Of one faulty recording: what was noticed, whether its cause was named, what was said."""
+    """Of one faulty recording: what was noticed, whether its cause was named, what was said.
+
+    `wrong` where another cause stands first, and not that none can be told.
+    """
 
     key: str
     seed: int
@@ -27,6 +31,7 @@ class Answer:
     noticed: bool = False
     first: bool = False
     anywhere: bool = False
+    wrong: bool = False
     too_severe: bool = False
     crash: str = ""
     said: tuple[str, ...] = ()
@@ -81,13 +86,15 @@ def judge(bases, task):
     enough = [f for f in found if SEVERITY[f[1]] >= SEVERITY[fault.level]]
     least = min(SEVERITY[fault.level], SEVERITY["warning"])
     leading = [f for f in found if SEVERITY[f[1]] >= least]
+    first = bool(leading) and right(fault, *leading[0][2:])
     return Answer(
         key,
         seed,
         base.name,
         noticed=bool(enough),
-        first=bool(leading) and right(fault, *leading[0][2:]),
+        first=first,
         anywhere=any(right(fault, *finding[2:]) for finding in found),
+        wrong=bool(leading) and not first and leading[0][0] != UNNAMED,
         too_severe=fault.harmless and any(SEVERITY[f[1]] > 0 for f in found),
         said=tuple(f"{level} {name}: {seen} | {cause}" for name, level, seen, cause in found),
     )

@@ -7,6 +7,7 @@ folder, base = make_case(FAULTS["pose_late"], bases, seed=3, folder=Path("somewh
 import numpy as np
 
 from tests.blind.faults import (
+    bent,
     encoders,
     frames,
     images,
@@ -34,6 +35,7 @@ ROOMS = (
     robot,
     images,
     texts,
+    bent,
 )
 FAULTS = {fault.key: fault for room in ROOMS for fault in room.FAULTS}
 MOTION = frozenset({"motion"})

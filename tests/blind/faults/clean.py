@@ -41,6 +41,8 @@ VARIANTS = (
     Variant("no_gyro", "poses without a gyroscope", legal.no_gyro, POSE),
     Variant("no_pose", "a gyroscope without poses", legal.no_pose, POSE | {"gyro"}),
     Variant("no_yaw", "positions without yaw", legal.no_yaw, POSE),
+    Variant("yaw_at_times", "yaw in some rows only", legal.yaw_at_times, POSE),
+    Variant("gnss_alone", "noisy positions without yaw", legal.gnss_alone, POSE),
     Variant("pose_dropouts", "no poses for a while", legal.pose_dropouts, POSE),
     Variant("many_windows", "poses chained in many windows", legal.many_windows, POSE),
     Variant("one_repeated_row", "one row twice", legal.one_repeated_row, POSE),

@@ -125,6 +125,34 @@ def no_yaw(recording, rng):  # noqa: ARG001
     return recording.with_columns("pose", yaw=np.full(len(recording["pose"]["t"]), math.nan))
 
 
+def yaw_at_times(recording, rng):
+    """A yaw in a third to two thirds of the rows: two antennas that see enough at times."""
+    t, yaw = recording["pose"]["t"], recording["pose"]["yaw"].copy()
+    begin, length = rng.uniform(0.0, 0.3), rng.uniform(0.33, 0.67)
+    share = (t - t[0]) / (t[-1] - t[0])
+    without = (share > begin) & (share < begin + length)
+    if rng.random() < 0.5:
+        without = rng.random(len(t)) < length
+    yaw[without] = math.nan
+    return recording.with_columns("pose", yaw=yaw)
+
+
+def gnss_alone(recording, rng):
+    """Single positions of a receiver: 1 to 5 Hz, a noise of 2 cm to 0.3 m, no yaw."""
+    pose, rate, sigma = recording["pose"], rng.uniform(1, 5), rng.choice([0.02, 0.1, 0.3])
+    t = pose["t"]
+    place = np.floor((t - t[0]) * rate)
+    kept = recording.with_rows("pose", np.r_[True, np.diff(place) > 0])
+    count = len(kept["pose"]["t"])
+    noise = rng.normal(0, sigma, (2, count))
+    return kept.with_columns(
+        "pose",
+        x=kept["pose"]["x"] + noise[0],
+        y=kept["pose"]["y"] + noise[1],
+        yaw=np.full(count, math.nan),
+    )
+
+
 def pose_dropouts(recording, rng):
     """No poses for a tenth of the run: out of sight of the satellites, which is legal."""
     t = recording["pose"]["t"]

@@ -67,7 +67,7 @@ def test_faults_are_well_formed():
         assert fault.words
         assert not fault.harmless or fault.level == "note"
     named = np.mean([fault.named for fault in FAULTS.values()])
-    assert 0.3 < named < 0.5  # most of what goes wrong has no name in advance
+    assert 0.25 < named < 0.5  # most of what goes wrong has no name in advance
 
 
 @pytest.mark.parametrize(
