@@ -64,15 +64,17 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
         | {"tread_offset", "treads_unequal"}
     ),
     "gyroscope_clipped": frozenset(
-        {"yaw_jumps", "gyroscope_unit", "gyroscope_dead", "gyroscope_bias"}
+        {"yaw_jumps", "gyroscope_unit", "gyroscope_dead", "gyroscope_bias", "yaw_bent"}
     ),
-    "gyroscope_dead": frozenset({"gyroscope_unit", "yaw_jumps", "stuck_encoder"}),
+    "gyroscope_dead": frozenset({"yaw_bent", "gyroscope_unit", "yaw_jumps", "stuck_encoder"}),
     "interpolated_poses": frozenset({"clocks_apart"}),
     "turns_at_rest": frozenset({"gyroscope_bias", "tread_offset"}),
     "tread_unit": frozenset({"track_width", "slip_in_turns", "slip"}),
     "slip": frozenset({"pose_late", "treads_late"}),
     "slip_in_turns": frozenset({"treads_late"}),
-    "frozen_poses": frozenset({"pose_jumps", "pose_late", "yaw_jumps", "slip_episodes"}),
+    "frozen_poses": frozenset(
+        {"yaw_bent", "positions_stretched", "pose_jumps", "pose_late", "yaw_jumps", "slip_episodes"}
+    ),
     "coarse_speeds": frozenset({"stuck_encoder"}),
 }
 

@@ -7,6 +7,7 @@ import numpy as np
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.heading import CONSISTENT, Heading, headings
+from odometry.checks.mending import Mend, changed, times, yaw_plus
 from odometry.checks.turning import Sense, gyroscope_sense, pose_sense
 
 OFF_RAD = np.radians(15)  # a lateral ICR or a sensor that is turned a little is no fault
@@ -23,6 +24,7 @@ def course(evidence: Evidence) -> Iterator[Finding]:
             "and its course fit only when read as degrees",
             "Yaw is in degrees",
             "Convert yaw to radians",
+            changed("pose", "yaw", np.radians),
         )
     heading = evidence.heading
     if heading is None:
@@ -37,6 +39,7 @@ def course(evidence: Evidence) -> Iterator[Finding]:
             "The positions are mirrored: x and y are swapped (north before east), or one of them "
             "has the wrong sign",
             "Exchange x and y, or negate y",
+            times("pose", -1.0, "y"),
         )
 
 
@@ -68,6 +71,7 @@ def _offset(evidence: Evidence, heading: Heading) -> Iterator[Finding]:
             "Yaw is off by 180 degrees (sensor mounted backwards), or the treads are swapped and "
             f"both have the wrong sign: these look alike{_as_well(evidence)}",
             "Add pi to yaw, or mend the treads",
+            yaw_plus(offset),
         )
     elif abs(abs(degrees) - 90) < 20:
         yield _finding(
@@ -76,6 +80,7 @@ def _offset(evidence: Evidence, heading: Heading) -> Iterator[Finding]:
             f"Yaw is off by {round(degrees / 90) * 90:.0f} degrees (another axis is called "
             f"forward, yaw counts from another axis, or x and y are swapped){_as_well(evidence)}",
             f"Add {np.sign(degrees) * np.pi / 2:+.4f} rad to yaw",
+            yaw_plus(offset),
         )
     else:
         yield _finding(
@@ -85,6 +90,7 @@ def _offset(evidence: Evidence, heading: Heading) -> Iterator[Finding]:
             "counts from another axis than x (a compass not corrected, grid against true north)"
             f"{_as_well(evidence)}",
             f"Add {offset:+.4f} rad to yaw, or let `gap` name a heading_offset",
+            yaw_plus(offset),
         )
 
 
@@ -101,5 +107,5 @@ def _as_well(evidence: Evidence) -> str:
     return more
 
 
-def _finding(name: str, seen: str, cause: str, remedy: str) -> Finding:
-    return Finding(name, Level.WARNING, seen, cause, remedy)
+def _finding(name: str, seen: str, cause: str, remedy: str, mend: Mend) -> Finding:
+    return Finding(name, Level.WARNING, seen, cause, remedy, mend=mend)

@@ -1,10 +1,13 @@
 """What a check finds in a recording."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from odometry.checks.mending import Mend
 
 
 class Level(StrEnum):
@@ -32,6 +35,8 @@ class Finding:
         What to do.
     spans_s : tuple of (float, float)
         Run time [s] from the first stamp of odometry.csv, where the oddity has a place in time.
+    mend : callable of Run to Run, optional
+        Undoes the cause, where it can be undone: what is left says whether it is the right one.
     """
 
     name: str
@@ -40,6 +45,7 @@ class Finding:
     cause: str
     remedy: str
     spans_s: tuple[tuple[float, float], ...] = ()
+    mend: "Mend | None" = field(default=None, compare=False, repr=False)
 
     @property
     def line(self) -> str:

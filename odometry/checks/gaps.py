@@ -11,9 +11,12 @@ from odometry.windows.gaps import odometry_gaps
 
 OFTEN = 20
 MOST = 0.6  # share of the long holds that are gaps, from which rows come in bursts
+LIMIT = 0.3  # of the median change of a log of changes, that its smallest ones have at least
+AT_ONCE = 0.08  # share of the time between bursts of rows: a log of changes has ramps there
 FEW = 0.3  # share of the long holds that are gaps: where there are fewer, it is a log of changes
 LONG_S, LONG_PERIODS = 1.0, 20.0  # a hold longer than both may be a gap
 MISSED_M = 0.3  # of motion that the held speeds do not have
+TURNED_RAD = 0.3  # in a gap: the robot drove on, however little it moved
 STOOD = 0.3  # share of the motion at the held speed below which the robot stood: the clock was set
 
 
@@ -23,8 +26,9 @@ def gaps(evidence: Evidence) -> Iterator[Finding]:
     lasts_s = np.diff(stamps_s)
     long = np.flatnonzero(lasts_s > max(LONG_S, LONG_PERIODS * evidence.period_s))
     found = odometry_gaps(evidence.run)
-    of_changes = len(found) < FEW * len(long)
-    if len(long) > OFTEN and len(found) > MOST * len(long):
+    of_changes = len(found) < FEW * len(long) or (len(long) > OFTEN and _only_changes(evidence))
+    between = 1 - float(np.sum(lasts_s[long])) / evidence.duration_s
+    if len(long) > OFTEN and len(found) > MOST * len(long) and between < AT_ONCE:
         yield _bursts(evidence, lasts_s[long])
     was_set = [_clock_was_set(evidence, span) for span in found.spans_s]
     clock, lost = (
@@ -53,6 +57,12 @@ def gaps(evidence: Evidence) -> Iterator[Finding]:
             "the recording was paused",
             remedy="Cut the recording there with --from and --to",
         )
+
+
+def _only_changes(evidence: Evidence) -> bool:
+    """Whether a row stands only where a speed changed by more than a limit."""
+    changes = np.abs(np.diff(evidence.run.odometry.stack("v_left", "v_right"), axis=0)).max(axis=1)
+    return bool(np.quantile(changes, 0.02) > LIMIT * np.median(changes))
 
 
 def _bursts(evidence: Evidence, lasts_s: FloatArray) -> Finding:
@@ -91,7 +101,7 @@ def _finding(
 
 
 def _clock_was_set(evidence: Evidence, span_s: FloatArray) -> bool:
-    """Whether the robot drove before a gap and is at nearly the same place after it."""
+    """Whether the robot drove before a gap and is at nearly the same pose after it."""
     begin_s, end_s = span_s
     moved = _moved_m(evidence, begin_s, end_s)
     if moved is None or _others_go_on(evidence, begin_s, end_s):
@@ -99,6 +109,8 @@ def _clock_was_set(evidence: Evidence, span_s: FloatArray) -> bool:
     row = int(np.searchsorted(evidence.stamps_s, begin_s, side="right")) - 1
     scale = evidence.metres_per_metre or 1.0
     along_m = float(abs(evidence.speeds_m_s[row].mean()) * (end_s - begin_s)) * scale
+    if (_turned_rad(evidence, begin_s, end_s) or 0.0) > TURNED_RAD:
+        return False  # on the spot
     return along_m > MISSED_M and moved < STOOD * along_m
 
 
@@ -113,11 +125,29 @@ def _others_go_on(evidence: Evidence, begin_s: float, end_s: float) -> bool:
 
 def _moved_m(evidence: Evidence, begin_s: float, end_s: float) -> float | None:
     """Distance between the measured positions nearest to two stamps; None without."""
+    rows = _rows_beside(evidence, begin_s, end_s)
+    if rows is None or evidence.run.pose is None:
+        return None
+    first, last = evidence.run.pose.stack("x", "y")[list(rows)]
+    return float(np.hypot(*(last - first)))
+
+
+def _turned_rad(evidence: Evidence, begin_s: float, end_s: float) -> float | None:
+    """Turn between the measured yaws nearest to two stamps, without sign; None without."""
+    rows = _rows_beside(evidence, begin_s, end_s)
+    if rows is None or evidence.run.pose is None or not evidence.yaw_measured:
+        return None
+    turn = float(np.diff(evidence.run.pose["yaw"][list(rows)])[0])
+    turn = np.radians(turn) if evidence.yaw_in_degrees else turn
+    return float(abs((turn + np.pi) % (2 * np.pi) - np.pi))
+
+
+def _rows_beside(evidence: Evidence, begin_s: float, end_s: float) -> tuple[int, int] | None:
+    """Rows of the poses that are last before and first after a time."""
     if evidence.run.pose is None or evidence.poses_used is None:
         return None
     rows = np.flatnonzero(evidence.poses_used)
     pose_s = evidence.run.pose.stamps_s[rows]
     first = int(np.clip(np.searchsorted(pose_s, begin_s, side="right") - 1, 0, len(rows) - 1))
     last = int(np.clip(np.searchsorted(pose_s, end_s), 0, len(rows) - 1))
-    step = evidence.run.pose.stack("x", "y")[[rows[first], rows[last]]]
-    return float(np.hypot(*(step[1] - step[0])))
+    return int(rows[first]), int(rows[last])

@@ -14,6 +14,7 @@ LEAST_CORRELATION = 0.7
 RIVAL = 0.9  # a second peak as high as this share of the first: the motion is periodic
 PIECES = 8
 LEAST_PIECE_S = 8.0
+TOGETHER_S, CUTOFF = 0.15, 4.0  # seconds, or standard deviations, from the line through the pieces
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,8 @@ class Lag:
     correlation : float
         Of the two rates at that lag, median over pieces.
     pieces : int
+    together : float
+        Share of the pieces whose lag lies near the line through all of them.
     """
 
     seconds: float
@@ -37,6 +40,7 @@ class Lag:
     drift_sigma: float
     correlation: float
     pieces: int
+    together: float
 
 
 def lag_between(
@@ -150,4 +154,5 @@ def _summarised(
         1.25 * spread / span,
         float(np.median(correlations)),
         len(lags),
+        float(np.mean(np.abs(left) < np.maximum(TOGETHER_S, CUTOFF * sigmas))),
     )

@@ -160,6 +160,13 @@ def scattered(motion: Motion) -> bool:
     return bool(np.median(change) > np.median(motion.distance_m[1:][pairs]))
 
 
+def turns_both_ways(motion: Motion) -> bool:
+    """Whether left and right turns are there: else an offset cannot be told from a wrong width."""
+    turns = motion.difference_m[np.abs(motion.difference_m) > 0.05 * np.abs(motion.mean_m)]
+    left = float(np.mean(turns > 0)) if len(turns) else 0.0
+    return 0.15 < left < 0.85
+
+
 def _between_poses(run: Run, of: Integrals, rows: IntArray, window_s: float) -> Motion:
     assert run.pose is not None  # noqa: S101 - for the type checker: the caller has looked
     first, last = rows[:-1], rows[1:]

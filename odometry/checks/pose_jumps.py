@@ -1,24 +1,47 @@
 """Steps of measured poses against dead reckoning and gyroscope."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, counted
-from odometry.checks.heading import READINGS
 from odometry.checks.spans import runs_of, within
+from odometry.checks.steps import (
+    FAR_S,
+    JITTER_S,
+    JUMP_TIMES,
+    NEAR_S,
+    SHOWN,
+    moments,
+    rate_of,
+    reckoned,
+    step_sizes,
+    without_window_changes,
+)
+from odometry.checks.unnamed import disagreement
 
 LEAST_JUMP_M = 0.4
 LEAST_WITHOUT_HEADING_M = 1.0  # where no heading says which way the robot drove, or it slides
-JUMP_TIMES = 7.0  # the usual change of the difference to dead reckoning over the same time
-LEAST_YAW_JUMP_RAD = np.radians(25)
-JITTER_S = 0.4  # by which poses that came in bursts were late
 LOST_S = 0.3  # around a jump, in which treads that read zero are its cause
-SHOWN = 3  # jumps that are named
-BLOCK = 1_000_000  # values whose medians are taken at a time
-NEAR_S, FAR_S = 0.25, 1.25  # of a jump: between them its two sides are compared
+LEAST_POSES = 20
+SUDDEN_S, SUDDEN = 0.5, 0.6  # to both sides of a jump, within which so much of it happens
+
+
+@dataclass(frozen=True)
+class Steps:
+    """Stamps (M,), measured and reckoned positions (M, 2), size (M,) of the steps between both.
+
+    `off` (M, 2) is the difference of both without changes of `window`; None without a heading.
+    """
+
+    stamps_s: FloatArray
+    positions: FloatArray
+    reckoned: FloatArray
+    off: FloatArray | None
+    size_m: FloatArray
 
 
 def jumps(
@@ -27,19 +50,24 @@ def jumps(
     """Steps of the difference between the poses and dead reckoning along their own yaw."""
     if evidence.run.pose is None:
         return
+    if evidence.heading is not None:
+        known = np.isfinite(evidence.run.pose["yaw"][rows])
+        rows, travel_m = rows[known], travel_m[known]
+    if len(rows) < LEAST_POSES:
+        return
     stamps_s = evidence.run.pose.stamps_s[rows]
     positions = evidence.run.pose.stack("x", "y")[rows]
     scale = evidence.metres_per_metre
     if scale is None:
         return
-    reckoned = _reckoned(evidence, rows, scale)
-    off = _without_window_changes(evidence, rows, positions - reckoned)
-    step = _step_sizes(stamps_s, off)
+    by_treads = reckoned(evidence, rows, scale)
+    off = without_window_changes(evidence, rows, positions - by_treads)
+    step = step_sizes(stamps_s, off)
     if evidence.heading is None:
         step = np.maximum(step - scale * _driven_m(stamps_s, travel_m), 0.0)
-    speed = _rate(travel_m, stamps_s)
+    speed = rate_of(travel_m, stamps_s)
     known = np.isfinite(step) & ~within(stamps_s - evidence.stamps_s[0], _widened(frozen_s))
-    if known.sum() < 20:
+    if known.sum() < LEAST_POSES:
         return
     moving = known & (speed > 0.2 * evidence.fastest_m_s)
     usual = 1.4826 * float(np.median(step[moving if moving.sum() > 20 else known]))
@@ -47,16 +75,33 @@ def jumps(
     least_m = LEAST_JUMP_M if evidence.heading is not None else LEAST_WITHOUT_HEADING_M
     odd = known & (step > np.maximum(JUMP_TIMES * usual, least_m * scale + jitter_m))
     peaks = [begin + int(np.argmax(step[begin:end])) for begin, end in runs_of(odd)]
-    stood = [i for i in peaks if _stood(stamps_s, positions, reckoned, i)]
-    peaks = [i for i in peaks if i not in stood]
-    lost = [i for i in peaks if _lost_treads(evidence, stamps_s[i])]
-    peaks = [i for i in peaks if i not in lost]
+    told = off if evidence.heading is not None else None
+    steps = Steps(stamps_s, positions, by_treads, told, step)
+    yield from _told(evidence, steps, peaks, usual)
+
+
+def _told(evidence: Evidence, of: Steps, peaks: list[int], usual_m: float) -> Iterator[Finding]:
+    """By what the treads and the poses did, what a large step is."""
+    stood = [i for i in peaks if _stood(of, i)]
+    lost = [i for i in peaks if i not in stood and _lost_treads(evidence, of.stamps_s[i])]
+    peaks = [i for i in peaks if i not in stood and i not in lost]
+    sudden = [i for i in peaks if _sudden(of, i)]
     if stood:
-        yield _slip_episodes(evidence, stamps_s[stood], float(step[stood[0]]))
+        yield _slip_episodes(evidence, of.stamps_s[stood], float(of.size_m[stood[0]]))
     if lost:
-        yield _lost_odometry(evidence, stamps_s[lost], float(step[lost].max()))
-    if peaks:
-        yield _pose_jumps(evidence, stamps_s[peaks], step[peaks], usual)
+        yield _lost_odometry(evidence, of.stamps_s[lost], float(of.size_m[lost].max()))
+    if sudden:
+        yield _pose_jumps(evidence, of.stamps_s[sudden], of.size_m[sudden], usual_m)
+    elif peaks:
+        yield _drift(evidence, of.stamps_s[peaks[0]], float(of.size_m[peaks].max()), usual_m)
+
+
+def _drift(evidence: Evidence, at_s: float, farthest_m: float, usual_m: float) -> Finding:
+    return disagreement(
+        f"poses part by {farthest_m:.2g} m from what treads and yaw say within {2 * FAR_S:g} s at "
+        f"{evidence.run_time_s(at_s):.0f} s, not at once (usual: {usual_m:.2g} m), as by "
+        "reflected signals (multipath) or slip"
+    )
 
 
 def _slip_episodes(evidence: Evidence, at_s: FloatArray, first_m: float) -> Finding:
@@ -67,7 +112,7 @@ def _slip_episodes(evidence: Evidence, at_s: FloatArray, first_m: float) -> Find
         f"{first_m:.2f} m at {evidence.run_time_s(at_s[0]):.1f} s)",
         "The robot is stuck or slips while its wheels spin, or poses are frozen for a moment",
         "Judge by what the robot drove on; cut with --from and --to",
-        _moments(evidence, at_s),
+        moments(evidence, at_s),
     )
 
 
@@ -80,7 +125,7 @@ def _lost_odometry(evidence: Evidence, at_s: FloatArray, farthest_m: float) -> F
         "Odometry is lost: the log writes zeros (a motor driver or bus that stopped); or the "
         "robot was pushed, carried or slid, or poses jump, or these are commands and it coasts",
         "Cut the recording with --from and --to",
-        _moments(evidence, at_s),
+        moments(evidence, at_s),
     )
 
 
@@ -98,133 +143,48 @@ def _pose_jumps(
         f"{places}{' ...' if len(at_s) > SHOWN else ''} (usual: {usual_m:.2g} m)",
         "Poses jump: the reference was relocalised, or its map or fix changed",
         "Number the stretches between jumps in a column `window`, or cut with --from and --to",
-        _moments(evidence, at_s),
+        moments(evidence, at_s),
     )
-
-
-def _moments(evidence: Evidence, at_s: FloatArray) -> tuple[tuple[float, float], ...]:
-    return tuple((evidence.run_time_s(stamp_s),) * 2 for stamp_s in at_s)
-
-
-def yaw_jumps(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
-    """Steps of the measured yaw against the gyroscope."""
-    pose = evidence.run.pose
-    if pose is None or not evidence.yaw_measured or evidence.yaw_rate is None:
-        return
-    by_gyroscope = evidence.pose_turn_by_gyroscope
-    if by_gyroscope is None or by_gyroscope.correlation < 0.9:
-        return
-    stamps_s = np.clip(pose.stamps_s[rows], evidence.stamps_s[0], evidence.stamps_s[-1])
-    yaw = np.radians(pose["yaw"][rows]) if evidence.yaw_in_degrees else pose["yaw"][rows]
-    heading = evidence.integrals.gyroscope_rad(stamps_s) * by_gyroscope.slope
-    known = np.isfinite(yaw) & np.isfinite(heading)
-    stamps_s, off = stamps_s[known], np.unwrap((yaw - heading)[known])
-    step = _step_sizes(stamps_s, np.stack([off, np.zeros_like(off)], axis=-1))
-    measured = np.isfinite(step)
-    if measured.sum() < 20:
-        return
-    usual = 1.4826 * float(np.median(step[measured]))
-    rate = np.abs(_rate(heading[known], stamps_s))
-    odd = measured & (step > np.maximum(JUMP_TIMES * usual, LEAST_YAW_JUMP_RAD + JITTER_S * rate))
-    peaks = [begin + int(np.argmax(step[begin:end])) for begin, end in runs_of(odd)]
-    if not peaks:
-        return
-    yield Finding(
-        "yaw_jumps",
-        Level.WARNING,
-        f"yaw of pose.csv jumps against the gyroscope, and stays, {counted(len(peaks), 'time')}: "
-        + ", ".join(
-            f"{np.degrees(step[i]):.0f} degrees at {evidence.run_time_s(stamps_s[i]):.1f} s"
-            for i in peaks[:SHOWN]
-        ),
-        "Yaw jumps: the heading of the reference was corrected or lost (magnetometer, antennas)",
-        "Number the stretches between jumps in a column `window`, or cut with --from and --to",
-        _moments(evidence, stamps_s[peaks]),
-    )
-
-
-def _reckoned(evidence: Evidence, rows: IntArray, scale: float) -> FloatArray:
-    """Positions (M, 2) by mean tread travel along the measured yaw; zeros where yaw is unknown."""
-    pose, heading = evidence.run.pose, evidence.heading
-    if pose is None or heading is None:
-        return np.zeros((len(rows), 2))
-    yaw = pose["yaw"][rows]
-    yaw = READINGS[heading.reading](np.radians(yaw) if evidence.yaw_in_degrees else yaw)
-    yaw = np.unwrap(np.nan_to_num(yaw)) + heading.offset_rad
-    of = evidence.integrals
-    stamps_s = np.clip(pose.stamps_s[rows], evidence.stamps_s[0], evidence.stamps_s[-1])
-    travel_m = (of.left_m(stamps_s) + of.right_m(stamps_s)) / 2
-    steps = scale * np.diff(travel_m)
-    middle = (yaw[1:] + yaw[:-1]) / 2
-    return np.concatenate(
-        [
-            np.zeros((1, 2)),
-            np.cumsum(np.stack([steps * np.cos(middle), steps * np.sin(middle)], -1), 0),
-        ]
-    )
-
-
-def _step_sizes(stamps_s: FloatArray, off: FloatArray) -> FloatArray:
-    """Distance (M,) between the medians of `off` (M, 2) shortly before and after each pose.
-
-    Medians bear jitter of stamps. NaN next to the ends and to gaps.
-    """
-    period_s = float(np.median(np.diff(stamps_s)))
-    near_s, far_s = NEAR_S, max(FAR_S, NEAR_S + 3 * period_s)
-    edges = [
-        np.searchsorted(stamps_s, stamps_s + shift_s)
-        for shift_s in (-far_s, -near_s, near_s, far_s)
-    ]
-    before, after = (_medians(off, *edges[i : i + 2]) for i in (0, 2))
-    return np.asarray(np.hypot(*(after - before).T))
-
-
-def _medians(values: FloatArray, first: IntArray, last: IntArray) -> FloatArray:
-    """Medians (K, 2) of values (M, 2) from `first` to before `last` (K,); NaN of less than two."""
-    found, sizes = np.full((len(first), 2), np.nan), last - first
-    for size in np.unique(sizes[sizes >= 2]):
-        windows = np.lib.stride_tricks.sliding_window_view(values, size, axis=0)
-        rows = np.flatnonzero(sizes == size)
-        for some in np.array_split(rows, 1 + len(rows) * size // BLOCK):
-            found[some] = np.median(windows[first[some]], axis=-1)
-    return found
 
 
 def _driven_m(stamps_s: FloatArray, travel_m: FloatArray) -> FloatArray:
-    """Tread travel (M,) over the time from which `_step_sizes` takes its medians."""
+    """Tread travel (M,) over the time from which `step_sizes` takes its medians."""
     far_s = max(FAR_S, NEAR_S + 3 * float(np.median(np.diff(stamps_s))))
     before, after = (np.interp(stamps_s + s, stamps_s, travel_m) for s in (-far_s, far_s))
     return np.asarray(after - before)
 
 
-def _without_window_changes(
-    evidence: Evidence, rows: IntArray, positions: FloatArray
-) -> FloatArray:
-    """Positions (M, 2) with the steps at changes of `window` taken out: these may jump."""
-    pose = evidence.run.pose
-    if pose is None or "window" not in pose:
-        return positions
-    steps = np.diff(positions, axis=0)
-    steps[np.diff(np.nan_to_num(pose["window"][rows])) != 0] = 0.0
-    return np.concatenate([positions[:1], positions[0] + np.cumsum(steps, axis=0)])
-
-
-def _stood(stamps_s: FloatArray, positions: FloatArray, reckoned: FloatArray, at: int) -> bool:
+def _stood(of: Steps, at: int) -> bool:
     """Whether around a row the poses moved far less than dead reckoning, and not against it."""
-    first, last = np.searchsorted(stamps_s, [stamps_s[at] - FAR_S, stamps_s[at] + FAR_S])
-    last = min(int(last), len(stamps_s) - 1)
-    moved, driven = positions[last] - positions[first], reckoned[last] - reckoned[first]
+    first, last = _around(of, at, FAR_S)
+    moved = of.positions[last] - of.positions[first]
+    driven = of.reckoned[last] - of.reckoned[first]
     return bool(np.hypot(*moved) < 0.4 * np.hypot(*driven))
+
+
+def _sudden(of: Steps, at: int) -> bool:
+    """Whether most of a step comes within few poses: a drift takes its time."""
+    if of.off is None:
+        return True
+    period_s = float(np.median(np.diff(of.stamps_s)))
+    short_s, long_s = max(SUDDEN_S, 1.5 * period_s), max(2 * FAR_S, 6 * period_s)
+    first, last = _around(of, at, long_s)
+    whole = float(np.hypot(*(of.off[last] - of.off[first])))
+    rows = np.arange(first, last + 1)
+    ends = (np.searchsorted(of.stamps_s, of.stamps_s[rows] + s) for s in (-short_s, short_s))
+    before, after = (np.clip(end, first, last) for end in ends)
+    return float(np.hypot(*(of.off[after] - of.off[before]).T).max()) > SUDDEN * whole
+
+
+def _around(of: Steps, at: int, reach_s: float) -> tuple[int, int]:
+    """Rows so far before and after one."""
+    stamp_s = of.stamps_s[at]
+    first, last = np.searchsorted(of.stamps_s, [stamp_s - reach_s, stamp_s + reach_s])
+    return int(first), min(int(last), len(of.stamps_s) - 1)
 
 
 def _widened(spans_s: FloatArray) -> FloatArray:
     return np.asarray(spans_s + np.array([-2 * FAR_S, 2 * FAR_S]))
-
-
-def _rate(values: FloatArray, stamps_s: FloatArray) -> FloatArray:
-    """Change (M,) of values to the next row for each second."""
-    rates = np.diff(values) / np.maximum(np.diff(stamps_s), 1e-3)
-    return np.append(rates, rates[-1:])
 
 
 def _lost_treads(evidence: Evidence, at_s: float) -> bool:

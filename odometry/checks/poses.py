@@ -5,11 +5,14 @@ from collections.abc import Iterator
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.checks.course import OFF_RAD
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, counted
-from odometry.checks.pose_jumps import jumps, yaw_jumps
+from odometry.checks.mending import moved
+from odometry.checks.pose_jumps import jumps
 from odometry.checks.relation import pieces, relation
 from odometry.checks.spans import constant_spans, runs_of
+from odometry.checks.yaw_jumps import yaw_jumps
 
 FROZEN_S = 1.5
 OFTEN = 10  # stretches of repeated poses, from which the log repeats by habit
@@ -27,7 +30,7 @@ def poses(evidence: Evidence) -> Iterator[Finding]:
     rows = np.flatnonzero(evidence.positions_measured & ~evidence.pose_outliers)
     stamps_s = evidence.run.pose.stamps_s[rows]
     positions = evidence.run.pose.stack("x", "y")[rows]
-    travel_m = _travel(evidence, stamps_s)
+    travel_m = evidence.travel_m(stamps_s)
     repeated = list(_repeated(positions, travel_m))
     frozen = list(_frozen(evidence, stamps_s, positions, travel_m))
     yield from repeated or frozen
@@ -35,13 +38,6 @@ def poses(evidence: Evidence) -> Iterator[Finding]:
     yield from yaw_jumps(evidence, rows)
     yield from _lever_arm(evidence)
     yield from jumps(evidence, rows, travel_m, np.array(spans_s).reshape(-1, 2))
-
-
-def _travel(evidence: Evidence, stamps_s: FloatArray) -> FloatArray:
-    """Tread travel (M,) up to each pose: the faster tread counts."""
-    speeds = np.abs(evidence.speeds_m_s).max(axis=1)
-    summed = np.concatenate([[0.0], np.cumsum(speeds[:-1] * np.diff(evidence.stamps_s))])
-    return np.asarray(np.interp(stamps_s, evidence.stamps_s, summed))
 
 
 def _frozen(
@@ -109,6 +105,12 @@ def _outliers(evidence: Evidence) -> Iterator[Finding]:
     )
 
 
+def _axis_rad(evidence: Evidence) -> float:
+    """From yaw to the robot's axis; nothing where an offset of yaw has a name of its own."""
+    offset = evidence.heading.offset_rad if evidence.heading is not None else 0.0
+    return offset if abs(offset) < OFF_RAD else 0.0
+
+
 def _lever_arm(evidence: Evidence) -> Iterator[Finding]:
     """A sensor far from the centre swings sideways, or forwards, with every turn."""
     m = evidence.motion
@@ -135,4 +137,5 @@ def _lever_arm(evidence: Evidence) -> Iterator[Finding]:
             "The sensor is mounted far from the centre (a lever arm), or the frame of the poses is "
             "not that of the robot, or positions are late against yaw (filtered)",
             f"State its place: [sensors] pose = [{x_m:.2f}, {y_m:.2f}, 0.0]",
+            mend=moved(x_m, y_m, _axis_rad(evidence)),
         )

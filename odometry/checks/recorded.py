@@ -17,9 +17,17 @@ MOST_OUTLIERS = 0.3  # share of the poses: where more are far from the others, n
 
 @dataclass(frozen=True)
 class Recorded:
-    """A run, cleaned. All properties are made once, when asked for."""
+    """A run, cleaned. All properties are made once, when asked for.
+
+    Attributes
+    ----------
+    run : Run
+    left_out_s : tuple of (float, float)
+        Run time [s]: windows that touch these are left out.
+    """
 
     run: Run
+    left_out_s: tuple[tuple[float, float], ...] = ()
 
     @cached_property
     def stamps_s(self) -> FloatArray:
@@ -102,12 +110,22 @@ class Recorded:
             if not scattered(found):
                 break
             found = motion_between(self.run, self.integrals, self.poses_used, window_s)
-        return found
+        return self._without_left_out(found)
 
     @cached_property
     def uniform(self) -> Motion:
         """Windows of half a second over the whole of odometry.csv, without poses."""
-        return motion_between(self.run, self.integrals, None)
+        return self._without_left_out(motion_between(self.run, self.integrals, None))
+
+    def _without_left_out(self, motion: Motion) -> Motion:
+        return motion.rows(np.flatnonzero(~self.left_out(motion.start_s, motion.end_s)))
+
+    def left_out(self, start_s: FloatArray, end_s: FloatArray) -> BoolArray:
+        """Whether each time between two stamps (K,) touches what is left out."""
+        touched = np.zeros(len(start_s), dtype=np.bool_)
+        for begin_s, stop_s in np.array(self.left_out_s).reshape(-1, 2) + self.stamps_s[0]:
+            touched |= (end_s >= begin_s) & (start_s <= stop_s)
+        return touched
 
     @cached_property
     def _new_poses(self) -> BoolArray:
@@ -128,6 +146,12 @@ class Recorded:
             used = used & ~self.pose_outliers
         used = used & self._new_poses
         return used & np.isfinite(self.run.pose["yaw"]) if self.yaw_measured else used
+
+    def travel_m(self, at_s: FloatArray) -> FloatArray:
+        """Tread travel (K,) up to each stamp (K,): the faster tread counts."""
+        speeds = np.abs(self.speeds_m_s).max(axis=1)
+        summed = np.concatenate([[0.0], np.cumsum(speeds[:-1] * np.diff(self.stamps_s))])
+        return np.asarray(np.interp(at_s, self.stamps_s, summed))
 
     def run_time_s(self, stamp_s: float) -> float:
         """Time from the first row of odometry.csv."""

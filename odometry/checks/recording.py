@@ -7,6 +7,9 @@ import numpy as np
 
 from odometry.checks.agreement import agreement, yaw_against_course
 from odometry.checks.attitude import attitude
+from odometry.checks.bent import bent
+from odometry.checks.columns import columns
+from odometry.checks.confirmed import alone, confirmed
 from odometry.checks.consequences import without_consequences
 from odometry.checks.course import course
 from odometry.checks.disagreement import sensors_disagree
@@ -14,8 +17,11 @@ from odometry.checks.evidence import Evidence
 from odometry.checks.finding import CheckReport, Finding, Level, in_order
 from odometry.checks.gaps import gaps
 from odometry.checks.gyroscope import gyroscope
+from odometry.checks.no_run_folder import no_run_folder
+from odometry.checks.pose_outages import pose_outages
 from odometry.checks.pose_values import pose_values
 from odometry.checks.poses import poses
+from odometry.checks.proportion import proportion
 from odometry.checks.settings import settings
 from odometry.checks.sides import sides
 from odometry.checks.stamps import stamps, unreadable_stamps
@@ -39,15 +45,19 @@ CHECKS: tuple[Check, ...] = (
     turning,
     course,
     units,
+    bent,
     sides,
+    proportion,
     tread_motion,
     treads,
     gaps,
     timing,
     poses,
     gyroscope,
+    pose_outages,
     attitude,
     settings,
+    columns,
 )
 LEAST_ROWS = 10
 
@@ -66,6 +76,8 @@ def check_recording(run: Run | str | Path) -> CheckReport:
         A folder that cannot be read is a finding, not an error.
     """
     if not isinstance(run, Run):
+        if (nothing := no_run_folder(Path(run))) is not None:
+            return CheckReport(Path(run), (nothing,))
         try:
             run = Run.read(run)
         except RunFolderError as error:
@@ -77,9 +89,14 @@ def check_recording(run: Run | str | Path) -> CheckReport:
         return CheckReport(run.folder, refused, ("fewer than ten rows of odometry.csv",))
     evidence = Evidence(run)
     with np.errstate(over="ignore", invalid="ignore"):
-        found = [*refused, *(finding for check in CHECKS for finding in check(evidence))]
-        found += sensors_disagree(evidence, found)
-    return CheckReport(run.folder, in_order(without_consequences(found)), tuple(_skipped(evidence)))
+        found = alone(evidence, [*refused, *_found(evidence)], _found)
+        told = confirmed(evidence, without_consequences(found))
+    return CheckReport(run.folder, in_order(told), tuple(_skipped(evidence)))
+
+
+def _found(evidence: Evidence) -> list[Finding]:
+    found = [finding for check in CHECKS for finding in check(evidence)]
+    return [*found, *sensors_disagree(evidence, found)]
 
 
 def _skipped(evidence: Evidence) -> Iterator[str]:

@@ -4,11 +4,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from odometry.checks.disagreement import disagreement
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
-from odometry.checks.motion import Motion
+from odometry.checks.mending import changed, treads_times
+from odometry.checks.motion import turns_both_ways
 from odometry.checks.relation import Relation, pieces, relation
+from odometry.checks.unnamed import disagreement
 
 UNEQUAL = (
     1.15  # ratio of the treads' shares in turns; real ones have 0.94 to 1.07 where terrain holds
@@ -84,6 +85,7 @@ def _unequal(evidence: Evidence, turn: Relation, forward: Relation | None) -> It
         f"One side has another scale: the {side} tread reads {max(ratio, 1 / ratio):.3g} times too "
         "much against the other (unit, wheel radius, gear, ticks of one side, a flat tyre)",
         "Compare both sides on a straight drive",
+        mend=treads_times(ratio, 1.0),
     )
 
 
@@ -103,7 +105,7 @@ def _lasts(evidence: Evidence, ratio: float) -> bool:
 def _offset(evidence: Evidence) -> Iterator[Finding]:
     """A constant added to one tread: it drives while the robot stands."""
     m = evidence.motion
-    if _reads_zero(evidence) or not _turns_both_ways(m):
+    if _reads_zero(evidence) or not turns_both_ways(m):
         return
     turn = relation(evidence.pose_turn_rad, m.left_m, m.right_m, m.lasts_s)
     if turn is None or not turn.certain(2, TIMES) or turn.explained < HELD:
@@ -117,7 +119,9 @@ def _offset(evidence: Evidence) -> Iterator[Finding]:
     along = float(forward.coefficients[2])
     if not 0.5 < abs(along / (forward.coefficients[:2].mean() * offset)) < 2.0:
         return
-    tread = f"The {'left' if (along < 0) == (offset > 0) else 'right'} tread has"
+    left = (along < 0) == (offset > 0)
+    reads = offset if left else -offset
+    tread = f"The {'left' if left else 'right'} tread has"
     yield Finding(
         "tread_offset",
         Level.WARNING,
@@ -126,6 +130,7 @@ def _offset(evidence: Evidence) -> Iterator[Finding]:
         f"{tread} an offset of about {abs(offset):.3f} m/s: it reads a constant besides its speed, "
         "a zero that was never set",
         "Subtract what it reads where the robot stands",
+        mend=changed("odometry", "v_left" if left else "v_right", lambda speed: speed - reads),
     )
 
 
@@ -133,10 +138,3 @@ def _reads_zero(evidence: Evidence) -> bool:
     """Whether both treads read exactly zero at times: then neither has an offset."""
     still = (evidence.speeds_m_s == 0).all(axis=1)
     return bool(still.sum() * evidence.period_s > 1.0)
-
-
-def _turns_both_ways(motion: Motion) -> bool:
-    """Whether left and right turns are there: else an offset cannot be told from a wrong width."""
-    turns = motion.difference_m[np.abs(motion.difference_m) > 0.05 * np.abs(motion.mean_m)]
-    left = float(np.mean(turns > 0)) if len(turns) else 0.0
-    return 0.15 < left < 0.85

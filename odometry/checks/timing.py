@@ -1,22 +1,26 @@
 """Late sensors, and clocks that run apart."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level
+from odometry.checks.finding import Finding
 from odometry.checks.lag import Lag, Signal, lag_between
+from odometry.checks.late import clocks_apart, gyroscope_late, pose_late, treads_apart
 
 LEAST_LAG_S = (
     0.15  # good lidar poses were found up to 0.11 s early after constant delays were removed
 )
+USUAL_PERIOD_S = 0.05  # of such logs; values of slower ones are held, and seem late, for longer
 CERTAIN = 4.0  # standard deviations
-MOST_LAG_S = 2.0
+MOST_LAG_S = 3.5
 CLOCK = 0.03  # relative difference of clocks that is searched for
 LEAST_DRIFT_S = 0.2  # over the recording
 LEAST_DRIFT = 1e-3  # relative: quartz clocks differ by less
+TOGETHER = 0.7  # share of the pieces that have one lag, or one that grows evenly
 OF_PERIOD = 0.25  # of the pose period, by which interpolated poses may seem late
 
 
@@ -32,14 +36,20 @@ def timing(evidence: Evidence) -> Iterator[Finding]:
     }
     drifting = _drifting(evidence, lags)
     if drifting:
-        yield from _clocks(evidence, drifting)
+        yield clocks_apart(evidence, drifting)
         return
     late = {
         pair: lag
         for pair, lag in lags.items()
-        if _is_late(lag, OF_PERIOD * _pose_period_s(evidence) * ("pose" in pair))
+        if _is_late(
+            lag,
+            max(
+                OF_PERIOD * _pose_period_s(evidence) * ("pose" in pair),
+                LEAST_LAG_S + evidence.period_s - USUAL_PERIOD_S,
+            ),
+        )
     }
-    yield from _late(lags, late)
+    yield from _late(evidence, lags, late)
 
 
 def _headings(evidence: Evidence) -> dict[str, Signal]:
@@ -101,6 +111,7 @@ def _differ(first: float, second: float) -> bool:
 def _drifts(evidence: Evidence, lag: Lag) -> bool:
     return (
         lag.pieces >= 5
+        and lag.together >= TOGETHER
         and abs(lag.drift) > CERTAIN * lag.drift_sigma
         and abs(lag.drift) * evidence.duration_s > max(LEAST_DRIFT_S, _pose_period_s(evidence))
         and abs(lag.drift) > LEAST_DRIFT
@@ -109,72 +120,33 @@ def _drifts(evidence: Evidence, lag: Lag) -> bool:
 
 def _is_late(lag: Lag, allowed_s: float) -> bool:
     return (
-        abs(lag.seconds) > max(LEAST_LAG_S, allowed_s) and abs(lag.seconds) > CERTAIN * lag.sigma_s
+        abs(lag.seconds) > max(LEAST_LAG_S, allowed_s)
+        and abs(lag.seconds) > CERTAIN * lag.sigma_s
+        and lag.together >= TOGETHER
     )
 
 
-def _clocks(evidence: Evidence, drifting: dict[tuple[str, str], Lag]) -> Iterator[Finding]:
-    counts = {
-        name: sum(name in pair for pair in drifting) for name in ("pose", "treads", "gyroscope")
-    }
-    odd = max(counts, key=lambda name: counts[name])
-    (late, early), lag = next((p, v) for p, v in drifting.items() if odd in p)
-    yield Finding(
-        "clocks_apart",
-        Level.WARNING,
-        f"the lag of {late} behind {early} grows by {1000 * lag.drift:+.2f} "
-        f"+- {1000 * lag.drift_sigma:.2f} ms per second "
-        f"({lag.drift * evidence.duration_s:+.2f} s over the recording)",
-        f"Clocks run apart: that of the {_file(odd)} has a drift of {100 * lag.drift:+.2f} % "
-        "against the other",
-        "Stamp all files by one clock (log time, or clocks that are synchronised)",
-    )
-
-
-def _late(lags: dict[tuple[str, str], Lag], late: dict[tuple[str, str], Lag]) -> Iterator[Finding]:
+def _late(
+    evidence: Evidence, lags: dict[tuple[str, str], Lag], late: dict[tuple[str, str], Lag]
+) -> Iterator[Finding]:
     by_gyroscope, by_treads = late.get(("pose", "gyroscope")), late.get(("pose", "treads"))
     wheels = late.get(("treads", "gyroscope"))
     if by_gyroscope and wheels and not by_treads and ("pose", "treads") in lags:
-        yield _finding("gyroscope_late", "gyroscope", "pose and treads", _reversed(by_gyroscope))
-    elif by_gyroscope or (by_treads and not wheels):
-        lag = by_gyroscope or by_treads
-        assert lag is not None  # noqa: S101 - one of them is
-        other = "the gyroscope" if by_gyroscope else "the treads"
-        yield _finding("pose_late", "pose", other, lag)
-        if wheels and abs(wheels.seconds) > LEAST_LAG_S:
-            yield _finding("treads_late", "treads", "the gyroscope", wheels)
-    elif wheels:
-        yield _finding("treads_late", "treads", "the gyroscope", wheels)
+        yield gyroscope_late(evidence, replace(by_gyroscope, seconds=-by_gyroscope.seconds))
+        return
+    if by_gyroscope:
+        yield pose_late(by_gyroscope, "the gyroscope")
+    elif by_treads and not wheels:
+        yield from _poses_or_treads(evidence, by_treads)
+    if wheels:
+        yield treads_apart(evidence, wheels, "the gyroscope")
 
 
-def _reversed(lag: Lag) -> Lag:
-    return Lag(-lag.seconds, lag.sigma_s, -lag.drift, lag.drift_sigma, lag.correlation, lag.pieces)
-
-
-def _file(sensor: str) -> str:
-    names = {"pose": "poses", "treads": "treads", "gyroscope": "gyroscope"}
-    return names[sensor]
-
-
-def _finding(name: str, sensor: str, other: str, lag: Lag) -> Finding:
-    word, opposite = ("late", "early") if lag.seconds > 0 else ("early", "late")
-    more = ""
-    if {sensor, other} == {"pose", "the treads"}:
-        more = f"; or those of the treads are {opposite}: without a gyroscope this cannot be told"
-        if lag.seconds > 0:
-            more += " (v_left and v_right may be commands, which the robot follows later)"
-    elif name == "treads_late" and lag.seconds < 0:
-        more = "; or v_left and v_right are commands, which the robot follows later"
-    elif name == "treads_late":
-        more = "; or the speeds are smoothed (a low-pass filter)"
-    if sensor == "pose":
-        more += "; or yaw is bent by something else (magnetic), which can look alike"
-    return Finding(
-        name,
-        Level.WARNING,
-        f"the yaw rate of {_file(sensor)} is {abs(lag.seconds):.3f} +- {lag.sigma_s:.3f} s {word} "
-        f"against {other} (correlation {lag.correlation:.2f})",
-        f"Stamps of {_file(sensor)} are {word}: a delay of the sensor, its filter or its "
-        f"transport, or stamps at arrival{more}",
-        f"Subtract {lag.seconds:+.3f} s from the stamps of the {_file(sensor)}",
-    )
+def _poses_or_treads(evidence: Evidence, lag: Lag) -> Iterator[Finding]:
+    """Without a gyroscope that says more: treads that the robot follows later, or late poses."""
+    if "gyroscope" not in _headings(evidence) and lag.seconds > 0:
+        treads = treads_apart(evidence, replace(lag, seconds=-lag.seconds), "the poses")
+        if treads.name == "treads_are_commands":
+            yield treads
+            return
+    yield pose_late(lag, "the treads")

@@ -8,6 +8,13 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence import CLEARLY, Evidence
 from odometry.checks.finding import Finding, Level
+from odometry.checks.mending import (
+    Mend,
+    exchanged,
+    gyroscope_times,
+    times,
+    treads_times,
+)
 from odometry.checks.relation import Relation
 
 LEAST_TURN_RAD = 1.0  # summed turns below which nothing is said
@@ -118,6 +125,7 @@ def turning(evidence: Evidence) -> Iterator[Finding]:
             f"gyro_z turns against treads and measured yaw ({_correlations(evidence)})",
             "The gyroscope has the wrong sign (z down, or mounted upside down)",
             f"Negate gyro_z of {evidence.gyroscope_file}",
+            gyroscope_times(evidence.run, -1.0),
         )
     elif pose is Sense.OPPOSITE and gyroscope is Sense.AGREES:
         yield _pose_opposite(evidence, "treads and gyroscope agree", alone=True)
@@ -132,6 +140,7 @@ def _all_opposite(evidence: Evidence, gyroscope: Sense, pose: Sense) -> Finding:
             "Left and right treads are swapped, or the gyroscope has the wrong sign, or both "
             "treads have it: without poses these cannot be distinguished",
             "Drive one left turn by hand and see which column is wrong",
+            exchanged,
         )
     if gyroscope is Sense.UNKNOWN and not (evidence.heading and _reading_is_plain(evidence)):
         return _pose_opposite(evidence, "there is no gyroscope to say more", alone=False)
@@ -142,6 +151,7 @@ def _all_opposite(evidence: Evidence, gyroscope: Sense, pose: Sense) -> Finding:
             f"({_correlations(evidence)})",
             "Both treads have the wrong sign",
             "Negate v_left and v_right",
+            treads_times(-1.0, -1.0),
         )
     more = (
         "; or x, y and yaw are in a frame with z down (NED)" if gyroscope is Sense.UNKNOWN else ""
@@ -152,6 +162,7 @@ def _all_opposite(evidence: Evidence, gyroscope: Sense, pose: Sense) -> Finding:
         "is not",
         f"Left and right treads are swapped{more}",
         "Exchange v_left and v_right",
+        exchanged,
     )
 
 
@@ -172,6 +183,7 @@ def _pose_opposite(evidence: Evidence, others: str, *, alone: bool) -> Finding:
         f"yaw of pose.csv turns against the treads ({_correlations(evidence)}; {others})",
         cause,
         "Write pose.csv with x forward, y left, z up and yaw counter-clockwise",
+        times("pose", -1.0, "y", "yaw"),
     )
 
 
@@ -186,6 +198,7 @@ def _yaw_reversed(evidence: Evidence, others: str) -> Finding:
         f"{evidence.heading.concentration:.2f}, offset {offset:.0f} degrees; {others})",
         f"Yaw is reversed: {cause}",
         "Convert: yaw = pi/2 - bearing" if compass else "Negate yaw",
+        times("pose", -1.0, "yaw"),
     )
 
 
@@ -196,6 +209,7 @@ def _one_tread(evidence: Evidence, tread: Sense) -> Finding:
         f"turns grow with the sum of the tread speeds ({_correlations(evidence)})",
         f"The {side} tread has the wrong sign",
         f"Negate v_{side}",
+        treads_times(-1.0, 1.0) if side == "left" else treads_times(1.0, -1.0),
     )
 
 
@@ -220,5 +234,5 @@ def _correlations(evidence: Evidence) -> str:
     return ", ".join(words)
 
 
-def _finding(name: str, seen: str, cause: str, remedy: str) -> Finding:
-    return Finding(name, Level.WARNING, seen, cause, remedy)
+def _finding(name: str, seen: str, cause: str, remedy: str, mend: Mend) -> Finding:
+    return Finding(name, Level.WARNING, seen, cause, remedy, mend=mend)

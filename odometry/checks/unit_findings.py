@@ -4,6 +4,7 @@ import numpy as np
 
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
+from odometry.checks.mending import gyroscope_times, treads_times
 from odometry.checks.unit_tables import Unit, tread_units
 
 
@@ -22,6 +23,7 @@ def gyroscope_unit(evidence: Evidence, factor: float) -> Finding:
         "treads have",
         cause,
         "Convert gyro_z to rad/s",
+        mend=gyroscope_times(evidence.run, 1 / factor),
     )
 
 
@@ -65,6 +67,7 @@ def tread_unit(seen: str, unit: Unit, evidence: Evidence, *, sure: bool = True) 
         f"{seen}; treads run at up to {evidence.fastest_m_s:.4g} m/s",
         f"Tread speeds are in {unit.words}, not m/s{others}",
         "Convert v_left and v_right to m/s: wheel rate times radius",
+        mend=treads_times(1 / unit.factor, 1 / unit.factor),
     )
 
 

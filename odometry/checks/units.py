@@ -6,6 +6,8 @@ import numpy as np
 
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
+from odometry.checks.mending import times, treads_times
+from odometry.checks.proportion import holds_the_mean
 from odometry.checks.relation import Relation, pieces
 from odometry.checks.turning import Sense, gyroscope_sense, pose_sense
 from odometry.checks.unit_findings import (
@@ -21,6 +23,7 @@ from odometry.checks.unit_tables import (
     matching,
     tread_units,
 )
+from odometry.checks.unnamed import disagreement
 
 # Robots that were measured move 0.75 to 1.05 times as far as their treads where the terrain holds,
 # and turn as if 1.0 to 3.1 times as wide; on ice 0.24 to 0.4 times as far, on snow 10 times
@@ -46,7 +49,9 @@ def units(evidence: Evidence) -> Iterator[Finding]:
     low, high = FORWARD[0] * (1 - evidence.arm_share), FORWARD[1] * (1 + evidence.arm_share)
     if forward is not None and not low <= forward <= high:
         yield _along(evidence, forward, forward_tight, width)
-    if width is not None and not WIDTH[0] <= width <= WIDTH[1]:
+    if width is not None and width < WIDTH[0] and (mean := holds_the_mean(evidence)):
+        yield disagreement(mean)
+    elif width is not None and not WIDTH[0] <= width <= WIDTH[1]:
         yield _across(evidence, forward, width, turn_tight)
     elif evidence.fastest_m_s > PLAUSIBLE_M_S and forward is None:
         yield too_fast(evidence)
@@ -146,6 +151,7 @@ def _along(evidence: Evidence, forward: float, tight: bool, width: float | None)
             seen,
             f"Positions of pose.csv are in {position.words}, not metres",
             "Convert x and y to local metres",
+            mend=times("pose", 1 / position.factor, "x", "y"),
         )
     if not tight or (forward < FORWARD[0] and width is not None and width > ORDINARY_WIDTH):
         return Finding(
@@ -163,6 +169,7 @@ def _along(evidence: Evidence, forward: float, tight: bool, width: float | None)
         f"Tread speeds are {1 / forward * ORDINARY_FORWARD:.2g} times too large (wheel radius or "
         "diameter, gear ratio, unit), or positions are scaled",
         "Compare a straight stretch with a tape measure, and mend the wheel radius",
+        mend=treads_times(forward / ORDINARY_FORWARD, forward / ORDINARY_FORWARD),
     )
 
 

@@ -85,7 +85,11 @@ CAUSES = (
         "The file is not text, or text of another encoding (UTF-16 of a spreadsheet?)",
         "Save it as UTF-8",
     ),
-    (r"missing; a run folder needs|no such folder", "This is no run folder", "Name a run folder"),
+    (
+        r"missing; a run folder needs",
+        "A file that every run folder has is missing",
+        "Write it, see the format of a run folder",
+    ),
     (r"as TOML", "run.toml is not TOML", "Mend run.toml at the place that is named"),
 )
 

@@ -11,8 +11,8 @@ from odometry.checks.consequences import CONSEQUENCES
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Level
 from odometry.checks.motion import motion_between
-from odometry.checks.pose_jumps import _step_sizes
 from odometry.checks.recording import check_recording
+from odometry.checks.steps import step_sizes
 from odometry.run import Robot, Run
 from odometry.table import Table
 
@@ -173,7 +173,7 @@ def test_steps_are_between_medians_of_both_sides():
     stamps_s = np.cumsum(rng.uniform(0.02, 0.12, 300))
     off = rng.normal(size=(300, 2))
     off[150:] += (3.0, 4.0)
-    found = _step_sizes(stamps_s, off)
+    found = step_sizes(stamps_s, off)
     for i in (60, 150, 220):  # slices by comparison
         apart_s = stamps_s - stamps_s[i]
         before = off[(apart_s >= -1.25) & (apart_s < -0.25)]

@@ -1,0 +1,131 @@
+"""Yaw that is bent by its own direction, and positions that are longer one way than another."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.checks.evidence import Evidence
+from odometry.checks.finding import Finding, Level
+from odometry.checks.heading_spans import HeadingSpans, heading_spans
+from odometry.checks.mending import Mend, changed
+from odometry.checks.motion import scattered
+from odometry.checks.relation import Relation, relation
+from odometry.run import Run
+
+SPANS_S = (5.0, 1.5)
+LEAST_BEND_RAD = np.radians(6)
+MOST_BEND_RAD = np.radians(60)
+CERTAIN = 6.0  # standard deviations
+LEFT = 0.5  # share of the residual that is left once yaw is straightened
+OCTANTS = 5  # of the compass, in which the robot was: else a bend is a drift
+ROUNDS = 20
+LEAST_WINDOWS = 30
+STRETCHED = 1.2  # ratio of scales; recordings with good poses have up to 1.1
+SHARP = 0.6  # turn in a window [rad] from which its distance says little
+TIGHT = 0.9  # correlation
+
+
+def bent(evidence: Evidence) -> Iterator[Finding]:
+    """A compass on iron, and a projection of the Earth that was forgotten."""
+    yield from _yaw_bent(evidence)
+    yield from _stretched(evidence)
+
+
+def _yaw_bent(evidence: Evidence) -> Iterator[Finding]:
+    """Yaw less the gyroscope's heading goes with the sine of the heading.
+
+    These are the coefficients B and C of the deviation of a compass.
+    """
+    spans = heading_spans(evidence, *SPANS_S)
+    if spans is None or not _all_round(spans):
+        return
+    turns = spans.gyroscope_rad, spans.lasts_s
+    plain = relation(spans.pose_rad, *turns)
+    sine, cosine = 0.0, 0.0
+    found: Relation | None = None
+    for _ in range(3):  # of the true heading, that is known ever better
+        heading = _straightened(spans.yaw_rad, sine, cosine)
+        ends = (np.diff(way(heading), axis=1)[:, 0] for way in (np.sin, np.cos))
+        found = relation(spans.pose_rad, *turns, *ends)
+        if found is None:
+            return
+        sine, cosine = found.coefficients[2:]
+    size = float(np.hypot(sine, cosine))
+    if plain is None or found is None or not LEAST_BEND_RAD < size < MOST_BEND_RAD:
+        return
+    if size < CERTAIN * found.sigmas[2:].max() or not found.distinct:
+        return
+    before, after = (_size(of.residuals) for of in (plain, found))
+    if after > LEFT * before:
+        return
+    yield Finding(
+        "yaw_bent",
+        Level.WARNING,
+        f"yaw of pose.csv deviates from the gyroscope by up to {np.degrees(size):.0f} degrees, "
+        f"with the direction in which the robot points (they part by {np.degrees(before):.1f} "
+        f"degrees in {np.median(spans.lasts_s):.2g} s, without this by {np.degrees(after):.1f})",
+        "Yaw is bent by magnetism: iron of the robot deviates its compass",
+        "Calibrate the compass on the robot (hard iron), or leave yaw empty",
+        mend=changed("pose", "yaw", lambda yaw: _straightened(yaw, sine, cosine)),
+    )
+
+
+def _all_round(spans: HeadingSpans) -> bool:
+    octants = np.floor((spans.yaw_rad[:, 0] % (2 * np.pi)) / (np.pi / 4)).astype(int)
+    counts = np.bincount(np.clip(octants, 0, 7), minlength=8)
+    return int(np.sum(counts > 0.02 * len(spans))) >= OCTANTS
+
+
+def _straightened(yaw_rad: FloatArray, sine: float, cosine: float) -> FloatArray:
+    """Heading h of which yaw = h + sine sin h + cosine cos h, by repeated substitution."""
+    heading = yaw_rad
+    for _ in range(ROUNDS):
+        heading = yaw_rad - sine * np.sin(heading) - cosine * np.cos(heading)
+    return heading
+
+
+def _size(residuals: FloatArray) -> float:
+    return float(np.sqrt(np.nanmean(residuals**2)))
+
+
+def _stretched(evidence: Evidence) -> Iterator[Finding]:
+    """Distance for each metre of travel that goes with twice the course."""
+    m = evidence.motion
+    if len(m) < LEAST_WINDOWS or scattered(m):
+        return
+    sharp = np.abs(m.difference_m) > np.abs(m.mean_m)
+    sharp |= np.abs(evidence.turn_rad(m)) > SHARP
+    travel_m = np.abs(m.mean_m)
+    distance_m = np.where(sharp, np.nan, m.distance_m)
+    ways = (travel_m * way(2 * m.course_rad) for way in (np.cos, np.sin))
+    plain, found = relation(distance_m, travel_m), relation(distance_m, travel_m, *ways)
+    if plain is None or found is None or not found.distinct or found.correlation < TIGHT:
+        return
+    share = float(np.hypot(*found.coefficients[1:]) / found.slope)
+    ratio = (1 + share) / (1 - share) if 0 < share < 0.8 else 1.0
+    sure = share * found.slope > CERTAIN * found.sigmas[1:].max()
+    if ratio < STRETCHED or not sure or _size(found.residuals) > 0.8 * _size(plain.residuals):
+        return
+    along_rad = float(np.arctan2(found.coefficients[2], found.coefficients[1]) / 2)
+    yield Finding(
+        "positions_stretched",
+        Level.WARNING,
+        f"the robot moves {ratio:.2f} times as far for each metre of tread travel where it drives "
+        f"along {np.degrees(along_rad):.0f} degrees of the frame of pose.csv as across it",
+        "Positions are stretched along one axis: longitude was taken for as long as latitude "
+        "(without the cosine of the latitude), or x and y have different scales",
+        "Convert positions by a projection (UTM, east and north in metres)",
+        mend=_shortened(along_rad, ratio),
+    )
+
+
+def _shortened(along_rad: float, ratio: float) -> Mend:
+    def mend(run: Run) -> Run:
+        assert run.pose is not None  # noqa: S101 - the cause is one of poses
+        cos, sin = float(np.cos(along_rad)), float(np.sin(along_rad))
+        excess = (1 - 1 / ratio) * (run.pose["x"] * cos + run.pose["y"] * sin)
+        run = changed("pose", "x", lambda x: x - excess * cos)(run)
+        return changed("pose", "y", lambda y: y - excess * sin)(run)
+
+    return mend

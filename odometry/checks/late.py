@@ -1,0 +1,135 @@
+"""What is said of late sensors and of clocks that run apart."""
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.checks.commands import commands_or_stamps
+from odometry.checks.evidence import Evidence
+from odometry.checks.finding import Finding, Level
+from odometry.checks.lag import Lag
+from odometry.checks.mending import TREADS, Mend, changed, sooner
+
+NAMES = {"pose": "poses", "treads": "treads", "gyroscope": "gyroscope"}
+
+
+def clocks_apart(evidence: Evidence, drifting: dict[tuple[str, str], Lag]) -> Finding:
+    """The sensor that most of the pairs whose lag grows have in common."""
+    counts = {name: sum(name in pair for pair in drifting) for name in NAMES}
+    odd = max(counts, key=lambda name: counts[name])
+    (late, early), lag = next((p, v) for p, v in drifting.items() if odd in p)
+    mend = None
+    if odd == "pose":
+        mend = _with_clock(evidence, "pose", lag)
+    elif evidence.gyroscope_file == "imu.csv" and {late, early} == {"treads", "gyroscope"}:
+        opposite = Lag(-lag.seconds, lag.sigma_s, -lag.drift, 0.0, 0.0, lag.pieces, lag.together)
+        mend = _with_clock(evidence, "imu", opposite)
+    return Finding(
+        "clocks_apart",
+        Level.WARNING,
+        f"the lag of {late} behind {early} grows by {1000 * lag.drift:+.2f} "
+        f"+- {1000 * lag.drift_sigma:.2f} ms per second "
+        f"({lag.drift * evidence.duration_s:+.2f} s over the recording)",
+        f"Clocks run apart: that of the {NAMES[odd]} has a drift of {100 * lag.drift:+.2f} % "
+        "against the other",
+        "Stamp all files by one clock (log time, or clocks that are synchronised)",
+        mend=mend,
+    )
+
+
+def _with_clock(evidence: Evidence, table: str, lag: Lag) -> Mend:
+    """Stamps less the lag that they have at each time."""
+    middle_s = float(evidence.stamps_s[[0, -1]].mean())
+
+    def on_time(stamps_s: FloatArray) -> FloatArray:
+        return np.asarray(stamps_s - lag.seconds - lag.drift * (stamps_s - middle_s))
+
+    return changed(table, "t", on_time)
+
+
+def pose_late(lag: Lag, other: str) -> Finding:
+    """Poses that are late, or early, against the gyroscope or the treads."""
+    word, opposite = _words(lag)
+    more = ""
+    if other == "the treads":
+        more = f"; or those of the treads are {opposite}: without a gyroscope this cannot be told"
+        if lag.seconds > 0:
+            more += " (v_left and v_right may be commands, which the robot follows later)"
+    return Finding(
+        "pose_late",
+        Level.WARNING,
+        _seen("poses", lag, other),
+        f"Stamps of poses are {word}: a delay of the sensor, its filter or its transport, or "
+        f"stamps at arrival{more}",
+        _remedy("poses", lag),
+        mend=changed("pose", "t", lambda stamps_s: stamps_s - lag.seconds),
+    )
+
+
+def gyroscope_late(evidence: Evidence, lag: Lag) -> Finding:
+    """A gyroscope that is late, or early, against poses and treads."""
+    word, _ = _words(lag)
+    mend = (
+        changed("imu", "t", lambda stamps_s: stamps_s - lag.seconds)
+        if evidence.gyroscope_file == "imu.csv"
+        else sooner(("gyro_z",), lag.seconds)
+    )
+    return Finding(
+        "gyroscope_late",
+        Level.WARNING,
+        _seen("gyroscope", lag, "pose and treads"),
+        f"Stamps of gyroscope are {word}: a delay of the sensor, its filter or its transport, or "
+        "stamps at arrival",
+        _remedy("gyroscope", lag),
+        mend=mend,
+    )
+
+
+def treads_apart(evidence: Evidence, lag: Lag, other: str) -> Finding:
+    """Treads that are late, or early: then they may be commands."""
+    word, _ = _words(lag)
+    cause = (
+        f"Stamps of treads are {word}: a delay of the sensor, its filter or its transport, or "
+        "stamps at arrival"
+    )
+    if lag.seconds > 0:
+        return _treads(
+            "treads_late", lag, other, f"{cause}; or the speeds are smoothed (a low-pass filter)"
+        )
+    kind, mend = commands_or_stamps(evidence, -lag.seconds)
+    if kind == "stamps":
+        return _treads("treads_late", lag, other, cause, mend)
+    more = "" if kind == "commands" else "; or their stamps are early: these cannot be told apart"
+    return _treads(
+        "treads_are_commands",
+        lag,
+        other,
+        f"v_left and v_right are commands, which the robot follows later{more}",
+        mend,
+    )
+
+
+def _treads(name: str, lag: Lag, other: str, cause: str, mend: Mend | None = None) -> Finding:
+    commands = name == "treads_are_commands"
+    return Finding(
+        name,
+        Level.WARNING,
+        _seen("treads", lag, other),
+        cause,
+        "Log the speeds that the wheels have" if commands else _remedy("treads", lag),
+        mend=mend or sooner(TREADS, lag.seconds),
+    )
+
+
+def _words(lag: Lag) -> tuple[str, str]:
+    return ("late", "early") if lag.seconds > 0 else ("early", "late")
+
+
+def _seen(sensor: str, lag: Lag, other: str) -> str:
+    return (
+        f"the yaw rate of {sensor} is {abs(lag.seconds):.3f} +- {lag.sigma_s:.3f} s "
+        f"{_words(lag)[0]} against {other} (correlation {lag.correlation:.2f})"
+    )
+
+
+def _remedy(sensor: str, lag: Lag) -> str:
+    return f"Subtract {lag.seconds:+.3f} s from the stamps of the {sensor}"

@@ -1,0 +1,113 @@
+"""A recording with a cause undone: what it would be if that cause were the right one."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.run import Run
+from odometry.table import Table
+
+Mend = Callable[[Run], Run]
+TREADS = ("v_left", "v_right")
+
+
+def changed(table: str, name: str, change: Callable[[FloatArray], FloatArray]) -> Mend:
+    """One column of one table through a function."""
+
+    def mend(run: Run) -> Run:
+        of = getattr(run, table)
+        return replace(run, **{table: replace(of, columns={**of.columns, name: change(of[name])})})
+
+    return mend
+
+
+def in_turn(*mends: Mend) -> Mend:
+    """One after the other."""
+
+    def mend(run: Run) -> Run:
+        for one in mends:
+            run = one(run)
+        return run
+
+    return mend
+
+
+def times(table: str, factor: float, *names: str) -> Mend:
+    """Columns times a factor."""
+    return in_turn(*(changed(table, name, lambda values: factor * values) for name in names))
+
+
+def treads_times(left: float, right: float) -> Mend:
+    """Both tread speeds, each times a factor of its own."""
+    return in_turn(times("odometry", left, "v_left"), times("odometry", right, "v_right"))
+
+
+def exchanged(run: Run) -> Run:
+    """Left and right tread exchanged."""
+    left, right = (run.odometry[name] for name in TREADS)
+    columns = {**run.odometry.columns, "v_left": right, "v_right": left}
+    return replace(run, odometry=replace(run.odometry, columns=columns))
+
+
+def yaw_plus(offset_rad: float) -> Mend:
+    """Measured yaw plus a constant."""
+    return changed("pose", "yaw", lambda yaw: yaw + offset_rad)
+
+
+def gyroscope_times(run: Run, factor: float) -> Mend:
+    """The yaw rate that is read times a factor, in the file in which it stands."""
+    found = run.yaw_rate
+    in_imu = found is not None and found.file == "imu.csv"
+    assert run.imu is not None or not in_imu  # noqa: S101 - the yaw rate stands in it
+    if not in_imu or run.imu is None:
+        return times("odometry", factor, "gyro_z")
+    axes = [name for name in ("gyro_x", "gyro_y", "gyro_z") if name in run.imu]
+    return times("imu", factor, *axes)
+
+
+def restamped(table: str, change: Callable[[FloatArray], FloatArray]) -> Mend:
+    """The stamps of one table through a function that grows."""
+    return changed(table, "t", change)
+
+
+def sooner(names: tuple[str, ...], seconds: float) -> Mend:
+    """Columns of odometry.csv as they were so much later, at the stamps as they are."""
+
+    def mend(run: Run) -> Run:
+        t = run.odometry.stamps_s
+
+        def at_once(values: FloatArray) -> FloatArray:
+            return np.asarray(np.interp(t + seconds, t, values))
+
+        return in_turn(*(changed("odometry", name, at_once) for name in names))(run)
+
+    return mend
+
+
+def between(run: Run, begin_s: float, end_s: float) -> Run:
+    """The rows of all tables of motion between two stamps."""
+
+    def part(table: Table) -> Table:
+        first, last = np.searchsorted(table.stamps_s, [begin_s, end_s])
+        return table.rows(slice(int(first), int(last)))
+
+    pose, imu = (part(table) if table is not None else None for table in (run.pose, run.imu))
+    return replace(run, odometry=part(run.odometry), pose=pose, imu=imu)
+
+
+def moved(forward_m: float, left_m: float, offset_rad: float) -> Mend:
+    """Positions of a point so far behind and to the right of the measured one.
+
+    The robot's axis is that of the measured yaw plus an offset.
+    """
+
+    def mend(run: Run) -> Run:
+        assert run.pose is not None  # noqa: S101 - the cause is one of poses
+        heading = run.pose["yaw"] + offset_rad
+        x = run.pose["x"] - forward_m * np.cos(heading) + left_m * np.sin(heading)
+        y = run.pose["y"] - forward_m * np.sin(heading) - left_m * np.cos(heading)
+        return replace(run, pose=replace(run.pose, columns={**run.pose.columns, "x": x, "y": y}))
+
+    return mend

@@ -1,0 +1,132 @@
+"""Whether speeds are proportional to those of the treads, slow and fast, left and right."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.checks.evidence import Evidence
+from odometry.checks.finding import Finding, Level
+from odometry.checks.motion import Motion, turns_both_ways
+from odometry.checks.relation import Relation, relation
+from odometry.checks.turning import lasting_turn_rad
+
+SLOW, FAST = 0.25, 0.9  # shares of the ordinary fastest speed that are compared
+UNLIKE = 1.3  # ratio of what a metre at slow and at fast speed moves the robot; slip stays below
+CERTAIN = 6.0  # standard deviations
+HALVED = 0.6  # share of the residual squares that is left when proportion is given up
+HELD = 0.95  # share of the motion explained then: else it is slip
+ONE_SIDE = 0.12  # turn at full speed straight on, as a share of that by one tread alone
+NARROW = 1.2  # track widths: robots that were measured turn as if 1.0 to 3.1 wide
+WHOLE = 0.85  # share of the way along that one column has
+LEAST_TURN_RAD = 3.0  # range of the heading from which turns are compared
+ALIKE = 0.3  # share of the changing part of the turns that the treads explain at least
+CHANGING = 0.1  # share of the squared turns that changes, from which it is compared
+LEAST_WINDOWS = 30
+
+
+def proportion(evidence: Evidence) -> Iterator[Finding]:
+    """Columns that hold what drives the motors, and not the speeds that come of it."""
+    m = evidence.motion
+    if len(m) < LEAST_WINDOWS:
+        return
+    squared = _squared(evidence, m.mean_m, m)
+    plain, bent = evidence.forward_by_mean, relation(evidence.forward_m, m.mean_m, squared)
+    if plain is None or bent is None or not _explains(plain, bent, 1) or bent.explained < HELD:
+        return
+    slow, fast = (bent.coefficients[0] + share * bent.coefficients[1] for share in (SLOW, FAST))
+    if fast * slow <= 0 or 1 / UNLIKE < slow / fast < UNLIKE:
+        return
+    yield Finding(
+        "treads_not_proportional",
+        Level.WARNING,
+        f"a metre of tread travel moves the robot by {slow:.3g} m at a quarter of the ordinary "
+        f"fastest speed, and by {fast:.3g} m near it",
+        "Speeds are not proportional to those of the treads: the columns hold what drives the "
+        "motors (a duty cycle, throttle or voltage), or encoders miss ticks",
+        "Log measured wheel speeds",
+    )
+
+
+def one_side_not_proportional(evidence: Evidence) -> str:
+    """A robot that turns when it drives straight on fast, and not slowly."""
+    m, turns = evidence.uniform, evidence.uniform.gyroscope_rad
+    if evidence.yaw_rate is None:
+        m, turns = evidence.motion, evidence.pose_turn_rad
+    if len(m) < LEAST_WINDOWS or not turns_both_ways(m):
+        return ""
+    left, right = (_squared(evidence, way_m, m) for way_m in (m.left_m, m.right_m))
+    plain = relation(turns, m.left_m, m.right_m, right - left, m.lasts_s)
+    bent = relation(turns, m.left_m, m.right_m, right - left, m.lasts_s, right + left)
+    if plain is None or bent is None or not _explains(plain, bent, 4):
+        return ""
+    share = float(bent.coefficients[4] / np.mean(np.abs(bent.coefficients[:2])))
+    if abs(share) < ONE_SIDE:
+        return ""
+    side = "left" if share < 0 else "right"
+    return (
+        f"the faster it drives straight on, the more it turns, against the treads "
+        f"({100 * abs(share):.0f} % of one tread at full speed), as if the encoder of the {side} "
+        "tread missed ticks, or the other one counted too many"
+    )
+
+
+def holds_the_mean(evidence: Evidence) -> str:
+    """A column that alone is the way along, of a robot that turns as if it were too narrow.
+
+    Turns by a tread and the mean are those of half the width, and the mean is the way along. A
+    sensor above one tread of a robot that turns without slip looks alike.
+    """
+    turn, forward = evidence.gyroscope_by_difference, evidence.forward_by_treads
+    if evidence.yaw_rate is None:
+        turn = evidence.pose_turn_by_difference
+    if turn is None or forward is None or not turn.certain() or not forward.distinct:
+        return ""
+    width = 1 / (abs(turn.slope) * evidence.run.robot.track_width)
+    shares = forward.coefficients / float(np.sum(forward.coefficients))
+    if width > NARROW or float(np.max(shares)) < WHOLE:
+        return ""
+    side = ("left", "right")[int(np.argmax(shares))]
+    return (
+        f"the way along is that of v_{side} alone ({100 * float(np.max(shares)):.0f} %), and the "
+        f"robot turns as if {width:.2g} track widths wide, as if v_{side} were the mean (average) "
+        "of both treads; or track_width is wrong, and the sensor sits above one tread"
+    )
+
+
+def treads_unlike(evidence: Evidence) -> Iterator[str]:
+    """Turns, apart from their mean rate, of which the treads explain little."""
+    for name, motion, turns in (
+        ("the gyroscope", evidence.uniform, evidence.uniform.gyroscope_rad),
+        ("the poses", evidence.motion, evidence.pose_turn_rad),
+    ):
+        columns = np.stack([motion.left_m, motion.right_m, motion.lasts_s, turns], axis=-1)
+        known = np.isfinite(columns).all(axis=1)
+        if known.sum() < LEAST_WINDOWS:
+            continue
+        if lasting_turn_rad(turns, motion.lasts_s) < LEAST_TURN_RAD:
+            continue
+        columns = columns[known]
+        whole = float(np.sum(columns[:, 3] ** 2))
+        columns = columns - columns.mean(axis=0)
+        design, target = columns[:, :3], columns[:, 3]
+        if np.sum(target**2) < CHANGING * whole:
+            continue  # a steady turn: what changes is slip
+        left = target - design @ np.linalg.lstsq(design, target, rcond=None)[0]
+        share = 1 - float(np.sum(left**2) / max(np.sum(target**2), 1e-300))
+        if share < ALIKE:
+            yield (
+                f"the treads explain {100 * max(share, 0.0):.0f} % of the changing turns of {name} "
+                "(slip alone leaves more on most terrain)"
+            )
+
+
+def _squared(evidence: Evidence, way_m: FloatArray, motion: Motion) -> FloatArray:
+    """Travel (K,) weighted by its speed, as a share of the ordinary fastest."""
+    fastest_m = np.maximum(motion.lasts_s * evidence.fastest_m_s, 1e-9)
+    return np.asarray(way_m * np.abs(way_m) / fastest_m)
+
+
+def _explains(plain: Relation, bent: Relation, place: int) -> bool:
+    left = 1 - bent.explained
+    return bent.certain(place, CERTAIN) and left < HALVED * (1 - plain.explained)
