@@ -16,7 +16,9 @@ def no_run_folder(folder: Path) -> Finding | None:
         return _finding(f"{folder}: there is no such folder", "The path is misspelt or was moved")
     if not folder.is_dir():
         bag = folder.suffix.lower() in BAGS
-        nothing = _finding(f"{folder}: this is a file", f"This is no run folder: {NEEDED}")
+        nothing = _finding(
+            f"{folder}: this is a file; expected a run folder", f"This is no run folder: {NEEDED}"
+        )
         return _bag(folder) if bag else nothing
     if (folder / "run.toml").exists() or (folder / "odometry.csv").exists():
         return None  # what is missing is said by the error of reading
