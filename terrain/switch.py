@@ -1,13 +1,20 @@
-"""When the terrain changes: labels of places ahead become the terrain in force."""
+"""The terrain in force: that of the labelled places on which the footprint stands."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from odometry.arrays import FloatArray
-from odometry.config import require
+from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.config import require, require_positive
 from odometry.geometry import se2
 from odometry.run import UNKNOWN
+from terrain.label_chain import carried
+from terrain.places import DRIFT, Footprint, Sight, nearest
+from terrain.settled import Settled, by_evidence, by_rows
+
+MAJORITY = 0.5  # of the footprint; a terrain with more comes into force
+KNOWN = 0.75  # a terrain in force that is less probable counts as unknown
 
 
 @dataclass(frozen=True)
@@ -17,46 +24,31 @@ class SwitchConfig:
     Attributes
     ----------
     labels_in_row : int
-        So many equal labels one after another make a change (Chen 2023: 2).
+        So many equal labels one after another make a change (Chen 2023: 2). With 0 the
+        probabilities of all labels along the way are accumulated instead.
     on_arrival : bool
-        A label counts when the robot gets to the place it was read from; otherwise at once.
+        A label counts when the footprint passes over the place it was read from; otherwise at
+        once.
+    label_accuracy : float
+        Probability that the label of a region is right; used where labels are accumulated.
+    change_m : float
+        Mean distance between changes of terrain [m]; used where labels are accumulated.
     """
 
-    labels_in_row: int = 2
+    labels_in_row: int = 0
     on_arrival: bool = True
+    label_accuracy: float = 0.9
+    change_m: float = 10.0
 
     def __post_init__(self) -> None:
         require(
-            self.labels_in_row >= 1, f"labels_in_row = {self.labels_in_row}, expected 1 or more"
+            self.labels_in_row >= 0, f"labels_in_row = {self.labels_in_row}, expected 0 or more"
         )
-
-
-@dataclass(frozen=True)
-class Sight:
-    """A label and the place that it belongs to.
-
-    Attributes
-    ----------
-    label : str
-    stamp_s : float
-        When it was seen.
-    travel_m : float
-        Wheel travel of the run when it was seen.
-    place : (2,)
-        The middle of the region in the reference frame [m]; in a `Switch`, where the label's
-        terrain begins.
-    distance_ahead_m : float
-        Wheel travel from the robot to the place when it was seen.
-    passed : bool
-        Whether the robot has been at the place since.
-    """
-
-    label: str
-    stamp_s: float
-    travel_m: float
-    place: FloatArray
-    distance_ahead_m: float
-    passed: bool = False
+        require(
+            0 < self.label_accuracy < 1,
+            f"label_accuracy = {self.label_accuracy}, expected between 0 and 1",
+        )
+        require_positive(self, "change_m")
 
 
 @dataclass(frozen=True)
@@ -82,92 +74,116 @@ class SwitchEvent:
 
 @dataclass(frozen=True)
 class Switch:
-    """The terrain in force and what lies ahead; every method gives a new one.
+    """The terrain in force and the labelled places; every method gives a new one.
 
     Attributes
     ----------
     in_force : str
-    reach_m : float
-        The robot is at a place once that is no longer ahead and no farther away than this.
+    footprint : Footprint
     config : SwitchConfig
-    last : Sight or None
-        The latest label that was not `unknown`.
-    row : tuple of Sight
-        The latest equal labels.
-    waiting : tuple of Sight
-        Changes ahead, in the order in which they were seen.
+    before : str
+        The terrain before the first of `sights`; by default `in_force`.
+    sights : tuple of Sight
+        In the order in which they were seen, as far back as the odometer knows where.
+    settled : Settled or None
+        The terrain at the place of each sight.
+    shares : Mapping of str to float
+        Of the terrains under the footprint, `unknown` among them; they add up to 1.
+    probability : float
+        That the terrain in force is the one under the middle of the footprint.
     event : SwitchEvent or None
         What the latest call of `at` brought into force.
     """
 
     in_force: str
-    reach_m: float
+    footprint: Footprint
     config: SwitchConfig = SwitchConfig()
-    last: Sight | None = None
-    row: tuple[Sight, ...] = ()
-    waiting: tuple[Sight, ...] = ()
+    before: str = ""
+    sights: tuple[Sight, ...] = ()
+    settled: Settled | None = None
+    shares: Mapping[str, float] = field(default_factory=dict)
+    probability: float = 1.0
     event: SwitchEvent | None = None
 
     @property
-    def ahead(self) -> str:
-        """The terrain after the last change that is known to lie ahead."""
-        return self.waiting[-1].label if self.waiting else self.in_force
+    def terrain(self) -> str:
+        """The terrain in force, or `unknown` where for long nothing has supported it."""
+        return self.in_force if self.probability >= KNOWN else UNKNOWN
 
     def see(self, sight: Sight) -> "Switch":
-        """Take in a label; `unknown` breaks a row and never switches."""
-        if sight.label == UNKNOWN:
-            return replace(self, row=())
-        same = self.row and self.row[-1].label == sight.label
-        row = (*self.row, sight) if same else (self._from_edge(sight),)
-        row = row[-self.config.labels_in_row :]
-        seen = replace(self, last=sight, row=row)
-        if len(row) < self.config.labels_in_row or sight.label == self.ahead:
-            return seen
-        return replace(seen, waiting=(*self.waiting, row[0]))
-
-    def _from_edge(self, sight: Sight) -> Sight:
-        """Move a first label half-way to the last place of another: the edge lies between them."""
-        if self.last is None or self.last.label == sight.label:
-            return sight
-        edge = (self.last.place + sight.place) / 2
-        if np.hypot(*(edge - sight.place)) > self.reach_m / 2:
-            return sight
-        return replace(sight, place=edge)
+        """Take in a label, and settle anew what lies at each place."""
+        oldest_m = sight.travel_m - self.footprint.radius_m / DRIFT
+        kept = tuple(known for known in self.sights if known.travel_m >= oldest_m)
+        before = self._before(oldest_m)
+        sights = (*kept, sight)
+        return replace(self, before=before, sights=sights, settled=self._settle(sights, before))
 
     def at(self, stamp_s: float, pose: FloatArray, travel_m: float) -> "Switch":
-        """Bring into force the last change that the robot has got to, and forget missed ones."""
-        row = self._followed(self.row, pose, travel_m)
-        waiting = self._followed(self.waiting, pose, travel_m)
-        reached = [
-            place
-            for place, sight in enumerate(waiting)
-            if sight.passed or not self.config.on_arrival
-        ]
-        if not reached:
-            return replace(self, row=row, waiting=waiting, event=None)
-        sight, waiting = waiting[reached[-1]], waiting[reached[-1] + 1 :]
-        if sight.label == self.in_force:
-            return replace(self, row=row, waiting=waiting, event=None)
+        """The switch with the robot at a pose (3,) of the odometry frame."""
+        if self.settled is None or not self.settled.sights:
+            return replace(self, shares={self.in_force: 1.0}, event=None)
+        points = se2.transform(pose, np.vstack([np.zeros(2), self.footprint.points]))
+        place, apart_m = self._under(self.settled, points, travel_m)
+        beliefs = carried(
+            self.settled.beliefs[place], np.exp(-apart_m / self.config.change_m)[:, None]
+        )
+        reached = apart_m <= self.footprint.radius_m
+        shares = self._shares(self.settled, beliefs[1:], reached[1:])
+        now = replace(
+            self,
+            shares=shares,
+            probability=self.settled.probability(beliefs[0], self.in_force),
+            event=None,
+        )
+        terrain = max(shares, key=lambda name: shares[name])
+        if not reached[0] or terrain in (self.in_force, UNKNOWN) or shares[terrain] <= MAJORITY:
+            return now
+        sight = self.settled.first_sight(int(place[0]), terrain)
         event = SwitchEvent(
-            sight.label, stamp_s, sight, stamp_s - sight.stamp_s, travel_m - sight.travel_m
+            terrain, stamp_s, sight, stamp_s - sight.stamp_s, travel_m - sight.travel_m
         )
-        return replace(self, in_force=sight.label, row=row, waiting=waiting, event=event)
-
-    def _followed(
-        self, sights: tuple[Sight, ...], pose: FloatArray, travel_m: float
-    ) -> tuple[Sight, ...]:
-        """The sights, marked where the robot is now, without those that it missed."""
-        marked = (
-            replace(sight, passed=True) if self._is_there(sight, pose) else sight
-            for sight in sights
+        return replace(
+            now,
+            in_force=terrain,
+            probability=self.settled.probability(beliefs[0], terrain),
+            event=event,
         )
-        return tuple(s for s in marked if s.passed or not _is_missed(s, travel_m, self.reach_m))
 
-    def _is_there(self, sight: Sight, pose: FloatArray) -> bool:
-        ahead, aside = se2.transform(se2.inverse(pose), sight.place)
-        return bool(ahead <= 0 and np.hypot(ahead, aside) <= self.reach_m)
+    def _shares(
+        self, settled: Settled, beliefs: FloatArray, reached: BoolArray
+    ) -> dict[str, float]:
+        """Of the terrains at points of beliefs (m, k + 1); the one in force where not reached."""
+        counts = np.bincount(settled.probable(beliefs[reached]), minlength=len(settled.names))
+        shares = dict(zip(settled.names, (counts / len(beliefs)).tolist(), strict=True))
+        rest = float(1 - reached.mean())
+        shares[self.in_force] = shares.get(self.in_force, 0.0) + rest
+        return {name: share for name, share in shares.items() if share > 0}
 
+    def _under(
+        self, settled: Settled, points: FloatArray, travel_m: float
+    ) -> tuple[IntArray, FloatArray]:
+        """The place at each point (m, 2) and its distance [m]; or the last, if at once."""
+        if not self.config.on_arrival:
+            return np.full(len(points), len(settled.sights) - 1), np.zeros(len(points))
+        return nearest(points, settled.places, travel_m - settled.travel_m)
 
-def _is_missed(sight: Sight, travel_m: float, reach_m: float) -> bool:
-    """Whether the robot would long be at the place if it had gone there."""
-    return travel_m - sight.travel_m > 2 * sight.distance_ahead_m + reach_m
+    def _before(self, oldest_m: float) -> str:
+        """The terrain at the last of the places that are forgotten."""
+        if self.settled is None:
+            return self.before or self.in_force
+        settled = self.settled
+        forgotten = settled.probable(settled.beliefs[settled.travel_m < oldest_m])
+        names = [settled.names[code] for code in forgotten if settled.names[code] != UNKNOWN]
+        return names[-1] if names else self.before
+
+    def _settle(self, sights: tuple[Sight, ...], before: str) -> Settled:
+        c = self.config
+        if c.labels_in_row:
+            return by_rows(sights, before, c.labels_in_row)
+        return by_evidence(
+            sights,
+            before,
+            accuracy=c.label_accuracy,
+            change_m=c.change_m,
+            length_m=self.footprint.length_m,
+        )

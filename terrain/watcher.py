@@ -1,12 +1,14 @@
 """The watcher: frame and estimate in, the name of the terrain in force out."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from odometry.arrays import ByteImage, FloatArray
 from odometry.estimation.estimate import Estimate
+from odometry.estimation.transition import transition
 from odometry.frames import Frame
 from odometry.geometry import se2
 from odometry.run import UNKNOWN, Run
@@ -14,9 +16,10 @@ from terrain.camera import Camera
 from terrain.classification.classifier import Classification, TerrainClassifier
 from terrain.errors import CameraError, ImageError
 from terrain.images import read_image
+from terrain.places import Footprint, Sight
 from terrain.region import Rectangle, Region, RegionConfig, predict_region
 from terrain.suited import coarsest_m, unsuited
-from terrain.switch import Sight, Switch, SwitchConfig, SwitchEvent
+from terrain.switch import Switch, SwitchConfig, SwitchEvent
 from terrain.warp import ground_view, pixel_view
 
 
@@ -39,6 +42,8 @@ class Sighting:
         Why there is no label, or what `unknown` means here; else "".
     left, right : str
         Labels of the tread strips, where they were classified apart.
+    probabilities : Mapping of str to float
+        What the classifier gave to each terrain, where it was asked once.
     """
 
     stamp_s: float
@@ -49,6 +54,7 @@ class Sighting:
     reason: str = ""
     left: str = ""
     right: str = ""
+    probabilities: Mapping[str, float] = field(default_factory=dict)
 
 
 class TerrainWatcher:
@@ -93,23 +99,22 @@ class TerrainWatcher:
         self._camera = camera
         self.classifier = classifier
         self._region = region
-        robot = run.robot
-        size = max(robot.length or robot.track_width, robot.width or robot.track_width)
-        self._switch = Switch(initial, region.footprint_scale * size, switch)
+        footprint = Footprint.of(run.robot, region.footprint_scale)
+        self._switch = Switch(initial, footprint, switch)
+        self._pose = np.zeros(3)  # in the odometry frame
         self._travel_m = run.wheel_travel_m
 
     def terrain(self, frame: Frame, estimate: Estimate) -> str:
         """Look at the frame's image, if it has one, and give the terrain in force."""
         travel_m = float(np.interp(frame.stamp_s, self._run.odometry.stamps_s, self._travel_m))
-        pose = se2.compose(
-            estimate.mean[:3], se2.exp(estimate.twist * (frame.stamp_s - estimate.stamp_s))
-        )
+        self._pose = _reckoned(self._pose, estimate, frame)
         if frame.image is not None:
             sighting = self.look(frame, estimate)
             self.sightings.append(sighting)
             if sighting.label and sighting.region is not None:
-                self._switch = self._switch.see(_sight(sighting, sighting.region, pose, travel_m))
-        self._switch = self._switch.at(frame.stamp_s, pose, travel_m)
+                sight = _sight(sighting, sighting.region, self._pose, travel_m)
+                self._switch = self._switch.see(sight)
+        self._switch = self._switch.at(frame.stamp_s, self._pose, travel_m)
         if self._switch.event is not None:
             self.events.append(self._switch.event)
         if frame.image is not None:
@@ -180,13 +185,36 @@ class TerrainWatcher:
 
 def _sighting(stamp_s: float, name: str, region: Region, answers: list[Classification]) -> Sighting:
     if len(answers) == 1:
-        return Sighting(stamp_s, name, answers[0].label, answers[0].confidence, region)
+        answer = answers[0]
+        return Sighting(
+            stamp_s,
+            name,
+            answer.label,
+            answer.confidence,
+            region,
+            probabilities=answer.probabilities,
+        )
     left, right = (answer.label for answer in answers)
     confidence = min(answer.confidence for answer in answers)
     if left == right:
         return Sighting(stamp_s, name, left, confidence, region, "", left, right)
     reason = f"astride: {left} on the left, {right} on the right"
     return Sighting(stamp_s, name, UNKNOWN, confidence, region, reason, left, right)
+
+
+def _reckoned(pose: FloatArray, estimate: Estimate, frame: Frame) -> FloatArray:
+    """A pose (3,) of the odometry frame carried from an estimate to the frame after it."""
+    if not np.all(np.isfinite(estimate.tread_speeds_m_s)):
+        return pose
+    state, _ = transition(
+        np.concatenate([pose, estimate.mean[3:]]),
+        estimate.tread_speeds_m_s,
+        frame.stamp_s - estimate.stamp_s,
+        yaw_rate_rad_s=frame.yaw_rate_rad_s,
+        added_speeds=estimate.added_speeds_m_s,
+        added_twist=estimate.added_twist,
+    )
+    return state[:3]
 
 
 def _sight(sighting: Sighting, region: Region, pose: FloatArray, travel_m: float) -> Sight:
@@ -196,4 +224,5 @@ def _sight(sighting: Sighting, region: Region, pose: FloatArray, travel_m: float
         travel_m,
         se2.transform(pose, region.place),
         region.distance_ahead_m,
+        sighting.probabilities,
     )

@@ -8,7 +8,8 @@ import pytest
 
 from odometry.run import Robot, Run
 from odometry.table import Table
-from terrain.switch import Sight, SwitchEvent
+from terrain.places import Sight
+from terrain.switch import SwitchEvent
 from terrain.switch_delay import SwitchDelay, switch_delays, true_changes, true_stretches
 
 STAMPS_S = np.arange(0.0, 20.5, 0.5)

@@ -73,22 +73,25 @@ def watch(tmp_path, world):
     return make
 
 
-def estimate_at(frame, before_s=0.0, icrs=(0.15, -0.15, 0.0), speeds=(0.5, 0.5)):
-    """Belief of a robot that drives along x at 0.5 m/s, so many seconds before a frame."""
-    stamp_s = frame.stamp_s - before_s
+def estimate_at(frame, icrs=(0.15, -0.15, 0.0), speeds=(0.5, 0.5), pose=(0.0, 0.0, 0.0)):
+    """Belief at a frame of a robot that drives straight on at 0.5 m/s."""
     return Estimate(
-        stamp_s,
-        np.array([0.5 * stamp_s, 0.0, 0.0, *icrs, 0.0, 1.0, 1.0]),
+        frame.stamp_s,
+        np.array([*pose, *icrs, 0.0, 1.0, 1.0]),
         1e-6 * np.eye(9),
         np.array(speeds),
         "mud",
     )
 
 
-def drive(watched, before_s=0.0):
-    """Terrain in force at each frame."""
-    frames = [frame for frame in watched.run.frames() if frame.stamp_s >= before_s]
-    return [watched.watcher.terrain(frame, estimate_at(frame, before_s)) for frame in frames]
+def drive(watched, corrected=lambda stamp_s: (0.5 * stamp_s, 0.0, 0.0)):
+    """Terrain in force at each frame; the estimate that goes in is that of the frame before."""
+    frames = list(watched.run.frames())
+    estimates = [estimate_at(frame, pose=corrected(frame.stamp_s)) for frame in frames]
+    return [
+        watched.watcher.terrain(frame, estimate)
+        for frame, estimate in zip(frames, estimates[:1] + estimates, strict=False)
+    ]
 
 
 def test_every_image_has_a_sighting_and_the_terrain_after_it(watch):
@@ -99,22 +102,27 @@ def test_every_image_has_a_sighting_and_the_terrain_after_it(watch):
     assert [s.image for s in sightings] == [f"{k}.png" for k in range(5)]
     assert [s.confidence for s in sightings] == [0.7, 0.9, 0.9, 0.9, 0.9]
     assert [s.stamp_s for s in sightings] == [0.4, 1.4, 2.4, 3.4, 4.4]
-    # seen at 1.4 s, that is at 0.7 m, some 0.57 m ahead: reached at 1.27 m, that is at 2.54 s
-    assert watched.watcher.in_force == ["mud", "mud", "mud", "snow", "snow"]
+    # places at 0.77 m and 1.27 m: the edge between them, at 1.02 m, is passed at 2.04 s
+    assert watched.watcher.in_force == ["mud", "mud", "snow", "snow", "snow"]
 
 
-@pytest.mark.parametrize("before_s", [0.0, 0.4])
-def test_the_place_counts_from_the_robot_at_the_time_of_the_image(watch, before_s):
-    """The estimate is that of the last frame, which may lie well before the image."""
+def jumps_about(stamp_s):
+    """Poses as a bad receiver corrects them: off by metres, another way every second."""
+    return (0.5 * stamp_s + 40.0 * (int(stamp_s) % 2), -7.0 * int(stamp_s), 2.0 * int(stamp_s))
+
+
+@pytest.mark.parametrize("corrected", [lambda stamp_s: (0.5 * stamp_s, 0.0, 0.0), jumps_about])
+def test_the_place_counts_along_the_driven_path(watch, corrected):
+    """The estimate is that of the frame before, and what corrects its pose moves no place."""
     watched = watch([DARK, BRIGHT, BRIGHT, BRIGHT, BRIGHT])
-    drive(watched, before_s)
+    drive(watched, corrected)
     (event,) = watched.watcher.events
     assert event.sight.place == pytest.approx(
         [0.5 * event.sight.stamp_s + event.sight.distance_ahead_m, 0.0], abs=1e-9
     )
-    assert event.stamp_s == 3.0  # the first frame after 2.54 s
-    assert event.waited_s == pytest.approx(3.0 - 1.4)
-    assert event.waited_m == pytest.approx(0.5 * (3.0 - 1.4))
+    assert event.stamp_s == 2.4  # the second label, a little after the edge
+    assert event.waited_s == pytest.approx(2.4 - 1.4)
+    assert event.waited_m == pytest.approx(0.5 * (2.4 - 1.4))
 
 
 def test_the_region_follows_the_speeds_commanded_from_the_image_on(watch):

@@ -1,0 +1,96 @@
+"""Places ahead and behind that were labelled, and which of them the robot stands on."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+
+from odometry.arrays import FloatArray, IntArray
+from odometry.run import Robot
+
+DRIFT = 0.03  # metres per metre: an odometer is about so far off a place that it saw
+
+
+@dataclass(frozen=True)
+class Sight:
+    """A label and the place that it belongs to.
+
+    Attributes
+    ----------
+    label : str
+    stamp_s : float
+        When it was seen.
+    travel_m : float
+        Wheel travel of the run when it was seen.
+    place : (2,)
+        The middle of the region in the odometry frame: poses that are integrated from twists
+        and that no measured pose corrects, so that places do not move under the robot [m].
+    distance_ahead_m : float
+        Wheel travel from the robot to the place when it was seen.
+    probabilities : Mapping of str to float
+        What the classifier gave to each terrain; empty where only the label is known.
+    """
+
+    label: str
+    stamp_s: float
+    travel_m: float
+    place: FloatArray
+    distance_ahead_m: float
+    probabilities: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Footprint:
+    """The rectangle on which the robot stands, enlarged as its regions are.
+
+    Attributes
+    ----------
+    length_m, width_m : float
+    """
+
+    length_m: float
+    width_m: float
+
+    @classmethod
+    def of(cls, robot: Robot, scale: float) -> Self:
+        """That of a robot, enlarged; length and width default to the track width."""
+        return cls(
+            scale * (robot.length or robot.track_width), scale * (robot.width or robot.track_width)
+        )
+
+    @property
+    def radius_m(self) -> float:
+        """From its middle to a corner. A place no farther away is reached."""
+        return float(np.hypot(self.length_m, self.width_m)) / 2
+
+    @cached_property
+    def points(self) -> FloatArray:
+        """Points (45, 2) spread evenly over it, in the robot frame."""
+        along = (np.arange(9) - 4) / 9 * self.length_m
+        across = (np.arange(5) - 2) / 5 * self.width_m
+        return np.stack(np.meshgrid(along, across), axis=-1).reshape(-1, 2)
+
+
+def nearest(
+    points: FloatArray, places: FloatArray, since_m: FloatArray
+) -> tuple[IntArray, FloatArray]:
+    """The place nearest to each point, older places counting as farther away.
+
+    Parameters
+    ----------
+    points : (m, 2)
+    places : (n, 2), n at least 1
+    since_m : (n,)
+        Wheel travel since each place was seen.
+
+    Returns
+    -------
+    (m,), (m,)
+        Index of the place, and the distance with what the odometer drifted since [m].
+    """
+    x, y = (points[:, None, axis] - places[:, axis] for axis in (0, 1))
+    apart = np.hypot(x, y) + DRIFT * since_m
+    index = apart.argmin(axis=1)
+    return index, apart[np.arange(len(points)), index]

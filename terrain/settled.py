@@ -1,0 +1,112 @@
+"""The terrain at every labelled place, by all labels: by rows of equal ones, or by evidence."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from odometry.arrays import FloatArray, IntArray
+from odometry.run import UNKNOWN
+from terrain.label_chain import likelihoods, smoothed
+from terrain.label_rows import settled_by_rows
+from terrain.places import Sight
+
+APART = 0.75  # of a region's length; chosen with simulated labels whose errors last 0.15 to 0.3 m
+LEAST = 0.5  # a terrain less probable than this is not known
+
+
+@dataclass(frozen=True, eq=False)
+class Settled:
+    """What is believed of the labelled places.
+
+    Attributes
+    ----------
+    sights : tuple of Sight, length n
+        Those whose label is a terrain, in the order in which they were seen.
+    names : tuple of str, length k + 1
+        The known terrains, and `unknown` for one that is none of them.
+    beliefs : (n, k + 1)
+        Probability of each terrain at each place.
+    places : (n, 2)
+    travel_m : (n,)
+        Wheel travel at which each place was seen.
+    """
+
+    sights: tuple[Sight, ...]
+    names: tuple[str, ...]
+    beliefs: FloatArray
+    places: FloatArray
+    travel_m: FloatArray
+
+    @classmethod
+    def of(cls, sights: tuple[Sight, ...], names: tuple[str, ...], beliefs: FloatArray) -> Self:
+        """With the places of the sights."""
+        places = np.array([sight.place for sight in sights]).reshape(-1, 2)
+        return cls(sights, names, beliefs, places, np.array([s.travel_m for s in sights]))
+
+    def probable(self, beliefs: FloatArray) -> IntArray:
+        """Columns (m,) of the terrains that beliefs (m, k + 1) make probable; else the last."""
+        return np.where(beliefs.max(axis=1) > LEAST, beliefs.argmax(axis=1), len(self.names) - 1)
+
+    def probability(self, belief: FloatArray, terrain: str) -> float:
+        """Of a terrain in a belief (k + 1,)."""
+        return float(belief[self.names.index(terrain)]) if terrain in self.names else 0.0
+
+    def first_sight(self, place: int, terrain: str) -> Sight:
+        """The first label of a terrain from the edge of that terrain on which a place lies."""
+        same = self.probable(self.beliefs[: place + 1]) == self.names.index(terrain)
+        first = int(np.flatnonzero(~same).max(initial=-1)) + 1
+        said = (sight for sight in self.sights[first:] if sight.label == terrain)
+        return next(said, self.sights[place])
+
+
+def by_rows(sights: Sequence[Sight], before: str, needed: int) -> Settled:
+    """Each place has the terrain of `settled_by_rows`, for certain."""
+    terrains = settled_by_rows([sight.label for sight in sights], before, needed)
+    labelled = [place for place, sight in enumerate(sights) if sight.label != UNKNOWN]
+    names = _names(sights, before)
+    beliefs = np.zeros((len(labelled), len(names)))
+    for row, place in zip(beliefs, labelled, strict=True):
+        row[names.index(terrains[place])] = 1.0
+    return Settled.of(tuple(sights[place] for place in labelled), names, beliefs)
+
+
+def by_evidence(
+    sights: Sequence[Sight], before: str, *, accuracy: float, change_m: float, length_m: float
+) -> Settled:
+    """Each place has the probabilities of a chain along the places; `unknown` is no evidence.
+
+    Parameters
+    ----------
+    sights : sequence of Sight
+    before : str
+        The terrain where the first of these was seen from.
+    accuracy, change_m : float
+        See `label_chain`.
+    length_m : float
+        Of a region. Places nearer to one another than APART of it show the same ground: then
+        their labels say less than they would alone, in proportion to the distance.
+    """
+    labelled = tuple(sight for sight in sights if sight.label != UNKNOWN)
+    names = _names(sights, before)
+    if not labelled:
+        return Settled.of((), names, np.empty((0, len(names))))
+    places = np.array([sight.place for sight in labelled])
+    between_m = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    likelihood = likelihoods(
+        [sight.label for sight in labelled],
+        [sight.probabilities for sight in labelled],
+        names[:-1],
+        accuracy,
+    )
+    likelihood[1:] **= np.minimum(1.0, between_m / (APART * length_m))[:, None]
+    prior = np.eye(len(names))[names.index(before)]
+    steps_m = np.concatenate([[labelled[0].distance_ahead_m], between_m])
+    return Settled.of(labelled, names, smoothed(likelihood, steps_m, prior, change_m))
+
+
+def _names(sights: Sequence[Sight], before: str) -> tuple[str, ...]:
+    seen = [name for sight in sights for name in (sight.label, *sight.probabilities)]
+    known = [name for name in dict.fromkeys([before, *seen]) if name != UNKNOWN]
+    return (*known, UNKNOWN)
