@@ -138,6 +138,10 @@ class Effect(ABC):
         """Effects that do exactly the same at these values, and what would tell them apart."""
         return {}
 
+    def is_meant(self, values: FloatArray) -> bool:  # noqa: ARG002 - of the face
+        """Whether values (P,) describe what the name says, where a search may leave that."""
+        return True
+
     def pack(self, values: Mapping[str, float], where: str) -> FloatArray:
         """Values by name as an array (P,).
 

@@ -1,5 +1,7 @@
 """Traction that is lost from some moment on."""
 
+from math import inf
+
 import numpy as np
 
 from odometry.arrays import FloatArray
@@ -19,8 +21,12 @@ class TractionLoss(MotionEffect):
     looks_like = "a model that fits up to some moment, and is off by one share after it"
     needs = "tread speeds and a measured pose, before and after the moment"
 
-    def __init__(self, longest_s: float = 1e4) -> None:
+    def __init__(
+        self, longest_s: float = 1e4, observed_s: tuple[float, float] = (-inf, inf)
+    ) -> None:
+        """A loss in runs of at most `longest_s`; moments outside of `observed_s` are none."""
         self.longest_s = longest_s
+        self.observed_s = observed_s
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
@@ -41,6 +47,11 @@ class TractionLoss(MotionEffect):
         count = int(np.clip(longest_s / SPACING_S, 1, MOST_MOMENTS))
         moments = longest_s * (np.arange(count) + 0.5) / count
         return np.stack([np.ones(count), np.ones(count), moments], axis=-1)
+
+    def is_meant(self, values: FloatArray) -> bool:
+        """A moment before or after which nothing was measured is none."""
+        earliest_s, latest_s = self.observed_s
+        return bool(earliest_s <= values[2] <= latest_s)
 
     def twist(
         self,

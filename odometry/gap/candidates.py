@@ -38,7 +38,7 @@ def quick_effects(scenes: Sequence[DenseWindows], calibration: Calibration) -> t
         ActuatorLag(),
         LateralSkid(),
         Curvature(),
-        TractionLoss(longest_s),
+        TractionLoss(longest_s, _observed_s(scenes)),
         Terrain(labels),
         SlopeByIcr(robot.track_width / 2, half_length_m(robot)),
         InertiaByIndices(robot.mass or 1.0, robot.track_width),
@@ -47,6 +47,12 @@ def quick_effects(scenes: Sequence[DenseWindows], calibration: Calibration) -> t
         HeadingOffset(),
     )
     return tuple(e for e in every if told_by(e, scenes, calibration))
+
+
+def _observed_s(scenes: Sequence[DenseWindows]) -> tuple[float, float]:
+    """Moments before the first of which no window ends, and after the last none begins."""
+    ends_s = [scene.pose_s[scene.windows[:, -1]].min() for scene in scenes]
+    return float(min(ends_s)), float(max(scene.start_s.max() for scene in scenes))
 
 
 def contact_effects(scenes: Sequence[DenseWindows], calibration: Calibration) -> tuple[Effect, ...]:

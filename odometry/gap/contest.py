@@ -12,6 +12,7 @@ from odometry.gap.config import GapConfig
 from odometry.gap.fit import Fitted, Fitter
 from odometry.gap.statistic import gap_of
 
+DIGITS = 6  # of evidence: what differs by less is a tie
 SURE = 3.0  # standard deviations from doing nothing
 
 
@@ -66,12 +67,17 @@ def ranked(
     """Fits of one effect more, most evidence first.
 
     Log-likelihoods are divided by what chi-squared a degree of freedom the best of all leaves
-    (at least 1): where nothing explains all, less is believed.
+    (at least 1): where nothing explains all, less is believed. Where evidence is equal but for
+    rounding, more at its lower bound goes first, then fewer parameters.
     """
     rows = len(fitter.measured.window_of_row)
     spread = max(1.0, min(fit.held_out.sum() for fit in [before, *fits]) / rows)
     judged = [_judged(fitter, before, fit, spread, config) for fit in fits]
-    return sorted(judged, key=lambda one: -one.evidence)
+    return sorted(judged, key=_order)
+
+
+def _order(one: Judged) -> tuple[float, float, int]:
+    return -round(one.evidence, DIGITS), -round(one.least, DIGITS), one.fitted.freedom
 
 
 def _judged(
@@ -114,9 +120,12 @@ def is_there(fit: Fitted) -> bool:
     """Whether the last effect of a fit is more than an effect that does nothing.
 
     Its parameters are tested together (Wald), those that shape it held: each alone may be
-    uncertain where only a product of them is known.
+    uncertain where only a product of them is known. Values that are not what its name says (a
+    moment with nothing before it) are no such effect.
     """
     added = fit.effects[-1]
+    if not added.effect.is_meant(added.values):
+        return False
     absent = [parameter.absent for parameter in added.effect.parameters]
     known = np.array([value is not None for value in absent])
     if not known.any():

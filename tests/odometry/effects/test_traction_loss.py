@@ -35,3 +35,12 @@ def test_searches_begin_all_over_the_run(bench):
     np.testing.assert_array_equal(starts[:, :2], 1)
     np.testing.assert_allclose(np.diff(starts[:, 2]), SPACING_S, rtol=0.02)
     assert TractionLoss().lacks(Inputs(np.zeros((3, 2))), None) == "stamps"
+
+
+@pytest.mark.parametrize(
+    ("moment", "meant"), [(0.0, False), (2.0, True), (60.0, True), (158.0, True), (158.1, False)]
+)
+def test_a_moment_with_nothing_before_or_after_it_is_none(moment, meant):
+    values = np.array([0.7, 0.4, moment])
+    assert TractionLoss(160.0, (2.0, 158.0)).is_meant(values) == meant
+    assert TractionLoss().is_meant(values)  # of a parameter set: nothing is known of the runs

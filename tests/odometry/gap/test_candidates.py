@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.effects.residual import ANGLES, COMPONENTS, HARMONICS, variables_of
-from odometry.gap.candidates import KNOTS, of_angles, of_variables
+from odometry.gap.candidates import KNOTS, of_angles, of_variables, quick_effects
 
 
 @pytest.fixture(scope="module")
@@ -50,3 +50,12 @@ def test_what_does_not_vary_is_left_out(scenes, share):
     names = {one.variable for one in of_variables([replace(scenes[0], inputs=level)])}
     assert names
     assert not names & {"roll", "pitch"}
+
+
+def test_a_moment_lies_after_one_window_and_before_another(scenes, known):
+    """Of any run: 60 s are the shorter one."""
+    (loss,) = [e for e in quick_effects(scenes, known) if e.name == "traction_loss"]
+    spans_s = [scene.pose_s[window[[0, -1]]] for scene in scenes for window in scene.windows]
+    assert loss.observed_s == (min(end for _, end in spans_s), max(start for start, _ in spans_s))
+    assert not loss.is_meant(np.array([0.8, 0.8, 1.5]))
+    assert loss.is_meant(np.array([0.8, 0.8, 100.0]))

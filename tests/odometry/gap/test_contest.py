@@ -10,6 +10,7 @@ from odometry.effects.base import Base
 from odometry.effects.corrected import Added
 from odometry.effects.heading_offset import HeadingOffset
 from odometry.effects.slope_icr import SlopeByIcr
+from odometry.effects.traction_loss import TractionLoss
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import is_there, penalty, ranked
 from odometry.gap.fit import Fitted, Fitter
@@ -100,3 +101,42 @@ def test_an_effect_known_only_as_a_product_is_there():
 def test_an_effect_within_its_uncertainty_of_none_is_not_there():
     assert not is_there(fitted(HeadingOffset(), [-0.0014], np.array([[1e-6]])))
     assert is_there(fitted(HeadingOffset(), [-0.0014], np.array([[1e-8]])))
+
+
+@pytest.mark.parametrize(("moment", "there"), [(0.4, False), (2.1, True), (159.9, False)])
+def test_a_loss_from_a_moment_at_an_end_of_the_runs_is_not_there(moment, there):
+    """However sure its shares are."""
+    loss = TractionLoss(160.0, (2.0, 158.0))
+    assert is_there(fitted(loss, [0.8, 0.7, moment], np.eye(3) * 1e-6)) == there
+
+
+def test_of_equal_evidence_the_surer_goes_first_then_the_simpler(fitter):
+    """Whatever the order in which they were tried, and whatever rounding adds."""
+    before = fitter.fit([])
+    _, piece = np.unique(fitter.measured.pieces, return_inverse=True)
+    counts = np.bincount(piece)
+    even = np.full(len(counts), 40.0)
+    uneven = even + np.array([30.0, -30.0, *np.zeros(len(counts) - 2)])
+    surer, less_sure = (
+        replace(
+            before,
+            effects=(Added(HeadingOffset(), np.zeros(1)),),
+            held_out=before.held_out - (gains / counts)[piece],
+        )
+        for gains in (even, uneven * (1 + 1e-15))
+    )
+    for order in ([surer, less_sure], [less_sure, surer]):
+        first, second = ranked(fitter, before, order, CONFIG)
+        assert first.evidence == pytest.approx(second.evidence, abs=1e-7)
+        assert first.fitted is surer
+
+
+def test_of_equal_evidence_and_sureness_fewer_parameters_go_first(fitter, monkeypatch):
+    before = fitter.fit([])
+    monkeypatch.setattr("odometry.gap.contest.penalty", lambda *_: 0.0)
+    few, many = (
+        replace(before, effects=(Added(effect, np.zeros(count)),))
+        for effect, count in ((HeadingOffset(), 1), (SlopeByIcr(), 3))
+    )
+    for order in ([few, many], [many, few]):
+        assert ranked(fitter, before, order, CONFIG)[0].fitted is few

@@ -64,3 +64,13 @@ def test_a_name_that_closes_most_of_the_gap_stands_beside_jolts(study):
     assert found.names[0] == "wheel_scale"
     assert not found.unexplained
     np.testing.assert_allclose(found.fitted.effects[0].values, 0.6, atol=0.03)
+
+
+def test_a_scale_from_the_start_is_no_loss_from_a_moment(make_scene, known):
+    """`traction_loss` from 0 s has more evidence here, by 1.5 of 187,000."""
+    scene = make_scene(2, lambda columns, twist: 0.8 * twist)  # noqa: ARG005 - of the face
+    fitter = Fitter(known, measured_of([scene], known, CONFIG))
+    floor = floor_of(known.held_back, CONFIG.part_s)
+    found = explained(fitter, floor, CONFIG, lambda: None)
+    assert found.names == ("wheel_scale",)
+    np.testing.assert_allclose(found.fitted.effects[0].values, 0.8, atol=0.01)
