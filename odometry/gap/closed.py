@@ -11,11 +11,15 @@ from odometry.gap.statistic import SEED, drawn_gaps, squared_errors
 
 @dataclass(frozen=True)
 class Share:
-    """Of the excess above the noise floor that is closed, with a 95 % interval; 1 is all."""
+    """Of the excess above the noise floor that is closed, with a 95 % interval; 1 is all.
+
+    `pieces` is the number of held-out stretches; of one alone there is no interval.
+    """
 
     value: float
     low: float
     high: float
+    pieces: int
 
 
 def held_out_share(result: GapResult, part_s: float = GapConfig.part_s) -> Share | None:
@@ -38,4 +42,4 @@ def held_out_share(result: GapResult, part_s: float = GapConfig.part_s) -> Share
     if np.quantile(excess, 0.025) <= 0:
         return None
     low, high = np.quantile((gaps[0] - gaps[1]) / excess, [0.025, 0.975])
-    return Share(result.holdout.share_closed, float(low), float(high))
+    return Share(result.holdout.share_closed, float(low), float(high), result.holdout.before.pieces)

@@ -13,6 +13,7 @@ from odometry.effects.terrain import SHIFTED, Terrain
 from odometry.effects.time_offset import TimeOffset
 from odometry.gap.locate import Region
 from odometry.gap.result import Closing, GapResult, NamedEffect
+from odometry.gap.statistic import Gap
 from odometry.io.files import atomic_write
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN
@@ -146,11 +147,17 @@ def _closing(closing: Closing, horizon_s: float) -> dict[str, Any]:
         "before": closing.before.value,
         "after": closing.after.value,
         "noise_floor": closing.noise_floor.value,
-        "before_interval": [closing.before.low, closing.before.high],
-        "after_interval": [closing.after.low, closing.after.high],
+        "before_interval": _ends(closing.before),
+        "after_interval": _ends(closing.after),
+        "stretches": closing.before.pieces,
         "share_closed": _finite(closing.share_closed),
         "unit": f"m, RMS position error over {horizon_s:g} s windows",
     }
+
+
+def _ends(gap: Gap) -> list[float] | None:
+    """A 95 % interval, None where there is one stretch."""
+    return [gap.low, gap.high] if gap.has_interval else None
 
 
 def _finite(value: float) -> float | None:

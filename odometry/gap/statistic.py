@@ -16,15 +16,35 @@ from odometry.windows.dense_noise import end_variance
 
 RESAMPLES = 1000
 SEED = 0
+MANY = 5  # pieces; of fewer even the largest and the least value hold less than 95 %
 
 
 @dataclass(frozen=True)
 class Gap:
-    """Root mean square [m] with a 95 % interval."""
+    """Root mean square [m] with a 95 % interval.
+
+    Attributes
+    ----------
+    value : float
+    low, high : float
+        Both are the value where `pieces` is one: there is no interval then.
+    pieces : int
+        Stretches of the runs from whose spread the interval comes.
+    """
 
     value: float
     low: float
     high: float
+    pieces: int = MANY
+
+    @property
+    def has_interval(self) -> bool:
+        """Whether there is more than one stretch."""
+        return self.pieces > 1
+
+    def is_above(self, floor: "Gap") -> bool:
+        """Whether the floor lies below the whole interval; never without one."""
+        return self.has_interval and self.low > floor.value
 
 
 def squared_errors(base: Base, effects: Sequence[Added], scene: DenseWindows) -> FloatArray:
@@ -49,7 +69,7 @@ def floor_there(floor: Gap, calibration: Calibration, scenes: Sequence[DenseWind
     """The noise floor as it would be on other runs: faster ones wander further in a window."""
     here = _mean_variance([scene for _, scene in calibration.held_back], calibration)
     ratio = float(np.sqrt(_mean_variance(scenes, calibration) / here))
-    return Gap(ratio * floor.value, ratio * floor.low, ratio * floor.high)
+    return Gap(ratio * floor.value, ratio * floor.low, ratio * floor.high, floor.pieces)
 
 
 def _mean_variance(scenes: Sequence[DenseWindows], calibration: Calibration) -> float:
@@ -63,7 +83,8 @@ def _pooled(errors: Sequence[tuple[FloatArray, DenseWindows]], part_s: float) ->
     scenes, rng = [scene for _, scene in errors], np.random.default_rng(SEED)
     (drawn,) = drawn_gaps((squares,), scenes, part_s, rng)
     low, high = np.quantile(drawn, [0.025, 0.975])
-    return Gap(float(np.sqrt(squares.mean())), float(low), float(high))
+    pieces = len(np.unique(numbered_pieces(scenes, part_s)))
+    return Gap(float(np.sqrt(squares.mean())), float(low), float(high), pieces)
 
 
 def drawn_gaps(

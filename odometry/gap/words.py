@@ -6,7 +6,7 @@ from odometry.effects.residual import Residual
 from odometry.gap.closed import Share, held_out_share
 from odometry.gap.region_words import EVERYWHERE, noun_of
 from odometry.gap.result import GapResult, NamedEffect
-from odometry.gap.statistic import Gap
+from odometry.gap.statistic import MANY, Gap
 
 REGIONS, VARIABLES = 2, 4  # said of them all
 SHORT = 4  # parameters that are said one by one
@@ -34,13 +34,20 @@ def metres(value: float) -> str:
 
 
 def with_interval(gap: Gap) -> str:
-    """A gap and its 95 % interval."""
-    return f"{gap.value:.3g} m ({gap.low:.3g} to {gap.high:.3g})"
+    """A gap and its 95 % interval, and from how many stretches that comes where they are few."""
+    return f"{gap.value:.3g} m ({_interval(f'{gap.low:.3g} to {gap.high:.3g}', gap.pieces)})"
 
 
 def percent(share: Share) -> str:
-    """A share and its 95 % interval."""
-    return f"{100 * share.value:.0f} % ({100 * share.low:.0f} to {100 * share.high:.0f})"
+    """A share and its 95 % interval, as `with_interval` says it."""
+    interval = f"{100 * share.low:.0f} to {100 * share.high:.0f}"
+    return f"{100 * share.value:.0f} % ({_interval(interval, share.pieces)})"
+
+
+def _interval(words: str, pieces: int) -> str:
+    if pieces < 2:
+        return "no interval can be told from one stretch"
+    return words if pieces >= MANY else f"{words}, from {pieces} stretches alone"
 
 
 def effect_words(effect: NamedEffect) -> str:
@@ -58,7 +65,12 @@ def _verdict(result: GapResult, share: Share | None) -> str:
                 f"Something is missing in {model} that neither an effect of the catalogue nor a "
                 "smooth function of what was recorded explains with enough evidence."
             )
-        if _above_floor(result.measured.before, result.measured.noise_floor):
+        if not result.measured.before.has_interval:
+            return (
+                f"Whether something is missing in {model} cannot be told: the measured windows "
+                "are one stretch, of which the gap has no interval."
+            )
+        if result.measured.before.is_above(result.measured.noise_floor):
             return (
                 f"Nothing that these runs could show is missing in {model} with enough evidence, "
                 "but the gap is above the noise floor."
@@ -162,13 +174,8 @@ def _left(result: GapResult, share: Share | None) -> Iterator[str]:
         yield f"{falls}; it was hardly above the noise floor before, so that no share is stated."
     else:
         yield f"{falls}: {percent(share)} of its excess above the noise floor is closed."
-    if not _above_floor(held.after, held.noise_floor):
+    if not held.after.is_above(held.noise_floor):
         yield "What is left cannot be told from noise."
     else:
         left = held.after.value - held.noise_floor.value
         yield f"Left unexplained: {metres(left)} above the noise floor."
-
-
-def _above_floor(gap: Gap, floor: Gap) -> bool:
-    """Whether their intervals do not overlap, or the floor lies below all of the gap's."""
-    return gap.low > floor.value

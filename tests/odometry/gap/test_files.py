@@ -107,11 +107,17 @@ def test_a_remaining_part_is_an_unknown_residual_with_what_it_depends_on(unknown
 
 
 def test_what_is_not_finite_is_null(none_result, tmp_path):
-    level = Gap(0.02, 0.02, 0.02)
+    level = Gap(0.02, 0.02, 0.02, pieces=1)
     closing = replace(none_result.holdout, before=level, after=level, noise_floor=level)
     rivals = (Rival("wheel_scale", "factors", float("-inf"), float("nan")),)
     found = content(replace(none_result, holdout=closing, rivals=rivals), tmp_path)
     assert found["holdout"]["share_closed"] is None
+    assert found["holdout"]["stretches"] == 1
+    assert found["holdout"]["before_interval"] is None
+    assert found["gap"]["before_interval"] == [
+        none_result.measured.before.low,
+        none_result.measured.before.high,
+    ]
     assert found["candidates"][0]["evidence"] is None
     assert found["candidates"][0]["gap_after"] is None
 

@@ -7,7 +7,7 @@ import pytest
 
 from odometry.gap.pieces import pieces
 from odometry.gap.simulate import simulated_poses
-from odometry.gap.statistic import drawn_gaps, floor_of, gap_of, squared_errors
+from odometry.gap.statistic import Gap, drawn_gaps, floor_of, gap_of, squared_errors
 from odometry.geometry import se2
 
 
@@ -102,3 +102,12 @@ def test_two_runs_of_one_piece_are_drawn_as_two(make_scene, rng):
     values, counts = np.unique(np.round(drawn, 12), return_counts=True)
     np.testing.assert_allclose(values, [0.0, np.sqrt(0.5), 1.0])
     np.testing.assert_allclose(counts / counts.sum(), [0.25, 0.5, 0.25], atol=0.05)
+
+
+def test_one_stretch_has_no_interval(exact, known):
+    scene = displaced(exact, np.full((len(exact) + 1) // 2, 0.3))
+    one, several = (gap_of(known.base, (), [scene], part_s) for part_s in (1000.0, 10.0))
+    floor = Gap(0.1, 0.08, 0.12)
+    assert (one.pieces, one.has_interval, one.is_above(floor)) == (1, False, False)
+    assert (several.pieces, several.has_interval, several.is_above(floor)) == (10, True, True)
+    assert not several.is_above(Gap(0.4, 0.3, 0.5))

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from odometry.gap.closed import held_out_share
+from odometry.gap.closed import Share, held_out_share
 from odometry.gap.statistic import Gap
 from odometry.gap.words import percent, sentences, with_interval
 
@@ -101,3 +101,22 @@ def test_an_effect_that_explains_nothing_closes_nothing(unknown_result):
     share = held_out_share(unknown_result)
     assert abs(share.value) < 0.05
     assert share.low < 0.05
+
+
+def test_an_interval_is_told_only_of_several_stretches():
+    for pieces, words in (
+        (1, "0.0498 m (no interval can be told from one stretch)"),
+        (3, "0.0498 m (0.04 to 0.06, from 3 stretches alone)"),
+        (5, "0.0498 m (0.04 to 0.06)"),
+    ):
+        assert with_interval(Gap(0.0498, 0.04, 0.06, pieces)) == words
+    assert percent(Share(0.9, 0.9, 0.9, 1)) == "90 % (no interval can be told from one stretch)"
+    assert percent(Share(0.9, 0.8, 1.0, 4)) == "90 % (80 to 100, from 4 stretches alone)"
+
+
+def test_one_measured_stretch_says_neither_nothing_nor_something(none_result):
+    one = Gap(0.2, 0.2, 0.2, 1)
+    measured = replace(none_result.measured, before=one, after=one)
+    first, second, *_ = sentences(replace(none_result, measured=measured))
+    assert first.startswith("Whether something is missing in icr cannot be told")
+    assert "0.2 m (no interval can be told from one stretch) on the measured runs" in second
