@@ -5,6 +5,7 @@ from typing import Any
 
 from odometry.evaluation.withheld import JUDGED_EVERY_S, SILENT_S
 from terrain.filter_summary import filter_table
+from terrain.label_confusion import label_confusion_table
 from terrain.odometer_uncertainty import uncertainty_table
 from terrain.run_result import RunResult
 from terrain.switch_delay import switch_delays
@@ -35,6 +36,7 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "switches": _switches(result),
         "missed_changes": _missed_changes(result),
         "sightings": sighting_counts(result),
+        "label_confusion": label_confusion_table(result),
         "filter": filter_table(result.replay),
         "learned": {name: dict(of.values) for name, of in result.learned.terrains.items()},
         "config": result.config.to_table(),

@@ -5,23 +5,24 @@ from pathlib import Path
 from odometry.effects.catalogue import added_effects
 from odometry.effects.corrected import Added
 from odometry.effects.measured import robot_run, shared_measurement
-from odometry.errors import ParameterError, RunFolderError
+from odometry.errors import ParameterError
 from odometry.estimation.corrections import corrections_of
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.evaluation.odometer_uncertainty import odometer_uncertainty
 from odometry.evaluation.score import reference_of, score
 from odometry.evaluation.withheld import TerrainsOf, withhold
 from odometry.learned import learned_parameters
+from odometry.modes.mode_set import ModeSet
 from odometry.parameters import ParameterSet, read_parameters
-from odometry.pipeline import ConstantTerrain, Estimator, replay
+from odometry.pipeline import Estimator, TerrainSource, replay
 from odometry.replay import Replay
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
-from terrain.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config
 from terrain.images_outside import add_images_outside
 from terrain.judged import SecondReplay, judged_trajectories
 from terrain.run_result import RunResult
+from terrain.sources import source_name, terrain_source
 from terrain.watcher import TerrainWatcher
 
 __all__ = ["RunResult", "run_odometry"]
@@ -35,9 +36,11 @@ def run_odometry(
     vision: bool = True,
     terrain: str | None = None,
     config: Config | None = None,
+    source: str | TerrainSource | None = None,
+    modes: ModeSet | str | Path | None = None,
     show_progress: bool = False,
 ) -> RunResult:
-    """Replay a run with the ICR filter, its terrain told by the camera.
+    """Replay a run with the ICR filter, its terrain told by the camera or another source.
 
     Parameters
     ----------
@@ -48,11 +51,16 @@ def run_odometry(
         A terrain without a table starts from a broad prior centred on the track width. Effects
         of a table act on that terrain; those on the measurement must be the same everywhere.
     vision : bool
-        False keeps one terrain in force throughout.
+        False keeps images closed: without another `source` one terrain is in force throughout.
     terrain : str, optional
         In force until the first switch; by default the run's own where `parameters` has it, else
         the first of `parameters`, else the run's own.
     config : Config, optional
+    source : {"camera", "labels", "modes", "none"} or TerrainSource, optional
+        What tells the terrain: the images, read by `model`; the run's own column `terrain`; the
+        motion, by `modes`; nothing. By default the camera where there is a model, else nothing.
+    modes : ModeSet or path, optional
+        Made by `identify-modes`, for that source.
     show_progress : bool
         Whether to draw a bar on standard error.
 
@@ -70,10 +78,21 @@ def run_odometry(
     run = robot_run(run, _sensor_effects(parameters))
     lever_m = run.sensors.pose_m[:2] if run.sensors.pose_m else (0.0, 0.0)
     estimator = IcrEkf(run.robot.track_width, parameters, config.filter, corrections, lever_m)
-    watcher = _watcher(run, model, initial, config) if vision and model is not None else None
-    result = replay(
-        run, estimator, watcher or ConstantTerrain(initial), show_progress=show_progress
-    )
+    if isinstance(source, str | None):
+        name = source_name(source, vision=vision, has_model=model is not None)
+        classifier = _classifier(model) if name == "camera" else None
+        source = terrain_source(
+            run,
+            name,
+            config,
+            initial=initial,
+            terrain=terrain,
+            model=classifier,
+            modes=modes,
+            show_progress=show_progress,
+        )
+    watcher = source if isinstance(source, TerrainWatcher) else None
+    result = replay(run, estimator, source, show_progress=show_progress)
     if watcher is not None and run.images is not None:
         add_images_outside(watcher, run, run.images, result)
     reference_name, reference = reference_of(run) or ("", None)
@@ -85,7 +104,7 @@ def run_odometry(
         run,
         config,
         parameters,
-        initial,
+        source.initial,
         watcher,
         result,
         reference_name,
@@ -120,27 +139,13 @@ def _sensor_effects(parameters: ParameterSet) -> tuple[Added, ...]:
     )
 
 
+def _classifier(model: TerrainClassifier | str | Path | None) -> TerrainClassifier | None:
+    return TerrainClassifier.load(Path(model)) if isinstance(model, str | Path) else model
+
+
 def _initial_terrain(run: Run, parameters: ParameterSet, terrain: str | None) -> str:
     if terrain == UNKNOWN:
         raise ParameterError(f"the terrain name {UNKNOWN!r} is reserved; name another, or none")
     of_run = None if run.terrain == UNKNOWN else run.terrain
     known = of_run if of_run in parameters.terrains else next(iter(parameters.terrains), None)
     return terrain or known or of_run or UNNAMED_TERRAIN
-
-
-def _watcher(
-    run: Run, model: TerrainClassifier | str | Path, initial: str, config: Config
-) -> TerrainWatcher:
-    if run.images is None or "camera" not in run.settings:
-        raise RunFolderError(
-            f"{run.folder}: a model was given, but the run has no "
-            f"{'images.csv' if run.images is None else '[camera] in run.toml'}; "
-            "a model (--model) reads images: leave it out, or turn vision off (--no-vision)"
-        )
-    camera = Camera.from_table(run.settings["camera"], str(run.folder / "run.toml"))
-    classifier = (
-        model if isinstance(model, TerrainClassifier) else TerrainClassifier.load(Path(model))
-    )
-    return TerrainWatcher(
-        run, camera, classifier, initial, region=config.region, switch=config.switch
-    )

@@ -5,19 +5,17 @@ import math
 import numpy as np
 
 from terrain.camera import Camera
-from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.classifier import Classifier
 from terrain.region import COARSE, Rectangle
 from terrain.warp import ground_sampling_m, view_shape
 
 
-def unsuited(
-    classifier: TerrainClassifier, camera: Camera, rectangle: Rectangle, coarsest: float
-) -> str:
+def unsuited(classifier: Classifier, camera: Camera, rectangle: Rectangle, coarsest: float) -> str:
     """Why a rectangle cannot be compared with the training patches, or "".
 
     Parameters
     ----------
-    classifier : TerrainClassifier
+    classifier : Classifier
     camera : Camera
     rectangle : Rectangle
         In the image.
@@ -36,7 +34,7 @@ def unsuited(
     return ""
 
 
-def coarsest_m(classifier: TerrainClassifier, coarsest: float) -> float:
+def coarsest_m(classifier: Classifier, coarsest: float) -> float:
     """How much ground a pixel may cover at the most for a classifier [m]; see `RegionConfig`."""
     scale = classifier.metres_per_pixel
     return math.inf if scale is None else coarsest * scale

@@ -13,7 +13,7 @@ from odometry.frames import Frame
 from odometry.geometry import se2
 from odometry.run import UNKNOWN, Run
 from terrain.camera import Camera
-from terrain.classification.classifier import Classification, TerrainClassifier
+from terrain.classification.classifier import Classification, Classifier
 from terrain.errors import CameraError, ImageError
 from terrain.images import read_image
 from terrain.places import Footprint, Sight
@@ -64,7 +64,7 @@ class TerrainWatcher:
     ----------
     run : Run
     camera : Camera
-    classifier : TerrainClassifier
+    classifier : Classifier
         Fitted.
     initial : str
         The terrain in force until the first switch.
@@ -73,7 +73,7 @@ class TerrainWatcher:
 
     Attributes
     ----------
-    classifier : TerrainClassifier
+    classifier : Classifier
     sightings : list of Sighting
         One for each image that was seen.
     in_force : list of str
@@ -85,7 +85,7 @@ class TerrainWatcher:
         self,
         run: Run,
         camera: Camera,
-        classifier: TerrainClassifier,
+        classifier: Classifier,
         initial: str,
         *,
         region: RegionConfig,

@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, ByteImage, FloatArray
 from terrain.camera import Camera
-from terrain.classification.classifier import Classification, TerrainClassifier
+from terrain.classification.classifier import Classification, Classifier
 from terrain.errors import TerrainError
 from terrain.region import Rectangle, RegionConfig
 from terrain.warp import ground_sampling_m, ground_view
@@ -22,7 +22,7 @@ class Cell:
     classification: Classification
 
 
-def classify_ground(image: ByteImage, camera: Camera, classifier: TerrainClassifier) -> list[Cell]:
+def classify_ground(image: ByteImage, camera: Camera, classifier: Classifier) -> list[Cell]:
     """Classify the visible ground cell by cell, as one would without a prediction of the path.
 
     Parameters
@@ -30,7 +30,7 @@ def classify_ground(image: ByteImage, camera: Camera, classifier: TerrainClassif
     image : (H, W) or (H, W, 3)
         Raw image of the camera.
     camera : Camera
-    classifier : TerrainClassifier
+    classifier : Classifier
         Fitted, with a metric scale: a cell is as large as a training patch.
 
     Returns

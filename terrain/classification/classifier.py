@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Protocol, Self
 
 import numpy as np
 
@@ -43,6 +43,18 @@ class Classification:
     confidence: float
     distance: float
     probabilities: dict[str, float]
+
+
+class Classifier(Protocol):
+    """Whatever names the terrain of images of at least the patch size."""
+
+    classes_: list[str]
+    colour_: bool
+    patch_size_px: int
+    metres_per_pixel: float | None
+
+    def classify(self, images: Sequence[ByteImage]) -> list[Classification]:
+        """One answer for each image."""
 
 
 class TerrainClassifier:

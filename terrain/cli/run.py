@@ -11,6 +11,7 @@ from terrain.cli.recordings import span_options
 if TYPE_CHECKING:
     from odometry.run_span import Span
 
+SOURCES = ("camera", "labels", "modes", "none")
 FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 FOLDER = click.Path(file_okay=False, path_type=Path)
 
@@ -21,6 +22,15 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
 @click.option("--model", type=FILE, help="Classifier made by `train`; without it, no vision.")
 @click.option("--parameters", type=FILE, help="Parameter set: ICRs by terrain (TOML).")
 @click.option("--no-vision", is_flag=True, help="Keep one terrain in force throughout.")
+@click.option(
+    "--source",
+    type=click.Choice(SOURCES),
+    help="What tells the terrain: the images (needs --model), the run's own column `terrain`, the "
+    "motion (needs --modes), or nothing.  [default: camera with --model, else none]",
+)
+@click.option(
+    "--modes", metavar="SET.toml", type=FILE, help="Set of modes made by `identify-modes`."
+)
 @click.option("--terrain", metavar="NAME", help="In force until the first switch.")
 @click.option("--config", type=FILE, help="Settings (TOML): [filter] [region] [switch] ...")
 @click.option("--per-tread", is_flag=True, help="Classify the terrain under each tread apart.")
@@ -33,6 +43,8 @@ def run(
     model: Path | None,
     parameters: Path | None,
     no_vision: bool,
+    source: str | None,
+    modes: Path | None,
     terrain: str | None,
     config: Path | None,
     per_tread: bool,
@@ -43,6 +55,7 @@ def run(
 
     Reads images, tread speeds and poses in time order, classifies the terrain ahead, switches the
     ICRs when the robot gets there, and writes trajectories, ICRs, terrain, figures and one page.
+    With --source the terrain comes from elsewhere: `labels` shows what true labels would give.
 
     \b
     Example:
@@ -60,23 +73,28 @@ def run(
     from terrain.result_table import sighting_counts
     from terrain.results import write_results
     from terrain.run_odometry import run_odometry
+    from terrain.sources import source_name
 
     settings = Config.read(config) if config else Config()
     if per_tread:
         settings = replace(settings, region=replace(settings.region, per_tread=True))
     if detect_jumps:
         settings = replace(settings, filter=replace(settings.filter, detect_jumps=True))
-    output = claim_folder(out, reads_images=model is not None and not no_vision)
+    told_by = source_name(source, vision=not no_vision, has_model=model is not None)
+    reads_images = told_by == "camera"
+    output = claim_folder(out, reads_images=reads_images)
     result = run_odometry(
-        read_run(run_folder, span, images=model is not None and not no_vision),
+        read_run(run_folder, span, images=reads_images),
         model=model,
         parameters=parameters,
         vision=not no_vision,
         terrain=terrain,
         config=settings,
+        source=told_by,
+        modes=modes,
         show_progress=True,
     )
-    for hint in hints(result, vision=not no_vision):
+    for hint in hints(result, vision=reads_images or (source is None and not no_vision)):
         click.echo(f"Note: {hint}", err=True)
     with output.writing() as part:
         write_results(result, part, about(output.made))

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from odometry.report.figure import save_figure
 from odometry.report.html import Picture
 from terrain.camera import Camera
-from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.classifier import Classifier
 from terrain.images import read_image
 from terrain.report.figures import Tints, in_force
 from terrain.report.plots import draw_cells, draw_region, plot_confusion, plot_image, plot_labels
@@ -94,7 +94,7 @@ def regions_picture(
 def whole_image_picture(
     result: RunResult,
     watcher: TerrainWatcher,
-    classifier: TerrainClassifier,
+    classifier: Classifier,
     tints: Tints,
     folder: Path,
 ) -> Picture | None:

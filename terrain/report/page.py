@@ -5,6 +5,7 @@ from pathlib import Path
 
 from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
 from odometry.report.palette import terrain_colours
+from terrain.report.confusion_table import label_table
 from terrain.report.figures import (
     Tints,
     distribution_picture,
@@ -111,6 +112,7 @@ def _terrain(result: RunResult, tints: Tints, folder: Path) -> list[Block]:
         switches or Paragraph(f"The terrain never changed from {result.initial_terrain}."),
         labels_picture(result, watcher, tints, folder),
         confusion_picture(seen, folder) if seen else None,
+        label_table(result),
         regions_picture(result, watcher, tints, folder),
         whole_image_picture(result, watcher, watcher.classifier, tints, folder),
     ]

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import shutil
 
 import pytest
 from click.testing import CliRunner
@@ -44,6 +45,23 @@ def test_no_vision_and_terrain_keep_one_terrain(across_run, model_file, tmp_path
     content = content_of(out)
     assert (content["vision"], content["initial_terrain"]) == (False, "mud")
     assert not (out / "terrain.csv").exists()
+
+
+def test_the_terrain_comes_from_the_source_that_is_named(across_run, model_file, tmp_path):
+    """The labels of odometry.csv; images stay closed, and no model is needed."""
+    folder = tmp_path / "run"
+    shutil.copytree(across_run, folder)
+    header, *rows = (folder / "odometry.csv").read_text().split()
+    names = ["mud"] * (len(rows) // 2) + ["sand"] * (len(rows) - len(rows) // 2)
+    lines = [f"{row},{name}" for row, name in zip(rows, names, strict=True)]
+    (folder / "odometry.csv").write_text("\n".join([f"{header},terrain", *lines]) + "\n")
+    out = tmp_path / "out"
+    answer = invoke(folder, "--out", out, "--model", model_file, "--source", "labels")
+    assert answer.exit_code == 0, answer.output
+    content = content_of(out)
+    assert (content["vision"], content["initial_terrain"]) == (False, "mud")
+    assert set(content["learned"]) == {"mud", "sand"}
+    assert "no vision without --model" not in answer.output
 
 
 def test_learned_toml_goes_back_in(curvy_run, tmp_path):

@@ -1,0 +1,71 @@
+"""Terrain that is known by stamp before a replay: labels of the run itself."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import AnyArray, FloatArray
+from odometry.errors import RunFolderError
+from odometry.estimation.estimate import Estimate
+from odometry.frames import Frame
+from odometry.run import UNKNOWN, Run
+
+
+@dataclass(frozen=True)
+class NamedTerrain:
+    """The latest name at or before each frame; before the first name, the initial terrain.
+
+    Attributes
+    ----------
+    initial : str
+    stamps_s : (N,)
+        From when on each name holds, rising.
+    names : (N,) of str
+    """
+
+    initial: str
+    stamps_s: FloatArray
+    names: AnyArray
+
+    @classmethod
+    def told(
+        cls, initial: str, stamps_s: FloatArray, answers: AnyArray, silent: Sequence[str]
+    ) -> "NamedTerrain":
+        """From answers (N,), of which the `silent` ones keep the terrain in force."""
+        speaks = ~np.isin(answers.astype(str), list(silent))
+        return cls(initial, stamps_s[speaks], answers[speaks])
+
+    def terrain(self, frame: Frame, estimate: Estimate) -> str:  # noqa: ARG002 - the protocol's
+        """The name in force at the stamp of the frame."""
+        row = int(np.searchsorted(self.stamps_s, frame.stamp_s, side="right")) - 1
+        return str(self.names[row]) if row >= 0 else self.initial
+
+
+def labelled_terrain(run: Run, initial: str | None = None) -> NamedTerrain:
+    """The terrain that the run itself names: what a source of terrain could do at best.
+
+    Of truth.csv where that has a column `terrain`, else of odometry.csv. An empty label or
+    `unknown` keeps the terrain in force.
+
+    Parameters
+    ----------
+    run : Run
+    initial : str, optional
+        In force before the first label; by default the first label.
+
+    Raises
+    ------
+    RunFolderError
+        If neither file names a terrain.
+    """
+    for table in (run.truth, run.odometry):
+        if table is None or "terrain" not in table:
+            continue
+        found = NamedTerrain.told("", table.stamps_s, table["terrain"], ("", UNKNOWN))
+        if len(found.names):
+            return NamedTerrain(initial or str(found.names[0]), found.stamps_s, found.names)
+    raise RunFolderError(
+        f"{run.folder}: no column `terrain` of odometry.csv or truth.csv names a terrain; expected "
+        "one where the run's own labels are the source of terrain"
+    )

@@ -1,0 +1,92 @@
+"""Sources of terrain behind one face: the camera, the run's own labels, the motion, or none."""
+
+from pathlib import Path
+
+from odometry.errors import ConfigError, RunFolderError
+from odometry.modes.felt_terrain import felt_terrain
+from odometry.modes.mode_set import ModeSet, read_mode_set
+from odometry.pipeline import ConstantTerrain, TerrainSource
+from odometry.run import Run
+from odometry.terrain_sources import labelled_terrain
+from terrain.camera import Camera
+from terrain.classification.classifier import Classifier
+from terrain.config import Config
+from terrain.watcher import TerrainWatcher
+
+SOURCES = ("camera", "labels", "modes", "none")
+
+
+def source_name(source: str | None, *, vision: bool, has_model: bool) -> str:
+    """Which source is meant: by default the camera where there is a model for it, else none.
+
+    Raises
+    ------
+    ConfigError
+        If there is no such source, or it contradicts `vision`.
+    """
+    if source is None:
+        return "camera" if vision and has_model else "none"
+    if source not in SOURCES:
+        raise ConfigError(f"terrain source {source!r} is not one of {', '.join(SOURCES)}")
+    if source == "camera" and not vision:
+        raise ConfigError("the terrain source 'camera' needs vision, which was turned off")
+    return source
+
+
+def terrain_source(
+    run: Run,
+    name: str,
+    config: Config,
+    *,
+    initial: str,
+    terrain: str | None = None,
+    model: Classifier | None = None,
+    modes: ModeSet | str | Path | None = None,
+    show_progress: bool = False,
+) -> TerrainSource:
+    """Make a source of terrain for a run.
+
+    Parameters
+    ----------
+    run : Run
+    name : str
+        "camera": `model` reads the images. "labels": the column `terrain` of truth.csv or
+        odometry.csv. "modes": the interacting multiple model estimator, from `modes`. "none":
+        one terrain for the whole run.
+    config : Config
+    initial : str
+        In force until the first switch; of labels only where `terrain` says so too.
+    terrain : str, optional
+        What the user named.
+    model : Classifier, optional
+    modes : ModeSet or path, optional
+    show_progress : bool
+
+    Raises
+    ------
+    OdometryError
+        If the run, or what was given, lacks what the source needs.
+    """
+    if name == "labels":
+        return labelled_terrain(run, terrain)
+    if name == "camera":
+        if model is None:
+            raise ConfigError("the terrain source 'camera' needs a model (made by `train`)")
+        return _watcher(run, model, initial, config)
+    if name == "modes":
+        if modes is None:
+            raise ConfigError("the terrain source 'modes' needs a set of modes (`identify-modes`)")
+        mode_set = modes if isinstance(modes, ModeSet) else read_mode_set(Path(modes))
+        return felt_terrain(run, mode_set, initial, show_progress=show_progress)
+    return ConstantTerrain(initial)
+
+
+def _watcher(run: Run, model: Classifier, initial: str, config: Config) -> TerrainWatcher:
+    if run.images is None or "camera" not in run.settings:
+        raise RunFolderError(
+            f"{run.folder}: a model was given, but the run has no "
+            f"{'images.csv' if run.images is None else '[camera] in run.toml'}; "
+            "a model (--model) reads images: leave it out, or turn vision off (--no-vision)"
+        )
+    camera = Camera.from_table(run.settings["camera"], str(run.folder / "run.toml"))
+    return TerrainWatcher(run, camera, model, initial, region=config.region, switch=config.switch)

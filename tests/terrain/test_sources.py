@@ -1,0 +1,120 @@
+"""What tells the terrain: the camera, the run's own labels, the motion, nothing, or one's own."""
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from odometry.errors import ConfigError, RunFolderError
+from odometry.pipeline import ConstantTerrain
+from terrain.cli import run as cli_run
+from terrain.run_odometry import run_odometry
+from terrain.sources import SOURCES, source_name
+from tests.odometry.modes.mode_drives import velocity_run
+from tests.odometry.modes.test_felt_terrain import NAMES, SET, A, B
+
+
+@pytest.fixture(scope="module")
+def labelled_run(tmp_path_factory, world):
+    """Along x over both edges; odometry.csv names the terrain under the middle of the robot."""
+    folder = world.drive_straight(tmp_path_factory.mktemp("labelled") / "run", world.across, 4.0)
+    header, *rows = (folder / "odometry.csv").read_text().split()
+    x = world.speed_m_s * np.array([float(row.split(",")[0]) for row in rows])
+    names = np.where((x > world.edges_m[0]) & (x < world.edges_m[1]), "boards", "gravel")
+    lines = [f"{row},{name}" for row, name in zip(rows, names, strict=True)]
+    (folder / "odometry.csv").write_text("\n".join([f"{header},terrain", *lines]) + "\n")
+    return folder
+
+
+def switches(result):
+    """Stamp and terrain of each switch."""
+    pairs = pairwise(result.replay.estimates)
+    return [(now.stamp_s, now.terrain) for old, now in pairs if now.terrain != old.terrain]
+
+
+def test_true_labels_switch_at_the_edge(labelled_run, world):
+    result = run_odometry(labelled_run, source="labels")
+    edges_s = np.array(world.edges_m) / world.speed_m_s
+    (first_s, boards), (second_s, gravel) = switches(result)
+    assert (result.initial_terrain, boards, gravel) == ("gravel", "boards", "gravel")
+    assert edges_s[0] <= first_s <= edges_s[0] + 0.1 + 1e-9  # the next row of odometry
+    assert edges_s[1] <= second_s <= edges_s[1] + 0.1 + 1e-9
+    assert result.watcher is None
+
+
+def test_labels_leave_the_images_closed(labelled_run):
+    result = run_odometry(labelled_run, model="no such model", source="labels")
+    assert len(switches(result)) == 2
+
+
+def test_a_run_without_labels_cannot_be_their_source(across_run):
+    with pytest.raises(RunFolderError, match="names a terrain"):
+        run_odometry(across_run, source="labels")
+
+
+def test_by_the_motion_the_terrain_follows_the_change():
+    labels = np.repeat(NAMES, 750).tolist()
+    by_name = dict(zip(NAMES, A, strict=True)), dict(zip(NAMES, B, strict=True))
+    run = velocity_run(np.random.default_rng(3), *by_name, labels)
+    columns = {**run.velocity.columns, "vy": np.full(len(labels), np.nan)}
+    run = replace(run, velocity=replace(run.velocity, columns=columns))
+    result = run_odometry(run, source="modes", modes=SET, terrain="sand")
+    assert result.initial_terrain == "sand"
+    (first_s, ice), (second_s, tar) = switches(result)
+    assert (ice, tar) == NAMES
+    assert first_s < 10.0
+    assert 15.0 < second_s < 20.0
+
+
+def test_none_keeps_one_terrain(labelled_run, model_file):
+    result = run_odometry(labelled_run, model=model_file, source="none")
+    assert switches(result) == []
+    assert result.watcher is None
+
+
+def test_the_camera_is_the_source_where_there_is_a_model(across_result, across_run, classifier):
+    result = run_odometry(across_run, model=classifier, terrain="gravel", source="camera")
+    assert switches(result) == switches(across_result)
+
+
+@dataclass
+class AfterTwoSeconds:
+    """A source of one's own."""
+
+    initial: str = "gravel"
+
+    def terrain(self, frame, estimate):  # noqa: ARG002 - the protocol's
+        return "mud" if estimate.stamp_s >= 2.0 else self.initial
+
+
+def test_a_source_may_be_ones_own(labelled_run):
+    ((stamp_s, mud),) = switches(run_odometry(labelled_run, source=AfterTwoSeconds()))
+    assert mud == "mud"
+    assert stamp_s == pytest.approx(2.1)
+    kept = run_odometry(labelled_run, source=ConstantTerrain("ice"))
+    assert (kept.initial_terrain, switches(kept)) == ("ice", [])
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"source": "camera"}, "'camera' needs a model"),
+        ({"source": "modes"}, "'modes' needs a set of modes"),
+        ({"source": "radar"}, "'radar' is not one of camera, labels, modes, none"),
+        ({"source": "camera", "vision": False}, "needs vision, which was turned off"),
+    ],
+)
+def test_a_source_that_lacks_what_it_needs_is_an_error(labelled_run, given, words):
+    with pytest.raises(ConfigError, match=words):
+        run_odometry(labelled_run, **given)
+
+
+def test_the_default_source():
+    assert source_name(None, vision=True, has_model=True) == "camera"
+    assert source_name(None, vision=True, has_model=False) == "none"
+    assert source_name(None, vision=False, has_model=True) == "none"
+
+
+def test_the_command_offers_every_source():
+    assert cli_run.SOURCES == SOURCES
