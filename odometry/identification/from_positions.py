@@ -17,6 +17,7 @@ from odometry.windows.windows import Windows, windows_of
 
 LEAST_M, LEAST_BY_TREADS_M = 5.0, 10.0  # wheel travel; where treads alone tell turns, more
 MOST_M = 50.0
+ENOUGH = 8  # stretches of all runs together
 DIRECTION_RAD = 0.02  # how well positions must tell the direction of a stretch
 LINE = np.sqrt(12 / MOST_POSITIONS)  # of n evenly spaced positions, by noise over length
 SIMPLE = "icr_symmetric"  # the model under which the noise is found
@@ -57,9 +58,14 @@ def noise_of(of: Stretches, robot: Robot) -> StretchNoise:
 
 
 def length_for(noise: StretchNoise, of: Stretches) -> float:
-    """Wheel travel [m] over which positions of this noise tell a direction to DIRECTION_RAD."""
-    least_m = LEAST_BY_TREADS_M if of.turns_rad is None else LEAST_M
-    return float(np.clip(LINE * noise.position_m / DIRECTION_RAD, least_m, MOST_M))
+    """Wheel travel [m] over which positions of this noise tell a direction to DIRECTION_RAD.
+
+    Beyond what the noise needs, stretches become no longer than that there are ENOUGH, whose
+    spread shows how much a model errs alike all along one.
+    """
+    usual_m = LEAST_BY_TREADS_M if of.turns_rad is None else LEAST_M
+    usual_m = float(np.clip(of.travel_m.sum() / ENOUGH, LEAST_M, usual_m))
+    return float(np.clip(LINE * noise.position_m / DIRECTION_RAD, usual_m, MOST_M))
 
 
 def how_told(fit: Fit) -> tuple[str, ...]:

@@ -10,7 +10,9 @@ STRETCH = 5  # windows: some 20 s, over which slip wanders
 DETERMINED_ALONE = 1 - 1e-6  # a direction in which one group has all of the information
 
 
-def groups_alike(run: AnyArray, stretch: int = STRETCH) -> IntArray | None:
+def groups_alike(
+    run: AnyArray, stretch: int = STRETCH, fewest: int = FEWEST_STRETCHES
+) -> IntArray | None:
     """Group (K,) of each window, in which a model may err alike: runs, else stretches of them.
 
     None where there are too few of both to tell a spread.
@@ -21,6 +23,8 @@ def groups_alike(run: AnyArray, stretch: int = STRETCH) -> IntArray | None:
         Of each window, in the order of time.
     stretch : int
         Windows of a stretch of a run.
+    fewest : int
+        Stretches whose spread is taken.
     """
     names = list(dict.fromkeys(run.tolist()))
     if len(names) >= FEWEST_RUNS:
@@ -31,7 +35,7 @@ def groups_alike(run: AnyArray, stretch: int = STRETCH) -> IntArray | None:
         stretches = max(1, len(here) // stretch)
         groups[here] = count + np.arange(len(here)) * stretches // len(here)
         count += stretches
-    return groups if count >= FEWEST_STRETCHES else None
+    return groups if count >= fewest else None
 
 
 def spread_between(

@@ -9,6 +9,10 @@ from odometry.identification.stretch_problem import StretchProblem
 from odometry.identification.uncertainty import Uncertainty, grown
 from odometry.windows.stretch_noise import StretchNoise, covariance_parts
 
+FEWEST = 4  # stretches whose spread is taken
+SCALE = 0.01  # standard deviation of what a gyroscope's scale is off by
+TINY = np.finfo(float).tiny
+
 
 def stretch_uncertainty(
     problem: StretchProblem, solution: Solution, noise: StretchNoise, sizes: FloatArray
@@ -18,7 +22,8 @@ def stretch_uncertainty(
     That of generalised least squares under the noise that was found; the degrees of freedom are
     those of Fai and Cornelius 1996: how well the three variances are known by which each
     parameter's own is made. Where the spread between runs, or between stretches, shows larger
-    variances, these are taken.
+    variances, these are taken. A gyroscope's scale is off by the same in all of them, which no
+    spread shows: it is added with SCALE.
 
     Parameters
     ----------
@@ -36,14 +41,26 @@ def stretch_uncertainty(
     jacobian = jacobian * sizes
     whitened = root @ jacobian
     curvature = np.einsum("kif,kig->fg", whitened, whitened)
-    covariance = np.linalg.pinv(curvature, rcond=1e-14, hermitian=True)
-    freedom = _freedom(problem, root, whitened @ covariance, noise)
-    groups = groups_alike(problem.windows.run, 1)
+    inverse = np.linalg.pinv(curvature, rcond=1e-14, hermitian=True)
+    covariance, freedom = inverse, _freedom(problem, root, whitened @ inverse, noise)
+    groups = groups_alike(problem.windows.run, 1, FEWEST)
     if groups is not None:
         found = np.einsum("kij,kj->ki", root, residuals)
         covariance, freedom = grown(covariance, freedom, *spread_between(groups, whitened, found))
-    covariance = sizes[:, None] * covariance * sizes
+    by_scale = _by_scale(problem, root, whitened @ inverse)
+    total = covariance + by_scale[:, None] * by_scale
+    freedom = freedom * np.square(np.diag(total) / np.maximum(np.diag(covariance), TINY))
+    covariance = sizes[:, None] * total * sizes
     return Uncertainty(np.asarray((covariance + covariance.T) / 2), freedom)
+
+
+def _by_scale(problem: StretchProblem, root: FloatArray, influence: FloatArray) -> FloatArray:
+    """What one standard deviation of a gyroscope's scale moves the parameters (F,) by."""
+    turns = problem.windows.turns_rad
+    if turns is None:
+        return np.zeros(influence.shape[-1])
+    off = np.einsum("kij,kj->ki", root[:, :, -turns.shape[1] :], SCALE * turns)
+    return np.asarray(np.einsum("kif,ki->f", influence, off))
 
 
 def _freedom(
@@ -56,4 +73,4 @@ def _freedom(
     variances = np.sum(np.square(influence), axis=(0, 1))
     known = np.linalg.pinv(noise.precision, hermitian=True)
     spread = np.einsum("pf,pq,qf->f", changes, known, changes)
-    return np.asarray(2 * variances**2 / np.maximum(spread, np.finfo(float).tiny))
+    return np.asarray(2 * variances**2 / np.maximum(spread, TINY))

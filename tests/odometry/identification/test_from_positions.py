@@ -81,6 +81,17 @@ def test_a_bias_of_the_gyroscope_is_found():
     assert biased.values["y_right"] == pytest.approx(ICR["y_right"], abs=0.02)
 
 
+def test_a_scale_of_the_gyroscope_that_is_off_stays_within_the_intervals():
+    """By 1.5 %, so that all widths are off by as much."""
+    run = emptied(drive(6, gyroscope=True, noise_m=0.01))
+    rates = {**run.imu.columns, "gyro_z": 1.015 * run.imu["gyro_z"]}
+    found = fit_of(replace(run, imu=replace(run.imu, columns=rates)), model="icr_symmetric")
+    exact = fit_of(run, model="icr_symmetric")
+    assert found.values["b_hat"] == pytest.approx(exact.values["b_hat"] / 1.015, rel=2e-3)
+    interval = found.intervals["b_hat"]
+    assert interval.low < exact.values["b_hat"] < interval.high
+
+
 @pytest.mark.parametrize("noise_m", [0.02, 0.3, 1.0])
 def test_the_noise_is_found_and_more_of_it_needs_longer_stretches(noise_m):
     found = fit_of(emptied(drive(7, noise_m=noise_m, duration_s=300.0)), model="icr_symmetric")
