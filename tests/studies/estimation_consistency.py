@@ -1,12 +1,14 @@
 """Whether the filter errs as much as it says: NEES and NIS over seeds, in simulation.
 
     python tests/studies/estimation_consistency.py [--seeds 20] [--duration 60] [--gyroscope]
+                                                   [--real]
 
 True ICRs are drawn from the prior that the filter is given; pose and ICRs wander by the process
 noise of its settings, poses are measured with theirs. Then the mean of N runs lies within the
 95 % bounds of chi-squared (Bar-Shalom, Li and Kirubarajan 2001, 5.4.2) at 95 % of the steps. The
 steps of one run are dependent, so that the whole mean spreads more than the bounds printed.
-Open loop: the odometer's error under the covariance in odometer.csv after 5, 20 and 100 m.
+Open loop: the odometer's error under the covariance in odometer.csv after 5, 20 and 100 m, also
+(--real, TERRAIN_ODOMETRY_DATA) on recordings with poses that are cut at four moments.
 """
 
 import argparse
@@ -19,7 +21,11 @@ from tqdm import tqdm
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.parameters import ParameterSet, TerrainParameters
+from odometry.run import Run
+from odometry.run_span import Span, cut_run
 from tests.studies.estimation_outputs import outputs_of
+from tests.studies.estimation_reckoning import Path, at, reference_path, wheel_travel_m
+from tests.studies.estimation_recordings import motion, recordings
 from tests.studies.estimation_simulation import (
     TRACK_WIDTH_M,
     Noise,
@@ -50,7 +56,11 @@ def main():
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--duration", type=float, default=60.0)
     parser.add_argument("--gyroscope", action="store_true")
+    parser.add_argument("--real", action="store_true", help="recordings, open loop alone")
     arguments = parser.parse_args()
+    if arguments.real:
+        print_open_loops(real_open_loops())
+        return
     runs = [
         closed_loop(seed, arguments.duration, gyroscope=arguments.gyroscope)
         for seed in tqdm(range(arguments.seeds), "closed loop")
@@ -61,11 +71,7 @@ def main():
         open_loop(seed, gyroscope=arguments.gyroscope)
         for seed in tqdm(range(arguments.seeds), "open loop")
     ]
-    if open_loops[0] is None:
-        print("open loop: odometer.csv has no covariance")
-        return
-    for column, horizon_m in zip(np.array(open_loops).T, HORIZONS_M, strict=True):
-        print_line(f"odometer after {horizon_m:.0f} m", column[:, None], 3)
+    print_open_loops(open_loops)
 
 
 def parameters():
@@ -112,24 +118,62 @@ def closed_loop(seed, duration_s, *, gyroscope):
 def open_loop(seed, *, gyroscope):
     """Normalised squared errors (3,) of the odometer after each horizon; None without covariance.
 
-    The run has poses for its first 40 s, so that the odometer knows its ICRs as it would.
+    The filter beside it has poses, so that the odometer learns its ICRs as it would.
     """
     rng, config = np.random.default_rng([seed, 1]), IcrEkfConfig()
     icrs = ICRS + rng.normal(0, ICR_SIGMA_M, 3)
     one = drive(weave(150.0, rng), icrs, matching_noise(config, gyroscope=gyroscope), rng)
-    table = outputs_of(run_of(one, gyroscope=gyroscope), parameters=parameters()).tables["odometer"]
+    run = run_of(one, gyroscope=gyroscope)
+    table = outputs_of(run, parameters=parameters()).tables["odometer"]
+    return squares_at_horizons(run, table, Path(one.stamps_s, one.states[:, :3]))
+
+
+def real_open_loops():
+    """The same of recordings with poses, from four moments of each on."""
+    found = []
+    for name in tqdm(recordings(seven=False), "recordings"):
+        run = Run.read(motion() / name)
+        for share in (0.0, 0.25, 0.5, 0.75):
+            part = cut_run(run, Span(share * float(np.ptp(run.odometry.stamps_s))))
+            table = outputs_of(part).tables["odometer"]
+            found.append(squares_at_horizons(part, table, reference_path(part)))
+            if found[-1] is None:
+                return found
+            print(f"{name} from {share:.0%}: {np.round(found[-1], 1)}", flush=True)
+    return found
+
+
+def squares_at_horizons(run, table, reference):
+    """Normalised squared errors after 5, 20 and 100 m; NaN where the run is shorter."""
     covariances = covariances_of(table)
     if covariances is None:
         return None
-    travel = np.r_[0.0, np.cumsum(np.abs(one.speeds_m_s[:-1]).mean(axis=1) * np.diff(one.stamps_s))]
+    stamps_s = table["t"]
+    travel = wheel_travel_m(run, stamps_s)
     found = []
     for horizon_m in HORIZONS_M:
-        row = int(np.searchsorted(table["t"], np.interp(horizon_m, travel, one.stamps_s)))
-        truth = one.states[np.searchsorted(one.stamps_s, table["t"][row]), :3]
+        row = int(np.searchsorted(travel - travel[0], horizon_m))
+        if row == len(stamps_s) or stamps_s[row] > reference.stamps_s[-1]:
+            found.append(np.nan)
+            continue
+        truth = at(reference, stamps_s[row : row + 1])[0]
         error = np.array([table[name][row] for name in ("x", "y", "yaw")]) - truth
         error[2] = np.angle(np.exp(1j * error[2]))
         found.append(squared(error, covariances[row]))
     return found
+
+
+def print_open_loops(found):
+    if found[0] is None:
+        print("open loop: odometer.csv has no covariance")
+        return
+    for column, horizon_m in zip(np.array(found).T, HORIZONS_M, strict=True):
+        squares = column[np.isfinite(column)]
+        low, high = chi2.ppf([0.025, 0.975], 3 * len(squares)) / max(len(squares), 1)
+        inside = np.mean(squares <= chi2.ppf(0.95, 3))
+        print(f"odometer after {horizon_m:3.0f} m, expected 3: mean {squares.mean():.2f}, bounds "
+              f"{low:.2f} to {high:.2f}, median {np.median(squares):.2f} (expected "
+              f"{chi2.ppf(0.5, 3):.2f}), {inside:.0%} of {len(squares)} within 95 %")  # fmt: skip
 
 
 def covariances_of(table):
