@@ -153,7 +153,7 @@ def simulated_loop(sigma_m, seed):
     """A loop of 300 m at 1 m/s, GNSS at 5 Hz, tread noise of 5 mm/s."""
     rng = np.random.default_rng([seed, int(sigma_m * 100)])
     noise = Noise(position=0.003, yaw=0.001, pose_m=sigma_m, pose_rad=0.01, tread_m_s=0.005,
-                  gyro=0.002, gyro_bias=0.01)  # fmt: skip
+                  gyro=0.002)  # fmt: skip
     one = drive(loop(300.0, ICRS), np.array(ICRS), noise, rng)
     return replace(run_of(one, gyroscope=True), truth=truth_of(one))
 

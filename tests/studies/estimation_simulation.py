@@ -20,68 +20,74 @@ STEP_S = 0.05
 
 @dataclass(frozen=True)
 class Noise:
-    """Standard deviations; those of the motion are per root of a second."""
+    """Standard deviations: of the motion per root of a second, of slip in metres per root of a
+    metre of wheel travel (yaw: by the track width), of poses and treads per sample."""
 
     position: float = 0.0
     yaw: float = 0.0
+    slip: float = 0.0
     icr_m: float = 0.0
+    alpha: float = 0.0
+    gyro: float = 0.0
+    bias: float = 0.0
     pose_m: float = 0.0
     pose_rad: float = 0.0
-    gyro: float = 0.0
-    gyro_bias: float = 0.0
     tread_m_s: float = 0.0
 
 
 @dataclass(frozen=True)
 class Drive:
-    """Truth and measurements at N stamps; poses are NaN where none is measured."""
+    """Truth and measurements at N stamps; poses are NaN where none is measured.
+
+    Attributes
+    ----------
+    states : (N, 9)
+        x, y, yaw, y_left, y_right, x_icr, bias of the gyroscope, slip factors left and right.
+    """
 
     stamps_s: np.ndarray
     speeds_m_s: np.ndarray
     states: np.ndarray
     poses: np.ndarray
     yaw_rates: np.ndarray
-    bias: float
 
 
-def drive(speeds, icrs, noise, rng, *, pose_every=4):
-    """Drive tread speeds (N, 2) with ICRs (3,) that wander; yaw rates are means since the frame
-    before, with a bias."""
-    state, root = np.array([0.0, 0.0, 0.0, *icrs]), math.sqrt(STEP_S)
-    bias = rng.normal(0, noise.gyro_bias)
-    walk = np.array([noise.position, noise.position, noise.yaw, *[noise.icr_m] * 3])
+def drive(speeds, start, noise, rng, *, pose_every=4):
+    """Drive tread speeds (N, 2) from a state whose parameters wander.
+
+    `start` is a state (9,), or ICRs (3,) alone: then there is no slip, and no bias. The yaw rate
+    is the mean since the frame before.
+    """
+    if len(start) == 3:
+        start = [0.0, 0.0, 0.0, *start, 0.0, 1.0, 1.0]
+    state, root = np.array(start, dtype=float), math.sqrt(STEP_S)
+    walk = [noise.position] * 2 + [noise.yaw] + [noise.icr_m] * 3 + [noise.bias] + [noise.alpha] * 2
+    slips = np.array([1.0, 1.0, 1.0 / TRACK_WIDTH_M, *[0.0] * 6]) * noise.slip
     states, rates = [state], [math.nan]
-    for left, right in speeds[:-1]:
-        before = state
-        state = _moved(state, left, right, STEP_S) + walk * root * rng.normal(0, 1, 6)
-        rate = (state[2] - before[2]) / STEP_S
-        rates.append(rate + bias + noise.gyro / root * rng.normal())
+    for pair in speeds[:-1]:
+        before, travel = state[2], np.abs(pair).mean() * STEP_S
+        wander = np.sqrt(np.square(walk) * STEP_S + np.square(slips) * travel)
+        state = _moved(state, *pair, STEP_S) + wander * rng.normal(0, 1, 9)
+        rates.append((state[2] - before) / STEP_S + state[6] + noise.gyro / root * rng.normal())
         states.append(state)
     states, stamps = np.array(states), np.arange(len(speeds)) * STEP_S
     sigma = [noise.pose_m, noise.pose_m, noise.pose_rad]
     poses = states[:, :3] + sigma * rng.normal(0, 1, (len(states), 3))
     poses[np.arange(len(poses)) % pose_every != 0] = np.nan
     measured = speeds + rng.normal(0, 1, speeds.shape) * noise.tread_m_s
-    return Drive(stamps, measured, states, poses, np.array(rates), bias)
+    return Drive(stamps, measured, states, poses, np.array(rates))
 
 
 def _moved(state, left, right, step_s):
-    x, y, yaw, y_left, y_right, x_icr = state
+    x, y, yaw, y_left, y_right, x_icr, _, alpha_left, alpha_right = state
+    left, right = alpha_left * left, alpha_right * right
     rate = (right - left) / (y_left - y_right)
     ahead = (right * y_left - left * y_right) / (y_left - y_right) * step_s
     aside, turn = -x_icr * rate * step_s, rate * step_s
     chord = np.sinc(turn / 2 / math.pi)
     cosine, sine = math.cos(yaw + turn / 2) * chord, math.sin(yaw + turn / 2) * chord
-    return np.array(
-        [
-            x + cosine * ahead - sine * aside,
-            y + sine * ahead + cosine * aside,
-            yaw + turn,
-            y_left,
-            y_right,
-            x_icr,
-        ]
-    )
+    place = [x + cosine * ahead - sine * aside, y + sine * ahead + cosine * aside, yaw + turn]
+    return np.array([*place, *state[3:]])
 
 
 def weave(duration_s, rng, speed_m_s=0.8):

@@ -9,7 +9,7 @@ from tests.studies.estimation_simulation import STEP_S, Noise, drive, frames_of,
 
 ICRS = np.array([0.45, -0.40, -0.05])
 VALUES = dict(zip(("y_left", "y_right", "x_icr"), ICRS, strict=True))
-NOISE = Noise(position=0.01, yaw=0.01, pose_m=0.02, pose_rad=0.01, gyro=0.002, gyro_bias=0.01)
+NOISE = Noise(position=0.01, yaw=0.01, pose_m=0.02, pose_rad=0.01, gyro=0.002)
 
 
 def test_a_loop_closes_with_its_own_icrs_and_the_reckoning_follows_it():
@@ -33,12 +33,30 @@ def test_a_turn_has_the_radius_that_its_icrs_prescribe():
 
 def test_noise_has_the_size_that_was_asked():
     rng = np.random.default_rng(1)
-    one = drive(weave(400.0, rng), ICRS, NOISE, rng, pose_every=1)
+    start = [0.0, 0.0, 0.0, *ICRS, 0.01, 1.0, 1.0]
+    one = drive(weave(400.0, rng), start, NOISE, rng, pose_every=1)
     assert np.std(one.poses[:, :2] - one.states[:, :2]) == pytest.approx(0.02, rel=0.05)
     true_rates = np.diff(one.states[:, 2]) / STEP_S
     off = one.yaw_rates[1:] - true_rates
-    assert off.mean() == pytest.approx(one.bias, abs=0.001)
+    assert off.mean() == pytest.approx(0.01, abs=0.001)
     assert np.std(off) == pytest.approx(0.002 / np.sqrt(STEP_S), rel=0.05)
+
+
+def test_slip_grows_with_wheel_travel_alone():
+    stand, ahead = np.zeros((2001, 2)), np.ones((2001, 2))
+    ends = {}
+    for name, speeds in (("stand", stand), ("ahead", ahead)):
+        noise, rng = Noise(slip=0.1), np.random.default_rng(3)
+        runs = [drive(speeds, ICRS, noise, rng).states for _ in range(30)]
+        ends[name] = np.std([states[-1, 2] for states in runs])
+    assert ends["stand"] == 0.0
+    assert ends["ahead"] == pytest.approx(0.1 / 0.6 * np.sqrt(100), rel=0.3)
+
+
+def test_slip_factors_scale_the_treads():
+    speeds = np.ones((101, 2))
+    one = drive(speeds, [0, 0, 0, *ICRS, 0, 0.9, 0.9], Noise(), np.random.default_rng(0))
+    assert one.states[-1, 0] == pytest.approx(4.5)
 
 
 def test_frames_and_run_tell_the_same():
