@@ -175,7 +175,8 @@ class GivenParameters(Candidate):
         if table is None:
             raise ParameterError(
                 f"the set has no terrain {split.terrain!r}; it has "
-                f"{', '.join(self.parameters.terrains)}"
+                f"{', '.join(self.parameters.terrains)} (rename the table [terrain.NAME] of the "
+                "set where both are one terrain)"
             )
         where = f"{self.name}: [terrain.{split.terrain}]"
         return Predictor(

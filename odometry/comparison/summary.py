@@ -105,9 +105,11 @@ def summarise(
         means={q: float(values.mean()) for q, values in pooled.items() if windows},
         quartiles={q: np.percentile(v, [25, 50, 75]) for q, v in pooled.items() if windows},
         reasons=tuple(
-            f"{missing.run}: {missing.reason}"
-            for missing in not_evaluated
-            if (missing.robot, missing.terrain) == (place.robot, place.terrain)
-            and missing.model in (model, "")
+            dict.fromkeys(
+                f"{missing.run}: {missing.reason}"
+                for missing in not_evaluated
+                if (missing.robot, missing.terrain) == (place.robot, place.terrain)
+                and missing.model in (model, "")
+            )
         ),
     )

@@ -58,7 +58,12 @@ def _print_errors(comparison: "Comparison") -> None:
 
 
 def _print_splits(comparison: "Comparison") -> None:
-    """Print on which runs the models were identified for which others."""
+    """Print on which runs the models were identified for which others, where any were."""
+    from odometry.comparison.candidates import AS_GIVEN
+
+    predictors = [p for each in comparison.split_models for p in each.predictors.values()]
+    if not any(p.covariance_order and AS_GIVEN not in p.notes for p in predictors):
+        return
     click.echo("Held out, and what the models were identified on for it:")
     for models in comparison.split_models:
         split = models.split

@@ -122,6 +122,19 @@ def test_the_parameters_it_writes_can_be_compared_again(runs, tmp_path):
     content = json.loads((second / "comparison.json").read_text())
     assert content["models"] == ["icr_symmetric"]
     assert not (second / "parameters").exists()
+    assert "what the models were identified on" not in answer.stdout  # nothing was
+
+
+def test_a_set_of_another_terrain_says_once_what_to_do(runs, tmp_path):
+    """The only run is held out by halves, and the reason is that of both."""
+    file = tmp_path / "ice.toml"
+    text = '[terrain.ice]\nmodel = "icr_symmetric"\nalpha = 1.0\nb_hat = 0.8\n'
+    file.write_text(text)
+    models = ("--model", file, "--model", "differential_drive")
+    answer = invoke(runs[0], *models, "--out", tmp_path / "out")
+    assert answer.exit_code == 0, answer.output
+    assert answer.stdout.count("the set has no terrain 'grass'; it has ice (rename the table") == 1
+    assert "not ranked, see below" in answer.stdout
 
 
 def test_a_run_without_poses_is_left_out_with_a_note(runs, tmp_path):
