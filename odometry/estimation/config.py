@@ -46,6 +46,8 @@ class IcrEkfConfig:
         them as given.
     use_gyroscope : bool
         Whether the gyroscope turns the robot where there is one; otherwise the treads do.
+    watch_sensors : bool
+        Whether spikes, stuck encoders and frozen poses are noticed, kept out and flagged.
     detect_jumps : bool
         Reset the ICR covariance where the innovations say that the ICRs jumped.
     jump_probability : float
@@ -79,6 +81,7 @@ class IcrEkfConfig:
     gate_patience: int = 10
     adapt_rate: float = 0.02
     use_gyroscope: bool = True
+    watch_sensors: bool = True
     detect_jumps: bool = False
     jump_probability: float = 0.999999
     jump_window: int = 10
@@ -115,4 +118,5 @@ PAPER = {
     "tail_probability": 1.0,
     "adapt_rate": 0.0,
     "use_gyroscope": False,
+    "watch_sensors": False,
 }  # settings with which the filter is that of Chen 2023: six states, poses alone, fixed noise

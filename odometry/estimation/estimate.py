@@ -10,6 +10,7 @@ from odometry.arrays import FloatArray
 from odometry.estimation.course import Course
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.noise_scale import NoiseScale
+from odometry.estimation.sensor_watch import SensorWatch
 from odometry.estimation.transition import ALPHA_LEFT, GYRO_BIAS, X_ICR, Y_LEFT
 from odometry.models.icr import icr_twist
 
@@ -103,6 +104,8 @@ class Estimate:
     course : Course or None
         The search for a heading that is not known yet: until it is found, the pose is dead
         reckoning from the first position, with a yaw that starts at 0.
+    watch : SensorWatch or None
+        What is remembered of the sensors; None where nobody watches them.
     events : tuple of FilterEvent
         What the filter noticed at this stamp.
     """
@@ -123,6 +126,7 @@ class Estimate:
     learned: Mapping[str, IcrBelief] = field(default_factory=dict)
     scale: NoiseScale = field(default_factory=NoiseScale)
     course: Course | None = None
+    watch: SensorWatch | None = None
     events: tuple[FilterEvent, ...] = ()
 
     @property

@@ -7,6 +7,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
+from odometry.estimation import sensor_watch
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.corrections import Correction
 from odometry.estimation.course import UNKNOWN_YAW_VARIANCE, Course
@@ -114,6 +115,9 @@ class IcrEkf:
         if self.config.use_gyroscope:
             covariance[GYRO_BIAS, GYRO_BIAS] = self.config.bias_sigma_rad_s**2
         added_speeds, added_twist = self._added(terrain, frame)
+        watch = None
+        if self.config.watch_sensors:
+            watch = sensor_watch.begun(frame, (mean, covariance))
         return Estimate(
             stamp_s=frame.stamp_s,
             mean=mean,
@@ -123,6 +127,7 @@ class IcrEkf:
             added_speeds_m_s=added_speeds,
             added_twist=added_twist,
             course=course,
+            watch=watch,
         )
 
     def step(self, estimate: Estimate, frame: Frame, terrain: str) -> Estimate:
@@ -140,33 +145,47 @@ class IcrEkf:
                 "their place)"
             )
         yaw_rate = frame.yaw_rate_rad_s if self.config.use_gyroscope else math.nan
-        belief = self._predicted(estimate, frame, yaw_rate)
+        watch, pose, speeds = estimate.watch, frame.pose, frame.tread_speeds_m_s
+        events: sensor_watch.Events = ()
+        if watch is None:
+            belief = self._predicted(estimate, frame, yaw_rate)
+        else:
+            held = estimate.tread_speeds_m_s
+            seen = sensor_watch.sensed(watch, frame, estimate.stamp_s, held, yaw_rate)
+            yaw_rate, pose = seen.yaw_rate_rad_s, seen.pose
+            belief = self._predicted(estimate, frame, yaw_rate)
+            was_stuck, scale = watch.treads.stuck >= 0, estimate.scale.slip
+            watch, speeds, events = sensor_watch.with_treads(seen, frame, held, belief, scale)
+            if frame.in_gap or watch.is_doubtful:
+                newly_stuck = watch.treads.stuck >= 0 and not was_stuck
+                belief = sensor_watch.parted(belief, watch, newly_stuck=newly_stuck)
         learned, recent = estimate.learned, estimate.recent
         if terrain != estimate.terrain:
             learned = {**learned, estimate.terrain: estimate.belief}
             belief, recent = self._switched(belief, learned, terrain), ()
         if frame.velocity is not None:
             belief = self._with_velocity(belief, estimate, frame, yaw_rate)
-        seen = self._pose_update.seen(estimate, belief, frame, recent)
+        after = self._pose_update.seen(estimate, belief, pose, frame, recent)
         added_speeds, added_twist = self._added(terrain, frame)
         return Estimate(
             stamp_s=frame.stamp_s,
-            mean=seen.mean,
-            covariance=seen.covariance,
-            tread_speeds_m_s=frame.tread_speeds_m_s,
+            mean=after.mean,
+            covariance=after.covariance,
+            tread_speeds_m_s=speeds,
             terrain=terrain,
             yaw_rate_rad_s=frame.yaw_rate_rad_s,
             believed_yaw_rate_rad_s=yaw_rate,
             added_speeds_m_s=added_speeds,
             added_twist=added_twist,
-            innovation=seen.innovation,
-            refused=seen.refused,
-            recent=seen.recent,
-            jumped=seen.jumped,
+            innovation=after.innovation,
+            refused=after.refused,
+            recent=after.recent,
+            jumped=after.jumped,
             learned=learned,
-            scale=seen.scale,
-            course=seen.course,
-            events=seen.events,
+            scale=after.scale,
+            course=after.course,
+            watch=watch,
+            events=events + after.events,
         )
 
     def _predicted(self, estimate: Estimate, frame: Frame, yaw_rate: float) -> Gaussian:
@@ -191,7 +210,8 @@ class IcrEkf:
             in_gap=frame.in_gap,
         )
         covariance = self._kalman.predicted(mean, jacobian, estimate.covariance, noise)
-        if by_gyroscope and step_s > 0 and not frame.in_gap:
+        doubtful = frame.in_gap or (estimate.watch is not None and estimate.watch.is_doubtful)
+        if by_gyroscope and step_s > 0 and not doubtful:
             return self._compared(mean, covariance, estimate, yaw_rate, step_s)
         return mean, covariance
 

@@ -28,7 +28,7 @@ def agree(refused: Sequence[FloatArray], pose_covariance: FloatArray) -> bool:
     scaled = np.array(alike) / (sigmas if len(last) == 3 else sigmas[: len(last)])
     most = MOST_APART * float(np.linalg.norm(scaled[-1])) + MOST_SIGMAS
     near = np.linalg.norm(scaled - scaled[-1], axis=1) <= most
-    return int(near.sum()) >= SHARE * len(refused)
+    return int(near.sum()) >= max(2.0, SHARE * len(refused))
 
 
 def started_anew(

@@ -76,6 +76,7 @@ class PoseUpdate:
         self,
         estimate: Estimate,
         belief: Gaussian,
+        pose: FloatArray | None,
         frame: Frame,
         recent: tuple[float, ...],
     ) -> Seen:
@@ -87,18 +88,20 @@ class PoseUpdate:
             The one before.
         belief : (9,), (9, 9)
             Mean and covariance at the stamp.
+        pose : (3,) or None
         frame : Frame
+            It came with.
         recent : tuple of float
             See `Estimate`; empty after a switch.
         """
-        if frame.pose is not None:
+        if pose is not None:
             scaled = self.covariance * estimate.scale.pose
             if estimate.course is not None:
                 found = searched(estimate.course, belief, frame, scaled, self.lever_m)
                 return self._nothing(estimate, found.belief, recent)._replace(
                     course=found.course, events=found.events
                 )
-            measured = pose_measurement(belief[0], frame.pose, scaled, self.lever_m)
+            measured = pose_measurement(belief[0], pose, scaled, self.lever_m)
             if len(measured.residual):
                 return self._taken(estimate, belief, measured, frame, recent)
         return self._nothing(estimate, belief, recent)
@@ -116,20 +119,21 @@ class PoseUpdate:
     ) -> Seen:
         mean, covariance, squared = self._kalman.updated(*belief, measured)
         size, scale = len(measured.residual), estimate.scale
-        if self.config.adapt_rate > 0:
-            scale = adapted(
-                scale, measured.residual, self._kalman.SI, squared, self.config.adapt_rate
-            )
         jumped, gate = False, self._gates[size]
+        accepted = squared <= gate
+        refused = () if accepted else (*estimate.refused, measured.residual)
+        # an outlier tells nothing of the noise; refused poses that agree tell that it is larger
+        if self.config.adapt_rate > 0 and (accepted or agree(refused[-2:], self.covariance)):
+            rate = self.config.adapt_rate
+            scale = adapted(scale, measured.residual, self._kalman.SI, squared, rate)
         if self.config.detect_jumps and size == 3:
             recent = (*recent, min(squared, gate))[-self.config.jump_window :]
             jumped = len(recent) == self.config.jump_window and sum(recent) > self._jump
             if jumped:
                 recent, belief = (), self._with_terrain_reset(belief)
-        accepted = squared <= gate
         innovation = Innovation(measured.residual, squared, accepted)
         if not accepted:
-            refused = (*estimate.refused, measured.residual)[-self.config.gate_patience :]
+            refused = refused[-self.config.gate_patience :]
             after = Seen(*belief, innovation, refused, recent, jumped, scale, None)
             if len(refused) < self.config.gate_patience or not agree(refused, self.covariance):
                 return after

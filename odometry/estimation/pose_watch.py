@@ -1,0 +1,97 @@
+"""Poses that stay away, or that stay the same while the robot moves."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.estimation.filter_event import FilterEvent
+
+OUTAGE_S, OUTAGE_PERIODS = 2.0, 10.0  # longer than both is an outage
+FROZEN_TRAVEL_M = 0.1  # of the wheels, or ...
+FROZEN_TURN_RAD = 0.1  # ... of the gyroscope, since a pose that is repeated to the last digit
+FROZEN_S = 1.0  # for an event; a pose or two that were written twice are none
+
+
+@dataclass(frozen=True, slots=True)
+class PoseWatch:
+    """What is remembered of the measured poses.
+
+    Attributes
+    ----------
+    pose : (3,) or None
+        The last one.
+    changed_s, seen_s, fresh_s : float
+        Stamps at which it came first and last, and of the last one that was used.
+    period_s : float
+        Usual time between poses; 0 before the second.
+    travel_m, turn_rad : float
+        Travel of the wheels and turn of the gyroscope since it came first.
+    """
+
+    pose: FloatArray | None = None
+    changed_s: float = math.nan
+    seen_s: float = math.nan
+    fresh_s: float = math.nan
+    period_s: float = 0.0
+    travel_m: float = 0.0
+    turn_rad: float = 0.0
+
+
+def moved(watch: PoseWatch, travel_m: float, turn_rad: float) -> PoseWatch:
+    """The watch after a step of the wheels and the gyroscope."""
+    return PoseWatch(
+        watch.pose,
+        watch.changed_s,
+        watch.seen_s,
+        watch.fresh_s,
+        watch.period_s,
+        watch.travel_m + travel_m,
+        watch.turn_rad + turn_rad,
+    )
+
+
+def watched(
+    watch: PoseWatch, pose: FloatArray, stamp_s: float
+) -> tuple[PoseWatch, bool, tuple[FilterEvent, ...]]:
+    """The watch after a measured pose, and whether that is to be used."""
+    if np.isnan(pose).all():
+        return watch, False, ()
+    if watch.pose is not None and np.array_equal(pose, watch.pose, equal_nan=True):
+        frozen = watch.travel_m > FROZEN_TRAVEL_M or abs(watch.turn_rad) > FROZEN_TURN_RAD
+        fresh_s = watch.fresh_s if frozen else stamp_s
+        after = PoseWatch(
+            pose,
+            watch.changed_s,
+            stamp_s,
+            fresh_s,
+            watch.period_s,
+            watch.travel_m,
+            watch.turn_rad,
+        )
+        return after, not frozen, ()
+    events: tuple[FilterEvent, ...] = ()
+    period_s = watch.period_s
+    if watch.pose is not None:
+        away_s = stamp_s - watch.seen_s
+        events = ongoing(watch, stamp_s)
+        if away_s <= max(OUTAGE_S, OUTAGE_PERIODS * period_s) or period_s == 0:
+            period_s = away_s if period_s == 0 else 0.9 * period_s + 0.1 * away_s
+    return PoseWatch(pose, stamp_s, stamp_s, stamp_s, period_s), True, events
+
+
+def ongoing(watch: PoseWatch, stamp_s: float) -> tuple[FilterEvent, ...]:
+    """Events of poses that were frozen, or that stay away at a stamp."""
+    found = []
+    if watch.seen_s - watch.fresh_s > FROZEN_S:
+        text = (
+            f"the poses stayed the same to the last digit while the wheels went "
+            f"{watch.travel_m:.2f} m: they were not used"
+        )
+        found.append(FilterEvent("frozen_poses", watch.changed_s, watch.seen_s, text))
+    away_s = stamp_s - watch.seen_s
+    if watch.period_s > 0 and away_s > max(OUTAGE_S, OUTAGE_PERIODS * watch.period_s):
+        text = f"no pose came for {away_s:.1f} s"
+        found.append(FilterEvent("pose_outage", watch.seen_s, stamp_s, text))
+    return tuple(found)

@@ -1,0 +1,173 @@
+"""All that a filter watches of its sensors from step to step."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from odometry.arrays import FloatArray
+from odometry.estimation import gyroscope_watch, pose_watch, tread_watch
+from odometry.estimation.filter_event import FilterEvent
+from odometry.estimation.gyroscope_watch import GyroscopeWatch
+from odometry.estimation.measurement import Gaussian
+from odometry.estimation.pose_watch import PoseWatch
+from odometry.estimation.tread_watch import TreadWatch
+from odometry.frames import Frame
+
+Events = tuple[FilterEvent, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SensorWatch:
+    """What is remembered of each sensor.
+
+    Attributes
+    ----------
+    treads : TreadWatch
+    gyroscope : GyroscopeWatch
+    poses : PoseWatch
+    gap_since_s : float
+        Stamp since when odometry has a gap; NaN where it has none.
+    """
+
+    treads: TreadWatch
+    gyroscope: GyroscopeWatch
+    poses: PoseWatch
+    gap_since_s: float = math.nan
+
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether a tread contradicts the rest, so that nothing is to be learned of the ICRs."""
+        return self.treads.stuck >= 0 or not math.isnan(self.treads.off_since_s)
+
+
+class Sensed(NamedTuple):
+    """What is believed of the sensors over a step, and from its end on.
+
+    Attributes
+    ----------
+    watch : SensorWatch
+    begin_s : float
+        Stamp of its beginning.
+    yaw_rate_rad_s : float
+        Over the step; NaN where the treads turn the robot.
+    pose : (3,) or None
+        At its end.
+    events : tuple of FilterEvent
+    """
+
+    watch: SensorWatch
+    begin_s: float
+    yaw_rate_rad_s: float
+    pose: FloatArray | None
+    events: Events
+
+
+def begun(frame: Frame, belief: Gaussian) -> SensorWatch:
+    """At the first frame."""
+    poses = PoseWatch()
+    if frame.pose is not None:
+        poses = pose_watch.watched(poses, frame.pose, frame.stamp_s)[0]
+    return SensorWatch(tread_watch.begun(frame, belief), GyroscopeWatch(), poses)
+
+
+def sensed(
+    watch: SensorWatch, frame: Frame, begin_s: float, speeds_m_s: FloatArray, yaw_rate: float
+) -> Sensed:
+    """Gyroscope and pose over the step that leads to a frame.
+
+    Parameters
+    ----------
+    watch : SensorWatch
+    frame : Frame
+    begin_s : float
+        Stamp of the beginning of the step.
+    speeds_m_s : (2,)
+        Tread speeds believed over it.
+    yaw_rate : float
+        Of the gyroscope over it, as recorded [rad/s]; NaN where there is none.
+    """
+    gyroscope, yaw_rate, events = gyroscope_watch.watched(
+        watch.gyroscope, yaw_rate, begin_s, frame.stamp_s
+    )
+    poses, pose = watch.poses, frame.pose
+    if poses.pose is not None:
+        step_s, (left, right) = frame.stamp_s - begin_s, speeds_m_s.tolist()
+        travel_m = (abs(left) + abs(right)) / 2 * step_s
+        turn_rad = yaw_rate * step_s
+        poses = pose_watch.moved(
+            poses,
+            0.0 if math.isnan(travel_m) else travel_m,
+            0.0 if math.isnan(turn_rad) else turn_rad,
+        )
+    if pose is not None:
+        poses, use, of_poses = pose_watch.watched(poses, pose, frame.stamp_s)
+        pose, events = pose if use else None, events + of_poses
+    gap_since_s = watch.gap_since_s
+    if frame.in_gap and math.isnan(gap_since_s):
+        gap_since_s = begin_s
+    elif not frame.in_gap and not math.isnan(gap_since_s):
+        events = (*events, _gap_event(gap_since_s, begin_s))
+        gap_since_s = math.nan
+    after = SensorWatch(watch.treads, gyroscope, poses, gap_since_s)
+    return Sensed(after, begin_s, yaw_rate, pose, events)
+
+
+def with_treads(
+    before: Sensed, frame: Frame, speeds_m_s: FloatArray, belief: Gaussian, slip_scale: float
+) -> tuple[SensorWatch, FloatArray, Events]:
+    """The watch, the speeds (2,) to believe from a frame on, and all events of the step to it.
+
+    Parameters
+    ----------
+    before : Sensed
+        Over the step.
+    frame : Frame
+    speeds_m_s : (2,)
+        Believed over it.
+    belief : (9,), (9, 9)
+        Predicted for its end.
+    slip_scale : float
+        Factor on the variance of slip: where treads slip much, none can be told to be stuck.
+    """
+    watch, yaw_rate = before.watch, before.yaw_rate_rad_s
+    treads = watch.treads
+    if not math.isnan(yaw_rate) and not frame.in_gap:
+        treads = tread_watch.contradicted(treads, frame.stamp_s, belief, yaw_rate, slip_scale)
+    step_s = frame.stamp_s - before.begin_s
+    treads, speeds_m_s, spikes = tread_watch.watched(treads, frame, step_s, speeds_m_s, belief)
+    treads, freed = tread_watch.freed(treads, frame.stamp_s)
+    if treads.stuck >= 0 and not math.isnan(speeds_m_s[0]):
+        speeds_m_s = tread_watch.with_implied(treads, speeds_m_s, belief, yaw_rate)
+    if treads is not watch.treads:
+        watch = SensorWatch(treads, watch.gyroscope, watch.poses, watch.gap_since_s)
+    return watch, speeds_m_s, before.events + spikes + freed
+
+
+def parted(belief: Gaussian, watch: SensorWatch, *, newly_stuck: bool) -> Gaussian:
+    """The belief whose pose says nothing of the rest, so that a pose teaches nothing.
+
+    Where a tread was found stuck, the rest is as it was before its reading stood still.
+    """
+    mean, covariance = belief[0].copy(), belief[1].copy()
+    if newly_stuck:
+        then_mean, then_covariance = watch.treads.before[watch.treads.stuck]
+        mean[3:], covariance[3:, 3:] = then_mean[3:], then_covariance[3:, 3:]
+    covariance[:3, 3:], covariance[3:, :3] = 0.0, 0.0
+    return mean, covariance
+
+
+def ongoing(watch: SensorWatch, stamp_s: float) -> Events:
+    """Events that have begun and not ended at the last stamp of a run."""
+    found: list[FilterEvent] = []
+    if not math.isnan(watch.gap_since_s):
+        found.append(_gap_event(watch.gap_since_s, stamp_s))
+    if watch.treads.stuck >= 0:
+        stuck = replace(watch.treads, same_since_s=(stamp_s, stamp_s))
+        found += tread_watch.freed(stuck, stamp_s)[1]
+    found += gyroscope_watch.ongoing(watch.gyroscope, stamp_s)
+    return (*found, *pose_watch.ongoing(watch.poses, stamp_s))
+
+
+def _gap_event(begin_s: float, end_s: float) -> FilterEvent:
+    text = "odometry has a gap: the speed before it was held, and nothing was learned of the ICRs"
+    return FilterEvent("odometry_gap", begin_s, end_s, text)
