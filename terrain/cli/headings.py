@@ -11,24 +11,38 @@ if TYPE_CHECKING:
 
 
 def with_turns(runs: "Sequence[Run]") -> "list[Run]":
-    """Runs with a yaw, found from positions where a gyroscope measured the turns; says so.
+    """Runs whose yaw was measured, or is found from positions and a gyroscope; says what was done.
+
+    Positions without yaw are left out where velocity.csv alone measured how the robot turned.
 
     Raises
     ------
     RunFolderError
         If neither a yaw nor a yaw rate was measured on a run that has positions.
     """
-    from odometry.errors import RunFolderError
-    from odometry.positions.heading import headed, needs_heading
+    return [_with_turns(run) for run in runs]
 
-    for run in runs:
-        if needs_heading(run) and run.yaw_rate is None:
-            raise RunFolderError(
-                f"{run.folder}: pose.csv has positions without yaw, and there is no gyroscope: how "
-                "the robot turned was not measured; expected yaw in pose.csv, or gyro_z in imu.csv "
-                "or odometry.csv"
-            )
-    found = headed(runs)
-    for note in found.notes:
-        click.echo(f"Note: {note}", err=True)
-    return list(found.runs)
+
+def _with_turns(run: "Run") -> "Run":
+    from dataclasses import replace
+
+    import numpy as np
+
+    from odometry.errors import RunFolderError
+    from odometry.positions.heading import found_heading, needs_heading
+
+    if not needs_heading(run):
+        return run
+    if run.yaw_rate is not None:
+        found = found_heading(run)
+        click.echo(f"Note: {found.words}", err=True)
+        return found.run
+    if run.velocity is not None and np.isfinite(run.velocity["wz"]).any():
+        click.echo(
+            f"Note: {run.folder}: pose.csv has positions without yaw and is not used", err=True
+        )
+        return replace(run, pose=None)
+    raise RunFolderError(
+        f"{run.folder}: pose.csv has positions without yaw, and no yaw rate was measured: how the "
+        "robot turned is not known; expected yaw in pose.csv, or gyro_z in imu.csv or odometry.csv"
+    )

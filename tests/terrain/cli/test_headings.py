@@ -1,0 +1,41 @@
+"""Positions without yaw before the verbs that watch how the robot turns."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from odometry.errors import RunFolderError
+from odometry.table import Table
+from terrain.cli.headings import with_turns
+from tests.odometry.positions_drives import drive, emptied
+
+
+def test_a_yaw_that_was_measured_is_left_alone():
+    run = drive(1, duration_s=20.0)
+    assert with_turns([run])[0] is run
+
+
+def test_with_a_gyroscope_it_is_found_and_said(capsys):
+    (found,) = with_turns([emptied(drive(2, duration_s=60.0, gyroscope=True))])
+    assert np.isfinite(found.pose["yaw"]).all()
+    assert "Note: run: yaw was not measured; it is found from positions" in capsys.readouterr().err
+
+
+def test_without_a_yaw_rate_it_is_refused():
+    with pytest.raises(RunFolderError, match="how the robot turned is not known"):
+        with_turns([emptied(drive(3, duration_s=20.0))])
+
+
+def test_a_yaw_rate_of_velocity_csv_does_without_positions(capsys):
+    rows = {
+        "t": np.arange(3.0),
+        "vx": np.full(3, np.nan),
+        "vy": np.full(3, np.nan),
+        "wz": np.ones(3),
+    }
+    velocity = Table(Path("velocity.csv"), rows, np.arange(3) + 2)
+    (found,) = with_turns([replace(emptied(drive(4, duration_s=20.0)), velocity=velocity)])
+    assert found.pose is None
+    assert "is not used" in capsys.readouterr().err
