@@ -39,18 +39,20 @@ def uncertainty_table(uncertainty: OdometerUncertainty) -> dict[str, Any]:
             }
             for distance_m, sigmas in uncertainty.sigmas.items()
         ],
-        "nees": [
-            {
-                "distance_m": check.distance_m,
-                "windows": check.windows,
-                "independent": check.independent,
-                "mean": check.mean,
-                "expected": DEGREES,
-                "bounds": check.bounds.tolist(),
-                "verdict": verdict(check),
-            }
-            for check in uncertainty.checks
-        ],
+        "nees": [_nees(check) for check in uncertainty.checks],
+        "nees_by_own_poses": [_nees(check) for check in uncertainty.own_checks],
+    }
+
+
+def _nees(check: OpenLoopConsistency) -> dict[str, Any]:
+    return {
+        "distance_m": check.distance_m,
+        "windows": check.windows,
+        "independent": check.independent,
+        "mean": check.mean,
+        "expected": DEGREES,
+        "bounds": check.bounds.tolist(),
+        "covariance_is": verdict(check),
     }
 
 

@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import numpy as np
+
 from odometry.effects.catalogue import added_effects
 from odometry.effects.corrected import Added
 from odometry.effects.measured import robot_run, shared_measurement
@@ -10,13 +12,14 @@ from odometry.estimation.corrections import corrections_of
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.evaluation.odometer_uncertainty import odometer_uncertainty
 from odometry.evaluation.score import reference_of, score
-from odometry.evaluation.withheld import TerrainsOf, withhold
+from odometry.evaluation.withheld import withhold
 from odometry.learned import learned_parameters
 from odometry.modes.mode_set import ModeSet
 from odometry.parameters import ParameterSet, read_parameters
 from odometry.pipeline import Estimator, TerrainSource, replay
 from odometry.replay import Replay
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
+from odometry.terrain_sources import NamedTerrain
 from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config
 from terrain.images_outside import add_images_outside
@@ -126,7 +129,9 @@ def _second_replay(
     withheld = withhold(run, float(first.stamps_s[0]), float(first.stamps_s[-1]))
     if withheld is None:
         return None
-    again = replay(withheld.run, estimator, TerrainsOf(first), show_progress=show_progress)
+    names = np.array(first.terrains, dtype=object)
+    source = NamedTerrain(first.terrains[0], first.stamps_s, names)
+    again = replay(withheld.run, estimator, source, show_progress=show_progress)
     return SecondReplay(withheld, again)
 
 

@@ -35,14 +35,19 @@ class OdometerUncertainty:
     source : str
         Where the covariance comes from, in words.
     checks : tuple of OpenLoopConsistency
-        NEES by distance; empty where nothing can judge.
+        NEES by distance against the truth, or of each half of the run by the noise of the other;
+        empty where nothing can judge.
+    own_checks : tuple of OpenLoopConsistency
+        Without a truth, NEES against the poses between which the noise was measured: it says
+        whether the sources can describe the run, not whether they foretell another one.
     """
 
     covariances: FloatArray
     sigmas: dict[float, FloatArray]
     noise: OdometerNoise | None
     source: str
-    checks: tuple[OpenLoopConsistency, ...]
+    checks: tuple[OpenLoopConsistency, ...] = ()
+    own_checks: tuple[OpenLoopConsistency, ...] = ()
 
 
 def odometer_uncertainty(
@@ -72,7 +77,6 @@ def odometer_uncertainty(
             None,
             "that of the filter, which took in no pose: its noise settings and what is known of "
             "the parameters",
-            (),
         )
     noise = measured_noise(path, rows, poses)
     if noise is None:
@@ -84,11 +88,15 @@ def odometer_uncertainty(
             "poses of the run"
         )
     covariances = path.carried(replay.estimates[0].covariance[:3, :3], noise.variances)
+    own = []
     if truth is not None:
         checks = open_loop_consistency(path, *_true_poses(replay, truth), noise.without_reference())
     else:
         checks = consistency_by_halves(path, rows, poses)
-    return OdometerUncertainty(covariances, _after(path, covariances), noise, source, tuple(checks))
+        own = open_loop_consistency(path, rows, poses, noise) if noise.stretches else []
+    return OdometerUncertainty(
+        covariances, _after(path, covariances), noise, source, tuple(checks), tuple(own)
+    )
 
 
 def path_of(replay: Replay) -> OpenLoopPath:

@@ -11,9 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.estimation.estimate import Estimate
-from odometry.frames import POSE_COLUMNS, Frame
-from odometry.replay import Replay
+from odometry.frames import POSE_COLUMNS
 from odometry.run import Run
 from odometry.trajectory import Trajectory
 
@@ -38,18 +36,6 @@ class Withheld:
     run: Run
     judged: Trajectory
     poses: int
-
-
-class TerrainsOf:
-    """The terrains that were in force in an earlier replay of the same frames."""
-
-    def __init__(self, replay: Replay) -> None:
-        self.initial: str = replay.terrains[0]
-        self._by_stamp = dict(zip(replay.stamps_s.tolist(), replay.terrains, strict=True))
-
-    def terrain(self, frame: Frame, estimate: Estimate) -> str:  # noqa: ARG002 - the protocol's
-        """What was in force at the stamp of the frame."""
-        return str(self._by_stamp[frame.stamp_s])
 
 
 def withhold(run: Run, begin_s: float, end_s: float) -> Withheld | None:

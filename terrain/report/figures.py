@@ -88,16 +88,17 @@ def distribution_picture(lines: ReportLines, folder: Path) -> Picture | None:
         name: np.degrees(errors.rotation_per_m[np.isfinite(errors.rotation_per_m)])
         for name, errors in relative.items()
     }
-
+    has_yaw = any(len(errors) for errors in rotation.values())
     height_in = 0.8 + 0.45 * len(relative)
 
     def draw(figure: Figure) -> None:
         bottom, height = 0.6 / height_in, 1 - 0.7 / height_in
-        left = figure.add_axes((0.29, bottom, 0.32, height))
-        right = figure.add_axes((0.66, bottom, 0.32, height))
+        left = figure.add_axes((0.29, bottom, 0.32 if has_yaw else 0.69, height))
         plot_error_distribution(left, translation, lines.styles(), "position [cm per m]")
-        plot_error_distribution(right, rotation, lines.styles(), "heading [degrees per m]")
-        right.set_yticklabels([])
+        if has_yaw:
+            right = figure.add_axes((0.66, bottom, 0.32, height))
+            plot_error_distribution(right, rotation, lines.styles(), "heading [degrees per m]")
+            right.set_yticklabels([])
 
     horizon_m = result.config.evaluation.horizon_m
     return Picture(
@@ -116,7 +117,7 @@ def icr_picture(lines: ReportLines, folder: Path) -> Picture:
         for row, name in enumerate(ICR_COORDINATES):
             axes = figure.add_axes((_LEFT, 0.69 - 0.305 * row, _RIGHT - _LEFT, 0.26))
             axes.set_xlim(float(stamps_s[0]), float(stamps_s[-1]))
-            plot_icr(axes, name, lines.icr_lines(row), lines.true_icr(name), lines.styles())
+            plot_icr(axes, name, lines.icr_lines(row), lines.true_icr(name), lines.icr_styles())
             mark_changes(axes, in_force(lines.result), names=row == 0)
             if row < len(ICR_COORDINATES) - 1:
                 axes.set_xticklabels([])

@@ -106,6 +106,11 @@ class ReportLines:
         references = dict.fromkeys(REFERENCE_NAMES.values(), REFERENCE_STYLE)
         return {**icrs, **styles, **references}
 
+    def icr_styles(self) -> dict[str, LineStyle]:
+        """The same, the estimate drawn as a solid line."""
+        styles = self.styles()
+        return styles | {ESTIMATE: styles[ODOMETER]}
+
     def _other_odometers(self) -> dict[str, Trajectory]:
         return {
             other_odometer(name): other.replay.odometer()

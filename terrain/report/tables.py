@@ -63,19 +63,22 @@ def uncertainty_grid(result: RunResult) -> Grid | None:
     """Standard deviations of the odometer by distance, and whether they are right."""
     of = result.uncertainty
     checks = {check.distance_m: check for check in of.checks}
+    own = {check.distance_m: f"{check.mean:.1f}" for check in of.own_checks}
     rows = [
         (
             f"{distance_m:g}",
             *(f"{sigma:.3f}" for sigma in (x, y)),
             f"{np.degrees(yaw):.2f}",
+            own.get(distance_m, NOTHING),
             *(_checked(checks[distance_m]) if distance_m in checks else [NOTHING] * 3),
         )
         for distance_m, (x, y, yaw) in of.sigmas.items()
     ]
     if not rows:
         return None
-    header = ("after [m]", "sigma x [m]", "sigma y [m]", "sigma yaw [°]", "NEES", "95% bounds")
-    return Grid((*header, "covariance is"), rows, f"The odometer's covariance: {of.source}.")
+    header = ("after [m]", "sigma x [m]", "sigma y [m]", "sigma yaw [°]")
+    checked = ("NEES by own poses", "NEES", "95% bounds", "covariance is")
+    return Grid((*header, *checked), rows, f"The odometer's covariance: {of.source}.")
 
 
 def switch_table(result: RunResult) -> Grid | None:

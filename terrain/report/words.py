@@ -67,7 +67,8 @@ def notes(lines: ReportLines) -> list[str]:
     if result.reference is not None and not np.isfinite(result.reference.poses[:, 2]).all():
         found.append(
             "Where the reference has no yaw, its heading at the start of a stretch is the one that "
-            f"best turns the {evaluation.horizon_m:g} m before and after onto its positions."
+            f"best turns the {evaluation.horizon_m:g} m before and after onto its positions. Where "
+            "the robot stays on the spot there is no such heading and no stretch."
         )
     if result.reference_name == "pose":
         found.append(
@@ -81,7 +82,8 @@ def notes(lines: ReportLines) -> list[str]:
             + (
                 "It is taken against the truth."
                 if result.reference_name == "truth"
-                else "Each half of the run is judged by the noise measured on the other half."
+                else "Each half of the run is judged by the noise measured on the other half; "
+                "by own poses means that the same poses measured the noise."
             )
         )
     if result.second is not None:

@@ -86,6 +86,20 @@ def test_noise_of_the_poses_is_not_taken_for_the_odometers(rng):
     assert sigma["random_x_per_m"] == pytest.approx(0.03, rel=0.35)
 
 
+def test_no_source_is_taken_to_be_absent(rng):
+    """A drive without any error along y: its variance is small, and not 0."""
+    count = 600
+    true = np.tile([STEP_M, 0.0, 0.0], (count, 1))
+    seen = true + rng.normal(size=(count, 3)) * [0.03 * np.sqrt(STEP_M), 0, 0]
+    metres = STEP_M * np.arange(count + 1)
+    found = measured_noise(
+        OpenLoopPath(chain(seen), metres, metres), np.arange(count + 1), chain(true)
+    )
+    by = dict(zip(SOURCES, found.variances, strict=True))
+    assert np.all(found.variances > 0)
+    assert by["random_y_per_m"] < by["random_x_per_m"] == pytest.approx(0.03**2, rel=0.5)
+
+
 def test_a_short_run_measures_nothing(rng):
     truth, path = drive(rng, 7.5)
     assert measured_noise(path, np.arange(len(truth)), truth) is None

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from odometry.estimation.icr_ekf import IcrEkf
-from odometry.evaluation.withheld import JUDGED_EVERY_S, SILENT_S, TerrainsOf, choose, withhold
+from odometry.evaluation.withheld import JUDGED_EVERY_S, SILENT_S, choose, withhold
 from odometry.pipeline import ConstantTerrain, replay
 from odometry.run import Run
 
@@ -87,18 +87,3 @@ def test_a_wrong_pose_that_is_withheld_changes_no_estimate(make_run):
     assert again.judged.poses[0, 0] == pytest.approx(found.judged.poses[0, 0] + 50)
     means = [replay(one.run, IcrEkf(0.5), ConstantTerrain("a")).means for one in (found, again)]
     np.testing.assert_array_equal(*means)
-
-
-def test_the_terrains_are_those_of_the_first_replay(make_run):
-    run = run_with(make_run, np.arange(0, 11, 0.5))
-
-    class Halves:
-        initial = "a"
-
-        def terrain(self, frame, estimate):  # noqa: ARG002 - the protocol's
-            return "a" if frame.stamp_s < 6 else "b"
-
-    first = replay(run, IcrEkf(0.5), Halves())
-    second = replay(withhold(run, 0.0, 12.0).run, IcrEkf(0.5), TerrainsOf(first))
-    assert second.terrains == first.terrains
-    np.testing.assert_array_equal(second.stamps_s, first.stamps_s)

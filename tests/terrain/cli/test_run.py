@@ -116,3 +116,21 @@ def test_a_wrong_input_is_a_known_error_before_anything_is_written(
     with pytest.raises(OdometryError, match=message):
         raise answer.exception
     assert not out.exists()
+
+
+def test_after_a_jump_of_the_poses_what_was_learned_is_not_recommended(world, tmp_path):
+    """From half-way on the reference is 2 m aside: the filter starts anew and says so."""
+    folder = world.drive_curves(tmp_path / "run")
+    header, *rows = (folder / "pose.csv").read_text().split()
+    lines = [header]
+    for row in rows:
+        t, x, y, yaw = (float(cell) for cell in row.split(","))
+        lines.append(f"{t},{x},{y + 2 * (t > 6)},{yaw}")
+    (folder / "pose.csv").write_text("\n".join(lines) + "\n")
+    answer = invoke(folder, "--out", tmp_path / "out")
+    assert answer.exit_code == 0, answer.output
+    events = content_of(tmp_path / "out")["filter"]["events"]
+    assert [event["kind"] for event in events] == ["reinitialised"]
+    assert "Note: " in answer.output
+    assert "it started anew there" in answer.output
+    assert "learned.toml is not recommended: " in answer.output

@@ -230,8 +230,8 @@ def test_the_uncertainty_of_the_odometer_is_listed(across_result, tmp_path):
     write_report(dataclasses.replace(across_result, uncertainty=of), tmp_path)
     read = Reader(tmp_path / "report.html")
     _, rows = read.table("NEES")
-    assert rows[0] == ["5", "0.100", "0.200", "3.00", "9.0", "1.7 to 4.7", "too small"]
-    assert rows[1][4:] == [NOTHING] * 3
+    assert rows[0] == ["5", "0.100", "0.200", "3.00", NOTHING, "9.0", "1.7 to 4.7", "too small"]
+    assert rows[1][4:] == [NOTHING] * 4
     assert "Each half of the run is judged by the noise measured on the other half" in read.text
 
 
@@ -307,3 +307,19 @@ def test_a_comparison_that_shares_no_time_is_not_judged(seen, curvy_run, tmp_pat
     _, rows = Reader(tmp_path / "report.html").table("trajectory")
     assert rows[-1][0] == "odometer, another day"
     assert set(rows[-1][1:-1]) == {NOTHING}
+
+
+def test_positions_without_yaw_have_no_box_of_heading_errors(world, tmp_path):
+    """The figure is of positions alone, and a note says how they are aligned."""
+    folder = world.drive_curves(tmp_path / "run")
+    header, *rows = (folder / "pose.csv").read_text().split()
+    lines = [header, *(row[: row.rindex(",") + 1] for row in rows)]
+    (folder / "pose.csv").write_text("\n".join(lines) + "\n")
+    result = dataclasses.replace(run_odometry(folder), config=SHORT)
+    written = write_report(result, tmp_path / "out")
+    assert tmp_path / "out" / "figures" / "error_per_metre.png" in written
+    read = Reader(tmp_path / "out" / "report.html")
+    header, rows = read.table("trajectory")
+    assert {row[header.index("heading, mean [°/m]")] for row in rows} == {NOTHING}
+    assert float(rows[0][header.index("position, mean [cm/m]")]) > 0
+    assert "Where the reference has no yaw" in read.text
