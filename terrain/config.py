@@ -1,6 +1,6 @@
 """Settings of a whole job, in blocks named after its steps."""
 
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -30,8 +30,14 @@ class Config:
     evaluation: EvaluationConfig = field(default_factory=EvaluationConfig)
 
     @classmethod
-    def read(cls, file: str | Path) -> "Config":
+    def read(cls, file: str | Path, base: "Config | None" = None) -> "Config":
         """Read `[filter]`, `[region]`, `[switch]` and `[evaluation]` of a TOML file.
+
+        Parameters
+        ----------
+        file : path
+        base : Config, optional
+            What the file does not set; by default the default settings.
 
         Raises
         ------
@@ -40,12 +46,17 @@ class Config:
         """
         content = read_toml(Path(file))
         kinds = {block.name: block.default_factory for block in fields(cls)}
+        base = base or cls()
         blocks: dict[str, Any] = {}
         for name, table in content.items():
             if name not in kinds or not isinstance(table, dict):
                 raise ConfigError(f"{file}: unknown block {name!r}; known: {', '.join(kinds)}")
-            blocks[name] = block_from_table(kinds[name], table, f"{file}: [{name}]")  # type: ignore[arg-type]
-        return cls(**blocks)
+            blocks[name] = block_from_table(
+                kinds[name],  # type: ignore[arg-type]
+                asdict(getattr(base, name)) | table,
+                f"{file}: [{name}]",
+            )
+        return replace(base, **blocks)
 
     def to_table(self) -> dict[str, dict[str, Any]]:
         """All settings as plain values, for `result.json`."""

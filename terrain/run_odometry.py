@@ -10,6 +10,7 @@ from odometry.effects.measured import robot_run, shared_measurement
 from odometry.errors import ParameterError
 from odometry.estimation.corrections import corrections_of
 from odometry.estimation.icr_ekf import IcrEkf
+from odometry.estimation.means_kept import MeansKept
 from odometry.evaluation.odometer_uncertainty import odometer_uncertainty
 from odometry.evaluation.score import reference_of, score
 from odometry.evaluation.withheld import withhold
@@ -20,10 +21,11 @@ from odometry.pipeline import Estimator, TerrainSource, replay
 from odometry.replay import Replay
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
 from odometry.terrain_sources import NamedTerrain
-from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.classifier import Classifier, TerrainClassifier
 from terrain.config import Config
 from terrain.images_outside import add_images_outside
 from terrain.judged import SecondReplay, judged_trajectories
+from terrain.run_presets import run_preset, with_preset
 from terrain.run_result import RunResult
 from terrain.sources import source_name, terrain_source
 from terrain.watcher import TerrainWatcher
@@ -41,6 +43,7 @@ def run_odometry(
     config: Config | None = None,
     source: str | TerrainSource | None = None,
     modes: ModeSet | str | Path | None = None,
+    preset: str | None = None,
     show_progress: bool = False,
 ) -> RunResult:
     """Replay a run with the ICR filter, its terrain told by the camera or another source.
@@ -64,33 +67,41 @@ def run_odometry(
         motion, by `modes`; nothing. By default the camera where there is a model, else nothing.
     modes : ModeSet or path, optional
         Made by `identify-modes`, for that source.
+    preset : {"chen2023"}, optional
+        A published system whole, see `terrain.run_presets`; `config` may set what it leaves open.
     show_progress : bool
         Whether to draw a bar on standard error.
 
     Raises
     ------
     OdometryError
-        If an input is not as its format says, or a model is given for a run without images.
+        If an input is not as its format says, a model is given for a run without images, or
+        something contradicts the preset.
     """
     run = run if isinstance(run, Run) else Run.read(run)
-    config = config or Config()
+    config = config or (run_preset(preset).config if preset else Config())
     if not isinstance(parameters, ParameterSet):
         parameters = read_parameters(parameters) if parameters else ParameterSet()
     initial = _initial_terrain(run, parameters, terrain)
     corrections = corrections_of(run, parameters)
     run = robot_run(run, _sensor_effects(parameters))
     lever_m = run.sensors.pose_m[:2] if run.sensors.pose_m else (0.0, 0.0)
-    estimator = IcrEkf(run.robot.track_width, parameters, config.filter, corrections, lever_m)
+    name, trained = _trained(model, source, vision=vision)
+    reader: Classifier | None = trained
+    if preset is not None:
+        config, reader = with_preset(
+            preset, run, config, source=name, model=trained, parameters=parameters
+        )
+    ekf = IcrEkf(run.robot.track_width, parameters, config.filter, corrections, lever_m)
+    estimator = ekf if preset is None else MeansKept(ekf)
     if isinstance(source, str | None):
-        name = source_name(source, vision=vision, has_model=model is not None)
-        classifier = _classifier(model) if name == "camera" else None
         source = terrain_source(
             run,
             name,
             config,
             initial=initial,
             terrain=terrain,
-            model=classifier,
+            model=reader,
             modes=modes,
             show_progress=show_progress,
         )
@@ -144,8 +155,19 @@ def _sensor_effects(parameters: ParameterSet) -> tuple[Added, ...]:
     )
 
 
-def _classifier(model: TerrainClassifier | str | Path | None) -> TerrainClassifier | None:
-    return TerrainClassifier.load(Path(model)) if isinstance(model, str | Path) else model
+def _trained(
+    model: TerrainClassifier | str | Path | None,
+    source: str | TerrainSource | None,
+    *,
+    vision: bool,
+) -> tuple[str, TerrainClassifier | None]:
+    """Which source is meant, and the classifier where that reads images."""
+    if not isinstance(source, str | None):
+        return "a source of your own", None
+    name = source_name(source, vision=vision, has_model=model is not None)
+    if name != "camera":
+        return name, None
+    return name, TerrainClassifier.load(Path(model)) if isinstance(model, str | Path) else model
 
 
 def _initial_terrain(run: Run, parameters: ParameterSet, terrain: str | None) -> str:

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from odometry.run_span import Span
 
 SOURCES = ("camera", "labels", "modes", "none")
+PRESETS = ("chen2023",)
 FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 FOLDER = click.Path(file_okay=False, path_type=Path)
 
@@ -31,6 +32,11 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
 @click.option(
     "--modes", metavar="SET.toml", type=FILE, help="Set of modes made by `identify-modes`."
 )
+@click.option(
+    "--preset",
+    type=click.Choice(PRESETS),
+    help="A published system whole; what contradicts it is an error.",
+)
 @click.option("--terrain", metavar="NAME", help="In force until the first switch.")
 @click.option("--config", type=FILE, help="Settings (TOML): [filter] [region] [switch] ...")
 @click.option("--per-tread", is_flag=True, help="Classify the terrain under each tread apart.")
@@ -45,6 +51,7 @@ def run(
     no_vision: bool,
     source: str | None,
     modes: Path | None,
+    preset: str | None,
     terrain: str | None,
     config: Path | None,
     per_tread: bool,
@@ -73,9 +80,12 @@ def run(
     from terrain.result_table import sighting_counts
     from terrain.results import write_results
     from terrain.run_odometry import run_odometry
+    from terrain.run_presets import run_preset
     from terrain.sources import source_name
 
-    settings = Config.read(config) if config else Config()
+    settings = run_preset(preset).config if preset else Config()
+    if config:
+        settings = Config.read(config, settings)
     if per_tread:
         settings = replace(settings, region=replace(settings.region, per_tread=True))
     if detect_jumps:
@@ -92,6 +102,7 @@ def run(
         config=settings,
         source=told_by,
         modes=modes,
+        preset=preset,
         show_progress=True,
     )
     for hint in hints(result, vision=reads_images or (source is None and not no_vision)):

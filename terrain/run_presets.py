@@ -1,0 +1,141 @@
+"""Whole systems by name: the settings of a paper, and what they contradict."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from odometry.errors import ConfigError
+from odometry.estimation.config import PAPER
+from odometry.parameters import ParameterSet
+from odometry.run import Run
+from terrain.camera import Camera
+from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.one_patch import OnePatchClassifier
+from terrain.config import Config
+from terrain.region import predict_region
+
+STRAIGHT = np.array([1.0, 0.0, 0.0])
+
+
+@dataclass(frozen=True)
+class RunPreset:
+    """A published system: what it fixes of the settings; the others stay free.
+
+    Attributes
+    ----------
+    source : str
+    fixed : Mapping of block to Mapping of key to value
+    model_preset : str
+        What the classifier has to be trained with.
+    """
+
+    source: str
+    fixed: Mapping[str, Mapping[str, Any]]
+    model_preset: str
+
+    @property
+    def config(self) -> Config:
+        """The default settings with the fixed ones."""
+        config = Config()
+        blocks = {name: replace(getattr(config, name), **of) for name, of in self.fixed.items()}
+        return replace(config, **blocks)
+
+
+RUN_PRESETS = {
+    "chen2023": RunPreset(
+        "Chen et al. 2023, 3.1 and 3.2",
+        {
+            # eq. 4-16: six states, poses alone, fixed noise, no gate
+            "filter": PAPER | {"gate_probability": 1.0, "detect_jumps": False},
+            "region": {"footprint_scale": 1.2, "per_tread": False},  # 3.2.2, eq. 22
+            "switch": {"labels_in_row": 2, "on_arrival": False},  # 3.2.3
+        },
+        "chen2023",  # eq. 18-26
+    )
+}
+
+
+def run_preset(name: str) -> RunPreset:
+    """The preset of a name.
+
+    Raises
+    ------
+    ConfigError
+        If there is none.
+    """
+    if name not in RUN_PRESETS:
+        raise ConfigError(f"preset {name!r} is not one of {', '.join(sorted(RUN_PRESETS))}")
+    return RUN_PRESETS[name]
+
+
+def with_preset(
+    name: str,
+    run: Run,
+    config: Config,
+    *,
+    source: str,
+    model: TerrainClassifier | None,
+    parameters: ParameterSet,
+) -> tuple[Config, OnePatchClassifier]:
+    """Settings and classifier of a published system on a run.
+
+    Parameters
+    ----------
+    name : str
+    run : Run
+    config : Config
+        With the fixed settings; others may differ from those of the preset.
+    source : str
+        What tells the terrain.
+    model : TerrainClassifier or None
+    parameters : ParameterSet
+
+    Raises
+    ------
+    ConfigError
+        If a fixed setting has another value, the terrain does not come from the camera, the model
+        was trained in another way, there is a parameter set, or no look-ahead time fits.
+    """
+    preset = run_preset(name)
+    where = f"preset {name} ({preset.source})"
+    for block, keys in preset.fixed.items():
+        for key, value in keys.items():
+            seen = getattr(getattr(config, block), key)
+            if seen != value:
+                raise ConfigError(f"{where} has [{block}] {key} = {value}, seen {seen}")
+    if source != "camera":
+        raise ConfigError(f"{where} is told the terrain by the camera (a model), seen {source!r}")
+    if model is None or model.preset != preset.model_preset or model.colour_:
+        raise ConfigError(
+            f"{where} needs a model of train --preset {preset.model_preset}, without colour; seen "
+            + ("none" if model is None else f"one of {model.preset!r}, colour {model.colour_}")
+        )
+    if parameters.terrains:
+        raise ConfigError(
+            f"{where} knows no parameter sets: on another terrain it goes on from the ICRs that it "
+            f"has; seen one of {', '.join(parameters.terrains)}"
+        )
+    return _with_look_ahead(config, run), OnePatchClassifier(model)
+
+
+def _with_look_ahead(config: Config, run: Run) -> Config:
+    """Settings with one look-ahead time t_s for all images, as the paper has (3.2.2).
+
+    The paper does not print its t_s. Unless [region] ahead_s gives one, it is the smallest after
+    which the image holds the whole region of a robot that drives straight on at the median speed
+    of the run.
+    """
+    if config.region.ahead_s > 0 or "camera" not in run.settings:
+        return config
+    camera = Camera.from_table(run.settings["camera"], str(run.folder / "run.toml"))
+    speeds_m_s = np.abs(run.odometry.stack("v_left", "v_right")).mean(axis=1)
+    speed_m_s = float(np.nanmedian(speeds_m_s[speeds_m_s > 0])) if np.any(speeds_m_s > 0) else 0.0
+    whole = replace(config.region, least_share=1.0)
+    region = predict_region(run.robot, camera, speed_m_s * STRAIGHT, speed_m_s, whole)
+    if isinstance(region, str):
+        raise ConfigError(
+            f"no look-ahead time t_s fits the camera: {region}; give [region] ahead_s"
+        )
+    return replace(config, region=replace(config.region, ahead_s=region.ahead_s))
