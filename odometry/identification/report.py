@@ -8,6 +8,7 @@ import numpy as np
 from odometry.effects.tables import effects_of
 from odometry.identification.fit import Fit
 from odometry.identification.identification import Identified
+from odometry.identification.short_recording import short_recording
 
 LEAST_CORRELATION = 0.3  # that is reported
 NO_HELD_OUT = (
@@ -27,7 +28,7 @@ def report(terrain: str, found: Identified) -> list[str]:
     pairs = correlations(fit)
     lines.append(f"  Correlations (none reported below {LEAST_CORRELATION:g})")
     lines += [f"    C({first}, {second}) = {value:+.2f}" for first, second, value in pairs]
-    lines += ["  Errors", *_columns(_errors(found))]
+    lines += ["  Errors", *_columns(_errors(found)), *short_recording(fit)]
     return [*lines, NO_HELD_OUT] if found.held_out is None else lines
 
 

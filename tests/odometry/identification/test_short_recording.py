@@ -1,0 +1,43 @@
+"""A short recording says what its intervals suppose."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.identification.identify import identify
+from odometry.identification.report import report
+from odometry.identification.short_recording import STEADY_S
+
+
+@pytest.fixture(scope="module")
+def found(winding, stated):
+    return identify([winding], "icr_symmetric", window_config=stated).grounds["gravel"]
+
+
+@pytest.mark.parametrize("below", [True, False])
+def test_the_time_of_all_windows_decides(found, below):
+    """Windows one after the other, and one of them twice: up to 20 s, and a window more."""
+    windows = found.fit.windows
+    ends_s = np.array([windows.steps_s[windows.first[0] : last].sum() for last in windows.last])
+    count = int(np.sum(ends_s < STEADY_S)) + (not below)
+    chosen = windows.where(np.arange(len(windows)) < count)
+    twice = replace(
+        chosen,
+        **{
+            name: np.append(getattr(chosen, name), getattr(chosen, name)[:1], axis=0)
+            for name in ("first", "last", "first_pose", "last_pose", "measured", "travel_m")
+        },
+    )
+    lines = report("gravel", replace(found, fit=replace(found.fit, windows=twice)))
+    said = [line for line in lines if "too short to show whether slip wanders" in line]
+    assert len(said) == below
+    assert not below or f"The windows last {ends_s[count - 1]:.0f} s in all" in said[0]
+
+
+def test_nothing_is_said_where_nothing_has_an_interval(found):
+    windows = found.fit.windows
+    few = windows.where(np.arange(len(windows)) < 2)
+    fit = replace(found.fit, windows=few, names=(), covariance=np.empty((0, 0)))
+    lines = report("gravel", replace(found, fit=replace(fit, freedom=np.empty(0))))
+    assert not any("slip wanders" in line for line in lines)
