@@ -94,6 +94,7 @@ def comparison_table(comparison: Comparison) -> dict[str, Any]:
             for each in comparison.fitness
         ],
         "left_out": dict(comparison.left_out),
+        "notes": list(comparison.notes),
     }
 
 

@@ -55,6 +55,7 @@ def content_of(result: GapResult) -> dict[str, Any]:
             }
             for rival in result.rivals
         ],
+        "notes": list(result.notes),
     }
 
 

@@ -136,5 +136,6 @@ def _rotation(comparison: Comparison, robot: str, folder: Path) -> Section:
 
 
 def _left_out(comparison: Comparison) -> list[Block]:
-    reasons = [f"Left out: {reason}." for reason in comparison.left_out.values()]
+    reasons = [f"Note: {note}." for note in comparison.notes]
+    reasons += [f"Left out: {reason}." for reason in comparison.left_out.values()]
     return [Listing(reasons)] if reasons else []

@@ -47,7 +47,7 @@ def write_gap_report(result: GapResult, out: Path) -> list[Path]:
     lead, *others = sentences(result)
     share = held_out_share(result)
     sections = [
-        Section("In words", [Paragraph(" ".join(others))]),
+        Section("In words", [Paragraph(" ".join([*others, *(f"{n}." for n in result.notes)]))]),
         Section(
             "The gap before and after",
             [closing_picture(result, folder), closing_grid(result, share)],

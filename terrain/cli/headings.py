@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 def with_turns(runs: "Sequence[Run]") -> "list[Run]":
     """Runs whose yaw was measured, or is found from positions and a gyroscope; says what was done.
 
+    Their poses are those of the robot: a lever arm of `[sensors]` is undone, and stated no more.
+
     Positions without yaw are left out where velocity.csv alone measured how the robot turned.
 
     Raises
@@ -20,7 +22,9 @@ def with_turns(runs: "Sequence[Run]") -> "list[Run]":
     RunFolderError
         If neither a yaw nor a yaw rate was measured on a run that has positions.
     """
-    return [_with_turns(run) for run in runs]
+    from odometry.effects.measured import robot_run
+
+    return [robot_run(_with_turns(run), ()) for run in runs]
 
 
 def _with_turns(run: "Run") -> "Run":

@@ -23,6 +23,12 @@ def test_with_a_gyroscope_it_is_found_and_said(capsys):
     assert "Note: run: yaw was not measured; it is found from positions" in capsys.readouterr().err
 
 
+def test_a_lever_arm_is_undone_and_stated_no_more():
+    (found,) = with_turns([drive(5, duration_s=20.0, arm_m=(0.5, 0.2))])
+    assert found.sensors.pose_m is None
+    np.testing.assert_allclose(found.pose["x"], drive(5, duration_s=20.0).pose["x"], atol=1e-9)
+
+
 def test_without_a_yaw_rate_it_is_refused():
     with pytest.raises(RunFolderError, match="how the robot turned is not known"):
         with_turns([emptied(drive(3, duration_s=20.0))])
