@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
+from odometry.evaluation.learning_errors import learning_covariances
 from odometry.evaluation.odometer_noise import USUAL_NOISE, OdometerNoise, measured_noise
 from odometry.evaluation.open_loop_consistency import (
     DISTANCES_M,
@@ -88,6 +89,7 @@ def odometer_uncertainty(
             "poses of the run"
         )
     covariances = path.carried(replay.estimates[0].covariance[:3, :3], noise.variances)
+    covariances += learning_covariances(replay, path)
     own = []
     if truth is not None:
         checks = open_loop_consistency(path, *_true_poses(replay, truth), noise.without_reference())

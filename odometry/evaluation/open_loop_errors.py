@@ -84,6 +84,33 @@ class OpenLoopPath:
         units = self.unit_covariances(first, last)
         return np.asarray(np.einsum("s,ksij->kij", variances, units))
 
+    def moved_by(self, errors: FloatArray) -> FloatArray:
+        """How far errors of its steps move each pose, to first order, in the frame of the path.
+
+        Parameters
+        ----------
+        errors : (N - 1, 3)
+            Along x, along y [m], of yaw [rad], in the robot frame at the middle of each step.
+
+        Returns
+        -------
+        (N, 3)
+        """
+        heading = self.poses[:-1, 2] + wrap(np.diff(self.poses[:, 2])) / 2
+        middle = (self.poses[1:, :2] + self.poses[:-1, :2]) / 2
+        cosine, sine = np.cos(heading), np.sin(heading)
+        aside = np.column_stack(
+            [
+                cosine * errors[:, 0] - sine * errors[:, 1] + middle[:, 1] * errors[:, 2],
+                sine * errors[:, 0] + cosine * errors[:, 1] - middle[:, 0] * errors[:, 2],
+                errors[:, 2],
+            ]
+        )
+        found = np.concatenate([np.zeros((1, 3)), np.cumsum(aside, axis=0)])
+        found[:, 0] -= self.poses[:, 1] * found[:, 2]
+        found[:, 1] += self.poses[:, 0] * found[:, 2]
+        return found
+
     def carried(self, start: FloatArray, variances: FloatArray) -> FloatArray:
         """Covariances (N, 3, 3) of all poses in the frame of the path.
 

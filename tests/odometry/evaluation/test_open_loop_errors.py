@@ -70,6 +70,17 @@ def test_every_source_is_what_errors_put_in_by_hand_make(steps, first, last):
     np.testing.assert_allclose(found, expected, atol=2e-4)
 
 
+def test_errors_of_steps_move_the_poses_after_them(steps, rng):
+    """Small errors in the middle of every step, against the path chained anew with them."""
+    moved, signed = steps
+    errors = rng.normal(0, STEP, moved.shape)
+    bent = np.array([with_error(*pair) for pair in zip(moved, errors, strict=True)])
+    path = path_of(moved, signed)
+    difference = chain(bent) - path.poses
+    difference[:, 2] = np.angle(np.exp(1j * difference[:, 2]))
+    np.testing.assert_allclose(path.moved_by(errors), difference, atol=2e-3 * STEP)
+
+
 def test_the_names_are_in_the_order_of_the_numbers():
     assert len(SOURCES) == 12
     assert SOURCES[:2] == ("random_x_per_m", "random_x_per_rad")
