@@ -9,10 +9,12 @@ from tqdm import tqdm
 
 from odometry.errors import RunFolderError
 from odometry.estimation.estimate import Estimate
+from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.heading_search import INITIAL_YAW
 from odometry.frames import Frame
 from odometry.replay import Replay
 from odometry.run import Run
+from odometry.run_end import run_end_events
 from odometry.windows.gaps import odometry_gaps
 
 LEAST_YAW_SIGMA_RAD = 0.1  # of a yaw found before the replay
@@ -51,7 +53,12 @@ class ConstantTerrain:
 
 
 def replay(
-    run: Run, estimator: Estimator, source: TerrainSource, *, show_progress: bool = False
+    run: Run,
+    estimator: Estimator,
+    source: TerrainSource,
+    *,
+    noticed: tuple[FilterEvent, ...] = (),
+    show_progress: bool = False,
 ) -> Replay:
     """Replay a run frame by frame, from its first usable position to the end of its odometry.
 
@@ -63,6 +70,8 @@ def replay(
     run : Run
     estimator : Estimator
     source : TerrainSource
+    noticed : tuple of FilterEvent
+        Of the run before the filter saw it, such as a delay of its poses.
     show_progress : bool
         Whether to draw a bar on standard error.
 
@@ -85,6 +94,9 @@ def replay(
     for frame in bar:
         terrain = source.terrain(frame, estimates[-1])
         estimates.append(estimator.step(estimates[-1], frame, terrain))
+    estimates[0] = replace(estimates[0], events=(*noticed, *estimates[0].events))
+    ended = run_end_events(run, Replay(tuple(estimates)))
+    estimates[-1] = replace(estimates[-1], events=(*estimates[-1].events, *ended))
     return Replay(tuple(estimates))
 
 

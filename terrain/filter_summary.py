@@ -9,7 +9,17 @@ from odometry.estimation.heading_search import INITIAL_YAW
 from odometry.estimation.transition import GYRO_BIAS
 from odometry.replay import Replay
 
-HARMLESS = {INITIAL_YAW}  # kinds of events after which the filter may be believed all the same
+HARMLESS = {  # kinds of events after which the filter may be believed all the same
+    INITIAL_YAW,
+    "gyroscope_bias",
+    "gyroscope_silence",
+    "gyroscope_spike",
+    "late_poses",
+    "odometry_gap",
+    "pose_outage",
+    "refused_poses",
+    "tread_spike",
+}
 
 
 def filter_table(replay: Replay) -> dict[str, Any]:

@@ -18,6 +18,7 @@ from odometry.learned import learned_parameters
 from odometry.modes.mode_set import ModeSet
 from odometry.parameters import ParameterSet, read_parameters
 from odometry.pipeline import Estimator, TerrainSource, replay
+from odometry.pose_delay import without_pose_delay
 from odometry.replay import Replay
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
 from odometry.terrain_sources import NamedTerrain
@@ -85,6 +86,7 @@ def run_odometry(
     initial = _initial_terrain(run, parameters, terrain)
     corrections = corrections_of(run, parameters)
     run = robot_run(run, _sensor_effects(parameters))
+    run, noticed = without_pose_delay(run, config.filter)
     lever_m = run.sensors.pose_m[:2] if run.sensors.pose_m else (0.0, 0.0)
     name, trained = _trained(model, source, vision=vision)
     reader: Classifier | None = trained
@@ -106,7 +108,7 @@ def run_odometry(
             show_progress=show_progress,
         )
     watcher = source if isinstance(source, TerrainWatcher) else None
-    result = replay(run, estimator, source, show_progress=show_progress)
+    result = replay(run, estimator, source, noticed=noticed, show_progress=show_progress)
     if watcher is not None and run.images is not None:
         add_images_outside(watcher, run, run.images, result)
     reference_name, reference = reference_of(run) or ("", None)

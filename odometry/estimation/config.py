@@ -15,6 +15,9 @@ class IcrEkfConfig:
         Standard deviation of a measured pose.
     velocity_sigma_m_s, yaw_rate_sigma_rad_s : float
         Standard deviation of a measured velocity.
+    pose_delay_s : float
+        By how much the stamps of pose.csv are late; with 0 a delay is searched for, and believed
+        where it is certain.
     position_noise, yaw_noise : float
         Process noise of the pose, standard deviation per square root of second: m, rad. A
         gyroscope has `gyro_noise` in place of `yaw_noise`.
@@ -64,6 +67,7 @@ class IcrEkfConfig:
 
     position_sigma_m: float = 0.05
     yaw_sigma_rad: float = 0.05
+    pose_delay_s: float = 0.0
     velocity_sigma_m_s: float = 0.05
     yaw_rate_sigma_rad_s: float = 0.02
     position_noise: float = 0.01
@@ -90,6 +94,7 @@ class IcrEkfConfig:
         positive = ("position_sigma_m", "yaw_sigma_rad", "velocity_sigma_m_s")
         require_positive(self, *positive, "yaw_rate_sigma_rad_s", "reset_sigma_widths")
         for name in (
+            "pose_delay_s",
             "position_noise",
             "yaw_noise",
             "slip_noise",

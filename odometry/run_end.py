@@ -1,0 +1,91 @@
+"""What is to be said of a filter once its run has ended."""
+
+import numpy as np
+
+from odometry.estimation.estimate import Estimate
+from odometry.estimation.filter_event import FilterEvent
+from odometry.estimation.sensor_watch import ongoing
+from odometry.estimation.transition import GYRO_BIAS
+from odometry.replay import Replay
+from odometry.run import Run
+
+REFUSED_SHARE = 0.03  # of the poses; fewer are usual
+LAST_POSES = 20  # whose median distance tells where a trajectory ends
+BIAS_RAD_S, BIAS_SIGMAS = 0.005, 4.0  # 0.3 degrees per second
+DRIFT_RAD_S = 0.01
+KNOWN_BIAS_RAD_S = 0.005  # standard deviation from which on the bias is one that was found
+
+
+def run_end_events(run: Run, replay: Replay) -> tuple[FilterEvent, ...]:
+    """Events that last at the end, and what only the whole run tells."""
+    last = replay.estimates[-1]
+    found = list(ongoing(last.watch, last.stamp_s)) if last.watch is not None else []
+    found += _heading(last)
+    found += _refused(replay)
+    found += _bias(replay)
+    found += _off_at_end(run, replay)
+    return tuple(found)
+
+
+def _heading(last: Estimate) -> list[FilterEvent]:
+    if last.course is None:
+        return []
+    text = (
+        "the heading cannot be told: no yaw is measured, and the course of the "
+        f"{last.course.count} positions over {last.course.travel_m:.1f} m of dead reckoning does "
+        "not tell it; the estimate begins at the first position with a yaw of 0"
+    )
+    return [FilterEvent("heading_unknown", last.course.begin_s, last.stamp_s, text)]
+
+
+def _refused(replay: Replay) -> list[FilterEvent]:
+    accepted = [e.innovation.accepted for e in replay.estimates if e.innovation is not None]
+    refused = accepted.count(False)
+    if refused <= REFUSED_SHARE * len(accepted):
+        return []
+    begin_s, end_s = replay.stamps_s[[0, -1]].tolist()
+    text = f"{refused} of {len(accepted)} poses were refused as outliers"
+    return [FilterEvent("refused_poses", begin_s, end_s, text)]
+
+
+def _bias(replay: Replay) -> list[FilterEvent]:
+    """A bias of the gyroscope that is clearly none of zero, and one that drifts."""
+    biases, sigmas = replay.means[:, GYRO_BIAS], replay.sigmas[:, GYRO_BIAS]
+    known = np.flatnonzero((sigmas > 0) & (sigmas < KNOWN_BIAS_RAD_S))
+    if not len(known):
+        return []
+    bias, sigma = float(biases[-1]), float(sigmas[-1])
+    least, most = float(biases[known].min()), float(biases[known].max())
+    begin_s, end_s = float(replay.stamps_s[known[0]]), float(replay.stamps_s[-1])
+    if most - least > DRIFT_RAD_S:
+        text = f"the bias of the gyroscope drifted between {least:.4f} and {most:.4f} rad/s"
+        return [FilterEvent("gyroscope_drift", begin_s, end_s, text)]
+    if abs(bias) > max(BIAS_RAD_S, BIAS_SIGMAS * sigma):
+        text = f"the gyroscope has a bias of {bias:.4f} +- {sigma:.4f} rad/s: it was removed"
+        return [FilterEvent("gyroscope_bias", begin_s, end_s, text)]
+    return []
+
+
+def _off_at_end(run: Run, replay: Replay) -> list[FilterEvent]:
+    """The estimate ends farther from the poses than the ideal drive, which learns nothing."""
+    if run.pose is None or replay.estimates[-1].course is not None:
+        return []
+    measured = run.pose.stack("x", "y")
+    stamps_s = run.pose.stamps_s
+    estimate = replay.trajectory()
+    usable = np.isfinite(measured).all(axis=1) & estimate.covers(stamps_s)
+    last = np.flatnonzero(usable)[-LAST_POSES:]
+    if len(last) < LAST_POSES:
+        return []
+    ideal = replay.differential_drive(run.robot.track_width)
+    ours_m, ideal_m = (
+        float(np.median(np.hypot(*(one.at(stamps_s[last]).poses[:, :2] - measured[last]).T)))
+        for one in (estimate, ideal)
+    )
+    if ours_m <= ideal_m:
+        return []
+    text = (
+        f"the estimate ends {ours_m:.2f} m from the last {LAST_POSES} poses, the ideal drive "
+        f"{ideal_m:.2f} m: do not trust the estimate at the end of this run"
+    )
+    return [FilterEvent("off_at_end", float(stamps_s[last[0]]), float(replay.stamps_s[-1]), text)]

@@ -1,0 +1,66 @@
+"""Poses whose stamps are late: moved where it is certain, left alone where it is not."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from odometry.estimation.config import IcrEkfConfig
+from odometry.pose_delay import without_pose_delay
+from odometry.run import Robot, Run
+from odometry.table import Table
+from tests.odometry.estimation.sensor_drives import WIDTH, drive
+
+
+def table(name, **columns):
+    return Table(Path(name), columns, np.arange(len(columns["t"])) + 2)
+
+
+def run_of(late_s, *, with_gyroscope=True):
+    """Two minutes of turning, stamps of the poses so many seconds late."""
+    driven = drive(120.0)
+    t, (left, right) = driven.stamps_s, driven.speeds_m_s.T
+    columns = {"t": t, "v_left": left, "v_right": right}
+    if with_gyroscope:
+        columns["gyro_z"] = np.append(driven.yaw_rates_rad_s[1:], driven.yaw_rates_rad_s[-1])
+    x, y, yaw = driven.poses.T
+    noise = np.random.default_rng(1).normal(0, 0.003, len(t))
+    pose = table("pose.csv", t=t + late_s, x=x, y=y, yaw=yaw + noise)
+    return Run(Path("run"), Robot(WIDTH), {}, table("odometry.csv", **columns), pose)
+
+
+@pytest.mark.parametrize("late_s", [0.3, 0.6])
+def test_a_long_delay_is_found_and_undone(late_s):
+    run, (event,) = without_pose_delay(run_of(late_s), IcrEkfConfig())
+    assert event.kind == "late_poses"
+    assert event.values[0] == pytest.approx(late_s, abs=0.06)
+    np.testing.assert_allclose(run.pose.stamps_s, run_of(0.0).pose.stamps_s, atol=0.06)
+
+
+@pytest.mark.parametrize("late_s", [-0.4, 0.0, 0.1])
+def test_what_is_not_certain_is_left_alone(late_s):
+    """Early poses have another cause, and short delays cannot be told."""
+    given = run_of(late_s)
+    run, events = without_pose_delay(given, IcrEkfConfig())
+    assert run is given
+    assert events == ()
+
+
+def test_without_a_gyroscope_late_poses_cannot_be_told_from_early_treads():
+    given = run_of(0.5, with_gyroscope=False)
+    assert without_pose_delay(given, IcrEkfConfig()) == (given, ())
+
+
+def test_nobody_searches_for_it_where_nobody_watches():
+    given = run_of(0.5)
+    assert without_pose_delay(given, IcrEkfConfig(watch_sensors=False)) == (given, ())
+
+
+def test_a_delay_that_is_given_is_taken():
+    given = run_of(0.1)
+    run, (event,) = without_pose_delay(given, IcrEkfConfig(pose_delay_s=0.1))
+    np.testing.assert_allclose(run.pose.stamps_s, given.pose.stamps_s - 0.1)
+    assert "as given" in event.text
+    alone = replace(given, pose=None)
+    assert without_pose_delay(alone, IcrEkfConfig(pose_delay_s=0.1)) == (alone, ())
