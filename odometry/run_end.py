@@ -4,6 +4,7 @@ import numpy as np
 
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.filter_event import FilterEvent
+from odometry.estimation.new_start import REINITIALISED
 from odometry.estimation.sensor_watch import ongoing
 from odometry.estimation.transition import GYRO_BIAS
 from odometry.replay import Replay
@@ -39,8 +40,10 @@ def _heading(last: Estimate) -> list[FilterEvent]:
 
 
 def _refused(replay: Replay) -> list[FilterEvent]:
+    """Refusals that did not end with a new start."""
     accepted = [e.innovation.accepted for e in replay.estimates if e.innovation is not None]
-    refused = accepted.count(False)
+    anew = [event for event in replay.events if event.kind == REINITIALISED]
+    refused = accepted.count(False) - int(sum(event.values[0] for event in anew))
     if refused <= REFUSED_SHARE * len(accepted):
         return []
     begin_s, end_s = replay.stamps_s[[0, -1]].tolist()

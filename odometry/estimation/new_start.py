@@ -13,6 +13,7 @@ from odometry.estimation.transition import STATES, YAW
 MOST_APART = 0.4  # of the last residual: refused poses that agree lie no farther from it
 MOST_SIGMAS = 4.0
 SHARE = 0.6  # of the refused poses that must agree with the last
+REINITIALISED = "reinitialised"  # kind of the event, whose value is the number of refused poses
 LOST_YAW_RAD = 0.2  # how far the yaw may be off where positions alone were refused
 
 
@@ -56,10 +57,11 @@ def new_start_event(refused: Sequence[FloatArray], stamp_s: float) -> FilterEven
     if len(last) != 2:
         parts.append(f"{math.degrees(abs(last[-1])):.1f} degrees")
     return FilterEvent(
-        "reinitialised",
+        REINITIALISED,
         stamp_s,
         stamp_s,
         f"{len(refused)} poses in a row were refused and agreed with each other, "
         f"{' and '.join(parts)} from the filter: it started anew there (the poses jumped, or "
         "treads and gyroscope lost their way)",
+        (float(len(refused)),),
     )
