@@ -1,5 +1,6 @@
 """Estimates at every frame of a run, and the trajectories that follow from them."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -74,15 +75,21 @@ class Replay:
         """Whether a gyroscope told a yaw rate anywhere."""
         return bool(np.isfinite(self.yaw_rates_rad_s).any())
 
+    @property
+    def used_gyroscope(self) -> bool:
+        """Whether a gyroscope turned the robot anywhere: settings may tell the filter not to."""
+        return any(math.isfinite(each.believed_yaw_rate_rad_s) for each in self.estimates)
+
     def open_loop(self, track_width: float) -> dict[str, Trajectory]:
         """All trajectories that no pose corrects, the simplest first.
 
-        `differential_drive` and `odometer`; where there is a gyroscope, also `gyroscope` and
-        `odometer_without_gyroscope`.
+        `differential_drive` and `odometer`; where there is a gyroscope, also `gyroscope`, and
+        where the filter used it, `odometer_without_gyroscope`.
         """
         found = {"differential_drive": self.differential_drive(track_width)}
         if self.has_gyroscope:
             found["gyroscope"] = self.gyroscope(track_width)
+        if self.used_gyroscope:
             found["odometer_without_gyroscope"] = self.odometer_without_gyroscope()
         return found | {"odometer": self.odometer()}
 

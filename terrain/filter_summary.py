@@ -33,9 +33,9 @@ def filter_table(replay: Replay) -> dict[str, Any]:
         "poses_refused": sum(not innovation.accepted for innovation in innovations),
         "median_normalised_innovation_squared": float(np.median(squared)) if squared else None,
         "jumps_s": replay.stamps_s[replay.jumps].tolist(),
-        "gyro_bias_rad_s": float(last.mean[GYRO_BIAS]) if replay.has_gyroscope else None,
+        "gyro_bias_rad_s": float(last.mean[GYRO_BIAS]) if replay.used_gyroscope else None,
         "sigma_gyro_bias_rad_s": (
-            float(replay.sigmas[-1, GYRO_BIAS]) if replay.has_gyroscope else None
+            float(replay.sigmas[-1, GYRO_BIAS]) if replay.used_gyroscope else None
         ),
         "initial_yaw": None if yaw is None else {"yaw_rad": yaw[0], "sigma_rad": yaw[1]},
         "events": [

@@ -3,7 +3,8 @@
 Every JUDGED_EVERY_S one pose is judged, and no pose of the last SILENT_S before it is given to the
 filter either: poses that follow one another closely err alike, and an estimate that has just taken
 one in would be judged by its noise alone. What is judged is thus the estimate SILENT_S after its
-last pose, or one period of the poses after it where they are sparser.
+last pose, or one period of the poses after it where they are sparser. A delay of the poses is found
+and undone before, by all of them.
 """
 
 from dataclasses import dataclass, replace

@@ -11,6 +11,7 @@ from terrain.watcher import Sighting
 
 MANY_REFUSED = 0.1
 FEW_EVENTS = 10
+REFUSED_POSES = "refused_poses"  # kind of an event that says the same
 
 
 def hints(result: RunResult, *, vision: bool) -> list[str]:
@@ -30,10 +31,12 @@ def hints(result: RunResult, *, vision: bool) -> list[str]:
         ]
     if result.watcher is not None:
         found += _blind(result.watcher.sightings)
-    found += _events(result.replay.events)
     innovations = [e.innovation for e in result.replay.estimates if e.innovation is not None]
     refused = sum(not innovation.accepted for innovation in innovations)
-    if refused > MANY_REFUSED * len(innovations):
+    many = refused > MANY_REFUSED * len(innovations)
+    events = [e for e in result.replay.events if not (many and e.kind == REFUSED_POSES)]
+    found += _events(events)
+    if many:
         found.append(
             f"the filter refused {refused} of {len(innovations)} poses: units of pose.csv or "
             "odometry.csv, jumps of the reference, or noise settings ([filter] of --config)?"

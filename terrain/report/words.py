@@ -103,11 +103,19 @@ def notes(lines: ReportLines) -> list[str]:
 def _gyroscope_notes(result: RunResult) -> list[str]:
     if not result.replay.has_gyroscope:
         return [NO_GYROSCOPE]
+    plain = (
+        "The gyroscope row drives the mean of both tread speeds along the heading of the "
+        "gyroscope as recorded: nothing is fitted."
+    )
+    if not result.replay.used_gyroscope:
+        return [
+            plain,
+            "The filter did not use the gyroscope: the odometer is turned by the treads.",
+        ]
     return [
+        plain,
         "Where the gyroscope tells the yaw rate, the odometer is turned by it, less the bias that "
         "the filter held; the odometer without gyroscope is turned by the treads.",
-        "The gyroscope row drives the mean of both tread speeds along the heading of the "
-        "gyroscope as recorded: nothing is fitted.",
     ]
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import OdometryError, ParameterError, RunFolderError
+from odometry.estimation.config import IcrEkfConfig
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
 from odometry.run import Run
 from terrain.config import Config
@@ -200,6 +201,13 @@ def test_a_gyroscope_adds_its_rows_and_they_stand_side_by_side(tmp_path, world):
         result.scores["odometer"].final_position_m
         < result.scores["differential_drive"].final_position_m
     )
+
+
+def test_a_filter_that_may_not_use_the_gyroscope_has_one_odometer(tmp_path, world):
+    folder = with_gyroscope(world.drive_curves(tmp_path / "run", truth=True))
+    config = Config(filter=IcrEkfConfig(use_gyroscope=False))
+    result = run_odometry(folder, config=config)
+    assert list(result.scores) == ["differential_drive", "gyroscope", "odometer", "estimate"]
 
 
 def test_the_second_replay_sees_the_withheld_poses_no_more_than_the_first_saw_a_truth(
