@@ -120,7 +120,7 @@ def _place_names(place: Place) -> dict[str, Any]:
     return {
         "robot": place.robot,
         "terrain": place.terrain,
-        "ground": place.terrain,  # its name before 0.6
+        "ground": place.terrain,  # its name up to 0.5
         "horizon_m": place.horizon_m,
     }
 

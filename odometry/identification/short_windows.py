@@ -14,7 +14,7 @@ from odometry.windows.left_out import (
 from odometry.windows.stretches import Stretches
 from odometry.windows.windows import Windows
 
-FEW = 0.1  # share of the windows that may be shorter without a word
+FEW = 0.5  # share of the windows that may be shorter without a word
 WHY = {
     CHANGE_OF_WINDOW: "`window` of pose.csv changes that often: its poses are chained in short "
     "stretches, and the motion from one to the next is less certain",

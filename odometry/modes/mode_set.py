@@ -114,7 +114,10 @@ def read_mode_set(file: Path) -> ModeSet:
     content = read_toml(Path(file), ParameterError)
     head, tables = content.get("modes"), content.get("mode")
     if not isinstance(head, dict) or head.get("kind") not in list(KINDS):
-        raise ParameterError(f"{file}: expected [modes] with kind = one of {', '.join(KINDS)}")
+        kinds = ", ".join(KINDS)
+        raise ParameterError(
+            f"{file}: expected [modes] with kind = one of {kinds}: a set that `identify-modes` made"
+        )
     if not isinstance(tables, dict) or not tables:
         raise ParameterError(f"{file}: expected a table [mode.NAME] for each mode")
     kind, where = head["kind"], f"{file}: [modes]"

@@ -167,5 +167,5 @@ def _next(identified: "ParameterSet", out: Path, terrain: str | None) -> str:
         f"--model {out} --model differential_drive --out comparison"
     )
     if all(table.model in ICR_FORM_MODELS for table in identified.terrains.values()):
-        said += f"\nor:   terrain-odometry run RUN --parameters {out} --out results"
+        said += f"\nor:   terrain-odometry run RUN{named} --parameters {out} --out results"
     return said

@@ -190,6 +190,7 @@ def _print_alike(found: "tuple[Pair, ...]") -> None:
         words = "answer alike" if alike else "are the most alike"
         digits = 0 if pair.seconds >= 10 else 1
         time = f"about {pair.seconds:.{digits}f} s" if pair.seconds < 1e4 else "for ever"
+        time = "less than 0.1 s" if pair.seconds < 0.1 else time
         click.echo(f"{both} {words}: driven as in these runs they take {time} to be told apart.")
     if len(alike) > PAIRS:
         click.echo(f"So do {len(alike) - PAIRS} further pairs (more than {ALIKE_S:g} s).")

@@ -133,7 +133,9 @@ def test_known_parameters_can_be_freed(command, curvy_run):
 
 
 def test_the_ground_can_be_named(command, curvy_run):
-    assert command(curvy_run, *SHORT, "--terrain", "wet grass")[0] == 0
+    code, output, _ = command(curvy_run, *SHORT, "--terrain", "wet grass")
+    assert code == 0
+    assert output.count("RUN --terrain 'wet grass' --") == 2  # to compare on, and to run
     assert list(read_parameters(command.out).terrains) == ["wet grass"]
 
 

@@ -6,8 +6,9 @@ from click.testing import CliRunner
 
 from odometry.errors import OdometryError
 from odometry.io.run_folder import write_run_folder
+from odometry.modes.alike import Pair
 from odometry.modes.mode_set import read_mode_set
-from terrain.cli.identify_modes import identify_modes
+from terrain.cli.identify_modes import _print_alike, identify_modes
 from tests.odometry.modes.mode_drives import asked_twists
 from tests.odometry.modes.mode_examples import run_of
 
@@ -133,3 +134,17 @@ def test_runs_that_cannot_be_used_are_told(make, out, settings, kind, message):
     with pytest.raises(OdometryError, match=message):
         raise answer.exception
     assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [
+        (0.01, "are the most alike: driven as in these runs they take less than 0.1 s"),
+        (0.52, "are the most alike: driven as in these runs they take about 0.5 s"),
+        (40.0, "answer alike: driven as in these runs they take about 40 s"),
+        (1e9, "answer alike: driven as in these runs they take for ever"),
+    ],
+)
+def test_the_time_to_tell_two_modes_apart_is_said(capsys, seconds, words):
+    _print_alike((Pair(("ice", "sand"), seconds),))
+    assert capsys.readouterr().out == f"ice and sand {words} to be told apart.\n"
