@@ -16,7 +16,7 @@ from terrain.shown import is_shown, largest_shown
 
 __all__ = ["Rectangle", "Region", "RegionConfig", "predict_region"]
 
-STEPS = 300  # places tried along the predicted motion
+STEPS = 200  # places tried along the predicted motion
 POINTS = 7  # along each side of the footprint; odd, so that its middle is one of them
 GRADES = 4  # of the share in sight, from all of the footprint to the least share
 TRIES = 10  # places of a grade that are tried for one that can be classified

@@ -31,10 +31,13 @@ def is_shown(camera: Camera, points: FloatArray, coarsest_m: float = inf) -> Boo
     shown = camera.in_image(pixels)
     if coarsest_m == inf:
         return shown
+    seen, at = np.asarray(points)[shown], pixels[shown]
     by_x, by_y = (
-        (camera.ground_to_pixels(points + STEP_M * axis) - pixels) / STEP_M for axis in np.eye(2)
+        (camera.ground_to_pixels(seen + STEP_M * axis) - at) / STEP_M for axis in np.eye(2)
     )
-    return np.asarray(shown & (_smallest_stretch(by_x, by_y) * coarsest_m >= 1))
+    fine = shown.copy()
+    fine[shown] = _smallest_stretch(by_x, by_y) * coarsest_m >= 1
+    return fine
 
 
 def largest_shown(camera: Camera, rectangle: Rectangle, coarsest_m: float = inf) -> Rectangle:

@@ -140,7 +140,7 @@ def test_default_time_is_the_smallest_for_which_all_of_the_footprint_is_in_sight
         assert region == "the region lies outside the image"
     else:
         assert isinstance(region, Region)
-        assert found_m[0] - 0.0051 <= region.ahead_s * speed <= found_m[0] + 3.6 / 299
+        assert found_m[0] - 0.0051 <= region.ahead_s * speed <= found_m[0] + 3.6 / 199
         assert region.distance_ahead_m == pytest.approx(region.ahead_s * speed)
 
 
