@@ -97,7 +97,8 @@ def identify(
     """Identify the parameters of a kinematic model from the run folders RUN.
 
     Runs are cut into windows of equal wheel travel; the parameters are those whose dead reckoning
-    ends nearest to the measured poses. One table is written for each terrain that the runs name.
+    ends nearest to the measured poses. Of positions without yaw (GNSS) the shapes of longer
+    stretches count. One table is written for each terrain that the runs name.
     Parameters that the runs cannot tell are named, and nothing is written then.
 
     \b

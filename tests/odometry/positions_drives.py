@@ -22,14 +22,20 @@ def drive(
     gyroscope=False,
     bias_rad_s=0.0,
     arm_m=(0.0, 0.0),
-    straight=False,
+    most_turn=0.8,
+    circle=False,
     name="run",
 ):
-    """Tread speeds that hold for 2 s, the exact arcs of `ICR`, and an antenna at `arm_m`."""
+    """Tread speeds that hold for 2 s, the exact arcs of `ICR`, and an antenna at `arm_m`.
+
+    On a circle they hold all the time.
+    """
     rng = np.random.default_rng(seed)
     t = np.arange(0.0, duration_s, PERIOD_S)
     forward = np.repeat(rng.uniform(0.3, 1.0, len(t) // 40 + 1), 40)[: len(t)]
-    turn = np.repeat(rng.uniform(-0.8, 0.8, len(t) // 40 + 1), 40)[: len(t)] * (not straight)
+    turn = np.repeat(rng.uniform(-most_turn, most_turn, len(t) // 40 + 1), 40)[: len(t)]
+    if circle:
+        forward, turn = np.full(len(t), 0.6), np.full(len(t), 0.4)
     left, right = forward - 0.4 * turn, forward + 0.4 * turn
     path, omega = path_of(left, right)
     yaw = path[:, 2]
