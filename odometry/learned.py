@@ -8,6 +8,7 @@ from odometry.estimation.estimate import Estimate, IcrBelief
 from odometry.models.catalogue import ICR_NAMES
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.replay import Replay
+from odometry.run import UNKNOWN
 
 MUCH_SURER = 2.0  # times less variance
 
@@ -28,7 +29,13 @@ def learned_parameters(before: ParameterSet, replay: Replay, run_name: str) -> P
     """
     terrains = dict(before.terrains)
     for name in dict.fromkeys(replay.terrains):
-        there = [estimate for estimate in replay.estimates if estimate.terrain == name]
+        if name == UNKNOWN:
+            continue
+        there = [
+            estimate
+            for estimate in replay.estimates
+            if estimate.terrain == name and estimate.crossing is None
+        ]
         poses = sum(_took_pose(estimate) for estimate in there)
         if poses and not _is_much_surer(before.terrains.get(name), there[-1].belief):
             source = f"learned by terrain-odometry from {poses} poses of {run_name}"

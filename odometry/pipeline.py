@@ -11,6 +11,7 @@ from odometry.errors import RunFolderError
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.heading_search import INITIAL_YAW
+from odometry.footing import Footing
 from odometry.frames import Frame
 from odometry.replay import Replay
 from odometry.run import Run
@@ -26,7 +27,7 @@ class Estimator(Protocol):
     def start(self, frame: Frame, terrain: str, *, yaw_sigma_rad: float | None = None) -> Estimate:
         """The first estimate; `yaw_sigma_rad` is given where the yaw is no measured one."""
 
-    def step(self, estimate: Estimate, frame: Frame, terrain: str) -> Estimate:
+    def step(self, estimate: Estimate, frame: Frame, terrain: str | Footing) -> Estimate:
         """The next estimate."""
 
 
@@ -37,8 +38,11 @@ class TerrainSource(Protocol):
     def initial(self) -> str:
         """The terrain in force at the first frame."""
 
-    def terrain(self, frame: Frame, estimate: Estimate) -> str:
-        """The terrain in force from this frame on, given the estimate before it."""
+    def terrain(self, frame: Frame, estimate: Estimate) -> str | Footing:
+        """The terrain in force from this frame on, given the estimate before it.
+
+        `unknown` where for long nothing has told it; shares of several where the robot is astride.
+        """
 
 
 @dataclass(frozen=True)

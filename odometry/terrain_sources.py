@@ -2,12 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import RunFolderError
 from odometry.estimation.estimate import Estimate
+from odometry.footing import Footing
 from odometry.frames import Frame
 from odometry.run import UNKNOWN, Run
 
@@ -40,6 +42,36 @@ class NamedTerrain:
         """The name in force at the stamp of the frame."""
         row = int(np.searchsorted(self.stamps_s, frame.stamp_s, side="right")) - 1
         return str(self.names[row]) if row >= 0 else self.initial
+
+
+@dataclass(frozen=True)
+class ToldFooting:
+    """What a filter was told in a replay before: the latest footing at or before each frame.
+
+    Attributes
+    ----------
+    estimates : tuple of Estimate
+        Of that replay.
+    """
+
+    estimates: tuple[Estimate, ...]
+
+    @property
+    def initial(self) -> str:
+        """The terrain at the first estimate."""
+        return self.estimates[0].terrain
+
+    @cached_property
+    def _stamps_s(self) -> FloatArray:
+        return np.array([estimate.stamp_s for estimate in self.estimates])
+
+    def terrain(self, frame: Frame, estimate: Estimate) -> Footing:  # noqa: ARG002 - the protocol's
+        """The footing in force at the stamp of the frame."""
+        row = int(np.searchsorted(self._stamps_s, frame.stamp_s, side="right")) - 1
+        told = self.estimates[max(row, 0)]
+        if told.crossing is None:
+            return Footing.of(told.terrain)
+        return Footing(told.terrain, told.crossing.shares)
 
 
 def labelled_terrain(run: Run, initial: str | None = None) -> NamedTerrain:

@@ -43,32 +43,38 @@ class Sight:
 
 @dataclass(frozen=True)
 class Footprint:
-    """The rectangle on which the robot stands, enlarged as its regions are.
+    """The rectangle on which the robot stands.
 
     Attributes
     ----------
     length_m, width_m : float
+    scale : float
+        A region is this much larger.
     """
 
     length_m: float
     width_m: float
+    scale: float = 1.2
 
     @classmethod
     def of(cls, robot: Robot, scale: float) -> Self:
-        """That of a robot, enlarged; length and width default to the track width."""
-        return cls(
-            scale * (robot.length or robot.track_width), scale * (robot.width or robot.track_width)
-        )
+        """That of a robot; length and width default to the track width."""
+        return cls(robot.length or robot.track_width, robot.width or robot.track_width, scale)
+
+    @property
+    def region_length_m(self) -> float:
+        """Length of a region."""
+        return self.scale * self.length_m
 
     @property
     def radius_m(self) -> float:
-        """From its middle to a corner. A place no farther away is reached."""
-        return float(np.hypot(self.length_m, self.width_m)) / 2
+        """From the middle of a region to a corner. A place no farther away is reached."""
+        return self.scale * float(np.hypot(self.length_m, self.width_m)) / 2
 
     @cached_property
     def points(self) -> FloatArray:
-        """Points (45, 2) spread evenly over it, in the robot frame."""
-        along = (np.arange(9) - 4) / 9 * self.length_m
+        """Points (75, 2) spread evenly over the footprint, in the robot frame."""
+        along = (np.arange(15) - 7) / 15 * self.length_m
         across = (np.arange(5) - 2) / 5 * self.width_m
         return np.stack(np.meshgrid(along, across), axis=-1).reshape(-1, 2)
 

@@ -2,8 +2,6 @@
 
 from pathlib import Path
 
-import numpy as np
-
 from odometry.effects.catalogue import added_effects
 from odometry.effects.corrected import Added
 from odometry.effects.measured import robot_run, shared_measurement
@@ -21,7 +19,7 @@ from odometry.pipeline import Estimator, TerrainSource, replay
 from odometry.pose_delay import without_pose_delay
 from odometry.replay import Replay
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
-from odometry.terrain_sources import NamedTerrain
+from odometry.terrain_sources import ToldFooting
 from terrain.classification.classifier import Classifier, TerrainClassifier
 from terrain.config import Config
 from terrain.images_outside import add_images_outside
@@ -142,8 +140,7 @@ def _second_replay(
     withheld = withhold(run, float(first.stamps_s[0]), float(first.stamps_s[-1]))
     if withheld is None:
         return None
-    names = np.array(first.terrains, dtype=object)
-    source = NamedTerrain(first.terrains[0], first.stamps_s, names)
+    source = ToldFooting(first.estimates)
     again = replay(withheld.run, estimator, source, show_progress=show_progress)
     return SecondReplay(withheld, again)
 

@@ -50,7 +50,7 @@ RUN_PRESETS = {
             # eq. 4-16: six states, poses alone, fixed noise, no gate
             "filter": PAPER | {"gate_probability": 1.0, "detect_jumps": False},
             "region": {"footprint_scale": 1.2, "per_tread": False},  # 3.2.2, eq. 22
-            "switch": {"labels_in_row": 2, "on_arrival": False},  # 3.2.3
+            "switch": {"labels_in_row": 2, "on_arrival": False, "by_shares": False},  # 3.2.3
         },
         "chen2023",  # eq. 18-26
     )

@@ -7,6 +7,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.config import require, require_positive
+from odometry.footing import Footing
 from odometry.geometry import se2
 from odometry.run import UNKNOWN
 from terrain.label_chain import carried
@@ -14,7 +15,7 @@ from terrain.places import DRIFT, Footprint, Sight, nearest
 from terrain.settled import Settled, by_evidence, by_rows
 
 MAJORITY = 0.5  # of the footprint; a terrain with more comes into force
-KNOWN = 0.75  # a terrain in force that is less probable counts as unknown
+KNOWN = 0.9  # a terrain that is less probable has no support
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,12 @@ class SwitchConfig:
     on_arrival : bool
         A label counts when the footprint passes over the place it was read from; otherwise at
         once.
+    by_shares : bool
+        A robot astride an edge has shares of both terrains; otherwise the terrain changes in one
+        step (Chen 2023) where most of the footprint is over.
+    unknown_m : float
+        After so much wheel travel on which the labels did not support the terrain in force it
+        counts as unknown [m]; used where labels are accumulated.
     label_accuracy : float
         Probability that the label of a region is right; used where labels are accumulated.
     change_m : float
@@ -37,6 +44,8 @@ class SwitchConfig:
 
     labels_in_row: int = 0
     on_arrival: bool = True
+    by_shares: bool = True
+    unknown_m: float = 3.0
     label_accuracy: float = 0.9
     change_m: float = 10.0
 
@@ -48,7 +57,7 @@ class SwitchConfig:
             0 < self.label_accuracy < 1,
             f"label_accuracy = {self.label_accuracy}, expected between 0 and 1",
         )
-        require_positive(self, "change_m")
+        require_positive(self, "change_m", "unknown_m")
 
 
 @dataclass(frozen=True)
@@ -89,8 +98,11 @@ class Switch:
         The terrain at the place of each sight.
     shares : Mapping of str to float
         Of the terrains under the footprint, `unknown` among them; they add up to 1.
-    probability : float
-        That the terrain in force is the one under the middle of the footprint.
+    supported_m : float
+        Wheel travel where last the terrain in force was probably the one under the middle of the
+        footprint.
+    unsupported_m : float
+        Wheel travel since then.
     event : SwitchEvent or None
         What the latest call of `at` brought into force.
     """
@@ -102,13 +114,20 @@ class Switch:
     sights: tuple[Sight, ...] = ()
     settled: Settled | None = None
     shares: Mapping[str, float] = field(default_factory=dict)
-    probability: float = 1.0
+    supported_m: float = 0.0
+    unsupported_m: float = 0.0
     event: SwitchEvent | None = None
 
     @property
-    def terrain(self) -> str:
-        """The terrain in force, or `unknown` where for long nothing has supported it."""
-        return self.in_force if self.probability >= KNOWN else UNKNOWN
+    def footing(self) -> Footing:
+        """What the robot stands on; `unknown` where for long no label supports what is in force."""
+        if self.unsupported_m > self.config.unknown_m and not self.config.labels_in_row:
+            return Footing.of(UNKNOWN)
+        if not self.config.by_shares:
+            return Footing.of(self.in_force)
+        shares = dict(self.shares)
+        shares[self.in_force] = shares.get(self.in_force, 0.0) + shares.pop(UNKNOWN, 0.0)
+        return Footing(self.in_force, {name: share for name, share in shares.items() if share > 0})
 
     def see(self, sight: Sight) -> "Switch":
         """Take in a label, and settle anew what lies at each place."""
@@ -121,7 +140,12 @@ class Switch:
     def at(self, stamp_s: float, pose: FloatArray, travel_m: float) -> "Switch":
         """The switch with the robot at a pose (3,) of the odometry frame."""
         if self.settled is None or not self.settled.sights:
-            return replace(self, shares={self.in_force: 1.0}, event=None)
+            return replace(
+                self,
+                shares={self.in_force: 1.0},
+                supported_m=travel_m,
+                event=None,
+            )
         points = se2.transform(pose, np.vstack([np.zeros(2), self.footprint.points]))
         place, apart_m = self._under(self.settled, points, travel_m)
         beliefs = carried(
@@ -129,11 +153,8 @@ class Switch:
         )
         reached = apart_m <= self.footprint.radius_m
         shares = self._shares(self.settled, beliefs[1:], reached[1:])
-        now = replace(
-            self,
-            shares=shares,
-            probability=self.settled.probability(beliefs[0], self.in_force),
-            event=None,
+        now = replace(self, shares=shares, event=None)._supported(
+            self.settled, beliefs[0], travel_m
         )
         terrain = max(shares, key=lambda name: shares[name])
         if not reached[0] or terrain in (self.in_force, UNKNOWN) or shares[terrain] <= MAJORITY:
@@ -142,12 +163,13 @@ class Switch:
         event = SwitchEvent(
             terrain, stamp_s, sight, stamp_s - sight.stamp_s, travel_m - sight.travel_m
         )
-        return replace(
-            now,
-            in_force=terrain,
-            probability=self.settled.probability(beliefs[0], terrain),
-            event=event,
-        )
+        switched = replace(now, in_force=terrain, event=event)
+        return switched._supported(self.settled, beliefs[0], travel_m)
+
+    def _supported(self, settled: Settled, belief: FloatArray, travel_m: float) -> "Switch":
+        if settled.probability(belief, self.in_force) >= KNOWN:
+            return replace(self, supported_m=travel_m, unsupported_m=0.0)
+        return replace(self, unsupported_m=travel_m - self.supported_m)
 
     def _shares(
         self, settled: Settled, beliefs: FloatArray, reached: BoolArray
@@ -185,5 +207,5 @@ class Switch:
             before,
             accuracy=c.label_accuracy,
             change_m=c.change_m,
-            length_m=self.footprint.length_m,
+            length_m=self.footprint.region_length_m,
         )

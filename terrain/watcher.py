@@ -9,6 +9,7 @@ import numpy as np
 from odometry.arrays import ByteImage, FloatArray
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.transition import transition
+from odometry.footing import Footing
 from odometry.frames import Frame
 from odometry.geometry import se2
 from odometry.run import UNKNOWN, Run
@@ -101,25 +102,34 @@ class TerrainWatcher:
         self._region = region
         footprint = Footprint.of(run.robot, region.footprint_scale)
         self._switch = Switch(initial, footprint, switch)
-        self._pose = np.zeros(3)  # in the odometry frame
+        self._pose = np.zeros(3)  # of the last estimate, in the odometry frame
+        self._last: Estimate | None = None
         self._travel_m = run.wheel_travel_m
 
-    def terrain(self, frame: Frame, estimate: Estimate) -> str:
-        """Look at the frame's image, if it has one, and give the terrain in force."""
+    def terrain(self, frame: Frame, estimate: Estimate) -> Footing:
+        """Look at the frame's image, if it has one, and tell what the robot stands on."""
         travel_m = float(np.interp(frame.stamp_s, self._run.odometry.stamps_s, self._travel_m))
-        self._pose = _reckoned(self._pose, estimate, frame)
+        pose = self._pose_at(frame, estimate)
         if frame.image is not None:
             sighting = self.look(frame, estimate)
             self.sightings.append(sighting)
             if sighting.label and sighting.region is not None:
-                sight = _sight(sighting, sighting.region, self._pose, travel_m)
+                sight = _sight(sighting, sighting.region, pose, travel_m)
                 self._switch = self._switch.see(sight)
-        self._switch = self._switch.at(frame.stamp_s, self._pose, travel_m)
+        self._switch = self._switch.at(frame.stamp_s, pose, travel_m)
         if self._switch.event is not None:
             self.events.append(self._switch.event)
         if frame.image is not None:
-            self.in_force.append(self._switch.in_force)
-        return self._switch.in_force
+            self.in_force.append(self._switch.footing.terrain)
+        return self._switch.footing
+
+    def _pose_at(self, frame: Frame, estimate: Estimate) -> FloatArray:
+        """The robot at a frame in the odometry frame, by what the filter believed of each step."""
+        if self._last is not None:
+            believed = estimate.believed_yaw_rate_rad_s
+            self._pose = _carried(self._pose, self._last, estimate.stamp_s, believed)
+        self._last = estimate
+        return _carried(self._pose, estimate, frame.stamp_s, frame.yaw_rate_rad_s)
 
     def look(self, frame: Frame, estimate: Estimate) -> Sighting:
         """Classify the region ahead in the image of a frame.
@@ -202,15 +212,17 @@ def _sighting(stamp_s: float, name: str, region: Region, answers: list[Classific
     return Sighting(stamp_s, name, UNKNOWN, confidence, region, reason, left, right)
 
 
-def _reckoned(pose: FloatArray, estimate: Estimate, frame: Frame) -> FloatArray:
-    """A pose (3,) of the odometry frame carried from an estimate to the frame after it."""
+def _carried(
+    pose: FloatArray, estimate: Estimate, stamp_s: float, yaw_rate_rad_s: float
+) -> FloatArray:
+    """A pose (3,) of the odometry frame at an estimate, carried to a later stamp."""
     if not np.all(np.isfinite(estimate.tread_speeds_m_s)):
         return pose
     state, _ = transition(
         np.concatenate([pose, estimate.mean[3:]]),
         estimate.tread_speeds_m_s,
-        frame.stamp_s - estimate.stamp_s,
-        yaw_rate_rad_s=frame.yaw_rate_rad_s,
+        stamp_s - estimate.stamp_s,
+        yaw_rate_rad_s=yaw_rate_rad_s,
         added_speeds=estimate.added_speeds_m_s,
         added_twist=estimate.added_twist,
     )

@@ -49,6 +49,22 @@ class IcrBelief:
 
 
 @dataclass(frozen=True, slots=True)
+class Crossing:
+    """A robot astride an edge.
+
+    Attributes
+    ----------
+    shares : Mapping of terrain to float
+        Of the footprint; they add up to 1.
+    known : Mapping of terrain to IcrBelief
+        ICRs between which those in force lie; they stay the same until the robot is over.
+    """
+
+    shares: Mapping[str, float]
+    known: Mapping[str, IcrBelief]
+
+
+@dataclass(frozen=True, slots=True)
 class Innovation:
     """What one measured pose said against the prediction.
 
@@ -99,6 +115,9 @@ class Estimate:
         Whether a jump of the ICRs was detected at this stamp.
     learned : Mapping[str, IcrBelief]
         What was last believed on the terrains that were left.
+    crossing : Crossing or None
+        None while the robot stands on one terrain. Nothing that it learns astride an edge counts
+        for the terrain that it leaves.
     scale : NoiseScale
         How much larger than stated the noises are.
     course : Course or None
@@ -124,6 +143,7 @@ class Estimate:
     recent: tuple[float, ...] = ()
     jumped: bool = False
     learned: Mapping[str, IcrBelief] = field(default_factory=dict)
+    crossing: Crossing | None = None
     scale: NoiseScale = field(default_factory=NoiseScale)
     course: Course | None = None
     watch: SensorWatch | None = None

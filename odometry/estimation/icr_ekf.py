@@ -12,8 +12,7 @@ from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.corrections import Correction
 from odometry.estimation.course import UNKNOWN_YAW_VARIANCE, Course
 from odometry.estimation.errors import EstimationError
-from odometry.estimation.estimate import OF_TERRAIN, Estimate, IcrBelief
-from odometry.estimation.icr_prior import prior_belief
+from odometry.estimation.estimate import OF_TERRAIN, Estimate
 from odometry.estimation.measurement import (
     Gaussian,
     Place,
@@ -24,8 +23,10 @@ from odometry.estimation.measurement import (
 from odometry.estimation.pose_kalman import PoseKalman
 from odometry.estimation.pose_update import PoseUpdate
 from odometry.estimation.process_noise import ProcessNoise
+from odometry.estimation.terrain_beliefs import TerrainBeliefs
 from odometry.estimation.transition import GYRO_BIAS, STATES, YAW, transition
 from odometry.estimation.tread_noise import huber_factor, tread_variance, velocity_variances
+from odometry.footing import Footing
 from odometry.frames import Frame
 from odometry.parameters import ParameterSet
 
@@ -59,10 +60,12 @@ class IcrEkf:
     the yaw rate of the treads is compared with it, which teaches y_left - y_right and the bias;
     otherwise the treads turn it. On a new name ICRs and slip factors are those last learned there
     or those of the parameter set, whichever is the more certain, and their covariance is reset
-    to `reset_sigma_widths`, or to what was known before where that is less certain. Any part of a
-    pose may be NaN; where the first one has no yaw, the heading is found from the course of the
-    positions. Over a gap of odometry the speed that was held goes on, but where the robot then
-    is counts as not known, and nothing is learned of it.
+    to `reset_sigma_widths`, or to what was known before where that is less certain. Astride an
+    edge they move from one terrain to the other, share by share; on terrain that is `unknown` they
+    stay, become less certain, and nothing is learned of any terrain. Any part of a pose may be
+    NaN; where the first one has no yaw, the heading is found from the course of the positions.
+    Over a gap of odometry the speed that was held goes on, but where the robot then is counts as
+    not known, and nothing is learned of it.
     """
 
     def __init__(
@@ -78,7 +81,7 @@ class IcrEkf:
         self.config = config or IcrEkfConfig()
         self.corrections = corrections or {}
         self._require_corrections()
-        self._reset_sigma_m = self.config.reset_sigma_widths * track_width
+        self._terrains = TerrainBeliefs(track_width, self.parameters, self.config)
         self._noise = ProcessNoise(self.config, track_width)
         self._kalman = PoseKalman()
         self._pose_update = PoseUpdate(self.config, track_width, self._kalman, lever_m)
@@ -94,7 +97,7 @@ class IcrEkf:
         yaw_sigma_rad : float, optional
             Standard deviation of the yaw where it is not that of a measured one.
         """
-        belief = self._prior(terrain)
+        belief = self._terrains.prior(terrain)
         pose = np.full(3, math.nan) if frame.pose is None else frame.pose
         pose = np.where(np.isfinite(pose), pose, math.nan)
         placed, headed = not np.isnan(pose[:2]).any(), not math.isnan(pose[YAW])
@@ -130,8 +133,10 @@ class IcrEkf:
             watch=watch,
         )
 
-    def step(self, estimate: Estimate, frame: Frame, terrain: str) -> Estimate:
+    def step(self, estimate: Estimate, frame: Frame, terrain: str | Footing) -> Estimate:
         """Predict to the frame's stamp, switch if the terrain is another, update by what it says.
+
+        On shares of several terrains the ICRs lie between those known there.
 
         Raises
         ------
@@ -159,20 +164,21 @@ class IcrEkf:
             if frame.in_gap or watch.is_doubtful:
                 newly_stuck = watch.treads.stuck >= 0 and not was_stuck
                 belief = sensor_watch.parted(belief, watch, newly_stuck=newly_stuck)
-        learned, recent = estimate.learned, estimate.recent
-        if terrain != estimate.terrain:
-            learned = {**learned, estimate.terrain: estimate.belief}
-            belief, recent = self._switched(belief, learned, terrain), ()
+        footing, recent = Footing.of(terrain), estimate.recent
+        learned, crossing = estimate.learned, estimate.crossing
+        if crossing or not footing.is_whole or footing.terrain != estimate.terrain:
+            belief, learned, crossing = self._terrains.moved(belief, estimate, footing)
+            recent = ()
         if frame.velocity is not None:
             belief = self._with_velocity(belief, estimate, frame, yaw_rate)
         after = self._pose_update.seen(estimate, belief, pose, frame, recent)
-        added_speeds, added_twist = self._added(terrain, frame)
+        added_speeds, added_twist = self._added(footing.terrain, frame)
         return Estimate(
             stamp_s=frame.stamp_s,
             mean=after.mean,
             covariance=after.covariance,
             tread_speeds_m_s=speeds,
-            terrain=terrain,
+            terrain=footing.terrain,
             yaw_rate_rad_s=frame.yaw_rate_rad_s,
             believed_yaw_rate_rad_s=yaw_rate,
             added_speeds_m_s=added_speeds,
@@ -182,6 +188,7 @@ class IcrEkf:
             recent=after.recent,
             jumped=after.jumped,
             learned=learned,
+            crossing=crossing,
             scale=after.scale,
             course=after.course,
             watch=watch,
@@ -232,28 +239,6 @@ class IcrEkf:
         measured.covariance[0, 0] = variance
         return self._kalman.updated(mean, covariance, measured)[:2]
 
-    def _switched(
-        self, belief: Gaussian, learned: Mapping[str, IcrBelief], terrain: str
-    ) -> Gaussian:
-        known = self._prior(terrain)
-        if terrain in learned and _is_more_certain(learned[terrain], known):
-            known = learned[terrain]
-        mean, covariance = belief[0].copy(), belief[1].copy()
-        mean[OF_TERRAIN] = *known.icrs, *known.alphas
-        covariance[OF_TERRAIN], covariance[:, OF_TERRAIN] = 0.0, 0.0
-        covariance[np.ix_(OF_TERRAIN, OF_TERRAIN)] = self._reset(known)
-        return mean, covariance
-
-    def _reset(self, known: IcrBelief) -> FloatArray:
-        """Chen 2023, 3.2.1: P_B, or what is known where that is less certain."""
-        reset = np.zeros((5, 5))
-        sigmas = (self._reset_sigma_m, self.config.reset_sigma_alpha)
-        for block, sigma in zip((slice(0, 3), slice(3, 5)), sigmas, strict=True):
-            wide = sigma**2 * np.eye(block.stop - block.start)
-            stated = known.covariance[block, block]
-            reset[block, block] = stated if np.trace(stated) > np.trace(wide) else wide
-        return reset
-
     def _with_velocity(
         self, belief: Gaussian, estimate: Estimate, frame: Frame, yaw_rate: float
     ) -> Gaussian:
@@ -294,16 +279,3 @@ class IcrEkf:
                     f"[terrain.{name}]: effects were given; the ICR filter needs what they change "
                     "along the run (odometry.estimation.corrections)"
                 )
-
-    def _prior(self, terrain: str) -> IcrBelief:
-        return prior_belief(
-            self.parameters,
-            terrain,
-            self.track_width,
-            self._reset_sigma_m,
-            self.config.reset_sigma_alpha,
-        )
-
-
-def _is_more_certain(one: IcrBelief, other: IcrBelief) -> bool:
-    return bool(np.trace(one.covariance[:3, :3]) < np.trace(other.covariance[:3, :3]))

@@ -6,6 +6,7 @@ import numpy as np
 
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.icr_ekf import IcrEkf
+from odometry.footing import Footing
 from odometry.frames import Frame
 
 
@@ -28,10 +29,11 @@ class MeansKept:
         """The first estimate, see `IcrEkf.start`."""
         return self._ekf.start(frame, terrain, yaw_sigma_rad=yaw_sigma_rad)
 
-    def step(self, estimate: Estimate, frame: Frame, terrain: str) -> Estimate:
-        """The next estimate, see `IcrEkf.step`."""
-        if terrain != estimate.terrain:
+    def step(self, estimate: Estimate, frame: Frame, terrain: str | Footing) -> Estimate:
+        """The next estimate, see `IcrEkf.step`; the terrain changes in one step."""
+        name = Footing.of(terrain).terrain
+        if name != estimate.terrain:
             belief = estimate.belief
             known = replace(belief, covariance=np.zeros_like(belief.covariance))
-            estimate = replace(estimate, learned={**estimate.learned, terrain: known})
-        return self._ekf.step(estimate, frame, terrain)
+            estimate = replace(estimate, learned={**estimate.learned, name: known})
+        return self._ekf.step(estimate, frame, name)

@@ -63,12 +63,24 @@ def test_a_change_of_terrain_brings_its_parameters(across_run, classifier):
     result = run_odometry(across_run, model=classifier, parameters=SET, terrain="gravel")
     (_, boards), (_, gravel) = spans(result)
     assert (boards, gravel) == ("boards", "gravel")
-    for estimate in result.replay.estimates:
+    whole = [estimate for estimate in result.replay.estimates if estimate.crossing is None]
+    assert {estimate.terrain for estimate in whole} == {"gravel", "boards"}
+    for estimate in whole:
         values = SET.terrains[estimate.terrain].values
         assert estimate.mean[5] == pytest.approx(values["x_icr"], abs=1e-6)
         assert estimate.mean[3] - estimate.mean[4] == pytest.approx(
             values["y_left"] - values["y_right"], abs=0.02
         )
+
+
+def test_astride_an_edge_the_icrs_lie_between_those_of_the_terrains(across_run, classifier):
+    result = run_odometry(across_run, model=classifier, parameters=SET, terrain="gravel")
+    x_icrs = [SET.terrains[name].values["x_icr"] for name in ("gravel", "boards")]
+    astride = [estimate for estimate in result.replay.estimates if estimate.crossing is not None]
+    assert len(astride) > 2
+    for estimate in astride:
+        assert min(x_icrs) < estimate.mean[5] < max(x_icrs)
+        assert sum(estimate.crossing.shares.values()) == pytest.approx(1.0)
 
 
 def test_per_tread_sees_a_robot_astride_an_edge(astride_run, classifier):

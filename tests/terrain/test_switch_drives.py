@@ -17,7 +17,7 @@ BOTH_RULES = pytest.mark.parametrize("needed", [0, 2], ids=["evidence", "rows"])
 
 def followed(driven, config):
     """What is in force at each step, and the events as (step, event)."""
-    switch = Switch(str(driven.terrains[0]), Footprint(*FOOTPRINT_M), config)
+    switch = Switch(str(driven.terrains[0]), Footprint(*FOOTPRINT_M, scale=1.0), config)
     looks = {look.step: look for look in driven.looks}
     in_force, events = [], []
     for step, (pose, travel_m) in enumerate(zip(driven.odometer, driven.travel_m, strict=True)):

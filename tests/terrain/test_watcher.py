@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from odometry.estimation.estimate import Estimate
+from odometry.footing import Footing
 from odometry.frames import Frame
 from odometry.run import Run
 from terrain.camera import Camera
@@ -89,7 +90,7 @@ def drive(watched, corrected=lambda stamp_s: (0.5 * stamp_s, 0.0, 0.0)):
     frames = list(watched.run.frames())
     estimates = [estimate_at(frame, pose=corrected(frame.stamp_s)) for frame in frames]
     return [
-        watched.watcher.terrain(frame, estimate)
+        watched.watcher.terrain(frame, estimate).terrain
         for frame, estimate in zip(frames, estimates[:1] + estimates, strict=False)
     ]
 
@@ -327,7 +328,7 @@ def test_where_there_is_no_region_there_is_a_reason(watch, speeds, reason):
 def test_a_frame_without_an_image_cannot_be_looked_at(watch):
     watched = watch([DARK])
     frame = Frame(0.0, np.array([0.5, 0.5]), 0, None, None)
-    assert watched.watcher.terrain(frame, estimate_at(frame)) == "mud"
+    assert watched.watcher.terrain(frame, estimate_at(frame)) == Footing.of("mud")
     assert watched.watcher.sightings == watched.watcher.in_force == []
     with pytest.raises(ValueError, match="no image"):
         watched.watcher.look(frame, estimate_at(frame))

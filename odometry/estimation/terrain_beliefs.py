@@ -1,0 +1,104 @@
+"""What is believed of ICRs and slip factors where the terrain under the robot changes."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.estimation.config import IcrEkfConfig
+from odometry.estimation.crossing import crossed
+from odometry.estimation.estimate import OF_TERRAIN, Crossing, Estimate, IcrBelief
+from odometry.estimation.icr_prior import prior_belief
+from odometry.estimation.measurement import Gaussian
+from odometry.footing import Footing
+from odometry.parameters import ParameterSet
+from odometry.run import UNKNOWN
+
+OF_TERRAIN_BLOCK = np.ix_(OF_TERRAIN, OF_TERRAIN)
+
+
+class TerrainBeliefs:
+    """ICRs known by terrain, and how a filter's belief moves from one terrain to another.
+
+    Parameters
+    ----------
+    track_width : float
+        [m]
+    parameters : ParameterSet
+        What is known before the run.
+    config : IcrEkfConfig
+    """
+
+    def __init__(self, track_width: float, parameters: ParameterSet, config: IcrEkfConfig) -> None:
+        self._track_width = track_width
+        self._parameters = parameters
+        self._reset_sigma_m = config.reset_sigma_widths * track_width
+        self._reset_sigma_alpha = config.reset_sigma_alpha
+
+    def prior(self, terrain: str) -> IcrBelief:
+        """What was known of a terrain before the run."""
+        return prior_belief(
+            self._parameters,
+            terrain,
+            self._track_width,
+            self._reset_sigma_m,
+            self._reset_sigma_alpha,
+        )
+
+    def moved(
+        self, belief: Gaussian, estimate: Estimate, footing: Footing
+    ) -> tuple[Gaussian, Mapping[str, IcrBelief], Crossing | None]:
+        """The belief on another footing, what was learned before it, and the crossing that is on.
+
+        From whole to whole, from `unknown` and to it the ICRs change in one step (Chen 2023).
+        """
+        here, crossing, learned = estimate.terrain, estimate.crossing, estimate.learned
+        if crossing is None and here != UNKNOWN:
+            learned = {**learned, here: estimate.belief}
+        if footing.terrain == UNKNOWN:
+            return self._opened(belief), learned, None
+        if here == UNKNOWN or (crossing is None and footing.is_whole):
+            return self._switched(belief, learned, footing.terrain), learned, None
+        before = crossing or Crossing({here: 1.0}, {here: estimate.belief})
+        known = {name: self._known(name, learned) for name in footing.shares} | dict(before.known)
+        resets = {name: self._reset(of) for name, of in known.items()}
+        belief = crossed(belief, known, before.shares, footing.shares, resets)
+        return belief, learned, None if footing.is_whole else Crossing(footing.shares, known)
+
+    def _switched(
+        self, belief: Gaussian, learned: Mapping[str, IcrBelief], terrain: str
+    ) -> Gaussian:
+        known = self._known(terrain, learned)
+        mean, covariance = belief[0].copy(), belief[1].copy()
+        mean[OF_TERRAIN] = *known.icrs, *known.alphas
+        covariance[OF_TERRAIN], covariance[:, OF_TERRAIN] = 0.0, 0.0
+        covariance[OF_TERRAIN_BLOCK] = self._reset(known)
+        return mean, covariance
+
+    def _opened(self, belief: Gaussian) -> Gaussian:
+        """On terrain that nobody knows: the ICRs as they are, and less certain."""
+        covariance = belief[1].copy()
+        sigmas = [self._reset_sigma_m] * 3 + [self._reset_sigma_alpha] * 2
+        covariance[OF_TERRAIN, OF_TERRAIN] += np.square(sigmas)
+        return belief[0], covariance
+
+    def _known(self, terrain: str, learned: Mapping[str, IcrBelief]) -> IcrBelief:
+        """What was learned on a terrain, or known before where that is the more certain."""
+        known = self.prior(terrain)
+        if terrain in learned and _is_more_certain(learned[terrain], known):
+            return learned[terrain]
+        return known
+
+    def _reset(self, known: IcrBelief) -> FloatArray:
+        """Chen 2023, 3.2.1: P_B, or what is known where that is less certain."""
+        reset = np.zeros((5, 5))
+        sigmas = (self._reset_sigma_m, self._reset_sigma_alpha)
+        for block, sigma in zip((slice(0, 3), slice(3, 5)), sigmas, strict=True):
+            wide = sigma**2 * np.eye(block.stop - block.start)
+            stated = known.covariance[block, block]
+            reset[block, block] = stated if np.trace(stated) > np.trace(wide) else wide
+        return reset
+
+
+def _is_more_certain(one: IcrBelief, other: IcrBelief) -> bool:
+    return bool(np.trace(one.covariance[:3, :3]) < np.trace(other.covariance[:3, :3]))

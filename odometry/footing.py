@@ -1,0 +1,30 @@
+"""What a robot stands on: one terrain, or shares of several while it crosses an edge."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Footing:
+    """The terrain in force and the shares of all terrains under the footprint.
+
+    Attributes
+    ----------
+    terrain : str
+        The one with the largest share, as a rule.
+    shares : Mapping of str to float
+        Above zero; they add up to 1. The one share of a robot that stands on one terrain is 1.
+    """
+
+    terrain: str
+    shares: Mapping[str, float]
+
+    @classmethod
+    def of(cls, terrain: "str | Footing") -> "Footing":
+        """A name is a footing on one terrain."""
+        return cls(terrain, {terrain: 1.0}) if isinstance(terrain, str) else terrain
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the robot stands on one terrain."""
+        return len(self.shares) == 1
