@@ -116,7 +116,10 @@ def _first_estimate(run: Run, first: Frame, estimator: Estimator, terrain: str) 
         estimate = estimator.step(estimate, frame, terrain)
     if first.pose is None or estimate is start:
         return start
-    (event,) = (event for event in estimate.events if event.kind == INITIAL_YAW)
+    found_there = [event for event in estimate.events if event.kind == INITIAL_YAW]
+    if not found_there:
+        return start  # found so late that it does not tell the yaw at the beginning
+    event = found_there[0]
     yaw_rad, sigma_rad = event.values
     pose = np.array([*first.pose[:2], yaw_rad])
     # the positions that told the yaw come again: they are not to count twice

@@ -13,7 +13,7 @@ from odometry.run import Run
 REFUSED_SHARE = 0.03  # of the poses; fewer are usual
 LAST_POSES = 20  # whose median distance tells where a trajectory ends
 BIAS_RAD_S, BIAS_SIGMAS = 0.005, 4.0  # 0.3 degrees per second
-DRIFT_RAD_S = 0.01
+DRIFT_RAD_S = 0.02  # four standard deviations of a bias that counts as found
 KNOWN_BIAS_RAD_S = 0.005  # standard deviation from which on the bias is one that was found
 
 
@@ -34,7 +34,7 @@ def _heading(last: Estimate) -> list[FilterEvent]:
     text = (
         "the heading cannot be told: no yaw is measured, and the course of the "
         f"{last.course.count} positions over {last.course.travel_m:.1f} m of dead reckoning does "
-        "not tell it; the estimate begins at the first position with a yaw of 0"
+        "not tell it; the estimate follows the positions, its yaw is not to be used"
     )
     return [FilterEvent("heading_unknown", last.course.begin_s, last.stamp_s, text)]
 

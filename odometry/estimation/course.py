@@ -1,7 +1,7 @@
 """Unknown heading, found from the course of measured positions against dead reckoning."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +11,8 @@ from odometry.arrays import FloatArray
 LEAST_POSITIONS = 8
 LEAST_TRAVEL_M = 6.0  # turns to both sides, so that moving aside in them averages
 CERTAIN_SIGMA_RAD = 0.05  # 2.9 degrees
-ENOUGH_SIGMA_RAD = 0.25  # where treads turn the robot: more comes with their ICRs, by the filter
+PATIENCE_M = 12.0  # of dead reckoning; after it less must do, or the search begins anew
+ENOUGH_SIGMA_RAD = 0.25  # without a gyroscope too: the filter finds the rest with the ICRs
 CRAB_SIGMA_RAD = 0.02  # by which the robot moves aside of its heading while nothing is known of it
 UNKNOWN_YAW_VARIANCE = math.pi**2 / 3  # of an angle that may be any
 
@@ -55,6 +56,8 @@ class Course:
         Sum of the steps of q.
     step_square : float
         Sum of (|step of p| - |step of q|)^2 [m^2]: whatever the heading, it tells the noise.
+    began_anew : bool
+        Whether a search before this one found nothing.
     """
 
     begin_s: float
@@ -69,11 +72,12 @@ class Course:
     measured_square: float = 0.0
     travel_m: float = 0.0
     step_square: float = 0.0
+    began_anew: bool = False
 
     @classmethod
-    def begun(cls, stamp_s: float, position_m: FloatArray) -> "Course":
-        """At the first position, where dead reckoning begins too."""
-        return cls(stamp_s, 1, position_m, position_m, position_m, position_m)
+    def begun(cls, stamp_s: float, reckoned_m: FloatArray, measured_m: FloatArray) -> "Course":
+        """At a first pair."""
+        return cls(stamp_s, 1, reckoned_m, measured_m, reckoned_m, measured_m)
 
     def with_position(self, reckoned_m: FloatArray, measured_m: FloatArray) -> "Course":
         """The sums with one more pair (Welford's updates of means and products)."""
@@ -95,7 +99,18 @@ class Course:
             self.measured_square + left * float(p @ p),
             self.travel_m + reckoned_step_m,
             self.step_square + (measured_step_m - reckoned_step_m) ** 2,
+            self.began_anew,
         )
+
+    def anew(self, stamp_s: float) -> "Course":
+        """A search that begins at the last pair."""
+        begun = Course.begun(stamp_s, self.last_reckoned_m, self.last_measured_m)
+        return replace(begun, began_anew=True)
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the search is to begin anew: dead reckoning is no longer of one piece."""
+        return self.travel_m >= PATIENCE_M
 
     def heading(self, position_sigma_m: float, *, by_gyroscope: bool) -> Heading | None:
         """The turn that fits best; None while it cannot be told.
@@ -105,8 +120,9 @@ class Course:
         back makes no difference: dead reckoning knows the direction. The lengths of steps tell the
         noise of positions where it is more than `position_sigma_m`. Residuals above it count as
         errors of dead reckoning, which are of one piece: they do not average.
-        A gyroscope keeps the shape of the path, so that `CERTAIN_SIGMA_RAD` is asked for; treads
-        whose ICRs are not known yet do not, and `ENOUGH_SIGMA_RAD` must do.
+        A gyroscope keeps the shape of the path, so that `CERTAIN_SIGMA_RAD` is asked for over
+        `PATIENCE_M`; treads whose ICRs are not known yet do not keep it, nor does a robot that
+        slides: `ENOUGH_SIGMA_RAD` must do then.
         """
         if self.count < LEAST_POSITIONS or self.travel_m < LEAST_TRAVEL_M:
             return None
@@ -116,7 +132,8 @@ class Course:
         excess = max(residual / (2 * self.count - 4) - noise, 0.0)
         by_noise = (noise + excess * self.count) / self.reckoned_square
         sigma = math.sqrt(by_noise + CRAB_SIGMA_RAD**2)
-        if sigma > (CERTAIN_SIGMA_RAD if by_gyroscope else ENOUGH_SIGMA_RAD):
+        certain = by_gyroscope and self.travel_m < PATIENCE_M
+        if sigma > (CERTAIN_SIGMA_RAD if certain else ENOUGH_SIGMA_RAD):
             return None
         return Heading(
             math.atan2(self.cross, self.dot),

@@ -121,8 +121,8 @@ class Estimate:
     scale : NoiseScale
         How much larger than stated the noises are.
     course : Course or None
-        The search for a heading that is not known yet: until it is found, the pose is dead
-        reckoning from the first position, with a yaw that starts at 0.
+        The search for a heading that is not known yet: until it is found, the pose follows the
+        positions, with a yaw that starts at 0 and is not to be used.
     watch : SensorWatch or None
         What is remembered of the sensors; None where nobody watches them.
     events : tuple of FilterEvent

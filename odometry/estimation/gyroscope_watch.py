@@ -1,7 +1,7 @@
 """Yaw rates that cannot be: spikes, and a gyroscope that falls silent."""
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from odometry.estimation.filter_event import FilterEvent
 
@@ -10,8 +10,7 @@ HELD_OUT_S = 0.2  # ... for so long; after that it is believed
 SILENT_S = 1.0
 
 
-@dataclass(frozen=True, slots=True)
-class GyroscopeWatch:
+class GyroscopeWatch(NamedTuple):
     """What is remembered of the gyroscope.
 
     Attributes

@@ -13,7 +13,8 @@ from odometry.estimation.transition import STATES, YAW
 from odometry.frames import Frame
 from odometry.geometry.angles import wrap_one
 
-INITIAL_YAW = "initial_yaw"  # kind of the event, whose values are the yaw and its sigma [rad]
+INITIAL_YAW = "initial_yaw"  # kinds of events, whose values are the yaw and its sigma [rad]
+LATER_YAW = "heading_found"
 
 
 class Searched(NamedTuple):
@@ -33,18 +34,22 @@ def searched(
 ) -> Searched:
     """Take in a pose whose yaw, or whose position, may be NaN.
 
-    The belief is dead reckoning that begins with a yaw of 0: a position adds to the search, a
-    measured yaw ends it.
+    Dead reckoning has begun with a yaw of 0. A position adds to the search, and the belief goes
+    on from there, as its heading tells nothing; a measured yaw ends the search.
     """
-    if frame.pose is None:
+    pose = frame.pose
+    if pose is None:
         return Searched(belief, course)
-    pose, by_gyroscope = frame.pose, math.isfinite(frame.yaw_rate_rad_s)
-    reckoned_m = reference_point(belief[0], lever_m)
-    if np.isfinite(pose[:2]).all():
+    placed = bool(np.isfinite(pose[:2]).all())
+    # each position moved the belief to itself: dead reckoning is what it moved since
+    reckoned_m = (
+        course.last_reckoned_m + reference_point(belief[0], lever_m) - course.last_measured_m
+    )
+    if placed:
         course = course.with_position(reckoned_m, pose[:2])
     position_sigma_m = math.sqrt(float(pose_covariance[0, 0]))
     if math.isfinite(pose[YAW]):
-        heading = Heading(
+        heading: Heading | None = Heading(
             wrap_one(float(pose[YAW] - belief[0][YAW])),
             math.sqrt(float(pose_covariance[YAW, YAW])),
             course.reckoned_m,
@@ -53,25 +58,46 @@ def searched(
         )
         how = "a pose with a yaw came"
     else:
-        found = course.heading(position_sigma_m, by_gyroscope=by_gyroscope)
-        if found is None:
-            return Searched(belief, course)
-        heading, how = found, f"from the course of {course.count} positions"
-    event = FilterEvent(
-        INITIAL_YAW,
-        course.begin_s,
-        frame.stamp_s,
-        f"initial yaw {math.degrees(heading.yaw_rad):.1f} degrees, "
-        f"+- {math.degrees(heading.sigma_rad):.1f}: {how}",
-        (heading.yaw_rad, heading.sigma_rad),
+        heading = course.heading(position_sigma_m, by_gyroscope=math.isfinite(frame.yaw_rate_rad_s))
+        how = f"from the course of {course.count} positions"
+    if heading is not None:
+        yaw = float(belief[0][YAW])
+        turned = _turned(belief, heading, np.append(reckoned_m, yaw), lever_m)
+        return Searched(turned, None, (_event(course, heading, frame, how),))
+    if course.is_over:
+        course = course.anew(frame.stamp_s)
+    return Searched(_at(belief, pose[:2], pose_covariance, lever_m) if placed else belief, course)
+
+
+def _event(course: Course, heading: Heading, frame: Frame, how: str) -> FilterEvent:
+    """Of a yaw at the beginning, or, where the search began anew, of a turn of dead reckoning."""
+    kind, of = (
+        (LATER_YAW, "turn of dead reckoning") if course.began_anew else (INITIAL_YAW, "initial yaw")
     )
-    return Searched(_turned(belief, heading), None, (event,))
+    text = (
+        f"{of} {math.degrees(heading.yaw_rad):.1f} degrees, "
+        f"+- {math.degrees(heading.sigma_rad):.1f}: {how}"
+    )
+    values = (heading.yaw_rad, heading.sigma_rad)
+    return FilterEvent(kind, course.begin_s, frame.stamp_s, text, values)
 
 
-def _turned(belief: Gaussian, heading: Heading) -> Gaussian:
+def _turned(belief: Gaussian, heading: Heading, reckoned: FloatArray, lever_m: Place) -> Gaussian:
     """The belief in the frame of the positions, its pose apart from the rest."""
     mean, covariance = belief[0].copy(), np.zeros((STATES, STATES))
     covariance[3:, 3:] = belief[1][3:, 3:]
-    mean[:3], covariance[:3, :3] = aligned(heading, mean[:3])
+    mean[:3], covariance[:3, :3] = aligned(heading, reckoned)
     mean[YAW] = wrap_one(float(mean[YAW]))
+    mean[:2] -= reference_point(mean, lever_m) - mean[:2]
+    return mean, covariance
+
+
+def _at(
+    belief: Gaussian, position_m: FloatArray, pose_covariance: FloatArray, lever_m: Place
+) -> Gaussian:
+    """The belief moved to a measured position, whose direction from the robot is not known."""
+    mean, covariance = belief[0].copy(), belief[1].copy()
+    mean[:2] += position_m - reference_point(mean, lever_m)
+    covariance[:2], covariance[:, :2] = 0.0, 0.0
+    covariance[:2, :2] = pose_covariance[:2, :2] + math.hypot(*lever_m) ** 2 * np.eye(2)
     return mean, covariance

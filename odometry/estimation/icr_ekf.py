@@ -109,7 +109,7 @@ class IcrEkf:
             mean[:2] = pose[:2] - reference_point(mean, self._lever_m)
         course = None
         if placed and not headed:
-            course = Course.begun(frame.stamp_s, pose[:2])
+            course = Course.begun(frame.stamp_s, pose[:2], pose[:2])
             covariance[YAW, YAW] = UNKNOWN_YAW_VARIANCE
         elif yaw_sigma_rad is not None:
             covariance[YAW, YAW] = yaw_sigma_rad**2

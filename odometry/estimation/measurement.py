@@ -20,6 +20,7 @@ from odometry.estimation.transition import (
 )
 from odometry.geometry.angles import wrap_one
 
+OF_POSE = np.eye(3, STATES)  # Chen 2023 eq. 13
 Place = tuple[float, float]
 Gaussian = tuple[FloatArray, FloatArray]
 
@@ -78,12 +79,13 @@ def pose_measurement(
     """
     x, y, yaw = mean[:3].tolist()
     at_x, at_y, at_yaw = pose.tolist()
-    jacobian = np.eye(3, STATES)
+    jacobian = OF_POSE
     aside_x, aside_y = 0.0, 0.0
     if lever_m != (0.0, 0.0):
         cosine, sine = math.cos(yaw), math.sin(yaw)
         aside_x = cosine * lever_m[0] - sine * lever_m[1]
         aside_y = sine * lever_m[0] + cosine * lever_m[1]
+        jacobian = OF_POSE.copy()
         jacobian[0, YAW], jacobian[1, YAW] = -aside_y, aside_x
     turn = at_yaw - yaw
     if math.isfinite(turn):

@@ -1,9 +1,7 @@
 """How much larger than stated the noises of slip and of poses are, as the innovations tell."""
 
 import math
-from dataclasses import dataclass
-
-import numpy as np
+from typing import NamedTuple
 
 from odometry.arrays import FloatArray
 
@@ -13,8 +11,7 @@ MOST_SQUARED = 4.0  # normalised innovation squared for each entry: more counts 
 SHARE_OF_CORRELATION = 0.5
 
 
-@dataclass(frozen=True, slots=True)
-class NoiseScale:
+class NoiseScale(NamedTuple):
     """Scales of the variances of slip and of measured poses.
 
     Attributes
@@ -42,7 +39,7 @@ class NoiseScale:
 
 
 def adapted(
-    scale: NoiseScale, residual: FloatArray, inverse: FloatArray, squared: float, rate: float
+    scale: NoiseScale, residual: FloatArray, weighed: FloatArray, squared: float, rate: float
 ) -> NoiseScale:
     """The scales after one more innovation.
 
@@ -54,8 +51,8 @@ def adapted(
     Parameters
     ----------
     scale : NoiseScale
-    residual, inverse : (m,), (m, m)
-        The innovation and the inverse of its covariance.
+    residual, weighed : (m,), (m,)
+        The innovation, and the inverse of its covariance times it.
     squared : float
         Its normalised square.
     rate : float
@@ -63,7 +60,6 @@ def adapted(
     """
     size = len(residual)
     limit = MOST_SQUARED * size
-    weighed = inverse @ residual
     shortened = residual
     if squared > limit:
         factor = math.sqrt(limit / squared)
@@ -71,7 +67,7 @@ def adapted(
     excess = min(squared, limit) / size - 1.0
     likeness = 0.0
     if scale.weighed is not None and len(scale.weighed) == size:
-        likeness = SHARE_OF_CORRELATION * float(np.dot(shortened, scale.weighed)) / size
+        likeness = SHARE_OF_CORRELATION * float(shortened.dot(scale.weighed)) / size
         likeness = min(max(likeness, -1.0), 1.0)
     return NoiseScale(
         min(max(scale.slip_log + rate * (excess + likeness), SLIP_LOGS[0]), SLIP_LOGS[1]),

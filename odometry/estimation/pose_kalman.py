@@ -17,7 +17,7 @@ class PoseKalman(ExtendedKalmanFilter):  # type: ignore[misc]
     def __init__(self) -> None:
         super().__init__(dim_x=STATES, dim_z=3)
         self.Q = np.zeros((STATES, STATES))
-        self._places = np.arange(STATES)
+        self.weighed = np.zeros(3)  # inverse of S times the last innovation
 
     def predict_x(self, u: FloatArray) -> None:
         """Take `u`, the mean that `transition` has reached: filterpy's hook."""
@@ -49,8 +49,7 @@ class PoseKalman(ExtendedKalmanFilter):  # type: ignore[misc]
         integral of F(s) Q F(s)^T. The first step of eq. 7 would make the answer depend on how
         finely time is cut.
         """
-        half = noise / 2
-        self.Q[self._places, self._places] = half
+        self.Q.flat[:: STATES + 1] = noise / 2
         self.P = covariance + self.Q
         self.F = jacobian
         self.predict(mean)
@@ -62,10 +61,17 @@ class PoseKalman(ExtendedKalmanFilter):  # type: ignore[misc]
         """Mean, covariance, normalised innovation squared: eq. 14-15, and Joseph's form of 16."""
         self.x, self.P = mean, covariance
         self.update(
-            measured.residual,
-            lambda _: measured.jacobian,
-            lambda _: measured.residual,
-            R=measured.covariance,
-            residual=lambda residual, _: residual,
+            measured.residual, _derivative, _nothing, measured.covariance, (measured.jacobian,)
         )
-        return self.x, (self.P + self.P.T) / 2, float(self.y @ self.SI @ self.y)
+        self.weighed = self.SI.dot(self.y)
+        return self.x, (self.P + self.P.T) / 2, float(self.y.dot(self.weighed))
+
+
+def _derivative(_: FloatArray, jacobian: FloatArray) -> FloatArray:
+    """The derivative of a measurement, which its residual came with: filterpy's HJacobian."""
+    return jacobian
+
+
+def _nothing(_: FloatArray) -> float:
+    """What is taken from a residual, which is measured less expected already: filterpy's Hx."""
+    return 0.0

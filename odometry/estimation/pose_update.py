@@ -16,7 +16,7 @@ from odometry.estimation.measurement import Gaussian, Measurement, Place, pose_m
 from odometry.estimation.new_start import agree, new_start_event, started_anew
 from odometry.estimation.noise_scale import NoiseScale, adapted
 from odometry.estimation.pose_kalman import PoseKalman
-from odometry.estimation.transition import ALPHA_LEFT, ALPHA_RIGHT, STATES, Y_LEFT, Y_RIGHT, YAW
+from odometry.estimation.transition import STATES, Y_LEFT, Y_RIGHT, YAW
 from odometry.frames import Frame
 from odometry.geometry.angles import wrap_one
 
@@ -125,7 +125,7 @@ class PoseUpdate:
         # an outlier tells nothing of the noise; refused poses that agree tell that it is larger
         if self.config.adapt_rate > 0 and (accepted or agree(refused[-2:], self.covariance)):
             rate = self.config.adapt_rate
-            scale = adapted(scale, measured.residual, self._kalman.SI, squared, rate)
+            scale = adapted(scale, measured.residual, self._kalman.weighed, squared, rate)
         if self.config.detect_jumps and size == 3:
             recent = (*recent, min(squared, gate))[-self.config.jump_window :]
             jumped = len(recent) == self.config.jump_window and sum(recent) > self._jump
@@ -157,12 +157,12 @@ class PoseUpdate:
 
     def _bounded(self, mean: FloatArray, covariance: FloatArray) -> FloatArray:
         """Yaw in (-pi, pi], ICRs on their own sides of the robot, slip factors above zero."""
-        yaw = float(mean[YAW])
+        _, _, yaw, y_left, y_right, _, _, alpha_left, alpha_right = mean.tolist()
         if abs(yaw) > math.pi:
             mean[YAW] = wrap_one(yaw)
         least = self._least_side_m
-        if mean[Y_LEFT] < least or mean[Y_RIGHT] > -least:
+        if y_left < least or y_right > -least:
             mean = project_into(mean, covariance, SIDES, np.full(2, least))
-        if min(mean[ALPHA_LEFT], mean[ALPHA_RIGHT]) < LEAST_ALPHA:
+        if alpha_left < LEAST_ALPHA or alpha_right < LEAST_ALPHA:
             mean[ALPHAS] = np.maximum(mean[ALPHAS], LEAST_ALPHA)
         return mean

@@ -1,9 +1,7 @@
 """Poses that stay away, or that stay the same while the robot moves."""
 
 import math
-from dataclasses import dataclass
-
-import numpy as np
+from typing import NamedTuple
 
 from odometry.arrays import FloatArray
 from odometry.estimation.filter_event import FilterEvent
@@ -14,13 +12,12 @@ FROZEN_TURN_RAD = 0.1  # ... of the gyroscope, since a pose that is repeated to 
 FROZEN_S = 1.0  # for an event; a pose or two that were written twice are none
 
 
-@dataclass(frozen=True, slots=True)
-class PoseWatch:
+class PoseWatch(NamedTuple):
     """What is remembered of the measured poses.
 
     Attributes
     ----------
-    pose : (3,) or None
+    pose : (x, y, yaw) or None
         The last one.
     changed_s, seen_s, fresh_s : float
         Stamps at which it came first and last, and of the last one that was used.
@@ -30,7 +27,7 @@ class PoseWatch:
         Travel of the wheels and turn of the gyroscope since it came first.
     """
 
-    pose: FloatArray | None = None
+    pose: tuple[float, ...] | None = None
     changed_s: float = math.nan
     seen_s: float = math.nan
     fresh_s: float = math.nan
@@ -56,13 +53,14 @@ def watched(
     watch: PoseWatch, pose: FloatArray, stamp_s: float
 ) -> tuple[PoseWatch, bool, tuple[FilterEvent, ...]]:
     """The watch after a measured pose, and whether that is to be used."""
-    if np.isnan(pose).all():
+    x, y, yaw = cells = tuple(pose.tolist())
+    if math.isnan(x) and math.isnan(y) and math.isnan(yaw):
         return watch, False, ()
-    if watch.pose is not None and np.array_equal(pose, watch.pose, equal_nan=True):
+    if watch.pose is not None and _are_same(cells, watch.pose):
         frozen = watch.travel_m > FROZEN_TRAVEL_M or abs(watch.turn_rad) > FROZEN_TURN_RAD
         fresh_s = watch.fresh_s if frozen else stamp_s
         after = PoseWatch(
-            pose,
+            cells,
             watch.changed_s,
             stamp_s,
             fresh_s,
@@ -78,7 +76,7 @@ def watched(
         events = ongoing(watch, stamp_s)
         if away_s <= max(OUTAGE_S, OUTAGE_PERIODS * period_s) or period_s == 0:
             period_s = away_s if period_s == 0 else 0.9 * period_s + 0.1 * away_s
-    return PoseWatch(pose, stamp_s, stamp_s, stamp_s, period_s), True, events
+    return PoseWatch(cells, stamp_s, stamp_s, stamp_s, period_s), True, events
 
 
 def ongoing(watch: PoseWatch, stamp_s: float) -> tuple[FilterEvent, ...]:
@@ -95,3 +93,10 @@ def ongoing(watch: PoseWatch, stamp_s: float) -> tuple[FilterEvent, ...]:
         text = f"no pose came for {away_s:.1f} s"
         found.append(FilterEvent("pose_outage", watch.seen_s, stamp_s, text))
     return tuple(found)
+
+
+def _are_same(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
+    """Whether two poses are the same to the last digit, parts that were not measured included."""
+    if not math.isnan(sum(one)):
+        return one == other
+    return all(a == b or (math.isnan(a) and math.isnan(b)) for a, b in zip(one, other, strict=True))

@@ -5,7 +5,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.estimate import ALPHAS, ICRS
-from odometry.estimation.transition import GYRO_BIAS, STATES, YAW
+from odometry.estimation.transition import GYRO_BIAS, STATES, YAW, X, Y
 
 GAP_DENSITY = 25.0, 9.0  # [m^2/s], [rad^2/s]: while speeds are not known, all may happen
 
@@ -56,11 +56,12 @@ class ProcessNoise:
         """
         left, right = tread_speeds.tolist()
         travel_per_s = (abs(left) + abs(right)) / 2 * slip_scale
-        density = self._density.copy()
-        density[:YAW] = self._position + self._slip * travel_per_s
-        density[YAW] = self._gyro if by_gyroscope else self._yaw + self._yaw_by_slip * travel_per_s
+        position = self._position + self._slip * travel_per_s
+        yaw = self._gyro if by_gyroscope else self._yaw + self._yaw_by_slip * travel_per_s
         if in_gap:
-            density[:YAW] += GAP_DENSITY[0]
-            if not by_gyroscope:
-                density[YAW] += GAP_DENSITY[1]
-        return density * step_s
+            position += GAP_DENSITY[0]
+            yaw += 0.0 if by_gyroscope else GAP_DENSITY[1]
+        variances = self._density * step_s
+        variances[X] = variances[Y] = position * step_s
+        variances[YAW] = yaw * step_s
+        return variances

@@ -1,7 +1,6 @@
 """All that a filter watches of its sensors from step to step."""
 
 import math
-from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from odometry.arrays import FloatArray
@@ -16,8 +15,7 @@ from odometry.frames import Frame
 Events = tuple[FilterEvent, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class SensorWatch:
+class SensorWatch(NamedTuple):
     """What is remembered of each sensor.
 
     Attributes
@@ -162,7 +160,7 @@ def ongoing(watch: SensorWatch, stamp_s: float) -> Events:
     if not math.isnan(watch.gap_since_s):
         found.append(_gap_event(watch.gap_since_s, stamp_s))
     if watch.treads.stuck >= 0:
-        stuck = replace(watch.treads, same_since_s=(stamp_s, stamp_s))
+        stuck = watch.treads._replace(same_since_s=(stamp_s, stamp_s))
         found += tread_watch.freed(stuck, stamp_s)[1]
     found += gyroscope_watch.ongoing(watch.gyroscope, stamp_s)
     return (*found, *pose_watch.ongoing(watch.poses, stamp_s))

@@ -10,6 +10,7 @@ from odometry.geometry.se2 import SMALL_ANGLE
 
 STATES = 9  # see `transition`
 X, Y, YAW, Y_LEFT, Y_RIGHT, X_ICR, GYRO_BIAS, ALPHA_LEFT, ALPHA_RIGHT = range(STATES)
+UNCHANGED = np.eye(STATES)
 NO_SPEEDS, NO_TWIST = np.zeros(2), np.zeros(3)
 
 
@@ -81,7 +82,7 @@ def transition(
     by_omega_x = (one * middle + two * x_icr + three) * step_s
     by_omega_y = (two * middle - one * x_icr + four) * step_s
     half, across_step = step_s / 2, -omega * step_s
-    jacobian = np.eye(STATES)
+    jacobian = UNCHANGED.copy()
     jacobian[0, 2:] = (
         -moved_y,  # eq. 9: d(Xdot)/d(theta) = -Ydot
         by_omega_x * by_width + one * omega * half,

@@ -1,7 +1,7 @@
 """Tread speeds that cannot be: a sample that stands alone, an encoder that is stuck."""
 
 import math
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,8 +20,7 @@ SIDES = ("left", "right")
 Speeds = tuple[float, float]
 
 
-@dataclass(frozen=True, slots=True)
-class TreadWatch:
+class TreadWatch(NamedTuple):
     """What is remembered of the tread speeds.
 
     Attributes
@@ -75,7 +74,7 @@ def watched(
             return watch, frame.tread_speeds_m_s, ()
         if frame.odometry_row == watch.row:
             return watch, believed_m_s, ()
-        return replace(watch, held_out=False), frame.tread_speeds_m_s, ()  # a second row agrees
+        return watch._replace(held_out=False), frame.tread_speeds_m_s, ()  # a second row agrees
     stamp_s = frame.stamp_s
     since, before = list(watch.same_since_s), list(watch.before)
     for tread, changed in enumerate((left != was_left, right != was_right)):
@@ -92,8 +91,7 @@ def watched(
         fastest = was_left if abs(was_left) > abs(was_right) else was_right
         text = f"a tread speed of {fastest:.2f} m/s stands alone: the one before it was held"
         events = (FilterEvent("tread_spike", watch.row_s, stamp_s, text),)
-    after = replace(
-        watch,
+    after = watch._replace(
         recorded_m_s=(left, right),
         row=frame.odometry_row,
         row_s=stamp_s,
@@ -124,14 +122,14 @@ def contradicted(
     if abs(implied - watch.recorded_m_s[tread]) <= most or not _is_width_known(belief):
         return _agreeing(watch)
     if math.isnan(watch.off_since_s):
-        return replace(watch, off_since_s=stamp_s)
+        return watch._replace(off_since_s=stamp_s)
     if stamp_s - watch.off_since_s < CONTRADICTED_S:
         return watch
-    return replace(watch, stuck=tread, off_since_s=watch.same_since_s[tread])
+    return watch._replace(stuck=tread, off_since_s=watch.same_since_s[tread])
 
 
 def _agreeing(watch: TreadWatch) -> TreadWatch:
-    return watch if math.isnan(watch.off_since_s) else replace(watch, off_since_s=math.nan)
+    return watch if math.isnan(watch.off_since_s) else watch._replace(off_since_s=math.nan)
 
 
 def freed(watch: TreadWatch, stamp_s: float) -> tuple[TreadWatch, tuple[FilterEvent, ...]]:
@@ -143,7 +141,7 @@ def freed(watch: TreadWatch, stamp_s: float) -> tuple[TreadWatch, tuple[FilterEv
         "gyroscope told its speed, and nothing was learned of the ICRs"
     )
     event = FilterEvent("stuck_tread", watch.off_since_s, stamp_s, text)
-    return replace(watch, stuck=-1, off_since_s=math.nan), (event,)
+    return watch._replace(stuck=-1, off_since_s=math.nan), (event,)
 
 
 def implied_speed(speeds: Speeds, tread: int, belief: Gaussian, yaw_rate: float) -> float:

@@ -36,7 +36,7 @@ def test_a_bias_is_said_and_a_drift():
     found = kinds(with_rates(0.016))
     assert set(found) == {"gyroscope_bias"}
     assert "bias of 0.01" in found["gyroscope_bias"].text
-    assert "gyroscope_drift" in kinds(with_rates(0.03 * t / t[-1]))
+    assert "gyroscope_drift" in kinds(with_rates(0.06 * t / t[-1]))
 
 
 def test_outliers_are_counted(rng):
