@@ -232,8 +232,11 @@ class IcrEkf:
     ) -> Gaussian:
         speeds = estimate.tread_speeds_m_s + estimate.added_speeds_m_s
         measured = tread_yaw_rate(mean, speeds, yaw_rate - float(estimate.added_twist[YAW]))
+        # the turn that the treads say: that of the gyroscope has their noise in it, and a weight
+        # that depends on the noise would bend the width
+        turn = yaw_rate - float(measured.residual[0])
         variance = tread_variance(
-            estimate.tread_speeds_m_s, yaw_rate, self.track_width, estimate.scale.slip, step_s
+            estimate.tread_speeds_m_s, turn, self.track_width, estimate.scale.slip, step_s
         )
         variance *= huber_factor(measured, covariance, variance)
         measured.covariance[0, 0] = variance
