@@ -137,6 +137,10 @@ class Switch:
         sights = (*kept, sight)
         return replace(self, before=before, sights=sights, settled=self._settle(sights, before))
 
+    def astray(self) -> "Switch":
+        """The switch of a robot that went nobody knows how far: no place is known any more."""
+        return replace(self, before=self.in_force, sights=(), settled=None)
+
     def at(self, stamp_s: float, pose: FloatArray, travel_m: float) -> "Switch":
         """The switch with the robot at a pose (3,) of the odometry frame."""
         if self.settled is None or not self.settled.sights:

@@ -110,6 +110,8 @@ class TerrainWatcher:
         """Look at the frame's image, if it has one, and tell what the robot stands on."""
         travel_m = float(np.interp(frame.stamp_s, self._run.odometry.stamps_s, self._travel_m))
         pose = self._pose_at(frame, estimate)
+        if frame.in_gap:
+            self._switch = self._switch.astray()
         if frame.image is not None:
             sighting = self.look(frame, estimate)
             self.sightings.append(sighting)

@@ -33,6 +33,7 @@ TUNED_ICR_NOISE = (0.05, 0.1, 0.2, 0.4, 0.8)  # track widths per square root of 
 TUNED_POSE_NOISE = (0.001, 0.003, 0.01)
 SETTLED_SHARE = 0.05
 SETTLED_S = 1.0
+NEAR_M = 0.25  # a switch is meant to be so near to its edge
 
 
 @dataclass(frozen=True)
@@ -91,7 +92,12 @@ def study(out: Path, seeds: int, rough: bool) -> None:
     )
     late_s = [d.late_s for d in delays if d.late_s is not None]
     late_m = [d.late_m for d in delays if d.late_m is not None]
-    print(f"switches {len(delays)} (true changes {2 * seeds})")
+    made = [d for d in delays if d.in_force_s is not None]
+    print(
+        f"switches {len(made)} (true changes {2 * seeds}), "
+        f"false {sum(d.true_s is None for d in made)}, missed {len(delays) - len(made)}, "
+        f"beyond {NEAR_M} m {sum(abs(m) > NEAR_M for m in late_m)}"
+    )
     print(f"late by s, median and 5-95 %: {spread(late_s)}; by m: {spread(late_m)}")
 
 

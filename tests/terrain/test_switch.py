@@ -291,6 +291,19 @@ def test_what_lies_behind_is_forgotten_and_changes_nothing(rule):
     assert len(switch.sights) < 80
 
 
+@BOTH_RULES
+def test_a_robot_that_went_astray_knows_no_place(rule):
+    switch = start(**rule)
+    for k in range(6):
+        switch = switch.see(seen_at(0.25 * k, "gravel"))
+    assert switch.at(2.0, np.array([1.3, 0.0, 0.0]), 1.3).in_force == "gravel"
+    astray = switch.astray().at(2.0, np.array([1.3, 0.0, 0.0]), 1.3)
+    assert (astray.in_force, astray.sights) == ("grass", ())
+    for k in range(6):
+        astray = astray.see(seen_at(2.0 + 0.25 * k, "gravel"))
+    assert astray.at(6.0, np.array([3.1, 0.0, 0.0]), 3.1).in_force == "gravel"
+
+
 def test_a_call_gives_a_new_switch_and_leaves_the_old():
     switch = start()
     before = dataclasses.replace(switch)

@@ -126,6 +126,18 @@ def test_the_place_counts_along_the_driven_path(watch, corrected):
     assert event.waited_m == pytest.approx(0.5 * (2.4 - 1.4))
 
 
+@pytest.mark.parametrize(("gap_ends_s", "terrain"), [(0.0, "snow"), (2.0, "mud")])
+def test_over_a_gap_of_odometry_places_are_forgotten(watch, gap_ends_s, terrain):
+    """Snow is seen before the gap and after it; one label alone brings nothing into force."""
+    watched = watch([DARK, BRIGHT, BRIGHT])
+    frames = list(watched.run.frames())
+    frames = [dataclasses.replace(f, in_gap=1.4 < f.stamp_s <= gap_ends_s) for f in frames]
+    estimates = [estimate_at(frame) for frame in frames]
+    pairs = zip(frames, estimates[:1] + estimates, strict=False)
+    footings = [watched.watcher.terrain(frame, estimate) for frame, estimate in pairs]
+    assert footings[-1].terrain == terrain
+
+
 def test_the_region_follows_the_speeds_commanded_from_the_image_on(watch):
     """Straight until now; from this frame on a turn to the left about the believed ICRs."""
     watched = watch([DARK])
