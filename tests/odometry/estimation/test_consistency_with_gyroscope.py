@@ -1,9 +1,8 @@
 """NEES and NIS of the filter with a gyroscope, over seeds, where its noises are the true ones.
 
 The truth draws what the filter supposes: white noise of the position and of a yaw turned by the
-gyroscope, a constant bias, ICRs and slip factors from the prior. Treads turn the robot by the
-gyroscope's word alone, so the comparison of the two has no part in this (`use_gyroscope` keeps
-their yaw rates apart by the noise that their slip has).
+gyroscope, a constant bias, ICRs and slip factors from the prior, and a yaw rate that differs from
+that of the treads by the noise that their slip has.
 """
 
 import math
