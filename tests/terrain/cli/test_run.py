@@ -134,3 +134,18 @@ def test_after_a_jump_of_the_poses_what_was_learned_is_not_recommended(world, tm
     assert "Note: " in answer.output
     assert "it started anew there" in answer.output
     assert "learned.toml is not recommended: " in answer.output
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--per-tread"], "per_tread = False, seen True"),
+        (["--detect-jumps"], "detect_jumps = False, seen True"),
+        (["--source", "none"], "by the camera"),
+    ],
+)
+def test_an_option_that_contradicts_the_preset_is_an_error(across_run, tmp_path, options, words):
+    answer = invoke(across_run, "--out", tmp_path / "out", "--preset", "chen2023", *options)
+    assert isinstance(answer.exception, OdometryError)
+    assert words in str(answer.exception)
+    assert not (tmp_path / "out").exists()
