@@ -4,12 +4,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
+from odometry.checks.heading import middle_yaw
 from odometry.checks.heading_spans import HeadingSpans, heading_spans
 from odometry.checks.mending import Mend, changed
-from odometry.checks.motion import scattered
+from odometry.checks.motion import Motion, scattered
 from odometry.checks.relation import Relation, relation
 from odometry.run import Run
 
@@ -22,7 +23,8 @@ OCTANTS = 5  # of the compass, in which the robot was: else a bend is a drift
 ROUNDS = 20
 LEAST_WINDOWS = 30
 STRETCHED = 1.2  # ratio of scales; recordings with good poses have up to 1.1
-SHARP = 0.6  # turn in a window [rad] from which its distance says little
+HALF = 0.6  # of the stretch, that each half of the recording has
+SHARP = 0.3  # turn in a window [rad] from which its distance says little
 TIGHT = 0.9  # correlation
 
 
@@ -94,20 +96,25 @@ def _stretched(evidence: Evidence) -> Iterator[Finding]:
     m = evidence.motion
     if len(m) < LEAST_WINDOWS or scattered(m):
         return
+    if evidence.yaw_measured and evidence.heading is None:
+        return  # yaw and course part: a sensor far from the centre, or yaw is another
     sharp = np.abs(m.difference_m) > np.abs(m.mean_m)
     sharp |= np.abs(evidence.turn_rad(m)) > SHARP
-    travel_m = np.abs(m.mean_m)
     distance_m = np.where(sharp, np.nan, m.distance_m)
-    ways = (travel_m * way(2 * m.course_rad) for way in (np.cos, np.sin))
-    plain, found = relation(distance_m, travel_m), relation(distance_m, travel_m, *ways)
-    if plain is None or found is None or not found.distinct or found.correlation < TIGHT:
+    plain, found = relation(distance_m, np.abs(m.mean_m)), _by_course(m, distance_m)
+    if plain is None or found is None or found.measured < LEAST_WINDOWS or not found.distinct:
         return
     share = float(np.hypot(*found.coefficients[1:]) / found.slope)
     ratio = (1 + share) / (1 - share) if 0 < share < 0.8 else 1.0
-    sure = share * found.slope > CERTAIN * found.sigmas[1:].max()
+    sure = share * found.slope > CERTAIN * found.sigmas[1:].max() and found.correlation > TIGHT
     if ratio < STRETCHED or not sure or _size(found.residuals) > 0.8 * _size(plain.residuals):
         return
+    if not _lasts(m, distance_m, found):
+        return
     along_rad = float(np.arctan2(found.coefficients[2], found.coefficients[1]) / 2)
+    by_yaw = _ratio_by_yaw(evidence, along_rad, sharp)
+    if by_yaw is not None and by_yaw < 1 + HALF * (ratio - 1):
+        return
     yield Finding(
         "positions_stretched",
         Level.WARNING,
@@ -118,6 +125,41 @@ def _stretched(evidence: Evidence) -> Iterator[Finding]:
         "Convert positions by a projection (UTM, east and north in metres)",
         mend=_shortened(along_rad, ratio),
     )
+
+
+def _by_course(motion: Motion, distance_m: FloatArray) -> Relation | None:
+    travel_m = np.abs(motion.mean_m)
+    ways = (travel_m * way(2 * motion.course_rad) for way in (np.cos, np.sin))
+    return relation(distance_m, travel_m, *ways)
+
+
+def _ratio_by_yaw(evidence: Evidence, along_rad: float, sharp: BoolArray) -> float | None:
+    """The ratio of both scales where yaw says how far the robot drove along each axis."""
+    m, heading = evidence.motion, evidence.heading
+    if heading is None:
+        return None
+    scales = []
+    for axis_rad in (along_rad, along_rad + np.pi / 2):
+        moved_m = m.moved_m @ np.array([np.cos(axis_rad), np.sin(axis_rad)])
+        driven_m = m.mean_m * np.cos(middle_yaw(m, heading) + heading.offset_rad - axis_rad)
+        scales.append(relation(np.where(sharp, np.nan, moved_m), driven_m))
+    along, across = scales
+    if along is None or across is None or not across.certain():
+        return None
+    return abs(along.slope / across.slope)
+
+
+def _lasts(motion: Motion, distance_m: FloatArray, whole: Relation) -> bool:
+    """Whether both halves of the recording, where they tell, have the stretch of the whole."""
+    known = np.flatnonzero(np.isfinite(distance_m))
+    halves = [_by_course(motion.rows(rows), distance_m[rows]) for rows in np.array_split(known, 2)]
+    size = float(np.sum(whole.coefficients[1:] ** 2))
+    alike = [
+        float(half.coefficients[1:] @ whole.coefficients[1:]) / size
+        for half in halves
+        if half is not None and half.distinct
+    ]
+    return len(alike) > 0 and min(alike) > HALF
 
 
 def _shortened(along_rad: float, ratio: float) -> Mend:

@@ -14,22 +14,25 @@ AROUND_S = 2.0  # of such a moment that is left out
 LEAST_S = 15.0  # of a part between two cuts
 HALF = 0.5  # of the recording, that parts are at least: with more cuts it is compared whole
 MOST_PARTS = 6  # the longest ones are compared
-MOST_TRIED = 4  # causes that are tried as the only one
+# Sensors of different times seem to slip, to jump and to be far from the centre.
+OF_TIME = frozenset(
+    {"pose_late", "clocks_apart", "gyroscope_late", "treads_late", "treads_are_commands"}
+)
 
 Found = Callable[[Evidence], list[Finding]]
 
 
 def alone(evidence: Evidence, found: Sequence[Finding], find: Found) -> list[Finding]:
-    """The first cause that leaves no warning when it is undone, and the notes; else all findings.
+    """A cause of time that leaves no warning when it is undone, and the notes; else all findings.
 
-    Where a cause has consequences, they vanish with it.
+    Its consequences vanish with it.
     """
     warnings = _warnings(found)
-    causes = [finding for finding in warnings if finding.mend is not None]
     if len(warnings) < 2:
         return list(found)
-    for cause in causes[:MOST_TRIED]:
-        assert cause.mend is not None  # noqa: S101 - chosen so
+    for cause in warnings:
+        if cause.name not in OF_TIME or cause.mend is None:
+            continue
         if not _warnings(find(Evidence(cause.mend(evidence.run)))):
             return [f for f in found if f is cause or f.level is Level.NOTE]
     return list(found)

@@ -43,7 +43,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     | {"treads_unequal", "tread_offset", "slip", "scale"},
     "treads_frozen": frozenset({"pose_jumps", "slip", "odometry_gap", "turns_at_rest"})
     | {"far_sensor", "track_width", "treads_unequal", "tread_offset"},
-    "odometry_gap": frozenset({"pose_jumps"}),
+    "odometry_gap": frozenset({"pose_jumps", "positions_stretched", "yaw_bent"}),
     "clock_set": frozenset({"pose_jumps"}),
     "imu_mount": frozenset({"gyroscope_reversed", "gyroscope_unrelated"}),
     "treads_still": TREADS | POSES,
@@ -79,10 +79,18 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
 }
 
 
+# No curve of the speeds is looked for where these are.
+NOT_CURVES = frozenset(
+    {"stuck_encoder", "treads_frozen", "treads_are_twist", "treads_unrelated", "poses_unrelated"}
+)
+
+
 def without_consequences(findings: Sequence[Finding]) -> list[Finding]:
     """The findings of which none explains another."""
     names = {finding.name for finding in findings}
     told = {follows for name in names for follows in CONSEQUENCES.get(name, ())}
+    if names & NOT_CURVES:
+        told.add("treads_not_proportional")
     if any(f.level is not Level.NOTE and f.name != "sensors_disagree" for f in findings):
         told.add("sensors_disagree")  # it is for what has no name
     return [finding for finding in findings if finding.name not in told]

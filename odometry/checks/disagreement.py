@@ -14,19 +14,15 @@ def sensors_disagree(evidence: Evidence, found: Sequence[Finding]) -> Iterator[F
     """One warning where sensors differ and nothing `found` explains it."""
     if any(finding.level is not Level.NOTE for finding in found):
         return
-    seen = disagreements(evidence)
+    seen = lasting_disagreements(evidence)
+    if not any(finding.name == "slip_episodes" for finding in found):
+        seen += [words for words in [positions_apart(evidence)] if words]
     if seen:
         yield disagreement("; ".join(seen))
 
 
-def disagreements(evidence: Evidence) -> list[str]:
-    """By what sensors differ, in absolute terms: more than noise and slip explain."""
-    apart = positions_apart(evidence)
-    return [*lasting_disagreements(evidence), *([apart] if apart else [])]
-
-
 def lasting_disagreements(evidence: Evidence) -> list[str]:
-    """The same without what happens at one place: it says nothing of a cause that lasts."""
+    """By what sensors differ all along, in absolute terms: more than noise and slip explain."""
     seen = (
         scales_apart(evidence),
         headings_apart(evidence),

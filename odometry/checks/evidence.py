@@ -6,12 +6,14 @@ from functools import cached_property
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.checks.course_turns import course_turns
 from odometry.checks.heading import CONSISTENT, Heading, across_m, along_m, headings
-from odometry.checks.motion import Motion, scattered
+from odometry.checks.motion import Motion, motion_between, scattered
 from odometry.checks.recorded import Recorded
 from odometry.checks.relation import Relation, relation
 
 MOST_SHARP = 0.8  # share of the windows in sharp turns, from which these are used as well
+COURSE_WINDOWS_S = (1.0, 2.0, 4.0)
 MOST_TURN_RAD = 2.5  # between two poses, from which whole turns may be lost
 DEGREES_RAD_S = 7.0  # no robot turns faster: the gyroscope is in degrees per second
 CLEARLY = 0.3  # difference of concentrations or squared correlations that decides
@@ -147,8 +149,26 @@ class Evidence(Recorded):
         return relation(m.gyroscope_rad, m.difference_m, m.lasts_s)
 
     @cached_property
+    def _course_turns(self) -> tuple[Motion, FloatArray]:
+        """Over longer windows where noise prevails in shorter ones."""
+        found = course_turns(self.motion, self.integrals)
+        for window_s in COURSE_WINDOWS_S:
+            if np.isfinite(found[1]).any():
+                break
+            longer = motion_between(self.run, self.integrals, self.poses_used, window_s)
+            found = course_turns(self._without_left_out(longer), self.integrals)
+        return found
+
+    @cached_property
+    def turn_motion(self) -> Motion:
+        """Windows (K) of the measured turns: of yaw, else of the course of positions."""
+        return self.motion if self.yaw_measured else self._course_turns[0]
+
+    @cached_property
     def pose_turn_rad(self) -> FloatArray:
         """Measured turn (K,), NaN where the robot may have turned by more than half a turn."""
+        if not self.yaw_measured:
+            return self._course_turns[1]
         by_gyroscope = self.turn_rad(self.motion)
         sure = ~(np.abs(by_gyroscope) > MOST_TURN_RAD)
         return np.asarray(np.where(sure, self.motion.turn_rad, np.nan))
@@ -156,16 +176,16 @@ class Evidence(Recorded):
     @cached_property
     def pose_turn_by_treads(self) -> Relation | None:
         """Measured turn from the travel of the left and of the right tread."""
-        m = self.motion
+        m = self.turn_motion
         return relation(self.pose_turn_rad, m.left_m, m.right_m)
 
     @cached_property
     def pose_turn_by_difference(self) -> Relation | None:
         """Measured turn from the difference of the treads' travel."""
-        return relation(self.pose_turn_rad, self.motion.difference_m)
+        return relation(self.pose_turn_rad, self.turn_motion.difference_m)
 
     @cached_property
     def pose_turn_by_gyroscope(self) -> Relation | None:
         """Measured turn from that of the gyroscope, and its bias."""
-        m = self.motion
+        m = self.turn_motion
         return relation(self.pose_turn_rad, m.gyroscope_rad, m.lasts_s)

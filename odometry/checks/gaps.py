@@ -137,6 +137,9 @@ def _turned_rad(evidence: Evidence, begin_s: float, end_s: float) -> float | Non
     rows = _rows_beside(evidence, begin_s, end_s)
     if rows is None or evidence.run.pose is None or not evidence.yaw_measured:
         return None
+    around_s = evidence.run.pose.stamps_s[list(rows)]
+    if around_s[0] > begin_s or around_s[1] < end_s:
+        return None
     turn = float(np.diff(evidence.run.pose["yaw"][list(rows)])[0])
     turn = np.radians(turn) if evidence.yaw_in_degrees else turn
     return float(abs((turn + np.pi) % (2 * np.pi) - np.pi))

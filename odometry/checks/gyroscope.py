@@ -83,7 +83,9 @@ def stationary_bias(evidence: Evidence) -> tuple[float, float, str] | None:
 
 def _bias_by_poses(evidence: Evidence) -> tuple[float, float, str] | None:
     found = evidence.pose_turn_by_gyroscope
-    if found is None or found.correlation < 0.9 or not 0.8 < found.slope < 1.25:
+    if found is None or not evidence.yaw_measured:
+        return None
+    if found.correlation < 0.9 or not 0.8 < found.slope < 1.25:
         return None
     return -float(found.coefficients[1]), 2 * float(found.sigmas[1]), "more than measured yaw turns"
 

@@ -93,8 +93,13 @@ def across_m(motion: Motion, heading: Heading) -> FloatArray:
     return np.asarray(motion.distance_m * np.sin(_off_axis(motion, heading)))
 
 
+def middle_yaw(motion: Motion, heading: Heading) -> FloatArray:
+    """Measured yaw (K,) in the middle of each window, as the reading has it."""
+    return _middle(READINGS[heading.reading](motion.yaw_rad))
+
+
 def _off_axis(motion: Motion, heading: Heading) -> FloatArray:
-    middle = _middle(READINGS[heading.reading](motion.yaw_rad))
+    middle = middle_yaw(motion, heading)
     axis = (heading.offset_rad + np.pi / 2) % np.pi - np.pi / 2
     return np.asarray(motion.course_rad - middle - axis)
 

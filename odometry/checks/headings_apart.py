@@ -25,7 +25,7 @@ def scales_apart(evidence: Evidence) -> str:
     fit = evidence.pose_turn_by_gyroscope
     if fit is None or not fit.distinct or fit.correlation < 0.9:
         return ""
-    if abs(fit.slope - 1) < SCALE + CERTAIN * fit.slope_sigma:
+    if not evidence.yaw_measured or abs(fit.slope - 1) < SCALE + CERTAIN * fit.slope_sigma:
         return ""
     if lasting_turn_rad(evidence.pose_turn_rad, evidence.motion.lasts_s) < LEAST_SCALED_RAD:
         return ""

@@ -28,7 +28,7 @@ def pose_values(evidence: Evidence) -> Iterator[Finding]:
     yield from _frame(evidence, positions)
     yield from _coarse(positions)
     yield from _interpolated(stamps_s, positions)
-    yield from _noisy(evidence, stamps_s, positions)
+    yield from _noisy(evidence, stamps_s)
     if evidence.yaw_measured:
         yield from _yaw_constant(evidence, rows)
         every = np.flatnonzero(np.isfinite(pose.stack("x", "y", "yaw")).all(axis=1))
@@ -115,11 +115,10 @@ def _interpolated(stamps_s: FloatArray, positions: FloatArray) -> Iterator[Findi
         )
 
 
-def _noisy(evidence: Evidence, stamps_s: FloatArray, positions: FloatArray) -> Iterator[Finding]:
+def _noisy(evidence: Evidence, stamps_s: FloatArray) -> Iterator[Finding]:
     """Noise by second differences of neighbours, which smooth driving hardly has."""
-    second = positions[2:] - 2 * positions[1:-1] + positions[:-2]
     scale = evidence.metres_per_metre or 1.0
-    sigma = 1.4826 * float(np.median(np.abs(second))) / np.sqrt(6.0)
+    sigma = evidence.position_sigma_m
     step_m = scale * evidence.fastest_m_s * float(np.median(np.diff(stamps_s)))
     if not 1 / 30 < scale < 30:  # in another unit: which of both is, is not known here
         sigma, step_m = min(sigma, sigma / scale), 0.0

@@ -13,6 +13,8 @@ from odometry.checks.turning import lasting_turn_rad
 
 SLOW, FAST = 0.25, 0.9  # shares of the ordinary fastest speed that are compared
 UNLIKE = 1.3  # ratio of what a metre at slow and at fast speed moves the robot; slip stays below
+LASTING = 1.12  # the same in each half of the recording, and in turns where these tell
+SURELY = 0.1  # of what a metre turns: standard deviation of its bend
 CERTAIN = 6.0  # standard deviations
 HALVED = 0.6  # share of the residual squares that is left when proportion is given up
 HELD = 0.95  # share of the motion explained then: else it is slip
@@ -27,16 +29,21 @@ LEAST_WINDOWS = 30
 
 def proportion(evidence: Evidence) -> Iterator[Finding]:
     """Columns that hold what drives the motors, and not the speeds that come of it."""
-    m = evidence.motion
-    if len(m) < LEAST_WINDOWS:
-        return
+    m, forward_m = evidence.motion, evidence.forward_m
     squared = _squared(evidence, m.mean_m, m)
-    plain, bent = evidence.forward_by_mean, relation(evidence.forward_m, m.mean_m, squared)
-    if plain is None or bent is None or not _explains(plain, bent, 1) or bent.explained < HELD:
+    plain, bent = evidence.forward_by_mean, relation(forward_m, m.mean_m, squared)
+    if plain is None or bent is None or bent.measured < LEAST_WINDOWS or bent.explained < HELD:
         return
-    slow, fast = (bent.coefficients[0] + share * bent.coefficients[1] for share in (SLOW, FAST))
-    if fast * slow <= 0 or 1 / UNLIKE < slow / fast < UNLIKE:
+    if not _explains(plain, bent, 1) or _slow_by_fast(bent) < UNLIKE or holds_the_mean(evidence):
         return
+    halves = (
+        relation(forward_m[rows], m.mean_m[rows], squared[rows])
+        for rows in np.array_split(np.flatnonzero(np.isfinite(forward_m)), 2)
+    )
+    parts = [half for half in halves if half is not None and half.certain(1, CERTAIN)]
+    if not parts or min(map(_slow_by_fast, parts)) < LASTING or _turns_proportional(evidence):
+        return
+    slow, fast = _slow_and_fast(bent)
     yield Finding(
         "treads_not_proportional",
         Level.WARNING,
@@ -48,11 +55,34 @@ def proportion(evidence: Evidence) -> Iterator[Finding]:
     )
 
 
+def _slow_and_fast(bent: Relation, place: int = 0, more: int = 1) -> tuple[float, float]:
+    """What a metre of travel moves at slow and at fast speed."""
+    plain, bend = (float(bent.coefficients[i]) for i in (place, more))
+    return plain + SLOW * bend, plain + FAST * bend
+
+
+def _slow_by_fast(bent: Relation) -> float:
+    slow, fast = _slow_and_fast(bent)
+    return slow / fast if fast > 0 else float("inf")
+
+
+def _turns_proportional(evidence: Evidence) -> bool:
+    """Whether turns surely are proportional to the treads: then no column is bent."""
+    m, turns = evidence.uniform, evidence.uniform.gyroscope_rad
+    if evidence.yaw_rate is None:
+        m, turns = evidence.turn_motion, evidence.pose_turn_rad
+    left, right = (_squared(evidence, way_m, m) for way_m in (m.left_m, m.right_m))
+    bent = relation(turns, m.right_m - m.left_m, right - left, m.lasts_s)
+    if bent is None or bent.sigmas[1] > SURELY * abs(bent.slope):
+        return False
+    return _slow_by_fast(bent) < LASTING
+
+
 def one_side_not_proportional(evidence: Evidence) -> str:
     """A robot that turns when it drives straight on fast, and not slowly."""
     m, turns = evidence.uniform, evidence.uniform.gyroscope_rad
     if evidence.yaw_rate is None:
-        m, turns = evidence.motion, evidence.pose_turn_rad
+        m, turns = evidence.turn_motion, evidence.pose_turn_rad
     if len(m) < LEAST_WINDOWS or not turns_both_ways(m):
         return ""
     left, right = (_squared(evidence, way_m, m) for way_m in (m.left_m, m.right_m))
@@ -98,11 +128,12 @@ def treads_unlike(evidence: Evidence) -> Iterator[str]:
     """Turns, apart from their mean rate, of which the treads explain little."""
     for name, motion, turns in (
         ("the gyroscope", evidence.uniform, evidence.uniform.gyroscope_rad),
-        ("the poses", evidence.motion, evidence.pose_turn_rad),
+        ("the poses", evidence.turn_motion, evidence.pose_turn_rad),
     ):
         columns = np.stack([motion.left_m, motion.right_m, motion.lasts_s, turns], axis=-1)
         known = np.isfinite(columns).all(axis=1)
-        if known.sum() < LEAST_WINDOWS:
+        measured = evidence.yaw_measured or motion is evidence.uniform
+        if known.sum() < LEAST_WINDOWS or not measured:
             continue
         if lasting_turn_rad(turns, motion.lasts_s) < LEAST_TURN_RAD:
             continue

@@ -88,6 +88,15 @@ class Recorded:
         return found
 
     @cached_property
+    def position_sigma_m(self) -> float:
+        """Noise of positions by second differences of neighbours, which smooth driving lacks."""
+        if self.run.pose is None or self.poses_used is None or self.poses_used.sum() < 10:
+            return 0.0
+        positions = self.run.pose.stack("x", "y")[self.poses_used]
+        second = positions[2:] - 2 * positions[1:-1] + positions[:-2]
+        return 1.4826 * float(np.median(np.abs(second))) / float(np.sqrt(6.0))
+
+    @cached_property
     def yaw_measured(self) -> bool:
         """Whether most measured positions have a yaw."""
         if self.positions_measured is None or self.run.pose is None:

@@ -93,7 +93,7 @@ def _lasts(evidence: Evidence, ratio: float) -> bool:
     """Whether each piece of the recording that tells has the ratio of the whole."""
     m, turns = evidence.uniform, evidence.uniform.gyroscope_rad
     if evidence.gyroscope_by_treads is None:
-        m, turns = evidence.motion, evidence.pose_turn_rad
+        m, turns = evidence.turn_motion, evidence.pose_turn_rad
     told = [
         abs(float(piece.coefficients[0] / piece.coefficients[1]))
         for piece in pieces(turns, m.left_m, m.right_m)
@@ -105,7 +105,7 @@ def _lasts(evidence: Evidence, ratio: float) -> bool:
 def _offset(evidence: Evidence) -> Iterator[Finding]:
     """A constant added to one tread: it drives while the robot stands."""
     m = evidence.motion
-    if _reads_zero(evidence) or not turns_both_ways(m):
+    if _reads_zero(evidence) or not evidence.yaw_measured or not turns_both_ways(m):
         return
     turn = relation(evidence.pose_turn_rad, m.left_m, m.right_m, m.lasts_s)
     if turn is None or not turn.certain(2, TIMES) or turn.explained < HELD:

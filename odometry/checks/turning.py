@@ -101,9 +101,9 @@ def gyroscope_sense(evidence: Evidence) -> Sense:
 
 def pose_sense(evidence: Evidence) -> Sense:
     """How measured turns come from the treads."""
-    m = evidence.motion
-    turned = float(np.nansum(np.abs(m.turn_rad)))
-    lasting = max(lasting_turn_rad(m.turn_rad, m.lasts_s), _lasting_by_treads_rad(evidence))
+    m, turns = evidence.turn_motion, evidence.pose_turn_rad
+    turned = float(np.nansum(np.abs(turns)))
+    lasting = max(lasting_turn_rad(turns, m.lasts_s), _lasting_by_treads_rad(evidence))
     return sense(evidence.pose_turn_by_treads, evidence.pose_turn_by_difference, turned, lasting)
 
 
@@ -156,10 +156,12 @@ def _all_opposite(evidence: Evidence, gyroscope: Sense, pose: Sense) -> Finding:
     more = (
         "; or x, y and yaw are in a frame with z down (NED)" if gyroscope is Sense.UNKNOWN else ""
     )
+    if not evidence.yaw_measured:
+        more = ", or both have the wrong sign: without yaw these cannot be distinguished"
     return _finding(
         "treads_swapped",
-        f"measured turns are against the treads ({_correlations(evidence)}), motion along the way "
-        "is not",
+        f"measured turns are against the treads ({_correlations(evidence)})"
+        + (", motion along the way is not" if evidence.yaw_measured else ""),
         f"Left and right treads are swapped{more}",
         "Exchange v_left and v_right",
         exchanged,
@@ -169,7 +171,12 @@ def _all_opposite(evidence: Evidence, gyroscope: Sense, pose: Sense) -> Finding:
 def _pose_opposite(evidence: Evidence, others: str, *, alone: bool) -> Finding:
     if evidence.heading is not None and not _reading_is_plain(evidence):
         return _yaw_reversed(evidence, others)
-    if evidence.heading is None:
+    yaw = "yaw" if evidence.yaw_measured else "the course"
+    if not evidence.yaw_measured:
+        cause = (
+            "Positions are mirrored: x and y are swapped (north before east, NED) or one negated"
+        )
+    elif evidence.heading is None:
         cause = "The yaw of pose.csv is reversed, or all of it is in a frame with z down (NED)"
     else:
         cause = (
@@ -177,10 +184,13 @@ def _pose_opposite(evidence: Evidence, others: str, *, alone: bool) -> Finding:
             "its yaw and its course agree with each other"
         )
     if not alone:
-        cause += ", or left and right treads are swapped: these cannot be distinguished"
+        cause += ", or left and right treads are swapped"
+        if not evidence.yaw_measured:
+            cause += ", or both have the wrong sign"
+        cause += ": these cannot be distinguished"
     return _finding(
         "pose_mirrored",
-        f"yaw of pose.csv turns against the treads ({_correlations(evidence)}; {others})",
+        f"{yaw} of pose.csv turns against the treads ({_correlations(evidence)}; {others})",
         cause,
         "Write pose.csv with x forward, y left, z up and yaw counter-clockwise",
         times("pose", -1.0, "y", "yaw"),
@@ -226,7 +236,7 @@ def _correlations(evidence: Evidence) -> str:
     words = []
     for name, found in (
         ("gyroscope", evidence.gyroscope_by_treads),
-        ("yaw", evidence.pose_turn_by_treads),
+        ("yaw" if evidence.yaw_measured else "the course", evidence.pose_turn_by_treads),
     ):
         if found is not None:
             left, right = found.coefficients

@@ -34,6 +34,7 @@ VERY_TIGHT = 0.85  # share of the turns explained from which a factor of turns a
 TIGHT = 0.9  # correlation from which a factor is a unit and no slip
 SLIDING = 0.6  # concentration of course less yaw below which the robot slides sideways
 EXTREME = 8.0  # a factor that no slip explains
+NOISE = 6.0  # noise of both ends adds 2 (sigma / distance)^2 to a distance, and may wander
 HALF = 0.5  # share of the turns explained from which they have a width
 LEAST_WINDOWS = 15  # from which a factor without heading can be called constant
 PLAUSIBLE_M_S = 10.0  # no skid-steer robot is faster
@@ -47,6 +48,7 @@ def units(evidence: Evidence) -> Iterator[Finding]:
     if gyroscope_factor:
         yield gyroscope_unit(evidence, gyroscope_factor)
     low, high = FORWARD[0] * (1 - evidence.arm_share), FORWARD[1] * (1 + evidence.arm_share)
+    high *= 1 + _longer_by_noise(evidence)
     if forward is not None and not low <= forward <= high:
         yield _along(evidence, forward, forward_tight, width)
     if width is not None and width < WIDTH[0] and (mean := holds_the_mean(evidence)):
@@ -70,6 +72,15 @@ def _forward_factor(evidence: Evidence) -> tuple[float | None, bool]:
         tight = distance.correlation > TIGHT and distance.measured >= LEAST_WINDOWS
         return abs(distance.slope), tight and not sliding
     return None, False
+
+
+def _longer_by_noise(evidence: Evidence) -> float:
+    """Share by which noise of positions may make distances longer, where yaw says no sign."""
+    distance_m = evidence.motion.distance_m
+    if evidence.heading is not None or not np.isfinite(distance_m).any():
+        return 0.0
+    usual_m = float(np.quantile(distance_m[np.isfinite(distance_m)], 0.75))
+    return NOISE * (evidence.position_sigma_m / max(usual_m, 1e-9)) ** 2
 
 
 def _width_factor(evidence: Evidence) -> tuple[float | None, bool, float | None]:
@@ -101,7 +112,7 @@ def _slopes(evidence: Evidence, found: Relation) -> list[float]:
     m = evidence.uniform
     told = pieces(m.gyroscope_rad, m.difference_m, m.lasts_s)
     if found is evidence.pose_turn_by_difference:
-        told = pieces(evidence.pose_turn_rad, evidence.motion.difference_m)
+        told = pieces(evidence.pose_turn_rad, evidence.turn_motion.difference_m)
     return [abs(of.slope) for of in told if of.certain() and of.explained > HALF]
 
 
@@ -110,7 +121,7 @@ def _gyroscope_factor(evidence: Evidence) -> float | None:
     by_gyroscope = evidence.pose_turn_by_gyroscope
     if by_gyroscope is not None and by_gyroscope.certain() and by_gyroscope.explained > TIGHT:
         factor = 1 / abs(by_gyroscope.slope)
-        m = evidence.motion
+        m = evidence.turn_motion
         told = pieces(evidence.pose_turn_rad, m.gyroscope_rad, m.lasts_s)
         parts = [1 / abs(of.slope) for of in told if of.certain()]
         lasts = all((part > 1.2 if factor > 1 else part < 0.85) for part in parts)

@@ -1,0 +1,81 @@
+"""Poses without yaw, of receivers: what can be checked is, and nothing is made up."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.checks.course_turns import course_turns
+from odometry.checks.evidence import Evidence
+from odometry.checks.finding import Level
+from odometry.checks.recording import check_recording
+from tests.odometry.checks.faulty import FAULTS, gyroscope, put
+from tests.odometry.checks.test_confirmed import turning_all_round
+from tests.odometry.checks.test_other_robots import drive, without_gyroscope
+
+
+def without_yaw(run, share=1.0, seed=1):
+    lost = np.random.default_rng(seed).random(len(run.pose)) < share
+    return put(run, "pose", yaw=np.where(lost, np.nan, run.pose["yaw"]))
+
+
+def warnings(run):
+    return [finding.name for finding in check_recording(run).at(Level.WARNING)]
+
+
+@pytest.mark.parametrize("share", [1.0, 0.9, 0.6, 0.3, 0.02])
+def test_a_clean_drive_has_no_warning(share):
+    run = without_yaw(turning_all_round(), share)
+    assert warnings(run) == []
+    assert warnings(without_gyroscope(run)) == []
+
+
+@pytest.mark.parametrize("sigma_m", [0.1, 0.5, 2.0])
+def test_noisy_positions_have_no_warning(sigma_m):
+    at_s = 0.05 * np.arange(4000)
+    run = drive(np.full(4000, 0.7), 0.3 * np.sin(at_s / 4), sigma_m=sigma_m)
+    assert warnings(without_yaw(run)) == []
+
+
+@pytest.mark.parametrize(
+    ("fault", "named"),
+    [
+        *((name, name) for name in ("position_unit", "tread_unit", "treads_swapped", "pose_jumps")),
+        *((name, name) for name in ("tread_left_reversed", "gyroscope_unit", "gyroscope_reversed")),
+        *((name, name) for name in ("frozen_poses", "pose_outliers", "pose_mirrored")),
+        ("positions_mirrored", "pose_mirrored"),
+        ("treads_both_reversed", "treads_swapped"),
+    ],
+)
+def test_faults_are_named_by_positions_alone(fault, named):
+    found = check_recording(without_yaw(FAULTS[fault](turning_all_round()))).at(Level.WARNING)
+    assert [finding.name for finding in found] == [named]
+    if fault == "treads_both_reversed":
+        assert "both have the wrong sign" in found[0].cause
+
+
+def test_without_gyroscope_either_may_be_mirrored():
+    run = without_gyroscope(without_yaw(FAULTS["treads_swapped"](turning_all_round())))
+    (found,) = check_recording(run).at(Level.WARNING)
+    assert "cannot be distinguished" in found.cause
+    assert "treads are swapped" in found.cause
+
+
+def test_turns_of_the_course_are_those_of_the_gyroscope():
+    evidence = Evidence(without_yaw(turning_all_round()))
+    turn, by_gyroscope = evidence.pose_turn_rad, evidence.turn_motion.gyroscope_rad
+    known = np.isfinite(turn)
+    assert known.mean() > 0.8
+    assert np.median(np.abs(turn - by_gyroscope)[known]) < 0.05
+    there_and_back = replace(evidence.motion, moved_m=-evidence.motion.moved_m)
+    for motion in (evidence.motion, there_and_back):
+        same = course_turns(motion, evidence.integrals)[1]
+        assert same == pytest.approx(
+            course_turns(evidence.motion, evidence.integrals)[1], nan_ok=True
+        )
+
+
+def test_turns_that_go_with_nothing_are_not_used():
+    noise = np.random.default_rng(0).normal(0, 0.4, 4000)
+    run = gyroscope(without_yaw(turning_all_round()), lambda _: noise)
+    assert np.isnan(Evidence(run).pose_turn_rad).all()
