@@ -28,22 +28,30 @@ def alone(evidence: Evidence, found: Sequence[Finding], find: Found) -> list[Fin
     Its consequences vanish with it.
     """
     warnings = _warnings(found)
-    if len(warnings) < 2:
-        return list(found)
-    for cause in warnings:
-        if cause.name not in OF_TIME or cause.mend is None:
-            continue
-        if not _warnings(find(Evidence(cause.mend(evidence.run)))):
-            return [f for f in found if f is cause or f.level is Level.NOTE]
-    return list(found)
+    causes = [cause for cause in warnings if cause.name in OF_TIME]
+    only = _explains_all(evidence, causes, find) if len(warnings) > 1 else None
+    return list(found) if only is None else [only, *_notes(found)]
 
 
-def confirmed(evidence: Evidence, found: Sequence[Finding]) -> list[Finding]:
+def _explains_all(evidence: Evidence, causes: Sequence[Finding], find: Found) -> Finding | None:
+    """The first cause that leaves no warning when it alone is undone."""
+    for cause in causes:
+        if cause.mend is not None and not _warnings(find(Evidence(cause.mend(evidence.run)))):
+            return cause
+    return None
+
+
+def _notes(found: Iterable[Finding]) -> list[Finding]:
+    return [finding for finding in found if finding.level is Level.NOTE]
+
+
+def confirmed(evidence: Evidence, found: Sequence[Finding], find: Found) -> list[Finding]:
     """The findings; causes that leave the sensors apart when they are undone are named no more.
 
     All of them are undone together: columns and stamps are mended, the recording is cut at jumps,
     and stretches that other findings name are left out. What stays is compared in absolute terms:
-    it is not enough that it is less than before.
+    it is not enough that it is less than before. Where they fail together, one of them may be
+    the only one: a turn that is reversed seems to be late where the drive repeats itself.
     """
     warnings = _warnings(found)
     causes = [finding for finding in warnings if finding.mend is not None]
@@ -56,6 +64,9 @@ def confirmed(evidence: Evidence, found: Sequence[Finding]) -> list[Finding]:
     cuts = sorted(span[0] for finding in jumps for span in finding.spans_s)
     parts = _parts(in_turn(*mends)(evidence.run), cuts, spans)
     left = _left(parts)
+    only = _explains_all(evidence, causes, find) if left and len(warnings) > 1 else None
+    if only is not None:
+        return [only, *_notes(found)]
     return _unnamed(found, [*causes, *jumps], left) if left else list(found)
 
 

@@ -76,6 +76,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
         {"yaw_bent", "positions_stretched", "pose_jumps", "pose_late", "yaw_jumps", "slip_episodes"}
     ),
     "coarse_speeds": frozenset({"stuck_encoder"}),
+    "position_unit": frozenset({"far_sensor"}),
 }
 
 

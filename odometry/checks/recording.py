@@ -90,7 +90,7 @@ def check_recording(run: Run | str | Path) -> CheckReport:
     evidence = Evidence(run)
     with np.errstate(over="ignore", invalid="ignore"):
         found = alone(evidence, [*refused, *_found(evidence)], _found)
-        told = confirmed(evidence, without_consequences(found))
+        told = confirmed(evidence, without_consequences(found), _found)
     return CheckReport(run.folder, in_order(told), tuple(_skipped(evidence)))
 
 

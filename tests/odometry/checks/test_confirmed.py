@@ -18,7 +18,7 @@ from odometry.checks.mending import (
     treads_times,
 )
 from odometry.checks.recording import check_recording
-from tests.odometry.checks.faulty import pose_stamps, positions, put, treads, yaw
+from tests.odometry.checks.faulty import FAULTS, pose_stamps, positions, put, treads, yaw
 from tests.odometry.checks.test_other_robots import drive, winding
 
 
@@ -98,6 +98,13 @@ def test_positions_that_wander_aside_did_not_jump():
     )
     assert found.name == "sensors_disagree"
     assert "part by" in found.seen
+
+
+@pytest.mark.parametrize("fault", ["pose_mirrored", "gyroscope_reversed", "treads_swapped"])
+def test_a_drive_that_repeats_itself_is_not_late_where_a_turn_is_reversed(fault):
+    at_s = 0.05 * np.arange(4000)
+    run = drive(np.full(4000, 0.8), 0.4 * np.sign(np.sin(at_s / 4)))
+    assert warnings(FAULTS[fault](run)) == [fault]
 
 
 def test_mends_undo_what_they_say():
