@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.checks.commands import commands_or_stamps
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding
 from odometry.checks.lag import Lag, Signal, lag_between
@@ -145,8 +146,8 @@ def _late(
 def _poses_or_treads(evidence: Evidence, lag: Lag) -> Iterator[Finding]:
     """Without a gyroscope that says more: treads that the robot follows later, or late poses."""
     if "gyroscope" not in _headings(evidence) and lag.seconds > 0:
-        treads = treads_apart(evidence, replace(lag, seconds=-lag.seconds), "the poses")
-        if treads.name == "treads_are_commands":
-            yield treads
+        kind, _ = commands_or_stamps(evidence, lag.seconds)
+        if kind == "commands":
+            yield treads_apart(evidence, replace(lag, seconds=-lag.seconds), "the poses")
             return
     yield pose_late(lag, "the treads")
