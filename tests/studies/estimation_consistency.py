@@ -1,7 +1,7 @@
 """Whether the filter errs as much as it says: NEES and NIS over seeds, in simulation.
 
     python tests/studies/estimation_consistency.py [--seeds 20] [--duration 60] [--gyroscope]
-                                                   [--real]
+                                                   [--real [--seven]]
 
 The true state is drawn from what the filter believes at its start; it wanders by the process
 noise of its settings, and poses and yaw rates are measured with theirs. Then the mean of N runs
@@ -39,6 +39,7 @@ from tests.studies.estimation_simulation import (
 ICRS = np.array([0.42, -0.38, -0.05])
 ICR_SIGMA_M = 0.05
 NAMES = ("y_left", "y_right", "x_icr")
+PLACE = ("x", "y", "yaw")
 HORIZONS_M = (5.0, 20.0, 100.0)
 
 
@@ -58,9 +59,10 @@ def main():
     parser.add_argument("--duration", type=float, default=60.0)
     parser.add_argument("--gyroscope", action="store_true")
     parser.add_argument("--real", action="store_true", help="recordings, open loop alone")
+    parser.add_argument("--seven", action="store_true", help="only those of the final figure")
     arguments = parser.parse_args()
     if arguments.real:
-        print_open_loops(real_open_loops())
+        print_open_loops(real_open_loops(seven=arguments.seven))
         return
     runs = [
         closed_loop(seed, arguments.duration, gyroscope=arguments.gyroscope)
@@ -144,10 +146,10 @@ def open_loop(seed, *, gyroscope):
     return squares_at_horizons(run, table, Path(one.stamps_s, one.states[:, :3]))
 
 
-def real_open_loops():
+def real_open_loops(*, seven):
     """The same of recordings with poses, from four moments of each on."""
     found = []
-    for name in tqdm(recordings(seven=False), "recordings"):
+    for name in tqdm(recordings(seven=seven), "recordings"):
         run = Run.read(motion() / name)
         for share in (0.0, 0.25, 0.5, 0.75):
             part = cut_run(run, Span(share * float(np.ptp(run.odometry.stamps_s))))
@@ -160,11 +162,17 @@ def real_open_loops():
 
 
 def squares_at_horizons(run, table, reference):
-    """Normalised squared errors after 5, 20 and 100 m; NaN where the run is shorter."""
+    """Normalised squared errors after 5, 20 and 100 m; NaN where the run is shorter.
+
+    Where the covariance begins at zero, it is of the motion since the start: the truth is placed
+    at the start of the odometer.
+    """
     covariances = covariances_of(table)
     if covariances is None:
         return None
     stamps_s = table["t"]
+    if not covariances[0].any():
+        reference = placed(reference, stamps_s[0], np.array([table[n][0] for n in PLACE]))
     travel = wheel_travel_m(run, stamps_s)
     found = []
     for horizon_m in HORIZONS_M:
@@ -173,7 +181,7 @@ def squares_at_horizons(run, table, reference):
             found.append(np.nan)
             continue
         truth = at(reference, stamps_s[row : row + 1])[0]
-        error = np.array([table[name][row] for name in ("x", "y", "yaw")]) - truth
+        error = np.array([table[name][row] for name in PLACE]) - truth
         error[2] = np.angle(np.exp(1j * error[2]))
         found.append(squared(error, covariances[row]))
     return found
@@ -192,15 +200,22 @@ def print_open_loops(found):
               f"{chi2.ppf(0.5, 3):.2f}), {inside:.0%} of {len(squares)} within 95 %")  # fmt: skip
 
 
+def placed(path, begin_s, start):
+    """The path moved and turned so that it goes through a pose at a stamp."""
+    x, y, yaw = at(path, np.array([begin_s]))[0]
+    way = (path.poses[:, :2] - [x, y]) @ [1, 1j] * np.exp(1j * (start[2] - yaw))
+    poses = [start[0] + way.real, start[1] + way.imag, path.poses[:, 2] + start[2] - yaw]
+    return Path(path.stamps_s, np.stack(poses, axis=-1))
+
+
 def covariances_of(table):
     """Covariances (N, 3, 3) of x, y, yaw from columns sigma_* and covariance_*_*, if there."""
-    names = ("x", "y", "yaw")
-    if any(f"sigma_{name}" not in table for name in names):
+    if any(f"sigma_{name}" not in table for name in PLACE):
         return None
-    sigmas = np.stack([table[f"sigma_{name}"] for name in names], axis=-1)
+    sigmas = np.stack([table[f"sigma_{name}"] for name in PLACE], axis=-1)
     covariances = np.einsum("ni,ij->nij", np.square(sigmas), np.eye(3))
-    for i, one in enumerate(names):
-        for j, other in enumerate(names[:i]):
+    for i, one in enumerate(PLACE):
+        for j, other in enumerate(PLACE[:i]):
             column = table.get(f"covariance_{other}_{one}")
             if column is not None:
                 covariances[:, i, j] = covariances[:, j, i] = column

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.studies.estimation_consistency import covariances_of, squared
+from tests.studies.estimation_consistency import covariances_of, placed, squared
 from tests.studies.estimation_reckoning import Path, icr_drive, position_errors_m
 from tests.studies.estimation_simulation import STEP_S, Noise, drive, frames_of, loop, run_of, weave
 
@@ -76,3 +76,9 @@ def test_covariances_are_read_by_the_names_of_their_columns():
     np.testing.assert_array_equal(covariance, [[1, 0.5, 0], [0.5, 4, 0], [0, 0, 9]])
     assert squared(np.array([1.0, 2.0, 0.0]), np.diag([1.0, 4.0, 9.0])) == pytest.approx(2.0)
     assert np.isnan(squared(np.zeros(3), np.zeros((3, 3))))
+
+
+def test_a_path_is_placed_without_changing_its_shape():
+    path = Path(np.array([0.0, 1.0]), np.array([[1.0, 1.0, 0.5], [2.0, 1.0, 0.7]]))
+    moved = placed(path, 0.0, np.array([0.0, 0.0, 0.5 + np.pi / 2]))
+    np.testing.assert_allclose(moved.poses[1], [0.0, 1.0, 0.7 + np.pi / 2], atol=1e-12)
