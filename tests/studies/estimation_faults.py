@@ -1,7 +1,7 @@
 """What faults of a drive do to odometer and estimate, and what the filter says of them.
 
     python tests/studies/estimation_faults.py [--only KEY ...] [--bases NAME ...] [--seeds 1]
-                                              [--save FILE] [--against FILE]
+                                              [--half] [--save FILE] [--against FILE]
 
 Needs TERRAIN_ODOMETRY_DATA. Faults come from tests/blind/estimation, at random moments; half of
 them and more the project's issue does not name. Errors are distances from the clean reference.
@@ -40,6 +40,7 @@ def main():
     parser.add_argument("--only", nargs="+", default=list(FAULTS), choices=list(FAULTS))
     parser.add_argument("--bases", nargs="+", default=None)
     parser.add_argument("--seeds", type=int, default=1)
+    parser.add_argument("--half", action="store_true", help="each fault on every second recording")
     parser.add_argument("--save", type=Folder, help="keep the figures here (JSON)")
     parser.add_argument("--against", type=Folder, help="figures of an earlier run")
     parser.add_argument("--scratch", type=Folder, default=None, help="keep simulated runs here")
@@ -47,28 +48,38 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         scratch = arguments.scratch or Folder(folder)
         recordings = bases(os.environ["TERRAIN_ODOMETRY_DATA"], scratch, arguments.bases)
-        found = study(recordings, arguments.only, arguments.seeds)
-    if arguments.save:
-        arguments.save.write_text(json.dumps(found, indent=1))
-    for title, file in (("earlier", arguments.against), ("now", None)):
-        if file or title == "now":
-            print(f"\n{title}")
-            print_table(json.loads(file.read_text()) if file else found)
+        found = study(recordings, arguments)
+    if arguments.against:
+        print("\nearlier, the same cases")
+        print_table(same_cases(json.loads(arguments.against.read_text()), found))
+    print("\nnow")
+    print_table(found)
 
 
-def study(recordings, keys, seeds):
-    """Clean rows by base, and one row a case."""
-    clean = {name: judged(clean_case(r)) for name, r in recordings.items()}
-    rows = []
-    for key in tqdm(keys, "faults"):
-        for name, recording in recordings.items():
-            for seed in range(seeds):
-                case = make_case(FAULTS[key], recording, name, seed)
+def study(recordings, arguments):
+    """Clean rows by base, and one row a case; saved after each fault."""
+    found = {"clean": {name: judged(clean_case(r)) for name, r in recordings.items()}, "rows": []}
+    for key in tqdm(arguments.only, "faults"):
+        for name in (
+            list(recordings)[list(FAULTS).index(key) % 2 :: 2] if arguments.half else recordings
+        ):
+            for seed in range(arguments.seeds):
+                case = make_case(FAULTS[key], recordings[name], name, seed)
                 if case is not None:
-                    row = judged(case)
-                    row |= {"key": key, "base": name, "seed": seed}
-                    rows.append(row | verdicts(FAULTS[key], case, row, clean[name]))
-    return {"clean": clean, "rows": rows}
+                    row = judged(case) | {"key": key, "base": name, "seed": seed}
+                    found["rows"].append(
+                        row | verdicts(FAULTS[key], case, row, found["clean"][name])
+                    )
+        if arguments.save:
+            arguments.save.write_text(json.dumps(found, indent=1))
+    return found
+
+
+def same_cases(earlier, found):
+    """Rows of an earlier run whose case was drawn again."""
+    drawn = {(row["key"], row["base"], row["seed"]) for row in found["rows"]}
+    rows = [r for r in earlier["rows"] if (r["key"], r["base"], r["seed"]) in drawn]
+    return {"clean": earlier["clean"], "rows": rows}
 
 
 def clean_case(recording):
