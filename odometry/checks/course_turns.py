@@ -6,6 +6,7 @@ from odometry.arrays import FloatArray
 from odometry.checks.motion import Integrals, Motion
 from odometry.checks.relation import relation
 
+ON_THE_SPOT = 0.3  # share of the difference of the treads: with less in common there is no course
 FAR = 0.3  # share of the usual longest distance from which the course of a window is known
 APART = 1.6  # windows between the middles of two whose courses are compared, at most
 MOST_RAD = 1.2  # turn of the course from one to the next: more is a change of direction
@@ -24,6 +25,7 @@ def course_turns(motion: Motion, of: Integrals) -> tuple[Motion, FloatArray]:
     if not known.any():
         return motion.rows(np.empty(0, dtype=np.int64)), np.empty(0)
     far = known & (distance > FAR * np.quantile(distance[known], 0.95))
+    far &= np.abs(motion.mean_m) > ON_THE_SPOT * np.abs(motion.difference_m)
     middle_s = (motion.start_s + motion.end_s) / 2
     near = np.diff(middle_s) < APART * motion.lasts_s[1:]
     rows = np.flatnonzero(far[1:] & far[:-1] & near)

@@ -37,6 +37,13 @@ def test_noisy_positions_have_no_warning(sigma_m):
     assert warnings(without_yaw(run)) == []
 
 
+def test_a_robot_that_turns_on_the_spot_has_no_course():
+    at_s = 0.05 * np.arange(4000)
+    run = without_yaw(drive(np.full(4000, 0.01), 0.6 * np.sign(np.sin(at_s / 3))))
+    assert np.isnan(Evidence(run).pose_turn_rad).all()
+    assert warnings(run) == []
+
+
 @pytest.mark.parametrize(
     ("fault", "named"),
     [
