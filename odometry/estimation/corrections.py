@@ -3,13 +3,18 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from odometry.arrays import FloatArray
 from odometry.effects.base import Base
 from odometry.effects.corrected import Corrected, corrected_twist, with_true_speeds
 from odometry.effects.tables import model_of
+from odometry.errors import ParameterError
 from odometry.parameters import ParameterSet
 from odometry.run import Run
 from odometry.run_inputs import inputs_of
+
+NO_SPEEDS, NO_TWIST = np.zeros(2), np.zeros(3)
 
 
 @dataclass(frozen=True)
@@ -61,3 +66,32 @@ def _correction(base: Base, model: Corrected, run: Run) -> Correction:
         true.tread_speeds_m_s - recorded.tread_speeds_m_s,
         corrected_twist(base, model.effects, recorded) - plain,
     )
+
+
+def require_corrections(parameters: ParameterSet, corrections: Mapping[str, Correction]) -> None:
+    """Every terrain of a parameter set that has effects has its correction.
+
+    Raises
+    ------
+    ParameterError
+        If one has not.
+    """
+    for name, table in parameters.terrains.items():
+        if table.effects and name not in corrections:
+            raise ParameterError(
+                f"[terrain.{name}]: effects were given; the ICR filter needs what they change "
+                "along the run (odometry.estimation.corrections)"
+            )
+
+
+def added_from(
+    corrections: Mapping[str, Correction], terrain: str, row: int
+) -> tuple[FloatArray, FloatArray]:
+    """What effects add to tread speeds (2,) and twist (3,) from a row of odometry.csv on.
+
+    Nothing before the first row, which is -1, and on terrain without effects.
+    """
+    correction = corrections.get(terrain)
+    if correction is None or row < 0:
+        return NO_SPEEDS, NO_TWIST
+    return correction.speeds_m_s[row], correction.twists[row]

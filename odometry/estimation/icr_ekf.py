@@ -1,36 +1,22 @@
 """Pose and ICR filter: an extended Kalman filter that is told the terrain (Chen 2023, 3.1-3.2)."""
 
-import math
 from collections.abc import Mapping
 
-import numpy as np
-
-from odometry.arrays import FloatArray
-from odometry.errors import ParameterError
 from odometry.estimation import sensor_watch
 from odometry.estimation.config import IcrEkfConfig
-from odometry.estimation.corrections import Correction
-from odometry.estimation.course import UNKNOWN_YAW_VARIANCE, Course
+from odometry.estimation.corrections import Correction, added_from, require_corrections
 from odometry.estimation.errors import EstimationError
-from odometry.estimation.estimate import OF_TERRAIN, Estimate
-from odometry.estimation.measurement import (
-    Gaussian,
-    Place,
-    reference_point,
-    tread_yaw_rate,
-    velocity_measurement,
-)
+from odometry.estimation.estimate import Estimate
+from odometry.estimation.first_belief import first_belief
+from odometry.estimation.measurement import Place
 from odometry.estimation.pose_kalman import PoseKalman
 from odometry.estimation.pose_update import PoseUpdate
-from odometry.estimation.process_noise import ProcessNoise
+from odometry.estimation.prediction import Prediction
 from odometry.estimation.terrain_beliefs import TerrainBeliefs
-from odometry.estimation.transition import GYRO_BIAS, STATES, YAW, transition
-from odometry.estimation.tread_noise import huber_factor, tread_variance, velocity_variances
+from odometry.estimation.velocity_update import VelocityUpdate
 from odometry.footing import Footing
 from odometry.frames import Frame
 from odometry.parameters import ParameterSet
-
-NO_SPEEDS, NO_TWIST = np.zeros(2), np.zeros(3)
 
 
 class IcrEkf:
@@ -80,11 +66,12 @@ class IcrEkf:
         self.parameters = parameters or ParameterSet()
         self.config = config or IcrEkfConfig()
         self.corrections = corrections or {}
-        self._require_corrections()
+        require_corrections(self.parameters, self.corrections)
         self._terrains = TerrainBeliefs(track_width, self.parameters, self.config)
-        self._noise = ProcessNoise(self.config, track_width)
-        self._kalman = PoseKalman()
-        self._pose_update = PoseUpdate(self.config, track_width, self._kalman, lever_m)
+        kalman = PoseKalman()
+        self._prediction = Prediction(self.config, track_width, kalman)
+        self._velocity_update = VelocityUpdate(self.config, track_width, kalman)
+        self._pose_update = PoseUpdate(self.config, track_width, kalman, lever_m)
         self._lever_m = lever_m
 
     def start(self, frame: Frame, terrain: str, *, yaw_sigma_rad: float | None = None) -> Estimate:
@@ -97,40 +84,26 @@ class IcrEkf:
         yaw_sigma_rad : float, optional
             Standard deviation of the yaw where it is not that of a measured one.
         """
-        belief = self._terrains.prior(terrain)
-        pose = np.full(3, math.nan) if frame.pose is None else frame.pose
-        pose = np.where(np.isfinite(pose), pose, math.nan)
-        placed, headed = not np.isnan(pose[:2]).any(), not math.isnan(pose[YAW])
-        mean, covariance = np.zeros(STATES), np.zeros((STATES, STATES))
-        covariance[:3, :3] = self._pose_update.covariance
-        if headed:
-            mean[YAW] = pose[YAW]
-        if placed:
-            mean[:2] = pose[:2] - reference_point(mean, self._lever_m)
-        course = None
-        if placed and not headed:
-            course = Course.begun(frame.stamp_s, pose[:2], pose[:2])
-            covariance[YAW, YAW] = UNKNOWN_YAW_VARIANCE
-        elif yaw_sigma_rad is not None:
-            covariance[YAW, YAW] = yaw_sigma_rad**2
-        mean[OF_TERRAIN] = *belief.icrs, *belief.alphas
-        covariance[np.ix_(OF_TERRAIN, OF_TERRAIN)] = belief.covariance
-        if self.config.use_gyroscope:
-            covariance[GYRO_BIAS, GYRO_BIAS] = self.config.bias_sigma_rad_s**2
-        added_speeds, added_twist = self._added(terrain, frame)
-        watch = None
-        if self.config.watch_sensors:
-            watch = sensor_watch.begun(frame, (mean, covariance))
+        config = self.config
+        belief, course = first_belief(
+            frame,
+            self._terrains.prior(terrain),
+            self._pose_update.covariance,
+            self._lever_m,
+            bias_sigma_rad_s=config.bias_sigma_rad_s if config.use_gyroscope else 0.0,
+            yaw_sigma_rad=yaw_sigma_rad,
+        )
+        added_speeds, added_twist = added_from(self.corrections, terrain, frame.odometry_row)
         return Estimate(
             stamp_s=frame.stamp_s,
-            mean=mean,
-            covariance=covariance,
+            mean=belief[0],
+            covariance=belief[1],
             tread_speeds_m_s=frame.tread_speeds_m_s,
             terrain=terrain,
             added_speeds_m_s=added_speeds,
             added_twist=added_twist,
             course=course,
-            watch=watch,
+            watch=sensor_watch.begun(frame, belief) if config.watch_sensors else None,
         )
 
     def step(self, estimate: Estimate, frame: Frame, terrain: str | Footing) -> Estimate:
@@ -149,35 +122,24 @@ class IcrEkf:
                 "expected frames in time order (odometry.estimation.in_order puts late ones in "
                 "their place)"
             )
-        yaw_rate = frame.yaw_rate_rad_s if self.config.use_gyroscope else math.nan
-        watch, pose, speeds = estimate.watch, frame.pose, frame.tread_speeds_m_s
-        events: sensor_watch.Events = ()
-        if watch is None:
-            belief = self._predicted(estimate, frame, yaw_rate)
-        else:
-            held = estimate.tread_speeds_m_s
-            seen = sensor_watch.sensed(watch, frame, estimate.stamp_s, held, yaw_rate)
-            yaw_rate, pose = seen.yaw_rate_rad_s, seen.pose
-            belief = self._predicted(estimate, frame, yaw_rate)
-            was_stuck, scale = watch.treads.stuck >= 0, estimate.scale.slip
-            watch, speeds, events = sensor_watch.with_treads(seen, frame, held, belief, scale)
-            if frame.in_gap or watch.is_doubtful:
-                newly_stuck = watch.treads.stuck >= 0 and not was_stuck
-                belief = sensor_watch.parted(belief, watch, newly_stuck=newly_stuck)
+        predicted = self._prediction.at(frame, estimate)
+        belief, yaw_rate = predicted.belief, predicted.yaw_rate_rad_s
         footing, recent = Footing.of(terrain), estimate.recent
         learned, crossing = estimate.learned, estimate.crossing
         if crossing or not footing.is_whole or footing.terrain != estimate.terrain:
             belief, learned, crossing = self._terrains.moved(belief, estimate, footing)
             recent = ()
         if frame.velocity is not None:
-            belief = self._with_velocity(belief, estimate, frame, yaw_rate)
-        after = self._pose_update.seen(estimate, belief, pose, frame, recent)
-        added_speeds, added_twist = self._added(footing.terrain, frame)
+            belief = self._velocity_update.seen(belief, estimate, frame, yaw_rate)
+        after = self._pose_update.seen(estimate, belief, predicted.pose, frame, recent)
+        added_speeds, added_twist = added_from(
+            self.corrections, footing.terrain, frame.odometry_row
+        )
         return Estimate(
             stamp_s=frame.stamp_s,
             mean=after.mean,
             covariance=after.covariance,
-            tread_speeds_m_s=speeds,
+            tread_speeds_m_s=predicted.speeds_m_s,
             terrain=footing.terrain,
             yaw_rate_rad_s=frame.yaw_rate_rad_s,
             believed_yaw_rate_rad_s=yaw_rate,
@@ -191,94 +153,6 @@ class IcrEkf:
             crossing=crossing,
             scale=after.scale,
             course=after.course,
-            watch=watch,
-            events=events + after.events,
+            watch=predicted.watch,
+            events=predicted.events + after.events,
         )
-
-    def _predicted(self, estimate: Estimate, frame: Frame, yaw_rate: float) -> Gaussian:
-        """Eq. 7, and the yaw rate of the treads against the gyroscope over the same step."""
-        step_s, speeds = frame.stamp_s - estimate.stamp_s, estimate.tread_speeds_m_s
-        if math.isnan(speeds[0] + speeds[1]):
-            return estimate.mean, estimate.covariance
-        by_gyroscope = not math.isnan(yaw_rate)
-        mean, jacobian = transition(
-            estimate.mean,
-            speeds,
-            step_s,
-            yaw_rate_rad_s=yaw_rate,
-            added_speeds=estimate.added_speeds_m_s,
-            added_twist=estimate.added_twist,
-        )
-        noise = self._noise.over(
-            speeds,
-            step_s,
-            slip_scale=estimate.scale.slip,
-            by_gyroscope=by_gyroscope,
-            in_gap=frame.in_gap,
-        )
-        covariance = self._kalman.predicted(mean, jacobian, estimate.covariance, noise)
-        doubtful = frame.in_gap or (estimate.watch is not None and estimate.watch.is_doubtful)
-        if by_gyroscope and step_s > 0 and not doubtful:
-            return self._compared(mean, covariance, estimate, yaw_rate, step_s)
-        return mean, covariance
-
-    def _compared(
-        self,
-        mean: FloatArray,
-        covariance: FloatArray,
-        estimate: Estimate,
-        yaw_rate: float,
-        step_s: float,
-    ) -> Gaussian:
-        speeds = estimate.tread_speeds_m_s + estimate.added_speeds_m_s
-        measured = tread_yaw_rate(mean, speeds, yaw_rate - float(estimate.added_twist[YAW]))
-        # the turn that the treads say: that of the gyroscope has their noise in it, and a weight
-        # that depends on the noise would bend the width
-        turn = yaw_rate - float(measured.residual[0])
-        variance = tread_variance(
-            estimate.tread_speeds_m_s, turn, self.track_width, estimate.scale.slip, step_s
-        )
-        variance *= huber_factor(measured, covariance, variance)
-        measured.covariance[0, 0] = variance
-        return self._kalman.updated(mean, covariance, measured)[:2]
-
-    def _with_velocity(
-        self, belief: Gaussian, estimate: Estimate, frame: Frame, yaw_rate: float
-    ) -> Gaussian:
-        """Measured velocity against the tread speeds that led to it."""
-        speeds, step_s = estimate.tread_speeds_m_s, frame.stamp_s - estimate.stamp_s
-        if frame.velocity is None or step_s <= 0 or math.isnan(speeds[0] + speeds[1]):
-            return belief
-        variances = velocity_variances(
-            self.config,
-            speeds,
-            track_width=self.track_width,
-            slip_scale=estimate.scale.slip,
-            step_s=step_s,
-            yaw_rate=yaw_rate,
-        )
-        measured = velocity_measurement(
-            belief[0],
-            frame.velocity - estimate.added_twist,
-            speeds + estimate.added_speeds_m_s,
-            yaw_rate - float(estimate.added_twist[YAW]),
-            np.diag(variances),
-        )
-        if not len(measured.residual) or frame.in_gap:
-            return belief
-        return self._kalman.updated(*belief, measured)[:2]
-
-    def _added(self, terrain: str, frame: Frame) -> tuple[FloatArray, FloatArray]:
-        """What effects change from this frame on."""
-        correction, row = self.corrections.get(terrain), frame.odometry_row
-        if correction is None or row < 0:
-            return NO_SPEEDS, NO_TWIST
-        return correction.speeds_m_s[row], correction.twists[row]
-
-    def _require_corrections(self) -> None:
-        for name, table in self.parameters.terrains.items():
-            if table.effects and name not in self.corrections:
-                raise ParameterError(
-                    f"[terrain.{name}]: effects were given; the ICR filter needs what they change "
-                    "along the run (odometry.estimation.corrections)"
-                )

@@ -1,0 +1,128 @@
+"""What a filter predicts from step to step: the motion, and the treads against the gyroscope."""
+
+import math
+from typing import NamedTuple
+
+from odometry.arrays import FloatArray
+from odometry.estimation import sensor_watch
+from odometry.estimation.config import IcrEkfConfig
+from odometry.estimation.estimate import Estimate
+from odometry.estimation.measurement import Gaussian, tread_yaw_rate
+from odometry.estimation.pose_kalman import PoseKalman
+from odometry.estimation.process_noise import ProcessNoise
+from odometry.estimation.sensor_watch import Events, SensorWatch
+from odometry.estimation.transition import YAW, transition
+from odometry.estimation.tread_noise import huber_factor, tread_variance
+from odometry.frames import Frame
+
+
+class Predicted(NamedTuple):
+    """What is believed at a frame's stamp before its pose and velocity are taken in.
+
+    Attributes
+    ----------
+    belief : (9,), (9, 9)
+        Mean and covariance.
+    yaw_rate_rad_s : float
+        That turned the robot since the estimate before; NaN where the treads did.
+    pose : (3,) or None
+        Of the frame, where it is to be used.
+    speeds_m_s : (2,)
+        Tread speeds from the frame on.
+    watch : SensorWatch or None
+    events : tuple of FilterEvent
+    """
+
+    belief: Gaussian
+    yaw_rate_rad_s: float
+    pose: FloatArray | None
+    speeds_m_s: FloatArray
+    watch: SensorWatch | None
+    events: Events
+
+
+class Prediction:
+    """Carries a belief from one stamp to the next.
+
+    Parameters
+    ----------
+    config : IcrEkfConfig
+    track_width : float
+        [m]
+    kalman : PoseKalman
+    """
+
+    def __init__(self, config: IcrEkfConfig, track_width: float, kalman: PoseKalman) -> None:
+        self._use_gyroscope = config.use_gyroscope
+        self._track_width = track_width
+        self._noise = ProcessNoise(config, track_width)
+        self._kalman = kalman
+
+    def at(self, frame: Frame, estimate: Estimate) -> Predicted:
+        """What is believed at a frame's stamp, given the estimate before it.
+
+        Where a gyroscope turned the robot, the yaw rate of the treads over the same step is
+        compared with it. Where the tread speeds are not known, nothing moves. Where the sensors
+        are watched, what cannot be is kept out.
+        """
+        yaw_rate = frame.yaw_rate_rad_s if self._use_gyroscope else math.nan
+        watch, held = estimate.watch, estimate.tread_speeds_m_s
+        if watch is None:
+            belief = self._moved(estimate, frame, yaw_rate)
+            return Predicted(belief, yaw_rate, frame.pose, frame.tread_speeds_m_s, None, ())
+        seen = sensor_watch.sensed(watch, frame, estimate.stamp_s, held, yaw_rate)
+        yaw_rate = seen.yaw_rate_rad_s
+        belief = self._moved(estimate, frame, yaw_rate)
+        was_stuck, scale = watch.treads.stuck >= 0, estimate.scale.slip
+        watch, speeds, events = sensor_watch.with_treads(seen, frame, held, belief, scale)
+        if frame.in_gap or watch.is_doubtful:
+            newly_stuck = watch.treads.stuck >= 0 and not was_stuck
+            belief = sensor_watch.parted(belief, watch, newly_stuck=newly_stuck)
+        return Predicted(belief, yaw_rate, seen.pose, speeds, watch, events)
+
+    def _moved(self, estimate: Estimate, frame: Frame, yaw_rate: float) -> Gaussian:
+        """Chen 2023 eq. 7, and the treads against the gyroscope."""
+        step_s, speeds = frame.stamp_s - estimate.stamp_s, estimate.tread_speeds_m_s
+        if math.isnan(speeds[0] + speeds[1]):
+            return estimate.mean, estimate.covariance
+        by_gyroscope = not math.isnan(yaw_rate)
+        mean, jacobian = transition(
+            estimate.mean,
+            speeds,
+            step_s,
+            yaw_rate_rad_s=yaw_rate,
+            added_speeds=estimate.added_speeds_m_s,
+            added_twist=estimate.added_twist,
+        )
+        noise = self._noise.over(
+            speeds,
+            step_s,
+            slip_scale=estimate.scale.slip,
+            by_gyroscope=by_gyroscope,
+            in_gap=frame.in_gap,
+        )
+        covariance = self._kalman.predicted(mean, jacobian, estimate.covariance, noise)
+        doubtful = frame.in_gap or (estimate.watch is not None and estimate.watch.is_doubtful)
+        if by_gyroscope and step_s > 0 and not doubtful:
+            return self._compared(mean, covariance, estimate, yaw_rate, step_s)
+        return mean, covariance
+
+    def _compared(
+        self,
+        mean: FloatArray,
+        covariance: FloatArray,
+        estimate: Estimate,
+        yaw_rate: float,
+        step_s: float,
+    ) -> Gaussian:
+        speeds = estimate.tread_speeds_m_s + estimate.added_speeds_m_s
+        measured = tread_yaw_rate(mean, speeds, yaw_rate - float(estimate.added_twist[YAW]))
+        # the turn that the treads say: that of the gyroscope has their noise in it, and a weight
+        # that depends on the noise would bend the width
+        turn = yaw_rate - float(measured.residual[0])
+        variance = tread_variance(
+            estimate.tread_speeds_m_s, turn, self._track_width, estimate.scale.slip, step_s
+        )
+        variance *= huber_factor(measured, covariance, variance)
+        measured.covariance[0, 0] = variance
+        return self._kalman.updated(mean, covariance, measured)[:2]
