@@ -23,6 +23,8 @@ from odometry.windows.stretches import Stretches, position_record_with_yaw_rates
 PREFERRED = ("icr", "icr_symmetric")  # the first that the positions tell
 LEAST_POSITION_M, LEAST_WANDER_M, LEAST_WANDER_RAD = 0.005, 0.005, 0.002
 GYROSCOPE_RAD = 0.005  # by the root of a second: what its bias leaves
+BIAS_RAD_S, GYROSCOPE_SCALE = 0.03, 0.02  # of a gyroscope, one standard deviation
+VEER_RAD_M, TREADS_SCALE = 0.03, 0.1  # of yaw by treads: by a metre of travel, by a rad turned
 SLIP_RAD = 0.1  # by the root of a rad turned by the treads alone: what slip leaves
 SCALE_RAD = 0.03  # by the root of a rad turned: what its scale may be off by
 
@@ -34,10 +36,16 @@ class Carrier:
     Attributes
     ----------
     record : Record
-    steps : (M - 1, 3)
-        From each position to the next, in the frame of the one before.
+    steps : (D, M - 1, 3)
+        From each position to the next, in the frame of the one before: by the identified values,
+        and by the corners of their uncertainty.
     step_variances : (M - 1, 3)
         Of these: along, across [m^2] and yaw [rad^2].
+    drifts : (M - 1, 2)
+        What two constant errors of the carried yaw act by: time [s] by the gyroscope or travel [m]
+        by the treads, and the turn [rad].
+    drift_sigmas : (2,)
+        Standard deviations of these errors: per s or m, and per rad.
     position_variance_m2 : float
         Of a measured position along each axis.
     first_yaw_rad : float
@@ -49,6 +57,8 @@ class Carrier:
     record: Record
     steps: FloatArray
     step_variances: FloatArray
+    drifts: FloatArray
+    drift_sigmas: FloatArray
     position_variance_m2: float
     first_yaw_rad: float
     by_gyroscope: bool
@@ -66,21 +76,41 @@ def carrier_of(run: Run) -> Carrier:
     stretches = stretches_for([run], config)
     fitted = _fit(stretches, run)
     record = position_record_with_yaw_rates(run, config)
-    path = _antenna_path(fitted, record, stretches)
-    seen = path[record.pose_samples]
-    steps = se2.between(seen[:-1], seen[1:])
-    steps[:, 2] = np.diff(seen[:, 2])
+    paths = [_antenna_path(fitted, values, record, stretches) for values in _corners(fitted)]
+    at = record.pose_samples
+    path = paths[0]
+    seen = path[at]
     motion = se2.between(path[stretches.first][:, None], path[_samples(stretches)])
     turned = rotations(motion[..., :2], stretches.measured)
-    first_yaw_rad = seen[0, 2] + turned[0] - path[stretches.first[0], 2]
+    by_gyroscope = stretches.turns_rad is not None
+    lasts = record.pose_s if by_gyroscope else record.travel_m[at]
+    sigmas = (BIAS_RAD_S, GYROSCOPE_SCALE) if by_gyroscope else (VEER_RAD_M, TREADS_SCALE)
     return Carrier(
         record,
-        steps,
+        np.stack([_steps(each[at]) for each in paths]),
         _step_variances(fitted, record, stretches, seen[:, 2]),
+        np.column_stack([np.diff(lasts), np.diff(seen[:, 2])]),
+        np.array(sigmas),
         max((fitted.noise or UNKNOWN_NOISE).position_m, LEAST_POSITION_M) ** 2,
-        float(first_yaw_rad),
-        stretches.turns_rad is not None,
+        float(seen[0, 2] + turned[0] - path[stretches.first[0], 2]),
+        by_gyroscope,
     )
+
+
+def _steps(seen: FloatArray) -> FloatArray:
+    steps = se2.between(seen[:-1], seen[1:])
+    steps[:, 2] = np.diff(seen[:, 2])
+    return steps
+
+
+def _corners(fitted: Fit) -> FloatArray:
+    """Values (1 + 2 F, P): the identified, and the cubature points of their covariance."""
+    free = [parameter.name in fitted.names for parameter in fitted.model.parameters]
+    variances, axes = np.linalg.eigh(fitted.covariance)
+    away = (axes * np.sqrt(np.maximum(variances, 0.0) * len(variances))).T
+    corners = np.tile(fitted.packed, (1 + 2 * len(away), 1))
+    corners[1:, free] += np.concatenate([away, -away])
+    return corners
 
 
 def _samples(of: Stretches) -> IntArray:
@@ -104,9 +134,9 @@ def _fit(stretches: Stretches, run: Run) -> Fit:
     )
 
 
-def _antenna_path(fitted: Fit, record: Record, of: Stretches) -> FloatArray:
+def _antenna_path(fitted: Fit, values: FloatArray, record: Record, of: Stretches) -> FloatArray:
     """Poses (N, 3) of the antenna at each sample, its yaw that of the robot."""
-    twists = carried(fitted.model, of).twist(fitted.packed, record.inputs)
+    twists = carried(fitted.model, of).twist(values, record.inputs)
     path = level_path(twists, np.append(np.diff(record.stamps_s), 0.0), record.inputs)
     ways, _ = antenna_ways(path[None], of.arm_m)
     return np.column_stack([ways[0], path[:, 2]])

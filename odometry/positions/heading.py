@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from odometry.geometry.angles import wrap
 from odometry.positions.carrier import carrier_of
-from odometry.positions.smoother import smoothed_poses
+from odometry.positions.told_yaw import told_yaw
 from odometry.run import Run
 from odometry.windows.measured_poses import YAW_FOUND, lacks_yaw
 
@@ -22,20 +21,24 @@ class FoundHeading:
     Attributes
     ----------
     run : Run
-        pose.csv with a yaw in each row that has x and y within the time of odometry.csv, and a
-        column YAW_FOUND with its standard deviation [rad]. Its positions are as they were.
+        pose.csv with a yaw in each row that has x and y within the time of odometry.csv, where
+        the positions tell it, and a column YAW_FOUND with its standard deviation [rad]. Its
+        positions are as they were.
     position_sigma_m : float
         Of a measured position, as the shapes of stretches show it.
     yaw_sigma_rad : float
         Median of the column. Errors of neighbouring yaws are alike.
     by_gyroscope : bool
         Whether a gyroscope carried the yaw between positions, and not the treads.
+    told_share : float
+        Of the positions, at which the yaw could be told; at the others it is not.
     """
 
     run: Run
     position_sigma_m: float
     yaw_sigma_rad: float
     by_gyroscope: bool
+    told_share: float = 1.0
 
     @property
     def least_horizon_m(self) -> float:
@@ -46,10 +49,12 @@ class FoundHeading:
     def words(self) -> str:
         """A sentence for a reader."""
         by = "by the gyroscope" if self.by_gyroscope else "by the treads alone"
+        untold = 1 - self.told_share
+        except_for = f"; at {untold:.1%} of the positions it cannot be told" if untold else ""
         return (
             f"{self.run.folder}: yaw was not measured; it is found from positions with a noise of "
             f"{self.position_sigma_m:.2g} m, to about {np.degrees(self.yaw_sigma_rad):.2g} "
-            f"degrees, and carried from one to the next {by}"
+            f"degrees, and carried from one to the next {by}{except_for}"
         )
 
 
@@ -92,25 +97,26 @@ def found_heading(run: Run) -> FoundHeading:
     """Find the yaw of a run from its positions.
 
     A model identified on the shapes of stretches (`identification.from_positions`) or the
-    gyroscope carries the robot between positions; a smoother puts its pose among all of them.
+    gyroscope carries the robot between positions; smoothers put its pose among all of them.
 
     Raises
     ------
     OdometryError
-        If there are too few positions for a model, or they contradict the treads.
+        If there are too few positions for a model, they contradict the treads, or do not tell
+        the yaw (`told_yaw`).
     """
     carrier = carrier_of(run)
-    smoothed = smoothed_poses(carrier)
-    sigma_rad = np.sqrt(smoothed.covariances[:, 2, 2])
+    told = told_yaw(carrier)
     if run.pose is None:
         return FoundHeading(run, np.nan, np.nan, carrier.by_gyroscope)
     rows = np.searchsorted(run.pose.stamps_s, carrier.record.pose_s)
     yaw, sigma = np.full((2, len(run.pose)), np.nan)
-    yaw[rows], sigma[rows] = wrap(smoothed.poses[:, 2]), sigma_rad
+    yaw[rows], sigma[rows] = told.yaw_rad, told.sigma_rad
     columns = {**run.pose.columns, "yaw": yaw, YAW_FOUND: sigma}
     return FoundHeading(
         replace(run, pose=replace(run.pose, columns=columns)),
         float(np.sqrt(carrier.position_variance_m2)),
-        float(np.median(sigma_rad)),
+        float(np.nanmedian(told.sigma_rad)),
         carrier.by_gyroscope,
+        told.share,
     )

@@ -1,75 +1,137 @@
-"""Poses at measured positions by a filter forwards and backwards (Rauch, Tung, Striebel 1965)."""
+"""Poses at measured positions by filters forwards and backwards (Rauch, Tung, Striebel 1965).
+
+Many start headings and carriers at once: a filter is linear in the heading near its own start
+only, so that each start needs one (Gaussian sum: Alspach and Sorenson 1972).
+"""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from odometry.arrays import FloatArray
-from odometry.geometry import se2
-from odometry.positions.carrier import Carrier
-from odometry.windows.left_out import ODOMETRY_GAP
+from odometry.arrays import BoolArray, FloatArray
 
 FIRST_YAW_RAD = 0.3
-ACROSS_GAP = np.square([5.0, 5.0, 1.0])  # variances that a gap of odometry adds: nothing is known
+ACROSS_GAP = np.square([5.0, 5.0, 1.0, 0.0, 0.0])  # variances that a gap of odometry adds
 FAR = 13.8  # squared Mahalanobis distance of a position that one in a thousand has
+STATES = 5  # x, y, yaw and the two drifts
+
+
+class Way(NamedTuple):
+    """What H filters follow: M positions (M, 2) and the steps between them.
+
+    `steps` are (H, M - 1, 3); `step_variances` (M - 1, 3), `drifts` (M - 1, 2), `drift_sigmas`
+    (2,) and `position_variance_m2` those of `Carrier`; `gaps` (M - 1,) are those of odometry.
+    """
+
+    positions: FloatArray
+    steps: FloatArray
+    step_variances: FloatArray
+    drifts: FloatArray
+    drift_sigmas: FloatArray
+    position_variance_m2: float
+    gaps: BoolArray
+
+    def backwards(self) -> "Way":
+        """The same from the last position to the first."""
+        yaw = self.steps[..., 2]
+        c, s = np.cos(yaw), np.sin(yaw)
+        x, y = self.steps[..., 0], self.steps[..., 1]
+        steps = np.stack([-c * x - s * y, s * x - c * y, -yaw], axis=-1)
+        return self._replace(
+            positions=self.positions[::-1],
+            steps=steps[:, ::-1],
+            step_variances=self.step_variances[::-1],
+            drifts=-self.drifts[::-1],
+            gaps=self.gaps[::-1],
+        )
+
+
+class Filtered(NamedTuple):
+    """States (M, H, 5) and covariances (M, H, 5, 5) before and after each position.
+
+    `moves` (M, H, 5, 5) are the transitions to each; `log_likelihoods` are (H,), and `surprise`
+    (H,) the mean of the squared Mahalanobis distances by their expected value.
+    """
+
+    prior: FloatArray
+    prior_of: FloatArray
+    posterior: FloatArray
+    posterior_of: FloatArray
+    moves: FloatArray
+    log_likelihoods: FloatArray
+    surprise: FloatArray
 
 
 class Smoothed(NamedTuple):
-    """Poses (M, 3) with yaw not wrapped, and their covariances (M, 3, 3)."""
+    """Poses (M, H, 3) with yaw not wrapped, and their covariances (M, H, 3, 3)."""
 
     poses: FloatArray
     covariances: FloatArray
 
 
-def smoothed_poses(carrier: Carrier) -> Smoothed:
-    """The likeliest antenna poses at all measured positions, given all of these.
+def filtered(way: Way, first_yaws_rad: FloatArray) -> Filtered:
+    """Filter forwards from each first yaw (H,), known to FIRST_YAW_RAD.
 
     A position that lies far from where it should is weighed down by its distance.
     """
-    positions, count = carrier.record.poses[:, :2], len(carrier.record.poses)
-    gaps = carrier.record.breaks == ODOMETRY_GAP
-    prior, posterior = np.zeros((2, count, 3))
-    prior_of, posterior_of = np.zeros((2, count, 3, 3))
-    moves = np.tile(np.eye(3), (count, 1, 1))
-    prior[0] = *positions[0], carrier.first_yaw_rad
-    variance = carrier.position_variance_m2
-    prior_of[0] = np.diag([variance, variance, FIRST_YAW_RAD**2])
+    count, size, variance = len(way.positions), len(first_yaws_rad), way.position_variance_m2
+    prior, posterior = np.zeros((2, count, size, STATES))
+    prior_of, posterior_of = np.zeros((2, count, size, STATES, STATES))
+    moves = np.tile(np.eye(STATES), (count, size, 1, 1))
+    moves[1:, :, 2, 3:] = -way.drifts[:, None]
+    prior[0, :, :2], prior[0, :, 2] = way.positions[0], first_yaws_rad
+    prior_of[0] = np.diag([variance, variance, FIRST_YAW_RAD**2, *np.square(way.drift_sigmas)])
     posterior[0], posterior_of[0] = prior[0], prior_of[0]
+    log_likelihoods, surprise = np.zeros((2, size))
+    added = np.pad(way.step_variances, ((0, 0), (0, 2))) + way.gaps[:, None] * ACROSS_GAP
     for i in range(1, count):
-        prior[i] = _moved(posterior[i - 1], carrier.steps[i - 1])
-        moves[i] = _move_jacobian(posterior[i - 1], prior[i])
-        added = carrier.step_variances[i - 1] + ACROSS_GAP * gaps[i - 1]
-        prior_of[i] = moves[i] @ posterior_of[i - 1] @ moves[i].T + np.diag(added)
-        posterior[i], posterior_of[i] = _updated(prior[i], prior_of[i], positions[i], variance)
-    poses, covariances = posterior.copy(), posterior_of.copy()
-    for i in range(count - 2, -1, -1):
-        gain = np.linalg.solve(prior_of[i + 1], moves[i + 1] @ posterior_of[i]).T
-        poses[i] += gain @ (poses[i + 1] - prior[i + 1])
-        covariances[i] += gain @ (covariances[i + 1] - prior_of[i + 1]) @ gain.T
-    return Smoothed(poses, covariances)
+        before = posterior[i - 1]
+        prior[i] = _moved(before, way.steps[:, i - 1], way.drifts[i - 1])
+        moves[i, :, 0, 2] = before[:, 1] - prior[i, :, 1]
+        moves[i, :, 1, 2] = prior[i, :, 0] - before[:, 0]
+        turned = moves[i] @ posterior_of[i - 1] @ moves[i].swapaxes(1, 2)
+        prior_of[i] = turned + np.diag(added[i - 1])
+        off = way.positions[i] - prior[i, :, :2]
+        spread = prior_of[i, :, :2, :2] + variance * np.eye(2)
+        distance = np.einsum("hi,hij,hj->h", off, np.linalg.inv(spread), off)
+        surprise += distance / 2 / (count - 1)
+        lost = np.where(distance > FAR, 2 * np.sqrt(FAR * distance) - FAR, distance)
+        log_likelihoods -= (lost + np.log(np.linalg.det(spread))) / 2
+        weighed = variance * np.maximum(1.0, np.sqrt(distance / FAR))  # the same pull however far
+        posterior[i], posterior_of[i] = _updated(prior[i], prior_of[i], off, weighed)
+    return Filtered(prior, prior_of, posterior, posterior_of, moves, log_likelihoods, surprise)
 
 
-def _moved(pose: FloatArray, step: FloatArray) -> FloatArray:
-    return np.append(se2.transform(pose[None], step[:2])[0], pose[2] + step[2])
+def smoothed(of: Filtered) -> Smoothed:
+    """The likeliest poses at all positions, given all of these."""
+    states, covariances = of.posterior.copy(), of.posterior_of.copy()
+    for i in range(len(states) - 2, -1, -1):
+        gain = (
+            of.posterior_of[i] @ of.moves[i + 1].swapaxes(1, 2) @ np.linalg.inv(of.prior_of[i + 1])
+        )
+        states[i] += np.einsum("hij,hj->hi", gain, states[i + 1] - of.prior[i + 1])
+        change = covariances[i + 1] - of.prior_of[i + 1]
+        covariances[i] += gain @ change @ gain.swapaxes(1, 2)
+    return Smoothed(states[..., :3], covariances[..., :3, :3])
 
 
-def _move_jacobian(before: FloatArray, after: FloatArray) -> FloatArray:
-    """Derivative (3, 3) of the pose after a step by the one before."""
-    jacobian = np.eye(3)
-    jacobian[0, 2], jacobian[1, 2] = before[1] - after[1], after[0] - before[0]
-    return jacobian
+def _moved(states: FloatArray, steps: FloatArray, drifts: FloatArray) -> FloatArray:
+    c, s = np.cos(states[:, 2]), np.sin(states[:, 2])
+    moved = states.copy()
+    moved[:, 0] += c * steps[:, 0] - s * steps[:, 1]
+    moved[:, 1] += s * steps[:, 0] + c * steps[:, 1]
+    moved[:, 2] += steps[:, 2] - states[:, 3:] @ drifts
+    return moved
 
 
 def _updated(
-    pose: FloatArray, covariance: FloatArray, position: FloatArray, variance_m2: float
+    states: FloatArray, covariances: FloatArray, off: FloatArray, variances_m2: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Pose and covariance with one measured position, in Joseph form."""
-    off = position - pose[:2]
-    spread = covariance[:2, :2] + variance_m2 * np.eye(2)
-    distance = float(off @ np.linalg.solve(spread, off))
-    variance_m2 *= max(1.0, np.sqrt(distance / FAR))  # its pull stays the same however far
-    gain = np.linalg.solve(covariance[:2, :2] + variance_m2 * np.eye(2), covariance[:2]).T
-    kept = np.eye(3)
-    kept[:, :2] -= gain
-    updated = kept @ covariance @ kept.T + variance_m2 * gain @ gain.T
-    return pose + gain @ off, updated
+    """States and covariances with one measured position, in Joseph form."""
+    spread = covariances[:, :2, :2] + variances_m2[:, None, None] * np.eye(2)
+    gain = covariances[:, :, :2] @ np.linalg.inv(spread)
+    kept = np.tile(np.eye(STATES), (len(states), 1, 1))
+    kept[:, :, :2] -= gain
+    noise = variances_m2[:, None, None] * (gain @ gain.swapaxes(1, 2))
+    updated = kept @ covariances @ kept.swapaxes(1, 2) + noise
+    return states + np.einsum("hij,hj->hi", gain, off), updated

@@ -16,7 +16,7 @@ PERIOD_S = 0.05
 def drive(
     seed,
     *,
-    duration_s=120.0,
+    duration_s=80.0,
     noise_m=0.0,
     every=4,
     gyroscope=False,
