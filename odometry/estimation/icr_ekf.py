@@ -1,5 +1,6 @@
 """Pose and ICR filter: an extended Kalman filter that is told the terrain (Chen 2023, 3.1-3.2)."""
 
+import math
 from collections.abc import Mapping
 
 from odometry.estimation import sensor_watch
@@ -83,7 +84,13 @@ class IcrEkf:
         terrain : str
         yaw_sigma_rad : float, optional
             Standard deviation of the yaw where it is not that of a measured one.
+
+        Raises
+        ------
+        EstimationError
+            If the frame's stamp is not finite.
         """
+        _require_finite(frame.stamp_s)
         config = self.config
         belief, course = first_belief(
             frame,
@@ -114,8 +121,9 @@ class IcrEkf:
         Raises
         ------
         EstimationError
-            If the frame is older than the estimate.
+            If the frame is older than the estimate, or its stamp is not finite.
         """
+        _require_finite(frame.stamp_s)
         if frame.stamp_s < estimate.stamp_s:
             raise EstimationError(
                 f"a frame of {frame.stamp_s} s came after the estimate of {estimate.stamp_s} s; "
@@ -156,3 +164,8 @@ class IcrEkf:
             watch=predicted.watch,
             events=predicted.events + after.events,
         )
+
+
+def _require_finite(stamp_s: float) -> None:
+    if not math.isfinite(stamp_s):
+        raise EstimationError(f"a frame has the stamp {stamp_s}; expected a finite number of s")

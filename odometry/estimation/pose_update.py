@@ -1,29 +1,22 @@
 """What a measured pose changes: it is weighed, refused, or the filter starts anew at it."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.estimation.bounds import bounded
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.course import Course
-from odometry.estimation.estimate import ALPHAS, OF_TERRAIN, Estimate, Innovation
+from odometry.estimation.estimate import OF_TERRAIN, Estimate, Innovation
 from odometry.estimation.filter_event import FilterEvent
-from odometry.estimation.gaussian import gate_threshold, project_into
+from odometry.estimation.gaussian import gate_threshold
 from odometry.estimation.heading_search import searched
 from odometry.estimation.measurement import Gaussian, Measurement, Place, pose_measurement
 from odometry.estimation.new_start import agree, new_start_event, started_anew
 from odometry.estimation.noise_scale import NoiseScale, adapted
 from odometry.estimation.pose_kalman import PoseKalman
-from odometry.estimation.transition import STATES, Y_LEFT, Y_RIGHT, YAW
 from odometry.frames import Frame
-from odometry.geometry.angles import wrap_one
-
-SIDES = np.zeros((2, STATES))
-SIDES[0, Y_LEFT], SIDES[1, Y_RIGHT] = 1.0, -1.0
-LEAST_SIDE = 0.05  # of the track width; y_left and -y_right are kept above it
-LEAST_ALPHA = 0.05
 
 
 class Seen(NamedTuple):
@@ -62,7 +55,7 @@ class PoseUpdate:
         )
         self.lever_m = lever_m
         self._kalman = kalman
-        self._least_side_m = LEAST_SIDE * track_width
+        self._track_width = track_width
         self._reset_variances = np.square(
             [config.reset_sigma_widths * track_width] * 3 + [config.reset_sigma_alpha] * 2
         )
@@ -145,7 +138,7 @@ class PoseUpdate:
             factor = max(1.0, squared / self._tails[size])
             heavy = measured._replace(covariance=measured.covariance * factor)
             mean, covariance, _ = self._kalman.updated(*belief, heavy)
-        mean = self._bounded(mean, covariance)
+        mean, covariance = bounded(mean, covariance, self._track_width)
         return Seen(mean, covariance, innovation, (), recent, jumped, scale, None)
 
     def _with_terrain_reset(self, belief: Gaussian) -> Gaussian:
@@ -154,15 +147,3 @@ class PoseUpdate:
         covariance[OF_TERRAIN], covariance[:, OF_TERRAIN] = 0.0, 0.0
         covariance[OF_TERRAIN, OF_TERRAIN] = self._reset_variances
         return belief[0], covariance
-
-    def _bounded(self, mean: FloatArray, covariance: FloatArray) -> FloatArray:
-        """Yaw in (-pi, pi], ICRs on their own sides of the robot, slip factors above zero."""
-        _, _, yaw, y_left, y_right, _, _, alpha_left, alpha_right = mean.tolist()
-        if abs(yaw) > math.pi:
-            mean[YAW] = wrap_one(yaw)
-        least = self._least_side_m
-        if y_left < least or y_right > -least:
-            mean = project_into(mean, covariance, SIDES, np.full(2, least))
-        if alpha_left < LEAST_ALPHA or alpha_right < LEAST_ALPHA:
-            mean[ALPHAS] = np.maximum(mean[ALPHAS], LEAST_ALPHA)
-        return mean

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from odometry.arrays import FloatArray
 from odometry.estimation import sensor_watch
+from odometry.estimation.bounds import bounded
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.measurement import Gaussian, tread_yaw_rate
@@ -125,4 +126,4 @@ class Prediction:
         )
         variance *= huber_factor(measured, covariance, variance)
         measured.covariance[0, 0] = variance
-        return self._kalman.updated(mean, covariance, measured)[:2]
+        return bounded(*self._kalman.updated(mean, covariance, measured)[:2], self._track_width)

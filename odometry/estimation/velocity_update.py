@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from odometry.estimation.bounds import bounded
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.measurement import Gaussian, velocity_measurement
@@ -61,4 +62,6 @@ class VelocityUpdate:
             yaw_rate - float(estimate.added_twist[YAW]),
             np.diag(variances),
         )
-        return self._kalman.updated(*belief, measured)[:2] if len(measured.residual) else belief
+        if not len(measured.residual):
+            return belief
+        return bounded(*self._kalman.updated(*belief, measured)[:2], self._track_width)

@@ -1,5 +1,6 @@
 """Sensors that fail: the effect stays bounded, and each fault is flagged."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -199,3 +200,19 @@ def test_a_pose_that_repeats_while_the_robot_stands_is_used():
     estimates = estimates_of(frames_of(driven, poses=driven.poses))
     assert events_of(estimates) == []
     assert estimates[-1].innovation is not None
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_silence_of_days_leaves_the_icrs_on_their_sides(driven, seed):
+    """Treads against the gyroscope are then weighed by a covariance that has grown for long."""
+    poses = noisy_poses(driven, np.random.default_rng(seed))
+    noise = np.random.default_rng(seed).normal(0, 0.02, len(poses))
+    given = rates_and_speeds(driven)
+    given["yaw_rates"] = given["yaw_rates"] + noise
+    frames = frames_of(driven, poses=poses, **given)
+    later = [replace(frame, stamp_s=frame.stamp_s + 1e6) for frame in frames[BEGIN:]]
+    estimates = estimates_of([*frames[:BEGIN], *later])
+    assert min(estimate.mean[3] for estimate in estimates) > 0
+    assert max(estimate.mean[4] for estimate in estimates) < 0
+    assert max(abs(estimate.mean[2]) for estimate in estimates) <= np.pi
+    assert distance(estimates[-1], driven) < 0.1

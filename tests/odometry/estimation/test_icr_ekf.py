@@ -5,6 +5,7 @@ import pytest
 
 from odometry.errors import ConfigError
 from odometry.estimation.config import IcrEkfConfig
+from odometry.estimation.errors import EstimationError
 from tests.odometry.estimation.icr_ekf_drives import WIDTH, driven, filter_of, frame, table
 
 
@@ -52,6 +53,15 @@ def test_without_tread_speeds_it_stays():
     ekf = filter_of()
     start = ekf.start(frame(0, (1, 2, 3), speeds=(np.nan, np.nan)), "a")
     np.testing.assert_array_equal(ekf.step(start, frame(1), "a").mean, start.mean)
+
+
+@pytest.mark.parametrize("stamp_s", [np.nan, np.inf])
+def test_a_stamp_that_is_no_number_is_refused(stamp_s):
+    ekf = filter_of()
+    with pytest.raises(EstimationError, match=f"the stamp {stamp_s}; expected a finite"):
+        ekf.step(ekf.start(frame(0), "a"), frame(stamp_s), "a")
+    with pytest.raises(EstimationError, match=f"the stamp {stamp_s}"):
+        ekf.start(frame(stamp_s), "a")
 
 
 @pytest.mark.parametrize("yaw", [np.pi - 0.01, -np.pi + 0.01, np.pi])
