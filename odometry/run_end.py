@@ -6,7 +6,8 @@ from odometry.estimation.estimate import Estimate
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.new_start import REINITIALISED
 from odometry.estimation.sensor_watch import ongoing
-from odometry.estimation.transition import GYRO_BIAS
+from odometry.estimation.transition import GYRO_BIAS, YAW
+from odometry.geometry.angles import wrap
 from odometry.replay import Replay
 from odometry.run import Run
 
@@ -15,6 +16,9 @@ LAST_POSES = 20  # whose median distance tells where a trajectory ends
 BIAS_RAD_S, BIAS_SIGMAS = 0.005, 4.0  # 0.3 degrees per second
 DRIFT_RAD_S = 0.02  # four standard deviations of a bias that counts as found
 KNOWN_BIAS_RAD_S = 0.005  # standard deviation from which on the bias is one that was found
+FOLLOWED_SIGMAS = 2.0  # of the bias, by which one that was followed may be off in the mean
+OFF_AT_END = "off_at_end"
+DRIFT_FOLLOWED = "gyroscope_drift_followed"
 
 
 def run_end_events(run: Run, replay: Replay) -> tuple[FilterEvent, ...]:
@@ -62,11 +66,33 @@ def _bias(replay: Replay) -> list[FilterEvent]:
     begin_s, end_s = float(replay.stamps_s[known[0]]), float(replay.stamps_s[-1])
     if most - least > DRIFT_RAD_S:
         text = f"the bias of the gyroscope drifted between {least:.4f} and {most:.4f} rad/s"
+        off, stated = bias_error(replay, known[0]), float(sigmas[known].mean())
+        if abs(off) <= FOLLOWED_SIGMAS * stated:
+            return [FilterEvent(DRIFT_FOLLOWED, begin_s, end_s, f"{text}: the filter followed it")]
+        text += (
+            f", and the one believed was off by {abs(off):.4f} rad/s in the mean, where the filter "
+            f"states {stated:.4f}: it was not followed"
+        )
         return [FilterEvent("gyroscope_drift", begin_s, end_s, text)]
     if abs(bias) > max(BIAS_RAD_S, BIAS_SIGMAS * sigma):
         text = f"the gyroscope has a bias of {bias:.4f} +- {sigma:.4f} rad/s: it was removed"
         return [FilterEvent("gyroscope_bias", begin_s, end_s, text)]
     return []
+
+
+def bias_error(replay: Replay, first: int) -> float:
+    """Mean error of the bias believed since an estimate [rad/s].
+
+    How much more the gyroscope less that bias turned than the estimate, which follows the poses.
+    """
+    estimates = replay.estimates[first:]
+    steps_s, yaws = np.diff(replay.stamps_s[first:]), replay.means[first:, YAW]
+    biases = replay.means[first:-1, GYRO_BIAS]
+    rates = np.array([each.believed_yaw_rate_rad_s for each in estimates[1:]])
+    told = np.isfinite(rates) & (steps_s > 0)
+    off = (rates - biases) * steps_s - wrap(np.diff(yaws))
+    duration_s = float(steps_s[told].sum())
+    return float(off[told].sum()) / duration_s if duration_s > 0 else 0.0
 
 
 def _off_at_end(run: Run, replay: Replay) -> list[FilterEvent]:
@@ -91,4 +117,4 @@ def _off_at_end(run: Run, replay: Replay) -> list[FilterEvent]:
         f"the estimate ends {ours_m:.2f} m from the last {LAST_POSES} poses, the ideal drive "
         f"{ideal_m:.2f} m: do not trust the estimate at the end of this run"
     )
-    return [FilterEvent("off_at_end", float(stamps_s[last[0]]), float(replay.stamps_s[-1]), text)]
+    return [FilterEvent(OFF_AT_END, float(stamps_s[last[0]]), float(replay.stamps_s[-1]), text)]

@@ -5,12 +5,15 @@ from typing import Any
 import numpy as np
 
 from odometry.estimation.filter_event import FilterEvent
-from odometry.estimation.heading_search import INITIAL_YAW
+from odometry.estimation.heading_search import INITIAL_YAW, LATER_YAW
 from odometry.estimation.transition import GYRO_BIAS
 from odometry.replay import Replay
+from odometry.run_end import DRIFT_FOLLOWED
 
 HARMLESS = {  # kinds of events after which the filter may be believed all the same
+    DRIFT_FOLLOWED,
     INITIAL_YAW,
+    LATER_YAW,
     "gyroscope_bias",
     "gyroscope_silence",
     "gyroscope_spike",

@@ -30,7 +30,7 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "gyroscope": result.replay.has_gyroscope,
         "errors": error_tables(result),
         "off_at_the_end_m": result.off_at_the_end_m,
-        "remarks": remarks(result.scores, result.off_at_the_end_m),
+        "remarks": remarks(result.scores, result.off_at_the_end_m, result.replay.events),
         "withheld": _withheld(result),
         "odometer_uncertainty": uncertainty_table(result.uncertainty),
         "switches": _switches(result),

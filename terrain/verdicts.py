@@ -1,9 +1,11 @@
 """What a reader of the errors should not miss: where the simple does as well or better."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
+from odometry.estimation.filter_event import FilterEvent
 from odometry.evaluation.score import Score
 from odometry.evaluation.withheld import JUDGED_EVERY_S, SILENT_S
+from odometry.run_end import OFF_AT_END
 from terrain.judged import SecondReplay
 
 NEEDS_NO_FIT = {
@@ -18,7 +20,11 @@ NO_GYROSCOPE = (
 )
 
 
-def remarks(scores: Mapping[str, Score], off_m: Mapping[str, float]) -> list[str]:
+def remarks(
+    scores: Mapping[str, Score],
+    off_m: Mapping[str, float],
+    events: Sequence[FilterEvent] = (),
+) -> list[str]:
     """Sentences that belong beside the errors; none where nothing is judged.
 
     Parameters
@@ -26,7 +32,11 @@ def remarks(scores: Mapping[str, Score], off_m: Mapping[str, float]) -> list[str
     scores : Mapping of trajectory to Score
     off_m : Mapping of trajectory to float
         Distance from the reference at its last stamp, see `RunResult.off_at_the_end_m`.
+    events : sequence of FilterEvent
+        Which are shown beside: what one of them says of the estimate's end is not said again.
     """
+    if any(event.kind == OFF_AT_END for event in events):
+        off_m = {name: off for name, off in off_m.items() if name != "estimate"}
     return [*simple_is_better(scores), *worse_at_the_end(off_m)] if scores else []
 
 

@@ -41,7 +41,11 @@ def _beside_errors(result: "RunResult") -> list[str]:
 
     judged = [f"The estimate is judged by {judged_by(result.second)}"] if result.second else []
     missing = [] if result.replay.has_gyroscope else [NO_GYROSCOPE]
-    return [*judged, *missing, *remarks(result.scores, result.off_at_the_end_m)]
+    return [
+        *judged,
+        *missing,
+        *remarks(result.scores, result.off_at_the_end_m, result.replay.events),
+    ]
 
 
 def print_sightings(counts: Mapping[str, int]) -> None:

@@ -48,7 +48,7 @@ def headline(lines: ReportLines, scores: Mapping[str, Score]) -> str:
         f"travel against the {lines.reference_name}: {', '.join(parts)}."
     )
     by_name = {name: scores[label] for name, label in LABELS.items() if label in scores}
-    return " ".join([compared, *remarks(by_name, result.off_at_the_end_m)])
+    return " ".join([compared, *remarks(by_name, result.off_at_the_end_m, result.replay.events)])
 
 
 def notes(lines: ReportLines) -> list[str]:

@@ -7,7 +7,9 @@ import pytest
 
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.icr_ekf import IcrEkf
+from odometry.estimation.transition import GYRO_BIAS
 from odometry.pipeline import ConstantTerrain, replay
+from odometry.run_end import bias_error
 from tests.odometry.test_pose_delay import run_of, table
 
 
@@ -36,7 +38,33 @@ def test_a_bias_is_said_and_a_drift():
     found = kinds(with_rates(0.016))
     assert set(found) == {"gyroscope_bias"}
     assert "bias of 0.01" in found["gyroscope_bias"].text
-    assert "gyroscope_drift" in kinds(with_rates(0.06 * t / t[-1]))
+    lost = kinds(with_rates(0.06 * t / t[-1]))["gyroscope_drift"]
+    assert "not followed" in lost.text
+
+
+def test_the_error_of_a_bias_is_told_from_the_poses():
+    """A drift that the filter lags behind, against the bias that was put in."""
+    run = run_of(0.0)
+    columns = dict(run.odometry.columns)
+    t = columns["t"]
+    rates = columns["gyro_z"] + 0.06 * t / t[-1]
+    drifting = replace(run, odometry=table("odometry.csv", **{**columns, "gyro_z": rates}))
+    done = replay(drifting, IcrEkf(run.robot.track_width), ConstantTerrain("a"))
+    truth = 0.06 * done.stamps_s / t[-1]
+    error = truth - done.means[:, GYRO_BIAS]
+    assert bias_error(done, 200) == pytest.approx(error[200:].mean(), abs=0.002)
+    assert error[200:].mean() > 0.01
+
+
+def test_a_drift_that_the_filter_follows_is_a_note():
+    run = run_of(0.0)
+    columns = dict(run.odometry.columns)
+    t = columns["t"]
+    rates = columns["gyro_z"] + 0.06 * t / t[-1]
+    drifting = replace(run, odometry=table("odometry.csv", **{**columns, "gyro_z": rates}))
+    found = kinds(drifting, bias_noise=1e-3, gyro_noise=0.005)
+    assert "followed it" in found["gyroscope_drift_followed"].text
+    assert "gyroscope_drift" not in found
 
 
 def test_outliers_are_counted(rng):

@@ -50,6 +50,16 @@ def test_an_initial_yaw_found_misleads_nobody_a_new_start_does(noticed):
     assert misleading(noticed.replay) == [ANEW]
 
 
+@pytest.mark.parametrize(
+    ("kind", "misleads"),
+    [("heading_found", False), ("gyroscope_drift_followed", False), ("gyroscope_drift", True)],
+)
+def test_a_drift_misleads_only_where_it_was_not_followed(noticed, kind, misleads):
+    first, *others = noticed.replay.estimates
+    estimates = (replace(first, events=(FilterEvent(kind, 0.0, 9.0, kind),)), *others[:-1])
+    assert bool(misleading(replace(noticed.replay, estimates=estimates))) == misleads
+
+
 def test_an_event_is_one_line_with_its_time():
     assert event_line(YAW) == "0.0 to 6.5 s: initial yaw 12.0 degrees"
     assert event_line(ANEW) == "8.0 s: it started anew"

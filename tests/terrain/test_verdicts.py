@@ -2,6 +2,7 @@
 
 import pytest
 
+from odometry.estimation.filter_event import FilterEvent
 from odometry.evaluation.score import Score
 from terrain.verdicts import remarks, simple_is_better, worse_at_the_end
 
@@ -43,3 +44,11 @@ def test_each_that_ends_farther_off_than_the_ideal_drive_is_named():
 
 def test_where_nothing_is_judged_nothing_is_remarked():
     assert remarks({}, {"differential_drive": 1.0, "estimate": 2.0}) == []
+
+
+def test_an_end_that_the_filter_noticed_is_not_told_twice():
+    errors = scores(odometer=0.01)
+    off_m = {"differential_drive": 8.2, "odometer": 30.0, "estimate": 51.7}
+    assert len(remarks(errors, off_m)) == 2
+    (left,) = remarks(errors, off_m, (FilterEvent("off_at_end", 0.0, 9.0, "do not trust it"),))
+    assert left.startswith("The odometer ends farther off")

@@ -10,7 +10,7 @@ from terrain.report.tables import NOTHING, error_table
 from terrain.report.words import headline
 
 LINES = SimpleNamespace(
-    result=SimpleNamespace(config=Config(), off_at_the_end_m={}),
+    result=SimpleNamespace(config=Config(), off_at_the_end_m={}, replay=SimpleNamespace(events=())),
     reference_name="measured pose",
     compared_with={"without vision": None, "tuned": None},
 )
