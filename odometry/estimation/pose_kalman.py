@@ -17,6 +17,7 @@ class PoseKalman(ExtendedKalmanFilter):  # type: ignore[misc]
     def __init__(self) -> None:
         super().__init__(dim_x=STATES, dim_z=3)
         self.Q = np.zeros((STATES, STATES))
+        self._added = self.Q.reshape(-1)[:: STATES + 1]  # the diagonal of Q
         self.weighed = np.zeros(3)  # inverse of S times the last innovation
 
     def predict_x(self, u: FloatArray) -> None:
@@ -49,7 +50,7 @@ class PoseKalman(ExtendedKalmanFilter):  # type: ignore[misc]
         integral of F(s) Q F(s)^T. The first step of eq. 7 would make the answer depend on how
         finely time is cut.
         """
-        self.Q.flat[:: STATES + 1] = noise / 2
+        np.multiply(noise, 0.5, out=self._added)
         self.P = covariance + self.Q
         self.F = jacobian
         self.predict(mean)
@@ -64,7 +65,7 @@ class PoseKalman(ExtendedKalmanFilter):  # type: ignore[misc]
             measured.residual, _derivative, _nothing, measured.covariance, (measured.jacobian,)
         )
         self.weighed = self.SI.dot(self.y)
-        return self.x, (self.P + self.P.T) / 2, float(self.y.dot(self.weighed))
+        return self.x, (self.P + self.P.T) * 0.5, float(self.y.dot(self.weighed))
 
 
 def _derivative(_: FloatArray, jacobian: FloatArray) -> FloatArray:

@@ -28,7 +28,7 @@ def tread_variance(
 def huber_factor(measured: Measurement, covariance: FloatArray, variance: float) -> float:
     """Factor on the variance of one number: above 1 beyond two standard deviations."""
     by_state = measured.jacobian[0]
-    expected = variance + float(by_state @ covariance @ by_state)
+    expected = variance + float(by_state.dot(covariance).dot(by_state))
     squared = float(measured.residual[0]) ** 2 / expected if expected > 0 else 0.0
     return max(1.0, squared / HUBER_SQUARED)
 
