@@ -8,11 +8,11 @@ from odometry.estimation import sensor_watch
 from odometry.estimation.bounds import bounded
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.estimate import Estimate
-from odometry.estimation.measurement import Gaussian, tread_yaw_rate
+from odometry.estimation.measurement import Gaussian, Measurement, tread_yaw_rate
 from odometry.estimation.pose_kalman import PoseKalman
 from odometry.estimation.process_noise import ProcessNoise
 from odometry.estimation.sensor_watch import Events, SensorWatch
-from odometry.estimation.transition import YAW, transition
+from odometry.estimation.transition import ALPHA_LEFT, YAW, transition
 from odometry.estimation.tread_noise import huber_factor, tread_variance
 from odometry.frames import Frame
 
@@ -125,5 +125,18 @@ class Prediction:
             estimate.tread_speeds_m_s, turn, self._track_width, estimate.scale.slip, step_s
         )
         variance *= huber_factor(measured, covariance, variance)
+        if estimate.scale.weighed is None:
+            variance += _held_slip_factors(measured, covariance)
         measured.covariance[0, 0] = variance
         return bounded(*self._kalman.updated(mean, covariance, measured)[:2], self._track_width)
+
+
+def _held_slip_factors(measured: Measurement, covariance: FloatArray) -> float:
+    """Take slip factors out of a yaw rate before any pose; the variance that they then add.
+
+    A yaw rate tells slip factors and y_left - y_right only as one ratio: where no pose has told
+    how far the robot moves, it teaches the difference alone.
+    """
+    by_slip = measured.jacobian[:, ALPHA_LEFT:].copy()
+    measured.jacobian[:, ALPHA_LEFT:] = 0.0
+    return float((by_slip @ covariance[ALPHA_LEFT:, ALPHA_LEFT:] @ by_slip.T)[0, 0])

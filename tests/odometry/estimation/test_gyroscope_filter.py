@@ -32,6 +32,14 @@ def test_without_poses_it_teaches_the_width_of_the_treads():
     assert abs(before - expected) > 0.3 * expected
 
 
+def test_without_poses_slip_is_not_made_up_where_treads_spin():
+    """On ice treads turn much and the robot little: the width says so, the slip factors cannot."""
+    driven = drive(120.0)
+    last = estimates_of(frames_of(driven, yaw_rates=0.2 * driven.yaw_rates_rad_s))[-1]
+    np.testing.assert_allclose(last.alphas, 1.0, atol=1e-9)
+    assert np.sqrt(np.diag(last.covariance)[7:]).min() > 0.04
+
+
 def test_with_poses_it_teaches_everything(rng):
     driven = drive(120.0)
     frames = frames_of(
