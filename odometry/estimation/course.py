@@ -14,6 +14,7 @@ CERTAIN_SIGMA_RAD = 0.05  # 2.9 degrees
 PATIENCE_M = 12.0  # of dead reckoning; after it less must do, or the search begins anew
 ENOUGH_SIGMA_RAD = 0.25  # without a gyroscope too: the filter finds the rest with the ICRs
 CRAB_SIGMA_RAD = 0.02  # by which the robot moves aside of its heading while nothing is known of it
+ASIDE_SHARE = 0.3  # a robot whose treads slip moves aside by as much of the slip
 UNKNOWN_YAW_VARIANCE = math.pi**2 / 3  # of an angle that may be any
 
 
@@ -119,7 +120,8 @@ class Course:
         1991 in the plane). Driving forward or
         back makes no difference: dead reckoning knows the direction. The lengths of steps tell the
         noise of positions where it is more than `position_sigma_m`. Residuals above it count as
-        errors of dead reckoning, which are of one piece: they do not average.
+        errors of dead reckoning, which are of one piece: they do not average. The scale tells
+        the slip of the treads, and so by how much the course may differ from the heading.
         A gyroscope keeps the shape of the path, so that `CERTAIN_SIGMA_RAD` is asked for over
         `PATIENCE_M`; treads whose ICRs are not known yet do not keep it, nor does a robot that
         slides: `ENOUGH_SIGMA_RAD` must do then.
@@ -131,7 +133,8 @@ class Course:
         noise = max(position_sigma_m**2, self.step_square / (2 * (self.count - 1)))
         excess = max(residual / (2 * self.count - 4) - noise, 0.0)
         by_noise = (noise + excess * self.count) / self.reckoned_square
-        sigma = math.sqrt(by_noise + CRAB_SIGMA_RAD**2)
+        slip = 1 - fitted / self.reckoned_square
+        sigma = math.sqrt(by_noise + CRAB_SIGMA_RAD**2 + (ASIDE_SHARE * slip) ** 2)
         certain = by_gyroscope and self.travel_m < PATIENCE_M
         if sigma > (CERTAIN_SIGMA_RAD if certain else ENOUGH_SIGMA_RAD):
             return None
