@@ -20,6 +20,7 @@ from odometry.pose_delay import without_pose_delay
 from odometry.replay import Replay
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
 from odometry.terrain_sources import ToldFooting
+from odometry.windows.measured_poses import lacks_yaw
 from terrain.classification.classifier import Classifier, TerrainClassifier
 from terrain.config import Config
 from terrain.images_outside import add_images_outside
@@ -83,7 +84,9 @@ def run_odometry(
         parameters = read_parameters(parameters) if parameters else ParameterSet()
     initial = _initial_terrain(run, parameters, terrain)
     corrections = corrections_of(run, parameters)
-    run = robot_run(run, _sensor_effects(parameters))
+    effects = _sensor_effects(parameters)
+    if effects or not lacks_yaw(run):  # the filter itself undoes the lever arm of positions
+        run = robot_run(run, effects)
     run, noticed = without_pose_delay(run, config.filter)
     lever_m = run.sensors.pose_m[:2] if run.sensors.pose_m else (0.0, 0.0)
     name, trained = _trained(model, source, vision=vision)

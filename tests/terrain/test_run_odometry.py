@@ -288,3 +288,9 @@ def test_poses_of_an_antenna_are_compared_with_the_antenna(tmp_path, world):
         found = of_antenna.scores[name].final_position_m
         assert found == pytest.approx(score.final_position_m, abs=0.05), name
     assert of_antenna.off_at_the_end_m["estimate"] < 0.05
+    without_yaw = [",".join([*line.split(",")[:3], ""]) for line in lines[1:]]
+    (moved / "pose.csv").write_text("\n".join([header, *without_yaw]) + "\n")
+    of_positions = run_odometry(moved)
+    assert of_positions.off_at_the_end_m["estimate"] < 0.05
+    end = of_robot.replay.means[-1, :2] - of_positions.replay.means[-1, :2]
+    assert np.hypot(*end) < 0.1
