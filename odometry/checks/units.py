@@ -67,10 +67,10 @@ def _forward_factor(evidence: Evidence) -> tuple[float | None, bool]:
     if found is not None and found.certain():
         return abs(found.slope), found.correlation > TIGHT
     distance = evidence.distance_by_mean
-    sliding = (evidence.best_concentration or 1.0) < SLIDING
+    aligned = evidence.best_concentration  # None without yaw: sliding is then not excluded
     if distance is not None and distance.certain():
         tight = distance.correlation > TIGHT and distance.measured >= LEAST_WINDOWS
-        return abs(distance.slope), tight and not sliding
+        return abs(distance.slope), tight and aligned is not None and aligned >= SLIDING
     return None, False
 
 
@@ -168,7 +168,7 @@ def _along(evidence: Evidence, forward: float, tight: bool, width: float | None)
         return Finding(
             "slip",
             Level.WARNING,
-            f"{seen}; the factor is {'constant' if tight else 'not constant'}",
+            f"{seen}; the factor is {'constant' if tight else 'not known to be constant'}",
             "Heavy slip (ice, snow, a robot that is stuck) where terrain allows it, else a wrong "
             "scale of treads or positions: these cannot be distinguished",
             "Judge by what the robot drove on; parameters are of this run alone",
