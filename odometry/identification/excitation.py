@@ -5,8 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.models.base import KinematicModel
-from odometry.run import Robot
 
 SHOWN = 0.3  # a parameter is named if it has this share of a direction
 
@@ -33,11 +31,6 @@ class Undetermined:
         if not np.isfinite(self.deviation):
             return f"{subject}: the predicted motion does not depend on it"
         return f"{subject}: standard deviation {self.deviation:.2g} of its ordinary size"
-
-
-def ordinary_sizes(model: KinematicModel, robot: Robot) -> FloatArray:
-    """See `KinematicModel.ordinary_sizes`."""
-    return model.ordinary_sizes(robot)
 
 
 def undetermined(

@@ -1,16 +1,13 @@
 """The loss of an identification: squared Mahalanobis distances of windows (Baril 2020 eq. 13)."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.errors import ParameterError
 from odometry.models.base import KinematicModel
-from odometry.run import Robot
 from odometry.windows.motion import linearised_window_motion, window_motion
 from odometry.windows.noise import window_covariances
 from odometry.windows.stretches import Stretches
@@ -144,35 +141,6 @@ class PaperProblem(Problem):
     def whitening(self) -> FloatArray:
         """See `AnyProblem.whitening`."""
         return np.broadcast_to(np.eye(3), (len(self.windows), 3, 3))
-
-
-def start_values(
-    model: KinematicModel,
-    robot: Robot,
-    fixed: Mapping[str, float],
-    released: frozenset[str],
-    near: Mapping[str, float],
-) -> FloatArray:
-    """All parameters (P,) where a search starts: fixed ones, else near ones, else guessed.
-
-    Raises
-    ------
-    ParameterError
-        If a name is no parameter of the model, or both fixed and released.
-    """
-    names = {parameter.name for parameter in model.parameters}
-    for name in sorted({*fixed, *released} - names):
-        raise ParameterError(
-            f"{name!r} is no parameter of {model.name!r}; it has {', '.join(sorted(names))}"
-        )
-    for name in sorted(released & set(fixed)):
-        raise ParameterError(f"{name!r} is both fixed and free; expected one of them")
-    return model.pack({**model.guess(robot), **near, **fixed})
-
-
-def by_name(model: KinematicModel, values: FloatArray) -> dict[str, float]:
-    """Parameters (P,) by their names."""
-    return {p.name: float(value) for p, value in zip(model.parameters, values, strict=True)}
 
 
 PROBLEMS: dict[str, type[Problem]] = {

@@ -8,7 +8,6 @@ from scipy.optimize import brentq, least_squares
 from odometry.arrays import BoolArray, FloatArray
 from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
-from odometry.identification.excitation import ordinary_sizes
 from odometry.identification.fit import Fit
 from odometry.identification.identification import Identification
 from odometry.identification.intervals import Interval, deviations_within
@@ -47,7 +46,7 @@ def _profiled(
         )
     free = np.array([parameter.name in fit.names for parameter in fit.model.parameters])
     problem = _problem(fit, free, window_config, solver_config)
-    sizes = ordinary_sizes(fit.model, robot)
+    sizes = fit.model.ordinary_sizes(robot)
     blurred = {*fit.open_names, *fit.at_bound}
     return replace(
         fit,

@@ -6,13 +6,12 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.errors import ParameterError
 from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
-from odometry.identification.excitation import ordinary_sizes, undetermined
+from odometry.identification.finish import finished
 from odometry.identification.fitted import Fit
-from odometry.identification.problem import by_name, start_values
 from odometry.identification.solve import Solution, solve
+from odometry.identification.start import start_of
 from odometry.identification.stretch_problem import StretchProblem
 from odometry.identification.stretch_uncertainty import stretch_uncertainty
 from odometry.models.base import KinematicModel
@@ -45,39 +44,33 @@ def fit_stretches(
     ParameterError
         If a name is no parameter of the model, or a fixed value is out of bounds.
     """
-    parameters = model.parameters
-    free = np.array(
-        [p.name not in fixed and (not p.known or p.name in released) for p in parameters]
+    start = start_of(
+        model, robot, fixed=fixed, released=released, near=near, solver_config=solver_config
     )
-    if model.stages or any(p.in_sign for p, chosen in zip(parameters, free, strict=True) if chosen):
+    if model.stages or start.in_sign.any():
         raise IdentificationError(
             f"{model.name!r} is identified in stages, which needs poses with yaw; pose.csv has "
             "positions alone"
         )
-    if solver_config.loss == "linear":
+    config = start.solver_config
+    if config.loss == "linear":
         raise IdentificationError(
             "the loss 'linear' weighs metres as radians of measured yaw; pose.csv has positions "
             "alone: expected 'huber' or 'squares'"
         )
-    values = start_values(model, robot, fixed, released, near or {})
-    problem = StretchProblem(model, stretches, values, free, UNKNOWN_NOISE.variances)
-    if problem.numbers_per_window * len(stretches) <= free.sum():
-        raise IdentificationError(
-            f"{len(stretches)} stretches cannot tell {int(free.sum())} parameters of {model.name!r}"
-        )
-    sizes = ordinary_sizes(model, robot)[free]
-    if near is not None:
-        solver_config = replace(solver_config, starts=1)
-    solution = solve(problem, values[free], sizes, solver_config)
+    problem = StretchProblem(model, stretches, start.values, start.free, UNKNOWN_NOISE.variances)
+    start.require_numbers(len(stretches), "stretches", problem.numbers_per_window)
+    sizes = start.sizes[start.free]
+    solution = solve(problem, start.values[start.free], sizes, config)
     agreeing = solution.agreeing
     for _ in range(ROUNDS):
         noise = _noise(problem, solution, sizes)
         problem = replace(problem, variances=noise.variances)
-        solution = solve(problem, solution.chosen, sizes, replace(solver_config, starts=1))
+        solution = solve(problem, solution.chosen, sizes, replace(config, starts=1))
     solution = replace(solution, agreeing=agreeing)
-    return replace(
-        _finish(problem, solution, noise, sizes, solver_config), start=by_name(model, values)
-    )
+    uncertainty = stretch_uncertainty(problem, solution, noise, sizes)
+    scale = _rms_m(problem, solution) / noise.position_m
+    return finished(start, problem, solution, uncertainty=uncertainty, scale=scale, noise=noise)
 
 
 def _noise(problem: StretchProblem, solution: Solution, sizes: FloatArray) -> StretchNoise:
@@ -85,42 +78,6 @@ def _noise(problem: StretchProblem, solution: Solution, sizes: FloatArray) -> St
     return likeliest_noise(problem.windows, residuals, jacobian * sizes, solution.weights)
 
 
-def _finish(
-    problem: StretchProblem,
-    solution: Solution,
-    noise: StretchNoise,
-    sizes: FloatArray,
-    config: SolverConfig,
-) -> Fit:
-    residuals, jacobian = problem.linearised(solution.chosen)
-    whitened = np.sqrt(solution.weights)[:, None, None] * (problem.whitening @ jacobian)
-    low, high = problem.bounds()
-    edge = 1e-3 * sizes
-    at_bound = (solution.chosen < low + edge) | (solution.chosen > high - edge)
-    values = problem.complete(solution.chosen)
-    try:
-        problem.model.check(values)
-    except ParameterError as error:
-        raise IdentificationError(f"the best fit of {problem.model.name!r}: {error}") from error
-    uncertainty = stretch_uncertainty(problem, solution, noise, sizes)
-    rms_m = float(np.sqrt(np.mean(residuals[:, : 2 * problem.windows.steps] ** 2)))
-    return Fit(
-        model=problem.model,
-        values=by_name(problem.model, values),
-        names=problem.names,
-        covariance=uncertainty.covariance,
-        freedom=uncertainty.freedom,
-        undetermined=undetermined(
-            whitened.reshape(-1, len(sizes)), problem.names, sizes, 1.0, config.undetermined
-        ),
-        by_trial=(),
-        at_bound=tuple(name for name, edged in zip(problem.names, at_bound, strict=True) if edged),
-        residuals=residuals,
-        weights=solution.weights,
-        scale=rms_m / noise.position_m,
-        agreeing=solution.agreeing,
-        starts=config.starts,
-        windows=problem.windows,
-        start={},
-        noise=noise,
-    )
+def _rms_m(problem: StretchProblem, solution: Solution) -> float:
+    ways = problem.residuals(solution.chosen)[:, : 2 * problem.windows.steps]
+    return float(np.sqrt(np.mean(ways**2)))

@@ -5,7 +5,6 @@ import pytest
 
 from odometry.identification.by_trial import try_values
 from odometry.identification.config import SolverConfig
-from odometry.identification.excitation import ordinary_sizes
 from odometry.identification.fit import fit
 from odometry.identification.problem import Problem
 from odometry.identification.solve import solve
@@ -62,7 +61,7 @@ def test_no_value_tried_one_by_one_is_better(inertial, synthetic, stated):
     values = MODEL.pack(synthetic.inertia | {"h": 2.5})
     free = np.array([not p.known and not p.in_sign for p in MODEL.parameters])
     problem = Problem(MODEL, windows, values, free, pose_variances(stated))
-    sizes = ordinary_sizes(MODEL, run.robot)
+    sizes = MODEL.ordinary_sizes(run.robot)
     first = solve(problem, values[free], sizes[free], CONFIG)
     tried, solution = try_values(problem, first, sizes, PLACE, CONFIG)
     assert tried.values[PLACE] != 2.5

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from odometry.identification.config import SolverConfig
-from odometry.identification.excitation import Undetermined, ordinary_sizes, undetermined
+from odometry.identification.excitation import Undetermined, undetermined
 from odometry.identification.fit import fit
 from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr
@@ -148,7 +148,7 @@ def test_words_have_the_numbers(found, words):
 @pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
 def test_sizes_are_positive_for_every_model(model):
     for robot in (Robot(0.6), ROBOT):
-        sizes = ordinary_sizes(model, robot)
+        sizes = model.ordinary_sizes(robot)
         assert sizes.shape == (len(model.parameters),)
         assert np.all(np.isfinite(sizes))
         assert np.all(sizes > 0)
@@ -159,16 +159,16 @@ def test_sizes_by_hand():
 
     And a quarter of a range that has two ends.
     """
-    assert ordinary_sizes(Icr(), ROBOT).tolist() == pytest.approx([0.45, 0.45, 0.3, 1, 1])
-    linear = ordinary_sizes(MODELS["full_linear"], ROBOT)
+    assert Icr().ordinary_sizes(ROBOT).tolist() == pytest.approx([0.45, 0.45, 0.3, 1, 1])
+    linear = MODELS["full_linear"].ordinary_sizes(ROBOT)
     assert linear.tolist() == pytest.approx([0.5, 0.5, 1, 1, 1 / 0.9, 1 / 0.9])
     inertia = MODELS["icr_inertia"]
     names = [parameter.name for parameter in inertia.parameters]
-    sizes = dict(zip(names, ordinary_sizes(inertia, ROBOT), strict=True))
+    sizes = dict(zip(names, inertia.ordinary_sizes(ROBOT), strict=True))
     expected = {"zeta_0": 0.3, "zeta_1": 0.3 / 50, "epsilon_1": 0.3 / 50}
     expected |= {"eta_0": 1.5, "eta_1": 1 / 50, "eta_2": 1 / 2500}
     assert {name: sizes[name] for name in expected} == pytest.approx(expected)
     contact = MODELS["contact"]
     place = [parameter.name for parameter in contact.parameters].index("x_cm")
     low, high = contact.parameters[place].search
-    assert ordinary_sizes(contact, ROBOT)[place] == pytest.approx((high - low) / 4)
+    assert contact.ordinary_sizes(ROBOT)[place] == pytest.approx((high - low) / 4)
