@@ -11,8 +11,12 @@ from terrain.cli.options import MODEL_NAMES, OUTPUT, assignments, require_model,
 from terrain.cli.recordings import span_options
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from odometry.identification.identification import Identification
     from odometry.outputs.made import Made
     from odometry.parameters import ParameterSet
+    from odometry.run import Run
     from odometry.run_span import Span
     from odometry.windows.config import WindowConfig
 
@@ -134,14 +138,27 @@ def identify(
     write_parameters(out, identified, comment(made))
     click.echo(f"Wrote {out}")
     if picture is not None:
-        from odometry.outputs.output_file import picture_source
-        from odometry.positions.heading import headed
-        from odometry.report.icr_picture import save_identified_icrs
+        _draw(picture, runs, found, terrain)
+    click.echo(_next(identified, out, terrain))
 
+
+def _draw(
+    picture: Path, runs: "Sequence[Run]", found: "Identification", terrain: str | None
+) -> None:
+    """Draw the picture, or say why there is none: the parameter set stands without it."""
+    from odometry.errors import OdometryError
+    from odometry.outputs.output_file import picture_source
+    from odometry.positions.heading import headed
+    from odometry.report.icr_picture import save_identified_icrs
+
+    try:
         with_yaw = headed(runs).runs
         save_identified_icrs(picture, with_yaw, found, terrain, source=picture_source("identify"))
+    except OdometryError as error:
+        picture.unlink(missing_ok=True)  # that of an earlier call shows other parameters
+        click.echo(f"Note: no picture is drawn: {error}", err=True)
+    else:
         click.echo(f"Wrote {picture}")
-    click.echo(_next(identified, out, terrain))
 
 
 def _claimed(out: Path, picture: Path | None) -> "Made":
