@@ -5,12 +5,14 @@ from textwrap import fill
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
 
 from odometry.arrays import FloatArray
 from odometry.evaluation.stretches import Stretch
 from odometry.report.labels import draw_line, label_points, last_point
 from odometry.report.palette import LineStyle
+
+LOGARITHMIC_FROM = 8.0  # times the smallest median
 
 
 def plot_icr(
@@ -117,7 +119,8 @@ def plot_error_distribution(
         In `unit`; names without an error are left out.
     styles : Mapping of name to LineStyle
     unit : str
-        Written below the axis.
+        Written below the axis, which is logarithmic where medians differ so much that the small
+        ones could not be compared.
     """
     shown = {name: values for name, values in errors.items() if len(values)}
     for place, (name, values) in enumerate(shown.items()):
@@ -140,6 +143,16 @@ def plot_error_distribution(
         )
     axes.set_yticks(range(len(shown)), [fill(name, 25) for name in shown], parse_math=False)
     axes.set_ylim(len(shown) - 0.4, -0.6)
-    axes.set_xlim(left=0.0)
     axes.grid(visible=True, axis="x")
+    medians = [float(np.median(values)) for values in shown.values()]
+    if medians and max(medians) > LOGARITHMIC_FROM * min(medians) > 0:
+        least = min(float(np.quantile(values, 0.05)) for values in shown.values())
+        axes.set_xscale("log")
+        axes.set_xlim(left=max(0.8 * least, min(medians) / 10))
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axes.xaxis.set_minor_locator(NullLocator())
+        unit += ", logarithmic"
+    else:
+        axes.set_xlim(left=0.0)
     axes.set_xlabel(unit)

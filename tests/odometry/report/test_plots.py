@@ -83,3 +83,19 @@ def test_boxes_show_quartiles_and_mean(axes):
     assert {5.0**2, 95.0**2} <= whiskers
     assert [label.get_text() for label in axes.get_yticklabels()] == ["a", "$b^$"]
     axes.figure.canvas.draw()
+
+
+def test_boxes_that_differ_much_have_a_logarithmic_axis(axes):
+    few, many = np.linspace(0.0, 2.0, 21), np.linspace(5.0, 60.0, 21)
+    plot_error_distribution(axes, {"a": few, "$b^$": many}, STYLES, "cm")
+    assert axes.get_xscale() == "log"
+    assert axes.get_xlabel() == "cm, logarithmic"
+    assert 0 < axes.get_xlim()[0] <= np.quantile(few, 0.05)
+    axes.figure.canvas.draw()
+    assert {"1", "10"} <= {label.get_text() for label in axes.get_xticklabels()}
+
+
+def test_boxes_that_are_alike_begin_at_zero(axes):
+    plot_error_distribution(axes, {"a": [1.0, 2.0], "$b^$": [2.0, 9.0]}, STYLES, "cm")
+    assert axes.get_xscale() == "linear"
+    assert axes.get_xlim()[0] == 0
