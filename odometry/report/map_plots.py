@@ -9,6 +9,7 @@ from matplotlib.ticker import MaxNLocator
 
 from odometry.evaluation.stretches import Stretch
 from odometry.report.labels import HALO, draw_line, label_points, last_point
+from odometry.report.outages import broken_at_outages
 from odometry.report.palette import LineStyle
 from odometry.trajectory import Trajectory
 
@@ -18,6 +19,8 @@ def plot_ground(
 ) -> None:
     """Draw the terrain along a path as a broad band; the longest stretch of each is named.
 
+    The band breaks where the path has no pose for long.
+
     Parameters
     ----------
     axes : Axes
@@ -26,11 +29,12 @@ def plot_ground(
     stretches : sequence of Stretch
     tints : Mapping of terrain to colour
     """
+    stamps_s, places = broken_at_outages(path.stamps_s, path.poses[:, :2])
     longest = {s.terrain: s for s in sorted(stretches, key=lambda s: s.end_s - s.start_s)}
     for stretch in stretches:
-        inside = (path.stamps_s >= stretch.start_s) & (path.stamps_s <= stretch.end_s)
-        points = path.poses[inside, :2]
-        if not len(points):
+        points = places[(stamps_s >= stretch.start_s) & (stamps_s <= stretch.end_s)]
+        known = points[np.isfinite(points).all(axis=1)]
+        if not len(known):
             continue
         colour = tints[stretch.terrain]
         band = LineCollection(
@@ -38,7 +42,7 @@ def plot_ground(
         )
         axes.add_collection(band, autolim=False)
         if stretch is longest[stretch.terrain]:
-            middle = (float(points[len(points) // 2, 0]), float(points[len(points) // 2, 1]))
+            middle = (float(known[len(known) // 2, 0]), float(known[len(known) // 2, 1]))
             axes.annotate(
                 stretch.terrain,
                 middle,
@@ -62,6 +66,7 @@ def plot_paths(
     axes : Axes
         At its final place in the figure.
     paths : Mapping of name to Trajectory
+        A line breaks where its poses are NaN.
     styles : Mapping of name to LineStyle
     """
     for name, path in paths.items():

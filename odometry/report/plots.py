@@ -5,7 +5,7 @@ from textwrap import fill
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from odometry.arrays import FloatArray
 from odometry.evaluation.stretches import Stretch
@@ -13,6 +13,7 @@ from odometry.report.labels import draw_line, label_points, last_point
 from odometry.report.palette import LineStyle
 
 LOGARITHMIC_FROM = 8.0  # times the smallest median
+MANY_TICKS_FROM = 100.0  # times the left end of a logarithmic axis
 
 
 def plot_icr(
@@ -149,9 +150,12 @@ def plot_error_distribution(
         least = min(float(np.quantile(values, 0.05)) for values in shown.values())
         axes.set_xscale("log")
         axes.set_xlim(left=max(0.8 * least, min(medians) / 10))
-        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        least, most = axes.get_xlim()
+        steps = (1.0, 2.0, 5.0) if most < MANY_TICKS_FROM * least else (1.0,)
+        axes.xaxis.set_major_locator(LogLocator(subs=steps))
         axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        axes.xaxis.set_minor_locator(NullLocator())
+        axes.xaxis.set_minor_locator(LogLocator(subs=range(2, 10)))
+        axes.xaxis.set_minor_formatter(NullFormatter())
         unit += ", logarithmic"
     else:
         axes.set_xlim(left=0.0)

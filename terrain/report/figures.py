@@ -11,6 +11,7 @@ from odometry.evaluation.stretches import Stretch, stretches
 from odometry.report.figure import save_figure
 from odometry.report.html import Picture
 from odometry.report.map_plots import plot_ground, plot_paths
+from odometry.report.outages import broken_at_outages
 from odometry.report.plots import (
     mark_changes,
     plot_error_distribution,
@@ -36,7 +37,8 @@ def path_picture(lines: ReportLines, tints: Tints, folder: Path) -> Picture:
     result, paths = lines.result, lines.paths()
     ground = result.replay.trajectory() if result.reference is None else result.reference
     true = true_stretches(result)
-    spans = np.ptp(np.concatenate([path.poses[:, :2] for path in paths.values()]), axis=0)
+    places = np.concatenate([path.poses[:, :2] for path in paths.values()])
+    spans = np.nanmax(places, axis=0) - np.nanmin(places, axis=0)
     height_in = 4.6 * float(np.clip(spans[1] / max(spans[0], 1e-9), 0.35, 1.1)) + 0.9
 
     def draw(figure: Figure) -> None:
@@ -57,7 +59,7 @@ def position_picture(lines: ReportLines, folder: Path) -> Picture | None:
     errors = {
         name: position_errors(of.trajectory, of.reference) for name, of in lines.judged().items()
     }
-    errors = {name: error for name, error in errors.items() if len(error[0])}
+    errors = {n: broken_at_outages(*error) for n, error in errors.items() if len(error[0])}
     if not errors:
         return None
 
@@ -94,10 +96,10 @@ def distribution_picture(lines: ReportLines, folder: Path) -> Picture | None:
     def draw(figure: Figure) -> None:
         bottom, height = 0.6 / height_in, 1 - 0.7 / height_in
         left = figure.add_axes((0.29, bottom, 0.32 if has_yaw else 0.69, height))
-        plot_error_distribution(left, translation, lines.styles(), "position [cm per m]")
+        plot_error_distribution(left, translation, lines.styles(), "position [cm/m]")
         if has_yaw:
             right = figure.add_axes((0.66, bottom, 0.32, height))
-            plot_error_distribution(right, rotation, lines.styles(), "heading [degrees per m]")
+            plot_error_distribution(right, rotation, lines.styles(), "heading [°/m]")
             right.set_yticklabels([])
 
     horizon_m = result.config.evaluation.horizon_m

@@ -8,6 +8,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.evaluation.score import Score, score
 from odometry.models.catalogue import ICR_NAMES
+from odometry.report.outages import broken_at_outages
 from odometry.report.palette import REFERENCE_STYLE, LineStyle, line_styles
 from odometry.trajectory import Trajectory
 from terrain.judged import Judged, seen_by
@@ -70,10 +71,14 @@ class ReportLines:
         }
 
     def paths(self) -> dict[str, Trajectory]:
-        """Trajectories to be drawn, the reference first so that it lies below."""
+        """Trajectories to be drawn, the reference first so that it lies below.
+
+        The reference has NaN where it was silent for long.
+        """
         result, lines = self.result, {}
         if result.reference is not None:
-            lines[self.reference_name] = result.reference
+            stamps_s, poses = result.reference.stamps_s, result.reference.poses
+            lines[self.reference_name] = Trajectory(*broken_at_outages(stamps_s, poses))
         own = result.replay.open_loop(result.run.robot.track_width)
         lines |= {LABELS[name]: line for name, line in own.items()}
         return lines | self._other_odometers() | {ESTIMATE: result.replay.trajectory()}

@@ -54,3 +54,18 @@ def test_a_stretch_outside_of_the_path_is_not_drawn(axes):
     plot_paths(axes, {"a": LINE}, STYLES)
     plot_ground(axes, LINE, (Stretch("ice", 20, 30),), {"ice": "#112233"})
     assert not axes.collections
+
+
+def test_no_terrain_is_drawn_over_an_outage(axes):
+    outage = (S > 2) & (S < 6)
+    path = Trajectory(S[~outage], LINE.poses[~outage])
+    plot_paths(axes, {"a": path}, STYLES)
+    plot_ground(axes, path, (Stretch("ice", 0, 10),), {"ice": "#112233"})
+    (band,) = (c for c in axes.collections if isinstance(c, LineCollection))
+    axes.figure.canvas.draw()
+    pixels = np.asarray(axes.figure.canvas.buffer_rgba())[:, :, :3]
+    for x, drawn in ((1.3, True), (4.3, False), (8.3, True)):
+        column, row = axes.transData.transform((x, 0.0))
+        aside = pixels[int(pixels.shape[0] - row) + 4, int(column)]
+        assert (to_hex(aside / 255) == "#112233") == drawn
+    assert np.isfinite(axes.texts[-1].xy).all()

@@ -1,8 +1,11 @@
 """What is drawn is what was given."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
 
 from odometry.evaluation.stretches import Stretch
 from odometry.report.palette import LineStyle
@@ -93,6 +96,19 @@ def test_boxes_that_differ_much_have_a_logarithmic_axis(axes):
     assert 0 < axes.get_xlim()[0] <= np.quantile(few, 0.05)
     axes.figure.canvas.draw()
     assert {"1", "10"} <= {label.get_text() for label in axes.get_xticklabels()}
+
+
+def test_labels_of_many_decades_do_not_overlap():
+    figure = Figure(figsize=(2.2, 2.0))
+    axes = figure.add_axes((0.1, 0.3, 0.8, 0.6))
+    few, many = np.linspace(0.002, 0.2, 21), np.linspace(5.0, 90.0, 21)
+    plot_error_distribution(axes, {"a": few, "$b^$": many}, STYLES, "°")
+    figure.canvas.draw()
+    left, right = axes.get_window_extent().intervalx
+    boxes = [label.get_window_extent() for label in axes.get_xticklabels() if label.get_text()]
+    shown = sorted((b.x0, b.x1) for b in boxes if left <= (b.x0 + b.x1) / 2 <= right)
+    assert len(shown) >= 3
+    assert all(one[1] < other[0] for one, other in pairwise(shown))
 
 
 def test_boxes_that_are_alike_begin_at_zero(axes):
