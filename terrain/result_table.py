@@ -8,7 +8,9 @@ from terrain.filter_summary import filter_table
 from terrain.label_confusion import label_confusion_table
 from terrain.odometer_uncertainty import uncertainty_table
 from terrain.run_result import RunResult
+from terrain.switch import SwitchEvent
 from terrain.switch_delay import switch_delays
+from terrain.terrain_change import TerrainChange
 from terrain.verdicts import remarks
 
 FORMAT = 1  # of result.json
@@ -21,6 +23,7 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "program": f"terrain-odometry {version('terrain-odometry')}",
         "run": result.run.name,
         "vision": result.watcher is not None,
+        "terrain_source": result.source,
         "initial_terrain": result.initial_terrain,
         "effects": result.effects,
         "duration_s": float(result.replay.stamps_s[-1] - result.replay.stamps_s[0]),
@@ -30,6 +33,7 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "gyroscope": result.replay.has_gyroscope,
         "errors": error_tables(result),
         "off_at_the_end_m": result.off_at_the_end_m,
+        "estimate_has_seen_reference": result.reference_name == "pose",
         "remarks": remarks(result.scores, result.off_at_the_end_m, result.replay.events),
         "withheld": _withheld(result),
         "odometer_uncertainty": uncertainty_table(result.uncertainty),
@@ -74,27 +78,27 @@ def _withheld(result: RunResult) -> dict[str, Any] | None:
 
 
 def _switches(result: RunResult) -> list[dict[str, Any]]:
-    if result.watcher is None:
-        return []
-    delays = switch_delays(result)
     return [
-        {
-            "terrain": event.terrain,
-            "stamp_s": event.stamp_s,
-            "seen_s": event.sight.stamp_s,
-            "distance_ahead_m": event.sight.distance_ahead_m,
-            "waited_s": event.waited_s,
-            "waited_m": event.waited_m,
-            "late_s": delay.late_s,
-            "late_m": delay.late_m,
-        }
-        for event, delay in zip(result.watcher.events, delays, strict=False)
+        {"terrain": change.terrain, "stamp_s": change.stamp_s}
+        | _sight(change)
+        | {"late_s": delay.late_s, "late_m": delay.late_m}
+        for change, delay in zip(result.changes, switch_delays(result), strict=False)
     ]
+
+
+def _sight(change: SwitchEvent | TerrainChange) -> dict[str, float | None]:
+    """What the camera saw of a switch; None where no camera told the terrain."""
+    if isinstance(change, TerrainChange):
+        return dict.fromkeys(("seen_s", "distance_ahead_m", "waited_s", "waited_m"))
+    return {
+        "seen_s": change.sight.stamp_s,
+        "distance_ahead_m": change.sight.distance_ahead_m,
+        "waited_s": change.waited_s,
+        "waited_m": change.waited_m,
+    }
 
 
 def _missed_changes(result: RunResult) -> list[dict[str, Any]]:
     """True changes of terrain that no switch answered."""
-    if result.watcher is None:
-        return []
-    missed = switch_delays(result)[len(result.watcher.events) :]
+    missed = switch_delays(result)[len(result.changes) :]
     return [{"terrain": delay.terrain, "stamp_s": delay.true_s} for delay in missed]

@@ -20,7 +20,7 @@ from terrain.errors import ResultError
 from terrain.odometer_uncertainty import covariance_columns
 from terrain.result_table import FORMAT, result_table
 from terrain.run_result import RunResult
-from terrain.watcher import Sighting
+from terrain.terrain_table import terrain_columns
 
 ERRORS = (  # of each trajectory in it, and which number of each the tables show
     ("translation_m_per_m", "mean"),
@@ -47,7 +47,8 @@ def write_results(
     -------
     list of Path
         odometer.csv and .tum, estimate.csv and .tum, result.json; learned.toml where there is
-        anything to hand on; with vision, terrain.csv.
+        anything to hand on; terrain.csv where images were seen or another source told the
+        terrain.
     """
     out = Path(out)
     replay = result.replay
@@ -67,8 +68,9 @@ def write_results(
     if result.learned.terrains:
         write_parameters(out / "learned.toml", result.learned)
         names.append("learned.toml")
-    if result.watcher is not None and result.watcher.sightings:
-        _write_terrain(out / "terrain.csv", result.watcher.sightings, result.watcher.in_force)
+    terrain = terrain_columns(result)
+    if terrain:
+        write_csv_table(out / "terrain.csv", terrain)
         names.append("terrain.csv")
     for name in {"learned.toml", "terrain.csv"} - set(names):
         (out / name).unlink(missing_ok=True)  # of an earlier run
@@ -81,24 +83,6 @@ def write_results(
 def _pose_columns(trajectory: Trajectory) -> dict[str, Any]:
     x, y, yaw = trajectory.poses.T
     return {"t": trajectory.stamps_s, "x": x, "y": y, "yaw": yaw}
-
-
-def _write_terrain(file: Path, sightings: list[Sighting], in_force: list[str]) -> None:
-    regions = [sighting.region for sighting in sightings]
-    distances = [np.nan if region is None else region.distance_ahead_m for region in regions]
-    columns: dict[str, Any] = {
-        "t": np.array([sighting.stamp_s for sighting in sightings]),
-        "label": np.array([sighting.label for sighting in sightings]),
-        "confidence": np.array([sighting.confidence for sighting in sightings]),
-        "distance_ahead": np.array(distances),
-        "terrain_in_force": np.array(in_force),
-        "reason": np.array([sighting.reason for sighting in sightings]),
-        "image": np.array([sighting.image for sighting in sightings]),
-    }
-    if any(sighting.left for sighting in sightings):
-        columns["left"] = np.array([sighting.left for sighting in sightings])
-        columns["right"] = np.array([sighting.right for sighting in sightings])
-    write_csv_table(file, columns)
 
 
 def read_errors(folder: str | Path) -> dict[str, Any]:

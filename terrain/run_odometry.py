@@ -27,7 +27,7 @@ from terrain.images_outside import add_images_outside
 from terrain.judged import SecondReplay, judged_trajectories
 from terrain.run_presets import run_preset, with_preset
 from terrain.run_result import RunResult
-from terrain.sources import source_name, terrain_source
+from terrain.sources import OWN_SOURCE, source_name, terrain_source
 from terrain.watcher import TerrainWatcher
 
 __all__ = ["RunResult", "run_odometry"]
@@ -133,6 +133,7 @@ def run_odometry(
         learned_parameters(parameters, result, run.name),
         odometer_uncertainty(run, result, reference if reference_name == "truth" else None),
         second,
+        name,
     )
 
 
@@ -165,7 +166,7 @@ def _trained(
 ) -> tuple[str, TerrainClassifier | None]:
     """Which source is meant, and the classifier where that reads images."""
     if not isinstance(source, str | None):
-        return "a source of your own", None
+        return OWN_SOURCE, None
     name = source_name(source, vision=vision, has_model=model is not None)
     if name != "camera":
         return name, None

@@ -5,12 +5,15 @@ from dataclasses import dataclass
 from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.relative import position_errors
 from odometry.evaluation.score import Score
+from odometry.evaluation.stretches import stretches
 from odometry.parameters import ParameterSet
 from odometry.replay import Replay
 from odometry.run import Run
 from odometry.trajectory import Trajectory
 from terrain.config import Config
 from terrain.judged import Judged, SecondReplay, judged_trajectories, seen_by
+from terrain.switch import SwitchEvent
+from terrain.terrain_change import TerrainChange
 from terrain.watcher import TerrainWatcher
 
 
@@ -43,6 +46,8 @@ class RunResult:
     second : SecondReplay or None
         The run replayed without the poses that judge the estimate; None where there is a truth,
         or too few poses.
+    source : str
+        What told the terrain: "camera", "labels", "modes", "none", or a source of one's own.
     """
 
     run: Run
@@ -57,6 +62,7 @@ class RunResult:
     learned: ParameterSet
     uncertainty: OdometerUncertainty
     second: SecondReplay | None = None
+    source: str = "none"
 
     @property
     def judged(self) -> dict[str, Judged]:
@@ -67,7 +73,11 @@ class RunResult:
 
     @property
     def off_at_the_end_m(self) -> dict[str, float]:
-        """Distance of each trajectory, as delivered, from the reference at its last stamp."""
+        """Distance of each trajectory, as delivered, from the reference at its last stamp.
+
+        Where the reference is pose.csv the estimate has seen it, up to that pose: its distance is
+        no measure of its error, but a large one says that the filter lost the poses.
+        """
         delivered = self.judged
         if self.reference is not None:
             seen = seen_by(self.run, self.reference_name, self.replay.trajectory())
@@ -76,6 +86,14 @@ class RunResult:
             name: position_errors(of.trajectory, of.reference)[1] for name, of in delivered.items()
         }
         return {name: float(found[-1]) for name, found in distances.items() if len(found)}
+
+    @property
+    def changes(self) -> tuple[SwitchEvent | TerrainChange, ...]:
+        """Every change of the terrain in force, in order of time."""
+        if self.watcher is not None:
+            return tuple(self.watcher.events)
+        found = stretches(self.replay.stamps_s, self.replay.terrains)
+        return tuple(TerrainChange(of.terrain, of.start_s) for of in found[1:])
 
     @property
     def effects(self) -> dict[str, list[str]]:

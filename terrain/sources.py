@@ -14,6 +14,13 @@ from terrain.config import Config
 from terrain.watcher import TerrainWatcher
 
 SOURCES = ("camera", "labels", "modes", "none")
+OWN_SOURCE = "a source of your own"
+TOLD_BY = {
+    "camera": "the camera",
+    "labels": "the run's own labels (the column `terrain`)",
+    "modes": "the motion (the set of modes)",
+    OWN_SOURCE: OWN_SOURCE,
+}
 
 
 def source_name(source: str | None, *, vision: bool, has_model: bool) -> str:

@@ -8,6 +8,9 @@ import numpy as np
 from odometry.evaluation.stretches import Stretch, stretches
 from terrain.run_result import RunResult
 from terrain.switch import SwitchEvent
+from terrain.terrain_change import TerrainChange
+
+Change = SwitchEvent | TerrainChange
 
 
 @dataclass(frozen=True)
@@ -47,12 +50,12 @@ def switch_delays(result: RunResult) -> list[SwitchDelay]:
     Returns
     -------
     list of SwitchDelay
-        One for each of `result.watcher.events`, in that order; then the changes that were missed,
-        in order of time. Empty without vision.
+        One for each of `result.changes`, in that order; then the changes that were missed, in
+        order of time. Empty where nothing told the terrain.
     """
-    if result.watcher is None:
+    if result.source == "none":
         return []
-    events, changes = result.watcher.events, true_changes(result)
+    events, changes = result.changes, true_changes(result)
     delays = [_delay(result, event, _answered(event, events, changes)) for event in events]
     answered = {(delay.terrain, delay.true_s) for delay in delays}
     missed = [
@@ -79,9 +82,7 @@ def true_stretches(result: RunResult) -> tuple[Stretch, ...]:
     return stretches(truth.stamps_s[during], [str(name) for name in truth["terrain"][during]])
 
 
-def _answered(
-    event: SwitchEvent, events: Sequence[SwitchEvent], changes: Sequence[Stretch]
-) -> float | None:
+def _answered(event: Change, events: Sequence[Change], changes: Sequence[Stretch]) -> float | None:
     """When the change was that a switch answers."""
     true_s = [change.start_s for change in changes if change.terrain == event.terrain]
     if not true_s:
@@ -91,7 +92,7 @@ def _answered(
     return nearest_s if min(rivals_s, key=lambda s: abs(s - nearest_s)) == event.stamp_s else None
 
 
-def _delay(result: RunResult, event: SwitchEvent, true_s: float | None) -> SwitchDelay:
+def _delay(result: RunResult, event: Change, true_s: float | None) -> SwitchDelay:
     if true_s is None:
         return SwitchDelay(event.terrain, event.stamp_s)
     travel_m = np.interp(

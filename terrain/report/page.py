@@ -31,6 +31,7 @@ from terrain.report.tables import (
 )
 from terrain.report.words import headline, notes
 from terrain.run_result import RunResult
+from terrain.sources import TOLD_BY
 from terrain.switch_delay import true_stretches
 
 Block = Paragraph | Listing | Grid | Picture
@@ -102,14 +103,18 @@ def _some(grid: Grid | None) -> list[Block]:
 
 def _terrain(result: RunResult, tints: Tints, folder: Path) -> list[Block]:
     watcher = result.watcher
-    if watcher is None:
+    if result.source == "none":
         return []
+    if watcher is None:
+        return [
+            Paragraph(f"The terrain was told by {TOLD_BY[result.source]}."),
+            switch_table(result) or _never_changed(result),
+        ]
     if not watcher.sightings:
         return [Paragraph("No image lies within the time of the run.")]
-    switches = switch_table(result)
     seen = confusion(result)
     blocks = [
-        switches or Paragraph(f"The terrain never changed from {result.initial_terrain}."),
+        switch_table(result) or _never_changed(result),
         labels_picture(result, watcher, tints, folder),
         confusion_picture(seen, folder) if seen else None,
         label_table(result),
@@ -117,6 +122,10 @@ def _terrain(result: RunResult, tints: Tints, folder: Path) -> list[Block]:
         whole_image_picture(result, watcher, watcher.classifier, tints, folder),
     ]
     return [block for block in blocks if block is not None]
+
+
+def _never_changed(result: RunResult) -> Paragraph:
+    return Paragraph(f"The terrain never changed from {result.initial_terrain}.")
 
 
 def _tints(result: RunResult) -> Tints:

@@ -11,7 +11,9 @@ from odometry.report.html import Grid
 from terrain.odometer_uncertainty import verdict
 from terrain.report.lines import ICR_COORDINATES, ReportLines
 from terrain.run_result import RunResult
+from terrain.switch import SwitchEvent
 from terrain.switch_delay import SwitchDelay, switch_delays, true_stretches
+from terrain.terrain_change import TerrainChange
 
 NOTHING = "\N{EN DASH}"
 
@@ -84,23 +86,22 @@ def uncertainty_grid(result: RunResult) -> Grid | None:
 def switch_table(result: RunResult) -> Grid | None:
     """Every change of the terrain in force, then the true changes that were missed."""
     delays = switch_delays(result)
-    if result.watcher is None or not delays:
+    if not delays:
         return None
     known = bool(true_stretches(result))
-    events = result.watcher.events
+    changes = result.changes
     header = ("terrain", "first seen [s]", "then ahead [m]", "in force [s]")
     rows = [
         (
-            event.terrain,
-            f"{event.sight.stamp_s:.2f}",
-            f"{event.sight.distance_ahead_m:.2f}",
-            f"{event.stamp_s:.2f}",
+            change.terrain,
+            *_sight(change),
+            f"{change.stamp_s:.2f}",
             *(_against_truth(delay) if known else ()),
         )
-        for event, delay in zip(events, delays, strict=False)
+        for change, delay in zip(changes, delays, strict=False)
     ]
     rows += [
-        (d.terrain, "missed", *[NOTHING] * 2, *_against_truth(d)) for d in delays[len(events) :]
+        (d.terrain, "missed", *[NOTHING] * 2, *_against_truth(d)) for d in delays[len(changes) :]
     ]
     truth = ("truly from [s]", "late by [s]", "late by [m]")
     return Grid((*header, *truth) if known else header, rows)
@@ -131,6 +132,13 @@ def settings_table(result: RunResult) -> Grid:
         for key, value in table.items()
     ]
     return Grid(("setting", "value"), rows)
+
+
+def _sight(change: SwitchEvent | TerrainChange) -> tuple[str, str]:
+    """When the camera saw the terrain first and how far ahead, where there is a camera."""
+    if isinstance(change, TerrainChange):
+        return NOTHING, NOTHING
+    return f"{change.sight.stamp_s:.2f}", f"{change.sight.distance_ahead_m:.2f}"
 
 
 def _checked(check: OpenLoopConsistency) -> tuple[str, str, str]:

@@ -90,8 +90,11 @@ def notes(lines: ReportLines) -> list[str]:
         found.append(f"The estimate is judged by {judged_by(result.second)}")
     if result.reference_name == "truth":
         found.append("Errors are against truth.csv, which no estimator has seen.")
-    if result.watcher is None:
-        found.append(f"There was no vision: {result.initial_terrain} was in force throughout.")
+    if result.source == "none":
+        found.append(
+            f"Nothing told the terrain (no vision, no other source): {result.initial_terrain} was "
+            "in force throughout."
+        )
     elif true_stretches(result):
         found.append(
             "A switch is late by the time and wheel travel since the robot's centre came onto the "

@@ -1,5 +1,7 @@
 """What tells the terrain: the camera, the run's own labels, the motion, nothing, or one's own."""
 
+import csv
+import json
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -9,6 +11,8 @@ import pytest
 from odometry.errors import ConfigError, RunFolderError
 from odometry.pipeline import ConstantTerrain
 from terrain.cli import run as cli_run
+from terrain.report.page import write_report
+from terrain.results import write_results
 from terrain.run_odometry import run_odometry
 from terrain.sources import SOURCES, source_name
 from tests.odometry.modes.mode_drives import velocity_run
@@ -41,6 +45,38 @@ def test_true_labels_switch_at_the_edge(labelled_run, world):
     assert edges_s[0] <= first_s <= edges_s[0] + 0.1 + 1e-9  # the next row of odometry
     assert edges_s[1] <= second_s <= edges_s[1] + 0.1 + 1e-9
     assert result.watcher is None
+
+
+def test_what_labels_put_in_force_is_written(labelled_run, tmp_path):
+    result = run_odometry(labelled_run, source="labels")
+    write_results(result, tmp_path)
+    with (tmp_path / "terrain.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["terrain_in_force"] for row in rows] == ["gravel", "boards", "gravel"]
+    assert [row["label"] for row in rows] == ["gravel", "boards", "gravel"]
+    stamps_s = [float(row["t"]) for row in rows]
+    assert stamps_s == [0.0, *(stamp_s for stamp_s, _ in switches(result))]
+    content = json.loads((tmp_path / "result.json").read_text())
+    assert content["terrain_source"] == "labels"
+    told = [(switch["stamp_s"], switch["terrain"]) for switch in content["switches"]]
+    assert told == switches(result)
+    assert [switch["seen_s"] for switch in content["switches"]] == [None, None]
+
+
+def test_the_page_says_who_told_the_terrain(labelled_run, tmp_path):
+    write_report(run_odometry(labelled_run, source="labels"), tmp_path)
+    page = (tmp_path / "report.html").read_text()
+    assert "The terrain was told by the run&#x27;s own labels" in page
+    assert "in force throughout" not in page
+    assert "boards</th>" in page
+
+
+def test_without_a_source_no_terrain_is_written(labelled_run, tmp_path):
+    result = run_odometry(labelled_run)
+    write_results(result, tmp_path)
+    assert not (tmp_path / "terrain.csv").exists()
+    content = json.loads((tmp_path / "result.json").read_text())
+    assert (content["terrain_source"], content["switches"]) == ("none", [])
 
 
 def test_labels_leave_the_images_closed(labelled_run):

@@ -36,7 +36,8 @@ def result_of(true, events, initial="ice", start_s=0.0):
         run=run,
         initial_terrain=initial,
         replay=SimpleNamespace(stamps_s=STAMPS_S[start_s <= STAMPS_S]),
-        watcher=None if events is None else SimpleNamespace(events=events),
+        source="none" if events is None else "camera",
+        changes=tuple(events or ()),
     )
 
 

@@ -61,7 +61,6 @@ def test_no_terrain_is_drawn_over_an_outage(axes):
     path = Trajectory(S[~outage], LINE.poses[~outage])
     plot_paths(axes, {"a": path}, STYLES)
     plot_ground(axes, path, (Stretch("ice", 0, 10),), {"ice": "#112233"})
-    (band,) = (c for c in axes.collections if isinstance(c, LineCollection))
     axes.figure.canvas.draw()
     pixels = np.asarray(axes.figure.canvas.buffer_rgba())[:, :, :3]
     for x, drawn in ((1.3, True), (4.3, False), (8.3, True)):

@@ -251,7 +251,7 @@ def test_a_run_with_nothing_but_odometry_has_a_page(world, tmp_path):
     assert {file.stem for file in written} == {"path", "icrs", "report"}
     text = Reader(tmp_path / "out" / "report.html").text
     assert "nothing is judged" in text
-    assert "There was no vision" in text
+    assert "Nothing told the terrain" in text
 
 
 def test_images_that_show_no_region_have_a_page(across_result, tmp_path):
