@@ -1,5 +1,6 @@
 """What a replay has learned, as a parameter set for the next run."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,7 +23,9 @@ def learned_parameters(before: ParameterSet, replay: Replay, run_name: str) -> P
     ----------
     before : ParameterSet
         Terrains where no pose was taken in keep their tables, and so does one that was left
-        before the filter knew it about as well as its table states.
+        before the filter knew it about as well as its table states. One without a table gets
+        none unless the filter came to know much more of its ICRs than at the start there: a
+        robot that stands, or drives straight on, tells nothing of them.
     replay : Replay
     run_name : str
         Named as the source.
@@ -37,19 +40,25 @@ def learned_parameters(before: ParameterSet, replay: Replay, run_name: str) -> P
             if estimate.terrain == name and estimate.crossing is None
         ]
         poses = sum(_took_pose(estimate) for estimate in there)
-        if poses and not _is_much_surer(before.terrains.get(name), there[-1].belief):
+        if poses and _is_worth_keeping(before.terrains.get(name), there):
             source = f"learned by terrain-odometry from {poses} poses of {run_name}"
             effects = before.terrains[name].effects if name in before.terrains else ()
             terrains[name] = replace(_table(there[-1].belief, source), effects=effects)
     return ParameterSet(terrains, before.vehicle)
 
 
-def _is_much_surer(table: TerrainParameters | None, belief: IcrBelief) -> bool:
-    """Whether a table states less than half the variance of the ICRs."""
-    if table is None or not set(ICR_NAMES[:3]) <= set(table.covariance_order):
-        return False
-    stated = float(np.trace(table.covariance_of(ICR_NAMES[:3])))
-    return MUCH_SURER * stated < float(np.trace(belief.covariance[:3, :3]))
+def _is_worth_keeping(table: TerrainParameters | None, there: Sequence[Estimate]) -> bool:
+    """Whether the filter left a terrain knowing its ICRs better than a table, or than it began."""
+    left = _icr_variance(there[-1].belief)
+    if table is None:
+        return MUCH_SURER * left < _icr_variance(there[0].belief)
+    if not set(ICR_NAMES[:3]) <= set(table.covariance_order):
+        return True
+    return MUCH_SURER * float(np.trace(table.covariance_of(ICR_NAMES[:3]))) >= left
+
+
+def _icr_variance(belief: IcrBelief) -> float:
+    return float(np.trace(belief.covariance[:3, :3]))
 
 
 def _took_pose(estimate: Estimate) -> bool:

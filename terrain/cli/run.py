@@ -71,11 +71,11 @@ def run(
     from dataclasses import replace
 
     from terrain.cli.hints import hints
+    from terrain.cli.learned_advice import learned_advice
     from terrain.cli.outputs import about, claim_folder
     from terrain.cli.recordings import checks_made, read_run
     from terrain.cli.results import print_errors, print_sightings, print_written
     from terrain.config import Config
-    from terrain.filter_summary import misleading
     from terrain.report.page import write_report
     from terrain.result_table import sighting_counts
     from terrain.results import write_results
@@ -116,13 +116,7 @@ def run(
         click.echo(f"Effects on {name}, in every trajectory but the ideal: {', '.join(effects)}")
     print_written(out)
     click.echo(f"Next: open {out / 'report.html'}")
-    if any(report.misleads for report in checks_made()):
-        click.echo(
-            f"learned.toml is not recommended: the recording has warnings (terrain-odometry check "
-            f"{run_folder})"
-        )
-    elif result.has_learned and misleading(result.replay):
-        kinds = ", ".join(dict.fromkeys(event.kind for event in misleading(result.replay)))
-        click.echo(f"learned.toml is not recommended: the filter noticed {kinds} (see result.json)")
-    elif result.learned.terrains and result.has_learned:
-        click.echo(f"Next time: --parameters {out / 'learned.toml'} starts from what was learned")
+    odd = any(report.misleads for report in checks_made())
+    advice = learned_advice(result, run_folder, out, has_warnings=odd, preset=preset)
+    if advice:
+        click.echo(advice)

@@ -8,6 +8,7 @@ import numpy as np
 from odometry.evaluation.open_loop_consistency import OpenLoopConsistency
 from odometry.evaluation.score import Score
 from odometry.report.html import Grid
+from odometry.run import UNKNOWN
 from terrain.odometer_uncertainty import verdict
 from terrain.report.lines import ICR_COORDINATES, ReportLines
 from terrain.run_result import RunResult
@@ -109,12 +110,16 @@ def switch_table(result: RunResult) -> Grid | None:
 
 def icr_table(result: RunResult) -> Grid:
     """ICRs by terrain: known before, learned, and the mean of the truth where that is known."""
-    rows = []
-    for name, learned in result.learned.terrains.items():
+    rows: list[tuple[str, ...]] = []
+    visited = set(result.replay.terrains) - {UNKNOWN}
+    for name in dict.fromkeys([*result.learned.terrains, *sorted(visited)]):
         before = result.parameters.terrains.get(name)
+        learned = result.learned.terrains.get(name)
         if before is not None:
             rows.append((name, "known before", *_icrs(before)))
-        if before is not learned:
+        if learned is None:
+            rows.append((name, "too few turns or poses to learn", *[NOTHING] * 3))
+        elif learned is not before:
             rows.append((name, "learned", *_icrs(learned)))
         true = _true_icrs(result, name)
         if true:

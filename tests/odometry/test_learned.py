@@ -75,3 +75,13 @@ def test_a_table_that_is_much_surer_than_a_short_visit_stays(result):
         table = TerrainParameters("icr", values, tuple(values), sigma_m**2 * np.eye(3))
         learned = learned_parameters(ParameterSet({"b": table}), result, "my_run")
         assert (learned.terrains["b"] is table) is stays
+
+
+@pytest.mark.parametrize("speed_m_s", [0.0, 0.5])
+def test_a_robot_that_stands_or_drives_straight_on_teaches_no_new_terrain(make_run, speed_m_s):
+    stamps_s = np.arange(0, 6.01, 0.25)
+    odometry = "t,v_left,v_right\n" + "".join(f"{t},{speed_m_s},{speed_m_s}\n" for t in stamps_s)
+    poses = "t,x,y,yaw\n" + "".join(f"{t},{speed_m_s * t},0,0\n" for t in stamps_s)
+    run = Run.read(make_run(odometry=odometry, pose=poses))
+    still = replay(run, IcrEkf(0.6, BEFORE), Zones())
+    assert list(learned_parameters(BEFORE, still, "my_run").terrains) == ["a", "never"]

@@ -169,14 +169,22 @@ def test_switches_are_judged_against_the_edges(seen, full, world):
         assert float(cells["late by [m]"]) == pytest.approx(late_s * world.speed_m_s, abs=0.011)
 
 
-def test_icrs_are_listed_with_what_is_true(seen, full):
-    header, icrs = Reader(full[0] / "report.html").table("y_left [m]")
+def test_icrs_that_were_learned_are_listed(curvy_run, tmp_path):
+    result = run_odometry(curvy_run)
+    write_report(result, tmp_path)
+    header, ((name, what, *icrs),) = Reader(tmp_path / "report.html").table("y_left [m]")
     assert header[-3:] == ["y_left [m]", "y_right [m]", "x_icr [m]"]
-    learned = {row[0]: row[2] for row in icrs if row[1] == "learned"}
-    assert set(learned) == {"boards", "gravel"}
-    for name, text in learned.items():
-        y_left = seen.learned.terrains[name].values["y_left"]
-        assert float(text.split(" ± ")[0]) == pytest.approx(y_left, abs=0.0006)
+    assert what == "learned"
+    values = result.learned.terrains[name].values
+    for icr, text in zip(("y_left", "y_right", "x_icr"), icrs, strict=True):
+        assert float(text.split(" ± ")[0]) == pytest.approx(values[icr], abs=0.0006)
+
+
+def test_icrs_of_straight_drives_stand_beside_what_is_true(full):
+    _, icrs = Reader(full[0] / "report.html").table("y_left [m]")
+    straight = [row for row in icrs if row[1] != "truth, mean"]
+    assert [row[0] for row in straight] == ["boards", "gravel"]
+    assert {row[1] for row in straight} == {"too few turns or poses to learn"}
     assert [row[2:] for row in icrs if row[1] == "truth, mean"] == [
         ["0.200", "-0.200", "0.000"]
     ] * 2
