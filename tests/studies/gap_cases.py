@@ -1,19 +1,21 @@
 """The gap workflow on blind cases: what it names, and how much of the held-out excess it closes.
 
-    python tests/studies/gap_cases.py [--seeds 20] [--kinds KIND ...] [--out gap_cases] [--jobs 2]
+    python tests/studies/gap_cases.py [--seeds 20] [--group seen slips] [--kinds KIND ...]
+                                      [--out gap_cases] [--jobs 2]
 
 Cases come from `tests/blind`, whose generators know nothing of the catalogue of effects. Seeds
 take turns at three noise levels of the pose. Every case is a row of cases.csv, written as soon as
-it is known; a case that fails is a row, too.
+it is known; a case that fails is a row, too. Cases that are in cases.csv are not done again.
 """
 
 import argparse
 import csv
+import json
 import sys
 import tempfile
 import time
-from collections import defaultdict
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from joblib import Parallel, delayed
@@ -21,103 +23,115 @@ from joblib import Parallel, delayed
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from odometry.errors import OdometryError
+from odometry.gap.files import write_gap
 from odometry.gap.gap import find_gap
 from odometry.run import Run
-from tests.blind.cases import KINDS, NAMES, make_case
+from tests.blind.cases import KINDS, NAMES, Case, make_case
+from tests.studies.gap_names import all_named, course_of, score
+from tests.studies.gap_table import table_of
 
 NOISES = (1.0, 0.5, 2.0)
 COLUMNS = (
-    *("kind", "seed", "noise", "verdict", "effects", "true", "acceptable", "equivalent"),
-    *("before", "after", "floor", "closed", "seconds", "error"),
+    *("group", "kind", "seed", "noise", "gyroscope", "score", "verdict", "form", "effects"),
+    *("equivalent", "true", "honest", "course", "all_named", "course_right", "named_equivalent"),
+    *("before", "after", "floor", "worse", "closed", "cpu_s", "error"),
 )
 
 
 def main() -> None:
-    """Run all cases and print the table."""
+    """Run the cases that are not known yet and print the table of all."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--first-seed", type=int, default=0)
-    parser.add_argument("--kinds", nargs="*", default=list(NAMES))
+    parser.add_argument("--group", nargs="*", choices=tuple(KINDS), default=list(KINDS))
+    parser.add_argument("--kinds", nargs="*", choices=NAMES, help="instead of groups")
     parser.add_argument("--out", type=Path, default=Path("gap_cases"))
     parser.add_argument("--jobs", type=int, default=2)
     arguments = parser.parse_args()
-    arguments.out.mkdir(parents=True, exist_ok=True)
+    kinds = arguments.kinds or [kind for group in arguments.group for kind in KINDS[group]]
     seeds = range(arguments.first_seed, arguments.first_seed + arguments.seeds)
-    wanted = [(kind, seed) for seed in seeds for kind in arguments.kinds]
-    rows = []
-    with (arguments.out / "cases.csv").open("w", newline="") as stream:
-        table = csv.DictWriter(stream, COLUMNS)
-        table.writeheader()
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    file = arguments.out / "cases.csv"
+    rows = read(file)
+    known = {(row["kind"], int(row["seed"])) for row in rows}
+    wanted = [(kind, seed) for seed in seeds for kind in kinds if (kind, seed) not in known]
+    with file.open("a", newline="", encoding="utf-8") as stream:
+        sheet = csv.DictWriter(stream, COLUMNS)
+        if not rows:
+            sheet.writeheader()
         studied = Parallel(n_jobs=arguments.jobs, return_as="generator")
         for row in studied(delayed(study)(kind, seed) for kind, seed in wanted):
             rows.append(row)
-            table.writerow(row)
+            sheet.writerow(row)
             stream.flush()
-            print(*(f"{row[name]}" for name in COLUMNS), sep="  ", flush=True)
-    print_table(rows)
+            print(*(row[name] for name in (*COLUMNS[1:9], *COLUMNS[-7:])), sep="  ", flush=True)
+    print("\n".join(table_of([row for row in rows if row["kind"] in kinds])))
 
 
-def study(kind: str, seed: int) -> dict[str, object]:
+def read(file: Path) -> list[dict[str, str]]:
+    """Rows that are known already."""
+    if not file.exists():
+        return []
+    with file.open(newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def study(kind: str, seed: int) -> dict[str, str]:
     """One case as a row."""
+    noise = NOISES[seed % len(NOISES)]
+    row = dict.fromkeys(COLUMNS, "") | {"kind": kind, "seed": f"{seed}", "noise": f"{noise}"}
+    row["group"] = next(group for group, kinds in KINDS.items() if kind in kinds)
     with tempfile.TemporaryDirectory() as folder:
-        case = make_case(kind, seed, Path(folder), noise=NOISES[seed % len(NOISES)])
-        row: dict[str, object] = dict.fromkeys(COLUMNS, "")
-        row |= {"kind": kind, "seed": seed, "noise": case.noise, "true": "+".join(case.effects)}
-        row["acceptable"] = "+".join(case.acceptable)
-        begin = time.perf_counter()
+        begin = time.process_time()
         try:
-            runs = [Run.read(f) for f in (case.measured, case.calibration, case.holdout)]
-            result = find_gap(runs[:1], runs[1:2], runs[2:])
-        except (OdometryError, ArithmeticError, np.linalg.LinAlgError) as error:
-            return row | {"verdict": "failed", "error": str(error)}
-        closing = result.holdout
-        return row | {
-            "verdict": result.verdict,
-            "effects": "+".join(one.effect.name for one in result.added),
-            "equivalent": "+".join(one.name for one in result.equivalent),
-            "before": round(closing.before.value, 5),
-            "after": round(closing.after.value, 5),
-            "floor": round(closing.noise_floor.value, 5),
-            "closed": round(closing.share_closed, 4),
-            "seconds": round(time.perf_counter() - begin, 1),
-        }
+            case = make_case(kind, seed, Path(folder), noise=noise)
+            begin = time.process_time()
+            found = answer(case, Path(folder) / "gap")
+        except (OdometryError, ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
+            spent = f"{time.process_time() - begin:.1f}"
+            return row | {"score": "failed", "error": _line(error), "cpu_s": spent}
+        return row | judged(case, found) | {"cpu_s": f"{time.process_time() - begin:.1f}"}
 
 
-def print_table(rows: list[dict[str, object]]) -> None:
-    """By kind and by group: right names, share of the excess closed, seconds."""
-    print(f"{'kind':34} cases  right  all named  closed median [5 %, mean]  seconds median, most")
-    for group, kinds in KINDS.items():
-        by_kind = defaultdict(list)
-        for row in rows:
-            if row["kind"] in kinds:
-                by_kind[row["kind"]].append(row)
-        everything = [row for kind in by_kind.values() for row in kind]
-        for kind, of in (*by_kind.items(), (f"ALL {group}", everything)):
-            if of:
-                print_row(kind, of)
+def answer(case: Case, out: Path) -> dict[str, Any]:
+    """gap.json of a case."""
+    runs = [Run.read(folder) for folder in (case.measured, case.calibration, case.holdout)]
+    write_gap(find_gap(runs[:1], runs[1:2], runs[2:]), out)
+    result: dict[str, Any] = json.loads((out / "gap.json").read_text(encoding="utf-8"))
+    return result
 
 
-def print_row(kind: str, rows: list[dict[str, object]]) -> None:
-    """One line of the table."""
-    right = np.mean([is_right(row) for row in rows])
-    named = np.mean([set(_names(row["effects"])) >= set(_names(row["true"])) for row in rows])
-    closed = np.array([float(row["closed"]) for row in rows if row["closed"] != ""])
-    seconds = np.array([float(row["seconds"]) for row in rows if row["seconds"] != ""])
-    shares = "-"
-    if len(closed) and np.isfinite(closed).any():
-        kept = closed[np.isfinite(closed)]
-        shares = f"{np.median(kept):.3f} [{np.quantile(kept, 0.05):.3f}, {kept.mean():.3f}]"
-    times = f"{np.median(seconds):.1f}, {seconds.max():.1f}" if len(seconds) else "-"
-    print(f"{kind:34} {len(rows):5}  {right:5.0%}  {named:9.0%}  {shares:26}  {times}")
+def judged(case: Case, found: dict[str, Any]) -> dict[str, str]:
+    """Cells of a case and what was answered."""
+    named = [(one["name"], course_of(one["form"])) for one in found["effects"]]
+    verdict = found["verdict"]
+    course = next((course for name, course in named if name == verdict), "")
+    others = [(one["name"], "") for one in found["equivalent"]]
+    held = found["holdout"]
+    share = held["share_closed"]
+    return {
+        "gyroscope": f"{int(case.gyroscope)}",
+        "score": score(verdict, course, case.parts, case.honest),
+        "verdict": verdict,
+        "form": "; ".join(one["form"] for one in found["effects"]),
+        "effects": "+".join(name for name, _ in named),
+        "equivalent": "+".join(name for name, _ in others),
+        "true": "+".join("|".join(part) for part in case.parts),
+        "honest": "|".join(case.honest),
+        "course": case.course,
+        "all_named": f"{int(all_named(named, case.parts))}",
+        "course_right": f"{int(course == case.course)}",
+        "named_equivalent": f"{int(bool(case.parts) and all_named(named + others, case.parts))}",
+        "before": f"{held['before']:.5f}",
+        "after": f"{held['after']:.5f}",
+        "floor": f"{held['noise_floor']:.5f}",
+        "worse": f"{int(bool(named) and held['after'] > held['before'])}",
+        "closed": "" if share is None else f"{share:.4f}",
+    }
 
 
-def is_right(row: dict[str, object]) -> bool:
-    """Whether the verdict is a true effect, or none where there is none."""
-    return str(row["verdict"]) in (_names(row["true"]) or ["none"])
-
-
-def _names(text: object) -> list[str]:
-    return [name for name in str(text).split("+") if name]
+def _line(error: Exception) -> str:
+    return " ".join(str(error).split())[:200]
 
 
 if __name__ == "__main__":

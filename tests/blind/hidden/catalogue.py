@@ -1,0 +1,31 @@
+"""All kinds of hidden effects, by group."""
+
+from tests.blind.hidden.drives import DRIVES
+from tests.blind.hidden.instruments import INSTRUMENTS
+from tests.blind.hidden.kind import Hidden, Kind
+from tests.blind.hidden.references import REFERENCES
+from tests.blind.hidden.seen import SEEN
+from tests.blind.hidden.slips import SLIPS
+from tests.blind.hidden.surroundings import SURROUNDINGS
+
+
+def nothing(rng, scene):  # noqa: ARG001
+    """Robots, rates and noises as in the other kinds, and no effect."""
+    return lambda rng, clock: Hidden()  # noqa: ARG005
+
+
+GROUPS = {
+    "seen": SEEN,
+    "drives": DRIVES,
+    "slips": SLIPS,
+    "surroundings": SURROUNDINGS,
+    "references": REFERENCES,
+    "instruments": INSTRUMENTS,
+    "nothing": {
+        "nothing": Kind(nothing, ()),
+        "nothing_labelled": Kind(nothing, (), labels=2),
+        "nothing_sloped": Kind(nothing, (), sloped=True),
+        "nothing_crawling": Kind(nothing, (), style="crawl"),
+    },
+}
+HIDDEN = {name: kind for kinds in GROUPS.values() for name, kind in kinds.items()}

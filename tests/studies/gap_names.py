@@ -1,0 +1,58 @@
+"""Which names of the program mean which families of answers, and the score of one answer.
+
+A family is a plain word of `tests/blind`; this table alone knows what the program calls it.
+"""
+
+from collections.abc import Sequence
+
+MEANING = {
+    "slope": ("slope_sliding",),
+    "inertia": ("inertia",),
+    "turn radius": ("curvature",),
+    "wheel size": ("wheel_scale",),
+    "terrain": ("terrain", "terrain_changed"),
+    "traction": ("traction_loss",),
+    "sideways": ("lateral_skid",),
+    "late stamps": ("time_offset",),
+    "late commands": ("command_delay",),
+    "slow drive": ("actuator_lag",),
+    "drive limits": ("drive_limit",),
+    "tread slip": ("tread_slip",),
+    "gyroscope": ("gyroscope_error",),
+    "reference": ("reference_fault",),
+    "sensor place": ("lever_arm",),
+    "sensor heading": ("heading_offset",),
+    "unknown": ("unknown",),
+    "none": ("none",),
+}
+COURSES = ("from_a_moment", "gradual", "in_bursts")
+
+
+def meant(name: str, course: str, families: Sequence[str]) -> bool:
+    """Whether a name of the program says one of the families; "family course" needs the course."""
+    for family in families:
+        needed = next((one for one in COURSES if family.endswith(f" {one}")), "")
+        plain = family.removesuffix(f" {needed}")
+        if name in MEANING[plain] and needed in ("", course):
+            return True
+    return False
+
+
+def course_of(form: str) -> str:
+    """Course in time that a form ends with, or ""."""
+    return next((course for course in COURSES if form.endswith(course)), "")
+
+
+def score(verdict: str, course: str, parts: Sequence[Sequence[str]], honest: Sequence[str]) -> str:
+    """Score of a first name: right, honest, unknown, none, or wrong."""
+    true = [family for part in parts for family in part] or ["none"]
+    if meant(verdict, course, true):
+        return "right"
+    if meant(verdict, course, honest):
+        return "honest"
+    return verdict if verdict in ("unknown", "none") else "wrong"
+
+
+def all_named(named: Sequence[tuple[str, str]], parts: Sequence[Sequence[str]]) -> bool:
+    """Whether each true effect is among the (name, course) of the answer."""
+    return all(any(meant(*one, part) for one in named) for part in parts)
