@@ -164,8 +164,8 @@ def predicted_motion(predictor: Predictor, run: Run, windows: Windows) -> FloatA
     effects = effects_of(predictor.model)
     if not effects:
         return window_motion(predictor.model, predictor.packed, windows)
-    pose_s, _ = measured_poses(run)
-    seen = seen_poses(effects, _robot_poses(predictor, effects, run, pose_s))
+    pose_s, poses = measured_poses(run)
+    seen = seen_poses(effects, _robot_poses(predictor, effects, run, pose_s), poses[:, 2])
     first = np.searchsorted(pose_s, windows.start_s)
     last = first + windows.last_pose - windows.first_pose
     motion = se2.between(seen[first], seen[last])
@@ -181,7 +181,8 @@ def _robot_poses(
     Before the first and after the last stamp of odometry the robot stands.
     """
     odometry_s = run.odometry.stamps_s
-    measured_s = np.clip(pose_s - delay_s(effects), odometry_s[0], odometry_s[-1])
+    late_s = delay_s(effects, pose_s - odometry_s[0])
+    measured_s = np.clip(pose_s - late_s, odometry_s[0], odometry_s[-1])
     stamps_s = np.union1d(odometry_s, measured_s)
     rows = np.searchsorted(odometry_s, stamps_s, side="right") - 1
     inputs = replace(inputs_of(run).rows(rows), time_s=stamps_s - odometry_s[0])

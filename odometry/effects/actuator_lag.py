@@ -8,9 +8,9 @@ from scipy.linalg import solve_banded
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.effects.base import CommandEffect, EffectParameter
+from odometry.effects.held_commands import held_spans
+from odometry.effects.time_offset import BY_GYROSCOPE
 from odometry.models.inputs import Inputs
-
-LONGEST_STEP_S = 1.0  # after a longer pause the treads have caught up
 
 
 class ActuatorLag(CommandEffect):
@@ -18,11 +18,14 @@ class ActuatorLag(CommandEffect):
 
     name = "actuator_lag"
     form = "first_order"
+    in_words = "drives that follow their commands slowly"
     equation = "lag dv/dt = v_recorded - v"
     source = "first-order lag; recorded speeds are commands"
     looks_like = "errors after every change of speed, none while it is constant"
+    remedy = "record measured wheel speeds, or keep the lag in the model"
     alike: ClassVar[Mapping[str, str]] = {
-        "time_offset": "gyro_z, which feels the lag and not the stamps of poses"
+        "time_offset": BY_GYROSCOPE,
+        "command_delay": "commands that change in steps: a delay moves the answer, a lag rounds it",
     }
 
     @property
@@ -36,11 +39,7 @@ class ActuatorLag(CommandEffect):
         lag = float(values[0])
         if inputs.time_s is None or lag <= 0 or len(speeds) < 2:
             return speeds
-        steps_s = np.diff(inputs.time_s)
-        period_s = float(np.median(steps_s[steps_s > 0])) if (steps_s > 0).any() else 1.0
-        pause = (steps_s < 0) | (steps_s > max(LONGEST_STEP_S, 2 * period_s))
-        starts = np.concatenate([[True], pause])
-        held_s = np.where(np.append(pause, True), period_s, np.append(steps_s, 0.0))
+        held_s, starts = held_spans(inputs.time_s)
         return _means_of_lagged(speeds, held_s / lag, starts)
 
 

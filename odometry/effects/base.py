@@ -8,11 +8,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.effects.base_model import Base
+from odometry.effects.recorded import Recorded
 from odometry.errors import ParameterError
-from odometry.models.base import KinematicModel
 from odometry.models.inputs import Inputs
 from odometry.parameter_covariance import finite_number
-from odometry.run import Robot
 
 
 @dataclass(frozen=True)
@@ -41,51 +41,6 @@ class EffectParameter:
     absent: float | None = 0.0
 
 
-@dataclass(frozen=True)
-class Base:
-    """The model that effects are added to.
-
-    Attributes
-    ----------
-    model : KinematicModel
-    values : (P,)
-        Its parameters.
-    robot : Robot
-        What it drives.
-    latency_s : float
-        By how much the robot always follows its recorded speeds late.
-    """
-
-    model: KinematicModel
-    values: FloatArray
-    robot: Robot
-    latency_s: float = 0.0
-
-
-def slip_factors(base: Base) -> FloatArray:
-    """Slip factors (2,) of the left and the right tread; one where the model has none."""
-    names = [parameter.name for parameter in base.model.parameters]
-    by_name = dict(zip(names, base.values, strict=True))
-    both = by_name.get("alpha", by_name.get("k", 1.0))
-    return np.array([by_name.get("alpha_left", both), by_name.get("alpha_right", both)])
-
-
-def tread_icrs(base: Base, effect: str) -> FloatArray:
-    """y_left, y_right, x_icr (3,) of a base that has them.
-
-    Raises
-    ------
-    ParameterError
-        Naming the effect that needs them, where the base is another model.
-    """
-    if base.model.name != "icr":
-        raise ParameterError(
-            f"the effect {effect!r} moves tread ICRs, which the model {base.model.name!r} does not "
-            "have; expected 'icr'"
-        )
-    return base.values[:3]
-
-
 class Effect(ABC):
     """What may be missing in a model. A subclass is one file, and one row of the catalogue.
 
@@ -93,28 +48,51 @@ class Effect(ABC):
     ----------
     name, form : str
         What it is, and in which equations.
+    in_words : str
+        The name that a roboticist would use.
     acts_on : str
         "commands", "motion" or "measurement".
     equation, source : str
     looks_like : str
         How a person would notice it.
+    remedy : str
+        What to do about it.
     needs : str
         Which data it needs.
     alike : Mapping of name to str
         Effects that it may be mistaken for, and what tells them apart.
+    of_reference : bool
+        Whether it is a fault of the reference sensor, not of the robot.
+    shared : tuple of str
+        Parameters that are the same physical numbers in every effect that has them.
+    constant_names : tuple of str
+        Known numbers that a parameter set holds among the parameters; arguments to make it.
+    course : str
+        How it comes and goes in time, "" where it is always there (`odometry.effects.course`).
     slow : bool
         Whether it takes long to compute.
     """
 
     name: ClassVar[str]
     form: ClassVar[str]
+    in_words: ClassVar[str]
     acts_on: ClassVar[str]
     equation: ClassVar[str]
     source: ClassVar[str]
     looks_like: ClassVar[str]
+    remedy: ClassVar[str]
     needs: ClassVar[str] = "tread speeds and a measured pose"
     alike: ClassVar[Mapping[str, str]] = {}
+    of_reference: ClassVar[bool] = False
+    shared: ClassVar[tuple[str, ...]] = ()
+    constant_names: ClassVar[tuple[str, ...]] = ()
+    course: ClassVar[str] = ""
     slow: ClassVar[bool] = False
+
+    @classmethod
+    def offered(cls, recorded: Recorded) -> "tuple[Effect, ...]":  # noqa: ARG003 - of the face
+        """Candidates of this form that measured runs may tell."""
+        return (cls(),)
 
     @property
     @abstractmethod
@@ -155,9 +133,15 @@ class Effect(ABC):
             raise ParameterError(f"{where}: parameters {sorted(values)}, expected {sorted(names)}")
         return np.array([finite_number(values[name], f"{where}: {name}") for name in names])
 
+    @property
+    def key(self) -> tuple[str, str, str]:
+        """Name, form and course: what one candidate is and no other."""
+        return self.name, self.form, self.course
+
     def constants(self) -> dict[str, float]:
-        """Known numbers that a parameter set holds among the parameters; arguments to make it."""
-        return {}
+        """The numbers of `constant_names` that are known."""
+        stated = {name: getattr(self, name) for name in self.constant_names}
+        return {name: float(value) for name, value in stated.items() if value is not None}
 
     def settings(self) -> dict[str, Any]:
         """What else a parameter set must hold to make the effect again."""
@@ -187,17 +171,35 @@ class MotionEffect(Effect):
 
 
 class MeasurementEffect(Effect):
-    """Acts on the measured pose."""
+    """Acts on what a sensor reports: the measured pose, or the gyroscope."""
 
     acts_on = "measurement"
 
-    def delay_s(self, values: FloatArray) -> float:  # noqa: ARG002 - of the face
-        """By how much the stamps of poses are late."""
-        return 0.0
+    def delay_s(self, values: FloatArray, stamps_s: FloatArray) -> FloatArray:  # noqa: ARG002
+        """By how much each of the stamps of poses (M,), in run time, is late (M,)."""
+        return np.zeros_like(stamps_s)
 
-    def seen(self, values: FloatArray, poses: FloatArray) -> FloatArray:  # noqa: ARG002
-        """Poses (M, 3) as the sensor reports them, of those of the robot."""
+    def seen(
+        self,
+        values: FloatArray,  # noqa: ARG002 - of the face
+        poses: FloatArray,
+        measured_yaw_rad: FloatArray,  # noqa: ARG002
+    ) -> FloatArray:
+        """Poses (M, 3) as the sensor reports them, of those of the robot.
+
+        `measured_yaw_rad` (M,) is the yaw that it did report: `poses` may be those of a drive that
+        began at the origin, and an error may follow the true heading.
+        """
         return poses
+
+    def gyroscope(
+        self,
+        values: FloatArray,  # noqa: ARG002 - of the face
+        yaw_rate_rad_s: FloatArray,
+        inputs: Inputs,  # noqa: ARG002
+    ) -> FloatArray:
+        """What the gyroscope reports (N,) of the yaw rate (N,) of the robot."""
+        return yaw_rate_rad_s
 
     def robot_poses(self, values: FloatArray, seen: FloatArray) -> FloatArray:  # noqa: ARG002
         """The inverse of `seen`."""

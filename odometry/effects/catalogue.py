@@ -7,19 +7,25 @@ import numpy as np
 
 from odometry.effects.actuator_lag import ActuatorLag
 from odometry.effects.base import Effect
+from odometry.effects.command_delay import CommandDelay
 from odometry.effects.corrected import Added
+from odometry.effects.course import Course, FromAMoment, course_of, in_course
 from odometry.effects.curvature import Curvature
+from odometry.effects.drive_limit import Deadband, RateLimit, Saturation
+from odometry.effects.gyroscope_error import GyroscopeError
 from odometry.effects.heading_offset import HeadingOffset
 from odometry.effects.inertia_contact import InertiaByContact
 from odometry.effects.inertia_icr import InertiaByIndices
 from odometry.effects.lateral_skid import LateralSkid
 from odometry.effects.lever_arm import LeverArm
+from odometry.effects.reference_fault import Compass
 from odometry.effects.residual import Residual
 from odometry.effects.slope_contact import SlopeByContact
 from odometry.effects.slope_icr import SlopeByIcr
-from odometry.effects.terrain import Terrain
-from odometry.effects.time_offset import TimeOffset
+from odometry.effects.terrain import NewIcrs, Terrain
+from odometry.effects.time_offset import ClockDrift, TimeOffset
 from odometry.effects.traction_loss import TractionLoss
+from odometry.effects.tread_slip import SlipByAcceleration, SlipByDirection, SlipBySpeed
 from odometry.effects.wheel_scale import WheelScale
 from odometry.errors import ParameterError
 from odometry.parameter_covariance import finite_number
@@ -27,27 +33,31 @@ from odometry.parameter_covariance import finite_number
 EFFECTS: tuple[type[Effect], ...] = (
     WheelScale,
     ActuatorLag,
+    CommandDelay,
+    Deadband,
+    Saturation,
+    RateLimit,
+    SlipBySpeed,
+    SlipByDirection,
+    SlipByAcceleration,
     LateralSkid,
     Curvature,
     TractionLoss,
     Terrain,
+    NewIcrs,
     SlopeByIcr,
     SlopeByContact,
     InertiaByIndices,
     InertiaByContact,
     TimeOffset,
+    ClockDrift,
     LeverArm,
     HeadingOffset,
+    Compass,
+    GyroscopeError,
 )
 KNOWN: tuple[type[Effect], ...] = (*EFFECTS, Residual)
 BY_FORM = {(effect.name, effect.form): effect for effect in KNOWN}
-
-CONSTANTS = {
-    ("slope_sliding", "icr_slope"): ("half_width", "half_length"),
-    ("slope_sliding", "contact"): ("half_width",),
-    ("inertia", "contact"): ("half_width",),
-    ("inertia", "icr_inertia"): ("mass", "track_width"),
-}
 
 
 def effect_table(added: Added) -> dict[str, Any]:
@@ -88,14 +98,27 @@ def _added(table: Mapping[str, Any], where: str) -> Added:
     constants = {
         name: finite_number(value, f"{where}: {name}")
         for name, value in values.items()
-        if name in CONSTANTS.get(kind, ())
+        if name in BY_FORM[kind].constant_names
     }
+    course = _course(kind, values, settings, where)
     try:
-        effect = BY_FORM[kind](**settings, **constants)
+        plain = BY_FORM[kind](**settings, **constants)
+        effect = plain if course is None else in_course(plain, course)
     except (TypeError, ParameterError) as error:
         raise ParameterError(f"{where}: {error}") from error
     identified = {k: v for k, v in values.items() if k not in constants}
     return Added(effect, np.asarray(effect.pack(identified, where)))
+
+
+def _course(
+    kind: tuple[str, str], values: Mapping[str, Any], settings: dict[str, Any], where: str
+) -> Course | None:
+    """The course that settings say, taken out of them; sets of version 0.6 said a moment alone."""
+    if "course" in settings:
+        return course_of(settings, where)
+    if kind == ("traction_loss", "k_m") and "moment" in values:
+        return FromAMoment()
+    return None
 
 
 def _frozen(value: Any) -> Any:

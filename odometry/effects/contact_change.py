@@ -11,7 +11,9 @@ from abc import abstractmethod
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.effects.base import Base, EffectParameter, MotionEffect
+from odometry.effects.base import Effect, EffectParameter, MotionEffect
+from odometry.effects.base_model import Base
+from odometry.effects.recorded import Recorded
 from odometry.effects.slope_icr import half_length_m
 from odometry.models.contact import GUESSED_HEIGHT, Contact
 from odometry.models.inputs import Inputs
@@ -32,11 +34,18 @@ class ContactChange(MotionEffect):
 
     form = "contact"
     slow = True
+    shared = ("mu", "height", "half_length", "x_cm", "slip_scale")
+    constant_names = ("half_width",)
     source = "force balance of this project (odometry.models.contact)"
 
     def __init__(self, half_width: float | None = None) -> None:
         self.half_width = half_width
         self._answers: dict[bytes, FloatArray] = {}
+
+    @classmethod
+    def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
+        """On contacts as wide as the robot."""
+        return (cls(recorded.base.robot.track_width / 2),)
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
@@ -70,10 +79,6 @@ class ContactChange(MotionEffect):
             [mu, 1.0, x_cm, 0.0, height, half_length, half_width, 2.0, scale * slip_scale]
         )
 
-    def constants(self) -> dict[str, float]:
-        """See `Effect.constants`."""
-        return {} if self.half_width is None else {"half_width": self.half_width}
-
     def _half_width_m(self, base: Base) -> float:
         return self.half_width or base.robot.track_width / 2
 
@@ -87,10 +92,9 @@ class ContactChange(MotionEffect):
         """See `MotionEffect.twist`."""
         first = _first_of_means(inputs)
         means = Inputs(
-            *(
-                _mean(of, first)
-                for of in (inputs.tread_speeds_m_s, inputs.roll_rad, inputs.pitch_rad)
-            )
+            _mean(inputs.tread_speeds_m_s, first),
+            _mean(inputs.roll_rad, first),
+            _mean(inputs.pitch_rad, first),
         )
         counts = np.diff([*first, len(inputs.roll_rad)])
         return np.asarray(twist + np.repeat(self._remembered(values, means, base), counts, axis=0))

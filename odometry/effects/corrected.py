@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base import Base, CommandEffect, Effect, MeasurementEffect, MotionEffect
+from odometry.effects.base import CommandEffect, Effect, MeasurementEffect, MotionEffect
+from odometry.effects.base_model import Base
 from odometry.models.base import KinematicModel, Linearised
 from odometry.models.inputs import Inputs
 from odometry.run import Robot
@@ -101,18 +102,33 @@ def with_true_speeds(effects: Sequence[Added], inputs: Inputs) -> Inputs:
     return inputs
 
 
-def delay_s(effects: Sequence[Added]) -> float:
-    """By how much all effects together make the stamps of poses late."""
-    return sum(
-        added.effect.delay_s(added.values)
-        for added in effects
-        if isinstance(added.effect, MeasurementEffect)
-    )
-
-
-def seen_poses(effects: Sequence[Added], poses: FloatArray) -> FloatArray:
-    """Poses (M, 3) as the reference sensor would report those of the robot."""
+def delay_s(effects: Sequence[Added], stamps_s: FloatArray) -> FloatArray:
+    """By how much (M,) all effects together make stamps of poses (M,), in run time, late."""
+    late_s = np.zeros_like(stamps_s)
     for added in effects:
         if isinstance(added.effect, MeasurementEffect):
-            poses = added.effect.seen(added.values, poses)
+            late_s = late_s + added.effect.delay_s(added.values, stamps_s)
+    return late_s
+
+
+def seen_poses(
+    effects: Sequence[Added], poses: FloatArray, measured_yaw_rad: FloatArray
+) -> FloatArray:
+    """Poses (M, 3) as the reference sensor would report those of the robot.
+
+    `measured_yaw_rad` (M,) is what it did report, see `MeasurementEffect.seen`.
+    """
+    for added in effects:
+        if isinstance(added.effect, MeasurementEffect):
+            poses = added.effect.seen(added.values, poses, measured_yaw_rad)
     return poses
+
+
+def reported_yaw_rate(
+    effects: Sequence[Added], yaw_rate_rad_s: FloatArray, inputs: Inputs
+) -> FloatArray:
+    """What the gyroscope would report (N,) of the yaw rate (N,) of the robot."""
+    for added in effects:
+        if isinstance(added.effect, MeasurementEffect):
+            yaw_rate_rad_s = added.effect.gyroscope(added.values, yaw_rate_rad_s, inputs)
+    return yaw_rate_rad_s

@@ -3,7 +3,8 @@
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base import Base, EffectParameter, MotionEffect, slip_factors
+from odometry.effects.base import EffectParameter, MotionEffect
+from odometry.effects.base_model import Base, slip_factors
 from odometry.models.inputs import Inputs
 
 
@@ -18,9 +19,11 @@ class Curvature(MotionEffect):
 
     name = "curvature"
     form = "radius_of_curvature"
+    in_words = "an effective width that depends on how tight the turn is"
     equation = "width -> width w (1 + beta_1 / (1 + beta_2 sqrt(lambda)))"
     source = "Baril 2020 eq. 10-11"
     looks_like = "tight turns too far, wide turns not far enough, or the reverse"
+    remedy = "keep it in the model, or drive turns of one radius"
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:

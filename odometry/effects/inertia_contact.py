@@ -3,10 +3,13 @@
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base import Base
+from odometry.effects.base import Effect
+from odometry.effects.base_model import Base
 from odometry.effects.contact_change import MODEL, ContactChange
+from odometry.effects.recorded import Recorded
 from odometry.models.inputs import Inputs
 
+LATERAL_M_S2 = 0.3  # less is nothing that contact forces are worth trying for
 SLOW = 0.02  # of the speeds: centrifugal force is 0.0004 of its own
 
 
@@ -14,9 +17,18 @@ class InertiaByContact(ContactChange):
     """What centrifugal force changes."""
 
     name = "inertia"
+    in_words = "inertia in fast turns"
     equation = "twist + balance(speeds) - balance(slow speeds) / slowness"
     looks_like = "turns that come out wider or tighter the faster they are driven"
+    remedy = "keep it in the model, or drive turns more slowly"
     needs = "fast turns"
+
+    @classmethod
+    def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
+        """Where turns are fast enough for it."""
+        if recorded.lateral_m_s2 < LATERAL_M_S2:
+            return ()
+        return super().offered(recorded)
 
     def change(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
         """See `ContactChange.change`."""

@@ -3,7 +3,9 @@
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base import Base, EffectParameter, MotionEffect, slip_factors, tread_icrs
+from odometry.effects.base import Effect, EffectParameter, MotionEffect
+from odometry.effects.base_model import Base, slip_factors, tread_icrs
+from odometry.effects.recorded import Recorded
 from odometry.models.icr import icr_twist
 from odometry.models.icr_inertia import IcrInertia
 from odometry.models.inertia_model import G_M_S2
@@ -26,14 +28,23 @@ class InertiaByIndices(MotionEffect):
     """
 
     name = "inertia"
+    in_words = "inertia in fast turns"
     form = "icr_inertia"
     equation = "zeta, epsilon, eta change with |F| by zeta_1, epsilon_1, eta_1, eta_2 and signs"
+    constant_names = ("mass", "track_width")
     source = "Martinez 2017 eq. 17-30"
     looks_like = "turns that come out wider or tighter the faster they are driven"
+    remedy = "keep it in the model, or drive turns more slowly"
     needs = "fast turns; a base model with tread ICRs"
 
     def __init__(self, mass: float = 1.0, track_width: float | None = None) -> None:
         self.mass, self.track_width = mass, track_width
+
+    @classmethod
+    def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
+        """By the mass of the robot."""
+        robot = recorded.base.robot
+        return (cls(robot.mass or 1.0, robot.track_width),)
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
@@ -48,11 +59,6 @@ class InertiaByIndices(MotionEffect):
             ),
             EffectParameter("h", "", 0.2, 3.0, 1.0, 0.05, None),
         )
-
-    def constants(self) -> dict[str, float]:
-        """See `Effect.constants`."""
-        width = {} if self.track_width is None else {"track_width": self.track_width}
-        return {"mass": self.mass, **width}
 
     def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the face
         """See `Effect.lacks`."""

@@ -6,7 +6,8 @@ from typing import ClassVar
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base import Base, EffectParameter, MotionEffect
+from odometry.effects.base import EffectParameter, MotionEffect
+from odometry.effects.base_model import Base
 from odometry.models.inputs import Inputs
 
 TOLD_APART = (
@@ -20,9 +21,11 @@ class LateralSkid(MotionEffect):
 
     name = "lateral_skid"
     form = "x_icr"
+    in_words = "turning about a point further ahead or behind"
     equation = "v_y -> v_y - x_shift omega"
     source = "Baril 2020 eq. 7, Chen 2023 eq. 3"
     looks_like = "sideways motion in turns, to opposite sides in left and right turns"
+    remedy = "keep the shift in the model; see whether the load has moved"
     alike: ClassVar[Mapping[str, str]] = {"lever_arm": TOLD_APART}
 
     def same_as(self, values: FloatArray) -> Mapping[str, str]:  # noqa: ARG002 - of the face

@@ -16,9 +16,12 @@ class LeverArm(MeasurementEffect):
 
     name = "lever_arm"
     form = "constant"
+    in_words = "a reference that is not at the robot's origin"
     equation = "position -> position + R(yaw) (x_arm, y_arm)"
     source = "definition"
     looks_like = "sideways motion in turns, and distances that differ in left and right turns"
+    remedy = "measure where the sensor sits and state it in run.toml, [sensors]"
+    of_reference = True
     alike: ClassVar[Mapping[str, str]] = {"lateral_skid": TOLD_APART, "terrain": TOLD_APART}
 
     def same_as(self, values: FloatArray) -> Mapping[str, str]:  # noqa: ARG002 - of the face
@@ -33,7 +36,12 @@ class LeverArm(MeasurementEffect):
             EffectParameter("y_arm", "m", -5.0, 5.0, 0.0, 0.01),
         )
 
-    def seen(self, values: FloatArray, poses: FloatArray) -> FloatArray:
+    def seen(
+        self,
+        values: FloatArray,
+        poses: FloatArray,
+        measured_yaw_rad: FloatArray,  # noqa: ARG002
+    ) -> FloatArray:
         """See `MeasurementEffect.seen`."""
         return _moved(poses, values)
 

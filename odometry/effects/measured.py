@@ -51,7 +51,7 @@ def robot_run(run: Run, effects: Sequence[Added]) -> Run:
     """The run with the poses of the robot in place of those that its sensor reports.
 
     The lever arm that `[sensors]` states is undone first, and is stated no more. Stamps become
-    those at which the poses were measured: all are moved by the same delay. A run without poses,
+    those at which the poses were measured: each is moved by its delay. A run without poses,
     and one whose sensor has no such effect and no lever arm, is the run itself.
     """
     stated = run.sensors.pose_m
@@ -64,7 +64,7 @@ def robot_run(run: Run, effects: Sequence[Added]) -> Run:
     poses[:, 2] = wrap(poses[:, 2])
     columns = {
         **run.pose.columns,
-        "t": run.pose.stamps_s - delay_s(effects),
+        "t": run.pose.stamps_s - delay_s(effects, run.pose.stamps_s - run.odometry.stamps_s[0]),
         **dict(zip(POSE_NAMES, np.ascontiguousarray(poses.T), strict=True)),
     }
     sensors = {

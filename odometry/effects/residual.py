@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base import Base, EffectParameter, MotionEffect
+from odometry.effects.base import EffectParameter, MotionEffect
+from odometry.effects.base_model import Base
 from odometry.errors import ParameterError
 from odometry.models.inputs import Inputs
 from odometry.parameter_covariance import finite_number
@@ -57,9 +58,11 @@ class Residual(MotionEffect):
 
     name = "unknown"
     form = "residual"
+    in_words = "a cause that the catalogue does not have"
     equation = "twist + sum of c_ij basis_j(variable)"
     source = "none: no effect of the catalogue explains it"
     looks_like = "errors that follow the variable"
+    remedy = "look for what depends on this variable"
     needs = "the variable"
 
     @property

@@ -3,7 +3,7 @@
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base import Base
+from odometry.effects.base_model import Base
 from odometry.effects.contact_change import MODEL, ContactChange
 from odometry.effects.slope_icr import lacks_tilt
 from odometry.models.inputs import Inputs
@@ -13,8 +13,10 @@ class SlopeByContact(ContactChange):
     """What gravity along the slope changes."""
 
     name = "slope_sliding"
+    in_words = "sliding downhill in turns"
     equation = "twist + balance(speeds, roll, pitch) - balance(speeds, level)"
     looks_like = "turns on a slope that slide downhill"
+    remedy = "keep it in the model; record roll and pitch"
     needs = "roll and pitch on terrain that is not level"
 
     def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the face

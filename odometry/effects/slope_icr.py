@@ -3,7 +3,9 @@
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base import Base, EffectParameter, MotionEffect, slip_factors, tread_icrs
+from odometry.effects.base import Effect, EffectParameter, MotionEffect
+from odometry.effects.base_model import Base, slip_factors, tread_icrs
+from odometry.effects.recorded import Recorded
 from odometry.models.icr_slope import GUESSED_HALF_LENGTH, IcrSlope
 from odometry.models.inputs import Inputs
 from odometry.run import Robot
@@ -22,14 +24,23 @@ class SlopeByIcr(MotionEffect):
     """
 
     name = "slope_sliding"
+    in_words = "sliding downhill in turns"
     form = "icr_slope"
     equation = "ICRs shifted by lambda_1 and lambda_2 times roll and pitch, less v_max - |v|"
+    constant_names = ("half_width", "half_length")
     source = "Martinez 2024 eq. 1-11"
     looks_like = "turns on a slope that slide downhill, most while slow"
+    remedy = "keep it in the model; record roll and pitch"
     needs = "roll and pitch on terrain that is not level; a base model with tread ICRs"
 
     def __init__(self, half_width: float | None = None, half_length: float | None = None) -> None:
         self.half_width, self.half_length = half_width, half_length
+
+    @classmethod
+    def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
+        """On contacts of the size of the robot."""
+        robot = recorded.base.robot
+        return (cls(robot.track_width / 2, half_length_m(robot)),)
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
@@ -60,11 +71,6 @@ class SlopeByIcr(MotionEffect):
         packed = np.array([*icrs, *alphas, *values, half_width, half_length])
         level = Inputs(inputs.tread_speeds_m_s)
         return np.asarray(twist + MODEL.twist(packed, inputs) - MODEL.twist(packed, level))
-
-    def constants(self) -> dict[str, float]:
-        """See `Effect.constants`."""
-        stated = {"half_width": self.half_width, "half_length": self.half_length}
-        return {name: value for name, value in stated.items() if value is not None}
 
 
 def half_length_m(robot: Robot) -> float:

@@ -1,4 +1,4 @@
-"""Grounds on which tread ICRs and slip differ."""
+"""Terrains on which tread ICRs and slip differ."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -6,11 +6,12 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base import Base, EffectParameter, MotionEffect, slip_factors, tread_icrs
+from odometry.effects.base import Effect, EffectParameter, MotionEffect
+from odometry.effects.base_model import Base, slip_factors, tread_icrs
+from odometry.effects.recorded import Recorded
 from odometry.errors import ParameterError
 from odometry.models.icr import icr_twist
 from odometry.models.inputs import Inputs
-from odometry.run import UNKNOWN
 
 SHIFTED = (
     *(("y_left", "m"), ("y_right", "m"), ("x_icr", "m")),
@@ -26,7 +27,7 @@ class Terrain(MotionEffect):
     Attributes
     ----------
     labels : tuple of str
-        Grounds unlike the one that the base was identified on.
+        Terrains unlike the one that the base was identified on.
     """
 
     labels: tuple[str, ...] = ()
@@ -37,10 +38,19 @@ class Terrain(MotionEffect):
 
     name = "terrain"
     form = "icr_by_label"
+    in_words = "terrain on which the robot turns and slips otherwise"
     equation = "(y_left, y_right, x_icr, alphas) -> the same + shifts of the label"
     source = "Chen 2023, Baril 2020 eq. 7"
     looks_like = "errors that begin and end where the terrain changes"
+    remedy = "identify a parameter set for each terrain"
     needs = "odometry.csv with a column terrain, or runs on several terrains"
+
+    @classmethod
+    def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
+        """Those that the calibration has not seen together, and each that it has seen by itself."""
+        new = tuple(label for label in recorded.labels if label not in recorded.calibrated)
+        changed = [label for label in recorded.labels if label in recorded.calibrated]
+        return (*([cls(new)] if new else []), *(cls((label,)) for label in changed))
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
@@ -69,9 +79,7 @@ class Terrain(MotionEffect):
         moved = twist.copy()
         for shift, label in zip(values.reshape(-1, len(SHIFTED)), self.labels, strict=True):
             here = inputs.terrain == label
-            speeds = inputs.tread_speeds_m_s[here]
-            moved[here] += icr_twist(icrs + shift[:3], (alphas + shift[3:]) * speeds)
-            moved[here] -= icr_twist(icrs, alphas * speeds)
+            moved[here] += shifted_by(shift, icrs, alphas, inputs.tread_speeds_m_s[here])
         return moved
 
     def settings(self) -> dict[str, Any]:
@@ -79,8 +87,42 @@ class Terrain(MotionEffect):
         return {"labels": list(self.labels)}
 
 
-def new_labels(inputs: Inputs, calibrated: set[str]) -> tuple[str, ...]:
-    """Grounds of a recording that the calibration has not seen, by name."""
-    if inputs.terrain is None:
-        return ()
-    return tuple(sorted(set(np.unique(inputs.terrain.astype(str))) - calibrated - {UNKNOWN, ""}))
+class NewIcrs(MotionEffect):
+    """ICRs and slip factors of whole runs are shifted: another terrain, whatever its name."""
+
+    name = "terrain"
+    form = "icr_set"
+    in_words = "a terrain on which the robot turns and slips otherwise throughout"
+    equation = "(y_left, y_right, x_icr, alphas) -> the same + shifts"
+    source = "Chen 2023, Baril 2020 eq. 7"
+    looks_like = "a model that is off in every turn of a run, always alike"
+    remedy = "identify a parameter set on this terrain"
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`."""
+        return tuple(
+            EffectParameter(name, unit, -LARGEST[unit], LARGEST[unit], 0.0, 0.01)
+            for name, unit in SHIFTED
+        )
+
+    def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the face
+        """See `Effect.lacks`."""
+        return "" if base.model.name == "icr" else "a base model with tread ICRs"
+
+    def twist(
+        self, values: FloatArray, twist: FloatArray, inputs: Inputs, base: Base
+    ) -> FloatArray:
+        """See `MotionEffect.twist`: the difference that the shifts make to the base."""
+        icrs, alphas = tread_icrs(base, self.name), slip_factors(base)
+        return np.asarray(twist + shifted_by(values, icrs, alphas, inputs.tread_speeds_m_s))
+
+
+def shifted_by(
+    shift: FloatArray, icrs: FloatArray, alphas: FloatArray, speeds_m_s: FloatArray
+) -> FloatArray:
+    """What a shift (5,) of ICRs (3,) and slip factors (2,) changes of the twist (N, 3)."""
+    return np.asarray(
+        icr_twist(icrs + shift[:3], (alphas + shift[3:]) * speeds_m_s)
+        - icr_twist(icrs, alphas * speeds_m_s)
+    )

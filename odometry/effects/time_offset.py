@@ -1,10 +1,14 @@
-"""Poses whose stamps are late or early."""
+"""Poses whose stamps are late or early, by a constant or more and more."""
 
 from collections.abc import Mapping
 from typing import ClassVar
 
+import numpy as np
+
 from odometry.arrays import FloatArray
 from odometry.effects.base import EffectParameter, MeasurementEffect
+
+BY_GYROSCOPE = "gyro_z, which follows the motion and not the stamps of poses"
 
 
 class TimeOffset(MeasurementEffect):
@@ -12,11 +16,15 @@ class TimeOffset(MeasurementEffect):
 
     name = "time_offset"
     form = "constant"
+    in_words = "pose stamps that are late or early"
     equation = "pose(t) -> pose(t - offset); offset > 0: stamps are late"
     source = "definition"
     looks_like = "errors along the path where speed changes, none while it is constant"
+    remedy = "synchronise the clocks, or move the stamps of the poses by the offset"
+    of_reference = True
     alike: ClassVar[Mapping[str, str]] = {
-        "actuator_lag": "gyro_z, which feels the lag and not the stamps of poses"
+        "actuator_lag": BY_GYROSCOPE,
+        "command_delay": BY_GYROSCOPE,
     }
 
     @property
@@ -24,6 +32,31 @@ class TimeOffset(MeasurementEffect):
         """See `Effect.parameters`."""
         return (EffectParameter("offset", "s", -1.0, 1.0, 0.0, 0.02),)
 
-    def delay_s(self, values: FloatArray) -> float:
+    def delay_s(self, values: FloatArray, stamps_s: FloatArray) -> FloatArray:
         """See `MeasurementEffect.delay_s`."""
-        return float(values[0])
+        return np.full_like(stamps_s, values[0])
+
+
+class ClockDrift(MeasurementEffect):
+    """The clock of the poses runs fast or slow."""
+
+    name = "time_offset"
+    form = "drift"
+    in_words = "a clock of the poses that runs fast or slow"
+    equation = "pose(t) -> pose(t - offset - rate t); rate > 0: the clock is fast"
+    source = "definition"
+    looks_like = "errors along the path where speed changes, that grow over the run"
+    remedy = "synchronise the clocks, or divide the stamps of the poses by 1 + rate"
+    of_reference = True
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`; `offset` is that at the start of a run."""
+        return (
+            EffectParameter("offset", "s", -1.0, 1.0, 0.0, 0.02),
+            EffectParameter("rate", "", -0.05, 0.05, 0.0, 1e-4),
+        )
+
+    def delay_s(self, values: FloatArray, stamps_s: FloatArray) -> FloatArray:
+        """See `MeasurementEffect.delay_s`."""
+        return np.asarray(values[0] + values[1] * stamps_s)

@@ -6,7 +6,9 @@ from typing import ClassVar
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base import CommandEffect, EffectParameter
+from odometry.effects.base import CommandEffect, Effect, EffectParameter
+from odometry.effects.course import Gradual, in_course
+from odometry.effects.recorded import Recorded
 from odometry.models.inputs import Inputs
 
 UNIFORM = 0.01  # factors nearer than this are one
@@ -17,9 +19,11 @@ class WheelScale(CommandEffect):
 
     name = "wheel_scale"
     form = "factors"
+    in_words = "wheels of another size, or constant slip"
     equation = "v_left -> c_l v_left, v_right -> c_r v_right"
     source = "Baril 2020 eq. 7 (alpha); c_l and c_r of Martinez 2024"
     looks_like = "distances too long or short by one share; a drift to one side on straights"
+    remedy = "measure the wheels, or take the factors into the model (wheel radius multipliers)"
     alike: ClassVar[Mapping[str, str]] = {
         "traction_loss": "a second measure of tread travel (a motor current, a free wheel): a "
         "uniform factor of both wheels looks like slip"
@@ -28,6 +32,11 @@ class WheelScale(CommandEffect):
     def same_as(self, values: FloatArray) -> Mapping[str, str]:
         """See `Effect.same_as`: one factor of both wheels is slip."""
         return self.alike if abs(values[0] - values[1]) < UNIFORM else {}
+
+    @classmethod
+    def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
+        """Always, and gradual (tyres that deflate)."""
+        return cls(), in_course(cls(), Gradual(recorded.longest_s))
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:

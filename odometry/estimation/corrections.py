@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base import Base
+from odometry.effects.base_model import Base
 from odometry.effects.corrected import Corrected, corrected_twist, with_true_speeds
 from odometry.effects.tables import model_of
 from odometry.errors import ParameterError

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base import Base
+from odometry.effects.base_model import Base
 from odometry.gap.config import GapConfig
 from odometry.gap.errors import GapError
 from odometry.gap.pieces import numbered_pieces, pieces

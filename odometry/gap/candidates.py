@@ -4,68 +4,54 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from odometry.effects.actuator_lag import ActuatorLag
 from odometry.effects.base import Effect
-from odometry.effects.curvature import Curvature
-from odometry.effects.heading_offset import HeadingOffset
-from odometry.effects.inertia_contact import InertiaByContact
-from odometry.effects.inertia_icr import InertiaByIndices
-from odometry.effects.lateral_skid import LateralSkid
-from odometry.effects.lever_arm import LeverArm
+from odometry.effects.catalogue import EFFECTS
+from odometry.effects.course import FromAMoment, in_course
+from odometry.effects.recorded import Recorded, labels_of
 from odometry.effects.residual import ANGLES, COMPONENTS, HARMONICS, Residual, variables_of
-from odometry.effects.slope_contact import SlopeByContact
-from odometry.effects.slope_icr import SlopeByIcr, half_length_m
-from odometry.effects.terrain import Terrain, new_labels
-from odometry.effects.time_offset import TimeOffset
-from odometry.effects.traction_loss import TractionLoss
+from odometry.effects.terrain import NewIcrs
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.calibration import Calibration
 from odometry.windows.dense import DenseWindows
 
-LATERAL_M_S2 = 0.3  # less inertia than this is nothing that contact forces are worth trying for
 KNOTS = 5
 LEAST_RANGE = 1e-3  # of a variable that says anything
 
 
-def quick_effects(scenes: Sequence[DenseWindows], calibration: Calibration) -> tuple[Effect, ...]:
-    """Effects of the catalogue that the measured runs could tell, but those of contact forces."""
-    calibrated = {str(n) for _, s in calibration.held_back for n in np.unique(_labels(s))}
-    labels = tuple(sorted({n for s in scenes for n in new_labels(s.inputs, calibrated)}))
-    longest_s = max(float(scene.time_s[-1]) for scene in scenes)
-    robot = calibration.base.robot
-    every: tuple[Effect, ...] = (
-        WheelScale(),
-        ActuatorLag(),
-        LateralSkid(),
-        Curvature(),
-        TractionLoss(longest_s, _observed_s(scenes)),
-        Terrain(labels),
-        SlopeByIcr(robot.track_width / 2, half_length_m(robot)),
-        InertiaByIndices(robot.mass or 1.0, robot.track_width),
-        TimeOffset(),
-        LeverArm(),
-        HeadingOffset(),
+def offered_effects(scenes: Sequence[DenseWindows], calibration: Calibration) -> tuple[Effect, ...]:
+    """Effects of the catalogue that the measured runs could tell, in its order."""
+    recorded = Recorded(
+        calibration.base,
+        tuple(scene.inputs for scene in scenes),
+        tuple(_observed_s(scene) for scene in scenes),
+        frozenset().union(*(labels_of(scene.inputs) for _, scene in calibration.held_back)),
     )
-    return tuple(e for e in every if told_by(e, scenes, calibration))
+    offered = [effect for form in EFFECTS for effect in form.offered(recorded)]
+    return tuple(e for e in offered if told_by(e, scenes, calibration))
 
 
-def _observed_s(scenes: Sequence[DenseWindows]) -> tuple[float, float]:
-    """Moments before the first of which no window ends, and after the last none begins."""
-    ends_s = [scene.pose_s[scene.windows[:, -1]].min() for scene in scenes]
-    return float(min(ends_s)), float(max(scene.start_s.max() for scene in scenes))
+def quick_effects(scenes: Sequence[DenseWindows], calibration: Calibration) -> tuple[Effect, ...]:
+    """Those that take little time to compute."""
+    return tuple(e for e in offered_effects(scenes, calibration) if not e.slow)
 
 
 def contact_effects(scenes: Sequence[DenseWindows], calibration: Calibration) -> tuple[Effect, ...]:
-    """Effects by the balance of contact forces, where slope or speed ask for them."""
-    found: list[Effect] = []
-    half_width = calibration.base.robot.track_width / 2
-    slope = SlopeByContact(half_width)
-    if told_by(slope, scenes, calibration):
-        found.append(slope)
-    lateral = max(_lateral_m_s2(scene, calibration) for scene in scenes)
-    if lateral > LATERAL_M_S2:
-        found.append(InertiaByContact(half_width))
-    return tuple(found)
+    """Those by the balance of contact forces."""
+    return tuple(e for e in offered_effects(scenes, calibration) if e.slow)
+
+
+def from_a_moment(
+    moments_s: Sequence[float], scenes: Sequence[DenseWindows], calibration: Calibration
+) -> tuple[Effect, ...]:
+    """What else may begin at moments of the runs, where something does: other wheels or terrain."""
+    course = FromAMoment(tuple(map(_observed_s, scenes)), tuple(moments_s))
+    every = (in_course(effect, course) for effect in (WheelScale(), NewIcrs()))
+    return tuple(e for e in every if told_by(e, scenes, calibration))
+
+
+def _observed_s(scene: DenseWindows) -> tuple[float, float]:
+    """When the first window ends and the last one begins."""
+    return float(scene.pose_s[scene.windows[:, -1]].min()), float(scene.start_s.max())
 
 
 def of_angles(scenes: Sequence[DenseWindows]) -> tuple[Residual, ...]:
@@ -93,12 +79,3 @@ def _every_term(functions: int) -> tuple[tuple[str, int], ...]:
 def told_by(effect: Effect, scenes: Sequence[DenseWindows], calibration: Calibration) -> bool:
     """Whether a run has the data that the effect needs."""
     return any(not effect.lacks(scene.inputs, calibration.base) for scene in scenes)
-
-
-def _labels(scene: DenseWindows) -> np.ndarray:
-    return np.array([]) if scene.inputs.terrain is None else scene.inputs.terrain.astype(str)
-
-
-def _lateral_m_s2(scene: DenseWindows, calibration: Calibration) -> float:
-    twist = calibration.base.model.twist(calibration.base.values, scene.inputs)
-    return float(np.percentile(np.abs(twist[:, 0] * twist[:, 2]), 95))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from odometry.effects.catalogue import effect_table
-from odometry.effects.corrected import Added, delay_s
+from odometry.effects.corrected import Added
 from odometry.effects.terrain import SHIFTED, Terrain
 from odometry.effects.time_offset import TimeOffset
 from odometry.gap.locate import Region
@@ -95,8 +95,8 @@ def with_latency(result: GapResult) -> tuple[Added, ...]:
     if abs(latency_s) < LEAST_LATENCY_S:
         return result.added
     others = [one for one in result.added if not isinstance(one.effect, TimeOffset)]
-    offset_s = latency_s + delay_s(result.added)
-    return (*others, Added(TimeOffset(), np.array([offset_s])))
+    offsets_s = [one.values[0] for one in result.added if isinstance(one.effect, TimeOffset)]
+    return (*others, Added(TimeOffset(), np.array([latency_s + sum(offsets_s)])))
 
 
 def _labels(result: GapResult) -> list[str]:

@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.effects.base import Base, Effect
+from odometry.effects.base import Effect
+from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.gap.calibration import Calibration
 from odometry.gap.hypothesis import Hypothesis

@@ -9,7 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.effects.base import Base, Effect, EffectParameter
+from odometry.effects.base import Effect, EffectParameter
+from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.gap.calibration import Calibration
 from odometry.gap.measured import Measured

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from scipy.stats.contingency import association, crosstab
 
-from odometry.effects.base import Base
+from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.gap.calibration import Calibration
 from odometry.gap.config import GapConfig

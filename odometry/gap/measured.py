@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.effects.base import Base
+from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.gap.calibration import Calibration
 from odometry.gap.config import GapConfig

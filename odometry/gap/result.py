@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from odometry.arrays import FloatArray
-from odometry.effects.base import Base
+from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.gap.calibration import Calibration
 from odometry.gap.locate import Location

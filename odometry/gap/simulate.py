@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base import Base
+from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added, corrected_twist, delay_s, seen_poses
 from odometry.windows.dense import DenseWindows
 from odometry.windows.dense_motion import off_measured, poses_at
@@ -16,8 +16,8 @@ def simulated_poses(base: Base, effects: Sequence[Added], scene: DenseWindows) -
     """Poses (M, 3) at the stamps of the measured ones, from the origin; yaw is not wrapped."""
     twists = corrected_twist(base, effects, scene.inputs)
     path = level_path(twists, scene.steps_s, scene.inputs)
-    seen_s = scene.pose_s - base.latency_s - delay_s(effects)
-    return seen_poses(effects, poses_at(path, scene, seen_s))
+    seen_s = scene.pose_s - base.latency_s - delay_s(effects, scene.pose_s)
+    return seen_poses(effects, poses_at(path, scene, seen_s), scene.poses[:, 2])
 
 
 def residuals(base: Base, effects: Sequence[Added], scene: DenseWindows) -> FloatArray:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.effects.base import Base
+from odometry.effects.base_model import Base
 
 LONGEST_LATENCY_S = 1.0
 PARAMETER_SCALE, LATENCY_SCALE_S = 0.01, 0.02

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
-from odometry.effects.base import Base
+from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added, corrected_twist
 from odometry.geometry.angles import wrap
 from odometry.run import UNKNOWN

@@ -38,6 +38,8 @@ class Inputs:
         Turned since the start, left and right; None where the wheel radius is not stated.
     yaw_rate_rad_s : (...) or None
         Of a gyroscope less its bias, for whoever carries the yaw by it; no model reads it.
+    run_number : (...) of int or None
+        Which of several runs a sample is of, from 0; that of one run where absent.
     """
 
     tread_speeds_m_s: FloatArray
@@ -49,6 +51,7 @@ class Inputs:
     heading_rad: FloatArray | None = None
     wheel_angles_rad: FloatArray | None = None
     yaw_rate_rad_s: FloatArray | None = None
+    run_number: IntArray | None = None
 
     def __post_init__(self) -> None:
         speeds = np.asarray(self.tread_speeds_m_s)

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from odometry.effects.base import Base, slip_factors, tread_icrs
+from odometry.effects.base_model import Base, slip_factors, tread_icrs
 from odometry.errors import ParameterError
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs

@@ -5,11 +5,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.effects.base import Base, CommandEffect, MeasurementEffect, MotionEffect
+from odometry.effects.base import CommandEffect, MeasurementEffect, MotionEffect
+from odometry.effects.base_model import Base
 from odometry.effects.catalogue import BY_FORM, EFFECTS, added_effects, effect_table
-from odometry.effects.corrected import Added, corrected_twist, delay_s, seen_poses
+from odometry.effects.corrected import (
+    Added,
+    corrected_twist,
+    delay_s,
+    reported_yaw_rate,
+    seen_poses,
+)
+from odometry.effects.course import FromAMoment, Gradual, InBursts, in_course
 from odometry.effects.residual import Residual
 from odometry.effects.terrain import Terrain
+from odometry.effects.time_offset import TimeOffset
+from odometry.effects.traction_loss import TractionLoss
+from odometry.effects.wheel_scale import WheelScale
 from odometry.errors import ParameterError
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
@@ -24,13 +35,17 @@ from odometry.run import Robot
 ICRS = {"y_left": 0.4, "y_right": -0.5, "x_icr": 0.1}
 ACTS_ON = {"commands": CommandEffect, "motion": MotionEffect, "measurement": MeasurementEffect}
 ONE_OF_EACH = [
-    *(effect() for effect in EFFECTS if effect is not Terrain),
+    *(effect() for effect in EFFECTS if effect not in (Terrain, TractionLoss)),
+    in_course(TractionLoss(), FromAMoment(((2.0, 30.0),))),
+    in_course(TractionLoss(), FromAMoment(((2.0, 30.0), (1.0, 60.0)))),
+    in_course(TractionLoss(), InBursts((((1.0, 2.0), (5.0, 6.0)), ()))),
+    in_course(WheelScale(), Gradual(40.0)),
     Terrain(("ice", "wet grass")),
     Residual("heading", (("v_x", 0), ("omega", 3))),
     Residual("pitch", (("v_y", 1),), True, (-0.1, 0.0, 0.2)),
 ]
 each_effect = pytest.mark.parametrize(
-    "effect", ONE_OF_EACH, ids=lambda effect: f"{effect.name}-{effect.form}"
+    "effect", ONE_OF_EACH, ids=lambda effect: "-".join(effect.key)
 )
 
 
@@ -68,8 +83,10 @@ def test_absent_values_change_nothing(seed, effect):
         corrected_twist(base, effects, inputs), base.model.twist(icr, inputs), atol=1e-9
     )
     poses = rng.uniform(-3, 3, (5, 3))
-    np.testing.assert_allclose(seen_poses(effects, poses), poses, atol=1e-15)
-    assert delay_s(effects) == 0
+    np.testing.assert_allclose(seen_poses(effects, poses, poses[:, 2]), poses, atol=1e-15)
+    assert not delay_s(effects, inputs.time_s).any()
+    rates = rng.normal(size=30)
+    np.testing.assert_array_equal(reported_yaw_rate(effects, rates, inputs), rates)
 
 
 @each_effect
@@ -90,9 +107,9 @@ def test_a_parameter_set_gives_every_effect_back(effect, rng, tmp_path):
 @each_effect
 def test_every_effect_says_what_it_is(effect):
     assert isinstance(effect, ACTS_ON[effect.acts_on])
-    assert BY_FORM[effect.name, effect.form] is type(effect)
-    for words in (effect.equation, effect.source, effect.looks_like, effect.needs):
-        assert words
+    assert BY_FORM[effect.name, effect.form] is type(getattr(effect, "inner", effect))
+    for words in ("in_words", "equation", "source", "looks_like", "remedy", "needs"):
+        assert getattr(effect, words)
     names = [parameter.name for parameter in effect.parameters]
     assert len(set(names)) == len(names) > 0
     for p in effect.parameters:
@@ -109,6 +126,24 @@ def test_starts_lie_within_bounds(effect, bench, rng):
     assert ((starts >= low) & (starts <= high)).all()
 
 
+@pytest.mark.parametrize("course", [FromAMoment(), Gradual(9.0), InBursts()])
+def test_the_measurement_has_no_course_and_no_course_a_second(course):
+    for effect in (TimeOffset(), in_course(WheelScale(), Gradual(9.0))):
+        with pytest.raises(ParameterError, match="has no course in time"):
+            in_course(effect, course)
+
+
+def test_a_set_of_version_0_6_says_a_moment_alone():
+    table = {
+        "name": "traction_loss",
+        "form": "k_m",
+        "parameters": {"k": 0.5, "m": 0.6, "moment": 9},
+    }
+    (found,) = added_effects([table], "here")
+    assert found.effect.course == "from_a_moment"
+    assert found.by_name == table["parameters"]
+
+
 def test_those_that_are_mistaken_for_another_name_one_of_the_catalogue():
     known = {effect.name for effect in EFFECTS}
     assert {other for effect in EFFECTS for other in effect.alike} <= known
@@ -121,6 +156,7 @@ def test_the_names_that_the_answer_may_have():
     assert set(names) == {
         *("slope_sliding", "inertia", "curvature", "wheel_scale", "terrain", "traction_loss"),
         *("lateral_skid", "time_offset", "actuator_lag", "lever_arm", "heading_offset"),
+        *("command_delay", "drive_limit", "tread_slip", "gyroscope_error", "reference_fault"),
     }
 
 
@@ -174,6 +210,10 @@ def test_the_source_of_an_effect_may_be_stated():
             },
             r"expected increasing numbers",
         ),
+        ({**SCALE, "course": "at_night"}, r"course = 'at_night', expected one of from_a_moment"),
+        ({**SCALE, "course": "gradual", "full_s": "long"}, r"full_s = 'long', expected a finite"),
+        ({**SCALE, "course": "in_bursts", "events_s": 3}, r"events_s = 3, expected a list"),
+        ({**SCALE, "course": "in_bursts", "events_s": [[[1]]]}, r"events_s = .*expected a finite"),
         (
             {"name": "terrain", "form": "icr_by_label", "labels": "ice", "parameters": {}},
             r"expected a list of names",

@@ -112,8 +112,10 @@ def test_the_measurement_is_no_part_of_the_motion(bench, rng):
 def test_a_sensor_is_moved_then_turned():
     robot = np.array([[1.0, 2.0, np.pi / 2]])
     seen = [[0.9, 2.3, np.pi / 2 + 0.25]]
-    np.testing.assert_allclose(seen_poses([SCALE, ARM, TURNED, LATE], robot), seen, atol=1e-15)
-    np.testing.assert_allclose(delay_s([LATE, ARM, LATE]), 0.3)
+    np.testing.assert_allclose(
+        seen_poses([SCALE, ARM, TURNED, LATE], robot, robot[:, 2]), seen, atol=1e-15
+    )
+    np.testing.assert_allclose(delay_s([LATE, ARM, LATE], np.zeros(2)), 0.3)
 
 
 def test_under_effects_on_commands_alone_the_derivative_is_the_base_s(bench, rng):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.effects.base import Base
+from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added, Corrected, corrected_twist
 from odometry.effects.curvature import Curvature
 from odometry.models.catalogue import MODELS

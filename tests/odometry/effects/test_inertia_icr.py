@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from odometry.effects.base import Base
+from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added, corrected_twist
 from odometry.effects.inertia_icr import InertiaByIndices
 from odometry.errors import ParameterError

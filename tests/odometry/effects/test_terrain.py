@@ -1,9 +1,10 @@
 import numpy as np
 import pytest
 
-from odometry.effects.base import Base
+from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added, corrected_twist
-from odometry.effects.terrain import Terrain, new_labels
+from odometry.effects.recorded import Recorded, labels_of
+from odometry.effects.terrain import NewIcrs, Terrain
 from odometry.errors import ParameterError
 from odometry.models.catalogue import MODELS
 from odometry.models.icr import icr_twist
@@ -14,7 +15,7 @@ EFFECT = Added(
 )
 
 
-def test_each_ground_has_its_own_icrs(bench, rng):
+def test_each_terrain_has_its_own_icrs(bench, rng):
     inputs = bench.drive(rng)
     found = corrected_twist(bench.base, [EFFECT], inputs)
     speeds, icrs, alphas = inputs.tread_speeds_m_s, bench.values[:3], bench.values[3:]
@@ -28,18 +29,32 @@ def test_each_ground_has_its_own_icrs(bench, rng):
     np.testing.assert_allclose(found, expected, atol=1e-14)
 
 
-def test_its_parameters_are_named_after_the_grounds():
+def test_its_parameters_are_named_after_the_terrains():
     names = [parameter.name for parameter in EFFECT.effect.parameters]
     shifted = ("y_left", "y_right", "x_icr", "alpha_left", "alpha_right")
     assert names == [f"{name}_{g}" for g in ("ice", "mud") for name in shifted]
 
 
-def test_grounds_that_the_calibration_has_not_seen(bench, rng):
-    inputs = bench.drive(rng)
-    assert new_labels(inputs, {"sand"}) == ("ice",)
-    assert new_labels(inputs, set()) == ("ice", "sand")
-    assert new_labels(Inputs(np.zeros((2, 2)), terrain=np.array(["unknown", ""])), set()) == ()
-    assert new_labels(Inputs(np.zeros(2)), set()) == ()
+def test_new_terrains_are_offered_together_and_known_ones_each(bench, rng):
+    """One that the calibration has seen may have changed since."""
+    recorded = Recorded(bench.base, (bench.drive(rng),), ((1.0, 4.0),), frozenset({"sand"}))
+    assert [effect.labels for effect in Terrain.offered(recorded)] == [("ice",), ("sand",)]
+    nowhere = Recorded(bench.base, (bench.drive(rng),), ((1.0, 4.0),))
+    assert [effect.labels for effect in Terrain.offered(nowhere)] == [("ice", "sand")]
+
+
+def test_labels_that_name_no_terrain_are_none():
+    inputs = Inputs(np.zeros((3, 2)), terrain=np.array(["unknown", "", "mud"]))
+    assert labels_of(inputs) == {"mud"}
+    assert labels_of(Inputs(np.zeros(2))) == set()
+
+
+def test_a_set_for_whole_runs_shifts_every_sample(bench, rng):
+    inputs, shift = bench.drive(rng), np.array([0.2, -0.1, 0.05, -0.1, 0.02])
+    found = corrected_twist(bench.base, [Added(NewIcrs(), shift)], inputs)
+    moved = bench.values + shift
+    expected = icr_twist(moved[:3], moved[3:] * inputs.tread_speeds_m_s)
+    np.testing.assert_allclose(found, expected, atol=1e-14)
 
 
 def test_what_it_lacks(bench, rng):

@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 
 from odometry.effects.residual import ANGLES, COMPONENTS, HARMONICS, variables_of
-from odometry.gap.candidates import KNOTS, of_angles, of_variables, quick_effects
+from odometry.gap.candidates import (
+    KNOTS,
+    contact_effects,
+    of_angles,
+    of_variables,
+    quick_effects,
+)
+
+LOSS = ("traction_loss", "k_m", "from_a_moment")
 
 
 @pytest.fixture(scope="module")
@@ -53,9 +61,15 @@ def test_what_does_not_vary_is_left_out(scenes, share):
 
 
 def test_a_moment_lies_after_one_window_and_before_another(scenes, known):
-    """Of any run: 60 s are the shorter one."""
-    (loss,) = [e for e in quick_effects(scenes, known) if e.name == "traction_loss"]
-    spans_s = [scene.pose_s[window[[0, -1]]] for scene in scenes for window in scene.windows]
-    assert loss.observed_s == (min(end for _, end in spans_s), max(start for start, _ in spans_s))
-    assert not loss.is_meant(np.array([0.8, 0.8, 1.5]))
-    assert loss.is_meant(np.array([0.8, 0.8, 100.0]))
+    """Of each run."""
+    courses = [e for e in quick_effects(scenes, known) if e.key == LOSS]
+    spans_s = [scene.pose_s[scene.windows[:, [0, -1]]] for scene in scenes]
+    expected = tuple((float(of[:, 1].min()), float(of[:, 0].max())) for of in spans_s)
+    assert [loss.in_time.observed_s for loss in courses] == [expected]
+
+
+def test_forms_of_contact_forces_are_apart(scenes, known):
+    quick, slow = quick_effects(scenes, known), contact_effects(scenes, known)
+    assert {e.form for e in slow} == {"contact"}
+    assert "contact" not in {e.form for e in quick}
+    assert [e.key for e in slow if e.name == "slope_sliding"]

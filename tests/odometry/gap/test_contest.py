@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from scipy.stats import ttest_1samp
 
-from odometry.effects.base import Base
+from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
+from odometry.effects.course import FromAMoment, in_course
 from odometry.effects.heading_offset import HeadingOffset
 from odometry.effects.slope_icr import SlopeByIcr
 from odometry.effects.traction_loss import TractionLoss
@@ -106,7 +107,7 @@ def test_an_effect_within_its_uncertainty_of_none_is_not_there():
 @pytest.mark.parametrize(("moment", "there"), [(0.4, False), (2.1, True), (159.9, False)])
 def test_a_loss_from_a_moment_at_an_end_of_the_runs_is_not_there(moment, there):
     """However sure its shares are."""
-    loss = TractionLoss(160.0, (2.0, 158.0))
+    loss = in_course(TractionLoss(), FromAMoment(((2.0, 158.0),)))
     assert is_there(fitted(loss, [0.8, 0.7, moment], np.eye(3) * 1e-6)) == there
 
 

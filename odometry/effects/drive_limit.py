@@ -1,0 +1,137 @@
+"""Limits of a drive: treads that cannot do what was commanded."""
+
+from math import inf
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.effects.base import CommandEffect, Effect, EffectParameter
+from odometry.effects.base_model import Base
+from odometry.effects.held_commands import held_spans
+from odometry.effects.recorded import Recorded
+from odometry.models.inputs import Inputs
+
+EDGE_M_S = 0.005  # over which a command begins to act: a derivative sees samples on the edge
+HARDEST_M_S2 = 20.0
+
+
+class DriveLimit(CommandEffect):
+    """Shared by all: recorded speeds are commands."""
+
+    name = "drive_limit"
+    source = "definition; recorded speeds are commands"
+    remedy = "record measured wheel speeds, or keep the limit in the model"
+
+
+class Deadband(DriveLimit):
+    """Commands below a speed move nothing; others act in full."""
+
+    form = "deadband"
+    in_words = "commands too small to move the robot"
+    equation = "v -> 0 where |v| < least"
+    looks_like = "a robot that stands, or turns about one tread, where it was told to creep"
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`."""
+        return (EffectParameter("least", "m/s", 0.0, 0.5, 0.05, 0.005),)
+
+    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the face
+        """See `Effect.starts`: the cost has steps."""
+        return np.array([[0.03], [0.06], [0.1], [0.16], [0.25]])
+
+    def tread_speeds(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """See `CommandEffect.tread_speeds`."""
+        speeds = inputs.tread_speeds_m_s
+        if values[0] <= 0:
+            return speeds
+        acts = np.clip((np.abs(speeds) - values[0]) / EDGE_M_S + 0.5, 0.0, 1.0)
+        return np.asarray(acts * speeds)
+
+
+class Saturation(DriveLimit):
+    """Treads have a highest speed.
+
+    Parameters
+    ----------
+    fastest_m_s : float
+        The fastest that was recorded: a limit above it does nothing.
+    """
+
+    form = "saturation"
+    in_words = "commands faster than the drives can turn"
+    equation = "v -> sign(v) min(|v|, fastest)"
+    looks_like = "fast stretches that come out short, slow ones that fit"
+
+    def __init__(self, fastest_m_s: float = 20.0) -> None:
+        self.fastest_m_s = fastest_m_s
+
+    @classmethod
+    def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
+        """Below the fastest speed recorded."""
+        return (cls(recorded.fastest_m_s),)
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`."""
+        most = self.fastest_m_s
+        return (EffectParameter("fastest", "m/s", 0.0, most, 0.9 * most, 0.01, most),)
+
+    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the face
+        """See `Effect.starts`."""
+        return self.fastest_m_s * np.array([[0.95], [0.8], [0.6]])
+
+    def tread_speeds(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """See `CommandEffect.tread_speeds`."""
+        return np.clip(inputs.tread_speeds_m_s, -values[0], values[0])
+
+
+class RateLimit(DriveLimit):
+    """Treads speed up and slow down no faster than their drives can."""
+
+    form = "rate"
+    in_words = "commands that change faster than the drives can follow"
+    equation = "|dv/dt| <= most"
+    looks_like = "errors after large changes of speed, few after small ones"
+    needs = "tread speeds that change in steps, and a measured pose"
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`."""
+        return (EffectParameter("most", "m/s^2", 0.05, HARDEST_M_S2, 1.0, 0.05, None),)
+
+    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the face
+        """See `Effect.starts`."""
+        return np.array([[0.3], [0.8], [2.0]])
+
+    def tread_speeds(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """See `CommandEffect.tread_speeds`; the mean over each sample, exact for held commands."""
+        speeds = inputs.tread_speeds_m_s
+        if inputs.time_s is None:
+            return speeds
+        held_s, starts = held_spans(inputs.time_s)
+        limited = [
+            _limited(tread.tolist(), held_s.tolist(), starts.tolist(), float(values[0]))
+            for tread in speeds.T
+        ]
+        return np.stack(limited, axis=-1)
+
+
+def _limited(
+    commands: list[float], held_s: list[float], starts: list[bool], most: float
+) -> FloatArray:
+    """Mean speeds (N,) of a tread that goes towards each held command at `most` [m/s^2]."""
+    means, speed = [], 0.0
+    for command, span_s, new in zip(commands, held_s, starts, strict=True):
+        if new:
+            speed = command
+        change = command - speed
+        needed_s = abs(change) / most if most < inf else 0.0
+        if needed_s >= span_s:
+            after = speed + (most * span_s if change > 0 else -most * span_s)
+            means.append((speed + after) / 2)
+            speed = after
+        else:
+            means.append(command - change * needed_s / 2 / span_s)
+            speed = command
+    return np.array(means)

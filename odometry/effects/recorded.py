@@ -1,0 +1,63 @@
+"""What was recorded of the measured runs, of which effects may be told."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from odometry.effects.base_model import Base
+from odometry.models.inputs import Inputs
+from odometry.run import UNKNOWN
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """Measured runs as the effects see them.
+
+    Attributes
+    ----------
+    base : Base
+        The model believed, and its robot.
+    inputs : tuple of Inputs
+        Of each run (N,).
+    observed_s : tuple of (float, float)
+        Of each run: when its first window ends and its last one begins, in run time.
+    calibrated : frozenset of str
+        Terrains on which the base was identified.
+    """
+
+    base: Base
+    inputs: tuple[Inputs, ...]
+    observed_s: tuple[tuple[float, float], ...]
+    calibrated: frozenset[str] = frozenset()
+
+    @property
+    def longest_s(self) -> float:
+        """Run time at which the longest run ends."""
+        return max(float(np.max(of.time_s)) for of in self.inputs if of.time_s is not None)
+
+    @property
+    def fastest_m_s(self) -> float:
+        """Of any tread."""
+        return max(float(np.abs(of.tread_speeds_m_s).max()) for of in self.inputs)
+
+    @cached_property
+    def labels(self) -> tuple[str, ...]:
+        """Terrains that the runs name."""
+        return tuple(sorted(set().union(*map(labels_of, self.inputs))))
+
+    @cached_property
+    def lateral_m_s2(self) -> float:
+        """Lateral acceleration that one sample in twenty of some run exceeds, by the base."""
+        return max(self._lateral_m_s2(of) for of in self.inputs)
+
+    def _lateral_m_s2(self, inputs: Inputs) -> float:
+        twist = self.base.model.twist(self.base.values, inputs)
+        return float(np.percentile(np.abs(twist[:, 0] * twist[:, 2]), 95))
+
+
+def labels_of(inputs: Inputs) -> set[str]:
+    """Terrains that a recording names."""
+    if inputs.terrain is None:
+        return set()
+    return set(np.unique(np.asarray(inputs.terrain).astype(str))) - {UNKNOWN, ""}

@@ -1,0 +1,49 @@
+"""Faults of the reference sensor that follow the heading."""
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.effects.base import EffectParameter, MeasurementEffect
+
+ROUNDS = 50  # of the inverse: each shrinks its error by the size of the distortion
+
+
+class Compass(MeasurementEffect):
+    """The measured yaw is bent by iron on the robot: an error of one wave a turn."""
+
+    name = "reference_fault"
+    form = "compass"
+    in_words = "a compass that is bent by iron"
+    equation = "yaw -> yaw + a cos(yaw) + b sin(yaw)"
+    source = "hard-iron error, to first order"
+    looks_like = "turns that come out short towards one direction and long towards the opposite"
+    remedy = "calibrate the compass on the robot, away from steel and motors"
+    of_reference = True
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`; bounds keep the error less than one turn's own."""
+        return (
+            EffectParameter("a", "rad", -0.6, 0.6, 0.0, 0.01),
+            EffectParameter("b", "rad", -0.6, 0.6, 0.0, 0.01),
+        )
+
+    def seen(
+        self, values: FloatArray, poses: FloatArray, measured_yaw_rad: FloatArray
+    ) -> FloatArray:
+        """See `MeasurementEffect.seen`: the error at the true heading, which follows from yaw."""
+        bent = np.zeros_like(poses)
+        bent[:, 2] = measured_yaw_rad - _true_yaw(values, measured_yaw_rad)
+        return np.asarray(poses + bent)
+
+    def robot_poses(self, values: FloatArray, seen: FloatArray) -> FloatArray:
+        """See `MeasurementEffect.robot_poses`."""
+        return np.concatenate([seen[:, :2], _true_yaw(values, seen[:, 2])[:, None]], axis=1)
+
+
+def _true_yaw(values: FloatArray, measured_rad: FloatArray) -> FloatArray:
+    """Yaw (M,) whose bent one is (M,), by fixed-point iteration: |a| + |b| < 1.2 of slope."""
+    yaw_rad = measured_rad
+    for _ in range(ROUNDS):
+        yaw_rad = measured_rad - values[0] * np.cos(yaw_rad) - values[1] * np.sin(yaw_rad)
+    return np.asarray(yaw_rad)

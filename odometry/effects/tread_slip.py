@@ -1,0 +1,91 @@
+"""Slip of a tread that depends on its own motion."""
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.effects.base import CommandEffect, EffectParameter
+from odometry.effects.held_commands import held_spans
+from odometry.models.inputs import Inputs
+
+SMOOTHED_S = 0.2  # over which the acceleration of a tread is taken
+
+
+class TreadSlip(CommandEffect):
+    """Shared by all: the same law for both treads, each by its own speed."""
+
+    name = "tread_slip"
+    source = "longitudinal slip as a share of the tread's speed: Wong, Theory of Ground Vehicles"
+    remedy = "keep it in the model, or drive at even speed"
+
+
+class SlipBySpeed(TreadSlip):
+    """A share of the speed is lost that grows with the speed."""
+
+    form = "by_speed"
+    in_words = "slip that grows with the speed of a tread"
+    equation = "v -> v (1 - growth |v|)"
+    looks_like = "fast stretches that come out short"
+    needs = "stretches at different speeds"
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`."""
+        return (EffectParameter("growth", "s/m", -1.0, 1.0, 0.0, 0.01),)
+
+    def tread_speeds(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """See `CommandEffect.tread_speeds`."""
+        speeds = inputs.tread_speeds_m_s
+        return np.asarray(speeds * (1 - values[0] * np.abs(speeds)))
+
+
+class SlipByDirection(TreadSlip):
+    """A tread that turns backward slips by another share than one that turns forward."""
+
+    form = "by_direction"
+    in_words = "slip that differs forward and backward"
+    equation = "v -> c_backward v where v < 0"
+    looks_like = "distances that fit forward and not backward, spins about a point aside"
+    needs = "treads that turn forward and backward"
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`."""
+        return (EffectParameter("c_backward", "", 0.2, 2.0, 1.0, 0.01, 1.0),)
+
+    def tread_speeds(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """See `CommandEffect.tread_speeds`."""
+        speeds = inputs.tread_speeds_m_s
+        return np.where(speeds < 0, values[0] * speeds, speeds)
+
+
+class SlipByAcceleration(TreadSlip):
+    """A share of the speed is lost that grows with how hard a tread speeds up."""
+
+    form = "by_acceleration"
+    in_words = "slip where a tread speeds up or brakes"
+    equation = "v -> v (1 - growth d|v|/dt)"
+    looks_like = "errors while speed changes, of one sign in starts and of the other in stops"
+    needs = "starts and stops"
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`."""
+        return (EffectParameter("growth", "s^2/m", -2.0, 2.0, 0.0, 0.02),)
+
+    def tread_speeds(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """See `CommandEffect.tread_speeds`; the acceleration is a difference over 0.2 s."""
+        speeds = inputs.tread_speeds_m_s
+        if inputs.time_s is None:
+            return speeds
+        held_s, starts = held_spans(inputs.time_s)
+        middle_s = np.cumsum(held_s) - held_s / 2
+        changed = np.empty_like(speeds)
+        for rows in np.split(np.arange(len(speeds)), np.flatnonzero(starts)[1:]):
+            at_s, size = middle_s[rows], np.abs(speeds[rows])
+            for tread in (0, 1):
+                ahead, behind = (
+                    np.interp(at_s + side * SMOOTHED_S / 2, at_s, size[:, tread])
+                    for side in (1, -1)
+                )
+                changed[rows, tread] = (ahead - behind) / SMOOTHED_S
+        return np.asarray(speeds * np.clip(1 - values[0] * changed, 0.0, 2.0))

@@ -1,0 +1,36 @@
+"""Faults of the gyroscope and of the reference."""
+
+import numpy as np
+import pytest
+
+from odometry.effects.gyroscope_error import GyroscopeError
+from odometry.effects.reference_fault import Compass
+from odometry.models.inputs import Inputs
+
+
+def test_a_gyroscope_is_scaled_and_drifts():
+    inputs = Inputs(np.zeros((3, 2)), time_s=np.array([0.0, 10.0, 20.0]))
+    rates = np.array([1.0, 0.0, -2.0])
+    found = GyroscopeError().gyroscope(np.array([1.1, 1e-3]), rates, inputs)
+    np.testing.assert_allclose(found, [1.1, 0.01, -2.18], atol=1e-15)
+    assert GyroscopeError().lacks(inputs, None) == "a gyroscope"
+
+
+@pytest.mark.parametrize("bent", [(0.1, 0.0), (0.0, -0.3), (0.6, 0.6)])
+def test_a_compass_is_bent_by_one_wave_a_turn_and_back(rng, bent):
+    poses = rng.uniform(-9, 9, (30, 3))
+    a, b = bent
+    seen = poses.copy()
+    seen[:, 2] += a * np.cos(poses[:, 2]) + b * np.sin(poses[:, 2])
+    effect, values = Compass(), np.array(bent)
+    np.testing.assert_allclose(effect.seen(values, poses, seen[:, 2]), seen, atol=1e-3)
+    np.testing.assert_allclose(effect.robot_poses(values, seen), poses, atol=1e-3)
+
+
+def test_a_drive_that_began_at_the_origin_is_bent_by_its_true_heading():
+    """Simulated yaw is off by 1 rad; the error is that of the heading that was measured."""
+    true_yaw = np.linspace(0, 6, 7)
+    measured = true_yaw + 0.2 * np.sin(true_yaw)
+    simulated = np.column_stack([np.zeros((7, 2)), true_yaw - 1.0])
+    found = Compass().seen(np.array([0.0, 0.2]), simulated, measured)
+    np.testing.assert_allclose(found[:, 2] - simulated[:, 2], 0.2 * np.sin(true_yaw), atol=1e-9)
