@@ -38,6 +38,8 @@ class Predictor:
         What the windows left open; the model can be evaluated all the same.
     notes : tuple of str
         What else a reader should know of the identification.
+    not_identified : tuple of str
+        Why `identify` refuses the parameters: they predict, and are no answer.
     """
 
     model: KinematicModel
@@ -47,6 +49,7 @@ class Predictor:
     source: str
     undetermined: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    not_identified: tuple[str, ...] = ()
 
     @property
     def packed(self) -> FloatArray:
@@ -134,12 +137,6 @@ class IdentifiedModel(Candidate):
             window_config=config.training,
             solver_config=config.solver,
         )(windows, near)
-        refused = refusals(fit)
-        if refused:
-            raise IdentificationError(
-                f"it does not explain what was recorded: {'; '.join(refused)}; see "
-                "`terrain-odometry check`"
-            )
         return Predictor(
             self.model,
             fit.values,
@@ -149,6 +146,7 @@ class IdentifiedModel(Candidate):
             f"{split.training_names}",
             tuple(open_.words() for open_ in fit.undetermined),
             tuple(f"{name} ended at the edge of its search range" for name in fit.at_bound),
+            refusals(fit),
         )
 
 

@@ -103,6 +103,7 @@ def compare(
         config=config,
         by_training_horizon=by_training_horizon,
         notes=notes,
+        not_identified=_not_identified([*split_models, *on_all]),
     )
 
 
@@ -185,15 +186,29 @@ def _differences(
     return found
 
 
+def _not_identified(
+    split_models: Sequence[SplitModels],
+) -> dict[tuple[str, str, str], tuple[str, ...]]:
+    """By robot, terrain and model, why `identify` refuses parameters of some identification."""
+    return {
+        (each.split.robot, each.split.terrain, model): predictor.not_identified
+        for each in split_models
+        for model, predictor in each.predictors.items()
+        if predictor.not_identified
+    }
+
+
 def _parameter_sets(
     split_models: Sequence[SplitModels], models: Sequence[str]
 ) -> dict[tuple[str, str], ParameterSet]:
-    """One set a robot and model, one table a terrain."""
+    """One set a robot and model, one table a terrain; none of what `identify` would refuse."""
     tables: dict[tuple[str, str], dict[str, TerrainParameters]] = {}
     for each in split_models:
-        for model in (model for model in models if model in each.predictors):
-            of_model = tables.setdefault((each.split.robot, model), {})
-            of_model[each.split.terrain] = each.predictors[model].to_parameters()
+        for model in models:
+            predictor = each.predictors.get(model)
+            if predictor is not None and not predictor.not_identified:
+                of_model = tables.setdefault((each.split.robot, model), {})
+                of_model[each.split.terrain] = predictor.to_parameters()
     return {
         (robot, model): ParameterSet(of_model, {"name": robot})
         for (robot, model), of_model in tables.items()

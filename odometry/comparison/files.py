@@ -142,6 +142,7 @@ def _summary(summary: Summary) -> dict[str, Any]:
             for quantity, name in COLUMNS.items()
         },
         "reasons": list(summary.reasons),
+        "not_identified": list(summary.not_identified),
     }
 
 
@@ -160,6 +161,7 @@ def _split(models: SplitModels) -> dict[str, Any]:
                 "source": predictor.source,
                 "undetermined": list(predictor.undetermined),
                 "notes": list(predictor.notes),
+                "not_identified": list(predictor.not_identified),
             }
             for model, predictor in models.predictors.items()
         },

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.evaluation import Evaluation, NotEvaluated
@@ -34,12 +34,14 @@ class Comparison:
         Over the horizons that were asked for.
     fitness : tuple of RunFitness
     parameters : Mapping of (robot, model) to ParameterSet
-        Of the identified models, from all that they may see.
+        Of the identified models, from all that they may see; without those of `not_identified`.
     config : ComparisonConfig
     by_training_horizon : tuple of HorizonErrors
         Empty where no training horizons were asked for.
     notes : tuple of str
         What a reader should know of the runs.
+    not_identified : Mapping of (robot, terrain, model) to tuple of str
+        Why `identify` refuses the parameters of these models, which are evaluated all the same.
     """
 
     models: tuple[str, ...]
@@ -53,6 +55,7 @@ class Comparison:
     config: ComparisonConfig
     by_training_horizon: tuple[HorizonErrors, ...] = ()
     notes: tuple[str, ...] = ()
+    not_identified: Mapping[tuple[str, str, str], tuple[str, ...]] = field(default_factory=dict)
 
     @property
     def robots_and_terrains(self) -> tuple[tuple[str, str], ...]:
@@ -85,7 +88,13 @@ class Comparison:
     def summaries_at(self, place: Place) -> tuple[Summary, ...]:
         """One summary a model; its `windows` is 0 where it was not evaluated."""
         evaluations = self.evaluations_at(place)
-        return tuple(summarise(place, evaluations, self.not_evaluated, m) for m in self.models)
+        return tuple(
+            replace(
+                summarise(place, evaluations, self.not_evaluated, model),
+                not_identified=self.not_identified.get((place.robot, place.terrain, model), ()),
+            )
+            for model in self.models
+        )
 
     def remarks_at(self, place: Place, summary: Summary) -> tuple[str, ...]:
         """Why a model was not evaluated on some run, what was left open, and what else to know."""
@@ -102,7 +111,7 @@ class Comparison:
             for words in open_[:1]
         ]
         notes = dict.fromkeys(note for fit in fits for note in fit.notes)
-        return (*summary.reasons, *left_open, *notes)
+        return (*summary.reasons, *summary.not_identified, *left_open, *notes)
 
     def horizon_errors_of(self, robot: str, terrain: str) -> dict[str, tuple[HorizonErrors, ...]]:
         """Errors by model, over all training and evaluation horizons."""

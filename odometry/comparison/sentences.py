@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import permutations
 
 from odometry.comparison.statistics import Difference, between
-from odometry.comparison.summary import QUANTITIES, Place, Summary
+from odometry.comparison.summary import NOT_IDENTIFIED, QUANTITIES, Place, Summary
 from odometry.comparison.whole_runs import RunFitness
 from odometry.evaluation.fitness import Fitness, pooled_fitness
 
@@ -24,25 +24,29 @@ def sentences(
     ----------
     place : Place
     summaries : sequence of Summary
-        Of all models at the place.
+        Of all models at the place; only those whose parameters are identified are ranked.
     found : sequence of Difference
         Of the place.
     fitness : sequence of RunFitness
         Of the runs of the place.
     """
-    complete = _complete(summaries)
+    ranked = _ranked(summaries)
+    unranked = any(summary.not_identified for summary in summaries)
+    others = "every other ranked model" if unranked else "every other model"
     said = []
     for quantity in QUANTITIES:
         of_quantity = [each for each in found if each.quantity == quantity]
-        if len(complete) > 1:
-            said += _best(place, quantity, complete, of_quantity)
+        if len(ranked) > 1:
+            said += _best(place, quantity, ranked, of_quantity, others)
     said += contradictions(place, summaries, fitness)
-    if EFFECTIVE_WIDTH in complete and len(complete) > 1:
-        said += _effective_width(place, list(complete), found, fitness)
+    if EFFECTIVE_WIDTH in ranked and len(ranked) > 1:
+        said += _effective_width(place, list(ranked), found, fitness)
     for summary in summaries:
         if not summary.complete:
             reasons = "; ".join(summary.reasons)
             said.append(f"{summary.model} is not in this comparison on {place.terrain}: {reasons}.")
+        elif summary.not_identified:
+            said.append(_not_identified(place, summary, ranked))
     return said
 
 
@@ -50,48 +54,70 @@ def contradictions(
     place: Place, summaries: Sequence[Summary], fitness: Sequence[RunFitness]
 ) -> list[str]:
     """Where medians, or errors of whole runs, order models otherwise than mean window errors."""
-    complete = _complete(summaries)
+    ranked = _ranked(summaries)
     return [
-        *(said for quantity in QUANTITIES for said in _medians(place, quantity, complete)),
-        *_whole_runs(place, complete, fitness),
+        *(said for quantity in QUANTITIES for said in _medians(place, quantity, ranked)),
+        *_whole_runs(place, ranked, fitness),
     ]
 
 
-def _complete(summaries: Sequence[Summary]) -> dict[str, Summary]:
-    return {summary.model: summary for summary in summaries if summary.complete}
+def _ranked(summaries: Sequence[Summary]) -> dict[str, Summary]:
+    """Models evaluated on all windows, with parameters that `identify` would write."""
+    return {summary.model: summary for summary in summaries if summary.ranked}
+
+
+def _not_identified(place: Place, summary: Summary, ranked: Mapping[str, Summary]) -> str:
+    """The errors of a model whose parameters are no answer, beside the best that is one."""
+    errors = []
+    for quantity, unit in QUANTITIES.items():
+        said = f"{summary.means[quantity]:.4f} {unit} in {quantity}"
+        if ranked:
+            best = min(ranked.values(), key=lambda each: each.means[quantity])
+            said += f" ({best.model}, the least of those that are ranked: "
+            said += f"{best.means[quantity]:.4f})"
+        errors.append(said)
+    return (
+        f"{summary.model} is not ranked, and its parameters are not written: "
+        f"{'; '.join(summary.not_identified)} ({NOT_IDENTIFIED}). It predicts all the same, over "
+        f"{place.horizon_m:g} m on {place.terrain}: {' and '.join(errors)}."
+    )
 
 
 def _best(
-    place: Place, quantity: str, complete: Mapping[str, Summary], found: Sequence[Difference]
+    place: Place,
+    quantity: str,
+    ranked: Mapping[str, Summary],
+    found: Sequence[Difference],
+    others: str,
 ) -> list[str]:
     where = f"over {place.horizon_m:g} m on {place.terrain} in {quantity}"
-    best = min(complete, key=lambda model: complete[model].means[quantity])
-    error = f"{complete[best].means[quantity]:.4f} {QUANTITIES[quantity]}"
+    best = min(ranked, key=lambda model: ranked[model].means[quantity])
+    error = f"{ranked[best].means[quantity]:.4f} {QUANTITIES[quantity]}"
     tied = [
         f"{model} (difference {difference.words()})"
-        for model in complete
+        for model in ranked
         if (difference := between(found, best, model)) is not None
         and difference.interval.holds_zero
     ]
     if not tied:
-        return [f"{best} errs least {where}, {error}; every other model errs more."]
+        return [f"{best} errs least {where}, {error}; {others} errs more."]
     return [
         f"{best} errs least {where}, {error}.",
         f"{best} cannot be distinguished {where} from {'; '.join(tied)}.",
     ]
 
 
-def _medians(place: Place, quantity: str, complete: Mapping[str, Summary]) -> list[str]:
+def _medians(place: Place, quantity: str, ranked: Mapping[str, Summary]) -> list[str]:
     """The pair of models whose order differs most between mean and median."""
     ratios = {
-        (first, second): complete[second].medians[quantity] / complete[first].medians[quantity]
-        for first, second in permutations(complete, 2)
-        if complete[first].means[quantity] < complete[second].means[quantity]
-        and complete[second].medians[quantity] < CLEARLY_LESS * complete[first].medians[quantity]
+        (first, second): ranked[second].medians[quantity] / ranked[first].medians[quantity]
+        for first, second in permutations(ranked, 2)
+        if ranked[first].means[quantity] < ranked[second].means[quantity]
+        and ranked[second].medians[quantity] < CLEARLY_LESS * ranked[first].medians[quantity]
     }
     if not ratios:
         return []
-    first, second = (complete[model] for model in min(ratios, key=lambda pair: ratios[pair]))
+    first, second = (ranked[model] for model in min(ratios, key=lambda pair: ratios[pair]))
     return [
         f"Mean and median disagree on {place.terrain} in {quantity}: {first.model} errs less than "
         f"{second.model} by the mean ({first.means[quantity]:.4f} against "
@@ -102,19 +128,19 @@ def _medians(place: Place, quantity: str, complete: Mapping[str, Summary]) -> li
 
 
 def _whole_runs(
-    place: Place, complete: Mapping[str, Summary], fitness: Sequence[RunFitness]
+    place: Place, ranked: Mapping[str, Summary], fitness: Sequence[RunFitness]
 ) -> list[str]:
     """Models that err less than others over windows, and more on whole runs."""
-    of_all = _whole_runs_of_all(list(complete), fitness)
+    of_all = _whole_runs_of_all(list(ranked), fitness)
     if not of_all:
         return []
-    pooled = _pooled(complete, of_all)
+    pooled = _pooled(ranked, of_all)
     said = []
-    for model, summary in complete.items():
+    for model, summary in ranked.items():
         better = [
             f"{other} ({pooled[other]:.3g}; on {_lost(model, other, of_all)})"
-            for other in complete
-            if summary.means["translation"] < complete[other].means["translation"]
+            for other in ranked
+            if summary.means["translation"] < ranked[other].means["translation"]
             and pooled[other] < CLEARLY_LESS * pooled[model]
         ]
         if better:

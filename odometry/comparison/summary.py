@@ -11,6 +11,7 @@ from odometry.windows.window_errors import WindowErrors
 
 # Quantity to unit. Angles are degrees in everything that a comparison states.
 QUANTITIES = {"translation": "m per m", "rotation": "degrees per m"}
+NOT_IDENTIFIED = "at a bound: parameters not identified"
 COLUMNS = {"translation": "translation_m_per_m", "rotation": "rotation_deg_per_m"}  # in files
 
 
@@ -55,6 +56,8 @@ class Summary:
     quartiles : Mapping of quantity to (3,)
     reasons : tuple of str
         Why it was not evaluated on some run.
+    not_identified : tuple of str
+        Why `identify` refuses its parameters; its errors stand all the same.
     """
 
     place: Place
@@ -66,6 +69,12 @@ class Summary:
     means: dict[str, float]
     quartiles: dict[str, FloatArray]
     reasons: tuple[str, ...]
+    not_identified: tuple[str, ...] = ()
+
+    @property
+    def ranked(self) -> bool:
+        """Whether it may be named as the model to take."""
+        return self.complete and not self.not_identified
 
     @property
     def medians(self) -> dict[str, float]:

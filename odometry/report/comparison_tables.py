@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.comparison.result import Comparison
 from odometry.comparison.statistics import Difference
-from odometry.comparison.summary import Place, Summary
+from odometry.comparison.summary import NOT_IDENTIFIED, Place, Summary
 from odometry.report.html import Grid
 
 
@@ -17,7 +17,7 @@ def error_grid(comparison: Comparison) -> Grid:
             place.robot,
             place.terrain,
             f"{place.horizon_m:g}",
-            summary.model,
+            f"{summary.model} ({NOT_IDENTIFIED})" if summary.not_identified else summary.model,
             str(summary.windows),
             *_mean_and_median(summary, "translation", 4),
             *_mean_and_median(summary, "rotation", 3),

@@ -34,6 +34,8 @@ def _print_training_horizons(comparison: "Comparison") -> None:
 
 def _print_errors(comparison: "Comparison") -> None:
     """Print one row a place and model."""
+    from odometry.comparison.summary import NOT_IDENTIFIED
+
     rows: list[tuple[str, ...]] = [
         (
             *("robot", "terrain", "over", "model", "windows"),
@@ -49,7 +51,8 @@ def _print_errors(comparison: "Comparison") -> None:
             )
             cells = ["-" if error is None else f"{error:.4f}" for error in errors]
             remark = "see below" if comparison.remarks_at(place, summary) else ""
-            remark = remark if summary.complete else "not ranked, see below"
+            if not summary.ranked:
+                remark = NOT_IDENTIFIED if summary.complete else "not ranked, see below"
             over = f"{place.horizon_m:g} m"
             where = (place.robot, place.terrain, over, summary.model, str(summary.windows))
             rows.append((*where, *cells, remark))

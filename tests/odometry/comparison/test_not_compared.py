@@ -53,19 +53,29 @@ def in_another_unit(tmp_path_factory, bench):
     return runs
 
 
-def test_a_fit_at_its_bound_is_refused_as_identify_refuses_it(in_another_unit, quick):
-    """The other models are ranked without it, and no parameters are written."""
+def test_a_fit_at_its_bound_is_evaluated_and_neither_ranked_nor_written(in_another_unit, quick):
+    """`identify` refuses its parameters; how it predicts is shown all the same."""
     models = ["differential_drive", "icr_symmetric", "full_linear"]
     comparison = compare(in_another_unit, models, config=quick)
     place = comparison.places[0]
     rows = {summary.model: summary for summary in comparison.summaries_at(place)}
-    assert rows["icr_symmetric"].windows == 0
-    assert "alpha ended at its bound 2, and the residuals are" in rows["icr_symmetric"].reasons[0]
+    edged, of_ideal = rows["icr_symmetric"], rows["differential_drive"]
+    assert edged.complete
+    assert not edged.ranked
+    assert edged.windows == of_ideal.windows
+    assert edged.means["translation"] < 0.7 * of_ideal.means["translation"]
+    (reason,) = edged.not_identified
+    assert reason.startswith("alpha ended at its bound 2, and the residuals are")
+    assert reason in comparison.remarks_at(place, edged)
     assert rows["differential_drive"].complete
     assert rows["full_linear"].complete  # gamma_12 is 1.5 and has no bound there
     lines = comparison.sentences_at(place)
     assert lines[0].startswith("full_linear errs least over 2 m on grass in translation")
-    assert lines[-1].startswith("icr_symmetric is not in this comparison on grass: run_0: it does")
+    assert lines[0].endswith("every other ranked model errs more.")
+    assert not any("icr_symmetric" in line for line in lines[:-1])
+    assert lines[-1].startswith("icr_symmetric is not ranked, and its parameters are not written")
+    assert "(at a bound: parameters not identified). It predicts all the same" in lines[-1]
+    assert f"{edged.means['translation']:.4f} m per m in translation (full_linear" in lines[-1]
     assert {model for _, model in comparison.parameters} == {"differential_drive", "full_linear"}
     with pytest.raises(IdentificationError, match="alpha ended at its bound 2"):
         identify(

@@ -2,6 +2,7 @@
 
 import json
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -156,3 +157,27 @@ def test_a_run_folder_is_no_place_for_results(runs):
     answer = invoke(*runs, "--out", runs[1])
     with pytest.raises(OutputError, match="choose another folder"):
         raise answer.exception
+
+
+def test_a_fit_at_its_bound_is_a_marked_row_and_no_parameters(runs, tmp_path):
+    """Tread speeds a third of the true ones: `identify` refuses alpha = 2."""
+    for folder in runs:
+        file = Path(folder) / "odometry.csv"
+        header, *lines = file.read_text().splitlines()
+        rows = np.array([line.split(",") for line in lines], dtype=float)
+        rows[:, 1:] /= 3
+        text = [header, *(",".join(map(str, row)) for row in rows.tolist())]
+        file.write_text("\n".join(text) + "\n")
+    out = tmp_path / "out"
+    models = ("--model", "icr_symmetric", "--model", "differential_drive")
+    answer = invoke(*runs, *models, "--out", out)
+    assert answer.exit_code == 0, answer.output
+    row = next(line for line in answer.stdout.splitlines() if " icr_symmetric " in line)
+    assert row.endswith("at a bound: parameters not identified")
+    (place,) = json.loads((out / "comparison.json").read_text())["places"]
+    edged = place["models"][0]
+    assert float(row.split()[6]) == pytest.approx(edged["translation_m_per_m"]["mean"], abs=5e-5)
+    assert edged["not_identified"][0].startswith("alpha ended at its bound 2")
+    assert not (out / "parameters" / "icr_symmetric.toml").exists()
+    page = (out / "report.html").read_text()
+    assert "icr_symmetric (at a bound: parameters not identified)" in page
