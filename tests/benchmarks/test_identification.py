@@ -14,7 +14,6 @@ import pytest
 
 from odometry.dead_reckoning import dead_reckon
 from odometry.identification.config import SolverConfig
-from odometry.identification.excitation import ordinary_sizes
 from odometry.identification.problem import Problem
 from odometry.identification.solve import solve
 from odometry.io.run_folder import write_run_folder
@@ -115,7 +114,7 @@ def test_identification_against_a_loop(benchmark, hour):
     model = MODELS["icr"]
     guess = model.pack(model.guess(robot))
     settings = (model, windows, guess, np.ones(5, dtype=bool), pose_variances(WindowConfig()))
-    sizes, config = ordinary_sizes(model, robot), SolverConfig(starts=1)
+    sizes, config = model.ordinary_sizes(robot), SolverConfig(starts=1)
     ours = benchmark.pedantic(
         solve, (Problem(*settings), guess, sizes, config), rounds=3, warmup_rounds=1
     )

@@ -5,7 +5,6 @@ import pytest
 from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
-from odometry.identification.excitation import ordinary_sizes
 from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr
 from odometry.models.inputs import Inputs
@@ -146,7 +145,7 @@ def test_jacobian_is_the_derivative(model, tilt, winding):
         rng.uniform(-2, 2, (count, 2)),
     )
     windows = Windows(**{**vars(plain), "inputs": inputs})
-    sizes = ordinary_sizes(model, ROBOT)
+    sizes = model.ordinary_sizes(ROBOT)
     values = model.pack(model.guess(ROBOT))
     free = [p.name not in COUNTED for p in model.parameters]
     values = values + 0.05 * sizes * rng.uniform(0.2, 1, len(sizes)) * free
