@@ -1,6 +1,7 @@
 """What a filter predicts from step to step: the motion, and the treads against the gyroscope."""
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 from odometry.arrays import FloatArray
@@ -71,8 +72,18 @@ class Prediction:
         if watch is None:
             belief = self._moved(estimate, frame, yaw_rate)
             return Predicted(belief, yaw_rate, frame.pose, frame.tread_speeds_m_s, None, ())
-        seen = sensor_watch.sensed(watch, frame, estimate.stamp_s, held, yaw_rate)
+        seen = sensor_watch.sensed(
+            watch,
+            frame,
+            estimate.stamp_s,
+            speeds_m_s=held,
+            yaw_rate=yaw_rate,
+            belief=(estimate.mean, estimate.covariance),
+            terrain=estimate.terrain,
+        )
         yaw_rate = seen.yaw_rate_rad_s
+        if seen.belief[0] is not estimate.mean:
+            estimate = replace(estimate, mean=seen.belief[0], covariance=seen.belief[1])
         belief = self._moved(estimate, frame, yaw_rate)
         was_stuck, scale = watch.treads.stuck >= 0, estimate.scale.slip
         watch, speeds, events = sensor_watch.with_treads(seen, frame, held, belief, scale)

@@ -4,8 +4,9 @@ import math
 from typing import NamedTuple
 
 from odometry.arrays import FloatArray
-from odometry.estimation import gyroscope_watch, pose_watch, tread_watch
+from odometry.estimation import gyroscope_hold, gyroscope_watch, pose_watch, tread_watch
 from odometry.estimation.filter_event import FilterEvent
+from odometry.estimation.gyroscope_hold import GyroscopeHold
 from odometry.estimation.gyroscope_watch import GyroscopeWatch
 from odometry.estimation.measurement import Gaussian
 from odometry.estimation.pose_watch import PoseWatch
@@ -25,12 +26,15 @@ class SensorWatch(NamedTuple):
     poses : PoseWatch
     gap_since_s : float
         Stamp since when odometry has a gap; NaN where it has none.
+    hold : GyroscopeHold or None
+        Of the gyroscope; None before the first step.
     """
 
     treads: TreadWatch
     gyroscope: GyroscopeWatch
     poses: PoseWatch
     gap_since_s: float = math.nan
+    hold: GyroscopeHold | None = None
 
     @property
     def is_doubtful(self) -> bool:
@@ -51,6 +55,8 @@ class Sensed(NamedTuple):
     pose : (3,) or None
         At its end.
     events : tuple of FilterEvent
+    belief : (9,), (9, 9)
+        At its beginning.
     """
 
     watch: SensorWatch
@@ -58,6 +64,7 @@ class Sensed(NamedTuple):
     yaw_rate_rad_s: float
     pose: FloatArray | None
     events: Events
+    belief: Gaussian
 
 
 def begun(frame: Frame, belief: Gaussian) -> SensorWatch:
@@ -69,7 +76,14 @@ def begun(frame: Frame, belief: Gaussian) -> SensorWatch:
 
 
 def sensed(
-    watch: SensorWatch, frame: Frame, begin_s: float, speeds_m_s: FloatArray, yaw_rate: float
+    watch: SensorWatch,
+    frame: Frame,
+    begin_s: float,
+    *,
+    speeds_m_s: FloatArray,
+    yaw_rate: float,
+    belief: Gaussian,
+    terrain: str,
 ) -> Sensed:
     """Gyroscope and pose over the step that leads to a frame.
 
@@ -83,10 +97,35 @@ def sensed(
         Tread speeds believed over it.
     yaw_rate : float
         Of the gyroscope over it, as recorded [rad/s]; NaN where there is none.
+    belief : (9,), (9, 9)
+        At its beginning.
+    terrain : str
+        In force there.
     """
-    gyroscope, yaw_rate, events = gyroscope_watch.watched(
-        watch.gyroscope, yaw_rate, begin_s, frame.stamp_s
+    hold = gyroscope_hold.watched(
+        watch.hold,
+        yaw_rate,
+        begin_s,
+        frame.stamp_s,
+        speeds_m_s=speeds_m_s,
+        belief=belief,
+        terrain=terrain,
     )
+    released = (
+        () if watch.hold is None or hold.is_found else gyroscope_hold.ended(watch.hold, begin_s)
+    )
+    if not hold.is_found:
+        gyroscope, yaw_rate, events = gyroscope_watch.watched(
+            watch.gyroscope, yaw_rate, begin_s, frame.stamp_s
+        )
+        events += released
+    else:
+        gyroscope, events = GyroscopeWatch(), ()
+        if watch.hold is not None and watch.hold.is_found:
+            yaw_rate = math.nan
+        else:
+            yaw_rate += hold.owed_rad / (frame.stamp_s - begin_s)
+            belief = gyroscope_hold.forgotten(belief, hold, begin_s, watch.poses.fresh_s)
     poses, pose = watch.poses, frame.pose
     if poses.pose is not None:
         step_s, (left, right) = frame.stamp_s - begin_s, speeds_m_s.tolist()
@@ -106,8 +145,8 @@ def sensed(
     elif not frame.in_gap and not math.isnan(gap_since_s):
         events = (*events, _gap_event(gap_since_s, begin_s))
         gap_since_s = math.nan
-    after = SensorWatch(watch.treads, gyroscope, poses, gap_since_s)
-    return Sensed(after, begin_s, yaw_rate, pose, events)
+    after = SensorWatch(watch.treads, gyroscope, poses, gap_since_s, hold)
+    return Sensed(after, begin_s, yaw_rate, pose, events, belief)
 
 
 def with_treads(
@@ -137,7 +176,7 @@ def with_treads(
     if treads.stuck >= 0 and not math.isnan(speeds_m_s[0]):
         speeds_m_s = tread_watch.with_implied(treads, speeds_m_s, belief, yaw_rate)
     if treads is not watch.treads:
-        watch = SensorWatch(treads, watch.gyroscope, watch.poses, watch.gap_since_s)
+        watch = watch._replace(treads=treads)
     return watch, speeds_m_s, before.events + spikes + freed
 
 
@@ -162,6 +201,8 @@ def ongoing(watch: SensorWatch, stamp_s: float) -> Events:
     if watch.treads.stuck >= 0:
         stuck = watch.treads._replace(same_since_s=(stamp_s, stamp_s))
         found += tread_watch.freed(stuck, stamp_s)[1]
+    if watch.hold is not None:
+        found += gyroscope_hold.ended(watch.hold, stamp_s)
     found += gyroscope_watch.ongoing(watch.gyroscope, stamp_s)
     return (*found, *pose_watch.ongoing(watch.poses, stamp_s))
 

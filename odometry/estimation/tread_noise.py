@@ -5,6 +5,7 @@ import math
 from odometry.arrays import FloatArray
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.measurement import Measurement
+from odometry.estimation.transition import Y_LEFT, Y_RIGHT
 
 CORRELATED_S = 0.5  # slip stays about the same for so long
 STANDING_RAD_S, BY_SPEED, BY_TURN = 0.02, 0.05, 0.1  # sigma at rest, by speed over width, by turn
@@ -23,6 +24,12 @@ def tread_variance(
     by_speed = BY_SPEED * (abs(left) + abs(right)) / 2 / track_width
     variance = STANDING_RAD_S**2 + slip_scale * by_speed**2 + (BY_TURN * yaw_rate) ** 2
     return float(variance * CORRELATED_S / step_s)
+
+
+def width_sigma_m(covariance: FloatArray) -> float:
+    """Standard deviation of y_left - y_right, by the covariance (9, 9) of the state."""
+    of_sides = covariance[Y_LEFT, Y_LEFT] + covariance[Y_RIGHT, Y_RIGHT]
+    return math.sqrt(max(float(of_sides - 2 * covariance[Y_LEFT, Y_RIGHT]), 0.0))
 
 
 def huber_factor(measured: Measurement, covariance: FloatArray, variance: float) -> float:

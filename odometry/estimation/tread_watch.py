@@ -3,12 +3,11 @@
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from odometry.arrays import FloatArray
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.measurement import Gaussian
 from odometry.estimation.transition import ALPHA_LEFT, ALPHA_RIGHT, GYRO_BIAS, Y_LEFT, Y_RIGHT
+from odometry.estimation.tread_noise import width_sigma_m
 from odometry.frames import Frame
 
 JUMP_M_S, JUMP_M_S2 = 3.0, 10.0  # a change of speed by more needs a second row that agrees
@@ -167,8 +166,5 @@ def with_implied(
 
 def _is_width_known(belief: Gaussian) -> bool:
     mean, covariance = belief
-    variance = (
-        covariance[Y_LEFT, Y_LEFT] + covariance[Y_RIGHT, Y_RIGHT] - 2 * covariance[Y_LEFT, Y_RIGHT]
-    )
     width = float(mean[Y_LEFT] - mean[Y_RIGHT])
-    return float(np.sqrt(variance)) < KNOWN_WIDTH * width
+    return width_sigma_m(covariance) < KNOWN_WIDTH * width

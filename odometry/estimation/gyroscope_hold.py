@@ -1,0 +1,159 @@
+"""A gyroscope that repeats one value to the last digit while the treads turn the robot."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.estimation.filter_event import FilterEvent
+from odometry.estimation.measurement import Gaussian
+from odometry.estimation.transition import (
+    ALPHA_LEFT,
+    ALPHA_RIGHT,
+    GYRO_BIAS,
+    STATES,
+    Y_LEFT,
+    Y_RIGHT,
+    YAW,
+)
+from odometry.estimation.tread_noise import width_sigma_m
+
+SAME_RAD_S = 1e-9
+HELD_S = 1.0  # for so long a value must repeat
+EXCESS_RAD = 0.3  # by which the treads must turn otherwise, beyond what is allowed ...
+SOUND, BANDED = (0.05, 0.03), (0.1, 0.1)  # ... in rad/s and as a share of speed over the width:
+DEAD_BAND_RAD_S = 0.05  # the more in a band where a sound gyroscope may repeat its value, ...
+NOISY_S = 10.0  # ... if it has not been seen to change from sample to sample for so long
+WIDTH_SIGMAS = 2.5  # ... besides what the uncertainty of the width explains
+
+
+class GyroscopeHold(NamedTuple):
+    """What is remembered of a value that repeats.
+
+    Attributes
+    ----------
+    rate_rad_s : float
+        The value; NaN before the first.
+    same_since_s, off_since_s : float
+        Stamps since when it repeats on one terrain, and since when the treads turn otherwise.
+    before : (9,), (9, 9)
+        Mean and covariance believed at `same_since_s`.
+    terrain : str
+        In force then.
+    excess_rad : float
+        Sum of the differences beyond what is allowed; it never falls below zero (Page 1954,
+        Biometrika 41: CUSUM).
+    owed_rad : float
+        Turn of the treads less that of the gyroscope since `off_since_s`.
+    is_found : bool
+        Whether the gyroscope is taken as silent.
+    changing_s : float
+        For how long, before the value, no value repeated for half of `HELD_S`.
+    """
+
+    rate_rad_s: float
+    same_since_s: float
+    off_since_s: float
+    before: Gaussian
+    terrain: str
+    excess_rad: float = 0.0
+    owed_rad: float = 0.0
+    is_found: bool = False
+    changing_s: float = 0.0
+
+
+def watched(
+    hold: GyroscopeHold | None,
+    yaw_rate: float,
+    begin_s: float,
+    stamp_s: float,
+    *,
+    speeds_m_s: FloatArray,
+    belief: Gaussian,
+    terrain: str,
+) -> GyroscopeHold:
+    """The watch after a step from `begin_s` to `stamp_s` over which `yaw_rate` was recorded.
+
+    Parameters
+    ----------
+    hold : GyroscopeHold or None
+        None before the first step.
+    yaw_rate : float
+        [rad/s]; NaN where the gyroscope was silent.
+    begin_s, stamp_s : float
+    speeds_m_s : (2,)
+        Tread speeds believed over the step; NaN where they are not known.
+    belief : (9,), (9, 9)
+        At the beginning of the step.
+    terrain : str
+        In force then.
+    """
+    if hold is None:
+        return GyroscopeHold(yaw_rate, begin_s, begin_s, belief, terrain)
+    if not abs(yaw_rate - hold.rate_rad_s) <= SAME_RAD_S:
+        same_s = begin_s - hold.same_since_s
+        sound = same_s < HELD_S / 2 and not math.isnan(hold.rate_rad_s)
+        changing_s = hold.changing_s + same_s if sound else 0.0
+        return GyroscopeHold(yaw_rate, begin_s, begin_s, belief, terrain, changing_s=changing_s)
+    left, right = speeds_m_s.tolist()
+    if hold.is_found or math.isnan(left + right):
+        return hold
+    if terrain != hold.terrain:
+        return GyroscopeHold(
+            yaw_rate, begin_s, begin_s, belief, terrain, changing_s=hold.changing_s
+        )
+    if not hold.excess_rad:
+        hold = hold._replace(off_since_s=begin_s, owed_rad=0.0)
+    off_rad_s, allowed_rad_s = _difference(hold, left, right)
+    step_s = stamp_s - begin_s
+    excess_rad = hold.excess_rad + (abs(off_rad_s) - allowed_rad_s) * step_s
+    return hold._replace(
+        excess_rad=max(excess_rad, 0.0),
+        owed_rad=hold.owed_rad + off_rad_s * step_s,
+        is_found=excess_rad > EXCESS_RAD and stamp_s - hold.same_since_s > HELD_S,
+    )
+
+
+def _difference(hold: GyroscopeHold, left: float, right: float) -> tuple[float, float]:
+    """By how much treads and gyroscope differ, and what is allowed [rad/s]."""
+    mean, covariance = hold.before
+    width_m = float(mean[Y_LEFT] - mean[Y_RIGHT])
+    by_treads = float(mean[ALPHA_RIGHT] * right - mean[ALPHA_LEFT] * left) / width_m
+    by_gyroscope = hold.rate_rad_s - float(mean[GYRO_BIAS])
+    may_repeat = abs(by_gyroscope) < DEAD_BAND_RAD_S and hold.changing_s < NOISY_S
+    at_rest, share = BANDED if may_repeat else SOUND
+    allowed = at_rest + share * (abs(left) + abs(right)) / 2 / width_m
+    allowed += WIDTH_SIGMAS * width_sigma_m(covariance) / width_m * abs(by_treads)
+    return by_treads - by_gyroscope, allowed
+
+
+def forgotten(belief: Gaussian, hold: GyroscopeHold, begin_s: float, posed_s: float) -> Gaussian:
+    """The belief at `begin_s` without what was learned since the value repeats.
+
+    The next step turns it by what is owed. Where a pose came since, at `posed_s`, that has told
+    the yaw already, more or less.
+    """
+    then_mean, then_covariance = hold.before
+    mean, covariance = np.append(belief[0][:3], then_mean[3:]), np.zeros((STATES, STATES))
+    covariance[:3, :3] = belief[1][:3, :3]
+    covariance[3:, 3:] = then_covariance[3:, 3:]
+    covariance[YAW, YAW] += hold.owed_rad**2
+    if posed_s > hold.same_since_s:
+        mean[YAW] -= hold.owed_rad
+    else:
+        rate_rad_s = hold.rate_rad_s - float(then_mean[GYRO_BIAS])
+        mean[YAW] = then_mean[YAW] + rate_rad_s * (begin_s - hold.same_since_s)
+    return mean, covariance
+
+
+def ended(hold: GyroscopeHold, stamp_s: float) -> tuple[FilterEvent, ...]:
+    """The event of a value that repeated until a stamp."""
+    if not hold.is_found:
+        return ()
+    text = (
+        f"the gyroscope repeated {hold.rate_rad_s:.4f} rad/s to the last digit while the treads "
+        "turned otherwise: it counted as silent, the treads turned the robot, and what was "
+        "learned since was forgotten"
+    )
+    return (FilterEvent("gyroscope_held", hold.off_since_s, stamp_s, text),)
