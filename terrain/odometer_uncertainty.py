@@ -1,4 +1,4 @@
-"""The covariance of the odometer as columns, as a table of result.json, and in words."""
+"""The covariance of the odometer as columns, and as a table of result.json."""
 
 from typing import Any
 
@@ -8,6 +8,7 @@ from odometry.arrays import FloatArray
 from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.open_loop_consistency import DEGREES, OpenLoopConsistency
 from odometry.evaluation.open_loop_errors import SOURCES
+from terrain.odometer_advice import advice, verdict
 
 NAMES = ("x", "y", "yaw")
 PAIRS = ((0, 1), (0, 2), (1, 2))
@@ -22,7 +23,7 @@ def covariance_columns(uncertainty: OdometerUncertainty) -> dict[str, FloatArray
     }
 
 
-def uncertainty_table(uncertainty: OdometerUncertainty) -> dict[str, Any]:
+def uncertainty_table(uncertainty: OdometerUncertainty, reference_name: str) -> dict[str, Any]:
     """What result.json holds of it: plain values, metres and radians."""
     noise = uncertainty.noise
     return {
@@ -41,6 +42,7 @@ def uncertainty_table(uncertainty: OdometerUncertainty) -> dict[str, Any]:
         ],
         "nees": [_nees(check) for check in uncertainty.checks],
         "nees_by_own_poses": [_nees(check) for check in uncertainty.own_checks],
+        "advice": advice(uncertainty, reference_name),
     }
 
 
@@ -54,10 +56,3 @@ def _nees(check: OpenLoopConsistency) -> dict[str, Any]:
         "bounds": check.bounds.tolist(),
         "covariance_is": verdict(check),
     }
-
-
-def verdict(check: OpenLoopConsistency) -> str:
-    """Whether a covariance is as large as the errors, in words."""
-    if check.is_consistent:
-        return "consistent"
-    return "too small" if check.mean > check.bounds[1] else "too large"

@@ -36,7 +36,7 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "estimate_has_seen_reference": result.reference_name == "pose",
         "remarks": remarks(result.scores, result.off_at_the_end_m, result.replay.events),
         "withheld": _withheld(result),
-        "odometer_uncertainty": uncertainty_table(result.uncertainty),
+        "odometer_uncertainty": uncertainty_table(result.uncertainty, result.reference_name),
         "switches": _switches(result),
         "missed_changes": _missed_changes(result),
         "sightings": sighting_counts(result),

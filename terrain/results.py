@@ -91,7 +91,8 @@ def read_errors(folder: str | Path) -> dict[str, Any]:
     Returns
     -------
     dict
-        `errors` by trajectory, `reference` and `horizon_m`, as `result.json` holds them.
+        `errors` by trajectory, `reference` and `horizon_m`, as `result.json` holds them, `run`,
+        its name, and `run_path`, as it was given to `run`; None where the result does not say.
 
     Raises
     ------
@@ -110,9 +111,17 @@ def read_errors(folder: str | Path) -> dict[str, Any]:
         for errors in content["errors"].values():
             for name, statistic in ERRORS:
                 _check_error(errors[name][statistic])
-        return {key: content[key] for key in ("errors", "reference", "horizon_m")}
+        errors = {key: content[key] for key in ("errors", "reference", "horizon_m")}
+        run = str(content["run"]) if "run" in content else None
+        return errors | {"run": run, "run_path": _run_path(content)}
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise ResultError(f"{file}: it is not a result of `run`") from error
+
+
+def _run_path(content: Mapping[str, Any]) -> str | None:
+    """Where the run folder was, by what made the result."""
+    inputs = content.get("made", {}).get("inputs", [])
+    return next((str(each["path"]) for each in inputs if each["role"] == "RUN"), None)
 
 
 def _check_error(value: Any) -> None:

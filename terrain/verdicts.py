@@ -64,7 +64,10 @@ def simple_is_better(scores: Mapping[str, Score]) -> list[str]:
 
 
 def worse_at_the_end(off_m: Mapping[str, float]) -> list[str]:
-    """A sentence for each trajectory that ends farther off than the ideal differential drive."""
+    """A sentence for each trajectory that ends farther off than the ideal differential drive.
+
+    Of the estimate this is said although it may have seen the reference: that makes it no better.
+    """
     ideal_m = off_m.get("differential_drive")
     if ideal_m is None:
         return []

@@ -2,6 +2,7 @@
 
 import json
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -29,8 +30,9 @@ def evaluate(folders: tuple[Path, ...], as_json: bool) -> None:
     if as_json:
         click.echo(json.dumps(results, indent=2))
     else:
-        rows = [row for name, result in results.items() for row in _rows(name, result)]
-        print_table([("folder", "trajectory", "against", *HEADER[1:]), *rows])
+        runs = _run_names(results)
+        rows = [row for name, of in results.items() for row in _rows(name, runs[name], of)]
+        print_table([("folder", "run", "trajectory", "against", *HEADER[1:]), *rows])
         click.echo("Per metre of wheel travel, over the horizon that each result.json names.")
     if any("error" in result for result in results.values()):
         sys.exit(1)
@@ -47,14 +49,26 @@ def _read(folder: Path) -> dict[str, Any]:
         return {"error": str(error)}
 
 
-def _rows(name: str, result: dict[str, Any]) -> list[tuple[str, ...]]:
+def _run_names(results: Mapping[str, dict[str, Any]]) -> dict[str, str]:
+    """Name of each result's run; its path where runs of other places have the same name."""
+    names = {folder: result.get("run") or "-" for folder, result in results.items()}
+    places: dict[str, set[str | None]] = {}
+    for folder, result in results.items():
+        places.setdefault(names[folder], set()).add(result.get("run_path"))
+    return {
+        folder: results[folder].get("run_path") or name if len(places[name]) > 1 else name
+        for folder, name in names.items()
+    }
+
+
+def _rows(name: str, run: str, result: dict[str, Any]) -> list[tuple[str, ...]]:
     empty = [""] * len(HEADER)
     if "error" in result:
-        return [(name, f"failed: {result['error']}", *empty)]
+        return [(name, run, f"failed: {result['error']}", *empty)]
     if not result["errors"]:
-        return [(name, "nothing to compare with", *empty)]
+        return [(name, run, "nothing to compare with", *empty)]
     against = str(result.get("reference") or "-")
     return [
-        (name, trajectory, errors.get("against", against), *error_cells(errors))
+        (name, run, trajectory, errors.get("against", against), *error_cells(errors))
         for trajectory, errors in result["errors"].items()
     ]

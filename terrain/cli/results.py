@@ -37,6 +37,7 @@ def print_errors(results: Mapping[str, "RunResult"]) -> None:
 
 def _beside_errors(result: "RunResult") -> list[str]:
     """What the table does not say: how the estimate is judged, what is missing, what is better."""
+    from terrain.odometer_advice import advice
     from terrain.verdicts import NO_GYROSCOPE, judged_by, remarks
 
     judged = [f"The estimate is judged by {judged_by(result.second)}"] if result.second else []
@@ -45,6 +46,7 @@ def _beside_errors(result: "RunResult") -> list[str]:
         *judged,
         *missing,
         *remarks(result.scores, result.off_at_the_end_m, result.replay.events),
+        advice(result.uncertainty, result.reference_name),
     ]
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
 from odometry.report.palette import terrain_colours
+from terrain.odometer_advice import advice
 from terrain.report.confusion_table import label_table
 from terrain.report.figures import (
     Tints,
@@ -72,7 +73,7 @@ def write_report(
     tints = _tints(result)
     sections = [
         Section("Errors", _errors(lines, folder)),
-        Section("Uncertainty of the odometer", _some(uncertainty_grid(result))),
+        Section("Uncertainty of the odometer", _uncertainty(result)),
         Section("What the filter noticed", _some(event_grid(result))),
         Section("Path", [path_picture(lines, tints, folder)]),
         Section("Terrain", _terrain(result, tints, folder)),
@@ -95,6 +96,13 @@ def _errors(lines: ReportLines, folder: Path) -> list[Block]:
         return []
     pictures = (position_picture(lines, folder), distribution_picture(lines, folder))
     return [error_table(lines, scores), *(picture for picture in pictures if picture)]
+
+
+def _uncertainty(result: RunResult) -> list[Block]:
+    grid = uncertainty_grid(result)
+    return (
+        [] if grid is None else [Paragraph(advice(result.uncertainty, result.reference_name)), grid]
+    )
 
 
 def _some(grid: Grid | None) -> list[Block]:

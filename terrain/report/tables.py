@@ -9,7 +9,7 @@ from odometry.evaluation.open_loop_consistency import OpenLoopConsistency
 from odometry.evaluation.score import Score
 from odometry.report.html import Grid
 from odometry.run import UNKNOWN
-from terrain.odometer_uncertainty import verdict
+from terrain.odometer_advice import not_checked, verdict
 from terrain.report.lines import ICR_COORDINATES, ReportLines
 from terrain.run_result import RunResult
 from terrain.switch import SwitchEvent
@@ -72,16 +72,21 @@ def uncertainty_grid(result: RunResult) -> Grid | None:
             f"{distance_m:g}",
             *(f"{sigma:.3f}" for sigma in (x, y)),
             f"{np.degrees(yaw):.2f}",
-            own.get(distance_m, NOTHING),
-            *(_checked(checks[distance_m]) if distance_m in checks else [NOTHING] * 3),
+            *([own.get(distance_m, NOTHING)] if own else []),
+            *(
+                _checked(checks[distance_m])
+                if distance_m in checks
+                else (NOTHING, NOTHING, not_checked(of, distance_m, result.reference_name))
+            ),
         )
         for distance_m, (x, y, yaw) in of.sigmas.items()
     ]
     if not rows:
         return None
     header = ("after [m]", "sigma x [m]", "sigma y [m]", "sigma yaw [°]")
-    checked = ("NEES by own poses", "NEES", "95% bounds", "covariance is")
-    return Grid((*header, *checked), rows, f"The odometer's covariance: {of.source}.")
+    by_own = ("NEES by own poses",) if own else ()
+    checked = ("NEES", "95% bounds", "covariance is")
+    return Grid((*header, *by_own, *checked), rows, f"The odometer's covariance: {of.source}.")
 
 
 def switch_table(result: RunResult) -> Grid | None:

@@ -87,7 +87,11 @@ def notes(lines: ReportLines) -> list[str]:
             )
         )
     if result.second is not None:
-        found.append(f"The estimate is judged by {judged_by(result.second)}")
+        found.append(
+            f"The estimate is judged by {judged_by(result.second)} The estimate that is written to "
+            "estimate.csv has seen all poses: off_at_the_end_m of result.json is small for it "
+            "because of that, and does not say how well it does without them."
+        )
     if result.reference_name == "truth":
         found.append("Errors are against truth.csv, which no estimator has seen.")
     if result.source == "none":

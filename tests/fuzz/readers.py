@@ -264,7 +264,7 @@ def _of_results(folder):
     content = {"reference": "pose", "horizon_m": 5.0, "errors": {"odometer": errors}}
 
     def use():
-        for row in _rows("results", read_errors(folder)):
+        for row in _rows("results", "run", read_errors(folder)):
             "".join(row).encode()
 
     text = json.dumps(content, indent=1).encode()

@@ -39,8 +39,28 @@ def test_a_row_for_each_trajectory_of_each_run(results):
     assert answer.exit_code == 0
     lines = answer.output.splitlines()
     numbers = ["0.0123", "0.0200", "1.5000", "-", "0.2500", "-", "0.5000"]
-    assert lines[1].split() == [with_vision, "odometer", "pose", *numbers]
-    assert lines[2].split() == [without, "odometer", "pose", "-", *numbers[1:6], "-"]
+    assert lines[1].split() == [with_vision, "-", "odometer", "pose", *numbers]
+    assert lines[2].split() == [without, "-", "odometer", "pose", "-", *numbers[1:6], "-"]
+
+
+def of_run(path, mean):
+    made = {"inputs": [{"role": "--model", "path": "m"}, {"role": "RUN", "path": path}]}
+    return finished(mean) | {"run": path.rsplit("/", 1)[-1], "made": made}
+
+
+def test_a_row_names_its_run_and_where_names_are_alike_its_place(results):
+    folders = [
+        results("one", of_run("monday/drive", 0.01)),
+        results("two", of_run("tuesday/drive", 0.02)),
+        results("three", of_run("tuesday/turns", 0.03)),
+    ]
+    answer = CliRunner().invoke(evaluate, folders)
+    runs = [line.split()[1] for line in answer.output.splitlines()[1:4]]
+    assert runs == ["monday/drive", "tuesday/drive", "turns"]
+    twice = CliRunner().invoke(evaluate, [folders[0], results("again", of_run("monday/drive", 1))])
+    assert [line.split()[1] for line in twice.output.splitlines()[1:3]] == ["drive", "drive"]
+    written = json.loads(CliRunner().invoke(evaluate, [folders[0], "--json"]).output)
+    assert written[folders[0]]["run"] == "drive"
 
 
 def test_a_row_says_what_it_is_against(results):
@@ -99,7 +119,7 @@ def test_json_gives_the_numbers_and_the_failures(tmp_path, results):
     answer = CliRunner().invoke(evaluate, ["--json", good, absent])
     assert answer.exit_code == 1
     content = json.loads(answer.output)
-    assert content[good] == finished(0.0123)
+    assert content[good] == finished(0.0123) | {"run": None, "run_path": None}
     assert set(content[absent]) == {"error"}
 
 
