@@ -105,6 +105,12 @@ def _outliers(evidence: Evidence) -> Iterator[Finding]:
     )
 
 
+def _place(x_m: float, y_m: float) -> str:
+    """A place in the robot frame in words, up to "the centre"."""
+    along = f"{abs(x_m):.2f} m {'ahead of' if x_m >= 0 else 'behind'}"
+    return f"{along} and {abs(y_m):.2f} m to the {'left' if y_m >= 0 else 'right'} of"
+
+
 def _axis_rad(evidence: Evidence) -> float:
     """From yaw to the robot's axis; nothing where an offset of yaw has a name of its own."""
     offset = evidence.heading.offset_rad if evidence.heading is not None else 0.0
@@ -132,8 +138,8 @@ def _lever_arm(evidence: Evidence) -> Iterator[Finding]:
         yield Finding(
             "far_sensor",
             Level.WARNING,
-            f"measured positions swing with the turns as if {x_m:+.2f} m ahead and {y_m:+.2f} m to "
-            f"the left of the centre of the treads, more than {limit_m:.2f} m",
+            f"measured positions swing in turns like a point that lies {_place(x_m, y_m)} the "
+            f"centre of the robot; more than {limit_m:.2f} m is far",
             "The sensor is mounted far from the centre (a lever arm), or the frame of the poses is "
             "not that of the robot, or positions are late against yaw (filtered)",
             f"State its place: [sensors] pose = [{x_m:.2f}, {y_m:.2f}, 0.0]",

@@ -53,10 +53,10 @@ def tread_unit(seen: str, unit: Unit, evidence: Evidence, *, sure: bool = True) 
         alike = [
             other.words
             for other in tread_units(evidence.run.robot.wheel_radius, evidence.period_s)
-            if other is not unit and 0.8 < other.factor / unit.factor < 1.25
+            if other.words != unit.words and 0.8 < other.factor / unit.factor < 1.25
         ]
         half = "half" if unit.factor < 1 else "twice"
-        others += "".join(f", or {words}" for words in alike)
+        others += "".join(f"; or in {words}" for words in alike)
         others += (
             f"; or scaled by {unit.factor:.2g} (wheel diameter for radius gives {half} the speed; "
             "gear ratio): these cannot be distinguished"

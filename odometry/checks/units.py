@@ -171,7 +171,8 @@ def _along(evidence: Evidence, forward: float, tight: bool, width: float | None)
             f"{seen}; the factor is {'constant' if tight else 'not known to be constant'}",
             "Heavy slip (ice, snow, a robot that is stuck) where terrain allows it, else a wrong "
             "scale of treads or positions: these cannot be distinguished",
-            "Judge by what the robot drove on; parameters are of this run alone",
+            "Where it truly slipped nothing can be mended: what is learned holds on such terrain "
+            "alone",
         )
     return Finding(
         "scale",

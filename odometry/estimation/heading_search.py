@@ -59,7 +59,7 @@ def searched(
         how = "a pose with a yaw came"
     else:
         heading = course.heading(position_sigma_m, by_gyroscope=math.isfinite(frame.yaw_rate_rad_s))
-        how = f"from the course of {course.count} positions"
+        how = f"by the course of {course.count} positions"
     if heading is not None:
         yaw = float(belief[0][YAW])
         turned = _turned(belief, heading, np.append(reckoned_m, yaw), lever_m)
@@ -71,13 +71,11 @@ def searched(
 
 def _event(course: Course, heading: Heading, frame: Frame, how: str) -> FilterEvent:
     """Of a yaw at the beginning, or, where the search began anew, of a turn of dead reckoning."""
-    kind, of = (
-        (LATER_YAW, "turn of dead reckoning") if course.began_anew else (INITIAL_YAW, "initial yaw")
-    )
-    text = (
-        f"{of} {math.degrees(heading.yaw_rad):.1f} degrees, "
-        f"+- {math.degrees(heading.sigma_rad):.1f}: {how}"
-    )
+    size = f"{math.degrees(heading.yaw_rad):.1f} +- {math.degrees(heading.sigma_rad):.1f} degrees"
+    kind, text = INITIAL_YAW, f"the yaw at the start was found: {size} ({how})"
+    if course.began_anew:
+        kind = LATER_YAW
+        text = f"the yaw was found late: the path up to here was turned by {size} ({how})"
     values = (heading.yaw_rad, heading.sigma_rad)
     return FilterEvent(kind, course.begin_s, frame.stamp_s, text, values)
 

@@ -11,6 +11,8 @@ import click
 if TYPE_CHECKING:
     from odometry.checks.finding import CheckReport
 
+TRUE_SLIP = ("slip", "slip_in_turns", "slip_episodes")  # findings that may be no fault
+
 
 @click.command()
 @click.argument(
@@ -82,18 +84,32 @@ def _next(reports: Mapping[Path, "CheckReport"], files: Mapping[Path, Path]) -> 
     drawn = [file for folder, file in files.items() if not reports[folder].at(Level.REFUSED)]
     place = drawn[0] if len(drawn) == 1 else drawn[0].parent if drawn else ""
     look = f"look at {place}; " if drawn else ""
-    odd = [str(folder) for folder, report in reports.items() if report.misleads]
+    odd = {folder: report for folder, report in reports.items() if report.misleads}
     if not odd:
         runs = " ".join(map(str, reports))
         return f"Next: {look}terrain-odometry identify {runs} --model icr --out my_robot.toml"
-    readable = [
-        str(folder)
-        for folder, report in reports.items()
-        if report.misleads and not report.at(Level.REFUSED)
-    ]
+    readable = [str(folder) for folder, report in odd.items() if not report.at(Level.REFUSED)]
     if readable and not files:
         look = f"terrain-odometry check {' '.join(readable)} --picture pictures; "
-    return f"Next: {look}mend or leave out {', '.join(odd)}, and check again"
+    slipping = [str(folder) for folder, report in odd.items() if _only_slips(report)]
+    others = [str(folder) for folder in odd if str(folder) not in slipping]
+    advice = []
+    if others:
+        advice.append(f"mend or leave out {', '.join(others)}, and check again")
+    if slipping:
+        advice.append(
+            f"use {', '.join(slipping)} as recorded if the robot truly slipped (nothing can be "
+            "mended then); else mend the scale that is wrong, and check again"
+        )
+    return f"Next: {look}{'; '.join(advice)}"
+
+
+def _only_slips(report: "CheckReport") -> bool:
+    """Whether all that would mislead may be what the robot truly did."""
+    from odometry.checks.finding import Level
+
+    odd = [finding for finding in report.findings if finding.level is not Level.NOTE]
+    return all(finding.name in TRUE_SLIP for finding in odd)
 
 
 def _picture_files(folders: tuple[Path, ...], picture: Path) -> dict[Path, Path]:

@@ -38,8 +38,9 @@ def hints(result: RunResult, *, vision: bool) -> list[str]:
     found += _events(events)
     if many:
         found.append(
-            f"the filter refused {refused} of {len(innovations)} poses: units of pose.csv or "
-            "odometry.csv, jumps of the reference, or noise settings ([filter] of --config)?"
+            f"the filter refused {refused} of {len(innovations)} poses, because they lie far from "
+            "where it expected them. The units of pose.csv or odometry.csv may be wrong, the poses "
+            "may jump, or the noise settings ([filter] of --config) may be too small"
         )
     return found
 

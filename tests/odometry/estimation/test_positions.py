@@ -31,6 +31,7 @@ def test_the_heading_is_found_from_the_course(direction, with_gyroscope, rng):
     estimates = estimates_of(frames_of(driven, poses=poses, yaw_rates=rates))
     (event,) = (event for e in estimates for event in e.events)
     assert event.kind == "initial_yaw"
+    assert event.text.startswith("the yaw at the start was found: ")
     yaw, sigma = event.values
     off = abs(np.angle(np.exp(1j * (yaw - START[2]))))
     assert off < 3 * sigma

@@ -2,11 +2,13 @@
 
 import json
 import shutil
+from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
-from terrain.cli.check import check
+from odometry.checks.finding import CheckReport, Finding, Level
+from terrain.cli.check import _next, check
 
 
 @pytest.fixture
@@ -54,6 +56,26 @@ def test_a_picture_is_proposed_only_of_what_can_be_read(faulty, tmp_path):
     assert f"check {faulty} --picture pictures; mend or leave out {faulty}, {nowhere}" in last
     last = invoke(nowhere).stdout.splitlines()[-1]
     assert last == f"Next: mend or leave out {nowhere}, and check again"
+
+
+def found(folder, *names):
+    """A report with warnings of these names."""
+    findings = (Finding(name, Level.WARNING, "seen", "cause", "remedy") for name in names)
+    return CheckReport(Path(folder), tuple(findings))
+
+
+def test_true_slip_is_not_to_be_mended():
+    reports = {
+        Path("ice"): found("ice", "slip", "slip_in_turns"),
+        Path("both"): found("both", "slip", "tread_unit"),
+        Path("good"): found("good"),
+    }
+    last = _next(reports, {})
+    assert "mend or leave out both, and check again" in last
+    assert "use ice as recorded if the robot truly slipped" in last
+    alone = _next({Path("ice"): reports[Path("ice")]}, {})
+    assert "leave out" not in alone
+    assert "nothing can be mended" in alone
 
 
 def test_a_file_is_no_run_folder(faulty):

@@ -87,6 +87,6 @@ def test_what_the_filter_noticed_is_said_the_first_ten_in_full():
 def test_refused_poses_are_said_once():
     event = FilterEvent("refused_poses", 0.0, 9.0, "2 of 12 poses were refused as outliers")
     (hint,) = hints(result(refused=2, events=(event,)), vision=False)
-    assert "refused 2 of 12 poses: units" in hint
+    assert "refused 2 of 12 poses, because they lie far" in hint
     (hint,) = hints(result(refused=1, events=(event,)), vision=False)
     assert hint.endswith("were refused as outliers")
