@@ -6,14 +6,14 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 
+# chosen with simulated labels, half of whose drives were kept for the figures
+UNNAMED = 0.03  # of the ways that end, so many end on a terrain that has no name
 
-def likelihoods(
-    labels: Sequence[str],
-    probabilities: Sequence[Mapping[str, float]],
-    names: Sequence[str],
-    accuracy: float,
+
+def given_to(
+    labels: Sequence[str], probabilities: Sequence[Mapping[str, float]], names: Sequence[str]
 ) -> FloatArray:
-    """Likelihood of each label on each terrain.
+    """What each label gives to each terrain.
 
     Parameters
     ----------
@@ -21,65 +21,100 @@ def likelihoods(
     probabilities : sequence of Mapping, length n
         What the classifier gave to each terrain; empty where it gave only the label.
     names : sequence of str, length k
-        The known terrains.
-    accuracy : float
-        Probability that a label is right, 0 to 1.
-
-    Returns
-    -------
-    (n, k + 1)
-        The last column is a terrain that is none of `names`: a label says nothing of it but that
-        it was wrong, and wrong labels are spread evenly.
-    """
-    given = np.zeros((len(labels), len(names) + 1))
-    for row, label, by_name in zip(given, labels, probabilities, strict=True):
-        of = by_name or {label: 1.0}
-        row[:-1] = [of.get(name, 0.0) for name in names]
-    return np.asarray(accuracy * given + (1 - accuracy) / given.shape[1])
-
-
-def smoothed(
-    likelihood: FloatArray, steps_m: FloatArray, prior: FloatArray, change_m: float
-) -> FloatArray:
-    """Probability of each terrain at each place, given the labels of all places.
-
-    Between places a distance s apart the terrain stays with probability exp(-s / change_m), and
-    is else any of the k, all alike.
-
-    Parameters
-    ----------
-    likelihood : (n, k)
-        Of the label of each place on each terrain.
-    steps_m : (n,)
-        Distance to each place from the one before; the first is that from where `prior` holds.
-    prior : (k,)
-    change_m : float
-        Mean distance between changes of terrain.
 
     Returns
     -------
     (n, k)
+    """
+    given = np.zeros((len(labels), len(names)))
+    for row, label, by_name in zip(given, labels, probabilities, strict=True):
+        of = by_name or {label: 1.0}
+        row[:] = [of.get(name, 0.0) for name in names]
+    return given
+
+
+def smoothed(
+    given: FloatArray,
+    steps_m: FloatArray,
+    prior: FloatArray,
+    *,
+    accuracy: float,
+    change_m: float,
+    alike_m: float,
+) -> FloatArray:
+    """Probability of each terrain at each place, given the labels of all places.
+
+    There are k named terrains and one that is none of them. A place looks like one of the k: like
+    its own, seldom like any of the others, and like any of the k alike where it is none of them.
+    Between places a distance s apart the terrain stays with probability exp(-s / change_m), and is
+    else drawn anew. Where it stays, the look stays with probability exp(-s / alike_m), and is else
+    drawn anew. A label names the look, or seldom any of the k. Half of the wrong labels are wrong
+    looks, which last; the others stand alone. So many labels of one stretch say little more of its
+    terrain than one of them, and labels that contradict each other speak for no name.
+
+    Parameters
+    ----------
+    given : (n, k)
+        What the label of each place gives to each named terrain.
+    steps_m : (n,)
+        Distance to each place from the one before; the first is that from where `prior` holds.
+    prior : (k + 1,)
+        Of the terrain; the last is none of those with names.
+    accuracy : float
+        Probability that a label is right on a terrain with a name, 0 to 1.
+    change_m : float
+        Mean distance between changes of terrain.
+    alike_m : float
+        Mean distance between new looks of one terrain: the correlation length of labels.
+
+    Returns
+    -------
+    (n, k + 1)
         Rows add up to 1.
 
     References
     ----------
-    Rabiner 1989, "A tutorial on hidden Markov models", eq. 19-27, with scaled variables.
+    Rabiner 1989, "A tutorial on hidden Markov models", eq. 19-27, with scaled variables; a state
+    is a pair (terrain, look).
     """
-    count = likelihood.shape[1]
-    transition = carried(np.eye(count), np.exp(-steps_m / change_m)[:, None, None])
-    forward, backward = np.empty_like(likelihood), np.ones_like(likelihood)
-    belief = prior
-    for place, by_label in enumerate(likelihood):
-        belief = by_label * (transition[place] @ belief)  # eq. 20
-        belief /= belief.sum()
-        forward[place] = belief
-    belief = backward[-1]
-    for place in range(len(likelihood) - 2, -1, -1):
-        belief = transition[place + 1] @ (likelihood[place + 1] * belief)  # eq. 25
-        belief /= belief.sum()
-        backward[place] = belief
-    product = forward * backward  # eq. 27
+    count = given.shape[1]
+    wrong = (1 - accuracy) / 2
+    given = (1 - wrong) * given + wrong / count
+    own = (1 - wrong) * np.eye(count) + wrong / count
+    looks = np.vstack([own, np.full(count, 1 / count)])
+    drawn = np.append(np.full(count, (1 - UNNAMED) / count), UNNAMED)[:, None]
+    stays, alike = np.exp(-steps_m / change_m), np.exp(-steps_m / alike_m)
+    forward = np.empty((len(given), *looks.shape))
+    state = prior[:, None] * looks
+    for place, label in enumerate(given):
+        state = label * _ahead(state, looks, drawn, stays[place], alike[place])  # eq. 20
+        state /= state.sum()
+        forward[place] = state
+    backward = np.ones_like(forward)
+    for place in range(len(given) - 1, 0, -1):
+        state = given[place] * backward[place]
+        state = _back(state, looks, drawn, stays[place], alike[place])  # eq. 25
+        backward[place - 1] = state / state.sum()
+    product = (forward * backward).sum(axis=2)  # eq. 27
     return np.asarray(product / product.sum(axis=1, keepdims=True))
+
+
+def _ahead(
+    state: FloatArray, looks: FloatArray, drawn: FloatArray, stays: float, alike: float
+) -> FloatArray:
+    """Probabilities (k + 1, k) of terrain and look, a step on."""
+    terrain = state.sum(axis=1, keepdims=True)
+    same = alike * state + (1 - alike) * terrain * looks
+    return np.asarray(stays * same + (1 - stays) * terrain.sum() * drawn * looks)
+
+
+def _back(
+    state: FloatArray, looks: FloatArray, drawn: FloatArray, stays: float, alike: float
+) -> FloatArray:
+    """Likelihood (k + 1, k) of what comes, by terrain and look a step before."""
+    terrain = (looks * state).sum(axis=1, keepdims=True)
+    same = alike * state + (1 - alike) * terrain
+    return np.asarray(stays * same + (1 - stays) * (drawn * terrain).sum())
 
 
 def carried(belief: FloatArray, stay: FloatArray) -> FloatArray:

@@ -62,11 +62,6 @@ class Footprint:
         return cls(robot.length or robot.track_width, robot.width or robot.track_width, scale)
 
     @property
-    def region_length_m(self) -> float:
-        """Length of a region."""
-        return self.scale * self.length_m
-
-    @property
     def radius_m(self) -> float:
         """From the middle of a region to a corner. A place no farther away is reached."""
         return self.scale * float(np.hypot(self.length_m, self.width_m)) / 2

@@ -8,12 +8,11 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.run import UNKNOWN
-from terrain.label_chain import likelihoods, smoothed
+from terrain.label_chain import given_to, smoothed
 from terrain.label_rows import settled_by_rows
 from terrain.places import Sight
 
-APART = 0.75  # of a region's length; chosen with simulated labels whose errors last 0.15 to 0.3 m
-LEAST = 0.5  # a terrain less probable than this is not known
+LEAST = 2 / 3  # a terrain less probable is not known; one look of a place does not reach it
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,10 +53,11 @@ class Settled:
         return float(belief[self.names.index(terrain)]) if terrain in self.names else 0.0
 
     def first_sight(self, place: int, terrain: str) -> Sight:
-        """The first label of a terrain from the edge of that terrain on which a place lies."""
+        """The first label of a terrain from its edge before a place on, else the last before."""
         same = self.probable(self.beliefs[: place + 1]) == self.names.index(terrain)
         first = int(np.flatnonzero(~same).max(initial=-1)) + 1
-        said = (sight for sight in self.sights[first:] if sight.label == terrain)
+        nearest_first = (*self.sights[first:], *self.sights[:first][::-1])
+        said = (sight for sight in nearest_first if sight.label == terrain)
         return next(said, self.sights[place])
 
 
@@ -73,7 +73,7 @@ def by_rows(sights: Sequence[Sight], before: str, needed: int) -> Settled:
 
 
 def by_evidence(
-    sights: Sequence[Sight], before: str, *, accuracy: float, change_m: float, length_m: float
+    sights: Sequence[Sight], before: str, *, accuracy: float, change_m: float, alike_m: float
 ) -> Settled:
     """Each place has the probabilities of a chain along the places; `unknown` is no evidence.
 
@@ -82,11 +82,8 @@ def by_evidence(
     sights : sequence of Sight
     before : str
         The terrain where the first of these was seen from.
-    accuracy, change_m : float
+    accuracy, change_m, alike_m : float
         See `label_chain`.
-    length_m : float
-        Of a region. Places nearer to one another than APART of it show the same ground: then
-        their labels say less than they would alone, in proportion to the distance.
     """
     labelled = tuple(sight for sight in sights if sight.label != UNKNOWN)
     names = _names(sights, before)
@@ -94,16 +91,20 @@ def by_evidence(
         return Settled.of((), names, np.empty((0, len(names))))
     places = np.array([sight.place for sight in labelled])
     between_m = np.linalg.norm(np.diff(places, axis=0), axis=1)
-    likelihood = likelihoods(
+    given = given_to(
         [sight.label for sight in labelled],
         [sight.probabilities for sight in labelled],
         names[:-1],
-        accuracy,
     )
-    likelihood[1:] **= np.minimum(1.0, between_m / (APART * length_m))[:, None]
-    prior = np.eye(len(names))[names.index(before)]
-    steps_m = np.concatenate([[labelled[0].distance_ahead_m], between_m])
-    return Settled.of(labelled, names, smoothed(likelihood, steps_m, prior, change_m))
+    beliefs = smoothed(
+        given,
+        np.concatenate([[labelled[0].distance_ahead_m], between_m]),
+        np.eye(len(names))[names.index(before)],
+        accuracy=accuracy,
+        change_m=change_m,
+        alike_m=alike_m,
+    )
+    return Settled.of(labelled, names, beliefs)
 
 
 def _names(sights: Sequence[Sight], before: str) -> tuple[str, ...]:

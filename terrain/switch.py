@@ -40,6 +40,9 @@ class SwitchConfig:
         Probability that the label of a region is right; used where labels are accumulated.
     change_m : float
         Mean distance between changes of terrain [m]; used where labels are accumulated.
+    alike_m : float
+        Correlation length of labels: ground that looks like another terrain does so for this
+        far in the mean [m]; used where labels are accumulated.
     """
 
     labels_in_row: int = 0
@@ -48,6 +51,7 @@ class SwitchConfig:
     unknown_m: float = 3.0
     label_accuracy: float = 0.9
     change_m: float = 10.0
+    alike_m: float = 0.2
 
     def __post_init__(self) -> None:
         require(
@@ -57,7 +61,7 @@ class SwitchConfig:
             0 < self.label_accuracy < 1,
             f"label_accuracy = {self.label_accuracy}, expected between 0 and 1",
         )
-        require_positive(self, "change_m", "unknown_m")
+        require_positive(self, "change_m", "unknown_m", "alike_m")
 
 
 @dataclass(frozen=True)
@@ -211,5 +215,5 @@ class Switch:
             before,
             accuracy=c.label_accuracy,
             change_m=c.change_m,
-            length_m=self.footprint.region_length_m,
+            alike_m=c.alike_m,
         )
