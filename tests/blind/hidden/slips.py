@@ -123,6 +123,18 @@ def side_slip_by_force(rng, scene):
     return hide
 
 
+def grip_lost(rng, scene):
+    """From some moment on, each run's own, all speeds and turns fall short (k and m of Salvi)."""
+    k, m = rng.uniform(0.7, 0.97), rng.uniform(0.55, 0.95)
+
+    def hide(rng, clock):
+        at_s = moment(rng, clock)
+        factors = np.where((clock.times_s >= at_s)[:, None], [k, m, m], 1.0)
+        return Hidden({"k": k, "m": m, "moment_s": at_s}, twist=lambda twist, _: twist * factors)
+
+    return hide
+
+
 def lost_tyre(rng, scene):
     """At some moment one side loses 4 to 12 % of its radius."""
     side, loss = int(rng.integers(2)), rng.uniform(0.04, 0.12)
@@ -226,6 +238,7 @@ SLIPS = {
     "loose_track": Kind(loose_track, honest=("tread slip", *IN_BURSTS)),
     "stick_and_slip": Kind(stick_and_slip),
     "side_slip_by_force": Kind(side_slip_by_force, honest=("inertia",)),
+    "grip_lost": Kind(grip_lost, (("traction",),), course="from_a_moment"),
     "lost_tyre": Kind(lost_tyre, (("wheel size",),), course="from_a_moment"),
     "one_side_deflates": Kind(one_side_deflates, (("wheel size",),), course="gradual"),
     "slippery_patches": Kind(
