@@ -23,6 +23,16 @@ def _by_position(motion, scene):
     return _rms(measured - reckoned) / floor_m(scene, _rms(measured))
 
 
+def size_between(one, other, scene):
+    """RMS distance of the displacements that two motions show, as a factor of the noise."""
+    (stamps_s, poses), (others_s, others) = (seen(motion, scene) for motion in (one, other))
+    within = (stamps_s >= others_s[0]) & (stamps_s <= others_s[-1])
+    times_s = stamps_s[within]
+    at = np.column_stack([np.interp(times_s, others_s, column) for column in others.T])
+    first, second = _moves(times_s, poses[within]), _moves(times_s, at)
+    return _rms(first - second) / floor_m(scene, _rms(first))
+
+
 def floor_m(scene, distance_m):
     """RMS distance of two displacements that differ by noise alone: two ends, two axes, a yaw."""
     return float(

@@ -80,7 +80,9 @@ def test_gyroscopes_are_recorded_in_about_half_and_rates_differ():
     assert all(scene_of("late_commands", seed).sensors.gyroscope for seed in range(20))
 
 
-@pytest.mark.parametrize("kind", ["turtle_mode", "grip_lost", "lost_tyre", "put_down_load", "clock_step"])
+@pytest.mark.parametrize(
+    "kind", ["turtle_mode", "grip_lost", "lost_tyre", "put_down_load", "clock_step"]
+)
 def test_each_run_has_a_moment_of_its_own(kind):
     truth = draw_hidden_case(HIDDEN[kind], rng(1)).truth
     assert abs(truth["measured"]["moment_s"] - truth["holdout"]["moment_s"]) > 1e-3

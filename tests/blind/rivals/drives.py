@@ -1,0 +1,102 @@
+"""Drives of one sort, that leave rivals apart from nothing, and drives that a program proposes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tests.blind.commands import ACCELERATION_M_S2
+from tests.blind.ground import Ground
+from tests.blind.hidden.scene import STEP_S, Drive
+
+SHAPES = ("spin", "circle", "straight", "steps", "slope")
+STEPS_OF_SPEED = (1.0, 0.4, 0.0, 0.7, -0.6, 0.0)  # each held for STEP_HELD_S
+STEP_HELD_S = 3.0
+WAVE_S = 30.0
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """A drive in plain words.
+
+    Attributes
+    ----------
+    shape : str
+        spin; circle; straight (forward at one speed); steps (a straight with steps of speed, also
+        backward); slope (up and down a plane of `slope_rad` and across it, with turns between).
+    speed_m_s : float
+        Of the middle; of each tread in a spin.
+    radius_m : float
+        Of a circle; negative to the right. A spin is to the left unless `radius_m` is negative.
+    duration_s : float
+    slope_rad : float
+    heading_rad : float or None
+        At the start; None is any.
+    """
+
+    shape: str
+    speed_m_s: float
+    radius_m: float = 0.0
+    duration_s: float = 60.0
+    slope_rad: float = 0.0
+    heading_rad: float | None = None
+
+
+def handful(width_m):
+    """Drives of which one tells most rivals apart."""
+    return (
+        Proposal("spin", 0.4, 1.0, 20.0),
+        Proposal("spin", 0.4, -1.0, 20.0),
+        *(Proposal("circle", 0.5, r * width_m, 20.0) for r in (1.0, -1.0)),
+        *(Proposal("circle", 0.9, r * width_m, 20.0) for r in (2.0, -2.0, 4.0)),
+        Proposal("straight", 0.4, duration_s=20.0),
+        Proposal("steps", 0.9, duration_s=20.0),
+        Proposal("slope", 0.8, duration_s=20.0, slope_rad=0.1),
+    )
+
+
+def drive_of(rng, scene, proposal):
+    """The proposed drive of a scene's robot, from rest, with no tread faster in its change."""
+    if proposal.shape not in SHAPES:
+        raise ValueError(f"shape = {proposal.shape!r}, expected one of {', '.join(SHAPES)}")
+    wanted = _wanted(proposal, scene.base.width)
+    heading = rng.uniform(-np.pi, np.pi) if proposal.heading_rad is None else proposal.heading_rad
+    place = rng.uniform(-20.0, 20.0, 2)
+    ground = Ground((float(np.tan(proposal.slope_rad)), 0.0)) if proposal.slope_rad else Ground()
+    return Drive(_from_rest(wanted), ground, (*map(float, place), float(heading)), None)
+
+
+def _wanted(p, width):
+    """Speed of each tread (N, 2) [m/s] that is asked for at each step."""
+    times_s = np.arange(round(p.duration_s / STEP_S) + 1) * STEP_S
+    speed, omega = np.full(len(times_s), p.speed_m_s), np.zeros(len(times_s))
+    if p.shape == "spin":
+        side = -1.0 if p.radius_m < 0 else 1.0
+        speed, omega = 0 * speed, omega + side * 2 * p.speed_m_s / width
+    elif p.shape == "circle":
+        omega = omega + p.speed_m_s / p.radius_m
+    elif p.shape == "steps":
+        steps = np.array(STEPS_OF_SPEED)[(times_s // STEP_HELD_S).astype(int) % 6]
+        speed = speed * steps
+    elif p.shape == "slope":
+        turning = (times_s % 8.0) > 6.0
+        omega = np.where(turning, np.pi / 2 / 2.0, 0.0)
+        speed = np.where(turning, 0.3 * speed, speed)
+    return np.column_stack([speed - omega * width / 2, speed + omega * width / 2])
+
+
+def waves(proposal):
+    """A drive whose speeds change so slowly that a lag looks like a delay: (N, 2) [m/s]."""
+    times_s = np.arange(round(proposal.duration_s / STEP_S) + 1) * STEP_S
+    phase = 2 * np.pi * times_s / WAVE_S
+    speed = proposal.speed_m_s * (0.5 - 0.5 * np.cos(phase))
+    half = 0.3 * proposal.speed_m_s * np.sin(phase / 2) * np.sin(phase)
+    return np.column_stack([speed - half, speed + half])
+
+
+def _from_rest(wanted):
+    most = ACCELERATION_M_S2 * STEP_S
+    result, state = np.empty_like(wanted), np.zeros(2)
+    for row, speeds in enumerate(wanted):
+        state = state + np.clip(speeds - state, -most, most)
+        result[row] = state
+    return result

@@ -1,0 +1,66 @@
+"""Rivals say the same about the drive that is given, and one of a handful tells them apart."""
+
+import numpy as np
+import pytest
+
+from odometry.run import Run
+from tests.blind.hidden.size import size_between
+from tests.blind.rivals.cases import LEAST_APART, MOST_BETWEEN, apart, draw_rivals, make_rivals
+from tests.blind.rivals.drives import SHAPES, Proposal, drive_of
+from tests.blind.rivals.pairs import PAIRS
+from tests.studies.gap_names import MEANING
+
+
+@pytest.mark.parametrize("pair", PAIRS)
+def test_the_given_drive_leaves_both_and_one_of_a_handful_does_not(pair):
+    """With other seeds of the drives than those by which the case was drawn."""
+    rng = np.random.default_rng([7, *pair.encode()])
+    drawn, (measured, holdout) = draw_rivals(pair, 0, rng)
+    _, (other, _) = draw_rivals(pair, 1, np.random.default_rng([7, *pair.encode()]))
+    assert size_between(measured, other, drawn.scene) <= MOST_BETWEEN
+    assert size_between(measured, measured, drawn.scene) == 0.0
+    assert len(holdout.poses) != len(measured.poses)
+    assert max(apart(rng, drawn).values()) > 0.8 * LEAST_APART
+
+
+def test_there_are_40_pairs_of_rivals_and_each_has_two_names():
+    assert 2 * len(PAIRS) >= 40
+    for pair in PAIRS.values():
+        assert pair.names[0] != pair.names[1]
+        assert set(pair.names) <= set(MEANING)
+
+
+@pytest.mark.parametrize("truth", [0, 1])
+def test_a_proposed_drive_is_driven_with_the_truth(tmp_path, truth):
+    """At half the speed wheels lose the same share, and slip by speed half of it."""
+    case = make_rivals("wheels_or_slip", truth, 2, tmp_path / "case")
+    assert (case.true, case.rival) == (("wheel size", "tread slip"), ("tread slip", "wheel size"))[
+        truth
+    ]
+    given = case.drawn.given
+    run = Run.read(case.drive(Proposal("straight", given.speed_m_s / 2), tmp_path / "driven"))
+    x, y = run.pose.stack("x", "y").T
+    seconds = run.pose.stamps_s[-1] - run.pose.stamps_s[100]
+    speed = np.hypot(x[-1] - x[100], y[-1] - y[100]) / seconds
+    lost = 1 - case.drawn.hides[0](None).truth["c_left"]
+    expected = given.speed_m_s / 2 * (1 - (lost, lost / 2)[truth])
+    assert speed == pytest.approx(expected, rel=0.004)
+
+
+def test_shapes_of_drives():
+    drawn, _ = draw_rivals("wheels_or_slip", 0, np.random.default_rng(0))
+    asked = {
+        shape: drive_of(np.random.default_rng(0), drawn.scene, Proposal(shape, 0.6, 2.0, 30.0))
+        for shape in SHAPES
+    }
+    spin, circle, straight, steps = (asked[shape].asked_m_s[-1] for shape in SHAPES[:4])
+    assert spin == pytest.approx([-0.6, 0.6])
+    assert circle.mean() == pytest.approx(0.6)
+    assert np.diff(circle) == pytest.approx(0.3 * drawn.scene.base.width)
+    assert straight == pytest.approx([0.6, 0.6])
+    assert {round(v, 2) for v in asked["steps"].asked_m_s[290::300, 0]} == {
+        *(0.6, 0.24, 0.0, 0.42, -0.36)
+    }
+    assert steps.shape == (2,)
+    with pytest.raises(ValueError, match="shape = 'square'"):
+        drive_of(np.random.default_rng(0), drawn.scene, Proposal("square", 0.6))
