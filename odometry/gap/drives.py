@@ -1,0 +1,131 @@
+"""Drives on which rivals are compared before anybody drives them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from odometry.arrays import AnyArray, FloatArray
+from odometry.effects.base_model import Base
+from odometry.models.inputs import Inputs
+from odometry.run import UNKNOWN
+from odometry.windows.dense import DenseWindows
+from odometry.windows.motion import level_path
+
+LASTING_S = 60.0
+PERIOD_S = 0.05
+RADII_M = (1.0, 2.5, 6.0)
+LEAST_TILT_RAD = 0.03  # of the steepest terrain measured: less is no slope to drive on
+STEP_S = 4.0  # between steps of speed, and between changes of the sense of turns
+STEPS = (0.3, 1.0, 0.0, 0.6, -0.6, 1.0, 0.15, 0.8)  # of the speed
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A drive of a minute.
+
+    Attributes
+    ----------
+    words : str
+        What to drive, with its numbers.
+    speeds_m_s : (N, 2)
+        Of the treads.
+    roll_rad, pitch_rad : (N,)
+    """
+
+    words: str
+    speeds_m_s: FloatArray
+    roll_rad: FloatArray
+    pitch_rad: FloatArray
+
+
+def drives_of(scenes: Sequence[DenseWindows], base: Base) -> tuple[Drive, ...]:
+    """A handful, at the speeds and on the slopes that the robot has driven."""
+    treads = np.concatenate([scene.inputs.tread_speeds_m_s for scene in scenes])
+    fast = float(np.percentile(np.abs(treads), 95))
+    width = _effective_width_m(base)
+    time_s = PERIOD_S * np.arange(round(LASTING_S / PERIOD_S))
+    turn = np.where(np.floor(time_s / STEP_S) % 2 == 0, 1.0, -1.0)
+    level = np.zeros_like(time_s)
+
+    def made(words: str, forward: FloatArray, difference: FloatArray) -> Drive:
+        speeds = np.stack([forward - difference / 2, forward + difference / 2], axis=-1)
+        scale = min(1.0, fast / max(float(np.abs(speeds).max()), 1e-9))
+        return Drive(words, scale * speeds, level, level)
+
+    found = [made(f"spins to both sides, treads at {fast:.2g} m/s", level, 2 * fast * turn)]
+    for radius_m in RADII_M:
+        inner = fast / (1 + width / (2 * radius_m))
+        words = f"circles of {radius_m:g} m radius to both sides at {inner:.2g} m/s"
+        found.append(made(words, level + inner, inner * width / radius_m * turn))
+    stepped = fast * np.array(STEPS)[(time_s // STEP_S).astype(np.int64) % len(STEPS)]
+    found.append(made(f"straights with steps of speed up to {fast:.2g} m/s", stepped, level))
+    curved = 0.4 * stepped * turn
+    found.append(made(f"curves with steps of speed up to {fast:.2g} m/s", stepped, curved))
+    return (*found, *_on_slopes(scenes, found))
+
+
+def _on_slopes(scenes: Sequence[DenseWindows], level: Sequence[Drive]) -> list[Drive]:
+    """Spins and curves across the steepest terrain measured, where attitude was recorded."""
+    tilts = [np.hypot(scene.inputs.roll_rad, scene.inputs.pitch_rad) for scene in scenes]
+    steep_rad = float(np.percentile(np.concatenate(tilts), 95))
+    if steep_rad < LEAST_TILT_RAD:
+        return []
+    found = []
+    for one in (level[0], level[-1]):
+        words = f"{one.words}, on a slope of {np.degrees(steep_rad):.0f} degrees"
+        found.append(replace(one, words=words, pitch_rad=one.pitch_rad + steep_rad))
+    return found
+
+
+def scene_of(drive: Drive, base: Base, like: DenseWindows) -> DenseWindows:
+    """The drive as windows of the same length and pose rate as measured ones.
+
+    The slope faces one way: roll and pitch follow the heading of the base's own motion. Poses are
+    those of this motion; whoever compares puts others in their place.
+    """
+    count = len(drive.speeds_m_s)
+    time_s = np.asarray(PERIOD_S * np.arange(count), dtype=np.float64)
+    inputs = Inputs(drive.speeds_m_s, time_s=time_s, terrain=_usual_terrain(like, count))
+    steps_s = np.full(count, PERIOD_S)
+    path = level_path(base.model.twist(base.values, inputs), steps_s, inputs)
+    steep_rad, heading = drive.pitch_rad, path[:, 2]
+    inputs = replace(
+        inputs,
+        roll_rad=-steep_rad * np.sin(heading),
+        pitch_rad=steep_rad * np.cos(heading),
+        heading_rad=heading,
+        yaw_rate_rad_s=None if like.inputs.yaw_rate_rad_s is None else np.gradient(heading, time_s),
+    )
+    lengths = np.diff(like.windows, axis=1)
+    spacing_s = float(np.median(np.diff(like.pose_s)[: lengths.max() + 1])) if len(like) else 0.1
+    each = max(1, round(spacing_s / PERIOD_S))
+    poses = np.arange(0, count, each)
+    steps = like.windows.shape[1] - 1
+    between = max(1, round(float(np.median(lengths))))
+    firsts = np.arange(0, len(poses) - steps * between, steps * between)
+    windows = firsts[:, None] + between * np.arange(steps + 1)
+    travel_m = np.cumsum(np.abs(drive.speeds_m_s).mean(axis=1)) * PERIOD_S
+    return replace(
+        like,
+        inputs=inputs,
+        steps_s=steps_s,
+        travel_m=travel_m,
+        pose_s=time_s[poses],
+        poses=path[poses],
+        windows=windows,
+    )
+
+
+def _usual_terrain(like: DenseWindows, count: int) -> AnyArray | None:
+    if like.inputs.terrain is None:
+        return None
+    names, counts = np.unique(like.inputs.terrain.astype(str), return_counts=True)
+    known = np.where(np.isin(names, (UNKNOWN, "")), 0, counts)
+    return np.full(count, names[int(np.argmax(known))], dtype=object)
+
+
+def _effective_width_m(base: Base) -> float:
+    """Of the treads, by what the base makes of a spin."""
+    twist = base.model.twist(base.values, Inputs(np.array([[-1.0, 1.0]])))
+    return float(2.0 / max(abs(twist[0, 2]), 1e-6))

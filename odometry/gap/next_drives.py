@@ -1,0 +1,167 @@
+"""What to drive next: the drive on which rivals differ most, and the odds that it decides.
+
+Each rival is simulated on a handful of drives, and the other one is fitted to it again within what
+the recordings leave open of both. With D^2 the chi-squared that is left, the gain of
+log-likelihood of the right one over the wrong one, twice, is normal with mean D^2 and standard
+deviation 2 D (two simple hypotheses under white noise): the odds that it exceeds the margin which
+a name needs follow in closed form.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.stats import norm
+
+from odometry.arrays import FloatArray
+from odometry.effects.base_model import Base
+from odometry.effects.corrected import Added, corrected_twist, reported_yaw_rate
+from odometry.effects.course import CommandsInCourse, InBursts, MotionInCourse
+from odometry.gap.calibration import Calibration
+from odometry.gap.config import GapConfig
+from odometry.gap.drives import Drive, drives_of, scene_of
+from odometry.gap.fit import Fitted
+from odometry.gap.hypothesis import RIDGE, Hypothesis
+from odometry.gap.measured import measured_of
+from odometry.gap.simulate import simulated_poses
+from odometry.gap.solve import differences
+from odometry.windows.dense import DenseWindows
+
+LEAST_ODDS = 0.6  # of a drive that is worth a minute
+
+
+@dataclass(frozen=True)
+class NextDrive:
+    """A drive that would tell two effects apart.
+
+    Attributes
+    ----------
+    words : str
+        What to drive for a minute, with its numbers.
+    between : (str, str)
+        Names of the effects.
+    odds : float
+        Probability that the right one of them then stands by the margin of a name, whichever it
+        is.
+    """
+
+    words: str
+    between: tuple[str, str]
+    odds: float
+
+
+@dataclass(frozen=True)
+class Rivalling:
+    """Effects that are there at any time, with the base, and how well both are known."""
+
+    base: Base
+    effects: tuple[Added, ...]
+    covariance: FloatArray
+
+
+def next_drives(
+    rivals: Mapping[str, Fitted],
+    scenes: Sequence[DenseWindows],
+    calibration: Calibration,
+    config: GapConfig,
+) -> tuple[NextDrive, ...]:
+    """The best drive for each rival of a named effect; none where no drive is worth it.
+
+    Parameters
+    ----------
+    rivals : Mapping of name to Fitted
+        The named effect first, then those that the recordings do not tell from it, in its place.
+    scenes : sequence of DenseWindows
+        Measured: speeds, slopes and pose rate are theirs.
+    """
+    drives = drives_of(scenes, calibration.base)
+    (name, named), *others = ((key, lasting(fit)) for key, fit in rivals.items())
+    found = []
+    for other, rival in others:
+        if named is None or rival is None:
+            continue
+        pair = (named, rival)
+        odds = [_odds(one, pair, scenes[0], calibration, config) for one in drives]
+        best = int(np.argmax(odds))
+        if odds[best] >= LEAST_ODDS:
+            found.append(NextDrive(drives[best].words, (name, other), odds[best]))
+    return tuple(found)
+
+
+def odds_of(chi_squared: float, margin: float) -> float:
+    """Probability that twice the gain of log-likelihood exceeds a margin."""
+    if chi_squared <= 0:
+        return 0.0
+    return float(norm.cdf((chi_squared - margin) / (2 * np.sqrt(chi_squared))))
+
+
+def _odds(
+    drive: Drive,
+    pair: tuple[Rivalling, Rivalling],
+    like: DenseWindows,
+    calibration: Calibration,
+    config: GapConfig,
+) -> float:
+    """The odds on one drive, where the less favourable one is true."""
+    scene = scene_of(drive, calibration.base, like)
+    left = [
+        chi_squared_left(true, other, scene, calibration, config)
+        for true, other in (pair, pair[::-1])
+    ]
+    return min(odds_of(value, config.least_evidence) for value in left)
+
+
+def chi_squared_left(
+    true: Rivalling,
+    other: Rivalling,
+    scene: DenseWindows,
+    calibration: Calibration,
+    config: GapConfig,
+) -> float:
+    """Chi-squared of a drive of the one rival that is left when the other is fitted to it.
+
+    Linearised about the values of the other, which may move as far as the recordings leave open.
+    """
+    measured = measured_of([as_driven(true, scene)], calibration, config)
+    hypothesis = Hypothesis(calibration, measured, tuple(one.effect for one in other.effects))
+    of_base = replace(calibration.uncertain, base=other.base).values
+    values = np.concatenate([of_base, *(one.values for one in other.effects)])
+
+    def rows_at(at: FloatArray) -> FloatArray:
+        return measured.rows(*hypothesis.split(at))
+
+    rows = rows_at(values)
+    jacobian = differences(rows_at, values, rows, hypothesis.scales, hypothesis.bounds)
+    known = np.zeros((len(values), len(values)))
+    known[: len(of_base), : len(of_base)] = calibration.information
+    known[len(of_base) :, len(of_base) :] = np.linalg.pinv(other.covariance, hermitian=True)
+    normal = jacobian.T @ jacobian + known
+    gradient = jacobian.T @ rows
+    step = np.linalg.solve(normal + RIDGE * np.eye(len(values)), gradient)
+    return max(0.0, float(rows @ rows - gradient @ step))
+
+
+def as_driven(true: Rivalling, scene: DenseWindows) -> DenseWindows:
+    """The drive as poses and gyroscope would report it, without noise."""
+    poses = simulated_poses(true.base, true.effects, scene)
+    inputs = scene.inputs
+    if inputs.yaw_rate_rad_s is not None:
+        omega = corrected_twist(true.base, true.effects, inputs)[:, 2]
+        inputs = replace(inputs, yaw_rate_rad_s=reported_yaw_rate(true.effects, omega, inputs))
+    return replace(scene, poses=poses, inputs=inputs)
+
+
+def lasting(fitted: Fitted) -> Rivalling | None:
+    """The effects as they are at the end of their course; None where they come and go."""
+    effects, kept, place = [], [], 0
+    for added in fitted.effects:
+        effect, values = added.effect, added.values
+        if isinstance(effect, CommandsInCourse | MotionInCourse):
+            if isinstance(effect.in_time, InBursts):
+                return None
+            values = values[: len(effect.inner.parameters)]
+            effect = effect.inner
+        effects.append(Added(effect, values))
+        kept += list(range(place, place + len(values)))
+        place += len(added.values)
+    return Rivalling(fitted.base, tuple(effects), fitted.covariance[np.ix_(kept, kept)])
