@@ -56,6 +56,10 @@ def content_of(result: GapResult) -> dict[str, Any]:
             for rival in result.rivals
         ],
         "notes": list(result.notes),
+        "next_drives": [
+            {"words": one.words, "between": list(one.between), "odds": one.odds}
+            for one in result.next_drives
+        ],
     }
 
 

@@ -1,6 +1,6 @@
 """Locate the gap, name what is missing, add it, and measure what that closes."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +15,7 @@ from odometry.gap.fit import Fitter
 from odometry.gap.locate import locate
 from odometry.gap.measured import measured_of
 from odometry.gap.name import explained
+from odometry.gap.next_drives import NextDrive, next_drives
 from odometry.gap.pieces import pieces
 from odometry.gap.result import Closing, GapResult, NamedEffect, Rival
 from odometry.gap.statistic import floor_of, floor_there, gap_of
@@ -96,10 +97,11 @@ def find_gap(
         for scenes in (fitted_scenes, held_scenes)
     ]
     named = _named(found, closings[0].before.value)
+    equivalent = equivalents(found)
     return GapResult(
         verdict=found.names[0] if found.names else "unknown" if found.unexplained else "none",
         effects=named,
-        equivalent=equivalents(found),
+        equivalent=equivalent,
         location=locate(known.base, (), fitted_scenes, floor.value, config, calibration=known),
         measured=closings[0],
         holdout=closings[1],
@@ -113,7 +115,20 @@ def find_gap(
         holdout_scenes=tuple(held_scenes),
         horizon_s=config.horizon_s,
         notes=headings.notes,
+        next_drives=_next_drives(found, [one.name for one in equivalent], fitter, config),
     )
+
+
+def _next_drives(
+    found: Explanation, equivalent: Collection[str], fitter: Fitter, config: GapConfig
+) -> tuple[NextDrive, ...]:
+    """What would tell the first effect from what came as near in its place."""
+    fits = {one.effect.name: one.fitted for one in reversed(found.first)}
+    rivals = {name: fits[name] for name in equivalent if name in fits}
+    if not rivals or found.names[0] not in fits:
+        return ()
+    first = {found.names[0]: fits[found.names[0]]}
+    return next_drives({**first, **rivals}, fitter.measured.scenes, fitter.calibration, config)
 
 
 def _dealt(

@@ -7,6 +7,7 @@ from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.gap.calibration import Calibration
 from odometry.gap.locate import Location
+from odometry.gap.next_drives import NextDrive
 from odometry.gap.statistic import Gap
 from odometry.windows.dense import DenseWindows
 
@@ -92,6 +93,8 @@ class GapResult:
     horizon_s : float
     notes : tuple of str
         What a reader should know of the runs.
+    next_drives : tuple of NextDrive
+        What would tell the first effect from those that the data do not tell from it.
     """
 
     verdict: str
@@ -107,6 +110,7 @@ class GapResult:
     holdout_scenes: tuple[DenseWindows, ...]
     horizon_s: float
     notes: tuple[str, ...] = ()
+    next_drives: tuple[NextDrive, ...] = ()
 
     @property
     def added(self) -> tuple[Added, ...]:

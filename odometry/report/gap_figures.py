@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter
 
 from odometry.arrays import FloatArray
 from odometry.gap.result import Closing, GapResult
@@ -21,6 +22,7 @@ RUNS = 4  # that are drawn of each kind
 ROOM = 1.15  # to the right of the last interval, for its number
 ROLLING_S = 10.0
 CANDIDATES = 14
+LINEAR_TO = 10.0  # of evidence: from there on it is very strong
 
 
 def closing_picture(result: GapResult, folder: Path) -> Picture:
@@ -118,8 +120,10 @@ def evidence_picture(result: GapResult, folder: Path) -> Picture | None:
         axes.set_yticks(range(len(rivals)), names, parse_math=False, fontsize=9)
         axes.set_ylim(len(rivals) - 0.4, -0.6)
         axes.axvline(0.0, color="#555555", linewidth=0.8)
+        axes.set_xscale("symlog", linthresh=LINEAR_TO)
         axes.grid(visible=True, axis="x")
-        axes.set_xlabel("evidence")
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axes.set_xlabel("evidence (logarithmic beyond ten)")
 
     return Picture(
         save_figure(folder / "gap_evidence.png", (WIDTH_IN, height_in), draw),

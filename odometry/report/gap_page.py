@@ -2,12 +2,13 @@
 
 from pathlib import Path
 
-from odometry.gap.closed import held_out_share
+from odometry.gap.closed import Share, held_out_share
 from odometry.gap.result import GapResult
 from odometry.gap.words import sentences
 from odometry.report.gap_figures import closing_picture, evidence_picture, time_picture
 from odometry.report.gap_map import map_picture
 from odometry.report.gap_rollouts import rollout_pictures
+from odometry.report.gap_shapes import shape_pictures
 from odometry.report.gap_tables import (
     base_grid,
     closing_grid,
@@ -17,8 +18,9 @@ from odometry.report.gap_tables import (
     predictor_grid,
     region_grid,
     rival_grid,
+    worst_grid,
 )
-from odometry.report.html import Grid, Paragraph, Picture, Section, write_page
+from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
 
 HOW = (
     "The gap is the root mean square distance between simulated and measured positions at the ends "
@@ -44,23 +46,24 @@ def write_gap_report(result: GapResult, out: Path) -> list[Path]:
         The files written, the page last. Figures of an earlier gap are removed.
     """
     folder = Path(out) / "figures"
-    lead, *others = sentences(result)
     share = held_out_share(result)
+    missing, how_sure, to_do, *others = sentences(result)
+    short = [f"What is missing: {missing}", f"How sure: {how_sure}", f"What to do: {to_do}"]
+    details = [*others, *(f"{note}." for note in result.notes)]
     sections = [
-        Section("In words", [Paragraph(" ".join([*others, *(f"{n}." for n in result.notes)]))]),
+        Section("In short", [Listing(short), closing_picture(result, folder)]),
         Section(
-            "The gap before and after",
-            [closing_picture(result, folder), closing_grid(result, share)],
+            "The model", [base_grid(result), *_effects(result), *shape_pictures(result, folder)]
         ),
         Section("Where it is", _where(result, folder)),
-        Section("What is missing", _missing(result, folder)),
+        Section("Over time", [time_picture(result, folder), worst_grid(result)]),
         Section("Whole runs that were held out", rollout_pictures(result, folder)),
-        Section("Over time", [time_picture(result, folder)]),
-        Section("The model", [base_grid(result)]),
+        Section("Evidence", _evidence(result, folder, share)),
+        Section("In words", [Listing(details)]),
         Section("How to read this", [Paragraph(HOW)]),
     ]
     title = f"The gap between {result.calibration.base.model.name} and measured motion"
-    page = write_page(Path(out) / "report.html", title, lead, sections)
+    page = write_page(Path(out) / "report.html", title, "", sections)
     pictures = [b.file for s in sections for b in s.blocks if isinstance(b, Picture)]
     for file in set(folder.glob("gap_*.png")) - set(pictures):
         file.unlink()
@@ -76,9 +79,12 @@ def _where(result: GapResult, folder: Path) -> list[Grid | Picture]:
     return blocks
 
 
-def _missing(result: GapResult, folder: Path) -> list[Grid | Picture]:
-    blocks: list[Grid | Picture] = []
-    blocks += [effect_grid(result), parameter_grid(result)] if result.effects else []
+def _effects(result: GapResult) -> list[Grid]:
+    return [effect_grid(result), parameter_grid(result)] if result.effects else []
+
+
+def _evidence(result: GapResult, folder: Path, share: Share | None) -> list[Grid | Picture]:
+    blocks: list[Grid | Picture] = [closing_grid(result, share)]
     blocks += [equivalent_grid(result)] if result.equivalent else []
     picture = evidence_picture(result, folder)
     blocks += [picture, rival_grid(result)] if picture is not None else []

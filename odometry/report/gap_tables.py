@@ -1,10 +1,17 @@
 """The tables of a gap's page."""
 
+import numpy as np
+
 from odometry.gap.closed import Share
+from odometry.gap.config import GapConfig
+from odometry.gap.quantities import evidence_words, percent, rounded, with_interval
 from odometry.gap.region_words import noun_of
 from odometry.gap.result import Closing, GapResult
-from odometry.gap.words import percent, with_interval
+from odometry.gap.statistic import squared_errors
 from odometry.report.html import Grid
+
+PART_S = GapConfig.part_s
+WORST = 5  # stretches that are listed
 
 
 def closing_grid(result: GapResult, share: Share | None) -> Grid:
@@ -43,23 +50,14 @@ def effect_grid(result: GapResult) -> Grid:
 
 def parameter_grid(result: GapResult) -> Grid:
     """Parameters of the effects with intervals."""
-    rows = [
-        (
-            effect.added.effect.name,
-            parameter.name,
-            f"{value:.5g}",
-            f"{low:.5g} to {high:.5g}",
-            parameter.unit or "-",
-        )
-        for effect in result.effects
-        for parameter, value, low, high in zip(
-            effect.added.effect.parameters,
-            effect.added.values,
-            effect.low,
-            effect.high,
-            strict=True,
-        )
-    ]
+    rows = []
+    for effect in result.effects:
+        added = effect.added
+        columns = (added.effect.parameters, added.values, effect.low, effect.high)
+        for parameter, *ends in zip(*columns, strict=True):
+            value, low, high = rounded(*map(float, ends))
+            unit = parameter.unit or "-"
+            rows.append((added.effect.name, parameter.name, value, f"{low} to {high}", unit))
     return Grid(("effect", "parameter", "value", "95 % interval", "unit"), rows)
 
 
@@ -84,11 +82,20 @@ def base_grid(result: GapResult) -> Grid:
 def rival_grid(result: GapResult) -> Grid:
     """All candidates for the first effect."""
     rows = [
-        (r.name, r.form.replace("_", " "), f"{r.evidence:.1f}", f"{r.gap_after:.3g}")
+        (
+            r.name,
+            r.form.replace("_", " "),
+            f"{r.evidence:.0f}",
+            evidence_words(r.evidence),
+            f"{r.gap_after:.3g}",
+        )
         for r in result.rivals
     ]
-    caption = "Candidates for the first effect; gaps on the measured runs."
-    return Grid(("candidate", "form", "evidence", "gap after m"), rows, caption)
+    caption = (
+        "Candidates for the first effect. Evidence: twice the log-likelihood gained on windows not "
+        "fitted, less the penalty for parameters; gaps on the measured runs."
+    )
+    return Grid(("candidate", "form", "evidence", "in words", "gap after m"), rows, caption)
 
 
 def region_grid(result: GapResult) -> Grid:
@@ -108,6 +115,30 @@ def region_grid(result: GapResult) -> Grid:
         "errors beyond noise."
     )
     return Grid(("where", "bounds (SI)", "excess m", "share"), rows, caption)
+
+
+def worst_grid(result: GapResult) -> Grid:
+    """The stretches of the measured runs with the largest gap, after the effects."""
+    rows = []
+    for scene in result.measured_scenes:
+        before = squared_errors(result.calibration.base, (), scene)
+        after = squared_errors(result.base, result.added, scene)
+        piece = np.floor(scene.start_s / PART_S).astype(np.int64)
+        for number in np.unique(piece):
+            own = piece == number
+            rms = (float(np.sqrt(of[own].mean())) for of in (before, after))
+            rows.append((scene.run.name, number * PART_S, *rms))
+    worst = sorted(rows, key=lambda row: -row[3])[:WORST]
+    header = ("run", "run time s", "before m", "after m")
+    caption = f"The {len(worst)} stretches of {PART_S:g} s that are worst after the effects."
+    return Grid(
+        header,
+        [
+            (name, f"{begin:.0f} to {begin + PART_S:.0f}", f"{old:.3g}", f"{new:.3g}")
+            for name, begin, old, new in worst
+        ],
+        caption,
+    )
 
 
 def predictor_grid(result: GapResult) -> Grid:

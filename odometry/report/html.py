@@ -109,7 +109,7 @@ def render_page(title: str, lead: str, sections: Sequence[Section]) -> str:
     ----------
     title : str
     lead : str
-        The one sentence that a hurried reader should see.
+        The one sentence that a hurried reader should see; none where the first section has it.
     sections : sequence of Section
         Those without blocks are left out.
     """
@@ -128,7 +128,8 @@ def render_page(title: str, lead: str, sections: Sequence[Section]) -> str:
             '<meta http-equiv="Content-Security-Policy" '
             "content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'\">",
             f"<title>{name}</title>\n<style>{_CSS}</style>\n</head>\n<body>\n<main>",
-            f'<h1>{name}</h1>\n<p class="lead">{escape(lead)}</p>',
+            f"<h1>{name}</h1>",
+            *([f'<p class="lead">{escape(lead)}</p>'] if lead else []),
             *parts,
             "</main>\n</body>\n</html>\n",
         ]

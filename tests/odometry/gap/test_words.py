@@ -2,11 +2,17 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from odometry.effects.corrected import Added
+from odometry.effects.time_offset import TimeOffset
 from odometry.gap.closed import Share, held_out_share
+from odometry.gap.next_drives import NextDrive
+from odometry.gap.quantities import evidence_words, percent, rounded, with_interval
+from odometry.gap.result import NamedEffect
 from odometry.gap.statistic import Gap
-from odometry.gap.words import percent, sentences, with_interval
+from odometry.gap.words import sentences
 
 
 def text(result):
@@ -15,65 +21,96 @@ def text(result):
 
 def test_a_named_effect_with_its_numbers(scaled_result):
     said = sentences(scaled_result)
-    share = held_out_share(scaled_result)
     assert said[0] == (
-        f"Missing in icr: wheel_scale and lever_arm; together they close {percent(share)} of the "
-        "held-out excess."
+        "Missing in icr: wheels of another size, or constant slip (wheel_scale) and a reference "
+        "that is not at the robot's origin (lever_arm)."
     )
+    share, closing = held_out_share(scaled_result), scaled_result.holdout
+    for part in (
+        f"falls from {with_interval(closing.before)} to {with_interval(closing.after)}",
+        f"the noise floor is {with_interval(closing.noise_floor)}",
+        f"{percent(share)} of the excess is closed",
+        "It may as well be traction_loss instead of wheel_scale.",
+    ):
+        assert part in said[1]
+    assert said[2].startswith("Measure the wheels")
+    assert "What tells wheel_scale from traction_loss: a free wheel." in said[2]
     whole = text(scaled_result)
-    closing = scaled_result.holdout
-    for gap in (closing.before, closing.after, closing.noise_floor, scaled_result.measured.before):
-        assert with_interval(gap) in whole
-    assert "c_l = 0.8 (0.79 to 0.82), c_r = 0.8 (0.79 to 0.82)" in whole
+    assert with_interval(scaled_result.measured.before) in whole
+    assert "c_l = 0.800 (0.790 to 0.820), c_r = 0.800 (0.790 to 0.820)" in whole
     assert "x_arm = 0.001 m (-0.009 to 0.021)" in whole
+    assert "(evidence 812, very strong)" in whole
     assert "acts on the commands" in whole
     assert "acts on the measurement" in whole
-    assert "cannot tell wheel_scale from traction_loss; what would: a free wheel." in whole
-    assert "What is left cannot be told from noise." in whole
     predicted = [one.name for one in scaled_result.location.predictors if one.discovered]
     assert "speed" in predicted
     assert "speed" in next(s for s in said if s.startswith("What predicts the disagreement"))
     assert scaled_result.location.regions[0].words in whole
 
 
+def test_a_drive_that_decides_goes_before_another_measurement(scaled_result):
+    drive = NextDrive("spins to both sides", ("wheel_scale", "traction_loss"), 0.934)
+    todo = sentences(replace(scaled_result, next_drives=(drive,)))[2]
+    assert (
+        "To tell wheel_scale from traction_loss: spins to both sides, for a minute (decides in "
+        "93 % of cases)." in todo
+    )
+    assert "a free wheel" not in todo
+
+
+def test_a_fault_of_the_reference_is_none_of_the_robot(scaled_result):
+    one = np.array([0.1])
+    late = NamedEffect(Added(TimeOffset(), one), one, one, 0.2, 0.1, 50.0)
+    said = sentences(replace(scaled_result, effects=(late,)))
+    assert said[0] == (
+        "Not the robot is at fault but a sensor: pose stamps that are late or early (time_offset)."
+    )
+
+
+def test_a_worse_gap_is_said_in_words(scaled_result):
+    worse = replace(scaled_result.holdout, after=Gap(9.0, 8.0, 10.0))
+    said = sentences(replace(scaled_result, holdout=worse))
+    assert said[1].startswith("The gap on held-out data gets worse, from ")
+    assert said[1].endswith("do not trust the name.")
+
+
 def test_none_claims_nothing(none_result):
     said = sentences(none_result)
-    assert said[0].startswith("Nothing that these runs could show is missing in icr")
-    assert said[0].endswith("noise explains the gap.")
+    assert said[0] == "Nothing that these runs could show is missing in icr (none)."
+    assert said[2] == "Keep the model as it is."
     assert held_out_share(none_result) is None
     whole = text(none_result)
-    for word in ("Missing", "Effect", "closed", "Left", "share"):
+    for word in ("Missing", "Effect", "closed", "left", "share"):
         assert word not in whole
 
 
 def test_none_admits_a_gap_above_the_floor(none_result):
     measured = replace(none_result.measured, before=Gap(0.2, 0.15, 0.3))
     said = sentences(replace(none_result, measured=measured))
-    assert "the gap is above the noise floor" in said[0]
-    assert "noise explains the gap" not in said[0]
+    assert said[0].endswith("but the gap is above the noise floor.")
 
 
 def test_unknown_without_any_name_says_so(none_result):
-    first, *_ = sentences(replace(none_result, verdict="unknown"))
-    assert first.startswith("Something is missing in icr that neither an effect")
+    first, _, to_do, *_ = sentences(replace(none_result, verdict="unknown"))
+    assert first.startswith("Something is missing in icr (unknown): neither an effect")
+    assert to_do.startswith("Look at the worst stretches")
 
 
-def test_unknown_says_what_it_follows_and_what_is_left(unknown_result):
+def test_unknown_says_what_it_depends_on_and_what_is_left(unknown_result):
     said = sentences(unknown_result)
-    assert said[0].startswith(
-        "Something is missing in icr that no effect of the catalogue explains; it follows heading; "
-        "a smooth term closes "
+    assert said[0] == (
+        "Something is missing in icr that the catalogue of effects does not have (unknown): it "
+        "depends on heading."
     )
     left = unknown_result.holdout.after.value - unknown_result.holdout.noise_floor.value
-    assert said[-1] == f"Left unexplained: {left:.3g} m above the noise floor."
+    assert f"{left:.3g} m are left unexplained" in said[1]
+    assert said[2] == "Look for what depends on this variable."
 
 
 def test_a_named_effect_beside_an_unknown_one(scaled_result, unknown_result):
     both = (scaled_result.effects[0], unknown_result.effects[0])
     said = sentences(replace(scaled_result, effects=both))
-    assert said[0].startswith(
-        "Missing in icr: wheel_scale, and something unknown that follows heading; together they "
-    )
+    assert said[0].endswith("(wheel_scale), and something unknown that depends on heading.")
 
 
 def test_every_sentence_ends_and_holds_no_odd_number(scaled_result, none_result, unknown_result):
@@ -103,20 +140,42 @@ def test_an_effect_that_explains_nothing_closes_nothing(unknown_result):
     assert share.low < 0.05
 
 
-def test_an_interval_is_told_only_of_several_stretches():
+def test_an_interval_is_stated_only_of_several_stretches():
     for pieces, words in (
-        (1, "0.0498 m (no interval can be told from one stretch)"),
-        (3, "0.0498 m (0.04 to 0.06, from 3 stretches alone)"),
-        (5, "0.0498 m (0.04 to 0.06)"),
+        (1, "0.050 m (no interval from one stretch)"),
+        (3, "0.050 m (0.040 to 0.060, from 3 stretches alone)"),
+        (5, "0.050 m (0.040 to 0.060)"),
     ):
         assert with_interval(Gap(0.0498, 0.04, 0.06, pieces)) == words
-    assert percent(Share(0.9, 0.9, 0.9, 1)) == "90 % (no interval can be told from one stretch)"
+    assert percent(Share(0.9, 0.9, 0.9, 1)) == "90 % (no interval from one stretch)"
     assert percent(Share(0.9, 0.8, 1.0, 4)) == "90 % (80 to 100, from 4 stretches alone)"
+
+
+@pytest.mark.parametrize(
+    ("value", "low", "high", "expected"),
+    [
+        (0.66827, 0.61, 0.73, ("0.668", "0.610", "0.730")),
+        (0.66827, 0.1, 1.3, ("0.67", "0.10", "1.30")),
+        (67.64, 40.0, 90.0, ("68", "40", "90")),
+        (0.66827, 0.66827, 0.66827, ("0.668", "0.668", "0.668")),
+        (1.0, float("-inf"), float("inf"), ("1", "-inf", "inf")),
+    ],
+)
+def test_digits_are_those_that_the_interval_allows(value, low, high, expected):
+    assert rounded(value, low, high) == expected
+
+
+@pytest.mark.parametrize(
+    ("evidence", "words"),
+    [(-3, "none"), (1, "hardly any"), (5, "weak"), (7, "strong"), (812, "very strong")],
+)
+def test_evidence_has_a_scale_in_words(evidence, words):
+    assert evidence_words(evidence) == words
 
 
 def test_one_measured_stretch_says_neither_nothing_nor_something(none_result):
     one = Gap(0.2, 0.2, 0.2, 1)
     measured = replace(none_result.measured, before=one, after=one)
-    first, second, *_ = sentences(replace(none_result, measured=measured))
-    assert first.startswith("Whether something is missing in icr cannot be told")
-    assert "0.2 m (no interval can be told from one stretch) on the measured runs" in second
+    said = sentences(replace(none_result, measured=measured))
+    assert said[0].startswith("Whether something is missing in icr cannot be told")
+    assert "0.2 m (no interval from one stretch) from the measured" in said[3]

@@ -7,13 +7,16 @@ import numpy as np
 import pytest
 
 from odometry.gap.locate import Location, Predictor
+from odometry.gap.quantities import with_interval
 from odometry.gap.statistic import gap_of, squared_errors
 from odometry.gap.variables import Variable
-from odometry.gap.words import sentences, with_interval
+from odometry.gap.words import sentences
 from odometry.report.gap_figures import rolling_rms
 from odometry.report.gap_map import binned_rms, scale_of
 from odometry.report.gap_page import write_gap_report
 from odometry.report.gap_rollouts import AFTER_NAME, BEFORE_NAME, MEASURED_NAME, rollout, rollouts
+from odometry.report.gap_shapes import shape_of
+from odometry.report.gap_tables import worst_grid
 
 
 class Page(HTMLParser):
@@ -53,9 +56,9 @@ def test_files_are_written_and_named(written):
     assert names == [
         "figures/gap_closing.png",
         "figures/gap_map.png",
-        "figures/gap_evidence.png",
-        "figures/gap_rollout_1.png",
         "figures/gap_time.png",
+        "figures/gap_rollout_1.png",
+        "figures/gap_evidence.png",
         "report.html",
     ]
     assert all(file.stat().st_size > 5000 for file in files)
@@ -72,17 +75,19 @@ def test_the_page_stands_alone_and_escapes_names(page, written):
 
 
 def test_words_and_tables_are_those_of_the_result(page, scaled_result):
-    lead, *others = sentences(scaled_result)
-    assert lead in page.texts
-    assert " ".join(others) in page.texts
+    missing, sure, to_do, *others = sentences(scaled_result)
+    short = (f"What is missing: {missing}", f"How sure: {sure}", f"What to do: {to_do}")
+    for sentence in (*short, *others):
+        assert page.texts.count(sentence) == 1
+    assert min(map(page.texts.index, short)) < page.texts.index("The model")
     for closing in (scaled_result.measured, scaled_result.holdout):
         for gap in (closing.before, closing.after, closing.noise_floor):
             assert with_interval(gap) in page.cells
     for rival in scaled_result.rivals:
-        assert {rival.name, f"{rival.evidence:.1f}", f"{rival.gap_after:.3g}"} <= set(page.cells)
+        assert {rival.name, f"{rival.evidence:.0f}", f"{rival.gap_after:.3g}"} <= set(page.cells)
     for region in scaled_result.location.regions:
         assert region.words in page.cells
-    assert {"0.79 to 0.82", "a free wheel", "traction_loss", "latency"} <= set(page.cells)
+    assert {"0.790 to 0.820", "a free wheel", "traction_loss", "latency"} <= set(page.cells)
 
 
 def test_the_same_bytes_twice_and_old_figures_go(scaled_result, none_result, written, tmp_path):
@@ -103,13 +108,13 @@ def test_results_without_effects_candidates_or_variables(none_result, unknown_re
     files = write_gap_report(bare, tmp_path)
     assert [file.name for file in files] == [
         "gap_closing.png",
-        "gap_rollout_1.png",
         "gap_time.png",
+        "gap_rollout_1.png",
         "report.html",
     ]
-    assert "What is missing" not in files[-1].read_text(encoding="utf-8")
+    assert "candidate" not in Page(files[-1].read_text(encoding="utf-8")).cells
     text = write_gap_report(unknown_result, tmp_path)[-1].read_text(encoding="utf-8")
-    assert "no effect of the catalogue explains" in text
+    assert "(unknown): it depends on heading" in text
 
 
 def test_a_map_over_labels(scaled_result, tmp_path):
@@ -168,3 +173,28 @@ def test_rolling_rms_by_hand():
     time_s, squares = np.array([0.0, 2.0, 4.0, 30.0]), np.array([1.0, 4.0, 9.0, 16.0])
     expected = np.sqrt([5 / 2, 14 / 3, 13 / 2, 16.0])
     np.testing.assert_allclose(rolling_rms(time_s, squares, 4.0), expected)
+
+
+def test_the_shape_of_what_is_unknown_by_hand(unknown_result):
+    """0.001 cos(heading) along; across nothing, but for 0.012 and 0.006 of intervals by sines."""
+    (effect,) = unknown_result.effects
+    at = np.linspace(-3, 3, 7)
+    shapes = shape_of(effect, at)
+    sigma = 0.03 / 2 / 1.96
+    np.testing.assert_allclose(shapes["v_x"], [0.001 * np.cos(at), sigma * np.abs(np.cos(at))])
+    np.testing.assert_allclose(shapes["v_y"], [0 * at, sigma * np.abs(np.sin(at))], atol=1e-12)
+    assert set(shapes) == {"v_x", "v_y"}
+
+
+def test_worst_stretches_are_those_of_the_largest_gap(scaled_result):
+    grid = worst_grid(scaled_result)
+    (scene,) = scaled_result.measured_scenes
+    squares = squared_errors(scaled_result.base, scaled_result.added, scene)
+    pieces = (scene.start_s // 10).astype(int)
+    by_piece = {int(n): np.sqrt(squares[pieces == n].mean()) for n in np.unique(pieces)}
+    worst = max(by_piece, key=by_piece.get)
+    assert grid.rows[0][1] == f"{10 * worst} to {10 * worst + 10}"
+    assert grid.rows[0][3] == f"{by_piece[worst]:.3g}"
+    assert [float(row[3]) for row in grid.rows] == sorted(
+        (float(row[3]) for row in grid.rows), reverse=True
+    )

@@ -1,0 +1,108 @@
+"""The three sentences of a gap that a hurried reader should see."""
+
+from collections.abc import Sequence
+
+from odometry.effects.residual import Residual
+from odometry.gap.closed import Share, held_out_share
+from odometry.gap.quantities import metres, percent, with_interval
+from odometry.gap.region_words import noun_of
+from odometry.gap.result import GapResult, NamedEffect
+
+
+def lead(result: GapResult) -> tuple[str, str, str]:
+    """What is missing, how sure that is, and what to do."""
+    share = held_out_share(result)
+    return _missing(result), _how_sure(result, share), _what_to_do(result)
+
+
+def _missing(result: GapResult) -> str:
+    model = result.calibration.base.model.name
+    if not result.effects:
+        return _nothing_named(result, model)
+    named = [e for e in result.effects if not isinstance(e.added.effect, Residual)]
+    rest = [noun_of(_variable(e)) for e in result.effects if isinstance(e.added.effect, Residual)]
+    if not named:
+        return (
+            f"Something is missing in {model} that the catalogue of effects does not have "
+            f"(unknown): it depends on {listed(rest)}."
+        )
+    names = listed([f"{e.added.effect.in_words} ({e.added.effect.name})" for e in named])
+    if rest:
+        names += f", and something unknown that depends on {listed(rest)}"
+    if all(effect.added.effect.of_reference for effect in named) and not rest:
+        return f"Not the robot is at fault but a sensor: {names}."
+    return f"Missing in {model}: {names}."
+
+
+def _nothing_named(result: GapResult, model: str) -> str:
+    if result.verdict == "unknown":
+        return (
+            f"Something is missing in {model} (unknown): neither an effect of the catalogue nor a "
+            "smooth function of what was recorded explains it."
+        )
+    if not result.measured.before.has_interval:
+        return (
+            f"Whether something is missing in {model} cannot be told: the measured windows are "
+            "one stretch, of which the gap has no interval."
+        )
+    if result.measured.before.is_above(result.measured.noise_floor):
+        return (
+            f"Nothing that these runs could show is missing in {model} (none), but the gap is "
+            "above the noise floor."
+        )
+    return f"Nothing that these runs could show is missing in {model} (none)."
+
+
+def _how_sure(result: GapResult, share: Share | None) -> str:
+    held = result.holdout
+    floor = f"the noise floor is {with_interval(held.noise_floor)}"
+    if not result.effects:
+        return f"The gap on held-out data is {with_interval(held.before)}; {floor}."
+    change = f"from {with_interval(held.before)} to {with_interval(held.after)}"
+    if held.after.value > held.before.value:
+        return f"The gap on held-out data gets worse, {change}: do not trust the name."
+    said = f"The gap on held-out data falls {change}; {floor}"
+    if share is None:
+        said += ", so that it was hardly above noise before"
+    else:
+        said += f", so that {percent(share)} of the excess is closed"
+    if held.after.is_above(held.noise_floor):
+        left = metres(held.after.value - held.noise_floor.value)
+        said += f" and {left} are left unexplained"
+    others = [f"{one.name} instead of {one.instead_of}" for one in result.equivalent]
+    return f"{said}. It may as well be {listed(others, 'or')}." if others else f"{said}."
+
+
+def _what_to_do(result: GapResult) -> str:
+    drives = [
+        f"To tell {' from '.join(one.between)}: {one.words}, for a minute (decides in "
+        f"{100 * one.odds:.0f} % of cases)."
+        for one in result.next_drives
+    ]
+    decided = {name for one in result.next_drives for name in one.between}
+    measures = [
+        f"What tells {one.instead_of} from {one.name}: {one.told_apart_by}."
+        for one in result.equivalent
+        if one.name not in decided
+    ]
+    return " ".join([_remedy(result), *drives, *measures])
+
+
+def _remedy(result: GapResult) -> str:
+    if not result.effects:
+        if result.verdict == "unknown":
+            return "Look at the worst stretches below, and record what may differ there."
+        return "Keep the model as it is."
+    remedies = dict.fromkeys(effect.added.effect.remedy for effect in result.effects)
+    return f"{'; '.join(remedies)}.".capitalize()
+
+
+def _variable(effect: NamedEffect) -> str:
+    kind = effect.added.effect
+    return kind.variable if isinstance(kind, Residual) else ""
+
+
+def listed(names: Sequence[str], word: str = "and") -> str:
+    """Names as a sentence lists them."""
+    *others, last = names
+    return f"{', '.join(others)} {word} {last}" if others else last
