@@ -87,7 +87,7 @@ def test_the_answer_is_printed_and_written(command, case, tmp_path):
     true_s = case.truth["time_offset"]["delay_s"]
     found = effect["parameters"]["offset"]
     assert found["low"] < true_s < found["high"]
-    assert "Missing in icr: time_offset" in output
+    assert "pose stamps that are late or early (time_offset)" in output
     assert (out / "report.html").is_file()
     written = {file.relative_to(out).as_posix() for file in out.rglob("*") if file.is_file()}
     assert {"gap.json", "model.toml", "report.html"} <= written
