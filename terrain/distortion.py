@@ -4,6 +4,8 @@ The polynomials of the model turn back on themselves far from the axis, so that 
 outside the field of view would land in the image. Beyond the turning point the answer is NaN.
 """
 
+from functools import lru_cache
+
 import numpy as np
 
 from odometry.arrays import FloatArray
@@ -29,7 +31,12 @@ def radius_limit(distortion: FloatArray) -> float:
         The limit in normalised image coordinates (tangent of the angle off the axis);
         infinite if the model never turns back.
     """
-    k1, k2, _, _, k3, k4, k5, k6 = np.pad(distortion, (0, 14 - len(distortion)))[:8]
+    return _radius_limit(*np.pad(distortion, (0, 14 - len(distortion)))[:8])
+
+
+@lru_cache(maxsize=64)  # asked for at each projection, of the lens of one camera
+def _radius_limit(*coefficients: float) -> float:
+    k1, k2, _, _, k3, k4, k5, k6 = coefficients
     numerator = np.polynomial.Polynomial([1.0, k1, k2, k3])
     denominator = np.polynomial.Polynomial([1.0, k4, k5, k6])
     square = np.polynomial.Polynomial([0.0, 1.0])  # s = r^2

@@ -28,14 +28,14 @@ def draw_formula_case(kind, rng):
         commands = draw_commands(rng, MEASURED_S, limits)
         labels = _labels(rng, truth, len(commands))
         world = {"ground": ground, "start": _start(rng), "labels": labels}
-        alone = [
+        alone = (
             size_m(drive(commands, body, icrs, one, **world), icrs, one)
             for one in ({name: truth[name]} for name in names)
-        ]
+        )
         if all(SIZES_OF_FLOOR[0] <= s / NOISE_FLOOR_M <= SIZES_OF_FLOOR[1] for s in alone):
             break
     else:
-        raise ValueError(f"{kind}: no effect of the wanted size in {ATTEMPTS} draws; {alone} m")
+        raise ValueError(f"{kind}: no effect of the wanted size in {ATTEMPTS} draws")
     measured = drive(commands, body, icrs, truth, **world)
     again = draw_commands(rng, MEASURED_S, limits)
     other = _labels(rng, truth, len(again))

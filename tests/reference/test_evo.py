@@ -5,7 +5,7 @@ import subprocess
 import sys
 import zipfile
 from dataclasses import asdict
-from pathlib import Path
+from importlib.metadata import entry_points
 
 import numpy as np
 import pytest
@@ -76,22 +76,51 @@ def trajectories(tmp_path_factory):
     return found
 
 
-def evo_results(folder, program, *options):
-    """The error array and the statistics that an evo program saves."""
-    executable = Path(sys.executable).with_name(program)
-    if not executable.exists():
-        pytest.skip(f"{program} is not installed: it is in the extra `test`")
-    result = folder / f"{program}{''.join(options)}.zip"
-    command = [executable, "tum", "reference.tum", "drifting.tum", *options]
-    finished = subprocess.run(
-        [*command, "--save_results", result, "--no_warnings"],
-        cwd=folder,
-        env={"HOME": str(folder), "MPLBACKEND": "agg", "OMP_NUM_THREADS": "1"},
-        capture_output=True,
+# One process for all commands: evo takes a second to start, a result a hundredth of one.
+EVO = """
+import json, os, sys
+from importlib.metadata import entry_points
+for line in sys.stdin:
+    folder, program, *options = json.loads(line)
+    os.chdir(folder)
+    sys.argv = [program, *options]
+    (script,) = entry_points(group="console_scripts", name=program)
+    script.load()()
+    print("done", flush=True)
+"""
+
+
+@pytest.fixture(scope="module")
+def evo(tmp_path_factory):
+    """A process that runs evo's commands, one a line."""
+    if not entry_points(group="console_scripts", name="evo_ape"):
+        pytest.skip("evo is not installed: it is in the extra `test`")
+    home = str(tmp_path_factory.mktemp("home"))
+    with subprocess.Popen(
+        [sys.executable, "-c", EVO],
+        env={"HOME": home, "MPLBACKEND": "agg", "OMP_NUM_THREADS": "1"},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
         text=True,
-        check=False,
+    ) as process:
+        yield process
+        process.stdin.close()
+
+
+def evo_results(evo, folder, program, *options):
+    """The error array and the statistics that an evo program saves."""
+    result = folder / f"{program}{''.join(options)}.zip"
+    command = [str(folder), program, "tum", "reference.tum", "drifting.tum", *options]
+    print(
+        json.dumps([*command, "--save_results", str(result), "--no_warnings"]),
+        file=evo.stdin,
+        flush=True,
     )
-    assert finished.returncode == 0, finished.stdout + finished.stderr
+    said = []
+    while said[-1:] != ["done\n"]:
+        said.append(evo.stdout.readline())
+        assert said[-1], "".join(said)  # it has ended
     with zipfile.ZipFile(result) as archive:
         errors = np.load(archive.open("error_array.npy"), allow_pickle=False)
         return errors, json.loads(archive.read("stats.json"))
@@ -116,12 +145,12 @@ def assert_agrees(ours, theirs, their_statistics):
         ("plane", "trans_part", "--align_origin"),
     ],
 )
-def test_absolute_pose_errors(trajectories, kind, relation, alignment):
+def test_absolute_pose_errors(evo, trajectories, kind, relation, alignment):
     folder, reference, drifting = trajectories[kind]
     aligned = ALIGNMENTS[alignment](drifting, reference) if alignment else drifting
     ours = getattr(absolute_pose_errors(aligned, reference), RELATIONS[relation])
     flags = [alignment] if alignment else []
-    assert_agrees(ours, *evo_results(folder, "evo_ape", "-r", relation, *flags))
+    assert_agrees(ours, *evo_results(evo, folder, "evo_ape", "-r", relation, *flags))
 
 
 @pytest.mark.parametrize(
@@ -138,17 +167,17 @@ def test_absolute_pose_errors(trajectories, kind, relation, alignment):
         ("plane", "trans_part", "-d 3.3 -u m -t 0.02 --all_pairs"),
     ],
 )
-def test_relative_pose_errors(trajectories, kind, relation, delta):
+def test_relative_pose_errors(evo, trajectories, kind, relation, delta):
     folder, reference, drifting = trajectories[kind]
     pairs = PAIRS[delta](drifting)
     assert 5 < len(pairs) < STEPS
     ours = getattr(relative_pose_errors(drifting, reference, pairs), RELATIONS[relation])
-    assert_agrees(ours, *evo_results(folder, "evo_rpe", "-r", relation, *delta.split()))
+    assert_agrees(ours, *evo_results(evo, folder, "evo_rpe", "-r", relation, *delta.split()))
 
 
-def test_position_errors_of_the_plane(trajectories):
+def test_position_errors_of_the_plane(evo, trajectories):
     folder, reference, drifting = trajectories["plane"]
-    theirs, _ = evo_results(folder, "evo_ape", "-r", "trans_part")
+    theirs, _ = evo_results(evo, folder, "evo_ape", "-r", "trans_part")
     _, ours = position_errors(drifting.plane, reference.plane)
     np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-9)
     assert theirs.mean() > 0.5
@@ -157,10 +186,10 @@ def test_position_errors_of_the_plane(trajectories):
 @pytest.mark.parametrize(
     ("relation", "name"), [("trans_part", "translation_per_m"), ("angle_rad", "rotation_per_m")]
 )
-def test_relative_errors_over_five_metres(trajectories, relation, name):
+def test_relative_errors_over_five_metres(evo, trajectories, relation, name):
     """Twenty frames are five metres of wheel travel; evo's windows follow one another."""
     folder, reference, drifting = trajectories["plane"]
-    theirs, _ = evo_results(folder, "evo_rpe", "-d", "20", "-u", "f", "-r", relation)
+    theirs, _ = evo_results(evo, folder, "evo_rpe", "-d", "20", "-u", "f", "-r", relation)
     config = EvaluationConfig(horizon_m=5.0, stride_m=5.0)
     ours = relative_errors(drifting.plane, reference.plane, STAMPS_S, SPEED * STAMPS_S, config)
     assert len(theirs) == 8

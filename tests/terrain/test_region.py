@@ -158,12 +158,11 @@ def test_where_a_corner_stays_outside_the_visible_part_is_the_region(
     twist = np.array([1.0, 0.0, curvature])
     region = predict_region(ROBOT, camera, twist, 1.0, RegionConfig(least_share=least_share))
     strewn = np.random.default_rng(0).uniform(-0.5, 0.5, (400, 2)) * [0.72, 0.6]
-    shares = []
-    for travel_m in np.arange(0.0, 3.6, 0.02):
-        x, y, yaw = pose_on_circle(travel_m, curvature)
-        turn = np.array([[np.cos(yaw), np.sin(yaw)], [-np.sin(yaw), np.cos(yaw)]])
-        middle = seen(camera, np.array([x, y]))
-        shares.append(middle * seen(camera, strewn @ turn + [x, y]).mean())
+    poses = np.array([pose_on_circle(travel_m, curvature) for travel_m in np.arange(0, 3.6, 0.02)])
+    places = poses[:, 0] + 1j * poses[:, 1]
+    carried = places[:, None] + (strewn @ [1, 1j]) * np.exp(1j * poses[:, 2:])
+    middle = seen(camera, np.column_stack([places.real, places.imag]))
+    shares = middle * seen(camera, np.stack([carried.real, carried.imag], axis=-1)).mean(axis=1)
     most = max(shares)
     if isinstance(region, str):
         assert region == "the region lies outside the image"

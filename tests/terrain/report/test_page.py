@@ -16,6 +16,7 @@ from odometry.run import Run
 from odometry.table import Table
 from odometry.trajectory import Trajectory
 from terrain.config import Config
+from terrain.report import page
 from terrain.report.lines import ReportLines
 from terrain.report.page import write_report
 from terrain.report.tables import NOTHING
@@ -96,6 +97,13 @@ def full(seen, blind, tmp_path_factory):
     return out, write_report(seen, out, {"without <vision>": blind})
 
 
+@pytest.fixture
+def no_photographs(monkeypatch):
+    """For tests of what the page says: its slowest two pictures are left out."""
+    for name in ("regions_picture", "whole_image_picture"):
+        monkeypatch.setattr(page, name, lambda *_: None)
+
+
 def test_every_figure_and_the_page_are_written(full):
     out, written = full
     assert set(written) == {
@@ -120,11 +128,11 @@ def test_the_page_holds_the_figures_themselves(full):
 
 def test_the_page_loads_and_runs_nothing(full):
     out, _ = full
-    page = (out / "report.html").read_text()
+    text = (out / "report.html").read_text()
     assert not {"script", "link", "iframe", "object"} & set(Reader(out / "report.html").tags)
-    assert "without &lt;vision&gt;" in page
-    assert "<vision>" not in page
-    assert "://" not in page
+    assert "without &lt;vision&gt;" in text
+    assert "<vision>" not in text
+    assert "://" not in text
 
 
 def test_the_same_result_gives_the_same_bytes(seen, blind, full, tmp_path):
@@ -205,6 +213,7 @@ def test_settings_are_listed(full):
     assert len(settings) > 15
 
 
+@pytest.mark.usefixtures("no_photographs")
 def test_against_measured_poses_the_estimate_is_judged_by_withheld_ones(across_result, tmp_path):
     result = dataclasses.replace(across_result, config=SHORT)
     write_report(result, tmp_path)
@@ -218,6 +227,7 @@ def test_against_measured_poses_the_estimate_is_judged_by_withheld_ones(across_r
     assert not (tmp_path / "figures" / "confusion.png").exists()
 
 
+@pytest.mark.usefixtures("no_photographs")
 def test_what_the_filter_noticed_is_listed(across_result, tmp_path):
     event = FilterEvent("reinitialised", 3.0, 4.5, "it started anew")
     first, *rest = across_result.replay.estimates
@@ -229,6 +239,7 @@ def test_what_the_filter_noticed_is_listed(across_result, tmp_path):
     assert rows == [["reinitialised", "3.00", "4.50", "it started anew"]]
 
 
+@pytest.mark.usefixtures("no_photographs")
 def test_the_uncertainty_of_the_odometer_is_listed(across_result, tmp_path):
     of = dataclasses.replace(
         across_result.uncertainty,
@@ -245,6 +256,7 @@ def test_the_uncertainty_of_the_odometer_is_listed(across_result, tmp_path):
     assert "Each half of the run is judged by the noise measured on the other half" in read.text
 
 
+@pytest.mark.usefixtures("no_photographs")
 def test_a_run_shorter_than_the_horizon_says_so(across_result, tmp_path):
     written = write_report(across_result, tmp_path)
     read = Reader(tmp_path / "report.html")
@@ -296,12 +308,14 @@ def test_names_are_names_whatever_they_look_like(world, tmp_path, name):
     assert rows[0][0] == name
 
 
+@pytest.mark.usefixtures("no_photographs")
 def test_a_reference_of_another_time_has_a_page(seen, tmp_path):
     late = Trajectory(seen.reference.stamps_s + 1000, seen.reference.poses)
     written = write_report(dataclasses.replace(seen, reference=late), tmp_path)
     assert tmp_path / "figures" / "position_errors.png" not in written
 
 
+@pytest.mark.usefixtures("no_photographs")
 def test_a_comparison_that_shares_no_time_is_not_judged(seen, curvy_run, tmp_path):
     late = run_odometry(curvy_run)
     moved = dataclasses.replace(
