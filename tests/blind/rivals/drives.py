@@ -8,9 +8,10 @@ from tests.blind.commands import ACCELERATION_M_S2
 from tests.blind.ground import Ground
 from tests.blind.hidden.scene import STEP_S, Drive
 
-SHAPES = ("spin", "circle", "straight", "steps", "slope")
+SHAPES = ("spin", "spins", "circle", "circles", "straight", "steps", "curves", "slope")
 STEPS_OF_SPEED = (1.0, 0.4, 0.0, 0.7, -0.6, 0.0)  # each held for STEP_HELD_S
 STEP_HELD_S = 3.0
+SIDE_HELD_S = 10.0
 WAVE_S = 30.0
 
 
@@ -21,14 +22,16 @@ class Proposal:
     Attributes
     ----------
     shape : str
-        spin; circle; straight (forward at one speed); steps (a straight with steps of speed, also
-        backward); slope (up and down a plane of `slope_rad` and across it, with turns between).
+        spin, circle (to one side); spins, circles (to both, by turns); straight (forward at one
+        speed); steps, curves (straights or bends with steps of speed, also backward); slope
+        (straights with quarter turns between).
     speed_m_s : float
         Of the middle; of each tread in a spin.
     radius_m : float
         Of a circle; negative to the right. A spin is to the left unless `radius_m` is negative.
     duration_s : float
     slope_rad : float
+        Of the plane that any shape is driven on; uphill is along x.
     heading_rad : float or None
         At the start; None is any.
     """
@@ -69,14 +72,16 @@ def _wanted(p, width):
     """Speed of each tread (N, 2) [m/s] that is asked for at each step."""
     times_s = np.arange(round(p.duration_s / STEP_S) + 1) * STEP_S
     speed, omega = np.full(len(times_s), p.speed_m_s), np.zeros(len(times_s))
-    if p.shape == "spin":
-        side = -1.0 if p.radius_m < 0 else 1.0
+    sides = np.where(times_s // SIDE_HELD_S % 2 == 0, 1.0, -1.0)
+    steps = np.array(STEPS_OF_SPEED)[(times_s // STEP_HELD_S).astype(int) % len(STEPS_OF_SPEED)]
+    if p.shape in ("spin", "spins"):
+        side = sides if p.shape == "spins" else (-1.0 if p.radius_m < 0 else 1.0)
         speed, omega = 0 * speed, omega + side * 2 * p.speed_m_s / width
-    elif p.shape == "circle":
-        omega = omega + p.speed_m_s / p.radius_m
-    elif p.shape == "steps":
-        steps = np.array(STEPS_OF_SPEED)[(times_s // STEP_HELD_S).astype(int) % 6]
+    elif p.shape in ("circle", "circles"):
+        omega = omega + (sides if p.shape == "circles" else 1.0) * p.speed_m_s / p.radius_m
+    elif p.shape in ("steps", "curves"):
         speed = speed * steps
+        omega = speed * sides / (3 * width) if p.shape == "curves" else omega
     elif p.shape == "slope":
         turning = (times_s % 8.0) > 6.0
         omega = np.where(turning, np.pi / 2 / 2.0, 0.0)

@@ -9,6 +9,7 @@ from tests.blind.rivals.cases import LEAST_APART, MOST_BETWEEN, apart, draw_riva
 from tests.blind.rivals.drives import SHAPES, Proposal, drive_of
 from tests.blind.rivals.pairs import PAIRS
 from tests.studies.gap_names import MEANING
+from tests.studies.gap_next import proposal_of
 
 
 @pytest.mark.parametrize("pair", PAIRS)
@@ -53,7 +54,9 @@ def test_shapes_of_drives():
         shape: drive_of(np.random.default_rng(0), drawn.scene, Proposal(shape, 0.6, 2.0, 30.0))
         for shape in SHAPES
     }
-    spin, circle, straight, steps = (asked[shape].asked_m_s[-1] for shape in SHAPES[:4])
+    spin, circle, straight = (
+        asked[shape].asked_m_s[-1] for shape in ("spin", "circle", "straight")
+    )
     assert spin == pytest.approx([-0.6, 0.6])
     assert circle.mean() == pytest.approx(0.6)
     assert np.diff(circle) == pytest.approx(0.3 * drawn.scene.base.width)
@@ -61,6 +64,16 @@ def test_shapes_of_drives():
     assert {round(v, 2) for v in asked["steps"].asked_m_s[290::300, 0]} == {
         *(0.6, 0.24, 0.0, 0.42, -0.36)
     }
-    assert steps.shape == (2,)
+    for shape in ("spins", "circles", "curves"):
+        difference = np.diff(asked[shape].asked_m_s, axis=1)
+        assert difference.min() < 0 < difference.max()
     with pytest.raises(ValueError, match="shape = 'square'"):
         drive_of(np.random.default_rng(0), drawn.scene, Proposal("square", 0.6))
+
+
+def test_a_drive_is_read_from_the_words_of_a_proposal():
+    words = "circles of 1.5 m radius to both sides at 0.62 m/s, on a slope of 6 degrees"
+    assert proposal_of(words) == Proposal("circles", 0.62, 1.5, slope_rad=np.deg2rad(6.0))
+    assert proposal_of("spins to both sides, treads at 0.8 m/s") == Proposal("spins", 0.8)
+    with pytest.raises(ValueError, match="expected one of spins"):
+        proposal_of("a square of 3 m at 0.5 m/s")
