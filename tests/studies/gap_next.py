@@ -102,21 +102,25 @@ def judged(case: RivalCase, folder: Path) -> dict[str, str]:
         "equivalent": names(found),
     }
     if not found["next_drives"]:
-        return row | {"score": score(found["verdict"], "", ((case.true,),), ())}
+        return row | apart(case, found)
     proposed = found["next_drives"][0]
     driven = case.drive(proposal_of(proposed["words"]), folder / "driven")
     then = answer(case, [case.measured, driven], folder / "then")
-    scored = score(then["verdict"], "", ((case.true,),), ())
-    rivals = {one["name"] for one in then["equivalent"]} & set(MEANING[case.rival])
     return row | {
         "proposed": proposed["words"],
         "between": "+".join(proposed["between"]),
         "odds": f"{proposed['odds']:.3f}",
         "then": then["verdict"],
         "then_equivalent": names(then),
-        "score": scored,
-        "apart": f"{int(scored == 'right' and not rivals)}",
+        **apart(case, then),
     }
+
+
+def apart(case: RivalCase, found: dict[str, Any]) -> dict[str, str]:
+    """Score of the first name, and whether it is right and the rival is out."""
+    scored = score(found["verdict"], "", ((case.true,),), ())
+    rivals = {one["name"] for one in found["equivalent"]} & set(MEANING[case.rival])
+    return {"score": scored, "apart": f"{int(scored == 'right' and not rivals)}"}
 
 
 def answer(case: RivalCase, measured: list[Path], out: Path) -> dict[str, Any]:
@@ -159,12 +163,13 @@ def proposal_of(words: str) -> Proposal:
 def counted(rows: list[dict[str, str]]) -> dict[str, str]:
     """Shares with 95 % intervals."""
     proposed = [row for row in rows if row["proposed"]]
-    apart = sum(row["apart"] == "1" for row in proposed)
+    after = sum(row["apart"] == "1" for row in proposed)
+    at_all = sum(row["apart"] == "1" for row in rows)
     wrong = sum(row["score"] == "wrong" for row in rows)
     return {
         "a drive proposed, %": with_interval(len(proposed), len(rows)),
-        "then apart, % of those": with_interval(apart, len(proposed)),
-        "then apart, % of all": with_interval(apart, len(rows)),
+        "then apart, % of those": with_interval(after, len(proposed)),
+        "apart in the end, %": with_interval(at_all, len(rows)),
         "wrong first name in the end, %": with_interval(wrong, len(rows)),
     }
 
