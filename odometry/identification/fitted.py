@@ -13,6 +13,8 @@ from odometry.windows.stretch_noise import StretchNoise
 from odometry.windows.stretches import Stretches
 from odometry.windows.windows import Windows
 
+LEAST_POSITION_M = 0.02  # of positions, with which residuals are compared: SLAM's are smoother
+
 
 @dataclass(frozen=True)
 class Fit:
@@ -81,7 +83,10 @@ class Fit:
         """The noise that `scale` is a multiple of."""
         if self.noise is None:
             return "the poses' stated noise"
-        return f"the noise found of positions ({self.noise.position_m:.2g} m)"
+        found_m = self.noise.position_m
+        if found_m < LEAST_POSITION_M:
+            return f"{LEAST_POSITION_M:g} m (the noise found of positions is less)"
+        return f"the noise found of positions ({found_m:.2g} m)"
 
     @property
     def open_names(self) -> frozenset[str]:

@@ -15,10 +15,12 @@ from odometry.windows.stretch_noise import UNKNOWN_NOISE, StretchNoise
 from odometry.windows.stretches import MOST_POSITIONS, Stretches, stretches_of
 from odometry.windows.windows import Windows, windows_of
 
-LEAST_M, LEAST_BY_TREADS_M = 5.0, 10.0  # wheel travel; where treads alone tell turns, more
+LEAST_M = 2.0  # wheel travel of a stretch, in a short run
+USUAL_M, USUAL_BY_TREADS_M = 5.0, 10.0  # where treads alone tell turns, more
 MOST_M = 50.0
 ENOUGH = 8  # stretches of all runs together
-DIRECTION_RAD = 0.02  # how well positions must tell the direction of a stretch
+DIRECTION_RAD = 0.02  # how well positions shall tell the direction of a stretch
+COARSE_RAD = 0.06  # and how well they must
 LINE = np.sqrt(12 / MOST_POSITIONS)  # of n evenly spaced positions, by noise over length
 SIMPLE = "icr_symmetric"  # the model under which the noise is found
 
@@ -41,10 +43,10 @@ def windows_or_stretches(runs: Sequence[Run], config: WindowConfig) -> Windows |
 def stretches_for(runs: Sequence[Run], config: WindowConfig) -> Stretches:
     """Stretches so long that their positions tell in which direction they lie.
 
-    The noise of the positions is found from a simple model on stretches of LEAST_BY_TREADS_M. A
+    The noise of the positions is found from a simple model on stretches of USUAL_BY_TREADS_M. A
     horizon of `config` that is longer than these stretches is taken instead.
     """
-    tried = stretches_of(runs, max(LEAST_BY_TREADS_M, config.horizon_m), config)
+    tried = stretches_of(runs, max(USUAL_BY_TREADS_M, config.horizon_m), config)
     length_m = max(length_for(noise_of(tried, runs[0].robot), tried), config.horizon_m)
     return stretches_of(runs, length_m, config)
 
@@ -60,12 +62,14 @@ def noise_of(of: Stretches, robot: Robot) -> StretchNoise:
 def length_for(noise: StretchNoise, of: Stretches) -> float:
     """Wheel travel [m] over which positions of this noise tell a direction to DIRECTION_RAD.
 
-    Beyond what the noise needs, stretches become no longer than that there are ENOUGH, whose
-    spread shows how much a model errs alike all along one.
+    They become no longer than that there are ENOUGH, whose spread shows how much a model errs
+    alike all along one, as long as the noise leaves a direction to COARSE_RAD.
     """
-    usual_m = LEAST_BY_TREADS_M if of.turns_rad is None else LEAST_M
-    usual_m = float(np.clip(of.travel_m.sum() / ENOUGH, LEAST_M, usual_m))
-    return float(np.clip(LINE * noise.position_m / DIRECTION_RAD, usual_m, MOST_M))
+    usual_m = USUAL_BY_TREADS_M if of.turns_rad is None else USUAL_M
+    share_m = of.travel_m.sum() / ENOUGH
+    for_noise_m = LINE * noise.position_m / np.array([DIRECTION_RAD, COARSE_RAD])
+    wanted_m = min(for_noise_m[0], max(for_noise_m[1], share_m))
+    return float(np.clip(wanted_m, np.clip(share_m, LEAST_M, usual_m), MOST_M))
 
 
 def how_told(fit: Fit) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from odometry.effects.tables import table_of
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
+from odometry.identification.from_stretches import contradicted, not_told
 from odometry.identification.plausibility import CAUSES, refusals
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.run import Robot
@@ -65,32 +66,44 @@ class Identification:
         """How many windows of the runs there are not, by reason, on all terrains together."""
         return next(iter(self.grounds.values())).fit.windows.left_out
 
+    @property
+    def left_open(self) -> tuple[str, ...]:
+        """What the runs do not tell, a clause each."""
+        return tuple(
+            f"[{terrain}] {words}"
+            for terrain, found in self.grounds.items()
+            for words in (
+                *(open_.words() for open_ in found.fit.undetermined),
+                *not_told(found.fit, self.robot),
+            )
+        )
+
+    @property
+    def unexplained(self) -> tuple[str, ...]:
+        """Why a fit is no model of what was recorded, a clause each."""
+        return tuple(
+            f"[{terrain}] {words}"
+            for terrain, found in self.grounds.items()
+            for words in (*refusals(found.fit), *contradicted(found.fit, found.ideal))
+        )
+
     def require_determined(self) -> None:
         """Raise IdentificationError, with numbers, where a fit is no answer.
 
-        It leaves parameters open, or has one at its bound with residuals far above the noise.
+        It leaves parameters open, has one at its bound with residuals far above the noise, or
+        lies farther from positions without yaw than the ideal drive.
         """
-        lines = [
-            f"[{terrain}] {open_.words()}"
-            for terrain, found in self.grounds.items()
-            for open_ in found.fit.undetermined
-        ]
-        if lines:
+        if self.left_open:
             raise IdentificationError(
                 "the runs cannot tell these parameters apart from others, or at all:\n  "
-                + "\n  ".join(lines)
+                + "\n  ".join(self.left_open)
                 + "\nAdd runs that excite them (turns both ways at several speeds; slopes), fix "
                 "values that are known, or choose a model with fewer parameters."
             )
-        refused = [
-            f"[{terrain}] {reason}"
-            for terrain, found in self.grounds.items()
-            for reason in refusals(found.fit)
-        ]
-        if refused:
+        if self.unexplained:
             raise IdentificationError(
                 "the model does not explain what was recorded:\n  "
-                + "\n  ".join(refused)
+                + "\n  ".join(self.unexplained)
                 + f"\nLikeliest: {CAUSES}."
             )
 

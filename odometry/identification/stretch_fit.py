@@ -9,7 +9,7 @@ from odometry.arrays import FloatArray
 from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.finish import finished
-from odometry.identification.fitted import Fit
+from odometry.identification.fitted import LEAST_POSITION_M, Fit
 from odometry.identification.solve import Solution, solve
 from odometry.identification.start import start_of
 from odometry.identification.stretch_problem import StretchProblem
@@ -69,7 +69,7 @@ def fit_stretches(
         solution = solve(problem, solution.chosen, sizes, replace(config, starts=1))
     solution = replace(solution, agreeing=agreeing)
     uncertainty = stretch_uncertainty(problem, solution, noise, sizes)
-    scale = _rms_m(problem, solution) / noise.position_m
+    scale = _rms_m(problem, solution) / max(noise.position_m, LEAST_POSITION_M)
     return finished(start, problem, solution, uncertainty=uncertainty, scale=scale, noise=noise)
 
 

@@ -41,6 +41,7 @@ def require_determined(found: "Identification") -> None:
     from odometry.checks.finding import Level
     from odometry.identification.errors import IdentificationError
     from odometry.identification.report import in_short
+    from odometry.identification.told_instead import SIMPLE, told_instead
     from odometry.windows.left_out import words
     from terrain.cli.recordings import checks_made
 
@@ -57,6 +58,10 @@ def require_determined(found: "Identification") -> None:
         lines += ["Nothing is written. The fit that is refused:"]
         lines += [f"  {in_short(name, one)}" for name, one in found.grounds.items()]
         lines += [f"  {words(found.left_out)}"] if found.left_out else []
+        simpler = told_instead(found)
+        if simpler is not None:
+            lines += [f"The same runs tell fewer parameters: --model {SIMPLE}"]
+            lines += [f"  {in_short(name, one)}" for name, one in simpler.grounds.items()]
         raise IdentificationError("\n".join(lines)) from error
 
 
