@@ -60,7 +60,7 @@ def test_an_effect_of_size_zero_is_none(commands, name, ground):
     labels = np.where(np.arange(len(commands)) < 400, "grass", "sand")
     base = moved(commands, {}, ground)
     same = moved(commands, {name: NEUTRAL[name]}, ground, labels)
-    assert same.poses == pytest.approx(base.poses, abs=1e-6)
+    np.testing.assert_allclose(same.poses, base.poses, rtol=1e-6, atol=1e-6)
 
 
 def test_a_level_plane_by_steps_is_the_level_by_arcs(commands):

@@ -155,7 +155,7 @@ def count_of_controls(rows: Sequence[dict[str, str]]) -> list[str]:
     """How often a control is given a name, and which."""
     verdicts = Counter(r["verdict"] for r in rows if r["kind"] == "control")
     judged = sum(verdicts.values()) - verdicts["not judged"]
-    named = judged - verdicts["none"]
+    named = judged - verdicts["none"] - verdicts["unknown"]
     which = ", ".join(f"{name} {count}" for name, count in verdicts.most_common())
     return [f"Controls: {named} of {judged} judged are given a name ({which})."]
 

@@ -81,6 +81,7 @@ def invoke(command, *arguments):
     return answer
 
 
+@pytest.mark.usefixtures("no_report")
 def test_run_writes_where_the_robot_was(folder, files, tmp_path):
     """Against the truth the odometer of the extended set is exact, that of the plain one is not."""
     errors = {}
@@ -122,6 +123,7 @@ def test_compare_judges_by_what_the_sensor_sees(folder, files, tmp_path):
     assert errors["true"] > 0.1
 
 
+@pytest.mark.usefixtures("no_report")
 def test_identify_holds_the_effects_and_finds_the_rest(folder, files, tmp_path):
     """With the skid held, x_icr is what is left of the true one."""
     out = tmp_path / "found.toml"

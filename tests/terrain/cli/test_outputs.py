@@ -77,6 +77,7 @@ def test_run_does_not_write_into_a_folder_that_is_not_its_own(tmp_path, across_r
     assert contents(tmp_path) == before
 
 
+@pytest.mark.usefixtures("no_report")
 def test_run_does_not_write_over_the_parameters_that_it_reads(own_run, tmp_path):
     out = tmp_path / "out"
     assert invoke(run, own_run, "--out", out).exit_code == 0
@@ -84,6 +85,7 @@ def test_run_does_not_write_over_the_parameters_that_it_reads(own_run, tmp_path)
     assert "is or holds the input" in message
 
 
+@pytest.mark.usefixtures("no_report")
 def test_a_new_folder_in_the_run_folder_is_allowed(own_run):
     before = contents(own_run)
     assert invoke(run, own_run, "--out", own_run / "results").exit_code == 0
@@ -99,6 +101,7 @@ def test_a_rerun_is_byte_identical_and_one_elsewhere_too(own_run, tmp_path):
     assert a == b
 
 
+@pytest.mark.usefixtures("no_report")
 def test_a_result_names_what_made_it(own_run, tmp_path, monkeypatch):
     monkeypatch.chdir(own_run.parent)
     assert invoke(identify, "my_run", "--model", "icr", "--out", "set.toml").exit_code == 0
@@ -121,6 +124,7 @@ def test_a_result_names_what_made_it(own_run, tmp_path, monkeypatch):
     assert read_parameters("set.toml").terrains
 
 
+@pytest.mark.usefixtures("no_report")
 def test_another_input_or_setting_is_another_identity(own_run, tmp_path, world):
     other = world.drive_curves(tmp_path / "other", truth=True)
     identities = []
@@ -131,6 +135,7 @@ def test_another_input_or_setting_is_another_identity(own_run, tmp_path, world):
     assert len(set(identities)) == 3
 
 
+@pytest.mark.usefixtures("no_report")
 def test_no_command_reads_what_was_not_finished(own_run, tmp_path):
     out = tmp_path / "out"
     assert invoke(run, own_run, "--out", out).exit_code == 0

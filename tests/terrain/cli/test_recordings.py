@@ -38,6 +38,7 @@ def test_all_runs_are_cut(curvy_run):
     assert [(p.odometry.stamps_s[0], p.odometry.stamps_s[-1]) for p in parts] == [(2.0, 6.0)] * 2
 
 
+@pytest.mark.usefixtures("no_report")
 def test_a_run_of_a_part_says_which(curvy_run, tmp_path):
     arguments = [str(curvy_run), "--out", str(tmp_path / "out"), "--from", "2", "--to", "6"]
     answer = CliRunner().invoke(run, arguments)
@@ -61,6 +62,7 @@ def test_an_end_before_the_start_is_a_wrong_command_line(curvy_run, tmp_path):
     assert "--from 9 --to 3: expected an end after the start" in answer.stderr
 
 
+@pytest.mark.usefixtures("no_report")
 def test_what_the_check_warns_of_is_said_and_kept(curvy_run, tmp_path):
     """One absurd sample: the run goes on, and what was learned is not recommended."""
     folder = tmp_path / "spiked"

@@ -36,6 +36,7 @@ def test_with_a_model_the_terrain_is_seen(across_run, model_file, tmp_path):
     assert str(out / "report.html") in answer.output.split("Next: ")[1]
 
 
+@pytest.mark.usefixtures("no_report")
 def test_no_vision_and_terrain_keep_one_terrain(across_run, model_file, tmp_path):
     out = tmp_path / "out"
     answer = invoke(
@@ -47,6 +48,7 @@ def test_no_vision_and_terrain_keep_one_terrain(across_run, model_file, tmp_path
     assert not (out / "terrain.csv").exists()
 
 
+@pytest.mark.usefixtures("no_report")
 def test_the_terrain_comes_from_the_source_that_is_named(across_run, model_file, tmp_path):
     """The labels of odometry.csv; images stay closed, and no model is needed."""
     folder = tmp_path / "run"
@@ -66,6 +68,7 @@ def test_the_terrain_comes_from_the_source_that_is_named(across_run, model_file,
     assert "no vision without --model" not in answer.output
 
 
+@pytest.mark.usefixtures("no_report")
 def test_learned_toml_goes_back_in(curvy_run, tmp_path):
     first, second = tmp_path / "first", tmp_path / "second"
     assert invoke(curvy_run, "--out", first, "--terrain", "sand").exit_code == 0
@@ -75,6 +78,7 @@ def test_learned_toml_goes_back_in(curvy_run, tmp_path):
     assert str(second / "learned.toml") in answer.output
 
 
+@pytest.mark.usefixtures("no_report")
 def test_settings_come_from_the_file_and_the_options(astride_run, model_file, tmp_path):
     config = tmp_path / "config.toml"
     config.write_text("[region]\nmost_ahead_lengths = 5.0\n[switch]\nlabels_in_row = 4\n")
@@ -91,6 +95,7 @@ def test_settings_come_from_the_file_and_the_options(astride_run, model_file, tm
         assert {"left", "right"} <= set(next(csv.reader(stream)))
 
 
+@pytest.mark.usefixtures("no_report")
 def test_without_a_reference_it_says_so_and_offers_nothing_to_learn(tmp_path, world):
     folder = world.drive_curves(tmp_path / "run", pose=False)
     answer = invoke(folder, "--out", tmp_path / "out")
@@ -120,6 +125,7 @@ def test_a_wrong_input_is_a_known_error_before_anything_is_written(
     assert not out.exists()
 
 
+@pytest.mark.usefixtures("no_report")
 def test_after_a_jump_of_the_poses_what_was_learned_is_not_recommended(world, tmp_path):
     """From half-way on the reference is 2 m aside: the filter starts anew and says so."""
     folder = world.drive_curves(tmp_path / "run")

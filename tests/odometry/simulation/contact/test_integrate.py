@@ -36,15 +36,15 @@ def test_the_error_falls_with_the_square_of_the_step(make_vehicle, law):
 
 @pytest.mark.parametrize("law", LAWS)
 def test_the_default_step_is_converged(make_vehicle, law):
-    """10 s and some 4 m: a tenth of the noise of a measured pose against a fifth of the step."""
-    vehicle, speeds = make_vehicle(law), weaving(10.0, 0.02)
+    """5 s and some 2 m: a twentieth of the noise of a measured pose against a fifth of the step."""
+    vehicle, speeds = make_vehicle(law), weaving(5.0, 0.02)
     drive, fine = (
         simulate_contact(vehicle, speeds, 0.02, ground=GROUND, longest_step_s=LONGEST_STEP_S / n)
         for n in (1, 5)
     )
     error = np.abs(drive.poses_world - fine.poses_world).max(axis=0)
-    assert (error[:3] < 1e-3).all(), error
-    assert (error[3:] < 5e-4).all(), error
+    assert (error[:3] < 5e-4).all(), error
+    assert (error[3:] < 2.5e-4).all(), error
 
 
 def test_stages_solve_the_linear_system(make_vehicle, rng):

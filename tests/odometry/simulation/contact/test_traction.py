@@ -106,7 +106,7 @@ def test_right_wheels_that_slip_in_a_left_turn_mirror_left_ones_in_a_right_turn(
 def test_the_share_sideways_sets_the_width_of_wide_turns(make_vehicle, share, law):
     """Slips are small against the speed: B (1 + share (L / B)^2), whatever friction and law."""
     vehicle = make_vehicle(x_cm=0.0, y_cm=0.0, places=[-0.3, 0.3])
-    speeds = np.tile([0.298, 0.302], (800, 1))
+    speeds = np.tile([0.298, 0.302], (400, 1))
     traction = [Traction("a", 0.0, np.full((2, 2), 0.5), law, share)]
     omega = simulate_contact(vehicle, speeds, 0.02, traction=traction).twists_body[-1, 2]
     assert 0.004 / omega == pytest.approx(0.8 * (1 + share * (0.6 / 0.8) ** 2), rel=2e-3)
