@@ -3,6 +3,7 @@
 from tests.blind.hidden.drives import DRIVES
 from tests.blind.hidden.instruments import INSTRUMENTS
 from tests.blind.hidden.kind import Hidden, Kind
+from tests.blind.hidden.mixed import MIXED
 from tests.blind.hidden.references import REFERENCES
 from tests.blind.hidden.seen import SEEN
 from tests.blind.hidden.slips import SLIPS
@@ -21,6 +22,7 @@ GROUPS = {
     "surroundings": SURROUNDINGS,
     "references": REFERENCES,
     "instruments": INSTRUMENTS,
+    "mixed": MIXED,
     "nothing": {
         "nothing": Kind(nothing, ()),
         "nothing_labelled": Kind(nothing, (), labels=2),

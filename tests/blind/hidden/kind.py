@@ -35,6 +35,8 @@ class Hidden:
         Stamps (K,) [s] and poses (K, 3) of the sensor to both as they are recorded.
     gyroscope : callable
         Yaw rate (N,) to what the gyroscope reports.
+    parts : tuple of Hidden
+        What is hidden, one by one, where it is more than one thing.
     """
 
     truth: dict[str, Any] = field(default_factory=dict)
@@ -45,6 +47,7 @@ class Hidden:
     reported: Callable = as_it_is
     reference: Callable = lambda times_s, poses: (times_s, poses)
     gyroscope: Callable = as_it_is
+    parts: tuple["Hidden", ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
