@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Sequence
 
+from odometry.checks.catalogue import CATALOGUE
 from odometry.checks.disagreement import lasting_disagreements
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
@@ -103,6 +104,6 @@ def _left(parts: Sequence[Evidence]) -> list[str]:
 def _unnamed(found: Sequence[Finding], judged: Sequence[Finding], left: list[str]) -> list[Finding]:
     """The findings with some of them told as a disagreement, after those that are facts."""
     seen = "; ".join(finding.seen for finding in judged)
-    best = ", ".join(finding.name for finding in judged)
+    best = ", ".join(dict.fromkeys(CATALOGUE[finding.name] for finding in judged))
     words = f"{seen}; with the likeliest cause ({best}) undone, {'; '.join(left)}"
     return [*(finding for finding in found if finding not in judged), disagreement(words)]

@@ -82,7 +82,7 @@ def record_of(run: Run, config: WindowConfig) -> Record:
     if len(stamps_s) < 2:
         raise WindowError(
             f"{run.folder}: {len(stamps_s)} measured poses within the time of odometry.csv, "
-            "expected two or more: a window needs pose.csv with x, y and yaw"
+            "expected two or more: a window needs pose.csv with x and y"
         )
     turns = counted_turns(run, stamps_s, poses[:, 2])
     poses = np.column_stack([poses[:, :2], turns.yaw_rad])

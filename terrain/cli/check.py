@@ -86,7 +86,10 @@ def _next(reports: Mapping[Path, "CheckReport"], files: Mapping[Path, Path]) -> 
     look = f"look at {place}; " if drawn else ""
     odd = {folder: report for folder, report in reports.items() if report.misleads}
     if not odd:
-        runs = " ".join(map(str, reports))
+        with_poses = [str(folder) for folder in reports if (folder / "pose.csv").exists()]
+        if not with_poses:
+            return f"Next: {look}terrain-odometry run {next(iter(reports))} --out results"
+        runs = " ".join(with_poses)
         return f"Next: {look}terrain-odometry identify {runs} --model icr --out my_robot.toml"
     readable = [str(folder) for folder, report in odd.items() if not report.at(Level.REFUSED)]
     if readable and not files:

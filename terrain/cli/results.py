@@ -78,12 +78,17 @@ def _median(errors: Mapping[str, Any]) -> float | None:
 
 
 def print_table(rows: Sequence[Sequence[str]]) -> None:
-    """Print rows in columns, the first to the left, numbers to the right."""
-    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
+    """Print a header and rows in columns, words to the left, numbers to the right."""
+    columns = list(zip(*rows, strict=True))
+    widths = [max(map(len, column)) for column in columns]
+    words = [any(cell.strip("-")[:1].isalpha() for cell in column[1:]) for column in columns]
+    words[0] = True
     for row in rows:
-        cells = [row[0].ljust(widths[0])]
-        cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
-        click.echo("  " + "  ".join(cells))
+        cells = [
+            cell.ljust(width) if is_words else cell.rjust(width)
+            for cell, width, is_words in zip(row, widths, words, strict=True)
+        ]
+        click.echo(f"  {'  '.join(cells)}".rstrip())
 
 
 def print_written(out: Path) -> None:

@@ -64,6 +64,12 @@ def found(folder, *names):
     return CheckReport(Path(folder), tuple(findings))
 
 
+def test_a_run_without_poses_goes_to_run(world, tmp_path):
+    blind = world.drive_curves(tmp_path / "blind", pose=False)
+    last = invoke(blind).output.splitlines()[-1]
+    assert last == f"Next: terrain-odometry run {blind} --out results"
+
+
 def test_true_slip_is_not_to_be_mended():
     reports = {
         Path("ice"): found("ice", "slip", "slip_in_turns"),

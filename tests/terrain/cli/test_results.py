@@ -12,11 +12,11 @@ from terrain.run_odometry import run_odometry
 
 
 def test_columns_line_up_words_to_the_left_numbers_to_the_right(capsys):
-    print_table([("", "m"), ("a", "0.25"), ("long name", "10.5")])
+    print_table([("", "m", "by"), ("a", "0.25", "pose"), ("long name", "10.5", "-")])
     assert capsys.readouterr().out.splitlines() == [
-        "                m",
-        "  a          0.25",
-        "  long name  10.5",
+        "                m  by",
+        "  a          0.25  pose",
+        "  long name  10.5  -",
     ]
 
 
