@@ -54,9 +54,10 @@ def cut_run(run: Run, span: Span) -> Run:
     ends_s = first_s + span.from_s, first_s + span.to_s
     odometry = _cut_held(run.odometry, *ends_s)
     if len(odometry) < 2:
+        end = f" to {span.to_s:g} s" if math.isfinite(span.to_s) else " on"
         raise RunFolderError(
-            f"{run.folder}: nothing lies from {span.from_s:g} s to {span.to_s:g} s of run time: "
-            f"the run lasts {last_s - first_s:.3f} s"
+            f"{run.folder}: nothing lies from {span.from_s:g} s{end} in run time: the run lasts "
+            f"{last_s - first_s:.3f} s"
         )
     others = {name: getattr(run, name) for name in FILES if name != "odometry"}
     parts: dict[str, Any] = {name: table and _cut(table, *ends_s) for name, table in others.items()}

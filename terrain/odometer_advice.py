@@ -23,6 +23,13 @@ def not_checked(uncertainty: OdometerUncertainty, distance_m: float, reference_n
     return f"not checked: too few poses {distance_m:g} m apart in a half of the run"
 
 
+def judging(uncertainty: OdometerUncertainty) -> list[OpenLoopConsistency]:
+    """The check of each distance: by the truth or by halves, else by the run's own poses."""
+    found = {check.distance_m: check for check in uncertainty.own_checks}
+    found |= {check.distance_m: check for check in uncertainty.checks}
+    return [found[distance_m] for distance_m in sorted(found)]
+
+
 def advice(uncertainty: OdometerUncertainty, reference_name: str) -> str:
     """What the check found, and what to do, in one or two sentences.
 
@@ -32,14 +39,10 @@ def advice(uncertainty: OdometerUncertainty, reference_name: str) -> str:
     reference_name : str
         "truth", "pose" or "".
     """
-    checks = uncertainty.checks
+    checks = judging(uncertainty)
     small = [check for check in checks if verdict(check) == "too small"]
     large = [check for check in checks if verdict(check) == "too large"]
-    how = (
-        "Checked against the truth"
-        if reference_name == "truth"
-        else "Checked on each half of the run by the noise of the other half"
-    )
+    how = "Checked against the truth" if reference_name == "truth" else "Checked against the poses"
     if small:
         factor = max(check.mean for check in small) / DEGREES
         return (

@@ -60,5 +60,5 @@ def _table(classifier: "TerrainClassifier", rows: list[dict[str, Any]]) -> str:
                 f"{row['image']:{width}}  {row['label']:{names}}  {row['confidence']:10.2f}  "
                 f"{row['distance']:8.4g}"
             )
-    lines.append(f"unknown beyond distance {classifier.rejection_distance_:.4g}")
+    lines.append(f"Beyond a distance of {classifier.rejection_distance_:.4g} the label is unknown.")
     return "\n".join(lines)

@@ -66,17 +66,17 @@ def uncertainty_grid(result: RunResult) -> Grid | None:
     """Standard deviations of the odometer by distance, and whether they are right."""
     of = result.uncertainty
     checks = {check.distance_m: check for check in of.checks}
-    own = {check.distance_m: f"{check.mean:.1f}" for check in of.own_checks}
+    own = {check.distance_m: check for check in of.own_checks}
     rows = [
         (
             f"{distance_m:g}",
             *(f"{sigma:.3f}" for sigma in (x, y)),
             f"{np.degrees(yaw):.2f}",
-            *([own.get(distance_m, NOTHING)] if own else []),
+            *([_mean(own.get(distance_m))] if own else []),
+            _mean(checks.get(distance_m)),
             *(
-                _checked(checks[distance_m])
-                if distance_m in checks
-                else (NOTHING, NOTHING, not_checked(of, distance_m, result.reference_name))
+                _verdict(checks.get(distance_m), own.get(distance_m))
+                or (NOTHING, not_checked(of, distance_m, result.reference_name))
             ),
         )
         for distance_m, (x, y, yaw) in of.sigmas.items()
@@ -151,9 +151,18 @@ def _sight(change: SwitchEvent | TerrainChange) -> tuple[str, str]:
     return f"{change.sight.stamp_s:.2f}", f"{change.sight.distance_ahead_m:.2f}"
 
 
-def _checked(check: OpenLoopConsistency) -> tuple[str, str, str]:
-    low, high = check.bounds
-    return f"{check.mean:.1f}", f"{low:.1f} to {high:.1f}", verdict(check)
+def _mean(check: OpenLoopConsistency | None) -> str:
+    return NOTHING if check is None else f"{check.mean:.1f}"
+
+
+def _verdict(check: OpenLoopConsistency | None, own: OpenLoopConsistency | None) -> list[str]:
+    """Bounds and what follows, by own poses where there is nothing else; none without either."""
+    judging = check or own
+    if judging is None:
+        return []
+    low, high = judging.bounds
+    by = "" if check else " by own poses"
+    return [f"{low:.1f} to {high:.1f}", verdict(judging) + by]
 
 
 def _icrs(parameters: Any) -> list[str]:

@@ -127,7 +127,7 @@ def _gyroscope_notes(result: RunResult) -> list[str]:
 
 
 def _cm(metres: float | None) -> str:
-    return f"{number(metres, 1, 100)} cm"
+    return f"{number(metres, 2, 100)} cm"
 
 
 def _less(own: float, other: float | None) -> str:

@@ -13,8 +13,8 @@ def check(mean, distance_m=5.0):
     return OpenLoopConsistency(distance_m, 40, 10, mean, np.array([1.7, 4.7]))
 
 
-def found(*checks, noise=USUAL_NOISE):
-    return OdometerUncertainty(np.eye(3)[None], {}, noise, "", checks)
+def found(*checks, noise=USUAL_NOISE, own=()):
+    return OdometerUncertainty(np.eye(3)[None], {}, noise, "", checks, own)
 
 
 @pytest.mark.parametrize(
@@ -33,10 +33,17 @@ def test_a_covariance_that_is_too_small_says_by_how_much_and_what_to_do():
     assert "Multiply the covariance by 4.0" in said
 
 
-def test_halves_are_named_where_no_truth_judges():
+def test_without_a_truth_the_poses_judge():
     said = advice(found(check(3.0), check(3.0, 20.0)), "pose")
-    assert said.startswith("Checked on each half of the run by the noise of the other half, ")
+    assert said.startswith("Checked against the poses, ")
     assert said.endswith("as large as its errors over 5 and 20 m.")
+
+
+def test_over_other_distances_the_check_by_own_poses_counts():
+    own = (check(12.0), check(9.0, 100.0))
+    said = advice(found(check(3.0), own=own), "pose")
+    assert "too small over 100 m" in said
+    assert "Multiply the covariance by 3.0" in said
 
 
 def test_one_that_is_too_large_is_safe():

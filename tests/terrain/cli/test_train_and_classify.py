@@ -72,7 +72,7 @@ def test_classify_prints_what_the_classifier_says(trained, photos):
     table = CliRunner().invoke(classify, [str(model), *map(str, paths)]).stdout.splitlines()
     assert table[1].split()[:2] == [str(paths[0]), expected[0].label]
     assert float(table[2].split()[3]) == pytest.approx(expected[1].distance, rel=1e-3)
-    assert table[-1].startswith("unknown beyond distance ")
+    assert table[-1].endswith(" the label is unknown.")
 
 
 def test_bad_images_become_rows_and_the_exit_code_tells(trained, photos, tmp_path):

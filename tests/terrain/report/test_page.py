@@ -24,6 +24,7 @@ from terrain.run_odometry import run_odometry
 
 FIGURES = {"path", "position_errors", "error_per_metre", "labels", "confusion", "regions"}
 FIGURES |= {"whole_image", "icrs"}
+BOUNDS = np.array([0.6, 7.2])
 SHORT = Config(evaluation=EvaluationConfig(horizon_m=1.0, stride_m=0.25))
 
 
@@ -246,6 +247,7 @@ def test_the_uncertainty_of_the_odometer_is_listed(across_result, tmp_path):
         sigmas={5.0: np.array([0.1, 0.2, np.radians(3)]), 20.0: np.ones(3)},
         checks=(OpenLoopConsistency(5.0, 40, 10, 9.0, np.array([1.7, 4.7])),),
     )
+    own = dataclasses.replace(of, own_checks=(OpenLoopConsistency(20.0, 9, 3, 2.0, BOUNDS),))
     write_report(dataclasses.replace(across_result, uncertainty=of), tmp_path)
     read = Reader(tmp_path / "report.html")
     _, rows = read.table("NEES")
@@ -254,6 +256,10 @@ def test_the_uncertainty_of_the_odometer_is_listed(across_result, tmp_path):
     assert rows[1][4:] == [NOTHING, NOTHING, why]
     assert "Multiply the covariance by 3.0 before you rely on it" in read.text
     assert "Each half of the run is judged by the noise measured on the other half" in read.text
+    write_report(dataclasses.replace(across_result, uncertainty=own), tmp_path)
+    _, rows = Reader(tmp_path / "report.html").table("NEES")
+    assert rows[0][4:] == [NOTHING, "9.0", "1.7 to 4.7", "too small"]
+    assert rows[1][4:] == ["2.0", NOTHING, "0.6 to 7.2", "consistent by own poses"]
 
 
 @pytest.mark.usefixtures("no_photographs")

@@ -36,16 +36,16 @@ def scores(own, ideal, without, tuned):
 
 def test_the_first_sentence_says_how_much_less_or_more():
     assert headline(LINES, scores(0.02, 0.2, 0.08, 0.016)) == (
-        "Over stretches of 5 m the odometer errs by 2.0 cm per metre of wheel travel against the "
-        "measured pose: 90% less than an ideal differential drive (20.0 cm), 75% less than "
-        "without vision (8.0 cm), 25% more than tuned (1.6 cm)."
+        "Over stretches of 5 m the odometer errs by 2.00 cm per metre of wheel travel against the "
+        "measured pose: 90% less than an ideal differential drive (20.00 cm), 75% less than "
+        "without vision (8.00 cm), 25% more than tuned (1.60 cm)."
     )
 
 
 def test_the_first_sentences_say_where_the_simple_is_better():
     own = scores(0.02, 0.2, 0.08, 0.016) | {"gyroscope, mean speed": errs(0.015)}
     lead = headline(LINES, own)
-    assert "33% more than gyroscope with mean wheel speed (1.5 cm)" in lead
+    assert "33% more than gyroscope with mean wheel speed (1.50 cm)" in lead
     assert lead.endswith(
         "The gyroscope with mean wheel speed, which needs no fit, is better here: 1.50 against "
         "2.00 cm per metre of wheel travel."
@@ -56,7 +56,7 @@ def test_a_rival_without_errors_is_no_rival():
     without = scores(0.02, 0.2, 0.08, 0.0) | {"odometer, without vision": Score(0)}
     sentence = headline(LINES, without)
     assert "without vision" not in sentence
-    assert sentence.endswith("no less than tuned (0.0 cm).")
+    assert sentence.endswith("no less than tuned (0.00 cm).")
 
 
 def test_the_first_sentence_without_scores_or_horizons():
