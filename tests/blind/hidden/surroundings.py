@@ -240,7 +240,7 @@ SURROUNDINGS = {
         course="from_a_moment",
     ),
     "trailer": Kind(trailer),
-    "bumps": Kind(bumps, honest=("sideways in_bursts",), without_gyroscope=("reference",)),
+    "bumps": Kind(bumps, without_gyroscope=("reference",)),
     "downhill_creep": Kind(downhill_creep, (("slope", "unknown"),), sloped=True),
     "uphill_slip": Kind(uphill_slip, (("slope", "unknown"),), sloped=True),
     "magnetic_floor": Kind(magnetic_floor),

@@ -6,19 +6,18 @@ import numpy as np
 import pytest
 
 from odometry.run import Run
-from tests.blind.cases import NAMES, make_case
+from tests.blind.cases import make_case
 from tests.blind.effects import slope_sliding
 from tests.blind.ground import Ground
 from tests.blind.hidden import courses
-from tests.blind.hidden.catalogue import GROUPS, HIDDEN
+from tests.blind.hidden.catalogue import HIDDEN
 from tests.blind.hidden.draw import HELD_OUT_OF_FLOOR, SIZES_OF_FLOOR, draw_hidden_case, parts_alone
 from tests.blind.hidden.kind import Clock, Hidden
 from tests.blind.hidden.motion import move
 from tests.blind.hidden.scene import RUNS, STEP_S, Drive, draw_drive, draw_scene
-from tests.blind.hidden.seen import SEEN, sliding
+from tests.blind.hidden.seen import sliding
 from tests.blind.hidden.size import size_of_floor
 from tests.blind.motion import drive as drive_on_slopes
-from tests.studies.gap_names import COURSES, MEANING, score
 
 HELD_S = 20.0
 
@@ -161,36 +160,6 @@ def test_courses_by_their_laws():
     patches = courses.Patches(rng(), 5.0, 0.3)
     on = [patches.at(*point) > 0.5 for point in rng(5).uniform(-200, 200, (4000, 2))]
     assert np.mean(on) == pytest.approx(0.3, abs=0.04)
-
-
-@pytest.mark.parametrize(
-    ("verdict", "course", "kind", "expected"),
-    [
-        ("wheel_scale", "", "deflation", "right"),
-        ("traction_loss", "gradual", "deflation", "honest"),
-        ("traction_loss", "", "deflation", "wrong"),
-        ("unknown", "", "deflation", "unknown"),
-        ("unknown", "", "shared_pump", "right"),
-        ("none", "", "shared_pump", "none"),
-        ("none", "", "nothing", "right"),
-        ("curvature", "", "nothing", "wrong"),
-        ("time_offset", "", "late_commands", "wrong"),
-    ],
-)
-def test_the_score_of_an_answer(verdict, course, kind, expected):
-    assert score(verdict, course, HIDDEN[kind].true, HIDDEN[kind].honest) == expected
-
-
-def test_every_family_has_a_meaning_and_every_kind_is_listed_once():
-    for kind in HIDDEN.values():
-        families = [*(one for part in kind.true for one in part), *kind.honest]
-        for family in (*families, *kind.without_gyroscope):
-            plain, _, last = family.rpartition(" ")
-            assert (plain if last in COURSES else family) in MEANING
-        assert kind.course in ("", *COURSES)
-    assert len(HIDDEN) == sum(map(len, GROUPS.values()))
-    assert len(NAMES) == len(set(NAMES))
-    assert set(SEEN) <= set(HIDDEN)
 
 
 def test_a_drive_is_slow_and_level_to_calibrate():
