@@ -95,3 +95,30 @@ def nearest(
     apart = np.hypot(x, y) + DRIFT * since_m
     index = apart.argmin(axis=1)
     return index, apart[np.arange(len(points)), index]
+
+
+def along_way(places: FloatArray, same_m: float) -> IntArray:
+    """Order of places along the way: one that was seen before goes beside where it was seen.
+
+    So a patch that is seen again, after going back, is not taken for new ground.
+
+    Parameters
+    ----------
+    places : (n, 2)
+        In the order in which they were seen.
+    same_m : float
+        A place no farther from an earlier one goes right after the nearest of these, any other one
+        to the end.
+
+    Returns
+    -------
+    (n,)
+        Indices of the places.
+    """
+    order: list[int] = []
+    for place, here in enumerate(places):
+        apart_m = np.linalg.norm(places[:place] - here, axis=1)
+        nearest_place = int(apart_m.argmin()) if place else 0
+        seen_before = place > 0 and apart_m[nearest_place] <= same_m
+        order.insert(order.index(nearest_place) + 1 if seen_before else place, place)
+    return np.array(order, dtype=np.intp)

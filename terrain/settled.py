@@ -10,7 +10,7 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.run import UNKNOWN
 from terrain.label_chain import given_to, smoothed
 from terrain.label_rows import settled_by_rows
-from terrain.places import Sight
+from terrain.places import Sight, along_way
 
 LEAST = 2 / 3  # a terrain less probable is not known; one look of a place does not reach it
 
@@ -22,7 +22,7 @@ class Settled:
     Attributes
     ----------
     sights : tuple of Sight, length n
-        Those whose label is a terrain, in the order in which they were seen.
+        Those whose label is a terrain, as they were seen or along the way.
     names : tuple of str, length k + 1
         The known terrains, and `unknown` for one that is none of them.
     beliefs : (n, k + 1)
@@ -75,7 +75,7 @@ def by_rows(sights: Sequence[Sight], before: str, needed: int) -> Settled:
 def by_evidence(
     sights: Sequence[Sight], before: str, *, accuracy: float, change_m: float, alike_m: float
 ) -> Settled:
-    """Each place has the probabilities of a chain along the places; `unknown` is no evidence.
+    """Each place has the probabilities of a chain along the way; `unknown` is no evidence.
 
     Parameters
     ----------
@@ -90,7 +90,9 @@ def by_evidence(
     if not labelled:
         return Settled.of((), names, np.empty((0, len(names))))
     places = np.array([sight.place for sight in labelled])
-    between_m = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    order = along_way(places, alike_m)
+    labelled = tuple(labelled[place] for place in order)
+    between_m = np.linalg.norm(np.diff(places[order], axis=0), axis=1)
     given = given_to(
         [sight.label for sight in labelled],
         [sight.probabilities for sight in labelled],

@@ -132,6 +132,24 @@ def test_labels_of_one_place_never_make_a_change():
     assert switch.at(3.0, np.array([1.0, 0.0, 0.0]), 1.0).in_force == "gravel"
 
 
+def test_a_stretch_seen_again_says_no_more():
+    """It goes to and fro before 0.3 m that look like gravel, and sees them ten times."""
+    switch = start()
+    for k in range(6):
+        switch = switch.see(seen_at(0.15 * k, "grass"))
+    stretch = [seen_at(x, "gravel") for x in (0.9, 1.05, 1.2)]
+    beliefs = []
+    for _ in range(10):
+        for sight in stretch:
+            switch = switch.see(sight)
+        settled = switch.settled
+        place = int(np.abs(settled.places[:, 0] - 1.9).argmin())
+        beliefs.append(settled.probability(settled.beliefs[place], "gravel"))
+    assert beliefs[-1] == pytest.approx(beliefs[0], abs=0.05)
+    assert len(settled.places) == 36
+    assert (np.diff(settled.places[:, 0]) >= 0).all()
+
+
 @pytest.mark.parametrize("needed", [1, 2, 3, 5])
 def test_so_many_equal_labels_in_a_row(needed):
     few = ["gravel"] * (needed - 1) + ["grass"] * 3
