@@ -28,7 +28,7 @@ from odometry.gap.gap import find_gap
 from odometry.run import Run
 from tests.blind.cases import KINDS, NAMES, Case, make_case
 from tests.studies.gap_names import all_named, course_of, score
-from tests.studies.gap_table import table_of
+from tests.studies.gap_table import mistakes_of, table_of
 
 NOISES = (1.0, 0.5, 2.0)
 COLUMNS = (
@@ -65,7 +65,8 @@ def main() -> None:
             sheet.writerow(row)
             stream.flush()
             print(*(row[name] for name in (*COLUMNS[1:9], *COLUMNS[-7:])), sep="  ", flush=True)
-    print("\n".join(table_of([row for row in rows if row["kind"] in kinds])))
+    asked = [row for row in rows if row["kind"] in kinds]
+    print("\n".join([*table_of(asked), "", *mistakes_of(asked)]))
 
 
 def read(file: Path) -> list[dict[str, str]]:

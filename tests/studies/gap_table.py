@@ -23,6 +23,16 @@ def table_of(rows: Sequence[Row]) -> list[str]:
     return [f"| {' | '.join(line)} |" for line in lines]
 
 
+def mistakes_of(rows: Sequence[Row]) -> list[str]:
+    """A line for each wrong name, each name with a worse held-out gap and each failure."""
+    bad = [row for row in rows if row["score"] in ("wrong", "failed") or row["worse"] == "1"]
+    return [
+        f"{row['kind']} {row['seed']}: {row['score']}, {row['verdict']} ({row['effects']}) for "
+        f"{row['true'] or 'none'}, gap {row['before']} to {row['after']} {row['error']}".rstrip()
+        for row in bad
+    ]
+
+
 def cells(name: str, rows: Sequence[Row], *, short: bool = False) -> list[str]:
     """One line; the intervals are left out where it is `short`."""
     share = _percent if short else with_interval

@@ -6,7 +6,7 @@ from scipy.stats import binomtest
 from tests.blind.cases import NAMES
 from tests.blind.hidden.catalogue import GROUPS, HIDDEN
 from tests.studies.gap_names import COURSES, MEANING, all_named, score
-from tests.studies.gap_table import table_of, with_interval
+from tests.studies.gap_table import mistakes_of, table_of, with_interval
 
 
 @pytest.mark.parametrize(
@@ -80,3 +80,7 @@ def test_the_table_counts_each_kind_and_group():
     assert by_head["worse"] == "50 (9 to 91)"
     assert by_head["failed"] == "33 (6 to 79)"
     assert by_head["closed"] == "0.90"
+    told = {"seed": "0", "true": "reference", "before": "1", "after": "2", "error": ""}
+    assert mistakes_of([{**one, **told} for one in (row, worse)]) == [
+        "outliers 0: wrong, drive_limit (drive_limit) for reference, gap 1 to 2"
+    ]
