@@ -59,7 +59,8 @@ def with_interval(count: int, of: int) -> str:
     share, more = count / of, Z_95**2 / of
     middle = (share + more / 2) / (1 + more)
     half = Z_95 * np.sqrt(share * (1 - share) / of + more / (4 * of)) / (1 + more)
-    return f"{100 * share:.0f} ({100 * (middle - half):.0f} to {100 * (middle + half):.0f})"
+    low, high = max(middle - half, 0.0), min(middle + half, 1.0)
+    return f"{100 * share:.0f} ({100 * low:.0f} to {100 * high:.0f})"
 
 
 def closed(rows: Sequence[Row]) -> str:
