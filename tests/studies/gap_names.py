@@ -26,6 +26,7 @@ MEANING = {
     "none": ("none",),
 }
 COURSES = ("from_a_moment", "gradual", "in_bursts")
+FORMS_WITH_A_COURSE = {"drift": "gradual"}
 
 
 def meant(name: str, course: str, families: Sequence[str]) -> bool:
@@ -39,8 +40,9 @@ def meant(name: str, course: str, families: Sequence[str]) -> bool:
 
 
 def course_of(form: str) -> str:
-    """Course in time that a form ends with, or ""."""
-    return next((course for course in COURSES if form.endswith(course)), "")
+    """Course in time that a form means or ends with, or ""."""
+    ending = next((course for course in COURSES if form.endswith(course)), "")
+    return FORMS_WITH_A_COURSE.get(form, ending)
 
 
 def score(verdict: str, course: str, parts: Sequence[Sequence[str]], honest: Sequence[str]) -> str:

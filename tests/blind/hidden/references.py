@@ -266,10 +266,7 @@ REFERENCES = {
     ),
     "jittered_stamps": Kind(jittered_stamps, REFERENCE, honest=("late stamps",)),
     "clock_step": Kind(
-        clock_step,
-        REFERENCE,
-        honest=("late stamps from_a_moment",),
-        course="from_a_moment",
+        clock_step, (("reference", "late stamps from_a_moment"),), course="from_a_moment"
     ),
     "bent_map": Kind(bent_map, REFERENCE),
 }

@@ -144,7 +144,7 @@ SEEN = {
     ),
     "late_commands": Kind(late_commands, (("late commands",),), gyroscope="always"),
     "fast_pose_clock": Kind(
-        fast_pose_clock, (("reference",),), honest=("late stamps gradual",), course="gradual"
+        fast_pose_clock, (("reference", "late stamps gradual"),), course="gradual"
     ),
     "outliers": Kind(outliers, (("reference",),)),
     "slip_bursts": Kind(

@@ -5,7 +5,7 @@ from scipy.stats import binomtest
 
 from tests.blind.cases import NAMES
 from tests.blind.hidden.catalogue import GROUPS, HIDDEN
-from tests.studies.gap_names import COURSES, MEANING, all_named, score
+from tests.studies.gap_names import COURSES, MEANING, all_named, course_of, score
 from tests.studies.gap_table import mistakes_of, table_of, with_interval
 
 
@@ -36,6 +36,14 @@ def test_every_family_has_a_meaning_and_every_kind_is_listed_once():
         assert kind.course in ("", *COURSES)
     assert len(HIDDEN) == sum(map(len, GROUPS.values()))
     assert len(NAMES) == len(set(NAMES))
+
+
+@pytest.mark.parametrize(
+    ("form", "course"),
+    [("drift", "gradual"), ("scale_drift", ""), ("factors gradual", "gradual"), ("k_m", "")],
+)
+def test_the_course_of_a_form(form, course):
+    assert course_of(form) == course
 
 
 def test_both_of_a_mixed_kind_are_to_be_named():
