@@ -1,9 +1,14 @@
 import os
 from pathlib import Path
 
-import numpy as np
 import pytest
 from hypothesis import settings
+
+# Every core has a process already; a thread more for each only waits for the others.
+for library in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(library, "1")
+
+import numpy as np  # noqa: E402 - it reads them
 
 settings.register_profile("project", deadline=None, derandomize=True, database=None)
 settings.load_profile("project")

@@ -4,6 +4,7 @@ import doctest
 import importlib
 import pkgutil
 import re
+from functools import partial
 from pathlib import Path
 
 import nbformat
@@ -12,6 +13,7 @@ from nbclient import NotebookClient
 
 import odometry
 import terrain
+from terrain.synthetic import SynthesisConfig, synthesise
 
 ROOT = Path(__file__).parents[1]
 MODULES = [
@@ -22,6 +24,9 @@ MODULES = [
 
 
 def test_the_python_of_the_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As it stands there, on a shorter run and fewer patches."""
+    small = SynthesisConfig(zone_length_m=4.0, patches_per_terrain=16)
+    monkeypatch.setattr(terrain, "synthesise", partial(synthesise, config=small))
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     (code,) = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
     monkeypatch.chdir(tmp_path)
