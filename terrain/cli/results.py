@@ -9,6 +9,7 @@ import click
 if TYPE_CHECKING:
     from terrain.run_result import RunResult
 
+MOST_CHANGES = 6  # of the terrain in force, that are printed
 HEADER = (
     *("", "m per m: mean", "median", "deg per m: mean", "median"),
     *("position m: mean", "median", "final"),
@@ -54,6 +55,16 @@ def print_sightings(counts: Mapping[str, int]) -> None:
     """Say how many images got each label, and how many none and why."""
     if counts:
         click.echo("Images: " + ", ".join(f"{count} {word}" for word, count in counts.items()))
+
+
+def print_changes(result: "RunResult") -> None:
+    """Say when which terrain came into force, where anything told it."""
+    if result.source == "none":
+        return
+    shown = [f"from {of.stamp_s:.1f} s {of.terrain}" for of in result.changes[:MOST_CHANGES]]
+    more = len(result.changes) - len(shown)
+    rest = [f"{more} more changes, see terrain.csv"] if more else []
+    click.echo(f"Terrain in force: {', '.join([result.initial_terrain, *shown, *rest])}")
 
 
 def error_cells(errors: Mapping[str, Any]) -> list[str]:

@@ -74,7 +74,7 @@ def run(
     from terrain.cli.learned_advice import learned_advice
     from terrain.cli.outputs import about, claim_folder
     from terrain.cli.recordings import checks_made, read_run
-    from terrain.cli.results import print_errors, print_sightings, print_written
+    from terrain.cli.results import print_changes, print_errors, print_sightings, print_written
     from terrain.config import Config
     from terrain.report.page import write_report
     from terrain.result_table import sighting_counts
@@ -112,6 +112,7 @@ def run(
         write_report(result, part)
     print_errors({result.run.name: result})
     print_sightings(sighting_counts(result))
+    print_changes(result)
     for name, effects in result.effects.items():
         click.echo(f"Effects on {name}, in every trajectory but the ideal: {', '.join(effects)}")
     print_written(out)

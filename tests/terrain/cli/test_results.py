@@ -1,14 +1,18 @@
 """What the commands print of results."""
 
+from types import SimpleNamespace
+
 from odometry.outputs.manifest import Manifest
 from terrain.cli.results import (
     error_cells,
+    print_changes,
     print_errors,
     print_sightings,
     print_table,
     print_written,
 )
 from terrain.run_odometry import run_odometry
+from terrain.terrain_change import TerrainChange
 
 
 def test_columns_line_up_words_to_the_left_numbers_to_the_right(capsys):
@@ -56,4 +60,18 @@ def test_images_are_counted_by_what_they_said(capsys):
     print_sightings({"mud": 12, "no label: the robot stands": 3})
     assert capsys.readouterr().out == "Images: 12 mud, 3 no label: the robot stands\n"
     print_sightings({})
+    assert capsys.readouterr().out == ""
+
+
+def told(stamps_s, source="labels"):
+    changes = [TerrainChange(f"t{k}", stamp_s) for k, stamp_s in enumerate(stamps_s)]
+    return SimpleNamespace(source=source, initial_terrain="ice", changes=changes)
+
+
+def test_the_terrain_in_force_is_told_with_its_times(capsys):
+    print_changes(told([1.0, 2.04]))
+    assert capsys.readouterr().out == "Terrain in force: ice, from 1.0 s t0, from 2.0 s t1\n"
+    print_changes(told(range(9)))
+    assert "from 5.0 s t5, 3 more changes, see terrain.csv\n" in capsys.readouterr().out
+    print_changes(told([], source="none"))
     assert capsys.readouterr().out == ""

@@ -1,0 +1,50 @@
+"""A watcher on a run of a few frames."""
+
+from types import SimpleNamespace
+
+import cv2
+import numpy as np
+import pytest
+
+from odometry.run import Run
+from terrain.camera import Camera
+from terrain.region import RegionConfig
+from terrain.switch import SwitchConfig
+from terrain.watcher import TerrainWatcher
+from tests.terrain.watcher.watched import ByBrightness
+
+
+@pytest.fixture
+def watch(tmp_path, world):
+    """A watcher over a run whose images, one a second, are given; and its classifier."""
+
+    def make(images, classifier=None, per_tread=False, **settings):
+        folder = tmp_path / "run"
+        folder.mkdir()
+        world.write_toml(folder / "run.toml", robot=world.robot, camera=world.camera)
+        stamps_s = np.arange(0.0, len(images) + 1.0, 0.5)
+        speeds = np.full(len(stamps_s), world.speed_m_s)
+        world.write_csv(
+            folder / "odometry.csv", "t,v_left,v_right", zip(stamps_s, speeds, speeds, strict=True)
+        )
+        rows = ["t,file"]
+        for k, image in enumerate(images):
+            file = folder / f"{k}.png"
+            file.write_bytes(
+                image if isinstance(image, bytes) else cv2.imencode(".png", image)[1].tobytes()
+            )
+            rows.append(f"{k + 0.4},{file.name}")
+        (folder / "images.csv").write_text("\n".join(rows) + "\n")
+        run = Run.read(folder)
+        classifier = classifier or ByBrightness()
+        watcher = TerrainWatcher(
+            run,
+            Camera.from_table(world.camera),
+            classifier,
+            "mud",
+            region=RegionConfig(per_tread=per_tread, **settings),
+            switch=SwitchConfig(),
+        )
+        return SimpleNamespace(run=run, watcher=watcher, classifier=classifier, folder=folder)
+
+    return make

@@ -1,0 +1,139 @@
+"""What the watcher does about bad images, and regions that are not to be classified."""
+
+import dataclasses
+
+import cv2
+import numpy as np
+import pytest
+
+from odometry.footing import Footing
+from odometry.frames import Frame
+from terrain.camera import Camera
+from terrain.errors import CameraError
+from terrain.region import RegionConfig
+from terrain.switch import SwitchConfig
+from terrain.watcher import TerrainWatcher
+from tests.terrain.watcher.watched import BRIGHT, DARK, ByBrightness, drive, estimate_at
+
+
+def cut_short(image):
+    """The first half of its PNG file."""
+    data = cv2.imencode(".png", image)[1].tobytes()
+    return data[: len(data) // 2]
+
+
+@pytest.mark.parametrize("bad", [b"", b"no image", cut_short(DARK)], ids=["empty", "text", "cut"])
+def test_an_image_that_cannot_be_read_is_a_row_and_the_run_goes_on(watch, bad, capfd):
+    watched = watch([DARK, BRIGHT, bad, BRIGHT, BRIGHT])
+    terrains = drive(watched)
+    capfd.readouterr()  # the image library speaks of the damage on its own
+    bad_one = watched.watcher.sightings[2]
+    assert bad_one.label == ""
+    assert bad_one.reason == "the image cannot be read"
+    assert np.isnan(bad_one.confidence)
+    assert [s.label for s in watched.watcher.sightings] == ["mud", "snow", "", "snow", "snow"]
+    assert terrains[-1] == "snow"  # it breaks no row
+
+
+def test_a_grey_image_among_coloured_ones_is_a_row_and_the_run_goes_on(watch):
+    bright, dark = (np.repeat(image[..., None], 3, axis=2) for image in (BRIGHT, DARK))
+    watched = watch([dark, bright, BRIGHT, bright, bright], ByBrightness(colour=True))
+    assert drive(watched)[-1] == "snow"
+    assert [s.label for s in watched.watcher.sightings] == ["mud", "snow", "", "snow", "snow"]
+    reason = "the image is grey, the model was trained with colour"
+    assert watched.watcher.sightings[2].reason == reason
+
+
+def test_a_region_of_which_a_corner_is_outside_the_image_has_a_label(watch):
+    """A left turn of 0.4 m radius: at every look-ahead a corner of the footprint is outside."""
+    watched = watch([BRIGHT])
+    frame = next(f for f in watched.run.frames() if f.image is not None)
+    turning = dataclasses.replace(frame, tread_speeds_m_s=np.array([0.3125, 0.6875]))
+    whole = watch_whole(watched)
+    assert whole.look(turning, estimate_at(frame)).reason == "the region lies outside the image"
+    sighting = watched.watcher.look(turning, estimate_at(frame))
+    assert sighting.label == "snow"
+    (shown,) = watched.classifier.shown
+    assert min(shown.shape) >= watched.classifier.patch_size_px
+
+
+def watch_whole(watched):
+    """A watcher that labels a region only where the image shows all of it."""
+    return TerrainWatcher(
+        watched.run,
+        Camera.from_table(watched.run.settings["camera"]),
+        watched.classifier,
+        "mud",
+        region=RegionConfig(least_share=1.0),
+        switch=SwitchConfig(),
+    )
+
+
+def test_a_file_that_vanished_is_a_row(watch):
+    watched = watch([DARK, BRIGHT])
+    (watched.folder / "1.png").unlink()
+    drive(watched)
+    assert [s.reason for s in watched.watcher.sightings] == ["", "the image cannot be read"]
+
+
+def test_images_of_another_size_than_the_cameras_are_an_error(watch):
+    watched = watch([np.zeros((240, 320), np.uint8)] * 3)
+    with pytest.raises(CameraError, match=r"0\.png: .*320x240.*160x120.*image_size"):
+        drive(watched)
+
+
+def test_one_image_of_another_size_is_a_row(watch):
+    watched = watch([DARK, np.zeros((240, 320), np.uint8), DARK])
+    drive(watched)
+    assert [s.label for s in watched.watcher.sightings] == ["mud", "", "mud"]
+    assert watched.watcher.sightings[1].reason == "the image is not of the camera's size"
+
+
+@pytest.mark.parametrize(
+    ("classifier", "reason"),
+    [
+        (ByBrightness(0.006, 81), "the region is smaller than a training patch"),
+        (ByBrightness(None, 130), "the region is smaller than a training patch"),
+        (ByBrightness(0.002, 32), "the image is too coarse there"),
+    ],
+)
+def test_a_region_that_does_not_compare_with_the_patches_has_no_label(watch, classifier, reason):
+    watched = watch([DARK], classifier)
+    drive(watched)
+    (sighting,) = watched.watcher.sightings
+    assert (sighting.label, sighting.reason) == ("", reason)
+    assert classifier.shown == []
+
+
+def test_half_a_region_may_be_too_small_where_the_whole_is_not(watch):
+    """The whole is 80 by 68 pixels, each half 80 by 34."""
+    watched = watch([DARK], ByBrightness(0.006, 40), per_tread=True)
+    drive(watched)
+    assert watched.watcher.sightings[0].reason == "the region is smaller than a training patch"
+
+
+@pytest.mark.parametrize(
+    ("speeds", "reason"),
+    [
+        ((0.0, 0.0), "the robot stands"),
+        ((np.nan, np.nan), "the tread speeds are not known"),
+        ((-0.3, 0.3), "the region lies outside the image"),
+        ((-0.3, -0.3), "the region lies outside the image"),
+    ],
+)
+def test_where_there_is_no_region_there_is_a_reason(watch, speeds, reason):
+    watched = watch([DARK])
+    frame = next(f for f in watched.run.frames() if f.image is not None)
+    frame = dataclasses.replace(frame, tread_speeds_m_s=np.array(speeds))
+    watched.watcher.terrain(frame, estimate_at(frame, speeds=speeds))
+    (sighting,) = watched.watcher.sightings
+    assert (sighting.label, sighting.reason, sighting.region) == ("", reason, None)
+
+
+def test_a_frame_without_an_image_cannot_be_looked_at(watch):
+    watched = watch([DARK])
+    frame = Frame(0.0, np.array([0.5, 0.5]), 0, None, None)
+    assert watched.watcher.terrain(frame, estimate_at(frame)) == Footing.of("mud")
+    assert watched.watcher.sightings == watched.watcher.in_force == []
+    with pytest.raises(ValueError, match="no image"):
+        watched.watcher.look(frame, estimate_at(frame))
