@@ -1,8 +1,6 @@
 """When a label becomes the terrain in force: drives worked out by hand."""
 
 import dataclasses
-import math
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -10,47 +8,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from odometry.errors import ConfigError
-from terrain.places import Footprint, Sight
-from terrain.switch import Switch, SwitchConfig
-
-FOOTPRINT = Footprint(0.5, 0.5)  # regions are of 0.6 m by 0.6 m
-AHEAD_M = 1.0
-RULES = {"evidence": {}, "rows": {"labels_in_row": 2}}
-BOTH_RULES = pytest.mark.parametrize("rule", RULES.values(), ids=RULES)
-
-
-def start(in_force="grass", **settings_):
-    return Switch(in_force, FOOTPRINT, SwitchConfig(**settings_))
-
-
-def seen_at(x, label, ahead_m=AHEAD_M, probabilities=None):
-    """A label seen by a robot at (x, 0), heading along x."""
-    place = np.array([x + ahead_m, 0.0])
-    return Sight(label, 2 * x, x, place, ahead_m, probabilities or {})
-
-
-def drive(switch, labels, spacing_m=0.25, step_m=0.05, to_m=None):
-    """Drive along x at 0.5 m/s; labels[k] is seen at k * spacing_m, "" is no label.
-
-    Returns what was in force at every step as (x, terrain), and all events.
-    """
-    to_m = len(labels) * spacing_m + AHEAD_M if to_m is None else to_m
-    seen, history, events = 0, [], []
-    for x in np.arange(0.0, to_m + 1e-9, step_m):
-        if seen < len(labels) and x >= seen * spacing_m - 1e-9:
-            if labels[seen]:
-                switch = switch.see(seen_at(x, labels[seen]))
-            seen += 1
-        switch = switch.at(2 * x, np.array([x, 0.0, 0.0]), x)
-        history.append((float(x), switch.in_force))
-        events += [switch.event] if switch.event else []
-    return history, events
-
-
-def changes(history):
-    """Where and to what the terrain in force changed."""
-    pairs = pairwise(history)
-    return [(round(x, 6), now) for (_, before), (x, now) in pairs if now != before]
+from terrain.switch import SwitchConfig
+from tests.terrain.straight_drives import (
+    AHEAD_M,
+    BOTH_RULES,
+    changes,
+    drive,
+    seen_at,
+    start,
+)
 
 
 @BOTH_RULES
@@ -175,99 +141,6 @@ def test_on_request_a_label_counts_when_it_is_seen():
     assert event.waited_m == pytest.approx(0.25)
 
 
-@BOTH_RULES
-def test_turning_on_the_spot_before_an_edge_reaches_nothing(rule):
-    """The middle stands 0.42 m before the edge, and turns once round."""
-    switch = start(**rule)
-    for x in np.arange(0.0, 2.01, 0.05):
-        if x <= 1.9 and round(x / 0.05) % 5 == 0:
-            label = "grass" if x + AHEAD_M < 2.42 else "gravel"
-            switch = switch.see(seen_at(x, label))
-        switch = switch.at(2 * x, np.array([x, 0.0, 0.0]), x)
-    for k, yaw in enumerate(np.arange(0.0, 2 * math.pi, 0.1)):
-        switch = switch.at(4.0 + 0.1 * k, np.array([2.0, 0.0, yaw]), 2.0 + 0.04 * k)
-        assert switch.in_force == "grass"
-
-
-@BOTH_RULES
-def test_reversing_switches_where_driving_ahead_did(rule):
-    """Over the edge and back: no new label, the places behind are known."""
-    switch = start(**rule)
-    ahead = np.arange(0.0, 4.0, 0.05)
-    found = []
-    for k, x in enumerate([*ahead, *ahead[::-1]]):
-        if k < len(ahead) and k % 5 == 0:
-            switch = switch.see(seen_at(x, "grass" if x + AHEAD_M < 2.0 else "gravel"))
-        switch = switch.at(0.1 * k, np.array([x, 0.0, 0.0]), 0.05 * k)
-        found += [(x, switch.event.terrain)] if switch.event else []
-    (over, gravel), (back, grass) = found
-    assert (gravel, grass) == ("gravel", "grass")
-    assert over == pytest.approx(1.875, abs=0.1)
-    assert back == pytest.approx(1.875, abs=0.1)
-
-
-@BOTH_RULES
-def test_labels_on_either_side_of_a_long_way_do_not_fire_before_their_place(rule):
-    """One gravel label, 20 m without any, one more: it counts at its own place."""
-    switch = start(**rule).see(seen_at(0.0, "gravel"))
-    for k, x in enumerate(np.arange(0.0, 22.0, 0.05)):
-        if k == 400:
-            switch = switch.see(seen_at(x, "gravel"))
-        # driven aside of the first place
-        switch = switch.at(2 * x, np.array([x, 2.0 if x < 10 else 0.0, 0.0]), x)
-        if 2.0 < x < 20.0 + AHEAD_M - FOOTPRINT.radius_m:
-            assert switch.in_force == "grass"
-
-
-@BOTH_RULES
-def test_a_place_the_robot_turned_away_from_is_not_reached(rule):
-    """It saw gravel 1 m ahead, turned left on the spot and left along y."""
-    switch = start(**rule).see(seen_at(0.0, "gravel")).see(seen_at(0.0, "gravel"))
-    for y in np.arange(0.0, 5.0, 0.05):
-        switch = switch.at(y, np.array([0.0, y, math.pi / 2]), y)
-        assert switch.in_force == "grass"
-
-
-def test_a_strip_narrower_than_the_look_ahead():
-    """Gravel of 0.75 m is seen whole, and grass beyond it, before the robot is there."""
-    labels = ["grass"] * 3 + ["gravel"] * 3 + ["grass"] * 3
-    found = changes(drive(start(labels_in_row=2), labels)[0])
-    assert [name for _, name in found] == ["gravel", "grass"]
-    assert [x for x, _ in found] == pytest.approx([1.625, 2.375], abs=0.1)
-
-
-def test_a_change_that_was_taken_back_does_not_switch():
-    """Gravel 1 m ahead; nearer by, the same place turns out to be grass."""
-    switch = start(labels_in_row=2)
-    for x, label, ahead_m in [(0.0, "gravel", 1.0), (0.1, "gravel", 1.0)]:
-        switch = switch.see(seen_at(x, label, ahead_m))
-    for x, label, ahead_m in [(0.2, "grass", 0.8), (0.3, "grass", 0.8)]:
-        switch = switch.see(seen_at(x, label, ahead_m))
-    switch = switch.at(2.1, np.array([0.95, 0.0, 0.0]), 0.95)
-    assert switch.in_force == "grass"
-    assert switch.event is None
-
-
-def test_a_robot_astride_an_edge_has_shares_of_both_terrains():
-    """Edge at 1.875 m; the footprint is 0.5 m long."""
-    switch = start()
-    for k in range(12):
-        switch = switch.see(seen_at(0.25 * k, "grass" if k < 4 else "gravel"))
-    for x in np.arange(1.4, 2.4, 0.05):
-        switch = switch.at(2 * x, np.array([x, 0.0, 0.0]), 2.75)
-        over = np.clip((x + 0.25 - 1.875) / 0.5, 0.0, 1.0)
-        assert switch.footing.shares.get("gravel", 0.0) == pytest.approx(over, abs=0.08)
-        assert sum(switch.footing.shares.values()) == pytest.approx(1.0)
-
-
-def test_on_request_the_terrain_changes_in_one_step():
-    switch = start(by_shares=False)
-    for k in range(12):
-        switch = switch.see(seen_at(0.25 * k, "grass" if k < 4 else "gravel"))
-    footings = [switch.at(2 * x, np.array([x, 0.0, 0.0]), 2.75).footing for x in (1.8, 1.95)]
-    assert [footing.shares for footing in footings] == [{"grass": 1.0}, {"gravel": 1.0}]
-
-
 def test_ground_without_a_label_for_long_is_no_longer_known():
     switch = start()
     for x in np.arange(0.0, 40.0, 0.25):
@@ -296,31 +169,6 @@ def test_ground_with_right_labels_stays_known():
         switch = switch.see(seen_at(x, "grass" if x < 9 else "gravel"))
         switch = switch.at(2 * x, np.array([x, 0.0, 0.0]), x)
         assert switch.footing.terrain != "unknown" or abs(x - 9.9) < 0.3
-
-
-@BOTH_RULES
-def test_what_lies_behind_is_forgotten_and_changes_nothing(rule):
-    """300 m of grass and gravel by turns: as many places are kept as the odometer can tell."""
-    switch = start(**rule)
-    for x in 0.25 * np.arange(400):
-        switch = switch.see(seen_at(x, ("grass", "gravel")[int(x // 30) % 2]))
-        switch = switch.at(2 * x, np.array([x, 0.0, 0.0]), x)
-        if x > 1.5 and abs(x - 1 - 30 * round((x - 1) / 30)) > 0.4:
-            assert switch.in_force == ("grass", "gravel")[int((x - 1) // 30) % 2]
-    assert len(switch.sights) < 80
-
-
-@BOTH_RULES
-def test_a_robot_that_went_astray_knows_no_place(rule):
-    switch = start(**rule)
-    for k in range(6):
-        switch = switch.see(seen_at(0.25 * k, "gravel"))
-    assert switch.at(2.0, np.array([1.3, 0.0, 0.0]), 1.3).in_force == "gravel"
-    astray = switch.astray().at(2.0, np.array([1.3, 0.0, 0.0]), 1.3)
-    assert (astray.in_force, astray.sights) == ("grass", ())
-    for k in range(6):
-        astray = astray.see(seen_at(2.0 + 0.25 * k, "gravel"))
-    assert astray.at(6.0, np.array([3.1, 0.0, 0.0]), 3.1).in_force == "gravel"
 
 
 def test_a_call_gives_a_new_switch_and_leaves_the_old():
