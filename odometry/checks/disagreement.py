@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.headings_apart import headings_apart, scales_apart, yaw_wanders
+from odometry.checks.paths_apart import paths_apart
 from odometry.checks.positions_apart import positions_apart, positions_apart_everywhere
 from odometry.checks.proportion import holds_the_mean, one_side_not_proportional, treads_unlike
 from odometry.checks.unnamed import disagreement
@@ -28,6 +29,7 @@ def lasting_disagreements(evidence: Evidence) -> list[str]:
         headings_apart(evidence),
         yaw_wanders(evidence),
         positions_apart_everywhere(evidence),
+        paths_apart(evidence),
         one_side_not_proportional(evidence),
         holds_the_mean(evidence),
         *treads_unlike(evidence),

@@ -61,6 +61,27 @@ def test_faults_are_named_by_positions_alone(fault, named):
         assert "both have the wrong sign" in found[0].cause
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_positions_of_another_run_disagree(seed):
+    """A path that has nothing to do with treads and gyroscope: smooth, as fast, elsewhere."""
+    run = without_yaw(winding(0.05 * np.arange(4000), seed))
+    other = winding(0.05 * np.arange(4000), seed + 10)
+    mixed = put(run, "pose", x=other.pose["x"], y=other.pose["y"])
+    assert warnings(run) == warnings(without_gyroscope(run)) == []
+    (found,) = check_recording(mixed).at(Level.WARNING)
+    assert found.name == "sensors_disagree"
+    assert "likeness" in found.seen
+
+
+def winding(at_s, seed):
+    rng = np.random.default_rng(seed)
+    rate = sum(
+        0.3 * np.sin(at_s / length_s + phase)
+        for length_s, phase in zip(rng.uniform(1, 8, 4), rng.uniform(0, 6, 4), strict=True)
+    )
+    return drive(np.full(len(at_s), 0.7), rate)
+
+
 def test_without_gyroscope_either_may_be_mirrored():
     run = without_gyroscope(without_yaw(FAULTS["treads_swapped"](turning_all_round())))
     (found,) = check_recording(run).at(Level.WARNING)
