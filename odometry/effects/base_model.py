@@ -22,13 +22,19 @@ class Base:
     robot : Robot
         What it drives.
     latency_s : float
-        By how much the robot always follows its recorded speeds late.
+        By how much poses always follow the recorded speeds late.
+    gyro_latency_s : float
+        By how much the gyroscope does.
+    gyro_bias_rad_s : float
+        What the gyroscope reports at rest.
     """
 
     model: KinematicModel
     values: FloatArray
     robot: Robot
     latency_s: float = 0.0
+    gyro_latency_s: float = 0.0
+    gyro_bias_rad_s: float = 0.0
 
 
 def slip_factors(base: Base) -> FloatArray:

@@ -1,5 +1,6 @@
 """A part of the motion that no named effect explains: a smooth function of one variable."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,13 +14,17 @@ from odometry.models.inputs import Inputs
 from odometry.parameter_covariance import finite_number
 
 HARMONICS = 2
-COMPONENTS = ("v_x", "v_y", "omega")
+COMPONENTS = ("v_x", "v_y", "omega")  # of the twist
+TREADS = ("left", "right")  # their speeds
 ANGLES = ("heading", "wheel_angle", "left_wheel_angle", "right_wheel_angle")
+OF_TREADS = ("tread_speed", "tread_acceleration")  # variables (N, 2): of each tread its own
+ACCELERATION_OVER_S = 0.2
+CREEPING_M_S = 0.05  # below this forward speed a curvature is taken as at it
 
 
 @dataclass(frozen=True)
 class Residual(MotionEffect):
-    """Adds a smooth function of one variable to some components of the twist.
+    """Adds a smooth function of one variable to components of the twist, or to tread speeds.
 
     Of an angle it is a Fourier series, else piecewise linear between knots.
 
@@ -28,10 +33,11 @@ class Residual(MotionEffect):
     variable : str
         A name of `variables_of`.
     terms : tuple of (str, int)
-        Component of the twist, and number of the basis function.
+        Component of the twist, or "left" or "right" of the treads, and number of the basis
+        function.
     by_speed : bool
-        Whether it grows with speed: that of the wheels whose angle it is, else the mean of both
-        treads' magnitudes. Else it is there at any speed.
+        Whether it grows with speed: that of the wheels whose angle it is, that of the tread that
+        it is added to, else the mean of both treads' magnitudes. Else it is there at any speed.
     knots : tuple of float
         Of the piecewise linear functions, increasing; empty for an angle.
     """
@@ -50,9 +56,10 @@ class Residual(MotionEffect):
             raise ParameterError(f"knots = {knots}, expected increasing numbers")
         functions = len(self.knots) or 2 * HARMONICS
         for term in self.terms:
-            if len(term) != 2 or term[0] not in COMPONENTS or term[1] not in range(functions):
+            known = TREADS if self.variable in OF_TREADS else (*COMPONENTS, *TREADS)
+            if len(term) != 2 or term[0] not in known or term[1] not in range(functions):
                 raise ParameterError(
-                    f"the residual has a term {term!r}, expected one of {', '.join(COMPONENTS)} "
+                    f"the residual has a term {term!r}, expected one of {', '.join(known)} "
                     f"and a number below {functions}"
                 )
 
@@ -68,11 +75,11 @@ class Residual(MotionEffect):
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
         """See `Effect.parameters`."""
-        unit = {"v_x": "m/s", "v_y": "m/s", "omega": "rad/s"}
+        unit = {"omega": "rad/s"}
         return tuple(
             EffectParameter(
                 f"{component}_{number}",
-                "" if self.by_speed and component != "omega" else unit[component],
+                "" if self.by_speed and component != "omega" else unit.get(component, "m/s"),
                 -10.0,
                 10.0,
                 0.0,
@@ -83,27 +90,37 @@ class Residual(MotionEffect):
 
     def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the face
         """See `Effect.lacks`."""
-        return "" if self.variable in variables_of(inputs) else self.variable
+        known = self.variable in SIMULATED or _variable(self.variable, inputs, None) is not None
+        return "" if known else self.variable
 
     def twist(
         self,
         values: FloatArray,
         twist: FloatArray,
         inputs: Inputs,
-        base: Base,  # noqa: ARG002 - of the face
+        base: Base,
     ) -> FloatArray:
-        """See `MotionEffect.twist`; nothing is added while the treads stand still."""
-        recorded = variables_of(inputs)
-        if self.variable not in recorded:
+        """See `MotionEffect.twist`; what is added to treads is a change to first order."""
+        variable = _variable(self.variable, inputs, twist)
+        if variable is None:
             raise ParameterError(
                 f"the residual is a function of {self.variable!r}, which was not recorded; there "
-                f"are {', '.join(recorded)}"
+                f"are {', '.join(variables_of(inputs, twist))}"
             )
-        basis = basis_of(recorded[self.variable], self.knots)
-        weight = _speed(self.variable, inputs) if self.by_speed else np.ones(len(twist))
-        added = np.zeros_like(twist)
+        bases = _of_each_tread(variable, self.knots)
+        added, by_tread = np.zeros_like(twist), np.zeros((len(twist), len(TREADS)))
         for (component, number), value in zip(self.terms, values, strict=True):
-            added[:, COMPONENTS.index(component)] += value * weight * basis[:, number]
+            if component in TREADS:
+                tread = TREADS.index(component)
+                by_tread[:, tread] += value * bases[tread][:, number]
+            else:
+                added[:, COMPONENTS.index(component)] += value * bases[0][:, number]
+        if self.by_speed:
+            by_tread *= inputs.tread_speeds_m_s
+            added *= _speed(self.variable, inputs)[:, None]
+        if by_tread.any():
+            slopes = base.model.speed_jacobian(base.values, inputs)
+            added += np.einsum("nij,nj->ni", slopes, by_tread)
         return np.asarray(twist + added)
 
     def settings(self) -> dict[str, Any]:
@@ -125,24 +142,67 @@ def _speed(variable: str, inputs: Inputs) -> FloatArray:
     return np.asarray(own.get(variable, np.abs(inputs.tread_speeds_m_s).mean(axis=-1)))
 
 
-def variables_of(inputs: Inputs) -> dict[str, FloatArray]:
-    """What a residual may depend on (N,), of what was recorded."""
-    left, right = inputs.left, inputs.right
-    found = {
-        "speed": (left + right) / 2,
-        "speed_difference": right - left,
-        "roll": inputs.roll_rad,
-        "pitch": inputs.pitch_rad,
-    }
-    if inputs.time_s is not None:
-        found["time"] = inputs.time_s
-    if inputs.heading_rad is not None:
-        found["heading"] = inputs.heading_rad
-    if inputs.wheel_angles_rad is not None:
-        found["wheel_angle"] = inputs.wheel_angles_rad.mean(axis=-1)
-        found["left_wheel_angle"] = inputs.wheel_angles_rad[..., 0]
-        found["right_wheel_angle"] = inputs.wheel_angles_rad[..., 1]
-    return found
+def variables_of(inputs: Inputs, twist: FloatArray | None = None) -> dict[str, FloatArray]:
+    """What a residual may depend on, of what was recorded and of the twist (N, 3) simulated.
+
+    Each is (N,), but those of `OF_TREADS` (N, 2).
+    """
+    found = {name: _variable(name, inputs, twist) for name in VARIABLES}
+    return {name: values for name, values in found.items() if values is not None}
+
+
+def _variable(name: str, inputs: Inputs, twist: FloatArray | None) -> FloatArray | None:
+    """Values of a variable, None where it was not recorded."""
+    if name in RECORDED:
+        return RECORDED[name](inputs)
+    return None if twist is None or name not in SIMULATED else SIMULATED[name](twist)
+
+
+RECORDED: Mapping[str, Callable[[Inputs], FloatArray | None]] = {
+    "speed": lambda inputs: (inputs.left + inputs.right) / 2,
+    "speed_difference": lambda inputs: inputs.right - inputs.left,
+    "roll": lambda inputs: inputs.roll_rad,
+    "pitch": lambda inputs: inputs.pitch_rad,
+    "tread_speed": lambda inputs: inputs.tread_speeds_m_s,
+    "tread_acceleration": lambda inputs: _accelerations(inputs.tread_speeds_m_s, inputs.time_s),
+    "time": lambda inputs: inputs.time_s,
+    "heading": lambda inputs: inputs.heading_rad,
+    "wheel_angle": lambda inputs: _wheel_angle(inputs.wheel_angles_rad, slice(None)),
+    "left_wheel_angle": lambda inputs: _wheel_angle(inputs.wheel_angles_rad, slice(0, 1)),
+    "right_wheel_angle": lambda inputs: _wheel_angle(inputs.wheel_angles_rad, slice(1, 2)),
+}
+SIMULATED: Mapping[str, Callable[[FloatArray], FloatArray]] = {
+    "curvature": lambda twist: twist[:, 2] / _at_least(twist[:, 0], CREEPING_M_S),
+    "lateral_acceleration": lambda twist: twist[:, 0] * twist[:, 2],
+}
+VARIABLES = (*RECORDED, *SIMULATED)
+
+
+def _wheel_angle(angles_rad: FloatArray | None, which: slice) -> FloatArray | None:
+    return None if angles_rad is None else np.asarray(angles_rad[..., which].mean(axis=-1))
+
+
+def _at_least(values: FloatArray, least: float) -> FloatArray:
+    return np.copysign(np.maximum(np.abs(values), least), values)
+
+
+def _accelerations(speeds_m_s: FloatArray, time_s: FloatArray | None) -> FloatArray | None:
+    """Of both treads (N, 2) [m/s^2]: differences over ACCELERATION_OVER_S."""
+    if time_s is None:
+        return None
+    ends = [
+        np.searchsorted(time_s, time_s + side * ACCELERATION_OVER_S / 2, side="right") - 1
+        for side in (1, -1)
+    ]
+    ahead, behind = (speeds_m_s[np.maximum(end, 0)] for end in ends)
+    return np.asarray((ahead - behind) / ACCELERATION_OVER_S)
+
+
+def _of_each_tread(variable: FloatArray, knots: tuple[float, ...]) -> tuple[FloatArray, ...]:
+    """Basis functions (N, B) for the left and the right tread."""
+    if variable.ndim == 1:
+        return (basis_of(variable, knots),) * 2
+    return tuple(basis_of(column, knots) for column in variable.T)
 
 
 def basis_of(variable: FloatArray, knots: tuple[float, ...]) -> FloatArray:

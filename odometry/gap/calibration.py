@@ -10,12 +10,12 @@ from odometry.effects.base_model import Base
 from odometry.gap.config import GapConfig
 from odometry.gap.errors import GapError
 from odometry.gap.pieces import numbered_pieces, pieces
-from odometry.gap.simulate import residuals, whitened_residuals
+from odometry.gap.simulate import all_residuals, whitened_residuals
 from odometry.gap.solve import Solved, least_squares, with_jacobian
 from odometry.gap.uncertain import Uncertain
 from odometry.models.base import KinematicModel
-from odometry.run import Robot, Run
-from odometry.windows.dense import DenseWindows, dense_windows_of, thinned
+from odometry.run import Robot
+from odometry.windows.dense import DenseWindows
 from odometry.windows.dense_noise import Noise, estimated_noise, whitening
 
 LEAST_WINDOWS = 20
@@ -23,6 +23,7 @@ TOGETHER_S = 10.0  # within which errors are taken as alike
 ROUNDS = 3  # of values and noise in turn
 ITERATIONS = 8
 STARTS_WITH = Noise(0.02, 0.01, 0.02, 0.02)
+EMPTY = np.empty((0, 0))
 
 
 @dataclass(frozen=True)
@@ -39,12 +40,15 @@ class Calibration:
     held_back : tuple of (Base, DenseWindows)
         Stretches of the calibration runs, each with a base identified on all others: the noise
         floor is the gap of these.
+    gyro_expected : float
+        Chi-squared that each residual of the gyroscope has by its own noise.
     """
 
     uncertain: Uncertain
     information: FloatArray
     noise: Noise
     held_back: tuple[tuple[Base, DenseWindows], ...]
+    gyro_expected: float = 1.0
 
     @property
     def base(self) -> Base:
@@ -53,7 +57,7 @@ class Calibration:
 
 
 def calibrated(
-    runs: Sequence[Run],
+    scenes: Sequence[DenseWindows],
     model: KinematicModel,
     robot: Robot,
     config: GapConfig,
@@ -66,26 +70,53 @@ def calibrated(
     GapError
         If there are too few windows.
     """
-    scenes = [thinned(dense_windows_of(run, config.horizon_s), config.most_windows) for run in runs]
     if sum(map(len, scenes)) < LEAST_WINDOWS:
         raise GapError(
             f"{sum(map(len, scenes))} windows of {config.horizon_s:g} s in the calibration runs: "
             f"too few for a model and a noise floor; expected {LEAST_WINDOWS} or more"
         )
     free = np.array([not parameter.known for parameter in model.parameters])
-    uncertain = Uncertain(Base(model, model.pack(model.guess(robot)), robot), free, True)
+    gyroscope = all(scene.reported_turns is not None for scene in scenes)
+    uncertain = Uncertain(Base(model, model.pack(model.guess(robot)), robot), free, True, gyroscope)
     noise = STARTS_WITH
     for _ in range(ROUNDS):
         uncertain, _ = _fit(uncertain, scenes, noise)
-        noise = estimated_noise(scenes, [residuals(uncertain.base, (), s) for s in scenes])
+        noise = estimated_noise(scenes, [all_residuals(uncertain.base, (), s) for s in scenes])
+    noise, gyro_expected = _doubted(noise, config)
     uncertain, information = _fit(uncertain, scenes, noise)
+    information = _with_drift(uncertain, information, config)
     held_back = _held_back(uncertain, scenes, noise, config)
     if given is None:
-        return Calibration(uncertain, information, noise, held_back)
-    believed = Uncertain(
-        Base(model, model.pack(given), robot), np.zeros_like(free), latency_is_free=False
+        return Calibration(uncertain, information, noise, held_back, gyro_expected)
+    base = replace(uncertain.base, values=model.pack(given), latency_s=0.0)
+    believed = Uncertain(base, np.zeros_like(free), False, gyroscope)
+    count = len(believed.values)
+    return Calibration(
+        believed, information[-count:, -count:] if count else EMPTY, noise, held_back, gyro_expected
     )
-    return Calibration(believed, np.empty((0, 0)), noise, held_back)
+
+
+def _doubted(noise: Noise, config: GapConfig) -> tuple[Noise, float]:
+    """Noise in which a second of the gyroscope is worth no more than a measured yaw.
+
+    And the chi-squared that is then expected of its residuals. A gyroscope is so much more exact
+    than any model that it alone would decide, and what it says of time and of itself it still
+    says.
+    """
+    least = config.gyro_least_of_yaw * noise.yaw_rad
+    doubted = replace(noise, gyro_rad=max(noise.gyro_rad, least))
+    return doubted, (noise.gyro_rad / doubted.gyro_rad) ** 2
+
+
+def _with_drift(uncertain: Uncertain, information: FloatArray, config: GapConfig) -> FloatArray:
+    """Information (F, F) on another day, when the gyroscope has another bias."""
+    if not uncertain.has_gyroscope:
+        return information
+    own = information[-1, -1]
+    row = information[:, -1]
+    # Adding a variance to one number: Sherman and Morrison, on the information.
+    drift = config.gyro_bias_drift_rad_s**2
+    return np.asarray(information - np.outer(row, row) * drift / (1 + drift * own))
 
 
 def _held_back(

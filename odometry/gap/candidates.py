@@ -2,20 +2,14 @@
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from odometry.effects.base import Effect
 from odometry.effects.catalogue import EFFECTS
 from odometry.effects.course import FromAMoment, in_course
 from odometry.effects.recorded import Recorded, labels_of
-from odometry.effects.residual import ANGLES, COMPONENTS, HARMONICS, Residual, variables_of
 from odometry.effects.terrain import NewIcrs
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.calibration import Calibration
 from odometry.windows.dense import DenseWindows
-
-KNOTS = 5
-LEAST_RANGE = 1e-3  # of a variable that says anything
 
 
 def offered_effects(scenes: Sequence[DenseWindows], calibration: Calibration) -> tuple[Effect, ...]:
@@ -52,28 +46,6 @@ def from_a_moment(
 def _observed_s(scene: DenseWindows) -> tuple[float, float]:
     """When the first window ends and the last one begins."""
     return float(scene.pose_s[scene.windows[:, -1]].min()), float(scene.start_s.max())
-
-
-def of_angles(scenes: Sequence[DenseWindows]) -> tuple[Residual, ...]:
-    """Smooth functions of an angle that no effect of the catalogue depends on."""
-    angles = [a for a in ANGLES if all(a in variables_of(s.inputs) for s in scenes)]
-    terms = _every_term(2 * HARMONICS)
-    return tuple(Residual(angle, terms, by_speed) for angle in angles for by_speed in (False, True))
-
-
-def of_variables(scenes: Sequence[DenseWindows]) -> tuple[Residual, ...]:
-    """Smooth functions of the other variables recorded: what is left may depend on any."""
-    found = []
-    for name, values in variables_of(scenes[0].inputs).items():
-        knots = np.unique(np.quantile(values, np.linspace(0.02, 0.98, KNOTS)))
-        if name not in ANGLES and len(knots) == KNOTS and knots[-1] - knots[0] > LEAST_RANGE:
-            places = tuple(float(knot) for knot in knots)
-            found.append(Residual(name, _every_term(KNOTS), False, places))
-    return tuple(found)
-
-
-def _every_term(functions: int) -> tuple[tuple[str, int], ...]:
-    return tuple((component, k) for component in COMPONENTS for k in range(functions))
 
 
 def told_by(effect: Effect, scenes: Sequence[DenseWindows], calibration: Calibration) -> bool:

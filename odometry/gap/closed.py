@@ -36,6 +36,7 @@ def held_out_share(result: GapResult, part_s: float = GapConfig.part_s) -> Share
     rng = np.random.default_rng(SEED)
     gaps = drawn_gaps((before, after), held, part_s, rng)
     (floors,) = drawn_gaps((floor,), [scene for _, scene in kept], part_s, rng)
+    floors *= result.holdout.noise_floor.value / np.sqrt(floor.mean())  # as it is on these runs
     excess = gaps[0] - floors
     if result.holdout.before.value <= result.holdout.noise_floor.value:
         return None

@@ -1,4 +1,4 @@
-"""Settings of the gap workflow."""
+"""Settings of the gap workflow: every number by which it decides, and why it is as it is."""
 
 from dataclasses import dataclass
 
@@ -13,6 +13,9 @@ class GapConfig:
     ----------
     horizon_s : float
         Duration of a window, over which the gap is an error of position; as near as stamps allow.
+        Shorter where poses are chained in stretches into which it does not fit.
+    least_covered : float
+        Share of the most poses in windows that the chosen duration must keep.
     folds : int
         Parts of the measured runs; a candidate is judged on each by a fit to the others.
     part_s : float
@@ -22,31 +25,91 @@ class GapConfig:
     least_evidence : float
         A name needs this much evidence (twice the gain of log-likelihood, less the penalty), at
         its lower bound of 95 %.
+    trimmed : int
+        Pieces of the runs without which a gain must still be one.
     least_share : float
         And must close this share of the excess that was there before any effect.
+    least_rest : float
+        A name after the first must close this share of what those before it leave of chi-squared
+        above noise: what is imperfect in the form of one name is no other effect.
     first_share : float
         The first name must close this share of it: the main part of a gap is not small.
+    least_excess : float
+        Share of what noise leaves of chi-squared; a smaller excess is taken as this.
+    sure : float
+        Standard deviations by which an effect must differ from one that does nothing.
+    near_bound : float
+        In scales of a parameter: nearer to a bound than this it is at the bound.
+    equivalent_margin : float
+        Of evidence: less says nothing of which of two candidates it is (a ratio of likelihoods
+        of twenty).
+    general_margin : float
+        Of evidence by which a smooth function must beat names to stand in their place.
+    unexplained : float
+        Chi-squared a degree of freedom above which what is left is not noise.
+    least_closed : float
+        Share of the excess of chi-squared that names must close where what they leave is not
+        noise; what closes less is a part at most, and not the cause.
+    base_probability : float
+        Of a base that moves as far within its calibration by chance: less is a base that left it.
+    contact_spread : float
+        Chi-squared a degree of freedom that the quick forms must leave before slow ones are tried.
+    gyro_least_of_yaw : float
+        Least noise of the gyroscope's turn over a second, as a share of that of a measured yaw.
+    gyro_bias_drift_rad_s : float
+        By how much the bias of a gyroscope differs from one recording to another.
+    knots, tread_knots : int
+        Of a smooth function; of that of a tread's own motion, to each side of zero.
     most_effects : int
     most_windows : int
         Where there are more, as many of them at even distances are used to fit.
     """
 
     horizon_s: float = 2.0
+    least_covered: float = 0.9
     folds: int = 5
     part_s: float = 10.0
     held_back: int = 4
     least_evidence: float = 12.0
+    trimmed: int = 2
     least_share: float = 0.02
+    least_rest: float = 0.3
     first_share: float = 0.1
+    least_excess: float = 0.2
+    sure: float = 3.0
+    near_bound: float = 0.1
+    equivalent_margin: float = 6.0
+    general_margin: float = 6.0
+    unexplained: float = 1.3
+    least_closed: float = 0.25
+    base_probability: float = 0.001
+    contact_spread: float = 1.1
+    gyro_least_of_yaw: float = 1.0
+    gyro_bias_drift_rad_s: float = 0.01
+    knots: int = 5
+    tread_knots: int = 4
     most_effects: int = 3
     most_windows: int = 300
 
     def __post_init__(self) -> None:
-        require_positive(self, "horizon_s", "part_s", "least_evidence")
+        require_positive(
+            self,
+            *("horizon_s", "part_s", "least_evidence", "least_excess", "sure", "near_bound"),
+            *("equivalent_margin", "general_margin", "unexplained", "contact_spread"),
+        )
         require(self.folds >= 2, f"folds = {self.folds}, expected 2 or more")
         require(self.held_back >= 2, f"held_back = {self.held_back}, expected 2 or more")
-        for name in ("least_share", "first_share"):
+        for name in (
+            "least_share",
+            "least_rest",
+            "first_share",
+            "least_closed",
+            "base_probability",
+        ):
             value = getattr(self, name)
             require(0 <= value < 1, f"{name} = {value}, expected 0 to 1")
+        require(self.knots >= 2, f"knots = {self.knots}, expected 2 or more")
+        require(self.tread_knots >= 1, f"tread_knots = {self.tread_knots}, expected 1 or more")
+        require(self.trimmed >= 1, f"trimmed = {self.trimmed}, expected 1 or more")
         require(self.most_effects >= 1, f"most_effects = {self.most_effects}, expected 1 or more")
         require(self.most_windows >= 20, f"most_windows = {self.most_windows}, expected 20 or more")

@@ -13,7 +13,6 @@ from odometry.gap.fit import Fitted, Fitter
 from odometry.gap.statistic import gap_of
 
 DIGITS = 6  # of evidence: what differs by less is a tie
-SURE = 3.0  # standard deviations from doing nothing
 
 
 @dataclass(frozen=True)
@@ -31,8 +30,7 @@ class Judged:
     evidence : float
         Twice the log-likelihood gained on windows not fitted, less the penalty.
     least : float
-        Lower bound of the evidence at 95 %: the pieces of the runs are a sample, and a gain of
-        one moment is none.
+        Lower bound of the evidence, see `sure_sum`.
     gap_after : float
         On the windows fitted [m].
     """
@@ -70,7 +68,7 @@ def ranked(
     (at least 1): where nothing explains all, less is believed. Where evidence is equal but for
     rounding, more at its lower bound goes first, then fewer parameters.
     """
-    rows = len(fitter.measured.window_of_row)
+    rows = fitter.measured.expected
     spread = max(1.0, min(fit.held_out.sum() for fit in [before, *fits]) / rows)
     judged = [_judged(fitter, before, fit, spread, config) for fit in fits]
     return sorted(judged, key=_order)
@@ -96,19 +94,23 @@ def _judged(
         fit,
         gain,
         float(gain / spread - paid),
-        float((gain - _uncertain(gains, fitter)) / spread - paid),
+        float((sure_sum(fitter.by_piece(gains), config.trimmed) + moved) / spread - paid),
         gap_of(fit.base, fit.effects, fitter.measured.scenes, config.part_s).value,
     )
 
 
-def _uncertain(gains: FloatArray, fitter: Fitter) -> float:
-    """By how much the sum of gains may be less, at 95 % (Student's t over the pieces)."""
-    _, piece = np.unique(fitter.measured.pieces, return_inverse=True)
-    of_pieces = np.bincount(piece, weights=gains)
+def sure_sum(of_pieces: FloatArray, trimmed: int) -> float:
+    """A sum that is sure at 95 %: pieces of the runs are a sample, and a gain of one is none.
+
+    The larger of two bounds: that of Student's t over the pieces, and the sum without so many of
+    the best pieces. An effect that acts in few pieces scatters too much for the first, and keeps
+    a gain in the second only if it acts in more pieces than are left out.
+    """
     count = len(of_pieces)
     if count < 2:
-        return float("inf")
-    return float(t.ppf(0.95, count - 1) * np.sqrt(count) * of_pieces.std(ddof=1))
+        return -float("inf")
+    reach = float(t.ppf(0.95, count - 1) * np.sqrt(count) * of_pieces.std(ddof=1))
+    return max(float(of_pieces.sum()) - reach, float(np.sort(of_pieces)[:-trimmed].sum()))
 
 
 def penalty(freedom: int, fit: Fitted) -> float:
@@ -116,24 +118,6 @@ def penalty(freedom: int, fit: Fitted) -> float:
     return float(freedom * np.log(len(fit.held_out)))
 
 
-def is_there(fit: Fitted) -> bool:
-    """Whether the last effect of a fit is more than an effect that does nothing.
-
-    Its parameters are tested together (Wald), those that shape it held: each alone may be
-    uncertain where only a product of them is known. Values that are not what its name says (a
-    moment with nothing before it) are no such effect.
-    """
-    added = fit.effects[-1]
-    if not added.effect.is_meant(added.values):
-        return False
-    absent = [parameter.absent for parameter in added.effect.parameters]
-    known = np.array([value is not None for value in absent])
-    if not known.any():
-        return True
-    away = np.array([a - b for a, b in zip(added.values, absent, strict=True) if b is not None])
-    count = len(absent)
-    scales = np.array([parameter.scale for parameter in added.effect.parameters])
-    covariance = fit.covariance[-count:, -count:] / np.outer(scales, scales)
-    information = np.linalg.pinv(covariance, hermitian=True)[np.ix_(known, known)]
-    away = away / scales[known]
-    return bool(away @ information @ away > SURE**2 * known.sum())
+def cost_of(fit: Fitted) -> float:
+    """Held-out chi-squared, the move of the base and a penalty for freedom included."""
+    return fit.cost + penalty(fit.freedom, fit)

@@ -71,6 +71,22 @@ def ends_of(
     part_s: float,
 ) -> Ends:
     """Of all windows of all scenes, in order."""
+    motion, leeway = _with_leeway(base, effects, scenes, calibration)
+    variance = np.concatenate([end_variance(scene, calibration.noise) for scene in scenes])
+    return Ends(motion, variance, leeway, numbered_pieces(scenes, part_s))
+
+
+def mean_variance_m2(scenes: Sequence[DenseWindows], calibration: Calibration) -> float:
+    """Of the position at the end of a window: what noise and an uncertain calibration make."""
+    noise = np.concatenate([end_variance(scene, calibration.noise) for scene in scenes])
+    _, leeway = _with_leeway(calibration.base, (), scenes, calibration)
+    return float((noise + (leeway**2).sum(axis=-1))[:, :2].sum(axis=1).mean())
+
+
+def _with_leeway(
+    base: Base, effects: Sequence[Added], scenes: Sequence[DenseWindows], calibration: Calibration
+) -> tuple[FloatArray, FloatArray]:
+    """Residuals (K, 3) at the ends, and how errors of the calibration move them (K, 3, F)."""
     motion = _ends(base, effects, scenes)
     uncertain = replace(calibration.uncertain, base=base)
     values = uncertain.values
@@ -80,9 +96,7 @@ def ends_of(
         stepped[place] += STEP
         slopes[..., place] = (_ends(uncertain.at(stepped), effects, scenes) - motion) / STEP
     information = calibration.information + RIDGE * np.eye(slopes.shape[-1])
-    leeway = slopes @ np.linalg.inv(np.linalg.cholesky(information)).T
-    variance = np.concatenate([end_variance(scene, calibration.noise) for scene in scenes])
-    return Ends(motion, variance, leeway, numbered_pieces(scenes, part_s))
+    return motion, slopes @ np.linalg.inv(np.linalg.cholesky(information)).T
 
 
 def _ends(base: Base, effects: Sequence[Added], scenes: Sequence[DenseWindows]) -> FloatArray:

@@ -1,10 +1,12 @@
 """Effects that explain measured runs."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 from odometry.effects.base import Effect
-from odometry.gap.contest import Judged, penalty
+from odometry.gap.contest import Judged, cost_of
 from odometry.gap.fit import Fitted
+from odometry.gap.verdict import Refusal
 
 
 @dataclass(frozen=True)
@@ -18,6 +20,10 @@ class Explanation:
     steps : tuple of Judged
     first : tuple of Judged
         All candidates for the first effect, most evidence first.
+    contests : Mapping of name to tuple of Judged
+        All candidates of the contest in which the effect of that name was added.
+    refusals : tuple of Refusal
+        Names that had evidence and do not stand.
     unexplained : bool
         Whether there is a gap that noise does not explain, and nothing earned a name.
     """
@@ -25,12 +31,18 @@ class Explanation:
     start: Fitted
     steps: tuple[Judged, ...]
     first: tuple[Judged, ...]
+    contests: Mapping[str, tuple[Judged, ...]] = field(default_factory=dict)
+    refusals: tuple[Refusal, ...] = ()
     unexplained: bool = False
 
     @property
     def fitted(self) -> Fitted:
         """With all effects."""
         return self.steps[-1].fitted if self.steps else self.start
+
+    def with_step(self, step: Judged) -> "Explanation":
+        """The same and one effect more."""
+        return replace(self, steps=(*self.steps, step))
 
     @property
     def effects(self) -> tuple[Effect, ...]:
@@ -45,4 +57,4 @@ class Explanation:
     @property
     def cost(self) -> float:
         """Held-out chi-squared, the move of the base and a penalty for freedom included."""
-        return self.fitted.cost + penalty(self.fitted.freedom, self.fitted)
+        return cost_of(self.fitted)

@@ -56,6 +56,12 @@ def content_of(result: GapResult) -> dict[str, Any]:
             for rival in result.rivals
         ],
         "notes": list(result.notes),
+        "depends_on": list(result.depends_on),
+        "remedy": result.effects[0].added.effect.remedy if result.effects else "",
+        "reference": any(one.added.effect.of_reference for one in result.effects),
+        "reasons": [
+            {"name": one.name, "form": one.form, "reason": one.reason} for one in result.refusals
+        ],
         "next_drives": [
             {"words": one.words, "between": list(one.between), "odds": one.odds}
             for one in result.next_drives

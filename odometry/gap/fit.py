@@ -11,7 +11,7 @@ from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.gap.calibration import Calibration
 from odometry.gap.hypothesis import Hypothesis
-from odometry.gap.left_out import held_out
+from odometry.gap.left_out import held_out, left_out_loss
 from odometry.gap.measured import Measured
 from odometry.gap.solve import Found, Solved, least_squares, with_jacobian
 
@@ -38,6 +38,8 @@ class Fitted:
         Of each window by a fit to the other folds.
     base_moved : float
         Chi-squared of the base's move away from its calibration, and of unusual effects.
+    base_alone : float
+        Of the base's move alone.
     """
 
     base: Base
@@ -46,6 +48,7 @@ class Fitted:
     chi_squared: FloatArray
     held_out: FloatArray
     base_moved: float
+    base_alone: float = 0.0
 
     @property
     def freedom(self) -> int:
@@ -83,7 +86,12 @@ class Fitter:
 
     def spread(self, fit: Fitted) -> float:
         """Chi-squared a degree of freedom."""
-        return float(fit.chi_squared.sum()) / len(self.measured.window_of_row)
+        return float(fit.chi_squared.sum()) / self.measured.expected
+
+    def by_piece(self, of_windows: FloatArray) -> FloatArray:
+        """Sums (P,) over the pieces of the runs of what windows (K,) have."""
+        _, piece = np.unique(self.measured.pieces, return_inverse=True)
+        return np.asarray(np.bincount(piece, weights=of_windows))
 
     def design(self, fit: Fitted) -> Solved:
         """Rows at a fit and their Jacobian (R, P): base first, then the effects in order."""
@@ -93,6 +101,24 @@ class Fitter:
         hypothesis = Hypothesis(self.calibration, self.measured, effects)
         nothing = np.zeros(len(values), dtype=np.bool_)
         return _derived(hypothesis, Found(values, hypothesis.rows(values)), nothing)
+
+    def linear_losses(self, fit: Fitted, candidates: Sequence[Effect]) -> FloatArray:
+        """Chi-squared (C,) that each candidate leaves on windows not fitted, to first order.
+
+        Of each fold by least squares on the others, beside the base and the effects of a fit.
+        """
+        design = self.design(fit)
+        return np.array([self._linear_loss(fit, design, candidate) for candidate in candidates])
+
+    def _linear_loss(self, fit: Fitted, design: Solved, candidate: Effect) -> float:
+        values, unit = np.zeros(len(candidate.parameters)), np.eye(len(candidate.parameters))
+        columns = []
+        for parameter, axis in zip(candidate.parameters, unit, strict=True):
+            stepped = Added(candidate, values + parameter.scale * axis)
+            rows = self.measured.rows(fit.base, (*fit.effects, stepped))
+            columns.append((rows - design.rows[: len(rows)]) / parameter.scale)
+        own = np.pad(np.stack(columns, axis=-1), ((0, len(design.rows) - len(rows)), (0, 0)))
+        return left_out_loss(np.hstack([design.jacobian, own]), design.rows, self.measured)
 
     def _starts(
         self, effects: Sequence[Effect], known: Sequence[FloatArray | None]
@@ -165,7 +191,8 @@ def _finished(hypothesis: Hypothesis, solved: Solved) -> Fitted:
     inverse = np.zeros_like(normal)
     inverse[np.ix_(active, active)] = np.linalg.pinv(normal[np.ix_(active, active)])
     chi_squared = measured.by_window(solved.rows[:rows])
-    spread = max(1.0, chi_squared.sum() / max(1, rows - len(solved.values)))
+    freedom = max(1.0, measured.expected - len(solved.values))
+    spread = max(1.0, chi_squared.sum() / freedom)
     return Fitted(
         base,
         added,
@@ -173,4 +200,5 @@ def _finished(hypothesis: Hypothesis, solved: Solved) -> Fitted:
         chi_squared,
         held_out(hypothesis, solved),
         float(solved.rows[rows:] @ solved.rows[rows:]),
+        float(np.sum(solved.rows[rows : rows + hypothesis.of_base] ** 2)),
     )

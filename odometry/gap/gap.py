@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from tqdm import tqdm
 
+from odometry.effects.corrected import Added
 from odometry.gap.calibration import calibrated
 from odometry.gap.config import GapConfig
 from odometry.gap.equivalent import equivalents
@@ -16,6 +17,7 @@ from odometry.gap.locate import locate
 from odometry.gap.measured import measured_of
 from odometry.gap.name import explained
 from odometry.gap.next_drives import NextDrive, next_drives
+from odometry.gap.own_moments import SPACING_S, with_own_moments
 from odometry.gap.pieces import pieces
 from odometry.gap.result import Closing, GapResult, NamedEffect, Rival
 from odometry.gap.statistic import floor_of, floor_there, gap_of
@@ -25,9 +27,12 @@ from odometry.models.icr import Icr
 from odometry.positions.heading import Headed, headed
 from odometry.run import Run
 from odometry.runs import check_no_run_twice
-from odometry.windows.dense import DenseWindows, dense_windows_of, thinned
+from odometry.windows.averaged import averaged_windows
+from odometry.windows.dense import DenseWindows, covered_s, dense_windows_of, thinned
 
+SHORTER = (1.0, 0.75, 0.5)  # of the usual duration of windows, where stretches ask for it
 WITHIN_95 = 1.96  # standard deviations
+MOMENT_KNOWN_S = SPACING_S  # the moment of a run held out is known as well as it was searched
 SLOWEST_M_S = 0.05  # of a mean speed: a robot that stands has no horizon
 
 
@@ -78,28 +83,32 @@ def find_gap(
     robot = robot_of([*calibration, *measured, *holdout])
     headings = headed([*measured, *calibration, *holdout])
     measured, calibration, holdout = _dealt(headings.runs, len(measured), len(calibration))
-    config = for_positions(config, headings)
-    known = calibrated(calibration, model or Icr(), robot, config, given)
-    fitted_scenes, held_scenes = _scenes(measured, holdout, config)
+    config = for_positions(for_chains(config, headings.runs), headings)
+    known_scenes, fitted_scenes, held_scenes = alike(
+        [_scene(run, config) for run in calibration],
+        *_scenes(measured, holdout, config),
+    )
+    known = calibrated(known_scenes, model or Icr(), robot, config, given)
     floor = floor_of(known.held_back, config.part_s)
     fitter = Fitter(known, measured_of(fitted_scenes, known, config))
     with tqdm(desc="candidates", unit="fit", disable=None if show_progress else True) as bar:
         there = floor_there(floor, known, fitted_scenes)
-        found = explained(fitter, there, config, _counting(bar))
+        found = explained(fitter, held_scenes, there, config, _counting(bar))
     fit = found.fitted
     base = fit.base if found.steps else known.base
+    effects, held_scenes = with_own_moments(base, fit.effects, held_scenes, fitted_scenes)
     closings = [
         Closing(
             gap_of(known.base, (), scenes, config.part_s),
-            gap_of(base, fit.effects, scenes, config.part_s),
-            floor,
+            gap_of(base, effects, scenes, config.part_s),
+            floor_there(floor, known, scenes),
         )
         for scenes in (fitted_scenes, held_scenes)
     ]
-    named = _named(found, closings[0].before.value)
-    equivalent = equivalents(found)
+    named = _named(found, effects, closings[0].before.value)
+    equivalent = equivalents(found, config)
     return GapResult(
-        verdict=found.names[0] if found.names else "unknown" if found.unexplained else "none",
+        verdict=verdict_of(found, closings[1]),
         effects=named,
         equivalent=equivalent,
         location=locate(known.base, (), fitted_scenes, floor.value, config, calibration=known),
@@ -116,7 +125,16 @@ def find_gap(
         horizon_s=config.horizon_s,
         notes=headings.notes,
         next_drives=_next_drives(found, [one.name for one in equivalent], fitter, config),
+        refusals=found.refusals,
     )
+
+
+def verdict_of(found: Explanation, held_out: Closing) -> str:
+    """The first name; else "none" where noise explains what the base leaves, also held out."""
+    if found.names:
+        return found.names[0]
+    above = held_out.before.low > held_out.noise_floor.high
+    return "unknown" if found.unexplained or above else "none"
 
 
 def _next_drives(
@@ -137,6 +155,17 @@ def _dealt(
     """Measured, calibration and held-out runs of all, in this order."""
     known = measured + calibration
     return runs[:measured], runs[measured:known], runs[known:]
+
+
+def for_chains(config: GapConfig, runs: Sequence[Run]) -> GapConfig:
+    """Shorter windows where poses are chained in stretches that longer ones do not fit into.
+
+    The longest of those tried that leave out hardly more of the poses than the best does.
+    """
+    tried_s = [share * config.horizon_s for share in SHORTER]
+    covered = np.sum([covered_s(run, tried_s) for run in runs], axis=0)
+    enough = covered >= config.least_covered * covered.max()
+    return replace(config, horizon_s=tried_s[int(np.argmax(enough))])
 
 
 def for_positions(config: GapConfig, headings: Headed) -> GapConfig:
@@ -160,13 +189,20 @@ def _counting(bar: "tqdm[None]") -> Callable[[], None]:
     return count
 
 
+def _scene(run: Run, config: GapConfig) -> DenseWindows:
+    return averaged_windows(dense_windows_of(run, config.horizon_s))
+
+
 def _scenes(
     measured: Sequence[Run], holdout: Sequence[Run], config: GapConfig
 ) -> tuple[list[DenseWindows], list[DenseWindows]]:
     """Scenes to fit and scenes to judge by."""
-    scenes = [dense_windows_of(run, config.horizon_s) for run in measured]
+    scenes = [_scene(run, config).numbered(number) for number, run in enumerate(measured)]
     if holdout:
-        held = [dense_windows_of(run, config.horizon_s) for run in holdout]
+        held = [
+            _scene(run, config).numbered(number)
+            for number, run in enumerate(holdout, start=len(measured))
+        ]
     else:
         outs = [pieces(s, config.part_s) % config.held_back == config.held_back - 1 for s in scenes]
         held = [s.where(out) for s, out in zip(scenes, outs, strict=True) if out.any()]
@@ -179,13 +215,23 @@ def _scenes(
     return [thinned(scene, config.most_windows) for scene in scenes], held
 
 
-def _named(found: Explanation, before_m: float) -> tuple[NamedEffect, ...]:
+def alike(*groups: Sequence[DenseWindows]) -> tuple[list[DenseWindows], ...]:
+    """The same scenes without the gyroscope where one of them has none."""
+    if all(scene.reported_turns is not None for scenes in groups for scene in scenes):
+        return tuple(list(scenes) for scenes in groups)
+    return tuple([scene.without_gyroscope() for scene in scenes] for scenes in groups)
+
+
+def _named(
+    found: Explanation, effects: Sequence[Added], before_m: float
+) -> tuple[NamedEffect, ...]:
     fit = found.fitted
     sigmas = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
     named, place, gap_m = [], 0, before_m
-    for step, added in zip(found.steps, fit.effects, strict=True):
-        spread = WITHIN_95 * sigmas[place : place + len(added.values)]
-        place += len(added.values)
+    for step, own, added in zip(found.steps, fit.effects, effects, strict=True):
+        spread = WITHIN_95 * sigmas[place : place + len(own.values)]
+        spread = np.append(spread, np.full(len(added.values) - len(own.values), MOMENT_KNOWN_S))
+        place += len(own.values)
         lows, highs = np.array([(p.low, p.high) for p in added.effect.parameters]).T
         named.append(
             NamedEffect(

@@ -4,6 +4,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.gap.hypothesis import RIDGE, Hypothesis
+from odometry.gap.measured import Measured
 from odometry.gap.solve import Solved
 
 DAMPINGS = (1e-6, 1e-3, 1e-1, 1.0, 10.0)
@@ -36,3 +37,20 @@ def _without(hypothesis: Hypothesis, solved: Solved, out: BoolArray) -> FloatArr
         if rows[~out] @ rows[~out] <= cost + ROUNDING * max(1.0, float(cost)):
             return rows
     return solved.rows
+
+
+def left_out_loss(jacobian: FloatArray, rows: FloatArray, measured: Measured) -> float:
+    """Chi-squared of all folds by linear least squares on the others.
+
+    Rows (R,) and their Jacobian (R, P); those beyond the windows' belong to every fit.
+    """
+    fold_of_row = measured.folds[measured.window_of_row]
+    normal, gradient = jacobian.T @ jacobian, jacobian.T @ rows
+    ridge = RIDGE * np.trace(normal) * np.eye(len(normal))
+    loss = 0.0
+    for fold in np.unique(fold_of_row):
+        out = np.flatnonzero(fold_of_row == fold)
+        own = jacobian[out]
+        step = np.linalg.solve(normal - own.T @ own + ridge, own.T @ rows[out] - gradient)
+        loss += float(np.sum((rows[out] + own @ step) ** 2))
+    return loss

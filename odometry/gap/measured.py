@@ -29,12 +29,25 @@ class Measured:
         Which part each window belongs to.
     pieces : (K of all,)
         Number of the piece of all runs in which it lies.
+    gyro_expected : float
+        Chi-squared that noise makes of each residual of the gyroscope; one of all others.
     """
 
     scenes: tuple[DenseWindows, ...]
     whiteners: tuple[FloatArray, ...]
     folds: IntArray
     pieces: IntArray
+    gyro_expected: float = 1.0
+
+    @cached_property
+    def expected(self) -> float:
+        """Chi-squared that noise alone makes of all windows."""
+        of_scenes = 0.0
+        for scene in self.scenes:
+            of_poses = 3 * (scene.windows.shape[1] - 1)
+            of_gyroscope = scene.rows_per_window - of_poses
+            of_scenes += len(scene) * (of_poses + self.gyro_expected * of_gyroscope)
+        return of_scenes
 
     def rows(self, base: Base, effects: Sequence[Added]) -> FloatArray:
         """Whitened residuals (R,) of all windows, scene by scene."""
@@ -62,4 +75,5 @@ def measured_of(
         tuple(whitening(scene, calibration.noise) for scene in scenes),
         joined % config.folds,
         joined,
+        calibration.gyro_expected,
     )

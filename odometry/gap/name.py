@@ -1,82 +1,106 @@
-"""Which effects are missing: stepwise, on windows not fitted, or none, or unknown."""
+"""Which effects are missing: stepwise, beside smooth functions of all that was recorded."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+
+import numpy as np
 
 from odometry.effects.base import Effect
-from odometry.gap.candidates import contact_effects, of_angles, of_variables, quick_effects
+from odometry.effects.residual import Residual
+from odometry.gap.candidates import contact_effects, quick_effects
 from odometry.gap.config import GapConfig
-from odometry.gap.contest import Judged, is_there, judge, ranked
+from odometry.gap.contest import Judged, cost_of, judge, ranked
 from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitted, Fitter
+from odometry.gap.general import general_candidates
+from odometry.gap.own_moments import with_own_moments
 from odometry.gap.sparse import sparse_residual
 from odometry.gap.statistic import Gap, gap_of
+from odometry.gap.verdict import (
+    Refusal,
+    base_left_calibration,
+    closes_held_out,
+    closes_little,
+    is_the_effect,
+)
+from odometry.windows.dense import DenseWindows
 
-LEAST_OF_NOISE = 0.2  # of what noise leaves: a smaller excess of chi-squared is taken as this
-UNEXPLAINED = 1.3  # chi-squared a degree of freedom: more is not noise
-POOR = 2.0  # chi-squared a degree of freedom that names leave which may be dropped
-LEAST_CLOSED = 0.25  # share of the excess of chi-squared that they must close
-MOVED = 50.0  # chi-squared of a base that left its calibration
-CONTACT_SPREAD = 1.1  # chi-squared a degree of freedom that the quick forms must leave
+MANY = 5  # parameters of an effect that two others may share
+PROMISING = 2  # smooth functions that are fitted in full
+BESIDE = 3  # names that are tried beside a smooth function: those of most evidence without it
 
 
 def explained(
-    fitter: Fitter, floor: Gap, config: GapConfig, progress: Callable[[], None]
+    fitter: Fitter,
+    held_out: Sequence[DenseWindows],
+    floor: Gap,
+    config: GapConfig,
+    progress: Callable[[], None],
 ) -> Explanation:
-    """Name effects until none of the candidates earns a name.
+    """Name what is missing, where a name beats smooth functions and closes the gap elsewhere.
 
-    First by the catalogue alone. What that leaves is offered to smooth functions of an angle that
-    no effect of the catalogue depends on (the heading, the wheels' angles); where one is there,
-    it competes with the catalogue from the start, and the better explanation stands. A smooth
-    function of any variable may take what is left at the end. Names that leave nearly all of a gap
-    are dropped: what is there is unknown.
+    The catalogue alone explains what it can. Then the best smooth function is added to that, and
+    the catalogue to the best smooth function; what does not pay beside the others is left out.
+    Of these explanations the one of least cost stands; names go first where they lose by less
+    than a margin. At last each is judged on held-out data.
     """
-    search = _Search(fitter, fitter.fit([]), floor, config, progress)
+    search = _Search(fitter, fitter.fit([]), tuple(held_out), floor, config, progress)
     scenes = fitter.measured.scenes
     quick = quick_effects(scenes, fitter.calibration)
-    named = search.stepwise(quick)
-    angle = search.best(named.fitted, of_angles(scenes))
-    if angle is not None:
-        with_angle = search.stepwise((*quick, angle.effect))
-        if with_angle.cost < named.cost and "unknown" in with_angle.names:
-            named = with_angle
-    if "unknown" not in named.names:
-        left = (*of_variables(scenes), *([] if angle is None else [angle.effect]))
-        rest = search.best(named.fitted, left)
-        if rest is not None:
-            named = replace(named, steps=(*named.steps, rest))
-    if search.explains_little(named):
-        alone = search.best(named.start, (*of_angles(scenes), *of_variables(scenes)))
-        named = replace(named, steps=() if alone is None else (alone,))
-    named = search.simplest(named, quick)
-    return replace(named, unexplained=not named.steps and search.unexplained())
+    found = search.simplest(search.by_fewer(search.stepwise(quick), quick), quick)
+    smooth = general_candidates(scenes, fitter.calibration.base, config)
+    best = search.best_smooth(search.start, smooth, found.fitted.cost if found.steps else np.inf)
+    rest = search.best_smooth(found.fitted, smooth) if found.steps else None
+    options = [] if rest is None else [search.without_idle(found.with_step(rest))]
+    if best is not None:
+        names = [one.effect for one in found.first if one.evidence > config.least_evidence]
+        alone = search.stepwise(names[:BESIDE], replace(found, steps=(best,)))
+        options.append(search.without_idle(alone))
+    if options:
+        found = search.better(found, options)
+    return search.that_stand(search.most_first(found), best)
 
 
-@dataclass(frozen=True)
+@dataclass
 class _Search:
     fitter: Fitter
     start: Fitted
+    held_out: Sequence[DenseWindows]
     floor: Gap
     config: GapConfig
     progress: Callable[[], None]
+    refusals: dict[str, Refusal] = field(default_factory=dict)
 
-    def stepwise(self, candidates: Sequence[Effect]) -> Explanation:
+    def stepwise(
+        self, candidates: Sequence[Effect], begun: Explanation | None = None
+    ) -> Explanation:
         """Add the candidate of most evidence until none earns a name."""
-        start = self.start
-        steps: tuple[Judged, ...] = ()
-        first: tuple[Judged, ...] = ()
-        while len(steps) < self.config.most_effects:
-            before = steps[-1].fitted if steps else start
-            if steps and not self._excess(before):
+        found = begun or Explanation(self.start, (), ())
+        while len(found.steps) < self.config.most_effects:
+            before = found.fitted
+            if found.steps and not self._excess(before):
                 break
-            taken = {added.effect.name for added in before.effects}
-            judged = self._judged(before, [c for c in candidates if c.name not in taken])
-            first = first or tuple(judged)
+            judged = self._judged(before, [c for c in candidates if c.name not in found.names])
+            found = replace(found, first=found.first or tuple(judged))
             best = self._best_earner(judged, before)
             if best is None:
                 break
-            steps = (*steps, self._all_free(best, before))
-        return Explanation(start, steps, first)
+            contests = {**found.contests, best.effect.name: tuple(judged)}
+            step = self._all_free(best, before)
+            found = replace(found, steps=(*found.steps, step), contests=contests)
+        return found
+
+    def by_fewer(self, found: Explanation, candidates: Sequence[Effect]) -> Explanation:
+        """The same without a first effect of many parameters, which may stand for several of few.
+
+        Of both the one of less cost.
+        """
+        if not found.steps or len(found.effects[0].parameters) < MANY:
+            return found
+        first = found.effects[0].key
+        others = self.stepwise([one for one in candidates if one.key != first])
+        others = replace(others, first=found.first)
+        return others if others.steps and others.cost < found.cost else found
 
     def simplest(self, found: Explanation, candidates: Sequence[Effect]) -> Explanation:
         """Effects exchanged for those that do the same with less freedom, where that is better.
@@ -89,11 +113,11 @@ class _Search:
                 simpler = len(other.parameters) < len(added.values)
                 if simpler and other.name in alike and other.name not in found.names:
                     effects = [*found.effects[:place], other, *found.effects[place + 1 :]]
-                    exchanged = self._in_order(found, effects)
+                    exchanged = self.in_order(found, effects)
                     found = exchanged if exchanged.cost < found.cost else found
         return found
 
-    def _in_order(self, found: Explanation, effects: Sequence[Effect]) -> Explanation:
+    def in_order(self, found: Explanation, effects: Sequence[Effect]) -> Explanation:
         """These effects, judged as they are added one by one."""
         steps: tuple[Judged, ...] = ()
         for effect in effects:
@@ -102,23 +126,103 @@ class _Search:
             steps = (*steps, self._all_free(one, before))
         return replace(found, steps=steps)
 
-    def best(self, before: Fitted, candidates: Sequence[Effect]) -> Judged | None:
-        """The candidate of most evidence, made sparse, if it earns its place."""
-        if not self._excess(before):
+    def best_smooth(
+        self, before: Fitted, candidates: Sequence[Residual], below: float = np.inf
+    ) -> Judged | None:
+        """The smooth function of most evidence, made sparse, if it earns its place.
+
+        Those that leave more than `below` even with all their terms are not fitted.
+        """
+        if not candidates or not self._excess(before):
             return None
-        judged = judge(self.fitter, before, candidates, self.config, self.progress)
-        best = self._best_earner(judged, before)
-        if best is None:
-            return None
-        sparse = sparse_residual(self.fitter, best.fitted)
-        again = judge(self.fitter, before, [sparse], self.config, self.progress)[0]
-        return again if self._earns(again, before) else best
+        losses = self.fitter.linear_losses(before, candidates)
+        order = np.argsort(losses, kind="stable")[:PROMISING]
+        promising = [candidates[i] for i in order if losses[i] < below]
+        judged = judge(self.fitter, before, promising, self.config, self.progress)
+        sparse = [sparse_residual(self.fitter, one.fitted) for one in judged]
+        again = judge(self.fitter, before, sparse, self.config, self.progress)
+        return self._best_earner(again, before) or self._best_earner(judged, before)
+
+    def without_idle(self, found: Explanation) -> Explanation:
+        """Less what does not pay beside the others, the least of all first."""
+        while len(found.steps) > 1:
+            costs = self._costs_without_each(found)
+            least = min(costs, key=lambda effect: costs[effect])
+            if costs[least] - found.cost > self.config.least_evidence * self._spread(found):
+                break
+            found = self.in_order(found, [e for e in found.effects if e is not least])
+        return found
+
+    def _costs_without_each(self, found: Explanation) -> dict[Effect, float]:
+        """Cost of the other effects, by the one that is left out."""
+        costs = {}
+        for effect in found.effects:
+            others = [e for e in found.effects if e is not effect]
+            costs[effect] = cost_of(self.fitter.fit(others, found.fitted.effects))
+        return costs
+
+    def better(self, names: Explanation, others: Sequence[Explanation]) -> Explanation:
+        """The explanation of least cost; names where they lose by less than the margin."""
+        best = min(others, key=lambda one: one.cost)
+        margin = self.config.general_margin * self._spread(best)
+        return names if names.steps and names.cost - best.cost < margin else best
+
+    def most_first(self, found: Explanation) -> Explanation:
+        """The effects in the order of what each pays beside the others."""
+        if len(found.steps) < 2 or not any(isinstance(e, Residual) for e in found.effects):
+            return found
+        without = self._costs_without_each(found)
+        effects = sorted(found.effects, key=lambda effect: -without[effect])
+        return found if tuple(effects) == found.effects else self.in_order(found, effects)
+
+    def that_stand(self, found: Explanation, smooth: Judged | None) -> Explanation:
+        """The effects that close the gap where they were not fitted, and most of it together."""
+        while found.steps:
+            reason = self._fails(found)
+            if not reason:
+                break
+            last = found.effects[-1]
+            self.refuse(last, reason)
+            if len(found.steps) == 1 and smooth is not None and not isinstance(last, Residual):
+                found, smooth = replace(found, steps=(smooth,)), None
+            else:
+                found = replace(found, steps=found.steps[:-1])
+        refused = tuple(one for name, one in self.refusals.items() if name not in found.names)
+        unexplained = not found.steps and self.unexplained()
+        return replace(found, refusals=refused, unexplained=unexplained)
+
+    def refuse(self, effect: Effect, reason: str) -> None:
+        """Remember the first reason for which a name does not stand."""
+        self.refusals.setdefault(effect.name, Refusal(effect.name, effect.form, reason))
+
+    def unexplained(self) -> bool:
+        """Whether the base leaves a gap, and even moved more chi-squared than noise explains."""
+        believed = replace(self.start, base=self.fitter.calibration.base)
+        over = self._gap(believed) > self.floor.high
+        return over and self.fitter.spread(self.start) > self.config.unexplained
+
+    def _fails(self, found: Explanation) -> str:
+        """Why the last effect does not stand on held-out data, beyond what the others close."""
+        fit, before = found.fitted, (found.steps[-2].fitted if found.steps[1:] else self.start)
+        rows = self.fitter.measured.expected
+        pairs = [(before.base, before.effects), (self.fitter.calibration.base, ())]
+        effects, held_out = with_own_moments(
+            fit.base, fit.effects, self.held_out, self.fitter.measured.scenes
+        )
+        reasons = [
+            closes_held_out(
+                (base, effects[: len(less)]), (fit.base, effects), held_out, self.config
+            )
+            for base, less in pairs
+        ]
+        little = closes_little(self.start.cost, fit.cost, rows, fit.chi_squared, self.config)
+        return next((reason for reason in (*reasons, little) if reason), "")
 
     def _judged(self, before: Fitted, candidates: Sequence[Effect]) -> list[Judged]:
         """The quick forms, and those of contact forces where the quick ones leave something."""
         judged = judge(self.fitter, before, candidates, self.config, self.progress)
         best = self._best_earner(judged, before)
-        if best is None or self.fitter.spread(best.fitted) < CONTACT_SPREAD:
+        if best is None or self.fitter.spread(best.fitted) < self.config.contact_spread:
             return judged
         taken = {added.effect.name for added in before.effects}
         scenes, calibration = self.fitter.measured.scenes, self.fitter.calibration
@@ -135,21 +239,15 @@ class _Search:
         fit = self.fitter.fit(effects, one.fitted.effects)
         return replace(ranked(self.fitter, before, [fit], self.config)[0], evidence=one.evidence)
 
-    def explains_little(self, found: Explanation) -> bool:
-        """Whether effects leave nearly all of what noise does not explain."""
-        excess = self.start.cost - len(self.fitter.measured.window_of_row)
-        poor = self.fitter.spread(found.fitted) > POOR
-        return bool(poor and self.start.cost - found.fitted.cost < LEAST_CLOSED * excess)
-
-    def unexplained(self) -> bool:
-        """Whether the base leaves a gap, and even moved more chi-squared than noise explains."""
-        believed = replace(self.start, base=self.fitter.calibration.base)
-        over = self._gap(believed) > self.floor.high
-        return over and self.fitter.spread(self.start) > UNEXPLAINED
+    def _spread(self, found: Explanation) -> float:
+        return max(1.0, self.fitter.spread(found.fitted))
 
     def _excess(self, before: Fitted) -> bool:
         """Whether the gap is above the interval of the noise floor, or hidden in a moved base."""
-        return self._gap(before) > self.floor.high or before.base_moved > MOVED
+        free = len(self.fitter.calibration.uncertain.values)
+        return self._gap(before) > self.floor.high or base_left_calibration(
+            before, free, self.config
+        )
 
     def _gap(self, fit: Fitted) -> float:
         scenes = self.fitter.measured.scenes
@@ -157,9 +255,16 @@ class _Search:
 
     def _best_earner(self, judged: Sequence[Judged], before: Fitted) -> Judged | None:
         """Of most evidence among those that earn a name."""
-        return next((one for one in judged if self._earns(one, before)), None)
+        for one in judged:
+            if not self._pays(one, before):
+                continue
+            reason = is_the_effect(one.fitted, self.config)
+            if not reason:
+                return one
+            self.refuse(one.effect, reason)
+        return None
 
-    def _earns(self, one: Judged, before: Fitted) -> bool:
+    def _pays(self, one: Judged, before: Fitted) -> bool:
         """Enough evidence, in more than one moment, and enough of the excess closed.
 
         The excess is that before any effect, of the gap above the noise floor or of chi-squared
@@ -168,11 +273,13 @@ class _Search:
         if not self._excess(before) or one.least <= self.config.least_evidence:
             return False
         share = self.config.least_share if before.effects else self.config.first_share
-        noise = len(self.fitter.measured.window_of_row)
+        noise = self.fitter.measured.expected
         excess_m = max(self._gap(self.start) - self.floor.value, 0.0)
         closed_m = self._gap(before) - one.gap_after
-        excess = max(self.start.cost - noise, LEAST_OF_NOISE * noise)
+        excess = max(self.start.cost - noise, self.config.least_excess * noise)
         closed = before.cost - one.fitted.cost
-        return is_there(one.fitted) and bool(
-            closed_m > share * excess_m > 0 or closed > share * excess
-        )
+        if before.effects and not isinstance(one.effect, Residual):
+            share_of_rest = closed / max(before.cost - noise, self.config.least_excess * noise)
+            if share_of_rest < self.config.least_rest:
+                return False
+        return bool(closed_m > share * excess_m > 0 or closed > share * excess)

@@ -106,7 +106,13 @@ SPOKEN: Mapping[str, Signed | Plain] = {
     ),
 }
 
-NAMES = {"turn": "direction of turning", "terrain": "terrain"}  # of labels
+NAMES = {
+    "turn": "direction of turning",
+    "terrain": "terrain",
+    "tread_speed": "speed of each tread",
+    "tread_acceleration": "acceleration of each tread",
+    "wheel_angle": "angle of the wheels",
+}
 
 
 def words_of(bounds: Mapping[str, tuple[float | None, float | None]]) -> str:

@@ -5,10 +5,12 @@ from dataclasses import dataclass
 from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
+from odometry.effects.residual import Residual
 from odometry.gap.calibration import Calibration
 from odometry.gap.locate import Location
 from odometry.gap.next_drives import NextDrive
 from odometry.gap.statistic import Gap
+from odometry.gap.verdict import Refusal
 from odometry.windows.dense import DenseWindows
 
 
@@ -95,6 +97,8 @@ class GapResult:
         What a reader should know of the runs.
     next_drives : tuple of NextDrive
         What would tell the first effect from those that the data do not tell from it.
+    refusals : tuple of Refusal
+        Names that had evidence and do not stand, and why.
     """
 
     verdict: str
@@ -111,6 +115,13 @@ class GapResult:
     horizon_s: float
     notes: tuple[str, ...] = ()
     next_drives: tuple[NextDrive, ...] = ()
+    refusals: tuple[Refusal, ...] = ()
+
+    @property
+    def depends_on(self) -> tuple[str, ...]:
+        """Variables that the smooth functions follow which stand for something unknown."""
+        kinds = (one.added.effect for one in self.effects)
+        return tuple(kind.variable for kind in kinds if isinstance(kind, Residual))
 
     @property
     def added(self) -> tuple[Added, ...]:

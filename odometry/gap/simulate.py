@@ -6,7 +6,13 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added, corrected_twist, delay_s, seen_poses
+from odometry.effects.corrected import (
+    Added,
+    corrected_twist,
+    delay_s,
+    reported_yaw_rate,
+    seen_poses,
+)
 from odometry.windows.dense import DenseWindows
 from odometry.windows.dense_motion import off_measured, poses_at
 from odometry.windows.motion import level_path
@@ -14,7 +20,12 @@ from odometry.windows.motion import level_path
 
 def simulated_poses(base: Base, effects: Sequence[Added], scene: DenseWindows) -> FloatArray:
     """Poses (M, 3) at the stamps of the measured ones, from the origin; yaw is not wrapped."""
-    twists = corrected_twist(base, effects, scene.inputs)
+    return _poses_of(corrected_twist(base, effects, scene.inputs), base, effects, scene)
+
+
+def _poses_of(
+    twists: FloatArray, base: Base, effects: Sequence[Added], scene: DenseWindows
+) -> FloatArray:
     path = level_path(twists, scene.steps_s, scene.inputs)
     seen_s = scene.pose_s - base.latency_s - delay_s(effects, scene.pose_s)
     return seen_poses(effects, poses_at(path, scene, seen_s), scene.poses[:, 2])
@@ -25,16 +36,28 @@ def residuals(base: Base, effects: Sequence[Added], scene: DenseWindows) -> Floa
     return off_measured(simulated_poses(base, effects, scene), scene)
 
 
+def all_residuals(base: Base, effects: Sequence[Added], scene: DenseWindows) -> FloatArray:
+    """Residuals (K, R): of all poses of each window, then of the gyroscope if there is one."""
+    twists = corrected_twist(base, effects, scene.inputs)
+    motion = off_measured(_poses_of(twists, base, effects, scene), scene)
+    of_poses = motion.reshape(len(scene), -1)
+    if scene.reported_turns is None:
+        return of_poses
+    rates = reported_yaw_rate(effects, twists[:, 2], scene.inputs) + base.gyro_bias_rad_s
+    turns = scene.turns_of(rates, base.gyro_latency_s)
+    return np.concatenate([of_poses, scene.reported_turns - turns], axis=1)
+
+
 def whitened_residuals(
     base: Base,
     effects: Sequence[Added],
     scenes: Sequence[DenseWindows],
     whiteners: Sequence[FloatArray],
 ) -> FloatArray:
-    """Residuals (R,) of all windows, scene by scene, each scene by its whiteners (K, 3n, 3n)."""
+    """Residuals (R,) of all windows, scene by scene, each scene by its whiteners (K, R, R)."""
     return np.concatenate(
         [
-            np.einsum("kij,kj->ki", white, residuals(base, effects, s).reshape(len(s), -1))
+            (white @ all_residuals(base, effects, s)[..., None])[..., 0]
             for white, s in zip(whiteners, scenes, strict=True)
         ],
         axis=None,

@@ -9,10 +9,10 @@ from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.gap.calibration import Calibration
+from odometry.gap.ends import mean_variance_m2
 from odometry.gap.pieces import numbered_pieces
 from odometry.gap.simulate import residuals
 from odometry.windows.dense import DenseWindows
-from odometry.windows.dense_noise import end_variance
 
 RESAMPLES = 1000
 SEED = 0
@@ -66,16 +66,13 @@ def floor_of(held_back: Sequence[tuple[Base, DenseWindows]], part_s: float) -> G
 
 
 def floor_there(floor: Gap, calibration: Calibration, scenes: Sequence[DenseWindows]) -> Gap:
-    """The noise floor as it would be on other runs: faster ones wander further in a window."""
-    here = _mean_variance([scene for _, scene in calibration.held_back], calibration)
-    ratio = float(np.sqrt(_mean_variance(scenes, calibration) / here))
+    """The noise floor as it would be on other runs.
+
+    Faster ones wander further in a window, and an uncertain calibration leads further off.
+    """
+    here = mean_variance_m2([scene for _, scene in calibration.held_back], calibration)
+    ratio = float(np.sqrt(mean_variance_m2(scenes, calibration) / here))
     return Gap(ratio * floor.value, ratio * floor.low, ratio * floor.high, floor.pieces)
-
-
-def _mean_variance(scenes: Sequence[DenseWindows], calibration: Calibration) -> float:
-    """Of the position at the end of a window [m^2]."""
-    variances = [end_variance(scene, calibration.noise)[:, :2] for scene in scenes]
-    return float(np.concatenate(variances).sum(axis=1).mean())
 
 
 def _pooled(errors: Sequence[tuple[FloatArray, DenseWindows]], part_s: float) -> Gap:

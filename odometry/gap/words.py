@@ -19,6 +19,7 @@ def sentences(result: GapResult) -> tuple[str, ...]:
         _disagreement(result),
         *_where(result),
         *(_effect(effect, number) for number, effect in enumerate(result.effects, start=1)),
+        *(f"Not {one.name}, though it has evidence: {one.reason}." for one in result.refusals),
     )
 
 

@@ -1,6 +1,7 @@
 """A run cut into short windows in which every measured pose counts."""
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -32,7 +33,8 @@ class DenseWindows:
     ----------
     run : Run
     inputs : Inputs
-        Of stack (N,): the stamps of odometry and poses, merged.
+        Of stack (N,): the stamps of odometry and poses, merged, or some of them with the means up
+        to the next (`odometry.windows.averaged`).
     steps_s : (N,)
         How long each sample was in force.
     travel_m : (N,)
@@ -74,13 +76,38 @@ class DenseWindows:
 
     @property
     def rows_per_window(self) -> int:
-        """Residuals of a window: along, across and turn of each pose but its first."""
-        return 3 * (int(self.windows.shape[1]) - 1)
+        """Residuals of a window: along, across and turn of each pose but its first.
+
+        And the turn by the gyroscope to each from that before it, where one was recorded.
+        """
+        of_pose = 3 if self.inputs.yaw_rate_rad_s is None else 4
+        return of_pose * (int(self.windows.shape[1]) - 1)
 
     @cached_property
     def measured(self) -> FloatArray:
         """Measured motion (K, n, 3) in the frame of each window's first pose, with whole turns."""
         return motion_from_first(self.poses[self.windows])
+
+    @cached_property
+    def reported_turns(self) -> FloatArray | None:
+        """Turn (K, n) that the gyroscope reports between poses of each window, bias included."""
+        rates = self.inputs.yaw_rate_rad_s
+        return None if rates is None else self.turns_of(rates, 0.0)
+
+    def turns_of(self, rates_rad_s: FloatArray, late_s: float) -> FloatArray:
+        """Turn (K, n) between poses of each window of yaw rates (N,) that act late."""
+        turned = np.concatenate([[0.0], np.cumsum(rates_rad_s * self.steps_s)[:-1]])
+        at_poses = np.interp(self.pose_s - late_s, self.time_s, turned)
+        return np.asarray(np.diff(at_poses[self.windows], axis=1))
+
+    def without_gyroscope(self) -> "DenseWindows":
+        """The same as if no yaw rate had been recorded."""
+        return replace(self, inputs=replace(self.inputs, yaw_rate_rad_s=None))
+
+    def numbered(self, number: int) -> "DenseWindows":
+        """The same as the run of this number among several."""
+        numbers = np.full(len(self.steps_s), number)
+        return replace(self, inputs=replace(self.inputs, run_number=numbers))
 
     def where(self, chosen: BoolArray) -> "DenseWindows":
         """The chosen (K,) windows."""
@@ -111,7 +138,6 @@ def dense_windows_of(run: Run, horizon_s: float) -> DenseWindows:
     start_s = run.odometry.stamps_s[0]
     rows = np.searchsorted(run.odometry.stamps_s, record.stamps_s, side="right") - 1
     time_s = record.stamps_s - start_s
-    inputs = replace(record.inputs, time_s=time_s, terrain=terrains_of(run)[rows])
     pose_s = time_s[record.pose_samples]
     windows, left_out = _windows(pose_s, record, time_s[-1], horizon_s)
     if not len(windows):
@@ -120,6 +146,7 @@ def dense_windows_of(run: Run, horizon_s: float) -> DenseWindows:
             f"{run.folder}: no window of {horizon_s:g} s with {LEAST_POSES} measured poses "
             f"without a gap; {told + '; ' if told else ''}choose a longer horizon"
         )
+    inputs = replace(record.inputs, time_s=time_s, terrain=terrains_of(run)[rows])
     return DenseWindows(
         run,
         inputs,
@@ -130,6 +157,18 @@ def dense_windows_of(run: Run, horizon_s: float) -> DenseWindows:
         windows,
         left_out,
     )
+
+
+def covered_s(run: Run, horizons_s: Sequence[float]) -> FloatArray:
+    """Run time (H,) between measured poses that lies in windows of each duration."""
+    record = record_of(run, WindowConfig())
+    pose_s = record.stamps_s[record.pose_samples] - run.odometry.stamps_s[0]
+    end_s = float(record.stamps_s[-1] - run.odometry.stamps_s[0])
+    found = []
+    for horizon_s in horizons_s:
+        windows, _ = _windows(pose_s, record, end_s, horizon_s)
+        found.append(float(np.diff(pose_s[windows[:, [0, -1]]], axis=1).sum()))
+    return np.array(found)
 
 
 def _windows(

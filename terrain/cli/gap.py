@@ -24,7 +24,8 @@ FOLDER = click.Path(file_okay=False, path_type=Path)
     required=True,
     metavar="RUN",
     type=FOLDER,
-    help="Run from which the model and the noise are identified; repeat.",
+    help="Run without the effect, from which the noise is estimated, and the model unless --model "
+    "is a parameter set; repeat.",
 )
 @click.option(
     "--holdout",

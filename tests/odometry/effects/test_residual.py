@@ -7,8 +7,8 @@ from odometry.errors import ParameterError
 from odometry.models.inputs import Inputs
 
 
-def added(effect, values, inputs):
-    return effect.twist(np.array(values), np.zeros((len(inputs.left), 3)), inputs, None)
+def added(effect, values, inputs, base=None):
+    return effect.twist(np.array(values), np.zeros((len(inputs.left), 3)), inputs, base)
 
 
 def test_of_an_angle_it_is_a_fourier_series(bench, rng):
@@ -47,8 +47,44 @@ def test_what_it_may_depend_on(bench, rng):
     np.testing.assert_allclose(found["speed"], (inputs.left + inputs.right) / 2)
     np.testing.assert_array_equal(found["right_wheel_angle"], inputs.wheel_angles_rad[:, 1])
     assert set(variables_of(Inputs(np.zeros((2, 2))))) == {
-        *("speed", "speed_difference", "roll", "pitch")
+        *("speed", "speed_difference", "roll", "pitch", "tread_speed")
     }
+
+
+def test_treads_follow_their_own_speed(bench, rng):
+    inputs = bench.drive(rng)
+    shape = Residual("tread_speed", (("left", 0), ("right", 1)), False, (-2.0, 2.0))
+    changed = added(shape, [0.3, 0.2], inputs, bench.base)
+    y_left, y_right, _, *alphas = bench.base.values
+    slips = [0.3 * (2 - inputs.left) / 4, 0.2 * (2 + inputs.right) / 4] * np.array(alphas)[:, None]
+    np.testing.assert_allclose(
+        changed[:, 2], (slips[1] - slips[0]) / (y_left - y_right), atol=1e-12
+    )
+
+
+def test_what_treads_get_by_speed_is_a_share_of_it(bench, rng):
+    inputs = bench.drive(rng)
+    shape = Residual("time", (("left", 0), ("right", 0)), True, (0.0, 1e9))
+    np.testing.assert_allclose(
+        added(shape, [0.1, 0.1], inputs, bench.base),
+        0.1 * bench.base.model.twist(bench.base.values, inputs),
+        atol=1e-7,
+    )
+
+
+def test_each_tread_has_its_own_acceleration():
+    time_s = np.arange(0.0, 4.0, 0.02)
+    speeds = np.column_stack([0.5 * time_s, -0.25 * time_s])
+    found = variables_of(Inputs(speeds, time_s=time_s))["tread_acceleration"]
+    inner = slice(10, -10)
+    np.testing.assert_allclose(found[inner], np.tile([0.5, -0.25], (180, 1)), atol=0.06)
+
+
+def test_what_follows_from_the_twist():
+    twist = np.array([[1.0, 0.0, 0.5], [0.01, 0.0, 0.5], [-2.0, 0.0, 0.5]])
+    found = variables_of(Inputs(np.zeros((3, 2))), twist)
+    np.testing.assert_allclose(found["curvature"], [0.5, 10.0, -0.25])
+    np.testing.assert_allclose(found["lateral_acceleration"], [0.5, 0.005, -1.0])
 
 
 def test_a_variable_that_was_not_recorded_is_an_error():

@@ -11,6 +11,7 @@ from odometry.gap.config import GapConfig
 from odometry.gap.errors import GapError
 from odometry.models.icr import Icr
 from odometry.models.symmetric import IcrSymmetric
+from odometry.windows.dense import dense_windows_of
 
 TRUE = np.array([0.45, -0.42, 0.02, 1.0, 1.0, 0.0])  # the robot of the scenes; no latency
 SEEDS = range(600, 608)
@@ -24,7 +25,8 @@ def calibrate(make_scene):
             replace(r, pose=replace(r.pose, columns={**r.pose.columns, "t": r.pose["t"] + late_s}))
             for r in runs
         ]
-        return calibrated(late, model or Icr(), runs[0].robot, GapConfig(), given)
+        scenes = [dense_windows_of(one, GapConfig().horizon_s) for one in late]
+        return calibrated(scenes, model or Icr(), runs[0].robot, GapConfig(), given)
 
     return run
 

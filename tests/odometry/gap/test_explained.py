@@ -32,7 +32,7 @@ def study(make_scene, known):
         )
         fitter = Fitter(known, measured_of([scene], known, CONFIG))
         floor = floor_of(known.held_back, CONFIG.part_s)
-        return explained(fitter, floor, CONFIG, lambda: None)
+        return explained(fitter, [scene], floor, CONFIG, lambda: None)
 
     return of
 
@@ -71,6 +71,6 @@ def test_a_scale_from_the_start_is_no_loss_from_a_moment(make_scene, known):
     scene = make_scene(2, lambda columns, twist: 0.8 * twist)  # noqa: ARG005 - of the face
     fitter = Fitter(known, measured_of([scene], known, CONFIG))
     floor = floor_of(known.held_back, CONFIG.part_s)
-    found = explained(fitter, floor, CONFIG, lambda: None)
+    found = explained(fitter, [scene], floor, CONFIG, lambda: None)
     assert found.names == ("wheel_scale",)
     np.testing.assert_allclose(found.fitted.effects[0].values, 0.8, atol=0.01)

@@ -80,8 +80,9 @@ def test_inertia_is_found_beside_a_delay(tmp_path):
     """H acts through a sign alone; without jumps the search for it ends 0.1 off."""
     case = make_case("inertia+time_offset", 3, tmp_path)
     measured, calibration = (Run.read(folder) for folder in (case.measured, case.calibration))
-    known = calibrated([calibration], Icr(), calibration.robot, CONFIG)
-    scene = thinned(dense_windows_of(measured, CONFIG.horizon_s), CONFIG.most_windows)
+    scenes = [dense_windows_of(run, CONFIG.horizon_s) for run in (calibration, measured)]
+    known = calibrated(scenes[:1], Icr(), calibration.robot, CONFIG)
+    scene = thinned(scenes[1], CONFIG.most_windows)
     fitter = Fitter(known, measured_of([scene], known, CONFIG))
     robot = known.base.robot
     alone = fitter.fit([InertiaByIndices(robot.mass, robot.track_width)])

@@ -52,10 +52,11 @@ def test_it_is_dead_reckoning(make_scene, known, tilted):
     twists = known.base.model.twist(known.base.values, inputs_of(scene.run))
     reckoned = open_loop(scene.run, twists)
     expected = reckoned.plane.poses
-    at = np.searchsorted(reckoned.stamps_s, scene.run.pose.stamps_s)
-    found = relative(simulated_poses(known.base, (), scene))
-    difference = se2.between(relative(expected[at]), found)
-    np.testing.assert_allclose(difference, 0.0, atol=1e-11)
+    at = np.searchsorted(reckoned.stamps_s, scene.run.pose.stamps_s)[scene.windows]
+    found = simulated_poses(known.base, (), scene)[scene.windows]
+    pairs = ((poses[:, 0], poses[:, -1]) for poses in (expected[at], found))
+    moved, simulated = (se2.between(*pair) for pair in pairs)
+    np.testing.assert_allclose(simulated, moved, atol=2e-3)  # inputs are means over 0.1 s
     assert np.abs(expected[at]).max() > 3.0
 
 

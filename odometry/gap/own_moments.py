@@ -1,0 +1,81 @@
+"""Effects from a moment on, on runs that were not fitted: each run has a moment of its own."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from odometry.arrays import BoolArray
+from odometry.effects.base_model import Base
+from odometry.effects.corrected import Added
+from odometry.effects.course import CommandsInCourse, FromAMoment, MotionInCourse, in_course
+from odometry.gap.statistic import squared_errors
+from odometry.windows.dense import DenseWindows
+
+SPACING_S = 1.0  # of the moments that are tried
+InCourse = CommandsInCourse | MotionInCourse
+
+
+def observed_s(scene: DenseWindows) -> tuple[float, float]:
+    """When the first window ends and the last one begins."""
+    return float(scene.pose_s[scene.windows[:, -1]].min()), float(scene.start_s.max())
+
+
+def with_own_moments(
+    base: Base,
+    effects: Sequence[Added],
+    held_out: Sequence[DenseWindows],
+    fitted: Sequence[DenseWindows],
+) -> tuple[tuple[Added, ...], list[DenseWindows]]:
+    """Effects that know a moment of each held-out run too, and the windows to judge them by.
+
+    A moment is searched on every other window of a run, and judged on the rest. Pieces of the
+    fitted runs themselves know their moment, and are judged whole, as all are where no effect
+    begins at a moment.
+    """
+    known = {scene.run.folder for scene in fitted}
+    others = [scene for scene in held_out if scene.run.folder not in known]
+    begins = [place for place, one in enumerate(effects) if _begins(one)]
+    if not begins or not others:
+        return tuple(effects), list(held_out)
+    extended = list(effects)
+    for scene in others:
+        odd = np.arange(len(scene)) % 2 == 1
+        for place in begins:
+            extended = _with_moment(base, extended, place, scene.where(odd))
+    judged = [scene for scene in held_out if scene.run.folder in known]
+    for number, scene in enumerate(others, start=-len(others)):
+        moments_s = [extended[place].values[number] for place in begins]
+        judged.append(scene.where(_judges(scene, moments_s)))
+    return tuple(extended), [scene for scene in judged if len(scene)]
+
+
+def _judges(scene: DenseWindows, moments_s: Sequence[float]) -> BoolArray:
+    """Every other window (K,), but none in which a moment may lie: no other knows it so well."""
+    begin_s, end_s = scene.pose_s[scene.windows[:, [0, -1]]].T
+    judges = np.arange(len(scene)) % 2 == 0
+    for moment_s in moments_s:
+        near_s = end_s - begin_s
+        judges &= (moment_s < begin_s - near_s) | (moment_s > end_s + near_s)
+    return np.asarray(judges)
+
+
+def _begins(added: Added) -> bool:
+    return isinstance(added.effect, InCourse) and isinstance(added.effect.in_time, FromAMoment)
+
+
+def _with_moment(base: Base, effects: list[Added], place: int, scene: DenseWindows) -> list[Added]:
+    """The effects, of which one begins in one run more, where that closes most; or never."""
+    added = effects[place]
+    if not isinstance(added.effect, InCourse) or not isinstance(added.effect.in_time, FromAMoment):
+        return effects
+    span = observed_s(scene)
+    course = FromAMoment((*added.effect.in_time.observed_s, span))
+    effect = in_course(added.effect.inner, course)
+    tried = [*np.arange(span[0], span[1], SPACING_S), span[1] + 1.0]
+
+    def at(moment_s: float) -> list[Added]:
+        one = Added(effect, np.append(added.values, moment_s))
+        return [*effects[:place], one, *effects[place + 1 :]]
+
+    losses = [float(squared_errors(base, at(m), scene).sum()) for m in tried]
+    return at(float(tried[int(np.argmin(losses))]))

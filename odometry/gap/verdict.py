@@ -1,0 +1,144 @@
+"""What a name must pass, each gate with the reason that it gives where it refuses.
+
+A gate takes what it judges and returns "" where the name passes, else the reason in words.
+Every number is one of `GapConfig`.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2
+
+from odometry.arrays import FloatArray
+from odometry.effects.base import EffectParameter
+from odometry.effects.base_model import Base
+from odometry.effects.corrected import Added
+from odometry.effects.residual import Residual
+from odometry.gap.config import GapConfig
+from odometry.gap.contest import sure_sum
+from odometry.gap.fit import Fitted
+from odometry.gap.pieces import numbered_pieces
+from odometry.gap.statistic import SEED, drawn_gaps, squared_errors
+from odometry.windows.dense import DenseWindows
+
+WITHIN_95 = 1.96  # standard deviations
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """A name that does not stand, and why."""
+
+    name: str
+    form: str
+    reason: str
+
+
+def is_the_effect(fit: Fitted, config: GapConfig) -> str:
+    """Whether the last effect of a fit is what its name says, and is known to be there."""
+    added = fit.effects[-1]
+    if not added.effect.is_meant(added.values):
+        return f"its values ({_words(added)}) are not what the name says"
+    if not is_there(fit, config):
+        return f"{added.effect.name} cannot be told from none"
+    return within_bounds(fit, config)
+
+
+def is_there(fit: Fitted, config: GapConfig) -> bool:
+    """Whether the last effect of a fit is more than an effect that does nothing.
+
+    Its parameters are tested together (Wald), those that shape it held: each alone may be
+    uncertain where only a product of them is known.
+    """
+    added = fit.effects[-1]
+    absent = [parameter.absent for parameter in added.effect.parameters]
+    known = np.array([value is not None for value in absent])
+    if not known.any():
+        return True
+    away = np.array([a - b for a, b in zip(added.values, absent, strict=True) if b is not None])
+    count = len(absent)
+    scales = np.array([parameter.scale for parameter in added.effect.parameters])
+    covariance = fit.covariance[-count:, -count:] / np.outer(scales, scales)
+    information = np.linalg.pinv(covariance, hermitian=True)[np.ix_(known, known)]
+    away = away / scales[known]
+    return bool(away @ information @ away > config.sure**2 * known.sum())
+
+
+def within_bounds(fit: Fitted, config: GapConfig) -> str:
+    """No parameter that says how strong the effect is may end at a bound, nor span the bounds.
+
+    Where an effect does nothing at a bound, to end there is an answer; those that shape an effect
+    may be open as long as its strength is known.
+    """
+    added = fit.effects[-1]
+    if isinstance(added.effect, Residual):
+        return ""
+    sigmas = np.sqrt(np.maximum(np.diag(fit.covariance)[-len(added.values) :], 0.0))
+    spans = []
+    for parameter, value, sigma in zip(added.effect.parameters, added.values, sigmas, strict=True):
+        if parameter.absent is None:
+            continue
+        if _is_at_bound(parameter, value, config):
+            return f"{parameter.name} = {value:.4g} is at the end of what was searched"
+        reach = WITHIN_95 * sigma
+        spans.append(value - reach <= parameter.low and value + reach >= parameter.high)
+    return "its parameters may be anything" if spans and all(spans) else ""
+
+
+def _is_at_bound(parameter: EffectParameter, value: float, config: GapConfig) -> bool:
+    near = config.near_bound * parameter.scale
+    for bound in (parameter.low, parameter.high):
+        if abs(value - bound) <= near and bound != parameter.absent:
+            return True
+    return False
+
+
+def closes_held_out(
+    before: tuple[Base, Sequence[Added]],
+    after: tuple[Base, Sequence[Added]],
+    held_out: Sequence[DenseWindows],
+    config: GapConfig,
+) -> str:
+    """Whether the gap on held-out data is less after than before, surely.
+
+    It must not be greater, and the paired interval of 95 % of the difference must lie above zero:
+    that of the gap, that of the mean error, which a few windows in which a model fails do not
+    decide, or the sum without the pieces that gain most.
+    """
+    squares = [
+        np.concatenate([squared_errors(base, effects, scene) for scene in held_out])
+        for base, effects in (before, after)
+    ]
+    was, now = (float(np.sqrt(of.mean())) for of in squares)
+    if now >= was:
+        return f"the gap on held-out data gets worse with it, from {was:.3g} to {now:.3g} m"
+    rng = np.random.default_rng(SEED)
+    kinds = (*squares, *(np.sqrt(of) for of in squares))
+    means = drawn_gaps(kinds, held_out, config.part_s, rng) ** 2
+    lows = np.quantile([means[0] - means[1], means[2] - means[3]], 0.025, axis=1)
+    _, piece = np.unique(numbered_pieces(held_out, config.part_s), return_inverse=True)
+    of_pieces = np.asarray(np.bincount(piece, weights=squares[0] - squares[1]), dtype=np.float64)
+    if (lows > 0).any() or sure_sum(of_pieces, config.trimmed) > 0:
+        return ""
+    return f"on held-out data the gap goes from {was:.3g} to {now:.3g} m, which may be chance"
+
+
+def base_left_calibration(fit: Fitted, free: int, config: GapConfig) -> bool:
+    """Whether the base moved farther than its calibration allows, all its numbers together."""
+    return free > 0 and bool(chi2.sf(fit.base_alone, free) < config.base_probability)
+
+
+def closes_little(
+    before_cost: float, after_cost: float, rows: float, fitted: FloatArray, config: GapConfig
+) -> str:
+    """Whether what is left is not noise, and is most of what there was."""
+    if fitted.sum() / rows <= config.unexplained:
+        return ""
+    share = (before_cost - after_cost) / max(before_cost - rows, config.least_excess * rows)
+    if share >= config.least_closed:
+        return ""
+    return f"it closes {100 * share:.0f} % of what noise does not explain, the cause is another"
+
+
+def _words(added: Added) -> str:
+    return ", ".join(f"{name} = {value:.4g}" for name, value in added.by_name.items())

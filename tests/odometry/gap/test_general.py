@@ -1,0 +1,86 @@
+"""Smooth functions that compete with the catalogue: of all that was recorded and varies."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.effects.residual import (
+    ANGLES,
+    COMPONENTS,
+    HARMONICS,
+    OF_TREADS,
+    TREADS,
+    VARIABLES,
+    variables_of,
+)
+from odometry.gap.config import GapConfig
+from odometry.gap.general import general_candidates
+
+CONFIG = GapConfig()
+
+
+@pytest.fixture(scope="module")
+def scenes(make_scene):
+    """Over hills."""
+
+    def same(_, twist):
+        return twist
+
+    return [make_scene(70, same), make_scene(71, same, duration_s=60.0)]
+
+
+@pytest.fixture(scope="module")
+def found(scenes, known):
+    return general_candidates(scenes, known.base, CONFIG)
+
+
+def test_every_variable_is_tried(found):
+    assert {one.variable for one in found} == set(VARIABLES)
+
+
+def test_of_every_angle_with_and_without_the_speed(found):
+    for name in ANGLES:
+        both = [one for one in found if one.variable == name]
+        assert [one.by_speed for one in both] == [False, True]
+        for one in both:
+            assert len(set(one.terms)) == len(one.terms) == len(COMPONENTS) * 2 * HARMONICS
+
+
+def test_of_every_other_variable_at_knots_within_its_values(found, scenes, known):
+    twists = [known.base.model.twist(known.base.values, s.inputs) for s in scenes]
+    of_scenes = [variables_of(s.inputs, t) for s, t in zip(scenes, twists, strict=True)]
+    for one in found:
+        if one.variable in (*ANGLES, *OF_TREADS):
+            continue
+        values = np.concatenate([of[one.variable] for of in of_scenes])
+        assert (np.diff(one.knots) > 0).all()
+        beyond = np.mean(values[:, None] > np.array(one.knots), axis=0)
+        np.testing.assert_allclose(beyond, np.linspace(0.98, 0.02, CONFIG.knots), atol=0.05)
+
+
+def test_a_tread_follows_its_own_motion_on_both_sides_of_rest(found):
+    for name in OF_TREADS:
+        (one,) = [other for other in found if other.variable == name]
+        assert {component for component, _ in one.terms} == set(TREADS)
+        np.testing.assert_allclose(one.knots, -np.flip(one.knots))
+        assert 0.0 in one.knots
+
+
+def test_time_takes_shares_of_the_treads_or_adds_a_motion(found):
+    shares, motion = sorted(
+        (one for one in found if one.variable == "time"), key=lambda one: -one.by_speed
+    )
+    assert {component for component, _ in shares.terms} == set(TREADS)
+    assert {component for component, _ in motion.terms} == set(COMPONENTS)
+
+
+@pytest.mark.parametrize("share", [0.0, 1e-3], ids=["nothing", "next to nothing"])
+def test_what_does_not_vary_is_left_out(scenes, known, share):
+    """On terrain that is all but level neither roll nor pitch says anything."""
+    inputs = scenes[0].inputs
+    level = replace(inputs, roll_rad=share * inputs.roll_rad, pitch_rad=share * inputs.pitch_rad)
+    scene = replace(scenes[0], inputs=level)
+    names = {one.variable for one in general_candidates([scene], known.base, CONFIG)}
+    assert names
+    assert not names & {"roll", "pitch"}

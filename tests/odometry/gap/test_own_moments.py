@@ -1,0 +1,71 @@
+"""A moment of one run is not carried to another: each has its own, and is judged elsewhere."""
+
+import numpy as np
+import pytest
+
+from odometry.effects.corrected import Added
+from odometry.effects.course import FromAMoment, in_course
+from odometry.effects.traction_loss import TractionLoss
+from odometry.effects.wheel_scale import WheelScale
+from odometry.gap.own_moments import observed_s, with_own_moments
+from odometry.gap.statistic import gap_of
+
+SHARE, FIRST_S, SECOND_S = 0.6, 50.0, 83.0
+
+
+@pytest.fixture(scope="module")
+def lost(make_scene):
+    def make(seed, moment_s, number):
+        def planted(columns, twist):
+            return np.where(columns["t"][:, None] >= moment_s, SHARE, 1.0) * twist
+
+        return make_scene(seed, planted, duration_s=120.0, name=f"run_{number}").numbered(number)
+
+    return make
+
+
+@pytest.fixture(scope="module")
+def scenes(lost):
+    return lost(1, FIRST_S, 0), lost(2, SECOND_S, 1)
+
+
+@pytest.fixture(scope="module")
+def loss(scenes):
+    effect = in_course(TractionLoss(), FromAMoment((observed_s(scenes[0]),)))
+    return Added(effect, np.array([SHARE, SHARE, FIRST_S]))
+
+
+def test_the_other_run_has_a_moment_of_its_own(known, scenes, loss):
+    (found,), judged = with_own_moments(known.base, [loss], scenes[1:], scenes[:1])
+    assert found.by_name == pytest.approx(
+        {"k": SHARE, "m": SHARE, "moment_1": FIRST_S, "moment_2": SECOND_S}, abs=3.0
+    )
+    assert gap_of(known.base, [found], judged, 10.0).value < 0.03
+    assert gap_of(known.base, [loss], judged, 10.0).value > 0.1
+
+
+def test_windows_that_tell_the_moment_and_those_near_it_do_not_judge(known, scenes, loss):
+    (found,), (judged,) = with_own_moments(known.base, [loss], scenes[1:], scenes[:1])
+    begins_s, moment_s = scenes[1].start_s, found.values[-1]
+    np.testing.assert_array_equal(np.isin(judged.start_s, begins_s[::2]), True)
+    assert np.abs(judged.start_s - moment_s).min() > 2.0
+
+
+def test_a_run_without_it_never_begins(known, make_scene, scenes, loss):
+    other = make_scene(3, lambda _, twist: twist, duration_s=120.0, name="whole").numbered(1)
+    (found,), judged = with_own_moments(known.base, [loss], [other], scenes[:1])
+    assert found.values[-1] > observed_s(judged[0])[1]
+    assert gap_of(known.base, [found], judged, 10.0).value < 0.03
+
+
+def test_pieces_of_the_measured_run_know_its_moment(known, scenes, loss):
+    (found,), (judged,) = with_own_moments(known.base, [loss], scenes[:1], scenes[:1])
+    assert found is loss
+    assert len(judged) == len(scenes[0])
+
+
+def test_what_is_always_there_is_judged_on_all(known, scenes):
+    scale = Added(WheelScale(), np.array([0.9, 0.9]))
+    effects, judged = with_own_moments(known.base, [scale], scenes[1:], scenes[:1])
+    assert effects == (scale,)
+    assert judged[0] is scenes[1]

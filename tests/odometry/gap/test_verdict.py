@@ -1,0 +1,114 @@
+"""What a name must pass: it is what it says, within its bounds, and closes what was held out."""
+
+import numpy as np
+import pytest
+
+from odometry.effects.base_model import Base
+from odometry.effects.corrected import Added
+from odometry.effects.course import FromAMoment, in_course
+from odometry.effects.curvature import Curvature
+from odometry.effects.heading_offset import HeadingOffset
+from odometry.effects.slope_icr import SlopeByIcr
+from odometry.effects.traction_loss import TractionLoss
+from odometry.effects.wheel_scale import WheelScale
+from odometry.gap.config import GapConfig
+from odometry.gap.contest import sure_sum
+from odometry.gap.fit import Fitted
+from odometry.gap.verdict import (
+    base_left_calibration,
+    closes_held_out,
+    closes_little,
+    is_the_effect,
+    is_there,
+    within_bounds,
+)
+from odometry.models.catalogue import MODELS
+from odometry.run import Robot
+
+CONFIG = GapConfig()
+
+
+def fitted(effect, values, covariance):
+    base = Base(MODELS["icr"], np.array([0.4, -0.4, 0.0, 1.0, 1.0]), Robot(0.6))
+    return Fitted(base, (Added(effect, np.array(values)),), covariance, np.ones(3), np.ones(3), 0.0)
+
+
+def test_an_effect_known_only_as_a_product_is_there():
+    """lambda v_max is known to 1 %, lambda and v_max are not."""
+    along = np.array([0.1, 0.05, -10.0])
+    covariance = 2.0 * np.outer(along, along) + np.diag([1e-6, 1e-6, 1e-2])
+    assert is_there(fitted(SlopeByIcr(), [0.1, 0.05, 10.0], covariance), CONFIG)
+    assert not is_there(fitted(SlopeByIcr(), [1e-4, 1e-4, 10.0], covariance), CONFIG)
+
+
+def test_an_effect_within_its_uncertainty_of_none_is_not_there():
+    assert not is_there(fitted(HeadingOffset(), [-0.0014], np.array([[1e-6]])), CONFIG)
+    assert is_there(fitted(HeadingOffset(), [-0.0014], np.array([[1e-8]])), CONFIG)
+
+
+@pytest.mark.parametrize(("moment", "there"), [(0.4, False), (2.1, True), (159.9, False)])
+def test_a_loss_from_a_moment_at_an_end_of_the_runs_is_not_there(moment, there):
+    """However sure its shares are."""
+    loss = in_course(TractionLoss(), FromAMoment(((2.0, 158.0),)))
+    reason = is_the_effect(fitted(loss, [0.8, 0.7, moment], np.eye(3) * 1e-6), CONFIG)
+    assert (reason == "") == there
+
+
+def test_a_parameter_at_the_end_of_its_search_is_refused():
+    sure = np.eye(3) * 1e-6
+    assert within_bounds(fitted(Curvature(), [1.0, 3.0, 1.0], sure), CONFIG) == ""
+    reason = within_bounds(fitted(Curvature(), [1.0, 20.0, 1.0], sure), CONFIG)
+    assert "beta_1 = 20 is at the end" in reason
+
+
+def test_one_that_shapes_an_effect_may_be_at_an_end_or_do_nothing_at_a_bound():
+    sure = np.eye(3) * 1e-6
+    assert within_bounds(fitted(Curvature(), [1.0, 3.0, 50.0], sure), CONFIG) == ""
+    assert within_bounds(fitted(SlopeByIcr(), [1.0, 0.0, 1.0], sure), CONFIG) == ""
+
+
+def test_intervals_that_span_the_bounds_are_refused():
+    """Of all strengths: where one is known the effect is."""
+    values, wide = [0.9, 1.1], np.diag([4.0, 4.0])
+    assert within_bounds(fitted(WheelScale(), values, wide), CONFIG) != ""
+    assert within_bounds(fitted(WheelScale(), values, np.diag([4.0, 1e-6])), CONFIG) == ""
+
+
+def test_a_gain_is_that_of_noise():
+    loss = in_course(TractionLoss(), FromAMoment(((2.0, 158.0),)))
+    gain = fitted(loss, [1.2, 1.1, 60.0], np.eye(3) * 1e-6)
+    assert "not what the name says" in is_the_effect(gain, CONFIG)
+
+
+@pytest.mark.parametrize(("factor", "stands"), [(0.8, True), (1.0, False), (1.2, False)])
+def test_a_name_must_close_what_was_held_out(make_scene, known, factor, stands):
+    """Wheels slip by a fifth: the right scale, none, and one of the other sign."""
+    held = [make_scene(4, lambda _, twist: 0.8 * twist)]
+    scale = Added(WheelScale(), np.array([factor, factor]))
+    reason = closes_held_out((known.base, ()), (known.base, (scale,)), held, CONFIG)
+    assert (reason == "") == stands
+    assert factor < 1.1 or "gets worse" in reason
+
+
+def test_a_sum_is_sure_where_it_is_alike_or_lasts_without_the_best():
+    alike = np.full(10, 4.0)
+    assert sure_sum(alike, 2) == pytest.approx(40.0)
+    rare = np.array([300.0, 200.0, 100.0, *np.zeros(9)])
+    assert sure_sum(rare, 2) == pytest.approx(100.0)
+    assert sure_sum(np.array([300.0, 200.0, *np.zeros(10)]), 2) <= 0.0
+    assert sure_sum(np.array([7.0]), 2) == -np.inf
+
+
+def test_a_base_leaves_its_calibration_by_chi_squared():
+    """Of six numbers: 22.46 is the 0.1 % point of the tables."""
+    for moved, left in ((22.3, False), (22.6, True)):
+        fit = Fitted(None, (), np.empty((0, 0)), np.ones(3), np.ones(3), 0.0, moved)
+        assert base_left_calibration(fit, 6, CONFIG) == left
+    assert not base_left_calibration(fit, 0, CONFIG)
+
+
+def test_what_leaves_most_and_no_noise_is_refused():
+    noise, much = np.full(100, 1.0), np.full(100, 3.0)
+    assert closes_little(1000.0, 900.0, 100, noise, CONFIG) == ""
+    assert closes_little(1000.0, 500.0, 100, much, CONFIG) == ""
+    assert "closes 11 %" in closes_little(1000.0, 900.0, 100, much, CONFIG)
