@@ -9,12 +9,13 @@ from odometry.arrays import FloatArray
 from odometry.estimation.course import Course, Heading, aligned
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.measurement import Gaussian, Place, reference_point
-from odometry.estimation.transition import STATES, YAW
+from odometry.estimation.transition import GYRO_BIAS, STATES, YAW
 from odometry.frames import Frame
 from odometry.geometry.angles import wrap_one
 
 INITIAL_YAW = "initial_yaw"  # kinds of events, whose values are the yaw and its sigma [rad]
 LATER_YAW = "heading_found"
+WIDE_RAD = math.radians(5.0)  # of a standard deviation: 0.9 m in 10 m
 
 
 class Searched(NamedTuple):
@@ -59,6 +60,7 @@ def searched(
         how = "a pose with a yaw came"
     else:
         heading = course.heading(position_sigma_m, by_gyroscope=math.isfinite(frame.yaw_rate_rad_s))
+        heading = heading and _with_drift(heading, belief, frame.stamp_s - course.begin_s)
         how = f"by the course of {course.count} positions"
     if heading is not None:
         yaw = float(belief[0][YAW])
@@ -69,6 +71,15 @@ def searched(
     return Searched(_at(belief, pose[:2], pose_covariance, lever_m) if placed else belief, course)
 
 
+def _with_drift(heading: Heading, belief: Gaussian, lasted_s: float) -> Heading:
+    """The heading with what the gyroscope's bias may have turned dead reckoning by meanwhile.
+
+    The course tells the yaw of about its middle; at either end it is off by half of that.
+    """
+    drift_rad = math.sqrt(float(belief[1][GYRO_BIAS, GYRO_BIAS])) * lasted_s / 2
+    return heading._replace(sigma_rad=math.hypot(heading.sigma_rad, drift_rad))
+
+
 def _event(course: Course, heading: Heading, frame: Frame, how: str) -> FilterEvent:
     """Of a yaw at the beginning, or, where the search began anew, of a turn of dead reckoning."""
     size = f"{math.degrees(heading.yaw_rad):.1f} +- {math.degrees(heading.sigma_rad):.1f} degrees"
@@ -76,6 +87,8 @@ def _event(course: Course, heading: Heading, frame: Frame, how: str) -> FilterEv
     if course.began_anew:
         kind = LATER_YAW
         text = f"the yaw was found late: the path up to here was turned by {size} ({how})"
+    if heading.sigma_rad > WIDE_RAD:
+        text += "; that is wide: places nearby are right, those farther on may be turned by as much"
     values = (heading.yaw_rad, heading.sigma_rad)
     return FilterEvent(kind, course.begin_s, frame.stamp_s, text, values)
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from odometry.estimation import heading_search
 from odometry.estimation.config import IcrEkfConfig
 from tests.odometry.estimation.sensor_drives import (
     distance,
@@ -113,3 +114,25 @@ def test_positions_alone_are_enough_for_a_filter_that_knows_its_heading(rng):
     ]
     assert distance(last, driven) < 0.05
     assert abs(turned(last, driven)) < 0.03
+
+
+def test_an_unknown_bias_widens_the_yaw_by_half_of_what_it_turned(rng, monkeypatch):
+    """The course tells the yaw of its middle: the search takes 6 m, here at a tenth of the speed.
+
+    A wide yaw is said in words.
+    """
+    monkeypatch.setattr(heading_search, "WIDE_RAD", 0.06)
+
+    def slowly(t):
+        return np.array([0.1, 0.1]) + 0.0 * t
+
+    driven = drive(80.0, speeds_of=slowly, start=START)
+    poses = positions_of(noisy_poses(driven, rng))
+    rates = driven.yaw_rates_rad_s + 0.01
+    estimates = estimates_of(frames_of(driven, poses=poses, yaw_rates=rates))
+    (event,) = (event for e in estimates for event in e.events if event.kind == "initial_yaw")
+    found = next(k for k, e in enumerate(estimates) if e.course is None)
+    bias_sigma = np.sqrt(estimates[found - 1].covariance[6, 6])
+    drifted = bias_sigma * (event.end_s - event.begin_s) / 2
+    assert event.values[1] > drifted > 0.06
+    assert "that is wide" in event.text
