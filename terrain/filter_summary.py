@@ -15,6 +15,7 @@ HARMLESS = {  # kinds of events after which the filter may be believed all the s
     INITIAL_YAW,
     LATER_YAW,
     "gyroscope_bias",
+    "gyroscope_bias_changed",
     "gyroscope_held",
     "gyroscope_silence",
     "gyroscope_spike",

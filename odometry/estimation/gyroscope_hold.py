@@ -7,10 +7,8 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.estimation.filter_event import FilterEvent
-from odometry.estimation.measurement import Gaussian
+from odometry.estimation.measurement import Gaussian, turned_by_treads
 from odometry.estimation.transition import (
-    ALPHA_LEFT,
-    ALPHA_RIGHT,
     GYRO_BIAS,
     STATES,
     Y_LEFT,
@@ -119,7 +117,7 @@ def _difference(hold: GyroscopeHold, left: float, right: float) -> tuple[float, 
     """By how much treads and gyroscope differ, and what is allowed [rad/s]."""
     mean, covariance = hold.before
     width_m = float(mean[Y_LEFT] - mean[Y_RIGHT])
-    by_treads = float(mean[ALPHA_RIGHT] * right - mean[ALPHA_LEFT] * left) / width_m
+    by_treads = turned_by_treads(mean, left, right)
     by_gyroscope = hold.rate_rad_s - float(mean[GYRO_BIAS])
     may_repeat = abs(by_gyroscope) < DEAD_BAND_RAD_S and hold.changing_s < NOISY_S
     at_rest, share = BANDED if may_repeat else SOUND

@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 
 from odometry.estimation import sensor_watch
+from odometry.estimation.bias_change import bias_followed
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.corrections import Correction, added_from, require_corrections
 from odometry.estimation.errors import EstimationError
@@ -140,13 +141,14 @@ class IcrEkf:
         if frame.velocity is not None:
             belief = self._velocity_update.seen(belief, estimate, frame, yaw_rate)
         after = self._pose_update.seen(estimate, belief, predicted.pose, frame, recent)
+        belief, watch, of_bias = bias_followed(estimate, predicted, after, frame.stamp_s)
         added_speeds, added_twist = added_from(
             self.corrections, footing.terrain, frame.odometry_row
         )
         return Estimate(
             stamp_s=frame.stamp_s,
-            mean=after.mean,
-            covariance=after.covariance,
+            mean=belief[0],
+            covariance=belief[1],
             tread_speeds_m_s=predicted.speeds_m_s,
             terrain=footing.terrain,
             yaw_rate_rad_s=frame.yaw_rate_rad_s,
@@ -161,8 +163,8 @@ class IcrEkf:
             crossing=crossing,
             scale=after.scale,
             course=after.course,
-            watch=predicted.watch,
-            events=predicted.events + after.events,
+            watch=watch,
+            events=predicted.events + after.events + of_bias,
         )
 
 

@@ -97,6 +97,12 @@ def pose_measurement(
     return measured.part(np.isfinite(measured.residual))
 
 
+def turned_by_treads(mean: FloatArray, left: float, right: float) -> float:
+    """Yaw rate of the treads [rad/s]: their difference after slip over y_left - y_right."""
+    slipped = mean[ALPHA_RIGHT] * right - mean[ALPHA_LEFT] * left
+    return float(slipped) / float(mean[Y_LEFT] - mean[Y_RIGHT])
+
+
 def tread_yaw_rate(mean: FloatArray, tread_speeds: FloatArray, yaw_rate: float) -> Measurement:
     """Of the gyroscope's yaw rate against that of the treads, which has the noise.
 
@@ -113,7 +119,7 @@ def tread_yaw_rate(mean: FloatArray, tread_speeds: FloatArray, yaw_rate: float) 
     """
     left, right = tread_speeds.tolist()
     width = float(mean[Y_LEFT] - mean[Y_RIGHT])
-    omega = float(mean[ALPHA_RIGHT] * right - mean[ALPHA_LEFT] * left) / width
+    omega = turned_by_treads(mean, left, right)
     jacobian = np.zeros((1, STATES))
     jacobian[0, 3:] = (-omega / width, omega / width, 0.0, 1.0, -left / width, right / width)
     residual = np.array([yaw_rate - omega - mean[GYRO_BIAS]])

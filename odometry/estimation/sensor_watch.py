@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from odometry.arrays import FloatArray
 from odometry.estimation import gyroscope_hold, gyroscope_watch, pose_watch, tread_watch
+from odometry.estimation.bias_watch import BiasWatch
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.gyroscope_hold import GyroscopeHold
 from odometry.estimation.gyroscope_watch import GyroscopeWatch
@@ -28,6 +29,8 @@ class SensorWatch(NamedTuple):
         Stamp since when odometry has a gap; NaN where it has none.
     hold : GyroscopeHold or None
         Of the gyroscope; None before the first step.
+    bias : BiasWatch
+        Of the gyroscope against the poses.
     """
 
     treads: TreadWatch
@@ -35,11 +38,17 @@ class SensorWatch(NamedTuple):
     poses: PoseWatch
     gap_since_s: float = math.nan
     hold: GyroscopeHold | None = None
+    bias: BiasWatch = BiasWatch()
 
     @property
     def is_doubtful(self) -> bool:
         """Whether a tread contradicts the rest, so that nothing is to be learned of the ICRs."""
         return self.treads.stuck >= 0 or not math.isnan(self.treads.off_since_s)
+
+    @property
+    def is_gyroscope_held(self) -> bool:
+        """Whether the gyroscope repeats one value and counts as silent."""
+        return self.hold is not None and self.hold.is_found
 
 
 class Sensed(NamedTuple):
@@ -121,7 +130,7 @@ def sensed(
         events += released
     else:
         gyroscope, events = GyroscopeWatch(), ()
-        if watch.hold is not None and watch.hold.is_found:
+        if watch.is_gyroscope_held:
             yaw_rate = math.nan
         else:
             yaw_rate += hold.owed_rad / (frame.stamp_s - begin_s)
@@ -145,7 +154,7 @@ def sensed(
     elif not frame.in_gap and not math.isnan(gap_since_s):
         events = (*events, _gap_event(gap_since_s, begin_s))
         gap_since_s = math.nan
-    after = SensorWatch(watch.treads, gyroscope, poses, gap_since_s, hold)
+    after = SensorWatch(watch.treads, gyroscope, poses, gap_since_s, hold, watch.bias)
     return Sensed(after, begin_s, yaw_rate, pose, events, belief)
 
 

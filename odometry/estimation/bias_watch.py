@@ -1,0 +1,138 @@
+"""A bias of the gyroscope that steps or drifts faster than the filter follows."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from odometry.estimation.filter_event import FilterEvent
+from odometry.estimation.measurement import Gaussian
+from odometry.estimation.transition import GYRO_BIAS
+
+SPAN_S = 1.0  # over which gyroscope and poses are compared
+SPANS = 48  # that are remembered
+LEAST_SPANS, LEAST_RUNS = 10, 3  # from which on the scatter of runs of spans is known
+RUNS = (4, 8)  # numbers of last spans from which a bias is told
+SIGMAS, LEAST_RAD = 6.0, 0.08  # by which its turn over these must differ from the one believed
+TREADS_SHARE = 0.4  # of the difference that the treads must show too: else the poses are off
+OPEN_SHARE = 0.25  # of a change, by which it may be off: it began in the midst of a span
+POSE_S = 0.5  # since the last pose; then the yaw of the estimate tells nothing of the gyroscope
+
+
+class Rates(NamedTuple):
+    """Yaw rates over a step [rad/s]: NaN where not told."""
+
+    by_gyroscope: float
+    by_poses: float
+    by_treads: float
+
+
+class BiasWatch(NamedTuple):
+    """What poses and gyroscope said of its bias.
+
+    Attributes
+    ----------
+    turned_rad, past_treads_rad, lasts_s : float
+        How much more than the estimate, and than the treads, the gyroscope turned in the span
+        that is not over yet.
+    biases_rad_s, by_treads_rad_s : tuple of float
+        The same by time over the last spans.
+    since : int
+        How many of them belong to the bias that is believed.
+    posed_s : float
+        Stamp of the last pose that was accepted.
+    """
+
+    turned_rad: float = 0.0
+    past_treads_rad: float = 0.0
+    lasts_s: float = 0.0
+    biases_rad_s: tuple[float, ...] = ()
+    by_treads_rad_s: tuple[float, ...] = ()
+    since: int = 0
+    posed_s: float = -math.inf
+
+
+def watched(
+    watch: BiasWatch, rates_rad_s: Rates, step_s: float, stamp_s: float, *, posed: bool
+) -> BiasWatch:
+    """The watch after a step.
+
+    Parameters
+    ----------
+    watch : BiasWatch
+    rates_rad_s : Rates
+        Over the step.
+    step_s, stamp_s : float
+        Its duration and its end.
+    posed : bool
+        Whether a pose was accepted at its end.
+    """
+    posed_s = stamp_s if posed else watch.posed_s
+    begun = BiasWatch(
+        biases_rad_s=watch.biases_rad_s,
+        by_treads_rad_s=watch.by_treads_rad_s,
+        since=watch.since,
+        posed_s=posed_s,
+    )
+    by_gyroscope, by_poses, by_treads = rates_rad_s
+    if math.isnan(by_gyroscope + by_treads) or stamp_s - posed_s > POSE_S:
+        return begun
+    after = begun._replace(
+        turned_rad=watch.turned_rad + (by_gyroscope - by_poses) * step_s,
+        past_treads_rad=watch.past_treads_rad + (by_gyroscope - by_treads) * step_s,
+        lasts_s=watch.lasts_s + step_s,
+    )
+    if after.lasts_s < SPAN_S:
+        return after
+    bias, past_treads = after.turned_rad / after.lasts_s, after.past_treads_rad / after.lasts_s
+    return begun._replace(
+        biases_rad_s=(*watch.biases_rad_s, bias)[-SPANS:],
+        by_treads_rad_s=(*watch.by_treads_rad_s, past_treads)[-SPANS:],
+        since=min(watch.since + 1, SPANS),
+    )
+
+
+def told_bias(watch: BiasWatch, believed_rad_s: float) -> tuple[float, float] | None:
+    """The bias that the last spans tell where it is another, and its standard deviation [rad/s].
+
+    Runs of spans that follow each other tell how far the mean of one is off: by noise of poses,
+    delays and the gyroscope's scale, which differ by the recording.
+    """
+    biases = np.array(watch.biases_rad_s)
+    if len(biases) < LEAST_SPANS:
+        return None
+    sums = np.append(0.0, np.cumsum(biases))
+    for count in RUNS:
+        if count > watch.since or len(biases) < LEAST_RUNS * count:
+            return None
+        means = (sums[count:] - sums[:-count]) / count
+        apart = np.abs(means[count:] - means[:-count])
+        sigma = 1.4826 * float(np.median(apart)) * math.sqrt(1 / 2)
+        bias = float(means[-1])
+        least = max(SIGMAS * sigma, LEAST_RAD / (count * SPAN_S))
+        halves = biases[-count:].reshape(2, -1).mean(axis=1) - believed_rad_s
+        sure = abs(halves.sum()) > 2 * least and np.abs(halves).min() > least / 2
+        past_treads = sum(watch.by_treads_rad_s[-count:]) / count
+        treads_agree = (past_treads - believed_rad_s) / (bias - believed_rad_s) > TREADS_SHARE
+        if sure and halves.prod() > 0 and treads_agree:
+            return bias, sigma
+    return None
+
+
+def changed(belief: Gaussian, told: tuple[float, float]) -> Gaussian:
+    """The belief with another bias; nothing else is known to go with it."""
+    mean, covariance = belief[0].copy(), belief[1].copy()
+    mean[GYRO_BIAS] = told[0]
+    covariance[GYRO_BIAS], covariance[:, GYRO_BIAS] = 0.0, 0.0
+    change = (told[0] - float(belief[0][GYRO_BIAS])) * OPEN_SHARE
+    covariance[GYRO_BIAS, GYRO_BIAS] = told[1] ** 2 + change**2
+    return mean, covariance
+
+
+def change_event(believed_rad_s: float, bias_rad_s: float, stamp_s: float) -> FilterEvent:
+    """The event of a bias that is another."""
+    text = (
+        f"the bias of the gyroscope changed from {believed_rad_s:.4f} to {bias_rad_s:.4f} rad/s, "
+        "as the poses tell: the filter took that one"
+    )
+    return FilterEvent("gyroscope_bias_changed", stamp_s, stamp_s, text, (bias_rad_s,))
