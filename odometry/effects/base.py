@@ -68,7 +68,7 @@ class Effect(ABC):
     constant_names : tuple of str
         Known numbers that a parameter set holds among the parameters; arguments to make it.
     course : str
-        How it comes and goes in time, "" where it is always there (`odometry.effects.course`).
+        How it comes and goes in time, "" where it is always there (`odometry.effects.in_course`).
     slow : bool
         Whether it takes long to compute.
     """

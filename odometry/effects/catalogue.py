@@ -9,11 +9,12 @@ from odometry.effects.actuator_lag import ActuatorLag
 from odometry.effects.base import Effect
 from odometry.effects.command_delay import CommandDelay
 from odometry.effects.corrected import Added
-from odometry.effects.course import Course, FromAMoment, course_of, in_course
+from odometry.effects.course_settings import course_of
 from odometry.effects.curvature import Curvature
 from odometry.effects.drive_limit import Deadband, RateLimit, Saturation
 from odometry.effects.gyroscope_error import GyroscopeError
 from odometry.effects.heading_offset import HeadingOffset
+from odometry.effects.in_course import in_course
 from odometry.effects.inertia_contact import InertiaByContact
 from odometry.effects.inertia_icr import InertiaByIndices
 from odometry.effects.lateral_skid import LateralSkid
@@ -23,6 +24,7 @@ from odometry.effects.residual import Residual
 from odometry.effects.slope_contact import SlopeByContact
 from odometry.effects.slope_icr import SlopeByIcr
 from odometry.effects.terrain import NewIcrs, Terrain
+from odometry.effects.time_course import Course, FromAMoment
 from odometry.effects.time_offset import ClockDrift, TimeOffset
 from odometry.effects.traction_loss import TractionLoss
 from odometry.effects.tread_slip import SlipByAcceleration, SlipByDirection, SlipBySpeed

@@ -7,8 +7,9 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base import Effect, EffectParameter, MotionEffect
 from odometry.effects.base_model import Base
-from odometry.effects.course import FromAMoment, Gradual, in_course
+from odometry.effects.in_course import in_course
 from odometry.effects.recorded import Recorded
+from odometry.effects.time_course import FromAMoment, Gradual
 from odometry.models.inputs import Inputs
 
 NO_GAIN = 1.02  # a share that noise makes of one

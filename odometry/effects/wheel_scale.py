@@ -7,8 +7,9 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.effects.base import CommandEffect, Effect, EffectParameter
-from odometry.effects.course import Gradual, in_course
+from odometry.effects.in_course import in_course
 from odometry.effects.recorded import Recorded
+from odometry.effects.time_course import Gradual
 from odometry.models.inputs import Inputs
 
 UNIFORM = 0.01  # factors nearer than this are one

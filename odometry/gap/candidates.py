@@ -4,9 +4,10 @@ from collections.abc import Sequence
 
 from odometry.effects.base import Effect
 from odometry.effects.catalogue import EFFECTS
-from odometry.effects.course import FromAMoment, in_course
+from odometry.effects.in_course import in_course
 from odometry.effects.recorded import Recorded, labels_of
 from odometry.effects.terrain import NewIcrs
+from odometry.effects.time_course import FromAMoment
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.calibration import Calibration
 from odometry.windows.dense import DenseWindows

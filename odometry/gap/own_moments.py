@@ -7,7 +7,8 @@ import numpy as np
 from odometry.arrays import BoolArray
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
-from odometry.effects.course import CommandsInCourse, FromAMoment, MotionInCourse, in_course
+from odometry.effects.in_course import CommandsInCourse, MotionInCourse, in_course
+from odometry.effects.time_course import FromAMoment
 from odometry.gap.statistic import squared_errors
 from odometry.windows.dense import DenseWindows
 

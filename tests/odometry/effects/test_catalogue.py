@@ -15,9 +15,10 @@ from odometry.effects.corrected import (
     reported_yaw_rate,
     seen_poses,
 )
-from odometry.effects.course import FromAMoment, Gradual, InBursts, in_course
+from odometry.effects.in_course import in_course
 from odometry.effects.residual import Residual
 from odometry.effects.terrain import Terrain
+from odometry.effects.time_course import FromAMoment, Gradual, InBursts
 from odometry.effects.time_offset import TimeOffset
 from odometry.effects.traction_loss import TractionLoss
 from odometry.effects.wheel_scale import WheelScale

@@ -5,10 +5,11 @@ import pytest
 
 from odometry.effects.actuator_lag import ActuatorLag
 from odometry.effects.corrected import Added
-from odometry.effects.course import FromAMoment, InBursts, in_course
+from odometry.effects.in_course import in_course
 from odometry.effects.lateral_skid import LateralSkid
 from odometry.effects.lever_arm import LeverArm
 from odometry.effects.slope_icr import SlopeByIcr
+from odometry.effects.time_course import FromAMoment, InBursts
 from odometry.effects.traction_loss import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from odometry.effects.corrected import Added
-from odometry.effects.course import FromAMoment, in_course
+from odometry.effects.in_course import in_course
+from odometry.effects.time_course import FromAMoment
 from odometry.effects.traction_loss import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.own_moments import observed_s, with_own_moments

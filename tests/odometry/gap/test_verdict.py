@@ -5,10 +5,11 @@ import pytest
 
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
-from odometry.effects.course import FromAMoment, in_course
 from odometry.effects.curvature import Curvature
 from odometry.effects.heading_offset import HeadingOffset
+from odometry.effects.in_course import in_course
 from odometry.effects.slope_icr import SlopeByIcr
+from odometry.effects.time_course import FromAMoment
 from odometry.effects.traction_loss import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
