@@ -13,6 +13,7 @@ from odometry.models.inputs import Inputs
 
 EDGE_M_S = 0.005  # over which a command begins to act: a derivative sees samples on the edge
 HARDEST_M_S2 = 20.0
+REMEMBERED = 64  # answers: an effect fitted beside others is asked for the same again and again
 
 
 class DriveLimit(CommandEffect):
@@ -95,6 +96,9 @@ class RateLimit(DriveLimit):
     looks_like = "errors after large changes of speed, few after small ones"
     needs = "tread speeds that change in steps, and a measured pose"
 
+    def __init__(self) -> None:
+        self._answers: dict[bytes, FloatArray] = {}
+
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
         """See `Effect.parameters`."""
@@ -109,10 +113,17 @@ class RateLimit(DriveLimit):
         speeds = inputs.tread_speeds_m_s
         if inputs.time_s is None:
             return speeds
-        held_s, starts = held_spans(inputs.time_s)
+        key = b"".join(np.ascontiguousarray(of).tobytes() for of in (values, speeds, inputs.time_s))
+        if key not in self._answers:
+            while len(self._answers) >= REMEMBERED:
+                self._answers.pop(next(iter(self._answers)))
+            self._answers[key] = self._limited(float(values[0]), speeds, inputs.time_s)
+        return self._answers[key]
+
+    def _limited(self, most: float, speeds: FloatArray, time_s: FloatArray) -> FloatArray:
+        held_s, starts = held_spans(time_s)
         limited = [
-            _limited(tread.tolist(), held_s.tolist(), starts.tolist(), float(values[0]))
-            for tread in speeds.T
+            _limited(tread.tolist(), held_s.tolist(), starts.tolist(), most) for tread in speeds.T
         ]
         return np.stack(limited, axis=-1)
 

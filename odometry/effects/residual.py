@@ -123,6 +123,11 @@ class Residual(MotionEffect):
             added += np.einsum("nij,nj->ni", slopes, by_tread)
         return np.asarray(twist + added)
 
+    @property
+    def key(self) -> tuple[str, str, str]:
+        """See `Effect.key`: of each variable another."""
+        return self.name, f"{self.form} of {self.variable}", f"{self.by_speed}"
+
     def settings(self) -> dict[str, Any]:
         """See `Effect.settings`."""
         return {

@@ -24,6 +24,8 @@ class Explanation:
         All candidates of the contest in which the effect of that name was added.
     refusals : tuple of Refusal
         Names that had evidence and do not stand.
+    base_closes : bool
+        Whether no effect stands, and the base closes some of the gap by leaving its calibration.
     unexplained : bool
         Whether there is a gap that noise does not explain, and nothing earned a name.
     """
@@ -33,6 +35,7 @@ class Explanation:
     first: tuple[Judged, ...]
     contests: Mapping[str, tuple[Judged, ...]] = field(default_factory=dict)
     refusals: tuple[Refusal, ...] = ()
+    base_closes: bool = False
     unexplained: bool = False
 
     @property
@@ -43,6 +46,10 @@ class Explanation:
     def with_step(self, step: Judged) -> "Explanation":
         """The same and one effect more."""
         return replace(self, steps=(*self.steps, step))
+
+    def less_last(self) -> "Explanation":
+        """The same without the last effect."""
+        return replace(self, steps=self.steps[:-1])
 
     @property
     def effects(self) -> tuple[Effect, ...]:

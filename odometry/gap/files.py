@@ -135,7 +135,7 @@ def _effect(effect: NamedEffect) -> dict[str, Any]:
     }
     return {
         "name": added.effect.name,
-        "form": added.effect.form,
+        "form": " ".join(filter(None, (added.effect.form, added.effect.course))),
         **added.effect.settings(),
         "parameters": parameters,
         "gap_before": effect.gap_before,

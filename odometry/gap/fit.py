@@ -73,8 +73,8 @@ class Fitter:
     ) -> Fitted:
         """Fit effects; `known` are values to start from, where slow ones stay if `pin_slow`."""
         hypothesis = Hypothesis(self.calibration, self.measured, tuple(effects))
-        started = {(a.effect.name, a.effect.form): a.values for a in known}
-        known_starts = [started.get((e.name, e.form)) for e in effects]
+        started = {added.effect.key: added.values for added in known}
+        known_starts = [started.get(effect.key) for effect in effects]
         pinned = [
             np.full(len(e.parameters), pin_slow and e.slow and start is not None)
             for e, start in zip(effects, known_starts, strict=True)

@@ -92,10 +92,13 @@ def find_gap(
     floor = floor_of(known.held_back, config.part_s)
     fitter = Fitter(known, measured_of(fitted_scenes, known, config))
     with tqdm(desc="candidates", unit="fit", disable=None if show_progress else True) as bar:
-        there = floor_there(floor, known, fitted_scenes)
-        found = explained(fitter, held_scenes, there, config, _counting(bar))
+        floors = (
+            floor_there(floor, known, fitted_scenes),
+            floor_there(floor, known, held_scenes),
+        )
+        found = explained(fitter, held_scenes, floors, config, _counting(bar))
     fit = found.fitted
-    base = fit.base if found.steps else known.base
+    base = fit.base if found.steps or found.base_closes else known.base
     effects, held_scenes = with_own_moments(base, fit.effects, held_scenes, fitted_scenes)
     closings = [
         Closing(

@@ -20,8 +20,9 @@ from odometry.gap.verdict import (
     Refusal,
     base_left_calibration,
     closes_held_out,
-    closes_little,
     is_the_effect,
+    leaves_noise,
+    within_noise,
 )
 from odometry.windows.dense import DenseWindows
 
@@ -33,7 +34,7 @@ BESIDE = 3  # names that are tried beside a smooth function: those of most evide
 def explained(
     fitter: Fitter,
     held_out: Sequence[DenseWindows],
-    floor: Gap,
+    floors: tuple[Gap, Gap],
     config: GapConfig,
     progress: Callable[[], None],
 ) -> Explanation:
@@ -42,9 +43,10 @@ def explained(
     The catalogue alone explains what it can. Then the best smooth function is added to that, and
     the catalogue to the best smooth function; what does not pay beside the others is left out.
     Of these explanations the one of least cost stands; names go first where they lose by less
-    than a margin. At last each is judged on held-out data.
+    than a margin. At last each is judged on held-out data. `floors` are those of the measured
+    and of the held-out windows.
     """
-    search = _Search(fitter, fitter.fit([]), tuple(held_out), floor, config, progress)
+    search = _Search(fitter, fitter.fit([]), tuple(held_out), *floors, config, progress)
     scenes = fitter.measured.scenes
     quick = quick_effects(scenes, fitter.calibration)
     found = search.simplest(search.by_fewer(search.stepwise(quick), quick), quick)
@@ -58,7 +60,7 @@ def explained(
         options.append(search.without_idle(alone))
     if options:
         found = search.better(found, options)
-    return search.that_stand(search.most_first(found), best)
+    return search.that_stand(search.most_first(found), smooth)
 
 
 @dataclass
@@ -67,6 +69,7 @@ class _Search:
     start: Fitted
     held_out: Sequence[DenseWindows]
     floor: Gap
+    held_floor: Gap
     config: GapConfig
     progress: Callable[[], None]
     refusals: dict[str, Refusal] = field(default_factory=dict)
@@ -95,7 +98,7 @@ class _Search:
 
         Of both the one of less cost.
         """
-        if not found.steps or len(found.effects[0].parameters) < MANY:
+        if not found.steps or found.effects[0].slow or len(found.effects[0].parameters) < MANY:
             return found
         first = found.effects[0].key
         others = self.stepwise([one for one in candidates if one.key != first])
@@ -175,21 +178,62 @@ class _Search:
         effects = sorted(found.effects, key=lambda effect: -without[effect])
         return found if tuple(effects) == found.effects else self.in_order(found, effects)
 
-    def that_stand(self, found: Explanation, smooth: Judged | None) -> Explanation:
-        """The effects that close the gap where they were not fitted, and most of it together."""
+    def that_stand(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
+        """The effects that close the gap where they were not fitted, and leave noise alone."""
+        found = self._less_doubtful(found, smooth)
         while found.steps:
             reason = self._fails(found)
             if not reason:
                 break
             last = found.effects[-1]
             self.refuse(last, reason)
-            if len(found.steps) == 1 and smooth is not None and not isinstance(last, Residual):
-                found, smooth = replace(found, steps=(smooth,)), None
-            else:
-                found = replace(found, steps=found.steps[:-1])
+            alone = len(found.steps) == 1 and not isinstance(last, Residual)
+            found = self._unknown(found, smooth) if alone else found.less_last()
         refused = tuple(one for name, one in self.refusals.items() if name not in found.names)
         unexplained = not found.steps and self.unexplained()
-        return replace(found, refusals=refused, unexplained=unexplained)
+        return replace(
+            found,
+            refusals=refused,
+            unexplained=unexplained,
+            base_closes=not found.steps and self._base_closes(),
+        )
+
+    def _base_closes(self) -> bool:
+        """Whether the base, moved beyond its calibration, closes held-out gap by itself."""
+        free = len(self.fitter.calibration.uncertain.values)
+        believed = (self.fitter.calibration.base, ())
+        moved = (self.start.base, ())
+        return base_left_calibration(self.start, free, self.config) and not closes_held_out(
+            believed, moved, self.held_out, self.config
+        )
+
+    def _less_doubtful(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
+        """Without any name where all names together leave what is not noise."""
+        names = [e for e in found.effects if not isinstance(e, Residual)]
+        if not names:
+            return found
+        alone = found if len(names) == len(found.effects) else self.in_order(found, names)
+        noise = self.fitter.measured.expected
+        excess = max(self.start.cost - noise, self.config.least_excess * noise)
+        closed = (self.start.cost - alone.fitted.cost) / excess
+        reason = leaves_noise(self.fitter.spread(alone.fitted), closed, self.config)
+        if not reason:
+            return found
+        for name in names:
+            self.refuse(name, reason)
+        return self._unknown(found, smooth)
+
+    def _unknown(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
+        """Smooth functions alone, added one by one."""
+        steps: tuple[Judged, ...] = ()
+        while len(steps) < self.config.most_smooth:
+            taken = {step.effect.variable for step in steps if isinstance(step.effect, Residual)}
+            left = [one for one in smooth if one.variable not in taken]
+            best = self.best_smooth(steps[-1].fitted if steps else self.start, left)
+            if best is None:
+                break
+            steps = (*steps, best)
+        return replace(found, steps=steps)
 
     def refuse(self, effect: Effect, reason: str) -> None:
         """Remember the first reason for which a name does not stand."""
@@ -204,19 +248,21 @@ class _Search:
     def _fails(self, found: Explanation) -> str:
         """Why the last effect does not stand on held-out data, beyond what the others close."""
         fit, before = found.fitted, (found.steps[-2].fitted if found.steps[1:] else self.start)
-        rows = self.fitter.measured.expected
         pairs = [(before.base, before.effects), (self.fitter.calibration.base, ())]
         effects, held_out = with_own_moments(
             fit.base, fit.effects, self.held_out, self.fitter.measured.scenes
         )
+        within = within_noise(gap_of(*pairs[1], held_out, self.config.part_s), self.held_floor)
         reasons = [
-            closes_held_out(
-                (base, effects[: len(less)]), (fit.base, effects), held_out, self.config
-            )
-            for base, less in pairs
+            within,
+            *(
+                closes_held_out(
+                    (base, effects[: len(less)]), (fit.base, effects), held_out, self.config
+                )
+                for base, less in pairs
+            ),
         ]
-        little = closes_little(self.start.cost, fit.cost, rows, fit.chi_squared, self.config)
-        return next((reason for reason in (*reasons, little) if reason), "")
+        return next((reason for reason in reasons if reason), "")
 
     def _judged(self, before: Fitted, candidates: Sequence[Effect]) -> list[Judged]:
         """The quick forms, and those of contact forces where the quick ones leave something."""
@@ -248,6 +294,12 @@ class _Search:
         return self._gap(before) > self.floor.high or base_left_calibration(
             before, free, self.config
         )
+
+    def _brings_back(self, fit: Fitted, before: Fitted) -> bool:
+        """Whether a base that had left its calibration is near it again."""
+        free = len(self.fitter.calibration.uncertain.values)
+        near = fit.base_alone < self.config.brought_back * before.base_alone
+        return near or not base_left_calibration(fit, free, self.config)
 
     def _gap(self, fit: Fitted) -> float:
         scenes = self.fitter.measured.scenes
@@ -282,4 +334,6 @@ class _Search:
             share_of_rest = closed / max(before.cost - noise, self.config.least_excess * noise)
             if share_of_rest < self.config.least_rest:
                 return False
+        if self._gap(before) <= self.floor.high and not self._brings_back(one.fitted, before):
+            return False
         return bool(closed_m > share * excess_m > 0 or closed > share * excess)

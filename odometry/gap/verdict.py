@@ -10,7 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
-from odometry.arrays import FloatArray
 from odometry.effects.base import EffectParameter
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
@@ -19,7 +18,7 @@ from odometry.gap.config import GapConfig
 from odometry.gap.contest import sure_sum
 from odometry.gap.fit import Fitted
 from odometry.gap.pieces import numbered_pieces
-from odometry.gap.statistic import SEED, drawn_gaps, squared_errors
+from odometry.gap.statistic import SEED, Gap, drawn_gaps, squared_errors
 from odometry.windows.dense import DenseWindows
 
 WITHIN_95 = 1.96  # standard deviations
@@ -93,6 +92,13 @@ def _is_at_bound(parameter: EffectParameter, value: float, config: GapConfig) ->
     return False
 
 
+def within_noise(held_out: Gap, floor: Gap) -> str:
+    """Whether there is a gap on held-out data that a name could close."""
+    if held_out.value > floor.value:
+        return ""
+    return f"the gap on held-out data, {held_out.value:.3g} m, is within noise"
+
+
 def closes_held_out(
     before: tuple[Base, Sequence[Added]],
     after: tuple[Base, Sequence[Added]],
@@ -128,16 +134,18 @@ def base_left_calibration(fit: Fitted, free: int, config: GapConfig) -> bool:
     return free > 0 and bool(chi2.sf(fit.base_alone, free) < config.base_probability)
 
 
-def closes_little(
-    before_cost: float, after_cost: float, rows: float, fitted: FloatArray, config: GapConfig
-) -> str:
-    """Whether what is left is not noise, and is most of what there was."""
-    if fitted.sum() / rows <= config.unexplained:
+def leaves_noise(spread: float, closed: float, config: GapConfig) -> str:
+    """Whether names leave nothing but noise, or close nearly all of a large excess.
+
+    `spread` is the chi-squared a degree of freedom that they leave, `closed` the share of its
+    excess that they close: an equation that is right but imperfect leaves a small part.
+    """
+    if spread <= config.left_over or closed >= config.mostly_closed:
         return ""
-    share = (before_cost - after_cost) / max(before_cost - rows, config.least_excess * rows)
-    if share >= config.least_closed:
-        return ""
-    return f"it closes {100 * share:.0f} % of what noise does not explain, the cause is another"
+    return (
+        f"it closes {100 * max(closed, 0.0):.0f} % and leaves {spread:.1f} times the chi-squared "
+        "of noise: not the cause, or not the only one"
+    )
 
 
 def _words(added: Added) -> str:

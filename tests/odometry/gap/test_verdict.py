@@ -15,13 +15,15 @@ from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import sure_sum
 from odometry.gap.fit import Fitted
+from odometry.gap.statistic import Gap
 from odometry.gap.verdict import (
     base_left_calibration,
     closes_held_out,
-    closes_little,
     is_the_effect,
     is_there,
+    leaves_noise,
     within_bounds,
+    within_noise,
 )
 from odometry.models.catalogue import MODELS
 from odometry.run import Robot
@@ -108,8 +110,17 @@ def test_a_base_leaves_its_calibration_by_chi_squared():
     assert not base_left_calibration(fit, 0, CONFIG)
 
 
-def test_what_leaves_most_and_no_noise_is_refused():
-    noise, much = np.full(100, 1.0), np.full(100, 3.0)
-    assert closes_little(1000.0, 900.0, 100, noise, CONFIG) == ""
-    assert closes_little(1000.0, 500.0, 100, much, CONFIG) == ""
-    assert "closes 11 %" in closes_little(1000.0, 900.0, 100, much, CONFIG)
+@pytest.mark.parametrize(
+    ("spread", "closed", "stands"),
+    [(1.2, 0.3, True), (3.0, 0.95, True), (3.0, 0.7, False), (190.0, -0.2, False)],
+)
+def test_names_leave_noise_or_close_nearly_all(spread, closed, stands):
+    reason = leaves_noise(spread, closed, CONFIG)
+    assert (reason == "") == stands
+    assert stands or f"leaves {spread:.1f} times" in reason
+
+
+def test_a_gap_within_the_floor_has_no_name():
+    floor = Gap(0.03, 0.02, 0.04)
+    assert within_noise(Gap(0.05, 0.04, 0.06), floor) == ""
+    assert "within noise" in within_noise(Gap(0.029, 0.02, 0.04), floor)
