@@ -56,6 +56,13 @@ class EkfBank:
             squared,
         )
 
+    def innovations(self, means: FloatArray, covariances: FloatArray, z: FloatArray) -> FloatArray:
+        """Of predictions, each entry (M, m) in its own standard deviation; NaN: not measured."""
+        H = self.model.measurement_jacobian(means)
+        S = H @ covariances @ _transposed(H) + self.model.measurement_covariance
+        residuals = wrapped(z - self.model.measurement(means), self.model.measurement_angles)
+        return np.asarray(residuals / np.sqrt(np.diagonal(S, axis1=-2, axis2=-1)))
+
 
 def _transposed(matrices: FloatArray) -> FloatArray:
     return matrices.swapaxes(-1, -2)

@@ -1,4 +1,4 @@
-"""What the probabilities of modes say: a mode, or that it cannot be told; and how well."""
+"""What the probabilities of modes say: a mode, none of these, or undetermined; and how well."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,6 +10,9 @@ from odometry.modes.track import ModeTrack
 from odometry.run import UNKNOWN
 
 UNDETERMINED = "undetermined"
+NONE_OF_THESE = "none of these"
+BOUND = 2.0  # standard deviations: 95 % of what is left of a mode that is true
+NO_MODES = (NONE_OF_THESE, UNDETERMINED)  # answers that name none
 
 
 @dataclass(frozen=True)
@@ -22,9 +25,9 @@ class Detection:
     from_s, to_s : float
     after_s : float
         From its beginning to the first answer that names it; NaN where it never was named.
-    right, wrong, undetermined : float
-        Shares of the time after that: with its name, with another, with none. NaN where it was
-        never named.
+    right, wrong, undetermined, none_of_these : float
+        Shares of the time after that: with its name, with another, with none, and where no mode
+        is said to fit. NaN where it was never named.
     """
 
     mode: str
@@ -34,13 +37,45 @@ class Detection:
     right: float
     wrong: float
     undetermined: float
+    none_of_these: float
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """A stretch in which no mode of the set fits.
+
+    Attributes
+    ----------
+    from_s, to_s : float
+        From the last stamp before at which all of the nearest mode was within BOUND.
+    signal : int
+        Place of the measured entry that fits least.
+    sigmas : float
+        Root mean square of what is left of it in a window where the nearest mode is taken: 1 where
+        that mode is true.
+    """
+
+    from_s: float
+    to_s: float
+    signal: int
+    sigmas: float
 
 
 def named_modes(track: ModeTrack, sure: float) -> AnyArray:
-    """The mode (N,) whose probability is `sure` or more; "undetermined" where there is none."""
+    """The answer (N,): a mode, "none of these", or "undetermined".
+
+    A mode is named whose probability among the modes is `sure` or more, and against "none of
+    these" as well; and which the rolling test does not rule out for another mode.
+    """
     most = track.probabilities.argmax(axis=1)
     names = np.array(track.names, dtype=object)[most]
-    return np.where(track.probabilities.max(axis=1) >= sure, names, UNDETERMINED)
+    named = np.where(track.probabilities.max(axis=1) >= sure, names, UNDETERMINED)
+    if track.fit is None:
+        return named
+    of_most = (np.arange(len(most)), most)
+    fits = track.fit.against_none[of_most] >= sure
+    fits &= np.exp(track.fit.log_probabilities[of_most]) >= 1 - sure
+    return np.where(track.fit.none >= sure, NONE_OF_THESE, np.where(fits, named, UNDETERMINED))
 
 
 def candidates(track: ModeTrack, sure: float) -> BoolArray:
@@ -66,7 +101,7 @@ def detections(track: ModeTrack, sure: float) -> tuple[Detection, ...]:
         named = np.flatnonzero(answers[rows] == mode)
         begin, end = float(track.stamps_s[rows[0]]), float(track.stamps_s[rows[-1]])
         if not len(named):
-            found.append(Detection(mode, begin, end, *[float("nan")] * 4))
+            found.append(Detection(mode, begin, end, *[float("nan")] * 5))
             continue
         after = rows[named[0] :]
         shares = _shares(answers[after], lasts_s[after], mode)
@@ -77,7 +112,7 @@ def detections(track: ModeTrack, sure: float) -> tuple[Detection, ...]:
 def false_switches(track: ModeTrack, sure: float) -> int:
     """How often the answer turned to a mode that is not the true one."""
     answers = named_modes(track, sure)
-    told = answers != UNDETERMINED
+    told = ~np.isin(answers, NO_MODES)
     told_rows = np.flatnonzero(told & (track.labels != UNKNOWN))
     names, truth = answers[told_rows], track.labels[told_rows]
     turned = np.append(True, names[1:] != names[:-1])
@@ -101,7 +136,7 @@ def disagreements(
     """
     felt = named_modes(track, sure)
     lasts_s = np.append(np.diff(track.stamps_s), 0.0)
-    both = np.flatnonzero((felt != UNDETERMINED) & (sight != UNKNOWN))
+    both = np.flatnonzero(~np.isin(felt, NO_MODES) & (sight != UNKNOWN))
     changes = (felt[both][1:] != felt[both][:-1]) | (sight[both][1:] != sight[both][:-1])
     found = []
     for rows in np.split(both, np.flatnonzero(changes) + 1):
@@ -114,10 +149,13 @@ def disagreements(
 
 
 def confusion(track: ModeTrack, sure: float, names: Sequence[str]) -> FloatArray:
-    """Seconds (M, M + 1) by true mode (row) and answer (column), the last "undetermined"."""
+    """Seconds (M, M + 2) by true mode or label (row) and answer (column).
+
+    The last columns are "none of these" and "undetermined". `names` are the rows.
+    """
     answers = named_modes(track, sure)
     lasts_s = np.append(np.diff(track.stamps_s), 0.0)
-    columns = [*names, UNDETERMINED]
+    columns = [*track.names, *NO_MODES]
     return np.array(
         [
             [lasts_s[(track.labels == row) & (answers == column)].sum() for column in columns]
@@ -126,10 +164,34 @@ def confusion(track: ModeTrack, sure: float, names: Sequence[str]) -> FloatArray
     )
 
 
-def _shares(answers: AnyArray, lasts_s: FloatArray, mode: str) -> tuple[float, float, float]:
+def misfits(track: ModeTrack, sure: float) -> tuple[Misfit, ...]:
+    """The stretches whose answer is "none of these"."""
+    if track.fit is None:
+        return ()
+    none, best = track.fit.none, track.fit.best
+    rows = np.flatnonzero(named_modes(track, sure) == NONE_OF_THESE)
+    fitted = np.flatnonzero(none < 1 - sure)
+    quiet = np.flatnonzero(~(np.abs(best) > BOUND).any(axis=1))
+    found: list[Misfit] = []
+    # stretches between which a mode was not as probable as ever are one
+    cuts = np.flatnonzero(np.diff(np.searchsorted(fitted, rows))) + 1
+    for stretch in np.split(rows, cuts) if len(rows) else []:
+        before = np.searchsorted(quiet, stretch[0])
+        first = int(quiet[before - 1]) if before else 0
+        squares = best[first : stretch[-1] + 1] ** 2
+        measured = np.isfinite(squares).any(axis=0)
+        sizes = np.full(best.shape[1], -1.0)
+        sizes[measured] = np.sqrt(np.nanmean(squares[:, measured], axis=0))
+        signal = int(sizes.argmax())
+        begin, end = track.stamps_s[[first, stretch[-1]]].tolist()
+        found.append(Misfit(begin, end, signal, float(sizes[signal])))
+    return tuple(found)
+
+
+def _shares(answers: AnyArray, lasts_s: FloatArray, mode: str) -> tuple[float, float, float, float]:
     if not lasts_s.any():  # the last stamp alone
         lasts_s = np.ones(len(answers))
     whole = float(lasts_s.sum())
     right = float(lasts_s[answers == mode].sum()) / whole
-    open_ = float(lasts_s[answers == UNDETERMINED].sum()) / whole
-    return right, 1 - right - open_, open_
+    none, open_ = (float(lasts_s[answers == one].sum()) / whole for one in NO_MODES)
+    return right, 1 - right - open_ - none, open_, none

@@ -1,7 +1,7 @@
 """The terrain by feel: answers of the interacting multiple model estimator as a source."""
 
 from odometry.errors import ParameterError
-from odometry.modes.answers import UNDETERMINED, named_modes
+from odometry.modes.answers import NO_MODES, named_modes
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.track import ModesConfig, follow_modes
 from odometry.modes.velocity import VelocityModes
@@ -17,7 +17,7 @@ def felt_terrain(
     *,
     show_progress: bool = False,
 ) -> NamedTerrain:
-    """What the motion says of the terrain; where that cannot be told, the one in force stays.
+    """What the motion says of the terrain; where it names none, the one in force stays.
 
     Each answer is made from what was measured up to its stamp.
 
@@ -46,4 +46,4 @@ def felt_terrain(
     config = config or ModesConfig()
     track = follow_modes(run, mode_set, config, show_progress=show_progress)
     answers = named_modes(track, config.sure)
-    return NamedTerrain.told(initial, track.stamps_s, answers, (UNDETERMINED, UNKNOWN))
+    return NamedTerrain.told(initial, track.stamps_s, answers, (*NO_MODES, UNKNOWN))

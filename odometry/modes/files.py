@@ -1,7 +1,7 @@
 """The modes of a run as files: a table over time and the numbers."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -11,16 +11,17 @@ import numpy as np
 from odometry.arrays import AnyArray
 from odometry.io.csv_table import write_csv_table
 from odometry.io.files import atomic_write
-from odometry.modes.answers import UNDETERMINED, Detection, confusion
+from odometry.modes.answers import NO_MODES, NONE_OF_THESE, Detection, confusion
+from odometry.modes.fit import ModeFit
 from odometry.modes.followed import Followed
 from odometry.modes.track import ModeTrack
 from odometry.modes.words import answer_words
 from odometry.run import UNKNOWN
 
 FORMAT = 1  # of result.json
-NUMBERS = ("median_after_s", "right", "wrong", "undetermined", "wrong_of_all")
+NUMBERS = ("median_after_s", "right", "wrong", "undetermined", "wrong_of_all", "none_of_these")
 COUNTS = ("stretches", "told", "false_switches")
-STATES = {"velocity": ("vx", "wz"), "traction": ("x", "y", "yaw", "wz")}
+MEASURED = {"velocity": ("vx", "wz"), "traction": ("x", "y", "yaw", "wz")}
 
 
 def write_modes(
@@ -76,7 +77,8 @@ def write_runs(rows: Mapping[str, Followed | str], file: Path) -> Path:
 
 def columns_of(followed: Followed, track: ModeTrack) -> dict[str, AnyArray]:
     """The columns of modes.csv; `label` is empty where the run names nothing."""
-    states = STATES[followed.mode_set.modes.kind]
+    measured = MEASURED[followed.mode_set.modes.kind]
+    states = (*measured, "gyro_bias")
     probabilities = zip(track.names, track.probabilities.T, strict=True)
     return {
         "t": track.stamps_s,
@@ -86,7 +88,14 @@ def columns_of(followed: Followed, track: ModeTrack) -> dict[str, AnyArray]:
         "label": np.where(track.labels == UNKNOWN, "", track.labels),
         **dict(zip(states, track.means.T, strict=True)),
         **{f"sigma_{name}": column for name, column in zip(states, track.sigmas.T, strict=True)},
+        **({} if track.fit is None else _fit_columns(track.fit, measured)),
     }
+
+
+def _fit_columns(fit: ModeFit, measured: Sequence[str]) -> dict[str, AnyArray]:
+    """The probability that no mode fits; what is left of each entry, in standard deviations."""
+    left = {f"innovation_{name}": of for name, of in zip(measured, fit.best.T, strict=True)}
+    return {f"probability_{NONE_OF_THESE}": fit.none, **left}
 
 
 def content_of(followed: Followed) -> dict[str, Any]:
@@ -103,11 +112,21 @@ def content_of(followed: Followed) -> dict[str, Any]:
             "floor": config.floor,
             "sure": config.sure,
             "lasting_s": config.lasting_s,
+            "misfit_share": config.misfit_share,
             "dwell_s": dict(zip(mode_set.names, mode_set.dwell_s.tolist(), strict=True)),
             "source": mode_set.source,
         },
         "duration_s": float(np.ptp(followed.motion.stamps_s)),
         "not_judged": list(followed.foreign_labels),
+        "none_of_these": [
+            {
+                "from_s": one.from_s,
+                "to_s": one.to_s,
+                "signal": MEASURED[mode_set.modes.kind][one.signal],
+                "sigmas": one.sigmas,
+            }
+            for one in followed.misfits
+        ],
         "motion": _track(followed, followed.motion),
         "sight": None if sighted is None else _track(followed, sighted),
         "disagreements": [
@@ -133,6 +152,7 @@ def _track(followed: Followed, track: ModeTrack) -> dict[str, Any]:
         "right": _finite(score.right),
         "wrong": _finite(score.wrong),
         "undetermined": _finite(score.undetermined),
+        "none_of_these": _finite(score.none_of_these),
         "wrong_of_all": _finite(score.wrong_of_all),
         "false_switches": score.false_switches,
         "confusion_s": _confusion(followed, track),
@@ -149,15 +169,16 @@ def _detection(one: Detection) -> dict[str, Any]:
         "right": _finite(one.right),
         "wrong": _finite(one.wrong),
         "undetermined": _finite(one.undetermined),
+        "none_of_these": _finite(one.none_of_these),
     }
 
 
 def _confusion(followed: Followed, track: ModeTrack) -> Mapping[str, Mapping[str, float]]:
-    """Seconds by true mode and answer; modes that the run does not name are left out."""
-    names = followed.mode_set.names
+    """Seconds by what the run names and answer; modes that it does not name are left out."""
+    names = (*followed.mode_set.names, *followed.foreign_labels)
     seconds = confusion(track, followed.config.sure, names)
     return {
-        name: dict(zip((*names, UNDETERMINED), row.tolist(), strict=True))
+        name: dict(zip((*track.names, *NO_MODES), row.tolist(), strict=True))
         for name, row in zip(names, seconds, strict=True)
         if row.any()
     }

@@ -7,13 +7,17 @@ import numpy as np
 
 from odometry.arrays import AnyArray, IntArray
 from odometry.modes.answers import (
+    NO_MODES,
+    NONE_OF_THESE,
     UNDETERMINED,
     Detection,
+    Misfit,
     candidates,
     confusion,
     detections,
     disagreements,
     false_switches,
+    misfits,
     named_modes,
 )
 from odometry.modes.mode_set import ModeSet
@@ -33,7 +37,7 @@ class Score:
     ----------
     detections : tuple of Detection
         One for each stretch of a mode.
-    right, wrong, undetermined : float
+    right, wrong, undetermined, none_of_these : float
         Shares of the time after each detection, over all stretches; NaN where none was told.
     wrong_of_all : float
         Share of all the time in stretches of a mode, told or not; NaN where there is none.
@@ -44,6 +48,7 @@ class Score:
     right: float
     wrong: float
     undetermined: float
+    none_of_these: float
     wrong_of_all: float
     false_switches: int
 
@@ -111,8 +116,13 @@ class Followed:
         """What the run names and is no mode: it cannot be judged."""
         return tuple(sorted(set(self.motion.labels.tolist()) - {UNKNOWN, *self.mode_set.names}))
 
+    @property
+    def misfits(self) -> tuple[Misfit, ...]:
+        """Stretches in which motion says that no mode fits."""
+        return misfits(self.motion, self.config.sure)
+
     def answers(self, track: ModeTrack) -> AnyArray:
-        """The mode (N,) named at each stamp, or "undetermined"."""
+        """The mode (N,) named at each stamp, or one of NO_MODES."""
         return named_modes(track, self.config.sure)
 
     def shares(self, track: ModeTrack) -> dict[str, float]:
@@ -121,14 +131,18 @@ class Followed:
         whole = max(float(lasts_s.sum()), 1e-12)
         held = {
             name: float(lasts_s[answers == name].sum()) / whole
-            for name in (*self.mode_set.names, UNDETERMINED)
+            for name in (*self.mode_set.names, *NO_MODES)
         }
         return dict(sorted(((n, s) for n, s in held.items() if s > 0), key=lambda one: -one[1]))
 
     def candidates(self, track: ModeTrack) -> AnyArray:
-        """Names (N,) of the fewest modes that it may be at each stamp, with " or " between."""
+        """Names (N,) of the fewest modes that it may be at each stamp, with " or " between.
+
+        "none of these" where that is the answer.
+        """
         sets, places = self._candidate_sets(track)
-        return np.array([" or ".join(names) for names in sets], dtype=object)[places]
+        words = np.array([" or ".join(names) for names in sets], dtype=object)[places]
+        return np.where(self.answers(track) == NONE_OF_THESE, NONE_OF_THESE, words)
 
     def left_open(self, track: ModeTrack) -> dict[tuple[str, ...], float]:
         """Share of the undetermined time of each set of modes it may be, the longest first."""
@@ -151,17 +165,20 @@ class Followed:
         found = detections(track, self.config.sure)
         told = [one for one in found if np.isfinite(one.after_s)]
         weights = np.array([one.to_s - one.from_s - one.after_s for one in told])
-        shares = np.array([(one.right, one.wrong, one.undetermined) for one in told])
-        means = np.full(3, np.nan)
+        shares = np.array(
+            [(one.right, one.wrong, one.undetermined, one.none_of_these) for one in told]
+        )
+        means = np.full(4, np.nan)
         if weights.sum() > 0:
             means = weights @ shares / weights.sum()
-        right, wrong, open_ = means.tolist()
+        right, wrong, open_, none = means.tolist()
         seconds = confusion(track, self.config.sure, track.names)
         judged = float(seconds.sum())
-        off = judged - float(np.trace(seconds)) - float(seconds[:, -1].sum())
+        named = seconds[:, : len(track.names)]
+        off = float(named.sum() - np.trace(named))
         of_all = off / judged if judged else float("nan")
         switches = false_switches(track, self.config.sure)
-        return Score(found, right, wrong, open_, of_all, switches)
+        return Score(found, right, wrong, open_, none, of_all, switches)
 
 
 def followed(

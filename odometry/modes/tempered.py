@@ -2,8 +2,14 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from odometry.arrays import FloatArray
 from odometry.estimation.bank import Bank
+from odometry.estimation.ekf_model import wrapped
+
+OUTLIERS = 1e-3  # share of measurements that are no better than a Cauchy distribution says
+MOST_SIGMAS = 5.0  # root mean square of an innovation beyond which it pulls no more
 
 
 @dataclass(frozen=True)
@@ -13,10 +19,15 @@ class TemperedBank:
     Innovations of models that are not exact go together over time; their likelihoods multiplied
     say too much. The power that makes them honest is that of composite likelihoods (Varin, Reid,
     Firth 2011, Statistica Sinica 21).
+
+    A single outlier says next to nothing: the likelihood is that of a Gaussian contaminated by a
+    distribution with the tails of Cauchy's (Huber and Ronchetti 2009, section 1.5), and what an
+    innovation corrects is bounded by MOST_SIGMAS.
     """
 
     bank: Bank
     independent: float
+    state_angles: tuple[int, ...] = ()
 
     @property
     def modes(self) -> int:
@@ -33,5 +44,12 @@ class TemperedBank:
         self, means: FloatArray, covariances: FloatArray, z: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """See `Bank.updated`."""
-        means, covariances, logs, squared = self.bank.updated(means, covariances, z)
-        return means, covariances, self.independent * logs, squared
+        corrected, covariances, logs, squared = self.bank.updated(means, covariances, z)
+        entries = int(np.isfinite(z).sum())
+        tails = np.log(OUTLIERS) + squared / 2 - (entries + 1) / 2 * np.log1p(squared)
+        logs = logs + np.logaddexp(np.log1p(-OUTLIERS), tails)
+        bound = MOST_SIGMAS * np.sqrt(entries)
+        pull = bound / np.maximum(np.sqrt(squared), bound)
+        step = pull[:, None] * wrapped(corrected - means, self.state_angles)
+        corrected = wrapped(means + step, self.state_angles)
+        return corrected, covariances, self.independent * logs, squared

@@ -12,7 +12,9 @@ from odometry.config import require, require_positive
 from odometry.estimation.ekf_bank import EkfBank
 from odometry.estimation.imm import Imm
 from odometry.estimation.mode_belief import ModeBelief
+from odometry.modes.fit import ModeFit, mode_fit
 from odometry.modes.mode_set import ModeSet
+from odometry.modes.own_filters import OwnFilters, with_bias
 from odometry.modes.sight import SeenGround, mode_chains
 from odometry.modes.signals import STANDING_M_S, Signals
 from odometry.modes.tempered import TemperedBank
@@ -34,16 +36,23 @@ class ModesConfig:
         The probability from which a mode is named; below it the answer is "undetermined".
     lasting_s : float
         A disagreement of sight and feel that lasts so long is reported.
+    misfit_share : float
+        Share of the time in which no mode of the set fits, before anything was measured.
     """
 
     floor: float = 1e-6
     sure: float = 0.9
     lasting_s: float = 2.0
+    misfit_share: float = 0.05
 
     def __post_init__(self) -> None:
         require(0 <= self.floor < 0.5, f"floor = {self.floor}, expected 0 to below 0.5")
         require(0.5 < self.sure < 1, f"sure = {self.sure}, expected above 0.5 and below 1")
         require_positive(self, "lasting_s")
+        require(
+            0 < self.misfit_share < 0.5,
+            f"misfit_share = {self.misfit_share}, expected above 0 and below 0.5",
+        )
 
 
 @dataclass(frozen=True)
@@ -65,6 +74,8 @@ class ModeTrack:
         measured: 1 on average; NaN where nothing was.
     labels : (N,) of str
         What the run names; "unknown" where it names nothing.
+    fit : ModeFit or None
+        Whether a mode fits at all; without it one is taken to.
     """
 
     names: tuple[str, ...]
@@ -74,6 +85,7 @@ class ModeTrack:
     sigmas: FloatArray
     normalised_squared: FloatArray
     labels: AnyArray
+    fit: ModeFit | None = None
 
 
 def follow_modes(
@@ -129,12 +141,17 @@ def follow_signals(
     chains = mode_chains(seen, mode_set.names, mode_set.dwell_s)
     in_force = np.searchsorted([one.stamp_s for one in seen], signals.stamps_s, side="right")
     independent = _independent(signals, modes.errors_last_s)
-    mean, covariance = modes.start(signals)
-    lasting = (1 - independent) * np.broadcast_to(modes.measurement_variance, (count, len(mean)))
+    mean, covariance = modes.start(signals, independent)
+    lasting = np.zeros((count, len(mean)))
+    lasting[:, :-1] = (1 - independent) * modes.measurement_variance
+
+    @lru_cache(maxsize=16)
+    def filters(roughness: float) -> EkfBank:
+        return EkfBank(modes.model(roughness, independent), count)
 
     @lru_cache(maxsize=16)
     def estimator(chain: int, roughness: float) -> Imm:
-        bank = TemperedBank(EkfBank(modes.model(roughness), count), independent)
+        bank = TemperedBank(filters(roughness), independent, modes.state_angles)
         return Imm(bank, chains[chain].transition, modes.state_angles, config.floor)
 
     roughness = modes.roughness(signals)
@@ -143,32 +160,48 @@ def follow_signals(
     told[gap_ends] = False
     measured = np.where(told[:, None], signals.measured, np.nan)
     first = chains[in_force[0]].transition(SETTLED_S).mean(axis=0)
-    belief = ModeBelief.alike(mean, covariance, first)
+    belief = alone = ModeBelief.alike(mean, covariance, first)
     size = len(signals)
     probabilities = np.empty((size, count))
     means, sigmas = np.empty((2, size, len(mean)))
     squared = np.full(size, np.nan)
+    believed = np.append(np.ones(len(mean) - 1), independent)  # share of each variance
+    innovations = np.full((size, count, measured.shape[1]), np.nan)
     steps: Iterable[int] = tqdm(range(size), unit="step", disable=None if show_progress else True)
     for row in steps:
-        imm = estimator(int(in_force[row]), float(roughness[max(row - 1, 0)]))
+        rough = float(roughness[max(row - 1, 0)])
+        imm = estimator(int(in_force[row]), rough)
         if row:
-            belief = imm.step(
-                belief,
-                signals.tread_speeds_m_s[row - 1],
-                measured[row],
-                float(signals.stamps_s[row] - signals.stamps_s[row - 1]),
-            )
+            u = signals.tread_speeds_m_s[row - 1]
+            step_s = float(signals.stamps_s[row] - signals.stamps_s[row - 1])
+            belief = imm.step(belief, u, measured[row], step_s)
+            own = OwnFilters(imm.bank, filters(rough))
+            alone, innovations[row] = own.step(alone, u, measured[row], step_s)
+            alone = with_bias(alone, *imm.merged(belief))
         if row in gap_ends:  # what moved in a gap tells nothing of the modes
-            belief = ModeBelief.alike(*modes.start(signals.after(row)), belief.probabilities)
+            begun = ModeBelief.alike(
+                *modes.start(signals.after(row), independent), belief.probabilities
+            )
+            belief = alone = with_bias(begun, *imm.merged(belief))
         probabilities[row] = belief.probabilities
         mean, covariance = imm.merged(belief)
-        variances = np.diag(covariance) + probabilities[row] @ lasting
+        variances = np.diag(covariance) / believed + probabilities[row] @ lasting
         means[row], sigmas[row] = mean, np.sqrt(variances)
         if belief.innovations is not None:
             of_mode = belief.innovations.normalised_squared[probabilities[row].argmax()]
             squared[row] = of_mode / np.isfinite(measured[row]).sum()
+    fit = mode_fit(
+        innovations, signals.stamps_s, independent, mode_set.dwell_s, config.misfit_share
+    )
     return ModeTrack(
-        mode_set.names, signals.stamps_s, probabilities, means, sigmas, squared, signals.labels
+        mode_set.names,
+        signals.stamps_s,
+        probabilities,
+        means,
+        sigmas,
+        squared,
+        signals.labels,
+        fit,
     )
 
 

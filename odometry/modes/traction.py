@@ -1,7 +1,8 @@
 """Modes of small traction changes: poses driven by the gains of each mode (Salvi 2024, III-B).
 
-The state is x, y, yaw and the yaw rate. That of the paper is the pose alone; with the yaw rate a
-gyroscope can be heard, and the robot may turn a little later than it was asked to.
+The state is x, y, yaw, the yaw rate and the bias of the gyroscope. That of the paper is the pose
+alone; with the yaw rate a gyroscope can be heard, and the robot may turn a little later than it was
+asked to.
 """
 
 from dataclasses import dataclass
@@ -12,11 +13,17 @@ from scipy.signal import lfilter
 from odometry.arrays import FloatArray, IntArray
 from odometry.estimation.ekf_model import EkfModel
 from odometry.geometry import se2
-from odometry.modes.signals import Signals, pose_signals
+from odometry.modes.signals import (
+    BIAS_SIGMA_RAD_S,
+    BIAS_WALK_RAD2_S3,
+    Signals,
+    pose_signals,
+)
 from odometry.run import Run
 
 LEFT_TURN, RIGHT_TURN = 0, 1
 SHORTEST_LAG_S = 1e-3
+MEASURED = np.hstack([np.eye(4), np.array([[0.0], [0.0], [0.0], [1.0]])])  # yaw rate and bias
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,8 +88,8 @@ class TractionModes:
         """By what part (N,) variances are larger from each stamp to the next."""
         return self.variance_growth * signals.accelerations_m_s2**2
 
-    def start(self, signals: Signals) -> tuple[FloatArray, FloatArray]:
-        """Mean (4,) and covariance (4, 4) at the first stamp: the first measured pose, standing.
+    def start(self, signals: Signals, independent: float = 1.0) -> tuple[FloatArray, FloatArray]:
+        """Mean (5,) and covariance (5, 5) at the first stamp: the first measured pose, standing.
 
         Where that is a later one, the less certain by all that the wheels turned before it.
         """
@@ -92,26 +99,32 @@ class TractionModes:
         travel_m = (np.abs(left) + np.abs(right))[:first] @ steps_s / 2
         turn_rad = np.abs(right - left)[:first] @ steps_s / self.track_width
         variances = self.measurement_variance[:3] + np.square([travel_m, travel_m, turn_rad])
-        return np.append(poses[first], 0.0), np.diag(np.append(variances, 0.0))
+        return np.append(poses[first], [0.0, 0.0]), np.diag(
+            np.append(variances, [0.0, independent * BIAS_SIGMA_RAD_S**2])
+        )
 
-    def model(self, roughness: float = 0.0) -> EkfModel:
-        """For a bank of all modes; variances but those of measured poses are larger by a part."""
+    def model(self, roughness: float = 0.0, independent: float = 1.0) -> EkfModel:
+        """For a bank of all modes; variances but those of measured poses are larger by a part.
+
+        Of what is measured, a share `independent` is news: see `start`.
+        """
         larger = 1 + roughness
 
         def process_noise(x: FloatArray, u: FloatArray, dt: float) -> FloatArray:  # noqa: ARG001
             place, yaw = larger * np.abs(u).mean() * dt * self.process_variance[:2]
             lasting, _ = self._lasting(dt)
-            noise = np.tile(np.diag([place, place, yaw, 0.0]), (len(lasting), 1, 1))
+            walk = independent * BIAS_WALK_RAD2_S3 * dt
+            noise = np.tile(np.diag([place, place, yaw, 0.0, walk]), (len(lasting), 1, 1))
             noise[:, 3, 3] = self.process_variance[2] * (1 - lasting**2)
             return noise
 
         return EkfModel(
-            states=4,
+            states=5,
             transition=self._transition,
             transition_jacobian=self._jacobian,
             process_noise=process_noise,
-            measurement=lambda x: x,
-            measurement_jacobian=lambda x: np.eye(4),  # noqa: ARG005
+            measurement=lambda x: x @ MEASURED.T,
+            measurement_jacobian=lambda x: MEASURED,  # noqa: ARG005
             measurement_covariance=np.diag(self.measurement_variance * [1, 1, 1, larger]),
             state_angles=self.state_angles,
             measurement_angles=self.state_angles,
@@ -135,16 +148,17 @@ class TractionModes:
     def _transition(self, x: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Poses along exact arcs of the mean yaw rate of the step."""
         moved, omega = self._moved(x, u, dt)
-        return np.concatenate([se2.compose(x[:, :3], se2.exp(moved)), omega[:, None]], axis=1)
+        reached = se2.compose(x[:, :3], se2.exp(moved))
+        return np.concatenate([reached, omega[:, None], x[:, 4:]], axis=1)
 
     def _jacobian(self, x: FloatArray, u: FloatArray, dt: float) -> FloatArray:
-        """The heading swings the step, and so does the yaw rate (M, 4, 4)."""
+        """The heading swings the step, and so does the yaw rate (M, 5, 5)."""
         moved, _ = self._moved(x, u, dt)
         lasting, integral_s = self._lasting(dt)
         cosine, sine = np.cos(x[:, 2]), np.sin(x[:, 2])
         dx, dy, _ = se2.exp(moved).T
         by_angle = se2.exp_jacobian(moved)[:, :, 2] * integral_s[:, None]
-        jacobian = np.tile(np.eye(4), (len(x), 1, 1))
+        jacobian = np.tile(np.eye(5), (len(x), 1, 1))
         jacobian[:, 0, 2], jacobian[:, 1, 2] = -sine * dx - cosine * dy, cosine * dx - sine * dy
         jacobian[:, 0, 3] = cosine * by_angle[:, 0] - sine * by_angle[:, 1]
         jacobian[:, 1, 3] = sine * by_angle[:, 0] + cosine * by_angle[:, 1]

@@ -9,12 +9,18 @@ from scipy.linalg import expm
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
 from odometry.estimation.ekf_model import EkfModel
-from odometry.modes.signals import Signals, velocity_signals
+from odometry.modes.signals import (
+    BIAS_SIGMA_RAD_S,
+    BIAS_WALK_RAD2_S3,
+    Signals,
+    velocity_signals,
+)
 from odometry.run import Run
 
 STEP_RESOLUTION_S = 1e-6
 FASTEST_GROWTH_HZ = 10.0  # of a model that is no slip of the pen
-FIRST_SIGMAS = np.array([0.5, 0.5])  # of speed [m/s] and yaw rate [rad/s] at the start
+FIRST_SIGMAS = np.array([0.5, 0.5, BIAS_SIGMA_RAD_S])  # of speed [m/s], yaw rate, bias at the start
+MEASURED = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 1.0]])  # speed, and yaw rate with the bias
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,29 +66,36 @@ class VelocityModes:
         """None (N,): these are the same at every stamp."""
         return np.zeros(len(signals))
 
-    def start(self, signals: Signals) -> tuple[FloatArray, FloatArray]:
-        """Mean (2,) and covariance (2, 2) at the first stamp: as the wheels turn."""
+    def start(self, signals: Signals, independent: float = 1.0) -> tuple[FloatArray, FloatArray]:
+        """Mean (3,) and covariance (3, 3) at the first stamp: as the wheels turn.
+
+        A filter takes all that is measured for news; the variance of the bias is less by the share
+        that is, so that it is learnt no faster than the news say.
+        """
         speed = signals.tread_speeds_m_s[0].mean()
         omega = signals.measured[0, 1]
-        mean = np.array([speed, omega if np.isfinite(omega) else 0.0])
-        return mean, np.diag(FIRST_SIGMAS**2)
+        mean = np.array([speed, omega if np.isfinite(omega) else 0.0, 0.0])
+        return mean, np.diag(FIRST_SIGMAS**2 * [1.0, 1.0, independent])
 
-    def model(self, roughness: float = 0.0) -> EkfModel:  # noqa: ARG002
-        """For a bank of all modes."""
+    def model(self, roughness: float = 0.0, independent: float = 1.0) -> EkfModel:  # noqa: ARG002
+        """For a bank of all modes, whose measurements are news by a share `independent`."""
         key = np.concatenate([self.A, self.B], axis=-1)
 
         def exact(step_s: float) -> FloatArray:
             return _discrete(key.tobytes(), len(key), round(step_s / STEP_RESOLUTION_S))
 
+        walk = independent * BIAS_WALK_RAD2_S3
+        added = np.insert(self.process_variance, 2, walk, axis=1)[:, :, None]
+
         return EkfModel(
-            states=2,
+            states=3,
             transition=lambda x, u, dt: (
-                np.einsum("mij,mj->mi", exact(dt)[..., :2], x) + exact(dt)[..., 2:] @ u
+                np.einsum("mij,mj->mi", exact(dt)[..., :3], x) + exact(dt)[..., 3:] @ u
             ),
-            transition_jacobian=lambda x, u, dt: exact(dt)[..., :2],  # noqa: ARG005
-            process_noise=lambda x, u, dt: dt * self.process_variance[:, :, None] * np.eye(2),  # noqa: ARG005
-            measurement=lambda x: x,
-            measurement_jacobian=lambda x: np.eye(2),  # noqa: ARG005
+            transition_jacobian=lambda x, u, dt: exact(dt)[..., :3],  # noqa: ARG005
+            process_noise=lambda x, u, dt: dt * added * np.eye(3),  # noqa: ARG005
+            measurement=lambda x: x @ MEASURED.T,
+            measurement_jacobian=lambda x: MEASURED,  # noqa: ARG005
             measurement_covariance=self.measurement_variance[:, :, None] * np.eye(2),
         )
 
@@ -93,7 +106,7 @@ class VelocityModes:
 
 @lru_cache(maxsize=256)
 def _discrete(models: bytes, modes: int, steps: int) -> FloatArray:
-    """Transition and input matrices (M, 2, 4) of a step at constant input, exactly."""
-    blocks = np.zeros((modes, 4, 4))
-    blocks[:, :2] = np.frombuffer(models).reshape(modes, 2, 4)
-    return np.asarray(expm(blocks * (steps * STEP_RESOLUTION_S))[:, :2])
+    """Transition and input matrices (M, 3, 5) of a step at constant input, exactly."""
+    blocks = np.zeros((modes, 5, 5))
+    blocks[:, :2, [0, 1, 3, 4]] = np.frombuffer(models).reshape(modes, 2, 4)
+    return np.asarray(expm(blocks * (steps * STEP_RESOLUTION_S))[:, :3])

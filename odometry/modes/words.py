@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from odometry.modes.answers import UNDETERMINED, Detection
+from odometry.modes.answers import NO_MODES, Detection
 from odometry.modes.followed import SIGHTED, Followed, Score
 from odometry.modes.track import ModeTrack
 
@@ -83,7 +83,7 @@ def _answered(followed: Followed, track: ModeTrack, one: Detection) -> str:
     """The mode that was answered most in a stretch, where it was, and for how much of it."""
     inside = (track.stamps_s >= one.from_s) & (track.stamps_s <= one.to_s)
     names, counts = np.unique(followed.answers(track)[inside].astype(str), return_counts=True)
-    told = names != UNDETERMINED
+    told = ~np.isin(names, NO_MODES)
     most = int(np.where(told, counts, 0).argmax())
     share = counts[most] / inside.sum()
     if not told[most] or share < LEAST_SHARE:

@@ -11,11 +11,13 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from odometry.arrays import AnyArray
-from odometry.modes.answers import UNDETERMINED
+from odometry.modes.answers import NO_MODES
 from odometry.modes.followed import MOTION, SIGHTED, Followed
 from odometry.report.figure import save_figure
 from odometry.report.html import Picture
 from odometry.report.mode_panels import (
+    EDGES,
+    HATCHES,
     MEASURED_COLOUR,
     MOST_LINES,
     draw_probabilities,
@@ -24,7 +26,7 @@ from odometry.report.mode_panels import (
     drawn_rows,
     mark_mode_changes,
 )
-from odometry.report.palette import UNKNOWN_TINT, mode_colours
+from odometry.report.palette import mode_colours
 from odometry.run import UNKNOWN
 
 WIDTH_IN = 7.0
@@ -43,7 +45,7 @@ def modes_picture(followed: Followed, folder: Path) -> Picture:
     heights += [LINES_IN if few else ROW_IN * count] * len(followed.tracks)
     with_states = followed.mode_set.modes.kind == "velocity"
     heights += [STATE_IN, STATE_IN] if with_states else []
-    top = LEGEND_ROW_IN * (1 + count // COLUMNS if few else 1) + 0.2
+    top = LEGEND_ROW_IN * (1 + (count + 1) // COLUMNS if few else 1) + 0.2
     longest = 0 if few else max(map(len, followed.mode_set.names))
     left = max(LEFT_IN, LETTER_IN * longest + 0.3) / WIDTH_IN
 
@@ -78,7 +80,7 @@ def path_picture(followed: Followed, folder: Path) -> Picture | None:
         return None
     track = followed.last_track
     answers = followed.answers(track)
-    present = [name for name in track.names if name in answers]
+    present = [name for name in (*track.names, *NO_MODES) if name in answers]
 
     def draw(figure: Figure) -> None:
         axes = figure.add_axes((0.1, 0.13, 0.56, 0.82))
@@ -88,7 +90,7 @@ def path_picture(followed: Followed, folder: Path) -> Picture | None:
         axes.plot(*measured.T, ".", color=MEASURED_COLOUR, markersize=3.0)
         rows = drawn_rows(len(answers))
         x, y = track.means[rows, :2].T
-        colours = mode_colours(track.names) | {UNDETERMINED: "#000000"}
+        colours = mode_colours(track.names) | EDGES
         ends = np.stack([np.column_stack([x, y])[:-1], np.column_stack([x, y])[1:]], axis=1)
         named = [colours[name] for name in answers[rows[1:]]]
         axes.add_collection(LineCollection(list(ends), colors=named, linewidths=2.2))
@@ -99,7 +101,6 @@ def path_picture(followed: Followed, folder: Path) -> Picture | None:
         axes.set(xlabel="x [m]", ylabel="y [m]")
         axes.grid(visible=True)
         handles = [Line2D([], [], color=colours[name], linewidth=2.2) for name in present]
-        handles += [Line2D([], [], color=colours[UNDETERMINED], linewidth=2.2)]
         handles += [
             Line2D([], [], marker=mark, color="none", markeredgecolor=edge, markerfacecolor=face)
             for mark, edge, face in (
@@ -108,7 +109,7 @@ def path_picture(followed: Followed, folder: Path) -> Picture | None:
                 ("D", "black", "white"),
             )
         ]
-        words = [*present, UNDETERMINED, "measured", "start", "true mode changes"]
+        words = [*present, "measured", "start", "true mode changes"]
         legend = figure.legend(
             handles, words, loc="center left", bbox_to_anchor=(0.68, 0.5), frameon=False
         )
@@ -167,10 +168,13 @@ def _draw_velocity(panels: list[Axes], followed: Followed) -> None:
 
 def _legend(figure: Figure, lines: Sequence[Line2D], names: Sequence[str]) -> None:
     """Colour and dashes of each mode, where they are few; rows of many bear their names."""
-    open_ = Patch(facecolor="white", edgecolor=UNKNOWN_TINT, hatch="////", linewidth=0.0)
+    hatched = [
+        Patch(facecolor="white", edgecolor=EDGES[name], hatch=HATCHES[name], linewidth=0.0)
+        for name in NO_MODES
+    ]
     legend = figure.legend(
-        [*lines, open_],
-        [*names[: len(lines)], UNDETERMINED],
+        [*lines, *hatched],
+        [*names[: len(lines)], *NO_MODES],
         loc="upper center",
         ncols=COLUMNS,
         frameon=False,

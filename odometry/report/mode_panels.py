@@ -10,7 +10,7 @@ from matplotlib.transforms import blended_transform_factory
 
 from odometry.arrays import AnyArray, FloatArray
 from odometry.evaluation.stretches import stretches
-from odometry.modes.answers import UNDETERMINED
+from odometry.modes.answers import NO_MODES, NONE_OF_THESE, UNDETERMINED
 from odometry.modes.track import ModeTrack
 from odometry.report.palette import UNKNOWN_TINT, line_styles
 from odometry.run import UNKNOWN
@@ -19,6 +19,8 @@ MOST_LINES = 6  # more modes are rows of grey
 MOST_DRAWN = 4000  # stamps
 CHANGE_COLOUR = "#444444"
 GREYS = LinearSegmentedColormap.from_list("probability", ["#FFFFFF", "#222222"])
+HATCHES = {UNDETERMINED: "////", NONE_OF_THESE: "xxxx"}
+EDGES = {UNDETERMINED: UNKNOWN_TINT, NONE_OF_THESE: "#222222"}
 STATE_COLOUR, MEASURED_COLOUR, WHEEL_COLOUR = "#0072B2", "#B0B0B0", "#D55E00"
 
 
@@ -35,21 +37,21 @@ def draw_strips(
 ) -> None:
     """One coloured strip for each row of names (N,): the first on top.
 
-    Nothing is drawn where the name is "unknown", hatched grey where "undetermined".
+    Nothing is drawn where the name is "unknown", hatched where it names no mode.
     """
     for row, names in enumerate(strips.values()):
         for stretch in stretches(stamps_s, names.tolist()):
             if stretch.terrain == UNKNOWN:
                 continue
-            open_ = stretch.terrain == UNDETERMINED
+            open_ = stretch.terrain in NO_MODES
             axes.add_patch(
                 Rectangle(
                     (stretch.start_s, row - 0.4),
                     stretch.end_s - stretch.start_s,
                     0.8,
                     facecolor="white" if open_ else colours.get(stretch.terrain, UNKNOWN_TINT),
-                    edgecolor=UNKNOWN_TINT if open_ else "none",
-                    hatch="////" if open_ else None,
+                    edgecolor=EDGES.get(stretch.terrain, "none"),
+                    hatch=HATCHES.get(stretch.terrain),
                     linewidth=0.0,
                 )
             )

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from odometry.modes.answers import UNDETERMINED, confusion
+from odometry.modes.answers import NO_MODES, NONE_OF_THESE, UNDETERMINED, confusion
 from odometry.modes.followed import Followed
 from odometry.modes.words import percent, sentences
 from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
@@ -45,7 +45,10 @@ def write_modes_report(followed: Followed, out: Path) -> list[Path]:
 
 
 def _detections(followed: Followed) -> list[Grid | Picture]:
-    header = ("mode", "from [s]", "to [s]", "told after [s]", "right", "wrong", UNDETERMINED)
+    header = (
+        *("mode", "from [s]", "to [s]", "told after [s]", "right", "wrong"),
+        *(UNDETERMINED, NONE_OF_THESE),
+    )
     grids: list[Grid | Picture] = []
     for name, track in followed.tracks.items():
         rows = [
@@ -54,7 +57,7 @@ def _detections(followed: Followed) -> list[Grid | Picture]:
                 f"{one.from_s:.1f}",
                 f"{one.to_s:.1f}",
                 "never" if one.after_s != one.after_s else f"{one.after_s:.2f}",
-                *map(percent, (one.right, one.wrong, one.undetermined)),
+                *map(percent, (one.right, one.wrong, one.undetermined, one.none_of_these)),
             )
             for one in followed.score(track).detections
         ]
@@ -68,8 +71,8 @@ def _confusions(followed: Followed) -> list[Grid | Picture]:
     grids: list[Grid | Picture] = []
     for title, track in followed.tracks.items():
         seconds = confusion(track, followed.config.sure, names)
-        answered = [*(seconds.sum(axis=0)[:-1] > 0).nonzero()[0], len(names)]
-        columns = (*names, UNDETERMINED)
+        answered = (seconds.sum(axis=0) > 0).nonzero()[0]
+        columns = (*names, *NO_MODES)
         rows = [
             (name, *(f"{row[place]:.1f}" for place in answered))
             for name, row in zip(names, seconds, strict=True)

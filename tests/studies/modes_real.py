@@ -21,7 +21,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from odometry.arrays import FloatArray
-from odometry.modes.answers import UNDETERMINED, confusion
+from odometry.modes.answers import NO_MODES, confusion
 from odometry.modes.identify_traction import identify_traction_modes
 from odometry.modes.identify_velocity import identify_velocity_modes
 from odometry.modes.mode_set import DWELL_S, ModeSet
@@ -156,18 +156,20 @@ def print_table(title: str, tracks: Sequence[ModeTrack]) -> None:
     """Shares of the time, and how the innovations were."""
     names = tracks[0].names
     print(f"\n{title}: named with {SURE:.0%} and more | most probable")
-    print(" " * 10, *(f"{name[:9]:>9}" for name in (*names, UNDETERMINED, "", *names)))
+    print(" " * 10, *(f"{name[:9]:>9}" for name in (*names, *NO_MODES, "", *names)))
     named = sum(confusion(track, SURE, names) for track in tracks)
-    forced = sum(confusion(track, 0.0, names) for track in tracks)[:, :-1]
+    forced = sum(confusion(replace(track, fit=None), 0.0, names) for track in tracks)
+    forced = forced[:, : len(names)]
     for name, row, other in zip(names, named, forced, strict=True):
         cells = [f"{value:9.2f}" for value in row / row.sum()]
         cells += [" " * 9, *(f"{value:9.2f}" for value in other / other.sum())]
         print(f"{name:10}", *cells)
-    right, wrong = np.trace(named), named[:, :-1].sum() - np.trace(named)
+    right, wrong = np.trace(named), named[:, : len(names)].sum() - np.trace(named)
     told = named.sum()
     print(
-        f"of {told:.0f} s: right {right / told:.2f}, wrong {wrong / told:.2f}, open "
-        f"{named[:, -1].sum() / told:.2f}; most probable right {np.trace(forced) / told:.2f}; "
+        f"of {told:.0f} s: right {right / told:.3f}, wrong {wrong / told:.3f}, open "
+        f"{named[:, -1].sum() / told:.3f}, none of these {named[:, -2].sum() / told:.3f}; "
+        f"most probable right {np.trace(forced) / told:.3f}; "
         f"innovations squared {np.mean([np.nanmean(t.normalised_squared) for t in tracks]):.2f}\n"
     )
 

@@ -30,7 +30,7 @@ from tqdm import tqdm
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from odometry.modes.answers import UNDETERMINED, detections, false_switches, named_modes
+from odometry.modes.answers import NO_MODES, UNDETERMINED, detections, false_switches, named_modes
 from odometry.modes.identify_traction import identify_traction_modes
 from odometry.modes.identify_velocity import identify_velocity_modes
 from odometry.modes.mode_set import DWELL_S, ModeSet
@@ -223,7 +223,7 @@ def study(experiment: Experiment, seed: int) -> list[dict[str, object]]:
 
 def wrong(answers: np.ndarray, mode: str) -> np.ndarray:
     """Where another mode is named."""
-    return (answers != mode) & (answers != UNDETERMINED)
+    return (answers != mode) & ~np.isin(answers, NO_MODES)
 
 
 def radii_m(track: ModeTrack, drive: ContactDrive) -> np.ndarray:

@@ -22,7 +22,7 @@ def track(most, labels, names=("a", "b", "c"), probability=0.95):
         if name:
             rows[row] = (1 - probability) / (count - 1)
             rows[row, names.index(name)] = probability
-    blank = np.zeros((len(most), 2))
+    blank = np.zeros((len(most), 3))
     stamps_s = STEP_S * np.arange(len(most))
     squared = np.full(len(most), np.nan)
     labels = np.array(labels, dtype=object)
@@ -32,8 +32,8 @@ def track(most, labels, names=("a", "b", "c"), probability=0.95):
 def velocity_set(turns=(1.0, 2.0), names=("ice", "tar"), sigma=0.05):
     """Modes that turn by so much per difference of tread speeds, at once; and their runs."""
     count = len(turns)
-    A = np.tile(-50.0 * np.eye(2), (count, 1, 1))
-    B = np.array([[[25.0, 25.0], [-50.0 * turn, 50.0 * turn]] for turn in turns])
+    A = np.tile(-500.0 * np.eye(2), (count, 1, 1))
+    B = np.array([[[250.0, 250.0], [-500.0 * turn, 500.0 * turn]] for turn in turns])
     noise = np.full((count, 2), 1e-3), np.full((count, 2), sigma**2)
     return ModeSet(VelocityModes(names, A, B, *noise), np.full(count, 20.0), "by hand")
 
@@ -64,7 +64,8 @@ def run_of(turn, *, track_width=1.0, size=400, labels=None, rng=None, folder="dr
     yaw = np.append(0.0, np.cumsum(omega[:-1]) * 0.02)
     x, y = (np.append(0.0, np.cumsum(0.5 * f(yaw[:-1])) * 0.02) for f in (np.cos, np.sin))
     odometry = {"t": t, "v_left": 0.5 - half, "v_right": 0.5 + half}
-    odometry["gyro_z"] = omega + 0.02 * rng.standard_normal(size)
+    turning = np.append(omega[0], omega[:-1])  # until the stamp
+    odometry["gyro_z"] = turning + 0.02 * rng.standard_normal(size)
     if labels is not None:
         odometry["terrain"] = np.array(labels)
     noise = 0.01 * rng.standard_normal((3, size))

@@ -62,7 +62,7 @@ def test_false_switches_are_turns_to_a_wrong_mode():
 def test_seconds_by_true_mode_and_answer():
     most = ["a", "a", "b", "", "b", "c"]
     seconds = confusion(track(most, ["a"] * 3 + ["b"] * 3), 0.9, NAMES)
-    assert seconds.tolist() == [[1.0, 0.5, 0.0, 0.0], [0.0, 0.5, 0.0, 0.5], [0.0] * 4]
+    assert seconds.tolist() == [[1.0, 0.5, 0.0, 0.0, 0.0], [0.0, 0.5, 0.0, 0.0, 0.5], [0.0] * 5]
 
 
 @given(letters)

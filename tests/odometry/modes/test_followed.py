@@ -154,7 +154,8 @@ def test_a_row_for_each_stamp(halves, tmp_path):
     rows = rows_of(tmp_path / "modes.csv")
     assert list(rows[0]) == [
         *("t", "probability_ice", "probability_tar", "answer", "candidates", "label"),
-        *("vx", "wz", "sigma_vx", "sigma_wz"),
+        *("vx", "wz", "gyro_bias", "sigma_vx", "sigma_wz", "sigma_gyro_bias"),
+        *("probability_none of these", "innovation_vx", "innovation_wz"),
     ]
     assert len(rows) == len(halves.motion.stamps_s)
     assert [row["answer"] for row in rows] == halves.answers(halves.motion).tolist()

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from odometry.errors import ConfigError, ParameterError, RunFolderError
+from odometry.modes import velocity
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.sight import SeenGround
-from odometry.modes.signals import Signals
+from odometry.modes.signals import BIAS_SIGMA_RAD_S, BIAS_WALK_RAD2_S3, Signals
 from odometry.modes.track import ModesConfig, follow_modes, follow_signals
 from odometry.modes.traction import TractionModes
 from odometry.modes.velocity import VelocityModes
@@ -98,7 +99,7 @@ def test_errors_that_last_are_in_the_sigmas(run):
     plain = follow_modes(run, SET)
     modes = replace(SET.modes, errors_last_s=10 * STEP_S)
     lasting = follow_modes(run, replace(SET, modes=modes))
-    added = lasting.sigmas[:CHANGE] ** 2 - plain.sigmas[:CHANGE] ** 2
+    added = (lasting.sigmas[:CHANGE] ** 2 - plain.sigmas[:CHANGE] ** 2)[:, :2]
     expected = 0.9 * modes.measurement_variance[0]  # but where modes are in doubt
     np.testing.assert_allclose(np.median(added, axis=0), expected, rtol=0.03)
 
@@ -110,7 +111,7 @@ def test_errors_that_last_are_those_of_the_probable_mode(run):
     track = follow_modes(run, replace(SET, modes=modes))
     on_tar = track.probabilities[:, 1] > 0.97
     assert on_tar.sum() > 100
-    assert track.sigmas[on_tar].min() ** 2 > 0.85 * 9.0 * SIGMA**2
+    assert track.sigmas[on_tar, :2].min() ** 2 > 0.85 * 9.0 * SIGMA**2
 
 
 def test_a_rough_stretch_says_less():
@@ -212,19 +213,23 @@ def test_one_mode_is_a_kalman_filter():
     treads, z = rng.normal(size=(60, 2)), rng.normal(size=(60, 2))
     z[10], z[20, 0], z[30, 1] = np.nan, np.nan, np.nan
     treads[40] = 0.0
-    process, noise = np.array([0.02, 0.05]), np.array([0.3, 0.1])
+    process, noise = np.array([0.02, 0.05]), np.array([0.6, 0.5])
     one = VelocityModes(("mud",), A[:1], B[:1], process[None], noise[None])
     labels = np.full(60, "mud", dtype=object)
     track = follow_signals(Signals(stamps_s, treads, z, labels), ModeSet(one, np.array([5.0])))
-    mean, P = np.array([treads[0].mean(), z[0, 1]]), 0.25 * np.eye(2)
+    mean = np.array([treads[0].mean(), z[0, 1], 0.0])
+    P = np.diag([0.25, 0.25, BIAS_SIGMA_RAD_S**2])
+    seen = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 1.0]])
     for row in range(1, 60):
         lasts_s, u = stamps_s[row] - stamps_s[row - 1], treads[row - 1]
-        F = integrated(lambda q: A[0] @ q, np.eye(2), lasts_s, 50)
-        mean = integrated(lambda q, u=u: A[0] @ q + B[0] @ u, mean, lasts_s, 50)
-        P = F @ P @ F.T + lasts_s * np.diag(process)
-        H = np.eye(2)[np.isfinite(z[row]) & (row != 41)]
-        S = H @ (P + np.diag(noise)) @ H.T
-        left = H @ np.nan_to_num(z[row]) - H @ mean
+        F = np.eye(3)
+        F[:2, :2] = integrated(lambda q: A[0] @ q, np.eye(2), lasts_s, 50)
+        mean[:2] = integrated(lambda q, u=u: A[0] @ q + B[0] @ u, mean[:2], lasts_s, 50)
+        P = F @ P @ F.T + lasts_s * np.diag([*process, BIAS_WALK_RAD2_S3])
+        there = np.isfinite(z[row]) & (row != 41)
+        H = seen[there]
+        S = H @ P @ H.T + np.diag(noise[there])
+        left = z[row][there] - H @ mean
         squared = left @ np.linalg.solve(S, left) / len(H) if len(H) else np.nan
         gain = P @ H.T @ np.linalg.inv(S)
         mean, P = mean + gain @ left, P - gain @ H @ P
@@ -234,8 +239,13 @@ def test_one_mode_is_a_kalman_filter():
     assert np.isnan(track.normalised_squared[[0, 10, 41]]).all()
 
 
-def test_errors_that_last_count_once(run):
-    """Measured each 0.02 s, alike for 0.2 s: a tenth of the log-odds. No mode is ever left."""
+def test_errors_that_last_count_once(run, monkeypatch):
+    """Measured each 0.02 s, alike for 0.2 s: a tenth of the log-odds. No mode is ever left.
+
+    A bias would be learnt from all of them.
+    """
+    monkeypatch.setattr(velocity, "FIRST_SIGMAS", np.array([0.5, 0.5, 0.0]))
+    monkeypatch.setattr(velocity, "BIAS_WALK_RAD2_S3", 0.0)
     odds = {}
     for lasts_s in (0.0, 0.01, 0.2):
         modes = replace(SET.modes, errors_last_s=lasts_s)
@@ -246,7 +256,9 @@ def test_errors_that_last_count_once(run):
     np.testing.assert_allclose(odds[0.01], odds[0.0], atol=1e-9)
 
 
-@pytest.mark.parametrize("wrong", [{"floor": 0.5}, {"sure": 0.5}, {"sure": 1.0}, {"lasting_s": 0}])
+@pytest.mark.parametrize(
+    "wrong", [{"floor": 0.5}, {"sure": 0.5}, {"sure": 1.0}, {"lasting_s": 0}, {"misfit_share": 0.0}]
+)
 def test_settings_that_cannot_be(wrong):
     with pytest.raises(ConfigError, match=f"{next(iter(wrong))} = "):
         ModesConfig(**wrong)

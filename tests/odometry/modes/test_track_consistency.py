@@ -15,6 +15,7 @@ from odometry.estimation.mode_belief import ModeBelief
 from odometry.evaluation.consistency import consistency, normalised_squared_errors
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.signals import Signals
+from odometry.modes.tempered import TemperedBank
 from odometry.modes.track import follow_signals
 from odometry.modes.velocity import FIRST_SIGMAS, VelocityModes
 from tests.odometry.modes.mode_drives import integrated
@@ -54,14 +55,17 @@ def simulated(rng):
     """Modes, states, and signals of which the first is not measured."""
     t, modes = STEP_S * np.arange(STEPS + 1), grounds(rng)
     treads = np.column_stack([1.0 + 0.4 * np.sin(t), 1.0 - 0.5 * np.sin(0.6 * t)])
-    states = [np.array([treads[0].mean(), 0.0]) + FIRST_SIGMAS * rng.normal(size=2)]
+    states = [np.array([treads[0].mean(), 0.0]) + FIRST_SIGMAS[:2] * rng.normal(size=2)]
+    bias = FIRST_SIGMAS[2] * rng.normal()
     for mode, u in zip(modes[1:], treads[:-1], strict=True):
         a, b = A[mode], B[mode]
         moved = integrated(lambda q, a=a, b=b, u=u: a @ q + b @ u, states[-1], STEP_S, FINE)
         states.append(moved + np.sqrt(PROCESS[mode] * STEP_S) * rng.normal(size=2))
     states = np.array(states)
     seen = states + np.sqrt(MEASUREMENT[modes]) * rng.normal(size=states.shape)
+    seen[:, 1] += bias
     seen[0] = np.nan
+    states = np.column_stack([states, np.full(len(t), bias)])
     return modes, states, Signals(t, treads, seen, np.full(len(t), "unknown", dtype=object))
 
 
@@ -69,7 +73,7 @@ def filtered(factor=1.0, runs=RUNS):
     """NEES and NIS (runs, STEPS), the latter of each run's tracks, and the share of right modes."""
     rng, with_set = np.random.default_rng(12), mode_set(factor)
     modes = with_set.modes
-    imm = Imm(EkfBank(modes.model(), 3), ModeChain(DWELL_S).transition)
+    imm = Imm(TemperedBank(EkfBank(modes.model(), 3), 1.0), ModeChain(DWELL_S).transition)
     nees, nis, right = np.zeros((3, runs, STEPS))
     for run in range(runs):
         truth, states, signals = simulated(rng)
@@ -79,10 +83,13 @@ def filtered(factor=1.0, runs=RUNS):
             predicted = imm.predicted(belief, signals.tread_speeds_m_s[row - 1], STEP_S)
             mean, P = imm.merged(predicted)
             R = np.diag(predicted.probabilities @ modes.measurement_variance)
-            nis[run, row - 1] = normalised_squared_errors(signals.measured[row] - mean, P + R)
+            H = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 1.0]])
+            left = signals.measured[row] - H @ mean
+            nis[run, row - 1] = normalised_squared_errors(left, H @ P @ H.T + R)
             belief = imm.updated(predicted, signals.measured[row])
             mean, P = imm.merged(belief)
-            nees[run, row - 1] = normalised_squared_errors(mean - states[row], P)
+            off = (mean - states[row])[:2]  # a bias is one error of the whole run
+            nees[run, row - 1] = normalised_squared_errors(off, P[:2, :2])
             right[run, row - 1] = belief.probabilities.argmax() == truth[row]
             means.append(mean)
         if run < 3:  # what is judged here is what `follow_modes` does

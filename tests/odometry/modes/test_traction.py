@@ -7,6 +7,7 @@ from hypothesis.extra.numpy import arrays
 from odometry.errors import RunFolderError
 from odometry.models.inputs import Inputs
 from odometry.models.traction_mode import TractionMode
+from odometry.modes.signals import BIAS_SIGMA_RAD_S, BIAS_WALK_RAD2_S3
 from odometry.modes.traction import (
     LEFT_TURN,
     RIGHT_TURN,
@@ -32,7 +33,7 @@ MODES = TractionModes(
     np.array([4e-4, 4e-4, 1e-4, 1e-3]),
     variance_growth=2.0,
 )
-states = arrays(float, (3, 4), elements=st.floats(-3, 3))
+states = arrays(float, (3, 5), elements=st.floats(-3, 3))
 speeds = arrays(float, 2, elements=st.floats(-1.5, 1.5))
 steps_s = st.floats(0.005, 0.3)
 
@@ -44,7 +45,8 @@ def finely(state, u, lasts_s, mode, pieces=2000):
 
     def rates(q):
         c, s = np.cos(q[2]), np.sin(q[2])
-        return np.array([c * v_x - s * v_y, s * v_x + c * v_y, q[3], (wanted - q[3]) / lag_s])
+        moved = [c * v_x - s * v_y, s * v_x + c * v_y, q[3], (wanted - q[3]) / lag_s]
+        return np.array([*moved, 0.0])  # the bias stays
 
     return integrated(rates, state, lasts_s, pieces)
 
@@ -55,19 +57,22 @@ def angle_apart(first, second):
 
 @pytest.mark.parametrize("u", [(0.4, 0.9), (0.9, 0.4), (-0.6, -0.2), (0.7, 0.7), (-0.5, 0.5)])
 def test_yaw_and_its_rate_are_what_small_steps_make(u):
-    start = np.array([[0.3, -0.2, 3.0, 0.5], [1.0, 2.0, -1.0, -0.7], [0.0, 0.0, 0.4, 0.0]])
+    start = np.array(
+        [[0.3, -0.2, 3.0, 0.5, 0.1], [1.0, 2.0, -1.0, -0.7, 0.0], [0.0, 0.0, 0.4, 0.0, -0.1]]
+    )
     moved = MODES.model().transition(start, np.array(u), 0.25)
     for mode in range(3):
         expected = finely(start[mode], u, 0.25, mode)
         assert abs(angle_apart(moved[mode, 2], expected[2])) < 1e-8
         assert moved[mode, 3] == pytest.approx(expected[3], abs=1e-8)
+        assert moved[mode, 4] == start[mode, 4]
 
 
 @pytest.mark.parametrize("mode", [1, 2])
 def test_the_place_is_of_second_order(mode):
     """The yaw rate of a step is its mean: half the step, a quarter of the error or less."""
     move, u = MODES.model().transition, np.array([0.2, 0.9])
-    start = np.tile([0.3, -0.2, 1.0, -1.0], (3, 1))
+    start = np.tile([0.3, -0.2, 1.0, -1.0, 0.0], (3, 1))
     truth = finely(start[mode], u, 0.4, mode)
     errors = []
     for steps in (4, 8, 16):
@@ -83,7 +88,7 @@ def test_the_place_is_of_second_order(mode):
 def test_a_settled_turn_is_an_exact_arc():
     u = np.array([0.2, 0.9])
     wanted = np.array([asked_twists(of, [u], WIDTH)[0, 2] for of in GAINS])
-    start = np.column_stack([np.zeros((3, 3)), wanted])
+    start = np.column_stack([np.zeros((3, 3)), wanted, np.zeros(3)])
     moved = MODES.model().transition(start, u, 1.0)
     for mode in range(3):
         np.testing.assert_allclose(moved[mode], finely(start[mode], u, 1.0, mode), atol=1e-9)
@@ -93,7 +98,7 @@ def test_a_settled_turn_is_an_exact_arc():
 def test_the_jacobian_is_that_of_differences(x, u, step_s):
     model = MODES.model()
     columns = []
-    for h in 1e-5 * np.eye(4):
+    for h in 1e-5 * np.eye(5):
         ahead, behind = (model.transition(x + s * h, u, step_s) for s in (1, -1))
         apart = ahead - behind
         apart[:, 2] = angle_apart(ahead[:, 2], behind[:, 2])
@@ -188,8 +193,9 @@ def test_m_is_the_share_of_wide_slow_turns(speed):
 
 def travel_noise(model):
     """Of place and yaw after 0.1 s at 2 m/s backward on the left and 4 m/s on the right: 0.3 m."""
-    noise = model.process_noise(np.zeros((3, 4)), np.array([-2.0, 4.0]), 0.1)
-    np.testing.assert_array_equal(noise, noise * np.eye(4))
+    noise = model.process_noise(np.zeros((3, 5)), np.array([-2.0, 4.0]), 0.1)
+    np.testing.assert_array_equal(noise, noise * np.eye(5))
+    np.testing.assert_allclose(noise[:, 4, 4], 0.1 * BIAS_WALK_RAD2_S3)
     return np.diagonal(noise[:, :3, :3], axis1=1, axis2=2)
 
 
@@ -202,8 +208,8 @@ def test_in_the_long_run_the_yaw_rate_is_off_by_its_variance(step_s):
     model, u = MODES.model(), np.array([0.3, 0.5])
     variances = np.zeros(3)
     for _ in range(1000):
-        noise = model.process_noise(np.zeros((3, 4)), u, step_s)
-        jacobian = model.transition_jacobian(np.zeros((3, 4)), u, step_s)
+        noise = model.process_noise(np.zeros((3, 5)), u, step_s)
+        jacobian = model.transition_jacobian(np.zeros((3, 5)), u, step_s)
         variances = jacobian[:, 3, 3] ** 2 * variances + noise[:, 3, 3]
     np.testing.assert_allclose(variances, 1e-4)
 
@@ -254,21 +260,29 @@ def started(t, x):
 
 def test_it_starts_standing_at_the_first_pose():
     mean, covariance = started(np.array([0.0, 0.1]), [2.0, 3.0])
-    np.testing.assert_allclose(mean, [2.0, 0.0, 1.0, 0.0])
-    np.testing.assert_array_equal(covariance, np.diag([4e-4, 4e-4, 1e-4, 0.0]))
+    np.testing.assert_allclose(mean, [2.0, 0.0, 1.0, 0.0, 0.0])
+    expected = np.diag([4e-4, 4e-4, 1e-4, 0.0, BIAS_SIGMA_RAD_S**2])
+    np.testing.assert_array_equal(covariance, expected)
 
 
 def test_a_first_pose_that_comes_late_is_less_certain():
     """The first whole one after 0.4 s: 0.6 m of wheel travel, a turn of 0.8 rad asked for."""
     mean, covariance = started(np.array([0.0, 0.1, 0.4, 0.5]), [np.nan, np.nan, 2.0, 3.0])
-    np.testing.assert_allclose(mean, [2.0, 0.4, 1.4, 0.0])
-    expected = [4e-4 + 0.36, 4e-4 + 0.36, 1e-4 + 0.64, 0.0]
+    np.testing.assert_allclose(mean, [2.0, 0.4, 1.4, 0.0, 0.0])
+    expected = [4e-4 + 0.36, 4e-4 + 0.36, 1e-4 + 0.64, 0.0, BIAS_SIGMA_RAD_S**2]
     np.testing.assert_allclose(covariance, np.diag(expected))
 
 
 def test_poses_of_which_none_is_whole_are_refused():
     with pytest.raises(RunFolderError, match="drive: no pose"):
         started(np.array([0.0, 0.1]), [np.nan, np.nan])
+
+
+def test_what_is_measured_is_the_state_and_the_bias_of_the_gyroscope():
+    model, x = MODES.model(), np.random.default_rng(3).normal(size=(3, 5))
+    expected = np.column_stack([x[:, :3], x[:, 3] + x[:, 4]])
+    np.testing.assert_allclose(model.measurement(x), expected)
+    np.testing.assert_allclose(model.measurement_jacobian(x) @ x[0], expected[0])
 
 
 def test_the_yaw_is_an_angle_to_the_filters():

@@ -172,7 +172,8 @@ def test_the_legend_names_few_modes_and_what_is_open(grounds, drawn, tmp_path):
     mode_figures.modes_picture(grounds, tmp_path)
     figure = drawn["modes.png"]
     (legend,) = figure.legends
-    assert [text.get_text() for text in legend.get_texts()] == ["ice", "tar", "undetermined"]
+    words = [text.get_text() for text in legend.get_texts()]
+    assert words == ["ice", "tar", "none of these", "undetermined"]
     strips, motion, _, speed, rate = figure.axes
     names = [tick.get_text() for tick in strips.get_yticklabels()]
     assert names == ["true", "seen", "answer", "with sight"]

@@ -1,0 +1,52 @@
+"""The filter of each mode by itself: what its innovations would be if the mode were true.
+
+In the interacting multiple model estimator an improbable mode begins every step where the probable
+one is, and shows no error of its own.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.estimation.bank import Bank
+from odometry.estimation.ekf_bank import EkfBank
+from odometry.estimation.mode_belief import ModeBelief
+
+
+@dataclass(frozen=True)
+class OwnFilters:
+    """Filters that are not mixed.
+
+    Attributes
+    ----------
+    bank : Bank
+        What steps them.
+    filters : EkfBank
+        The same filters, for the covariance of their innovations.
+    """
+
+    bank: Bank
+    filters: EkfBank
+
+    def step(
+        self, belief: ModeBelief, u: FloatArray, z: FloatArray, step_s: float
+    ) -> tuple[ModeBelief, FloatArray]:
+        """The belief a step later, and normalised innovations (M, m), NaN where not measured."""
+        means, covariances = self.bank.predicted(belief.means, belief.covariances, u, step_s)
+        innovations = self.filters.innovations(means, covariances, z)
+        if np.isfinite(z).any():
+            means, covariances, _, _ = self.bank.updated(means, covariances, z)
+        return ModeBelief(means, covariances, belief.log_probabilities), innovations
+
+
+def with_bias(belief: ModeBelief, mean: FloatArray, covariance: FloatArray) -> ModeBelief:
+    """A belief with the bias, the last entry, of a mean (n,) and covariance (n, n).
+
+    It is one of the gyroscope: no mode has its own.
+    """
+    means, covariances = belief.means.copy(), belief.covariances.copy()
+    means[:, -1] = mean[-1]
+    covariances[:, -1] = covariances[:, :, -1] = 0.0
+    covariances[:, -1, -1] = covariance[-1, -1]
+    return ModeBelief(means, covariances, belief.log_probabilities)
