@@ -1,16 +1,29 @@
 """What was found of the modes of a run in sentences."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from odometry.modes.answers import NO_MODES, Detection
+from odometry.modes.answers import NO_MODES, UNDETERMINED, Detection, Misfit
 from odometry.modes.followed import SIGHTED, Followed, Score
 from odometry.modes.track import ModeTrack
 
 FEW = 4  # stretches, or answers, that are said one by one
 LEAST_SHARE = 0.005  # less is not said
 LEAST_OPEN = 0.1  # of the undetermined time: sets of modes that are said
+MOSTLY = 0.5  # of the time
+SIGNALS = {
+    "velocity": ("forward speed", "yaw rate"),
+    "traction": ("position", "position", "heading", "yaw rate"),
+}
+CHECKS = {
+    "forward speed": "the measured speed (its unit and stamps) and the treads (a wheel scaled)",
+    "position": "the poses (late stamps, jumps, where the antenna sits)",
+    "heading": "the heading of the poses (late stamps, jumps, an offset)",
+    "yaw rate": "the gyroscope (unit, scale, bias, a value that is held) and the treads (left and "
+    "right exchanged, a wheel scaled)",
+}
+SCALE = ((3.0, "slightly off"), (6.0, "clearly off"), (np.inf, "far off"))
 
 
 def sentences(followed: Followed) -> tuple[str, ...]:
@@ -31,6 +44,66 @@ def answer_words(followed: Followed, track: ModeTrack) -> str:
         return _together(score)
     said = [_stretch(one, _answered(followed, track, one)) for one in score.detections]
     return f"{'. '.join(said)}."
+
+
+def in_short(followed: Followed) -> tuple[str, str, str]:
+    """What is in force, how sure that is, and what to do."""
+    return _in_force(followed), _how_sure(followed), _to_do(followed)
+
+
+def _in_force(followed: Followed) -> str:
+    track = followed.last_track
+    answers = followed.answers(track)
+    named = np.flatnonzero(answers != UNDETERMINED)
+    if not len(named):
+        return "nothing that the motion tells: undetermined all the time."
+    last = str(answers[named[-1]])
+    others = np.flatnonzero(answers[named] != last)
+    since = named[others[-1] + 1] if len(others) else named[0]
+    return (
+        f"{last} at the end, answered since {track.stamps_s[since]:.1f} s; of the time "
+        f"{_shares_said(followed.shares(track))}."
+    )
+
+
+def _shares_said(shares: Mapping[str, float]) -> str:
+    said = [f"{name} {percent(share)}" for name, share in list(shares.items())[:FEW]]
+    return ", ".join([*said, f"{len(shares) - FEW} others"] if len(shares) > FEW else said)
+
+
+def _how_sure(followed: Followed) -> str:
+    named = f"a mode is named from a probability of {percent(followed.config.sure)} on"
+    if not followed.misfits:
+        return f"{named}, and a mode of the set fits all along."
+    worst = max(followed.misfits, key=lambda one: one.to_s - one.from_s)
+    more = len(followed.misfits) - 1
+    others = f" and in {more} shorter stretch{'es' if more > 1 else ''}" if more else ""
+    return (
+        f"{named}; no mode fits from {worst.from_s:.1f} s to {worst.to_s:.1f} s{others}: the "
+        f"{signal_of(followed, worst)} is {scale_word(worst.sigmas)} what the nearest mode says."
+    )
+
+
+def _to_do(followed: Followed) -> str:
+    if followed.misfits:
+        signal = signal_of(followed, max(followed.misfits, key=lambda one: one.to_s - one.from_s))
+        return (
+            f"check {CHECKS[signal]}; if they are right, it drove on what the set does not hold (a "
+            "terrain, a slope, a load): record that and identify it with the others."
+        )
+    if followed.shares(followed.last_track).get(UNDETERMINED, 0.0) > MOSTLY:
+        return "drive turns of several radii to both sides: on straights modes are alike."
+    return "nothing; where the answer is undetermined, take the one before it."
+
+
+def signal_of(followed: Followed, misfit: Misfit) -> str:
+    """The name of the signal that fits least."""
+    return SIGNALS[followed.mode_set.modes.kind][misfit.signal]
+
+
+def scale_word(sigmas: float) -> str:
+    """How far off so many standard deviations are."""
+    return next(word for most, word in SCALE if sigmas < most)
 
 
 def percent(share: float) -> str:

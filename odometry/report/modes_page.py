@@ -4,9 +4,10 @@ from pathlib import Path
 
 from odometry.modes.answers import NO_MODES, NONE_OF_THESE, UNDETERMINED, confusion
 from odometry.modes.followed import Followed
-from odometry.modes.words import percent, sentences
+from odometry.modes.words import in_short, percent, scale_word, sentences, signal_of
 from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
 from odometry.report.mode_figures import modes_picture, path_picture
+from odometry.report.mode_innovations import innovations_picture
 
 HOW = (
     "Each mode is a filter with a model of its own; the filters' predictions are weighed by what "
@@ -18,7 +19,7 @@ HOW = (
 
 
 def write_modes_report(followed: Followed, out: Path) -> list[Path]:
-    """Write `figures/modes.png`, for traction modes `figures/path.png`, and `report.html`.
+    """Write `figures/modes.png`, `innovations.png`, for traction modes `path.png`, `report.html`.
 
     Returns
     -------
@@ -26,22 +27,47 @@ def write_modes_report(followed: Followed, out: Path) -> list[Path]:
         The files written, the page last. Figures of an earlier run are removed.
     """
     folder = Path(out) / "figures"
-    lead, *others = sentences(followed)
-    over_time, path = modes_picture(followed, folder), path_picture(followed, folder)
-    if path is None:
-        (folder / "path.png").unlink(missing_ok=True)
-    pictures = [over_time] if path is None else [over_time, path]
+    in_force, how_sure, to_do = in_short(followed)
+    short = [f"In force: {in_force}", f"How sure: {how_sure}", f"What to do: {to_do}"]
+    _, *others = sentences(followed)
+    over_time = modes_picture(followed, folder)
+    others_drawn = {
+        "innovations.png": innovations_picture(followed, folder),
+        "path.png": path_picture(followed, folder),
+    }
+    for name, picture in others_drawn.items():
+        if picture is None:
+            (folder / name).unlink(missing_ok=True)
+    innovations, path = ([] if one is None else [one] for one in others_drawn.values())
+    pictures = [over_time, *innovations, *path]
     sections = [
-        Section("In words", [Listing(others)] if others else []),
+        Section("In short", [Listing(short)]),
         Section("Over time", [over_time]),
-        Section("Where it drove", [] if path is None else [path]),
+        Section("How the nearest mode fits", [*innovations, *_misfits(followed)]),
+        Section("Where it drove", path),
         Section("Stretches", _detections(followed)),
         Section("Answers by true mode", _confusions(followed)),
+        Section("Details", [Listing(others)] if others else []),
         Section("Settings", [_settings(followed)]),
         Section("How to read this", [Paragraph(HOW)]),
     ]
-    page = write_page(out / "report.html", f"Modes of {followed.run.name}", lead, sections)
+    page = write_page(out / "report.html", f"Modes of {followed.run.name}", "", sections)
     return [*(picture.file for picture in pictures), page]
+
+
+def _misfits(followed: Followed) -> list[Grid | Picture]:
+    header = ("signal that fits least", "from [s]", "to [s]", "standard deviations", "in words")
+    rows = [
+        (
+            signal_of(followed, one),
+            f"{one.from_s:.1f}",
+            f"{one.to_s:.1f}",
+            f"{one.sigmas:.0f}",
+            scale_word(one.sigmas),
+        )
+        for one in followed.misfits
+    ]
+    return [Grid(header, rows, f"Where the answer is {NONE_OF_THESE}.")] if rows else []
 
 
 def _detections(followed: Followed) -> list[Grid | Picture]:

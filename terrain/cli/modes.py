@@ -57,7 +57,8 @@ def modes(
     """Tell on the run folders RUN, by motion alone, which mode the robot is in.
 
     Writes the probability of each mode over time, the answers, and how soon and how often they
-    were right where the run says what is true. With --seen, what vision saw is weighed too, and
+    were right where the run says what is true. "none of these" is the answer where no mode fits,
+    with the signal that speaks against it. With --seen, what vision saw is weighed too, and
     where sight and motion disagree for long is said. Several runs get a folder each; one that
     cannot be used becomes a row of runs.csv that says why, and the exit code is then 1.
 
@@ -90,7 +91,7 @@ def _one(
     span: "Span",
 ) -> None:
     from odometry.modes.files import write_modes
-    from odometry.modes.words import sentences
+    from odometry.modes.words import in_short, sentences
     from odometry.report.modes_page import write_modes_report
     from terrain.cli.outputs import about
 
@@ -98,6 +99,8 @@ def _one(
     with output.writing() as part:
         write_modes(result, part, about(output.made))
         write_modes_report(result, part)
+    for title, said in zip(("In force", "How sure", "What to do"), in_short(result), strict=True):
+        click.echo(f"{title}: {said}")
     for sentence in sentences(result):
         click.echo(sentence)
     print_written(output.out)

@@ -1,8 +1,23 @@
-"""How shares of time read."""
+"""How shares of time, fits and answers read."""
 
+import json
+
+import numpy as np
 import pytest
 
-from odometry.modes.words import percent
+from odometry.modes.answers import NONE_OF_THESE
+from odometry.modes.files import content_of
+from odometry.modes.followed import followed
+from odometry.modes.words import in_short, percent, scale_word
+from tests.odometry.modes.mode_examples import run_of, velocity_set
+
+ICE = ["ice"] * 400
+
+
+@pytest.fixture(scope="module")
+def leaving():
+    """On ice for 4 s, and from there on what turns twice as much as the widest mode."""
+    return followed(run_of(np.repeat([1.0, 4.0], 200), labels=ICE), velocity_set())
 
 
 @pytest.mark.parametrize(
@@ -11,3 +26,47 @@ from odometry.modes.words import percent
 )
 def test_a_share_in_words(share, words):
     assert percent(share) == words
+
+
+def test_sizes_in_words():
+    words = [scale_word(sigmas) for sigmas in (2.9, 3.0, 6.0, 1e6)]
+    assert words == ["slightly off", "clearly off", "far off", "far off"]
+
+
+def test_where_no_mode_fits_it_is_said_since_when_and_in_which_signal(leaving):
+    (one,) = leaving.misfits
+    assert 3.8 < one.from_s < 4.5
+    in_force, how_sure, to_do = in_short(leaving)
+    assert in_force.startswith(f"{NONE_OF_THESE} at the end, answered since ")
+    assert f"no mode fits from {one.from_s:.1f} s to {one.to_s:.1f} s: the yaw rate is" in how_sure
+    assert to_do.startswith("check the gyroscope")
+    content = content_of(leaving)
+    (said,) = content["none_of_these"]
+    assert (said["from_s"], said["signal"]) == (one.from_s, "wz")
+    assert content["motion"]["shares_of_time"][NONE_OF_THESE] > 0.3
+    assert json.dumps(content, allow_nan=False)
+
+
+def test_none_of_these_is_neither_right_nor_wrong(leaving):
+    score = leaving.score(leaving.motion)
+    (told,) = score.told
+    assert told.none_of_these == score.none_of_these > 0.3
+    assert told.wrong < 0.1
+    total = told.right + told.wrong + told.undetermined + told.none_of_these
+    assert total == pytest.approx(1.0)
+    assert score.wrong_of_all < 0.1
+
+
+def test_a_mode_that_fits_needs_nothing_to_be_done():
+    in_force, how_sure, to_do = in_short(followed(run_of(1.0, labels=ICE), velocity_set()))
+    assert in_force.startswith("ice at the end, answered since 0.")
+    assert how_sure.endswith("and a mode of the set fits all along.")
+    assert to_do.startswith("nothing; ")
+
+
+def test_on_straights_turns_are_asked_for():
+    run = run_of(0.0, labels=ICE)
+    run.odometry.columns["v_left"][:] = run.odometry.columns["v_right"][:] = 0.5
+    in_force, _, to_do = in_short(followed(run, velocity_set()))
+    assert in_force == "nothing that the motion tells: undetermined all the time."
+    assert to_do.startswith("drive turns of several radii")

@@ -11,8 +11,9 @@ from matplotlib.figure import Figure
 from odometry.modes.followed import Followed, followed
 from odometry.modes.sight import SeenGround
 from odometry.modes.track import ModesConfig
-from odometry.report import mode_figures, mode_panels
+from odometry.report import mode_figures, mode_innovations, mode_panels
 from odometry.report.mode_figures import modes_picture, path_picture
+from odometry.report.mode_innovations import MOST, innovations_picture
 from odometry.report.mode_panels import (
     draw_probabilities,
     draw_state,
@@ -115,12 +116,36 @@ def wheels():
 def test_a_page_of_velocity_modes(grounds, tmp_path):
     written = write_modes_report(grounds, tmp_path)
     names = sorted(file.relative_to(tmp_path).as_posix() for file in written)
-    assert names == ["figures/modes.png", "report.html"]
+    assert names == ["figures/innovations.png", "figures/modes.png", "report.html"]
     page = (tmp_path / "report.html").read_text()
-    assert "ice: told after" in page
+    short = [page.index(f"<li>{title}: ") for title in ("In force", "How sure", "What to do")]
+    assert short == sorted(short)
+    assert short[-1] < page.index("<img")
+    assert "Where the answer is none of these" not in page
     assert "With sight: " in page
     assert "By motion alone." in page
     assert "By motion and sight." in page
+
+
+def test_where_no_mode_fits_the_page_says_so(tmp_path):
+    labels = ["ice"] * 400
+    leaving = followed(run_of(np.repeat([1.0, 4.0], 200), labels=labels), velocity_set())
+    write_modes_report(leaving, tmp_path)
+    page = (tmp_path / "report.html").read_text()
+    (one,) = leaving.misfits
+    row = f'<th scope="row">yaw rate</th><td>{one.from_s:.1f}</td><td>{one.to_s:.1f}</td>'
+    assert row in page
+
+
+def test_innovations_are_drawn_with_their_bounds(grounds, drawn, tmp_path):
+    """Of what was measured: the yaw rate, not the speed."""
+    innovations_picture(grounds, tmp_path)
+    (axes,) = drawn["innovations.png"].axes
+    (line,) = axes.lines
+    shown = np.clip(grounds.motion.fit.best[:, 1], -MOST, MOST)
+    np.testing.assert_array_equal(line.get_ydata(), shown)
+    band = axes.patches[0].get_extents().transformed(axes.transData.inverted())
+    assert (band.y0, band.y1) == pytest.approx((-2.0, 2.0))
 
 
 def test_a_page_of_traction_modes_has_a_path_that_goes_again(grounds, wheels, tmp_path):
@@ -164,7 +189,8 @@ def drawn(monkeypatch):
         figures[file.name] = figure
         return file
 
-    monkeypatch.setattr(mode_figures, "save_figure", keep)
+    for module in (mode_figures, mode_innovations):
+        monkeypatch.setattr(module, "save_figure", keep)
     return figures
 
 

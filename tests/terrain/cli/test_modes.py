@@ -80,7 +80,8 @@ def test_one_run_is_answered_in_words_and_files(make, models, tmp_path):
     content = json.loads((out / "result.json").read_text())
     ice, tar = content["motion"]["detections"]
     words = f"ice: told after {ice['after_s']:.1f} s; right {100 * ice['right']:.0f} % of the time"
-    assert answer.stdout.startswith(words)
+    assert answer.stdout.startswith("In force: tar at the end, answered since ")
+    assert words in answer.stdout
     assert tar["after_s"] < 2.0
     wrote = answer.stdout.split(f"Wrote to {out}: ")[1].splitlines()[0].split(", ")
     assert set(wrote) == files_of(out)
