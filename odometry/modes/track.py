@@ -141,8 +141,8 @@ def follow_signals(
     chains = mode_chains(seen, mode_set.names, mode_set.dwell_s)
     in_force = np.searchsorted([one.stamp_s for one in seen], signals.stamps_s, side="right")
     independent = _independent(signals, modes.errors_last_s)
-    mean, covariance = modes.start(signals, independent)
-    lasting = np.zeros((count, len(mean)))
+    states = modes.model().states
+    lasting = np.zeros((count, states))
     lasting[:, :-1] = (1 - independent) * modes.measurement_variance
 
     @lru_cache(maxsize=16)
@@ -160,12 +160,13 @@ def follow_signals(
     told[gap_ends] = False
     measured = np.where(told[:, None], signals.measured, np.nan)
     first = chains[in_force[0]].transition(SETTLED_S).mean(axis=0)
-    belief = alone = ModeBelief.alike(mean, covariance, first)
+    merged = modes.start(signals, independent)
+    belief = alone = ModeBelief.alike(*merged, first)
     size = len(signals)
     probabilities = np.empty((size, count))
-    means, sigmas = np.empty((2, size, len(mean)))
+    means, sigmas = np.empty((2, size, states))
     squared = np.full(size, np.nan)
-    believed = np.append(np.ones(len(mean) - 1), independent)  # share of each variance
+    believed = np.append(np.ones(states - 1), independent)  # share of each variance
     innovations = np.full((size, count, measured.shape[1]), np.nan)
     steps: Iterable[int] = tqdm(range(size), unit="step", disable=None if show_progress else True)
     for row in steps:
@@ -177,14 +178,16 @@ def follow_signals(
             belief = imm.step(belief, u, measured[row], step_s)
             own = OwnFilters(imm.bank, filters(rough))
             alone, innovations[row] = own.step(alone, u, measured[row], step_s)
-            alone = with_bias(alone, *imm.merged(belief))
+            merged = imm.merged(belief)
+            alone = with_bias(alone, *merged)
         if row in gap_ends:  # what moved in a gap tells nothing of the modes
             begun = ModeBelief.alike(
                 *modes.start(signals.after(row), independent), belief.probabilities
             )
-            belief = alone = with_bias(begun, *imm.merged(belief))
+            belief = alone = with_bias(begun, *merged)
+            merged = imm.merged(belief)
         probabilities[row] = belief.probabilities
-        mean, covariance = imm.merged(belief)
+        mean, covariance = merged
         variances = np.diag(covariance) / believed + probabilities[row] @ lasting
         means[row], sigmas[row] = mean, np.sqrt(variances)
         if belief.innovations is not None:
