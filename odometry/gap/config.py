@@ -47,10 +47,10 @@ class GapConfig:
         Of evidence by which a smooth function must beat names to stand in their place.
     unexplained : float
         Chi-squared a degree of freedom above which what is left is not noise.
-    left_over, mostly_closed : float
+    left_over, mostly_closed, contact_closed : float
         Chi-squared a degree of freedom that names may leave, unless they close this share of its
-        excess. Beside the forces of contacts, for which no equation here is exact, 1.1 to 1.3
-        is left or 0.85 and more closed; beside a wrong name 1.8 to 190 and 0.75 at most.
+        excess. Beside a wrong name 1.8 to 190 is left and 0.75 closed at most. Forces of contacts,
+        for which no equation here is exact, need to close less.
     base_probability : float
         Of a base that moves as far within its calibration by chance: less is a base that left it.
     brought_back : float
@@ -87,6 +87,7 @@ class GapConfig:
     unexplained: float = 1.3
     left_over: float = 1.5
     mostly_closed: float = 0.8
+    contact_closed: float = 0.4
     base_probability: float = 0.001
     brought_back: float = 0.25
     contact_spread: float = 1.1

@@ -60,7 +60,7 @@ def explained(
         options.append(search.without_idle(alone))
     if options:
         found = search.better(found, options)
-    return search.that_stand(search.most_first(found), smooth)
+    return search.that_stand(search.names_first(found), smooth)
 
 
 @dataclass
@@ -170,12 +170,9 @@ class _Search:
         margin = self.config.general_margin * self._spread(best)
         return names if names.steps and names.cost - best.cost < margin else best
 
-    def most_first(self, found: Explanation) -> Explanation:
-        """The effects in the order of what each pays beside the others."""
-        if len(found.steps) < 2 or not any(isinstance(e, Residual) for e in found.effects):
-            return found
-        without = self._costs_without_each(found)
-        effects = sorted(found.effects, key=lambda effect: -without[effect])
+    def names_first(self, found: Explanation) -> Explanation:
+        """Smooth functions last: whether the names stand without them is judged next."""
+        effects = sorted(found.effects, key=lambda effect: isinstance(effect, Residual))
         return found if tuple(effects) == found.effects else self.in_order(found, effects)
 
     def that_stand(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
@@ -216,7 +213,9 @@ class _Search:
         noise = self.fitter.measured.expected
         excess = max(self.start.cost - noise, self.config.least_excess * noise)
         closed = (self.start.cost - alone.fitted.cost) / excess
-        reason = leaves_noise(self.fitter.spread(alone.fitted), closed, self.config)
+        by_contact = any(effect.slow for effect in names)
+        most = self.config.contact_closed if by_contact else self.config.mostly_closed
+        reason = leaves_noise(self.fitter.spread(alone.fitted), closed, self.config.left_over, most)
         if not reason:
             return found
         for name in names:

@@ -134,13 +134,13 @@ def base_left_calibration(fit: Fitted, free: int, config: GapConfig) -> bool:
     return free > 0 and bool(chi2.sf(fit.base_alone, free) < config.base_probability)
 
 
-def leaves_noise(spread: float, closed: float, config: GapConfig) -> str:
+def leaves_noise(spread: float, closed: float, left_over: float, most: float) -> str:
     """Whether names leave nothing but noise, or close nearly all of a large excess.
 
     `spread` is the chi-squared a degree of freedom that they leave, `closed` the share of its
     excess that they close: an equation that is right but imperfect leaves a small part.
     """
-    if spread <= config.left_over or closed >= config.mostly_closed:
+    if spread <= left_over or closed >= most:
         return ""
     return (
         f"it closes {100 * max(closed, 0.0):.0f} % and leaves {spread:.1f} times the chi-squared "

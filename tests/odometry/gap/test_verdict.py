@@ -115,7 +115,7 @@ def test_a_base_leaves_its_calibration_by_chi_squared():
     [(1.2, 0.3, True), (3.0, 0.95, True), (3.0, 0.7, False), (190.0, -0.2, False)],
 )
 def test_names_leave_noise_or_close_nearly_all(spread, closed, stands):
-    reason = leaves_noise(spread, closed, CONFIG)
+    reason = leaves_noise(spread, closed, CONFIG.left_over, CONFIG.mostly_closed)
     assert (reason == "") == stands
     assert stands or f"leaves {spread:.1f} times" in reason
 
