@@ -42,6 +42,8 @@ SHAPES = {
     "straights with steps": "steps",
     "curves with steps": "curves",
 }
+# An arm ahead moves the sensor exactly as ICRs behind move the robot; no drive tells them apart.
+ALIKE = {"sensor place": ("sideways",), "sideways": ("sensor place",)}
 COLUMNS = (
     *("pair", "truth", "seed", "true", "rival", "first", "equivalent", "proposed", "between"),
     *("odds", "then", "then_equivalent", "score", "apart", "cpu_s", "error"),
@@ -118,7 +120,7 @@ def judged(case: RivalCase, folder: Path) -> dict[str, str]:
 
 def apart(case: RivalCase, found: dict[str, Any]) -> dict[str, str]:
     """Score of the first name, and whether it is right and the rival is out."""
-    scored = score(found["verdict"], "", ((case.true,),), ())
+    scored = score(found["verdict"], "", ((case.true, *ALIKE.get(case.true, ())),), ())
     rivals = {one["name"] for one in found["equivalent"]} & set(MEANING[case.rival])
     return {"score": scored, "apart": f"{int(scored == 'right' and not rivals)}"}
 
