@@ -1,0 +1,207 @@
+"""Effects added one by one, each judged on windows that it was not fitted to."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from odometry.effects.base import Effect
+from odometry.effects.residual import Residual
+from odometry.gap.candidates import contact_effects
+from odometry.gap.config import GapConfig
+from odometry.gap.contest import Judged, cost_of, judge, ranked
+from odometry.gap.explanation import Explanation
+from odometry.gap.fit import Fitted, Fitter
+from odometry.gap.sparse import sparse_residual
+from odometry.gap.statistic import Gap, gap_of
+from odometry.gap.verdict import (
+    Refusal,
+    base_left_calibration,
+    is_the_effect,
+)
+from odometry.windows.dense import DenseWindows
+
+MANY = 5  # parameters of an effect that two others may share
+PROMISING = 2  # smooth functions that are fitted in full
+
+
+@dataclass
+class Search:
+    """Adds effects one by one where they pay."""
+
+    fitter: Fitter
+    start: Fitted
+    held_out: Sequence[DenseWindows]
+    floor: Gap
+    held_floor: Gap
+    config: GapConfig
+    progress: Callable[[], None]
+    refusals: dict[str, Refusal] = field(default_factory=dict)
+
+    def stepwise(
+        self, candidates: Sequence[Effect], begun: Explanation | None = None
+    ) -> Explanation:
+        """Add the candidate of most evidence until none earns a name."""
+        found = begun or Explanation(self.start, (), ())
+        while len(found.steps) < self.config.most_effects:
+            before = found.fitted
+            if found.steps and not self._excess(before):
+                break
+            judged = self._judged(before, [c for c in candidates if c.name not in found.names])
+            found = replace(found, first=found.first or tuple(judged))
+            best = self._best_earner(judged, before)
+            if best is None:
+                break
+            contests = {**found.contests, best.effect.name: tuple(judged)}
+            step = self._all_free(best, before)
+            found = replace(found, steps=(*found.steps, step), contests=contests)
+        return found
+
+    def by_fewer(self, found: Explanation, candidates: Sequence[Effect]) -> Explanation:
+        """The same without a first effect of many parameters, which may stand for several of few.
+
+        Of both the one of less cost.
+        """
+        if not found.steps or found.effects[0].slow or len(found.effects[0].parameters) < MANY:
+            return found
+        first = found.effects[0].key
+        others = self.stepwise([one for one in candidates if one.key != first])
+        others = replace(others, first=found.first)
+        return others if others.steps and others.cost < found.cost else found
+
+    def simplest(self, found: Explanation, candidates: Sequence[Effect]) -> Explanation:
+        """Effects exchanged for those that do the same with less freedom, where that is better.
+
+        What the first of two effects did not need for itself it may have lent to the second.
+        """
+        for place, added in enumerate(found.fitted.effects):
+            alike = added.effect.same_as(added.values)
+            for other in candidates:
+                simpler = len(other.parameters) < len(added.values)
+                if simpler and other.name in alike and other.name not in found.names:
+                    effects = [*found.effects[:place], other, *found.effects[place + 1 :]]
+                    exchanged = self.in_order(found, effects)
+                    found = exchanged if exchanged.cost < found.cost else found
+        return found
+
+    def in_order(self, found: Explanation, effects: Sequence[Effect]) -> Explanation:
+        """These effects, judged as they are added one by one."""
+        steps: tuple[Judged, ...] = ()
+        for effect in effects:
+            before = steps[-1].fitted if steps else self.start
+            (one,) = judge(self.fitter, before, [effect], self.config, self.progress)
+            steps = (*steps, self._all_free(one, before))
+        return replace(found, steps=steps)
+
+    def best_smooth(
+        self, before: Fitted, candidates: Sequence[Residual], below: float = np.inf
+    ) -> Judged | None:
+        """The smooth function of most evidence, made sparse, if it earns its place.
+
+        Those that leave more than `below` even with all their terms are not fitted.
+        """
+        if not candidates or not self._excess(before):
+            return None
+        losses = self.fitter.linear_losses(before, candidates)
+        order = np.argsort(losses, kind="stable")[:PROMISING]
+        promising = [candidates[i] for i in order if losses[i] < below]
+        judged = judge(self.fitter, before, promising, self.config, self.progress)
+        sparse = [sparse_residual(self.fitter, one.fitted) for one in judged]
+        again = judge(self.fitter, before, sparse, self.config, self.progress)
+        return self._best_earner(again, before) or self._best_earner(judged, before)
+
+    def without_idle(self, found: Explanation) -> Explanation:
+        """Less what does not pay beside the others, the least of all first."""
+        while len(found.steps) > 1:
+            costs = self._costs_without_each(found)
+            least = min(costs, key=lambda effect: costs[effect])
+            if costs[least] - found.cost > self.config.least_evidence * self._spread(found):
+                break
+            found = self.in_order(found, [e for e in found.effects if e is not least])
+        return found
+
+    def _costs_without_each(self, found: Explanation) -> dict[Effect, float]:
+        """Cost of the other effects, by the one that is left out."""
+        costs = {}
+        for effect in found.effects:
+            others = [e for e in found.effects if e is not effect]
+            costs[effect] = cost_of(self.fitter.fit(others, found.fitted.effects))
+        return costs
+
+    def refuse(self, effect: Effect, reason: str) -> None:
+        """Remember the first reason for which a name does not stand."""
+        self.refusals.setdefault(effect.name, Refusal(effect.name, effect.form, reason))
+
+    def _judged(self, before: Fitted, candidates: Sequence[Effect]) -> list[Judged]:
+        """The quick forms, and those of contact forces where the quick ones leave something."""
+        judged = judge(self.fitter, before, candidates, self.config, self.progress)
+        best = self._best_earner(judged, before)
+        if best is None or self.fitter.spread(best.fitted) < self.config.contact_spread:
+            return judged
+        taken = {added.effect.name for added in before.effects}
+        scenes, calibration = self.fitter.measured.scenes, self.fitter.calibration
+        slow = [e for e in contact_effects(scenes, calibration) if e.name not in taken]
+        more = judge(self.fitter, before, slow, self.config, self.progress)
+        fits = [one.fitted for one in (*judged, *more)]
+        return ranked(self.fitter, before, fits, self.config)
+
+    def _all_free(self, one: Judged, before: Fitted) -> Judged:
+        """The same with the parameters of slow effects, held in the contest, free again."""
+        if not any(added.effect.slow for added in before.effects):
+            return one
+        effects = [added.effect for added in one.fitted.effects]
+        fit = self.fitter.fit(effects, one.fitted.effects)
+        return replace(ranked(self.fitter, before, [fit], self.config)[0], evidence=one.evidence)
+
+    def _spread(self, found: Explanation) -> float:
+        return max(1.0, self.fitter.spread(found.fitted))
+
+    def _excess(self, before: Fitted) -> bool:
+        """Whether the gap is above the interval of the noise floor, or hidden in a moved base."""
+        free = len(self.fitter.calibration.uncertain.values)
+        return self._gap(before) > self.floor.high or base_left_calibration(
+            before, free, self.config
+        )
+
+    def _brings_back(self, fit: Fitted, before: Fitted) -> bool:
+        """Whether a base that had left its calibration is near it again."""
+        free = len(self.fitter.calibration.uncertain.values)
+        near = fit.base_alone < self.config.brought_back * before.base_alone
+        return near or not base_left_calibration(fit, free, self.config)
+
+    def _gap(self, fit: Fitted) -> float:
+        scenes = self.fitter.measured.scenes
+        return gap_of(fit.base, fit.effects, scenes, self.config.part_s).value
+
+    def _best_earner(self, judged: Sequence[Judged], before: Fitted) -> Judged | None:
+        """Of most evidence among those that earn a name."""
+        for one in judged:
+            if not self._pays(one, before):
+                continue
+            reason = is_the_effect(one.fitted, self.config)
+            if not reason:
+                return one
+            self.refuse(one.effect, reason)
+        return None
+
+    def _pays(self, one: Judged, before: Fitted) -> bool:
+        """Enough evidence, in more than one moment, and enough of the excess closed.
+
+        The excess is that before any effect, of the gap above the noise floor or of chi-squared
+        above what noise explains: a better heading is worth as much as a better place.
+        """
+        if not self._excess(before) or one.least <= self.config.least_evidence:
+            return False
+        share = self.config.least_share if before.effects else self.config.first_share
+        noise = self.fitter.measured.expected
+        excess_m = max(self._gap(self.start) - self.floor.value, 0.0)
+        closed_m = self._gap(before) - one.gap_after
+        excess = max(self.start.cost - noise, self.config.least_excess * noise)
+        closed = before.cost - one.fitted.cost
+        if before.effects and not isinstance(one.effect, Residual):
+            share_of_rest = closed / max(before.cost - noise, self.config.least_excess * noise)
+            if share_of_rest < self.config.least_rest:
+                return False
+        if self._gap(before) <= self.floor.high and not self._brings_back(one.fitted, before):
+            return False
+        return bool(closed_m > share * excess_m > 0 or closed > share * excess)
