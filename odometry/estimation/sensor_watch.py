@@ -120,42 +120,48 @@ def sensed(
         belief=belief,
         terrain=terrain,
     )
-    released = (
-        () if watch.hold is None or hold.is_found else gyroscope_hold.ended(watch.hold, begin_s)
-    )
-    if not hold.is_found:
-        gyroscope, yaw_rate, events = gyroscope_watch.watched(
-            watch.gyroscope, yaw_rate, begin_s, frame.stamp_s
-        )
-        events += released
-    else:
-        gyroscope, events = GyroscopeWatch(), ()
+    events: Events = ()
+    if hold.is_found:
+        gyroscope = GyroscopeWatch()
         if watch.is_gyroscope_held:
             yaw_rate = math.nan
         else:
             yaw_rate += hold.owed_rad / (frame.stamp_s - begin_s)
             belief = gyroscope_hold.forgotten(belief, hold, begin_s, watch.poses.fresh_s)
-    poses, pose = watch.poses, frame.pose
-    if poses.pose is not None:
-        step_s, (left, right) = frame.stamp_s - begin_s, speeds_m_s.tolist()
-        travel_m = (abs(left) + abs(right)) / 2 * step_s
-        turn_rad = yaw_rate * step_s
-        poses = pose_watch.moved(
-            poses,
-            0.0 if math.isnan(travel_m) else travel_m,
-            0.0 if math.isnan(turn_rad) else turn_rad,
+    else:
+        gyroscope, yaw_rate, events = gyroscope_watch.watched(
+            watch.gyroscope, yaw_rate, begin_s, frame.stamp_s
         )
+        if watch.hold is not None:
+            events += gyroscope_hold.ended(watch.hold, begin_s)
+    poses = _carried(watch.poses, speeds_m_s, yaw_rate, frame.stamp_s - begin_s)
+    pose = frame.pose
     if pose is not None:
         poses, use, of_poses = pose_watch.watched(poses, pose, frame.stamp_s)
         pose, events = pose if use else None, events + of_poses
-    gap_since_s = watch.gap_since_s
-    if frame.in_gap and math.isnan(gap_since_s):
-        gap_since_s = begin_s
-    elif not frame.in_gap and not math.isnan(gap_since_s):
-        events = (*events, _gap_event(gap_since_s, begin_s))
-        gap_since_s = math.nan
+    gap_since_s, of_gap = _gap(watch.gap_since_s, frame, begin_s)
     after = SensorWatch(watch.treads, gyroscope, poses, gap_since_s, hold, watch.bias)
-    return Sensed(after, begin_s, yaw_rate, pose, events, belief)
+    return Sensed(after, begin_s, yaw_rate, pose, events + of_gap, belief)
+
+
+def _carried(poses: PoseWatch, speeds_m_s: FloatArray, yaw_rate: float, step_s: float) -> PoseWatch:
+    """The watch of poses after a step; what is not known of the motion counts as none."""
+    if poses.pose is None:
+        return poses
+    left, right = speeds_m_s.tolist()
+    travel_m, turn_rad = (abs(left) + abs(right)) / 2 * step_s, yaw_rate * step_s
+    return pose_watch.moved(
+        poses,
+        0.0 if math.isnan(travel_m) else travel_m,
+        0.0 if math.isnan(turn_rad) else turn_rad,
+    )
+
+
+def _gap(since_s: float, frame: Frame, begin_s: float) -> tuple[float, Events]:
+    """Since when odometry has a gap (NaN: it has none), and the event of one that has ended."""
+    if frame.in_gap:
+        return begin_s if math.isnan(since_s) else since_s, ()
+    return math.nan, () if math.isnan(since_s) else (_gap_event(since_s, begin_s),)
 
 
 def with_treads(
