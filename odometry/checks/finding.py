@@ -4,10 +4,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from odometry.checks.mending import Mend
+from odometry.checks.mending import Mend
 
 
 class Level(StrEnum):
@@ -45,7 +44,7 @@ class Finding:
     cause: str
     remedy: str
     spans_s: tuple[tuple[float, float], ...] = ()
-    mend: "Mend | None" = field(default=None, compare=False, repr=False)
+    mend: Mend | None = field(default=None, compare=False, repr=False)
 
     @property
     def line(self) -> str:

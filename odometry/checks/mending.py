@@ -59,17 +59,10 @@ def yaw_plus(offset_rad: float) -> Mend:
 def gyroscope_times(run: Run, factor: float) -> Mend:
     """The yaw rate that is read times a factor, in the file in which it stands."""
     found = run.yaw_rate
-    in_imu = found is not None and found.file == "imu.csv"
-    assert run.imu is not None or not in_imu  # noqa: S101 - the yaw rate stands in it
-    if not in_imu or run.imu is None:
+    if run.imu is None or found is None or found.file != "imu.csv":
         return times("odometry", factor, "gyro_z")
     axes = [name for name in ("gyro_x", "gyro_y", "gyro_z") if name in run.imu]
     return times("imu", factor, *axes)
-
-
-def restamped(table: str, change: Callable[[FloatArray], FloatArray]) -> Mend:
-    """The stamps of one table through a function that grows."""
-    return changed(table, "t", change)
 
 
 def sooner(names: tuple[str, ...], seconds: float) -> Mend:
