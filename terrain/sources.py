@@ -1,4 +1,4 @@
-"""Sources of terrain behind one face: the camera, the run's own labels, the motion, or none."""
+"""Sources of terrain, one interface: the camera, the run's own labels, the motion, or none."""
 
 from pathlib import Path
 

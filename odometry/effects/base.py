@@ -90,7 +90,7 @@ class Effect(ABC):
     slow: ClassVar[bool] = False
 
     @classmethod
-    def offered(cls, recorded: Recorded) -> "tuple[Effect, ...]":  # noqa: ARG003 - of the face
+    def offered(cls, recorded: Recorded) -> "tuple[Effect, ...]":  # noqa: ARG003 - of the interface
         """Candidates of this form that measured runs may tell."""
         return (cls(),)
 
@@ -99,24 +99,24 @@ class Effect(ABC):
     def parameters(self) -> tuple[EffectParameter, ...]:
         """Its parameters, in order."""
 
-    def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the face
+    def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the interface
         """Which data a recording lacks to tell it, "" where it has them."""
         return ""
 
-    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the face
+    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the interface
         """Values (S, P) from which a search begins."""
         return np.array([[parameter.start for parameter in self.parameters]])
 
-    def usual(self, base: Base) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002 - of the face
+    def usual(self, base: Base) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002 - of the interface
         """Values (P,) that are usual, and how far others are from them; infinite: no matter."""
         count = len(self.parameters)
         return np.zeros(count), np.full(count, np.inf)
 
-    def same_as(self, values: FloatArray) -> Mapping[str, str]:  # noqa: ARG002 - of the face
+    def same_as(self, values: FloatArray) -> Mapping[str, str]:  # noqa: ARG002 - of the interface
         """Effects that do exactly the same at these values, and what would tell them apart."""
         return {}
 
-    def is_meant(self, values: FloatArray) -> bool:  # noqa: ARG002 - of the face
+    def is_meant(self, values: FloatArray) -> bool:  # noqa: ARG002 - of the interface
         """Whether values (P,) describe what the name says, where a search may leave that."""
         return True
 
@@ -181,7 +181,7 @@ class MeasurementEffect(Effect):
 
     def seen(
         self,
-        values: FloatArray,  # noqa: ARG002 - of the face
+        values: FloatArray,  # noqa: ARG002 - of the interface
         poses: FloatArray,
         measured_yaw_rad: FloatArray,  # noqa: ARG002
     ) -> FloatArray:
@@ -194,7 +194,7 @@ class MeasurementEffect(Effect):
 
     def gyroscope(
         self,
-        values: FloatArray,  # noqa: ARG002 - of the face
+        values: FloatArray,  # noqa: ARG002 - of the interface
         yaw_rate_rad_s: FloatArray,
         inputs: Inputs,  # noqa: ARG002
     ) -> FloatArray:

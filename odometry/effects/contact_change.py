@@ -58,7 +58,7 @@ class ContactChange(MotionEffect):
             EffectParameter("slip_scale", "m/s", 1e-3, 0.5, 0.03, 0.005, None),
         )
 
-    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the face
+    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the interface
         """See `Effect.starts`: contacts under the body, slippery and rough."""
         usual, _ = self.usual(base)
         return np.array([[mu, *usual[1:]] for mu in (0.4, 0.8)])

@@ -34,7 +34,7 @@ class Curvature(MotionEffect):
             EffectParameter("beta_2", "", 0.0, 50.0, 1.0, 0.1, None),
         )
 
-    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the face
+    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the interface
         """Wider and narrower in tight turns, early and late."""
         return np.array([[1.0, b_1, b_2] for b_1 in (0.1, -0.1) for b_2 in (0.3, 3.0)])
 

@@ -37,7 +37,7 @@ class Deadband(DriveLimit):
         """See `Effect.parameters`."""
         return (EffectParameter("least", "m/s", 0.0, 0.5, 0.05, 0.005),)
 
-    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the face
+    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the interface
         """See `Effect.starts`: the cost has steps."""
         return np.array([[0.03], [0.06], [0.1], [0.16], [0.25]])
 
@@ -78,7 +78,7 @@ class Saturation(DriveLimit):
         most = self.fastest_m_s
         return (EffectParameter("fastest", "m/s", 0.0, most, 0.9 * most, 0.01, most),)
 
-    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the face
+    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the interface
         """See `Effect.starts`."""
         return self.fastest_m_s * np.array([[0.95], [0.8], [0.6]])
 
@@ -104,7 +104,7 @@ class RateLimit(DriveLimit):
         """See `Effect.parameters`."""
         return (EffectParameter("most", "m/s^2", 0.05, HARDEST_M_S2, 1.0, 0.05, None),)
 
-    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the face
+    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the interface
         """See `Effect.starts`."""
         return np.array([[0.3], [0.8], [2.0]])
 

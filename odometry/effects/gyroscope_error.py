@@ -28,7 +28,7 @@ class GyroscopeError(MeasurementEffect):
             EffectParameter("drift", "rad/s^2", -0.01, 0.01, 0.0, 1e-4),
         )
 
-    def lacks(self, inputs: Inputs, base: object) -> str:  # noqa: ARG002 - of the face
+    def lacks(self, inputs: Inputs, base: object) -> str:  # noqa: ARG002 - of the interface
         """See `Effect.lacks`."""
         return "" if inputs.yaw_rate_rad_s is not None else "a gyroscope"
 

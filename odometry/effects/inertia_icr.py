@@ -60,11 +60,11 @@ class InertiaByIndices(MotionEffect):
             EffectParameter("h", "", 0.2, 3.0, 1.0, 0.05, None),
         )
 
-    def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the face
+    def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the interface
         """See `Effect.lacks`."""
         return "" if base.model.name == "icr" else "a base model with tread ICRs"
 
-    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the face
+    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the interface
         """No change, for several H; first that of the base.
 
         The base's v_x is zero where V_l + H V_r = 0 with H = -y_left / y_right.

@@ -28,7 +28,7 @@ class LateralSkid(MotionEffect):
     remedy = "keep the shift in the model; see whether the load has moved"
     alike: ClassVar[Mapping[str, str]] = {"lever_arm": TOLD_APART}
 
-    def same_as(self, values: FloatArray) -> Mapping[str, str]:  # noqa: ARG002 - of the face
+    def same_as(self, values: FloatArray) -> Mapping[str, str]:  # noqa: ARG002 - of the interface
         """See `Effect.same_as`."""
         return {"lever_arm": TOLD_APART}
 
@@ -41,7 +41,7 @@ class LateralSkid(MotionEffect):
         self,
         values: FloatArray,
         twist: FloatArray,
-        inputs: Inputs,  # noqa: ARG002 - of the face
+        inputs: Inputs,  # noqa: ARG002 - of the interface
         base: Base,  # noqa: ARG002
     ) -> FloatArray:
         """See `MotionEffect.twist`."""

@@ -24,7 +24,7 @@ class LeverArm(MeasurementEffect):
     of_reference = True
     alike: ClassVar[Mapping[str, str]] = {"lateral_skid": TOLD_APART, "terrain": TOLD_APART}
 
-    def same_as(self, values: FloatArray) -> Mapping[str, str]:  # noqa: ARG002 - of the face
+    def same_as(self, values: FloatArray) -> Mapping[str, str]:  # noqa: ARG002 - of the interface
         """See `Effect.same_as`."""
         return {"lateral_skid": TOLD_APART}
 

@@ -88,7 +88,7 @@ class Residual(MotionEffect):
             for component, number in self.terms
         )
 
-    def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the face
+    def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the interface
         """See `Effect.lacks`."""
         known = self.variable in SIMULATED or _variable(self.variable, inputs, None) is not None
         return "" if known else self.variable

@@ -19,7 +19,7 @@ class SlopeByContact(ContactChange):
     remedy = "keep it in the model; record roll and pitch"
     needs = "roll and pitch on terrain that is not level"
 
-    def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the face
+    def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the interface
         """See `Effect.lacks`."""
         return lacks_tilt(inputs)
 

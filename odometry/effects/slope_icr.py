@@ -57,7 +57,7 @@ class SlopeByIcr(MotionEffect):
             return "a base model with tread ICRs"
         return lacks_tilt(inputs)
 
-    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the face
+    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the interface
         """Sliding that ends early and late with speed."""
         return np.array([[0.5, 0.5, v_max] for v_max in (0.7, 1.5, 4.0)])
 

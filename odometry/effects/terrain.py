@@ -106,7 +106,7 @@ class NewIcrs(MotionEffect):
             for name, unit in SHIFTED
         )
 
-    def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the face
+    def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the interface
         """See `Effect.lacks`."""
         return "" if base.model.name == "icr" else "a base model with tread ICRs"
 

@@ -43,7 +43,7 @@ class Course(ABC):
         """Values (S, P) from which a search begins."""
         return np.empty((1, 0))
 
-    def is_meant(self, values: FloatArray) -> bool:  # noqa: ARG002 - of the face
+    def is_meant(self, values: FloatArray) -> bool:  # noqa: ARG002 - of the interface
         """Whether something was measured on both sides of what the values (P,) say."""
         return True
 

@@ -55,7 +55,7 @@ class TractionLoss(MotionEffect):
         self,
         values: FloatArray,
         twist: FloatArray,
-        inputs: Inputs,  # noqa: ARG002 - of the face
+        inputs: Inputs,  # noqa: ARG002 - of the interface
         base: Base,  # noqa: ARG002
     ) -> FloatArray:
         """See `MotionEffect.twist`."""

@@ -150,11 +150,11 @@ class KinematicModel(ABC):
                 sizes.append(robot.track_width / 2 if parameter.unit.startswith("m") else 1.0)
         return np.array(sizes)
 
-    def told_by(self, inputs: Inputs) -> dict[str, float]:  # noqa: ARG002 - of the face
+    def told_by(self, inputs: Inputs) -> dict[str, float]:  # noqa: ARG002 - of the interface
         """Known parameters that recorded inputs (N,) tell, by name."""
         return {}
 
-    def icr_form(self, values: FloatArray) -> IcrForm:  # noqa: ARG002 - of the face
+    def icr_form(self, values: FloatArray) -> IcrForm:  # noqa: ARG002 - of the interface
         """The constant ICRs that parameters (P,) stand for.
 
         Raises

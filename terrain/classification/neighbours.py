@@ -1,6 +1,6 @@
 """Nearest neighbours: who they are, how they vote, and how far away they are.
 
-Two final classes behind one face, `Neighbours`: `PlainNeighbours` is the paper's,
+Two final classes behind one interface, `Neighbours`: `PlainNeighbours` is the paper's,
 `DiscriminantNeighbours` the default's. Features are (n, F), class codes 0 ... classes - 1.
 """
 
