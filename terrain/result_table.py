@@ -6,11 +6,11 @@ from typing import Any
 from odometry.evaluation.withheld import JUDGED_EVERY_S, SILENT_S
 from terrain.filter_summary import filter_table
 from terrain.label_confusion import label_confusion_table
-from terrain.odometer_uncertainty import uncertainty_table
 from terrain.run_result import RunResult
 from terrain.switch import SwitchEvent
 from terrain.switch_delay import switch_delays
 from terrain.terrain_change import TerrainChange
+from terrain.uncertainty_table import uncertainty_table
 from terrain.verdicts import remarks
 
 FORMAT = 1  # of result.json

@@ -17,10 +17,10 @@ from odometry.outputs.manifest import check_finished
 from odometry.parameters import write_parameters
 from odometry.trajectory import Trajectory
 from terrain.errors import ResultError
-from terrain.odometer_uncertainty import covariance_columns
 from terrain.result_table import FORMAT, result_table
 from terrain.run_result import RunResult
 from terrain.terrain_table import terrain_columns
+from terrain.uncertainty_table import covariance_columns
 
 ERRORS = (  # of each trajectory in it, and which number of each the tables show
     ("translation_m_per_m", "mean"),

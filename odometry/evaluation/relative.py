@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.config import require_positive
-from odometry.evaluation.course import course_headings
+from odometry.evaluation.course_headings import course_headings
 from odometry.evaluation.horizons import spatial_horizons
 from odometry.geometry import se2
 from odometry.geometry.angles import continuous_difference

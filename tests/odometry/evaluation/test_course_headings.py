@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.evaluation.course import course_headings
+from odometry.evaluation.course_headings import course_headings
 from odometry.evaluation.relative import EvaluationConfig, relative_errors
 from odometry.trajectory import Trajectory
 
