@@ -1,11 +1,13 @@
-"""What is said of a unit that was taken for another."""
+"""What is said of a unit that was taken for another, and of a factor that is none."""
 
 import numpy as np
 
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.mending import gyroscope_times, treads_times
-from odometry.checks.unit_tables import Unit, tread_units
+from odometry.checks.unit_tables import ORDINARY_FORWARD, Unit, tread_units
+
+SLIP_OR_TRACK = "; or heavy slip in turns (snow), or a wrong track_width"
 
 
 def gyroscope_unit(evidence: Evidence, factor: float) -> Finding:
@@ -46,9 +48,8 @@ def too_fast(evidence: Evidence) -> Finding:
     )
 
 
-def tread_unit(seen: str, unit: Unit, evidence: Evidence, *, sure: bool = True) -> Finding:
-    """Tread speeds in another unit, and what else the factor may be."""
-    others = "" if sure else "; or heavy slip in turns (snow), or a wrong track_width"
+def tread_unit(seen: str, unit: Unit, evidence: Evidence, others: str = "") -> Finding:
+    """Tread speeds in another unit, and what else the factor may be: `others`, and known ones."""
     if 1 / 4 < unit.factor < 4:
         alike = [
             other.words
@@ -68,6 +69,31 @@ def tread_unit(seen: str, unit: Unit, evidence: Evidence, *, sure: bool = True) 
         f"Tread speeds are in {unit.words}, not m/s{others}",
         "Convert v_left and v_right to m/s: wheel rate times radius",
         mend=treads_times(1 / unit.factor, 1 / unit.factor),
+    )
+
+
+def slip_along(seen: str, tight: bool) -> Finding:
+    """A factor along the way that slip explains as well."""
+    return Finding(
+        "slip",
+        Level.WARNING,
+        f"{seen}; the factor is {'constant' if tight else 'not known to be constant'}",
+        "Heavy slip (ice, snow, a robot that is stuck) where terrain allows it, else a wrong "
+        "scale of treads or positions: these cannot be distinguished",
+        "Where it truly slipped nothing can be mended: what is learned holds on such terrain alone",
+    )
+
+
+def scale_along(seen: str, forward: float) -> Finding:
+    """A constant factor along the way that is no known unit."""
+    return Finding(
+        "scale",
+        Level.WARNING,
+        f"{seen}; the factor is constant",
+        f"Tread speeds are {1 / forward * ORDINARY_FORWARD:.2g} times too large (wheel radius or "
+        "diameter, gear ratio, unit), or positions are scaled",
+        "Compare a straight stretch with a tape measure, and mend the wheel radius",
+        mend=treads_times(forward / ORDINARY_FORWARD, forward / ORDINARY_FORWARD),
     )
 
 

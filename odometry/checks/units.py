@@ -6,18 +6,20 @@ import numpy as np
 
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
-from odometry.checks.mending import times, treads_times
+from odometry.checks.mending import times
 from odometry.checks.proportion import holds_the_mean
 from odometry.checks.relation import Relation, pieces
 from odometry.checks.turning import Sense, gyroscope_sense, pose_sense
 from odometry.checks.unit_findings import (
+    SLIP_OR_TRACK,
     gyroscope_unit,
+    scale_along,
+    slip_along,
     too_fast,
     track_against_body,
     tread_unit,
 )
 from odometry.checks.unit_tables import (
-    ORDINARY_FORWARD,
     POSITION_UNITS,
     Unit,
     matching,
@@ -165,24 +167,8 @@ def _along(evidence: Evidence, forward: float, tight: bool, width: float | None)
             mend=times("pose", 1 / position.factor, "x", "y"),
         )
     if not tight or (forward < FORWARD[0] and width is not None and width > ORDINARY_WIDTH):
-        return Finding(
-            "slip",
-            Level.WARNING,
-            f"{seen}; the factor is {'constant' if tight else 'not known to be constant'}",
-            "Heavy slip (ice, snow, a robot that is stuck) where terrain allows it, else a wrong "
-            "scale of treads or positions: these cannot be distinguished",
-            "Where it truly slipped nothing can be mended: what is learned holds on such terrain "
-            "alone",
-        )
-    return Finding(
-        "scale",
-        Level.WARNING,
-        f"{seen}; the factor is constant",
-        f"Tread speeds are {1 / forward * ORDINARY_FORWARD:.2g} times too large (wheel radius or "
-        "diameter, gear ratio, unit), or positions are scaled",
-        "Compare a straight stretch with a tape measure, and mend the wheel radius",
-        mend=treads_times(forward / ORDINARY_FORWARD, forward / ORDINARY_FORWARD),
-    )
+        return slip_along(seen, tight)
+    return scale_along(seen, forward)
 
 
 def _across(evidence: Evidence, forward: float | None, width: float, tight: bool) -> Finding:
@@ -203,7 +189,7 @@ def _across(evidence: Evidence, forward: float | None, width: float, tight: bool
     very_tight = _turns_explained(evidence) > VERY_TIGHT
     if forward is None and very_tight and width > WIDTH[1] and tread is not None and body_fits:
         return tread_unit(
-            f"{seen}; there are no positions to say more", tread, evidence, sure=False
+            f"{seen}; there are no positions to say more", tread, evidence, SLIP_OR_TRACK
         )
     if width > WIDTH[1] and (forward is None or not tight) and body_fits:
         return Finding(
