@@ -76,7 +76,7 @@ class Motion:
         return np.asarray((raw + np.pi) % (2 * np.pi) - np.pi)
 
     def with_yaw(self, read: Callable[[FloatArray], FloatArray]) -> "Motion":
-        """The same with another reading of the measured yaw."""
+        """The same with another reading of the measured yaw (K, 2)."""
         return replace(self, yaw_rad=read(self.yaw_rad))
 
     @property

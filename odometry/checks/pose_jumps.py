@@ -47,7 +47,18 @@ class Steps:
 def jumps(
     evidence: Evidence, rows: IntArray, travel_m: FloatArray, frozen_s: FloatArray
 ) -> Iterator[Finding]:
-    """Steps of the difference between the poses and dead reckoning along their own yaw."""
+    """Steps of the difference between the poses and dead reckoning along their own yaw.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    rows : (M,)
+        Of pose.csv: the poses that are judged.
+    travel_m : (M,)
+        Tread travel at each of them.
+    frozen_s : (S, 2)
+        Run time in which the poses are frozen: no jump is looked for there.
+    """
     if evidence.run.pose is None:
         return
     if evidence.heading is not None:

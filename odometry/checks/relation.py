@@ -100,7 +100,7 @@ def relation(target: FloatArray, *columns: FloatArray) -> Relation | None:
 
 
 def pieces(target: FloatArray, *columns: FloatArray) -> list[Relation]:
-    """The same relation in each quarter of the windows, those of which it says something."""
+    """The relation of columns (K,) to a target (K,) in each quarter of windows that tells it."""
     known = np.flatnonzero(np.isfinite(target) & np.isfinite(np.stack(columns)).all(axis=0))
     found = (
         relation(target[rows], *(column[rows] for column in columns))

@@ -122,7 +122,13 @@ class IdentifiedModel(Candidate):
     def on(
         self, split: Split, config: ComparisonConfig, near: Mapping[str, float] | None = None
     ) -> Predictor:
-        """See `Candidate.on`."""
+        """See `Candidate.on`.
+
+        Raises
+        ------
+        IdentificationError
+            If no training run is of this robot on this terrain.
+        """
         robot = split.held_out[0].run.robot
         if all(parameter.known for parameter in self.model.parameters):
             values = self.model.guess(robot)
@@ -168,7 +174,13 @@ class GivenParameters(Candidate):
         config: ComparisonConfig,  # noqa: ARG002 - as every candidate
         near: Mapping[str, float] | None = None,  # noqa: ARG002
     ) -> Predictor:
-        """See `Candidate.on`."""
+        """See `Candidate.on`.
+
+        Raises
+        ------
+        ParameterError
+            If the set has no table of the terrain.
+        """
         table = self.parameters.terrains.get(split.terrain)
         if table is None:
             raise ParameterError(

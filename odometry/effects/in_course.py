@@ -40,7 +40,7 @@ class _InCourse(Effect):
         return self.inner.lacks(inputs, base) or ("" if inputs.time_s is not None else "stamps")
 
     def starts(self, inputs: Inputs, base: Base) -> FloatArray:
-        """The first start of the effect at every start of its course."""
+        """Values (S, P): the first start of the effect at every start of its course."""
         first, courses = self.inner.starts(inputs, base)[0], self.in_time.starts()
         return np.hstack([np.tile(first, (len(courses), 1)), courses])
 

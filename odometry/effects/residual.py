@@ -100,7 +100,13 @@ class Residual(MotionEffect):
         inputs: Inputs,
         base: Base,
     ) -> FloatArray:
-        """See `MotionEffect.twist`; what is added to treads is a change to first order."""
+        """See `MotionEffect.twist`; what is added to treads is a change to first order.
+
+        Raises
+        ------
+        ParameterError
+            If the variable was not recorded.
+        """
         variable = _variable(self.variable, inputs, twist)
         if variable is None:
             raise ParameterError(

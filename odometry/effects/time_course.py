@@ -92,7 +92,7 @@ class FromAMoment(Course):
         )
 
     def starts(self) -> FloatArray:
-        """Moments evenly spread over each run in turn, the others not begun."""
+        """Moments (S, P) evenly spread over each of P runs in turn, the others not begun."""
         if self.near_s:
             return np.array([self.near_s])
         most = max(1, MOST_MOMENTS // len(self.observed_s))
@@ -115,7 +115,7 @@ class FromAMoment(Course):
         return {"observed_s": [list(span) for span in self.observed_s]}
 
     def share(self, values: FloatArray, inputs: Inputs) -> FloatArray:
-        """The sample in which the moment lies is shared out; after the last run there is none."""
+        """Shares (N,): the sample with a moment (P,) in it is shared out; later runs have none."""
         time_s, steps_s = _samples(inputs)
         numbers = _run_numbers(inputs)
         known = numbers < len(values)

@@ -77,7 +77,7 @@ class Course:
 
     @classmethod
     def begun(cls, stamp_s: float, reckoned_m: FloatArray, measured_m: FloatArray) -> "Course":
-        """At a first pair."""
+        """At a first pair of positions (2,), of dead reckoning and measured."""
         return cls(stamp_s, 1, reckoned_m, measured_m, reckoned_m, measured_m)
 
     def with_position(self, reckoned_m: FloatArray, measured_m: FloatArray) -> "Course":

@@ -33,7 +33,7 @@ def searched(
     pose_covariance: FloatArray,
     lever_m: Place,
 ) -> Searched:
-    """Take in a pose whose yaw, or whose position, may be NaN.
+    """Take in a pose (3,) whose yaw, or whose position, may be NaN; `pose_covariance` is (3, 3).
 
     Dead reckoning has begun with a yaw of 0. A position adds to the search, and the belief goes
     on from there, as its heading tells nothing; a measured yaw ends the search.

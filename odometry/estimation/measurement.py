@@ -98,7 +98,10 @@ def pose_measurement(
 
 
 def turned_by_treads(mean: FloatArray, left: float, right: float) -> float:
-    """Yaw rate of the treads [rad/s]: their difference after slip over y_left - y_right."""
+    """Yaw rate of the treads [rad/s]: their difference after slip over y_left - y_right.
+
+    Of the mean (9,) of the state and tread speeds [m/s].
+    """
     slipped = mean[ALPHA_RIGHT] * right - mean[ALPHA_LEFT] * left
     return float(slipped) / float(mean[Y_LEFT] - mean[Y_RIGHT])
 

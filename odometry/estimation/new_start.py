@@ -51,7 +51,7 @@ def started_anew(
 
 
 def new_start_event(refused: Sequence[FloatArray], stamp_s: float) -> FilterEvent:
-    """The event of a new start."""
+    """The event of a new start, by the residuals (m,) of refused poses in a row."""
     last = refused[-1]
     parts = [] if len(last) == 1 else [f"{math.hypot(*last[:2]):.2f} m"]
     if len(last) != 2:

@@ -59,7 +59,7 @@ class PoseKalman(ExtendedKalmanFilter):  # type: ignore[misc]
     def updated(
         self, mean: FloatArray, covariance: FloatArray, measured: Measurement
     ) -> tuple[FloatArray, FloatArray, float]:
-        """Mean, covariance, normalised innovation squared: eq. 14-15, and Joseph's form of 16."""
+        """Mean (9,), covariance (9, 9), normalised innovation squared: eq. 14-15, Joseph's 16."""
         self.x, self.P = mean, covariance
         self.update(
             measured.residual, _derivative, _nothing, measured.covariance, (measured.jacobian,)

@@ -52,7 +52,7 @@ def moved(watch: PoseWatch, travel_m: float, turn_rad: float) -> PoseWatch:
 def watched(
     watch: PoseWatch, pose: FloatArray, stamp_s: float
 ) -> tuple[PoseWatch, bool, tuple[FilterEvent, ...]]:
-    """The watch after a measured pose, and whether that is to be used."""
+    """The watch after a measured pose (3,), whether that is to be used, and events that ended."""
     x, y, yaw = cells = tuple(pose.tolist())
     if math.isnan(x) and math.isnan(y) and math.isnan(yaw):
         return watch, False, ()

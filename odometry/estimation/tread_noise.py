@@ -15,7 +15,7 @@ HUBER_SQUARED = 4.0  # two standard deviations of a yaw rate of the treads
 def tread_variance(
     tread_speeds: FloatArray, yaw_rate: float, track_width: float, slip_scale: float, step_s: float
 ) -> float:
-    """Variance of the treads' yaw rate over a step [rad^2/s^2].
+    """Variance of the treads' yaw rate over a step [rad^2/s^2], of tread speeds (2,) [m/s].
 
     Slip is correlated over `CORRELATED_S`: shorter steps say less each, so that the answer does
     not depend on how finely time is cut.
@@ -33,7 +33,17 @@ def width_sigma_m(covariance: FloatArray) -> float:
 
 
 def huber_factor(measured: Measurement, covariance: FloatArray, variance: float) -> float:
-    """Factor on the variance of one number: above 1 beyond two standard deviations."""
+    """Factor on the variance of one number: above 1 beyond two standard deviations.
+
+    Parameters
+    ----------
+    measured : Measurement
+        Of one number, with its derivative (1, 9).
+    covariance : (9, 9)
+        Of the state.
+    variance : float
+        Of the number itself, in its unit squared.
+    """
     by_state = measured.jacobian[0]
     expected = variance + float(by_state.dot(covariance).dot(by_state))
     squared = float(measured.residual[0]) ** 2 / expected if expected > 0 else 0.0
@@ -49,9 +59,10 @@ def velocity_variances(
     step_s: float,
     yaw_rate: float,
 ) -> tuple[float, float, float]:
-    """Variances of measured v_x, v_y, omega against what treads and gyroscope say.
+    """Variances of measured v_x, v_y [m^2/s^2], omega [rad^2/s^2] against treads and gyroscope.
 
-    That of the sensor, and what slip adds to the step before it.
+    That of the sensor, and what slip adds to the step before it, at tread speeds (2,) [m/s]. Where
+    the yaw rate is NaN, the treads turn the robot.
     """
     left, right = tread_speeds.tolist()
     slip = config.slip_noise**2 * slip_scale * (abs(left) + abs(right)) / 2

@@ -132,7 +132,7 @@ def _continuous_where_measured(yaw: FloatArray, true_yaw: FloatArray) -> FloatAr
 
 
 def position_errors(trajectory: Trajectory, reference: Trajectory) -> tuple[FloatArray, FloatArray]:
-    """Distance from the reference at its stamps that the trajectory covers: stamps, metres."""
+    """Stamps (K,) of the reference that a trajectory covers, and its distance (K,) there [m]."""
     stamps_s = reference.stamps_s[trajectory.covers(reference.stamps_s)]
     difference = trajectory.at(stamps_s).poses - reference.at(stamps_s).poses
     return stamps_s, np.hypot(difference[:, 0], difference[:, 1])

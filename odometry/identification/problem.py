@@ -53,7 +53,7 @@ class AnyProblem(ABC):
         return values
 
     def bounds(self) -> tuple[FloatArray, FloatArray]:
-        """Where to search the free parameters."""
+        """Lowest and highest values (F,) within which the free parameters are searched."""
         ranges = [p.search or (p.low, p.high) for p in self.model.parameters]
         low, high = np.array(ranges)[self.free].reshape(-1, 2).T
         return low, high

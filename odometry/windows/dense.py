@@ -63,7 +63,13 @@ class DenseWindows:
 
     @property
     def time_s(self) -> FloatArray:
-        """Run time (N,) of the samples."""
+        """Run time (N,) of the samples.
+
+        Raises
+        ------
+        WindowError
+            If they have no stamps.
+        """
         time_s = self.inputs.time_s
         if time_s is None:
             raise WindowError(f"{self.run.folder}: no stamps")
