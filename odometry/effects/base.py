@@ -63,8 +63,6 @@ class Effect(ABC):
         Effects that it may be mistaken for, and what tells them apart.
     of_reference : bool
         Whether it is a fault of the reference sensor, not of the robot.
-    shared : tuple of str
-        Parameters that are the same physical numbers in every effect that has them.
     constant_names : tuple of str
         Known numbers that a parameter set holds among the parameters; arguments to make it.
     course : str
@@ -84,7 +82,6 @@ class Effect(ABC):
     needs: ClassVar[str] = "tread speeds and a measured pose"
     alike: ClassVar[Mapping[str, str]] = {}
     of_reference: ClassVar[bool] = False
-    shared: ClassVar[tuple[str, ...]] = ()
     constant_names: ClassVar[tuple[str, ...]] = ()
     course: ClassVar[str] = ""
     slow: ClassVar[bool] = False

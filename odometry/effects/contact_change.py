@@ -34,7 +34,6 @@ class ContactChange(MotionEffect):
 
     form = "contact"
     slow = True
-    shared = ("mu", "height", "half_length", "x_cm", "slip_scale")
     constant_names = ("half_width",)
     source = "force balance of this project (odometry.models.contact)"
 

@@ -13,7 +13,7 @@ from odometry.models.inputs import Inputs
 
 TAKEN_OVER = (
     *("name", "form", "course", "in_words", "acts_on", "equation", "source", "looks_like"),
-    *("remedy", "needs", "alike", "slow", "shared", "constant_names"),
+    *("remedy", "needs", "alike", "slow", "constant_names"),
 )
 
 

@@ -1,4 +1,4 @@
-"""How much of an effect there is over time: from a moment on, gradually, or in bursts.
+"""How much of an effect there is over time: from a moment on, or gradually.
 
 The course of each run is its own: a moment of one run says nothing of another.
 """
@@ -65,12 +65,9 @@ class FromAMoment(Course):
     observed_s : tuple of (float, float)
         Of each run: moments before the first, where no window has ended yet, or after the last,
         where none begins, are none.
-    near_s : tuple of float, optional
-        Where the search of the moment of each run begins, where something is known of it.
     """
 
     observed_s: Spans = ((0.0, UNBOUNDED_S),)
-    near_s: tuple[float, ...] = ()
 
     name = "from_a_moment"
 
@@ -93,8 +90,6 @@ class FromAMoment(Course):
 
     def starts(self) -> FloatArray:
         """Moments (S, P) evenly spread over each of P runs in turn, the others not begun."""
-        if self.near_s:
-            return np.array([self.near_s])
         most = max(1, MOST_MOMENTS // len(self.observed_s))
         never = np.array([parameter.high for parameter in self.parameters])
         found = []
@@ -139,37 +134,6 @@ class Gradual(Course):
         """See `Course.share`; it grows on after `full_s`."""
         time_s, steps_s = _samples(inputs)
         return np.asarray((time_s + steps_s / 2) / self.full_s)
-
-
-@dataclass(frozen=True)
-class InBursts(Course):
-    """All of it within events, nothing between them.
-
-    Attributes
-    ----------
-    events_s : tuple of tuples of (float, float)
-        Of each run: first and last moment of each event.
-    """
-
-    events_s: tuple[Spans, ...] = ((),)
-
-    name = "in_bursts"
-
-    def settings(self) -> dict[str, Any]:
-        """The events."""
-        return {"events_s": [[list(event) for event in run] for run in self.events_s]}
-
-    def share(self, values: FloatArray, inputs: Inputs) -> FloatArray:  # noqa: ARG002
-        """See `Course.share`; samples on an edge are shared out."""
-        time_s, steps_s = _samples(inputs)
-        numbers = _run_numbers(inputs)
-        share = np.zeros(len(time_s))
-        for number, events in enumerate(self.events_s):
-            here = numbers == number
-            for first_s, last_s in events:
-                inside = np.minimum(time_s + steps_s, last_s) - np.maximum(time_s, first_s)
-                share[here] += np.clip(inside / steps_s, 0.0, 1.0)[here]
-        return np.minimum(share, 1.0)
 
 
 def _samples(inputs: Inputs) -> tuple[FloatArray, FloatArray]:

@@ -1,4 +1,4 @@
-"""Traction that is lost from some moment on, more and more, or in bursts."""
+"""Traction that is lost from some moment on, or more and more."""
 
 from typing import ClassVar
 

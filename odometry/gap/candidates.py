@@ -4,11 +4,7 @@ from collections.abc import Sequence
 
 from odometry.effects.base import Effect
 from odometry.effects.catalogue import EFFECTS
-from odometry.effects.in_course import in_course
 from odometry.effects.recorded import Recorded, labels_of
-from odometry.effects.terrain import NewIcrs
-from odometry.effects.time_course import FromAMoment
-from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.calibration import Calibration
 from odometry.windows.dense import DenseWindows
 
@@ -33,15 +29,6 @@ def quick_effects(scenes: Sequence[DenseWindows], calibration: Calibration) -> t
 def contact_effects(scenes: Sequence[DenseWindows], calibration: Calibration) -> tuple[Effect, ...]:
     """Those by the balance of contact forces."""
     return tuple(e for e in offered_effects(scenes, calibration) if e.slow)
-
-
-def from_a_moment(
-    moments_s: Sequence[float], scenes: Sequence[DenseWindows], calibration: Calibration
-) -> tuple[Effect, ...]:
-    """What else may begin at moments of the runs, where something does: other wheels or terrain."""
-    course = FromAMoment(tuple(map(_observed_s, scenes)), tuple(moments_s))
-    every = (in_course(effect, course) for effect in (WheelScale(), NewIcrs()))
-    return tuple(e for e in every if told_by(e, scenes, calibration))
 
 
 def _observed_s(scene: DenseWindows) -> tuple[float, float]:

@@ -17,7 +17,6 @@ from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added, corrected_twist, reported_yaw_rate
 from odometry.effects.in_course import CommandsInCourse, MotionInCourse
-from odometry.effects.time_course import InBursts
 from odometry.gap.calibration import Calibration
 from odometry.gap.config import GapConfig
 from odometry.gap.drives import Drive, drives_of, scene_of
@@ -79,8 +78,6 @@ def next_drives(
     (name, named), *others = ((key, lasting(fit)) for key, fit in rivals.items())
     found = []
     for other, rival in others:
-        if named is None or rival is None:
-            continue
         pair = (named, rival)
         odds = [_odds(one, pair, scenes[0], calibration, config) for one in drives]
         best = int(np.argmax(odds))
@@ -153,14 +150,12 @@ def as_driven(true: Rivalling, scene: DenseWindows) -> DenseWindows:
     return replace(scene, poses=poses, inputs=inputs)
 
 
-def lasting(fitted: Fitted) -> Rivalling | None:
-    """The effects as they are at the end of their course; None where they come and go."""
+def lasting(fitted: Fitted) -> Rivalling:
+    """The effects as they are at the end of their course."""
     effects, kept, place = [], [], 0
     for added in fitted.effects:
         effect, values = added.effect, added.values
         if isinstance(effect, CommandsInCourse | MotionInCourse):
-            if isinstance(effect.in_time, InBursts):
-                return None
             values = values[: len(effect.inner.parameters)]
             effect = effect.inner
         effects.append(Added(effect, values))

@@ -18,7 +18,7 @@ from odometry.effects.corrected import (
 from odometry.effects.in_course import in_course
 from odometry.effects.residual import Residual
 from odometry.effects.terrain import Terrain
-from odometry.effects.time_course import FromAMoment, Gradual, InBursts
+from odometry.effects.time_course import FromAMoment, Gradual
 from odometry.effects.time_offset import TimeOffset
 from odometry.effects.traction_loss import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
@@ -39,7 +39,6 @@ ONE_OF_EACH = [
     *(effect() for effect in EFFECTS if effect not in (Terrain, TractionLoss)),
     in_course(TractionLoss(), FromAMoment(((2.0, 30.0),))),
     in_course(TractionLoss(), FromAMoment(((2.0, 30.0), (1.0, 60.0)))),
-    in_course(TractionLoss(), InBursts((((1.0, 2.0), (5.0, 6.0)), ()))),
     in_course(WheelScale(), Gradual(40.0)),
     Terrain(("ice", "wet grass")),
     Residual("heading", (("v_x", 0), ("omega", 3))),
@@ -127,7 +126,7 @@ def test_starts_lie_within_bounds(effect, bench, rng):
     assert ((starts >= low) & (starts <= high)).all()
 
 
-@pytest.mark.parametrize("course", [FromAMoment(), Gradual(9.0), InBursts()])
+@pytest.mark.parametrize("course", [FromAMoment(), Gradual(9.0)])
 def test_the_measurement_has_no_course_and_no_course_a_second(course):
     for effect in (TimeOffset(), in_course(WheelScale(), Gradual(9.0))):
         with pytest.raises(ParameterError, match="has no course in time"):
@@ -213,8 +212,11 @@ def test_the_source_of_an_effect_may_be_stated():
         ),
         ({**SCALE, "course": "at_night"}, r"course = 'at_night', expected one of from_a_moment"),
         ({**SCALE, "course": "gradual", "full_s": "long"}, r"full_s = 'long', expected a finite"),
-        ({**SCALE, "course": "in_bursts", "events_s": 3}, r"events_s = 3, expected a list"),
-        ({**SCALE, "course": "in_bursts", "events_s": [[[1]]]}, r"events_s = .*expected a finite"),
+        ({**SCALE, "course": "from_a_moment", "observed_s": 3}, r"observed_s = 3, expected a list"),
+        (
+            {**SCALE, "course": "from_a_moment", "observed_s": [[1]]},
+            r"observed_s = .*expected a finite",
+        ),
         (
             {"name": "terrain", "form": "icr_by_label", "labels": "ice", "parameters": {}},
             r"expected a list of names",

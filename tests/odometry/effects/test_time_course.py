@@ -7,7 +7,7 @@ import pytest
 
 from odometry.effects.corrected import Added, corrected_twist, with_true_speeds
 from odometry.effects.in_course import in_course
-from odometry.effects.time_course import SPACING_S, FromAMoment, Gradual, InBursts
+from odometry.effects.time_course import SPACING_S, FromAMoment, Gradual
 from odometry.effects.traction_loss import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.models.inputs import Inputs
@@ -38,21 +38,10 @@ def test_gradual_is_a_share_of_time():
     np.testing.assert_allclose(moved(found, STEADY), [0.4 * 0.985, 0.7 * 0.985], atol=1e-14)
 
 
-def test_bursts_act_within_their_events():
-    """0.05 to 0.2 s and from 0.9 s on: a quarter of the second in all."""
-    events = InBursts((((0.05, 0.2), (0.9, 5.0)),))
-    effect = Added(in_course(WheelScale(), events), np.array([0.5, 1.0]))
-    found = with_true_speeds([effect], STEADY).tread_speeds_m_s
-    np.testing.assert_allclose(moved(found, STEADY), [0.4 * (1 - 0.25 / 2), 0.7], atol=1e-14)
-
-
-@pytest.mark.parametrize(
-    "course", [FromAMoment(((0.0, 9.0), (0.0, 9.0))), InBursts(((), ((0.3, 5.0),)))]
-)
-def test_every_run_has_its_own(course):
+def test_every_run_has_its_own():
     """The second run alone: 0.3 s of 1 s without, the others never; a third run has none."""
-    values = np.array([0.5, 0.5, *([8.0, 0.3] if course.parameters else [])])
-    effect = Added(in_course(WheelScale(), course), values)
+    course = FromAMoment(((0.0, 9.0), (0.0, 9.0)))
+    effect = Added(in_course(WheelScale(), course), np.array([0.5, 0.5, 8.0, 0.3]))
     for number, share in enumerate([1.0, 0.65, 1.0]):
         inputs = replace(STEADY, run_number=np.full(7, number))
         found = with_true_speeds([effect], inputs).tread_speeds_m_s
@@ -66,11 +55,6 @@ def test_searches_begin_all_over_each_run(bench):
     in_first = starts[:, 3] == starts[:, 3].max()
     for moments, span_s in ((starts[in_first, 2], 158.0), (starts[~in_first, 3], 30.0)):
         assert np.diff(moments) == pytest.approx(max(span_s / 30, SPACING_S), rel=0.02)
-
-    near = FromAMoment(course.observed_s, (20.0, 3.0))
-    assert in_course(TractionLoss(), near).starts(STEADY, bench.base)[:, 2:].tolist() == [
-        [20.0, 3.0]
-    ]
 
 
 @pytest.mark.parametrize(

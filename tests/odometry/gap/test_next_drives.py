@@ -9,7 +9,7 @@ from odometry.effects.in_course import in_course
 from odometry.effects.lateral_skid import LateralSkid
 from odometry.effects.lever_arm import LeverArm
 from odometry.effects.slope_icr import SlopeByIcr
-from odometry.effects.time_course import FromAMoment, InBursts
+from odometry.effects.time_course import FromAMoment
 from odometry.effects.traction_loss import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
@@ -113,11 +113,10 @@ def test_a_drive_is_cut_as_the_measured_ones(scenes, known, fit):
         np.testing.assert_allclose(same.poses, scene.poses, atol=0.05)
 
 
-def test_after_its_moment_an_effect_is_there_and_of_bursts_nobody_knows(fit):
+def test_after_its_moment_an_effect_is_there(fit):
     lost = in_course(TractionLoss(), FromAMoment())
     rival = lasting(fit(lost, [0.8, 0.7, 30.0]))
     (added,) = rival.effects
     assert isinstance(added.effect, TractionLoss)
     np.testing.assert_array_equal(added.values, [0.8, 0.7])
     assert rival.covariance.shape == (2, 2)
-    assert lasting(fit(in_course(TractionLoss(), InBursts()), [0.8, 0.7])) is None
