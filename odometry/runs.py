@@ -18,7 +18,9 @@ def check_no_run_twice(runs: Sequence[Run]) -> None:
     folders = [run.folder.resolve() for run in runs]
     for folder in folders:
         if folders.count(folder) > 1:
-            raise RunFolderError(f"{folder} is given twice; expected each run once")
+            raise RunFolderError(
+                f"{folder} is given twice; expected each run once: none can be its own test"
+            )
 
 
 def robot_labels(robots: Sequence[Robot]) -> dict[tuple[str, float], str]:

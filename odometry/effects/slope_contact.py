@@ -16,7 +16,7 @@ class SlopeByContact(ContactChange):
     in_words = "sliding downhill in turns"
     equation = "twist + balance(speeds, roll, pitch) - balance(speeds, level)"
     looks_like = "turns on a slope that slide downhill"
-    remedy = "keep it in the model; record roll and pitch"
+    remedy = "keep it in the model, and record roll and pitch in every run"
     needs = "roll and pitch on terrain that is not level"
 
     def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the interface

@@ -30,7 +30,7 @@ class SlopeByIcr(MotionEffect):
     constant_names = ("half_width", "half_length")
     source = "Martinez 2024 eq. 1-11"
     looks_like = "turns on a slope that slide downhill, most while slow"
-    remedy = "keep it in the model; record roll and pitch"
+    remedy = "keep it in the model, and record roll and pitch in every run"
     needs = "roll and pitch on terrain that is not level; a base model with tread ICRs"
 
     def __init__(self, half_width: float | None = None, half_length: float | None = None) -> None:

@@ -50,6 +50,7 @@ def content_of(result: GapResult) -> dict[str, Any]:
             {
                 "name": rival.name,
                 "form": rival.form,
+                "course": rival.course,
                 "evidence": _finite(rival.evidence),
                 "gap_after": _finite(rival.gap_after),
             }

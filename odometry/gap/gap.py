@@ -18,7 +18,7 @@ from odometry.gap.measured import measured_of
 from odometry.gap.name import explained
 from odometry.gap.next_drives import NextDrive, next_drives
 from odometry.gap.own_moments import SPACING_S, with_own_moments
-from odometry.gap.pieces import pieces
+from odometry.gap.pieces import held_back
 from odometry.gap.result import Closing, GapResult, NamedEffect, Rival
 from odometry.gap.statistic import floor_of, floor_there, gap_of
 from odometry.identification.identify import robot_of
@@ -118,7 +118,13 @@ def find_gap(
         measured=closings[0],
         holdout=closings[1],
         rivals=tuple(
-            Rival(one.effect.name, one.effect.form, one.evidence, one.gap_after)
+            Rival(
+                one.effect.name,
+                one.effect.form,
+                one.evidence,
+                one.gap_after,
+                one.effect.course,
+            )
             for one in found.first
         ),
         calibration=known,
@@ -207,13 +213,13 @@ def _scenes(
             for number, run in enumerate(holdout, start=len(measured))
         ]
     else:
-        outs = [pieces(s, config.part_s) % config.held_back == config.held_back - 1 for s in scenes]
+        outs = [held_back(scene, config.part_s, config.held_back) for scene in scenes]
         held = [s.where(out) for s, out in zip(scenes, outs, strict=True) if out.any()]
         scenes = [s.where(~out) for s, out in zip(scenes, outs, strict=True) if not out.all()]
         if not held or not scenes:
             raise GapError(
                 "the measured runs are too short to hold stretches of them back: expected "
-                f"{config.held_back * config.part_s:g} s or more, or --holdout"
+                f"{config.held_back * config.part_s:g} s or more with moving treads, or --holdout"
             )
     return [thinned(scene, config.most_windows) for scene in scenes], held
 

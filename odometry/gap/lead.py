@@ -30,7 +30,7 @@ def _missing(result: GapResult) -> str:
     if rest:
         names += f", and something unknown that depends on {listed(rest)}"
     if all(effect.added.effect.of_reference for effect in named) and not rest:
-        return f"Not the robot is at fault but a sensor: {names}."
+        return f"A sensor is at fault, not the robot: {names}."
     return f"Missing in {model}: {names}."
 
 
@@ -63,12 +63,12 @@ def _how_sure(result: GapResult, share: Share | None) -> str:
         return f"The gap on held-out data gets worse, {change}: do not trust the name."
     said = f"The gap on held-out data falls {change}; {floor}"
     if share is None:
-        said += ", so that it was hardly above noise before"
+        said += ", which the gap before hardly exceeds"
     else:
         said += f", so that {percent(share)} of the excess is closed"
     if held.after.is_above(held.noise_floor):
         left = metres(held.after.value - held.noise_floor.value)
-        said += f" and {left} are left unexplained"
+        said += f" and {left} stays unexplained"
     others = [f"{one.name} instead of {one.instead_of}" for one in result.equivalent]
     return f"{said}. It may as well be {listed(others, 'or')}." if others else f"{said}."
 
@@ -91,7 +91,7 @@ def _what_to_do(result: GapResult) -> str:
 def _remedy(result: GapResult) -> str:
     if not result.effects:
         if result.verdict == "unknown":
-            return "Look at the worst stretches below, and record what may differ there."
+            return "Look at the worst stretches in report.html, and record what may differ there."
         return "Keep the model as it is."
     remedies = dict.fromkeys(effect.added.effect.remedy for effect in result.effects)
     return f"{'; '.join(remedies)}.".capitalize()

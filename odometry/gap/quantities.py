@@ -9,8 +9,8 @@ WORDS = ((10.0, "very strong"), (6.0, "strong"), (2.0, "weak"), (0.0, "hardly an
 
 
 def metres(value: float) -> str:
-    """A length of three figures."""
-    return f"{value:.3g} m"
+    """A length of two figures."""
+    return f"{value:.2g} m"
 
 
 def with_interval(gap: Gap) -> str:
@@ -48,4 +48,4 @@ def evidence_words(evidence: float) -> str:
 def _interval(words: str, pieces: int) -> str:
     if pieces < 2:
         return "no interval from one stretch"
-    return words if pieces >= MANY else f"{words}, from {pieces} stretches alone"
+    return words if pieces >= MANY else f"{words}, from only {pieces} stretches"

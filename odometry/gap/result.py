@@ -46,6 +46,12 @@ class Rival:
     form: str
     evidence: float
     gap_after: float
+    course: str = ""
+
+    @property
+    def form_in_words(self) -> str:
+        """The form, and how the effect comes and goes in time."""
+        return " ".join(filter(None, (self.form, self.course))).replace("_", " ")
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,10 @@ def sentences(result: GapResult) -> tuple[str, ...]:
         _disagreement(result),
         *_where(result),
         *(_effect(effect, number) for number, effect in enumerate(result.effects, start=1)),
-        *(f"Not {one.name}, though it has evidence: {one.reason}." for one in result.refusals),
+        *(
+            f"Not {_refused(one.name)}, though it has evidence: {one.reason}."
+            for one in result.refusals
+        ),
     )
 
 
@@ -31,11 +34,15 @@ def effect_words(effect: NamedEffect) -> str:
     return f"{added.in_words} ({added.name}, {added.form.replace('_', ' ')})"
 
 
+def _refused(name: str) -> str:
+    return "a smooth function of one variable" if name == Residual.name else name
+
+
 def _disagreement(result: GapResult) -> str:
     return (
         f"Over windows of {result.horizon_s:g} s the simulated position ends "
         f"{with_interval(result.measured.before)} from the measured one on the measured runs: a "
-        "root mean square, in brackets its 95 % interval."
+        "root mean square, with its 95 % interval in brackets."
     )
 
 
@@ -50,12 +57,12 @@ def _where(result: GapResult) -> Iterator[str]:
         yield "None of the recorded variables predicts the disagreement beyond chance."
     for number, region in enumerate(location.regions[:REGIONS]):
         if region.words == EVERYWHERE:
-            yield f"It is everywhere alike: {metres(region.excess_m)} above the noise floor."
+            yield f"It is alike everywhere: {metres(region.excess_m)} above the noise floor."
             continue
-        which = "The largest share" if number == 0 else "The next"
+        which = "The largest part of it" if number == 0 else "The next part"
         yield (
-            f"{which}, {100 * region.share:.0f} % of the excess: {region.words}; there it is "
-            f"{metres(region.excess_m)} above the noise floor."
+            f"{which}, {100 * region.share:.0f} % of what noise does not explain: {region.words}; "
+            f"there it is {metres(region.excess_m)} above the noise floor."
         )
 
 

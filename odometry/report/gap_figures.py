@@ -116,7 +116,7 @@ def evidence_picture(result: GapResult, folder: Path) -> Picture | None:
                 va="center",
                 fontsize=8.5,
             )
-        names = [f"{rival.name} ({rival.form.replace('_', ' ')})" for rival in rivals]
+        names = [f"{rival.name} ({rival.form_in_words})" for rival in rivals]
         axes.set_yticks(range(len(rivals)), names, parse_math=False, fontsize=9)
         axes.set_ylim(len(rivals) - 0.4, -0.6)
         axes.axvline(0.0, color="#555555", linewidth=0.8)

@@ -37,7 +37,7 @@ def effect_grid(result: GapResult) -> Grid:
             effect.added.effect.source,
             f"{effect.gap_before:.3g}",
             f"{effect.gap_after:.3g}",
-            f"{effect.evidence:.1f}",
+            f"{effect.evidence:.0f}",
         )
         for effect in result.effects
     ]
@@ -65,7 +65,7 @@ def base_grid(result: GapResult) -> Grid:
     """The base before, and moved within what its calibration leaves open."""
     before, after = result.calibration.base, result.base
     rows = [
-        (parameter.name, f"{old:.5g}", f"{new:.5g}", parameter.unit or "-")
+        (parameter.name, f"{old:.4g}", f"{new:.4g}", parameter.unit or "-")
         for parameter, old, new in zip(
             before.model.parameters, before.values, after.values, strict=True
         )
@@ -84,7 +84,7 @@ def rival_grid(result: GapResult) -> Grid:
     rows = [
         (
             r.name,
-            r.form.replace("_", " "),
+            r.form_in_words,
             f"{r.evidence:.0f}",
             evidence_words(r.evidence),
             f"{r.gap_after:.3g}",

@@ -105,13 +105,13 @@ def gap(
 def _print_result(result: "GapResult") -> None:
     from odometry.gap.words import sentences
 
-    rows = [("effect", "form", "gap before", "after [m]", "evidence")]
+    rows = [("effect", "form", "gap before [m]", "gap after [m]", "evidence")]
     rows += [
         (
             effect.added.effect.name,
             effect.added.effect.form,
-            f"{effect.gap_before:.4f}",
-            f"{effect.gap_after:.4f}",
+            f"{effect.gap_before:.3g}",
+            f"{effect.gap_after:.3g}",
             f"{effect.evidence:.0f}",
         )
         for effect in result.effects

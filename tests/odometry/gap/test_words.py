@@ -63,7 +63,7 @@ def test_a_fault_of_the_reference_is_none_of_the_robot(scaled_result):
     late = NamedEffect(Added(TimeOffset(), one), one, one, 0.2, 0.1, 50.0)
     said = sentences(replace(scaled_result, effects=(late,)))
     assert said[0] == (
-        "Not the robot is at fault but a sensor: pose stamps that are late or early (time_offset)."
+        "A sensor is at fault, not the robot: pose stamps that are late or early (time_offset)."
     )
 
 
@@ -103,7 +103,7 @@ def test_unknown_says_what_it_depends_on_and_what_is_left(unknown_result):
         "depends on heading."
     )
     left = unknown_result.holdout.after.value - unknown_result.holdout.noise_floor.value
-    assert f"{left:.3g} m are left unexplained" in said[1]
+    assert f"{left:.2g} m stays unexplained" in said[1]
     assert said[2] == "Look for what depends on this variable."
 
 
@@ -143,12 +143,12 @@ def test_an_effect_that_explains_nothing_closes_nothing(unknown_result):
 def test_an_interval_is_stated_only_of_several_stretches():
     for pieces, words in (
         (1, "0.050 m (no interval from one stretch)"),
-        (3, "0.050 m (0.040 to 0.060, from 3 stretches alone)"),
+        (3, "0.050 m (0.040 to 0.060, from only 3 stretches)"),
         (5, "0.050 m (0.040 to 0.060)"),
     ):
         assert with_interval(Gap(0.0498, 0.04, 0.06, pieces)) == words
     assert percent(Share(0.9, 0.9, 0.9, 1)) == "90 % (no interval from one stretch)"
-    assert percent(Share(0.9, 0.8, 1.0, 4)) == "90 % (80 to 100, from 4 stretches alone)"
+    assert percent(Share(0.9, 0.8, 1.0, 4)) == "90 % (80 to 100, from only 4 stretches)"
 
 
 @pytest.mark.parametrize(

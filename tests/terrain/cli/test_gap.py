@@ -80,8 +80,8 @@ def test_the_answer_is_printed_and_written(command, case, tmp_path):
     (row,) = [line.split() for line in output.splitlines() if line.startswith("  time_offset ")]
     assert row[1:] == [
         effect["form"],
-        f"{effect['gap_before']:.4f}",
-        f"{effect['gap_after']:.4f}",
+        f"{effect['gap_before']:.3g}",
+        f"{effect['gap_after']:.3g}",
         f"{effect['evidence']:.0f}",
     ]
     true_s = case.truth["time_offset"]["delay_s"]
