@@ -7,6 +7,9 @@ from odometry.gap.closed import Share, held_out_share
 from odometry.gap.quantities import metres, percent, with_interval
 from odometry.gap.region_words import noun_of
 from odometry.gap.result import GapResult, NamedEffect
+from odometry.gap.verdict import Refusal
+
+REFUSED = 2  # that are said
 
 
 def lead(result: GapResult) -> tuple[str, str, str]:
@@ -45,10 +48,12 @@ def _nothing_named(result: GapResult, model: str) -> str:
             f"Whether something is missing in {model} cannot be told: the measured windows are "
             "one stretch, of which the gap has no interval."
         )
-    if result.measured.before.is_above(result.measured.noise_floor):
+    if _is_doubtful(result):
+        names = list(dict.fromkeys(_named(one) for one in result.refusals))[:REFUSED]
+        fit = f": {listed(names, 'or')} would close part of it there" if names else ""
         return (
-            f"Nothing that these runs could show is missing in {model} (none), but the gap is "
-            "above the noise floor."
+            f"Nothing is missing in {model} that held-out data confirm (none), but the gap on the "
+            f"measured runs is above the noise floor{fit}."
         )
     return f"Nothing that these runs could show is missing in {model} (none)."
 
@@ -92,9 +97,23 @@ def _remedy(result: GapResult) -> str:
     if not result.effects:
         if result.verdict == "unknown":
             return "Look at the worst stretches in report.html, and record what may differ there."
+        if _is_doubtful(result):
+            return (
+                "Do not rely on this: hold out whole runs that drive alike (--holdout), and ask "
+                "again."
+            )
         return "Keep the model as it is."
     remedies = dict.fromkeys(effect.added.effect.remedy for effect in result.effects)
     return f"{'; '.join(remedies)}.".capitalize()
+
+
+def _is_doubtful(result: GapResult) -> bool:
+    """Whether "none" is said of measured runs that noise does not explain."""
+    return result.measured.before.is_above(result.measured.noise_floor)
+
+
+def _named(refused: Refusal) -> str:
+    return "a smooth function" if refused.name == Residual.name else refused.name
 
 
 def _variable(effect: NamedEffect) -> str:

@@ -12,6 +12,7 @@ from odometry.gap.next_drives import NextDrive
 from odometry.gap.quantities import evidence_words, percent, rounded, with_interval
 from odometry.gap.result import NamedEffect
 from odometry.gap.statistic import Gap
+from odometry.gap.verdict import Refusal
 from odometry.gap.words import sentences
 
 
@@ -85,9 +86,15 @@ def test_none_claims_nothing(none_result):
 
 
 def test_none_admits_a_gap_above_the_floor(none_result):
+    """On the measured runs: held-out stretches may be too few, or at rest."""
     measured = replace(none_result.measured, before=Gap(0.2, 0.15, 0.3))
-    said = sentences(replace(none_result, measured=measured))
-    assert said[0].endswith("but the gap is above the noise floor.")
+    doubtful = replace(none_result, measured=measured)
+    said = sentences(doubtful)
+    assert said[0].endswith("but the gap on the measured runs is above the noise floor.")
+    assert said[2].startswith("Do not rely on this")
+    reasons = [Refusal(n, "constant", "held-out data") for n in ("time_offset", "unknown")]
+    said = sentences(replace(doubtful, refusals=tuple(reasons)))
+    assert said[0].endswith(": time_offset or a smooth function would close part of it there.")
 
 
 def test_unknown_without_any_name_says_so(none_result):
