@@ -18,6 +18,7 @@ from odometry.gap.verdict import (
     base_left_calibration,
     closes_held_out,
     leaves_noise,
+    raises_measured,
     within_noise,
 )
 from odometry.windows.dense import DenseWindows
@@ -144,8 +145,10 @@ class _Naming(Search):
             fit.base, fit.effects, self.held_out, self.fitter.measured.scenes
         )
         within = within_noise(gap_of(*pairs[1], held_out, self.config.part_s), self.held_floor)
+        believed = replace(self.start, base=self.fitter.calibration.base)
         reasons = [
             within,
+            raises_measured(self._gap(believed), self._gap(fit)),
             *(
                 closes_held_out(
                     (base, effects[: len(less)]), (fit.base, effects), held_out, self.config

@@ -99,6 +99,13 @@ def within_noise(held_out: Gap, floor: Gap) -> str:
     return f"the gap on held-out data, {held_out.value:.3g} m, is within noise"
 
 
+def raises_measured(before_m: float, after_m: float) -> str:
+    """Whether the gap on the runs that effects were fitted to falls with them."""
+    if after_m < before_m:
+        return ""
+    return f"the gap on the measured runs rises with it, from {before_m:.2g} to {after_m:.2g} m"
+
+
 def closes_held_out(
     before: tuple[Base, Sequence[Added]],
     after: tuple[Base, Sequence[Added]],

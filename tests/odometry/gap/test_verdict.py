@@ -22,6 +22,7 @@ from odometry.gap.verdict import (
     is_the_effect,
     is_there,
     leaves_noise,
+    raises_measured,
     within_bounds,
     within_noise,
 )
@@ -81,6 +82,11 @@ def test_a_gain_is_that_of_noise():
     loss = in_course(TractionLoss(), FromAMoment(((2.0, 158.0),)))
     gain = fitted(loss, [1.2, 1.1, 60.0], np.eye(3) * 1e-6)
     assert "not what the name says" in is_the_effect(gain, CONFIG)
+
+
+def test_a_name_must_not_raise_the_gap_that_it_was_fitted_to():
+    assert raises_measured(0.095, 0.094) == ""
+    assert "rises with it, from 0.095 to 0.097 m" in raises_measured(0.0951, 0.0972)
 
 
 @pytest.mark.parametrize(("factor", "stands"), [(0.8, True), (1.0, False), (1.2, False)])
