@@ -13,6 +13,7 @@ LEAST_SPANS = 2
 TIMES_NOISE = 3.0  # of positions, by which a path must be longer
 ALIKE = 0.5  # below, paths are others: recordings of robots that slip have 0.62 and more,
 ALIKE_BY_TREADS = 0.7  # without a gyroscope, whose turns hold from span to span, 0.82
+STEEP_RAD, STEEP_SHARE = np.radians(8.0), 0.9  # figure eights at 12 degrees slide off their path
 WIDTHS = (1.0, 1.4, 2.0)  # of treads, in track widths, where no gyroscope tells the turns
 
 
@@ -21,6 +22,8 @@ def paths_apart(evidence: Evidence) -> str:
     pose, used = evidence.run.pose, evidence.poses_used
     if pose is None or used is None or used.sum() < 2 or evidence.yaw_measured:
         return ""
+    if _is_steep(evidence):
+        return ""
     rows = np.flatnonzero(used)
     likeness, least = _likeness(evidence, pose.stamps_s[rows], pose.stack("x", "y")[rows])
     if not likeness < least:
@@ -28,6 +31,16 @@ def paths_apart(evidence: Evidence) -> str:
     return (
         "the path of pose.csv is not the one that treads and gyroscope say: turned and scaled to "
         f"fit, they have a likeness of {likeness:.2f} (1 where they are the same)"
+    )
+
+
+def _is_steep(evidence: Evidence) -> bool:
+    """Whether a tenth of the drive is so steep that a robot slides downhill as it turns."""
+    odometry = evidence.run.odometry
+    return any(
+        float(np.nanquantile(np.abs(odometry[name]), STEEP_SHARE)) > STEEP_RAD
+        for name in ("roll", "pitch")
+        if name in odometry and np.isfinite(odometry[name]).any()
     )
 
 

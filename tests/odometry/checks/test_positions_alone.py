@@ -8,6 +8,7 @@ import pytest
 from odometry.checks.course_turns import course_turns
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Level
+from odometry.checks.paths_apart import paths_apart
 from odometry.checks.recording import check_recording
 from tests.odometry.checks.faulty import FAULTS, gyroscope, put
 from tests.odometry.checks.test_confirmed import turning_all_round
@@ -71,6 +72,16 @@ def test_positions_of_another_run_disagree(seed):
     (found,) = check_recording(mixed).at(Level.WARNING)
     assert found.name == "sensors_disagree"
     assert "likeness" in found.seen
+
+
+@pytest.mark.parametrize(("degrees", "said"), [(5.0, True), (12.0, False)])
+def test_on_steep_terrain_robots_slide_off_their_path(degrees, said):
+    """Figure eights at 12 degrees have a likeness of 0.2, without any fault."""
+    run = without_yaw(winding(0.05 * np.arange(4000), 0))
+    other = winding(0.05 * np.arange(4000), 10)
+    pitch = np.full(len(run.odometry), np.radians(degrees))
+    mixed = put(run, "pose", x=other.pose["x"], y=other.pose["y"])
+    assert bool(paths_apart(Evidence(put(mixed, "odometry", pitch=pitch)))) == said
 
 
 def winding(at_s, seed):
