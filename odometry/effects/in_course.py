@@ -7,6 +7,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base import CommandEffect, Effect, EffectParameter, MotionEffect
 from odometry.effects.base_model import Base
+from odometry.effects.corrected import Added
 from odometry.effects.time_course import Course
 from odometry.errors import ParameterError
 from odometry.models.inputs import Inputs
@@ -100,6 +101,14 @@ class MotionInCourse(_InCourse, MotionEffect):
         own, course = self._split(values)
         changed = self.inner.twist(own, twist, inputs, base) - twist
         return np.asarray(twist + self._share(course, inputs) * changed)
+
+
+def lasting(added: Added) -> Added:
+    """An effect as it is at the end of its course, which is one of its run; else itself."""
+    if not isinstance(added.effect, _InCourse):
+        return added
+    inner = added.effect.inner
+    return Added(inner, added.values[: len(inner.parameters)])
 
 
 def in_course(effect: Effect, course: Course) -> Effect:

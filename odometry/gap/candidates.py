@@ -6,6 +6,7 @@ from odometry.effects.base import Effect
 from odometry.effects.catalogue import EFFECTS
 from odometry.effects.recorded import Recorded, labels_of
 from odometry.gap.calibration import Calibration
+from odometry.gap.own_moments import observed_s
 from odometry.windows.dense import DenseWindows
 
 
@@ -14,7 +15,7 @@ def offered_effects(scenes: Sequence[DenseWindows], calibration: Calibration) ->
     recorded = Recorded(
         calibration.base,
         tuple(scene.inputs for scene in scenes),
-        tuple(_observed_s(scene) for scene in scenes),
+        tuple(observed_s(scene) for scene in scenes),
         frozenset().union(*(labels_of(scene.inputs) for _, scene in calibration.held_back)),
     )
     offered = [effect for form in EFFECTS for effect in form.offered(recorded)]
@@ -29,11 +30,6 @@ def quick_effects(scenes: Sequence[DenseWindows], calibration: Calibration) -> t
 def contact_effects(scenes: Sequence[DenseWindows], calibration: Calibration) -> tuple[Effect, ...]:
     """Those by the balance of contact forces."""
     return tuple(e for e in offered_effects(scenes, calibration) if e.slow)
-
-
-def _observed_s(scene: DenseWindows) -> tuple[float, float]:
-    """When the first window ends and the last one begins."""
-    return float(scene.pose_s[scene.windows[:, -1]].min()), float(scene.start_s.max())
 
 
 def told_by(effect: Effect, scenes: Sequence[DenseWindows], calibration: Calibration) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 
 from odometry.effects.catalogue import effect_table
 from odometry.effects.corrected import Added
+from odometry.effects.in_course import lasting
 from odometry.effects.terrain import SHIFTED, Terrain
 from odometry.effects.time_offset import TimeOffset
 from odometry.gap.locate import Region
@@ -73,12 +74,13 @@ def content_of(result: GapResult) -> dict[str, Any]:
 def extended_model(result: GapResult) -> ParameterSet:
     """The base and its effects as a parameter set, one table a terrain that any run names.
 
-    Terrains whose ICRs and slip differ are tables of their own; all other effects stand in each.
+    Terrains whose ICRs and slip differ are tables of their own; all other effects stand in each,
+    as they were at the end of their course: a moment of one run says nothing of the next.
     """
     model = result.base.model
     names = [parameter.name for parameter in model.parameters]
     effects = tuple(
-        effect_table(added)
+        effect_table(lasting(added))
         for added in with_latency(result)
         if not isinstance(added.effect, Terrain)
     )

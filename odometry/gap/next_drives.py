@@ -16,7 +16,7 @@ from scipy.stats import norm
 from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added, corrected_twist, reported_yaw_rate
-from odometry.effects.in_course import CommandsInCourse, MotionInCourse
+from odometry.effects.in_course import lasting
 from odometry.gap.calibration import Calibration
 from odometry.gap.config import GapConfig
 from odometry.gap.drives import Drive, drives_of, scene_of
@@ -75,7 +75,7 @@ def next_drives(
         Measured: speeds, slopes and pose rate are theirs.
     """
     drives = drives_of(scenes, calibration.base)
-    (name, named), *others = ((key, lasting(fit)) for key, fit in rivals.items())
+    (name, named), *others = ((key, rivalling(fit)) for key, fit in rivals.items())
     found = []
     for other, rival in others:
         pair = (named, rival)
@@ -150,15 +150,11 @@ def as_driven(true: Rivalling, scene: DenseWindows) -> DenseWindows:
     return replace(scene, poses=poses, inputs=inputs)
 
 
-def lasting(fitted: Fitted) -> Rivalling:
+def rivalling(fitted: Fitted) -> Rivalling:
     """The effects as they are at the end of their course."""
-    effects, kept, place = [], [], 0
-    for added in fitted.effects:
-        effect, values = added.effect, added.values
-        if isinstance(effect, CommandsInCourse | MotionInCourse):
-            values = values[: len(effect.inner.parameters)]
-            effect = effect.inner
-        effects.append(Added(effect, values))
-        kept += list(range(place, place + len(values)))
-        place += len(added.values)
-    return Rivalling(fitted.base, tuple(effects), fitted.covariance[np.ix_(kept, kept)])
+    kept, place = [], 0
+    effects = tuple(map(lasting, fitted.effects))
+    for whole, end in zip(fitted.effects, effects, strict=True):
+        kept += list(range(place, place + len(end.values)))
+        place += len(whole.values)
+    return Rivalling(fitted.base, effects, fitted.covariance[np.ix_(kept, kept)])

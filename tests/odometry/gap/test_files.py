@@ -8,8 +8,11 @@ import pytest
 
 from odometry.effects.catalogue import added_effects
 from odometry.effects.corrected import Added
+from odometry.effects.in_course import in_course
 from odometry.effects.terrain import Terrain
+from odometry.effects.time_course import FromAMoment
 from odometry.effects.time_offset import TimeOffset
+from odometry.effects.traction_loss import TractionLoss
 from odometry.gap.files import write_gap
 from odometry.gap.result import NamedEffect, Rival
 from odometry.gap.statistic import Gap
@@ -182,3 +185,17 @@ def test_the_same_result_writes_the_same_bytes(scaled_result, tmp_path):
     first, again = (write_gap(scaled_result, tmp_path / name) for name in "ab")
     assert [file.name for file in first] == ["gap.json", "model.toml"]
     assert [f.read_bytes() for f in first] == [f.read_bytes() for f in again]
+
+
+def test_a_moment_of_one_run_is_not_carried_to_the_next(scaled_result, tmp_path):
+    """The model is that of the robot as it was at the end; gap.json says when it began."""
+    lost = in_course(TractionLoss(), FromAMoment(((1.0, 150.0),)))
+    values = np.array([0.8, 0.7, 67.6])
+    effect = NamedEffect(Added(lost, values), values - 0.01, values + 0.01, 0.2, 0.03, 50.0)
+    found = replace(scaled_result, verdict="traction_loss", effects=(effect,), equivalent=())
+    (written,) = content(found, tmp_path)["effects"]
+    assert written["parameters"]["moment"]["value"] == 67.6
+    for terrain in read_parameters(tmp_path / "model.toml").terrains.values():
+        (added,) = added_effects(terrain.effects, "model.toml")
+        assert added.by_name == {"k": 0.8, "m": 0.7}
+        assert not added.effect.course

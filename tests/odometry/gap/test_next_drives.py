@@ -18,9 +18,9 @@ from odometry.gap.fit import Fitted
 from odometry.gap.next_drives import (
     as_driven,
     chi_squared_left,
-    lasting,
     next_drives,
     odds_of,
+    rivalling,
 )
 
 CONFIG = GapConfig()
@@ -47,7 +47,7 @@ def fit(known):
 
 
 def left(pair, scene, known):
-    return chi_squared_left(*map(lasting, pair), scene, known, CONFIG)
+    return chi_squared_left(*map(rivalling, pair), scene, known, CONFIG)
 
 
 def test_the_odds_are_those_of_drawn_noise():
@@ -109,13 +109,13 @@ def test_a_drive_is_cut_as_the_measured_ones(scenes, known, fit):
         span_s = scene.pose_s[scene.windows[:, -1]] - scene.pose_s[scene.windows[:, 0]]
         np.testing.assert_allclose(span_s, CONFIG.horizon_s, atol=0.3)
         assert np.abs(drive.speeds_m_s).max() <= 1.01
-        same = as_driven(lasting(fit(WheelScale(), [1.0, 1.0])), scene)
+        same = as_driven(rivalling(fit(WheelScale(), [1.0, 1.0])), scene)
         np.testing.assert_allclose(same.poses, scene.poses, atol=0.05)
 
 
 def test_after_its_moment_an_effect_is_there(fit):
     lost = in_course(TractionLoss(), FromAMoment())
-    rival = lasting(fit(lost, [0.8, 0.7, 30.0]))
+    rival = rivalling(fit(lost, [0.8, 0.7, 30.0]))
     (added,) = rival.effects
     assert isinstance(added.effect, TractionLoss)
     np.testing.assert_array_equal(added.values, [0.8, 0.7])
