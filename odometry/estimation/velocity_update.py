@@ -1,6 +1,7 @@
 """What a measured velocity changes: it is compared with treads and gyroscope."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,10 +15,11 @@ from odometry.estimation.tread_noise import velocity_variances
 from odometry.frames import Frame
 
 
+@dataclass(frozen=True)
 class VelocityUpdate:
     """Takes measured velocities in.
 
-    Parameters
+    Attributes
     ----------
     config : IcrEkfConfig
     track_width : float
@@ -25,10 +27,9 @@ class VelocityUpdate:
     kalman : PoseKalman
     """
 
-    def __init__(self, config: IcrEkfConfig, track_width: float, kalman: PoseKalman) -> None:
-        self._config = config
-        self._track_width = track_width
-        self._kalman = kalman
+    config: IcrEkfConfig
+    track_width: float
+    kalman: PoseKalman
 
     def seen(self, belief: Gaussian, estimate: Estimate, frame: Frame, yaw_rate: float) -> Gaussian:
         """Mean (9,) and covariance (9, 9) after a frame's velocity, against the speeds before it.
@@ -48,9 +49,9 @@ class VelocityUpdate:
         if frame.velocity is None or not known:
             return belief
         variances = velocity_variances(
-            self._config,
+            self.config,
             speeds,
-            track_width=self._track_width,
+            track_width=self.track_width,
             slip_scale=estimate.scale.slip,
             step_s=step_s,
             yaw_rate=yaw_rate,
@@ -64,4 +65,4 @@ class VelocityUpdate:
         )
         if not len(measured.residual):
             return belief
-        return bounded(*self._kalman.updated(*belief, measured)[:2], self._track_width)
+        return bounded(*self.kalman.updated(*belief, measured)[:2], self.track_width)
