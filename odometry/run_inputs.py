@@ -4,8 +4,8 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.gaps import fill_gaps, level_where_missing
-from odometry.grounds import terrains_of
 from odometry.models.inputs import Inputs
+from odometry.row_terrains import row_terrains
 from odometry.run import Run
 from odometry.windows.turns import continuous_yaw
 
@@ -29,7 +29,7 @@ def inputs_with_heading(run: Run, heading_rad: FloatArray | None) -> Inputs:
         *attitude_of(run),
         _accelerations(run),
         stamps_s - stamps_s[0],
-        terrains_of(run),
+        row_terrains(run),
         heading_rad,
         _wheel_angles(run),
     )

@@ -16,10 +16,10 @@ from odometry.comparison.summary import Place
 from odometry.comparison.training_horizons import training_horizon_errors
 from odometry.comparison.whole_runs import run_fitness
 from odometry.errors import OdometryError
-from odometry.grounds import with_named_ground
 from odometry.models.catalogue import MODELS
 from odometry.parameters import ParameterSet, TerrainParameters, read_parameters
 from odometry.positions.heading import FoundHeading, headed
+from odometry.row_terrains import with_named_terrain
 from odometry.run import Run
 from odometry.windows.record import record_of
 
@@ -64,8 +64,10 @@ def compare(
     """
     config = config or ComparisonConfig()
     candidates = candidates_named(models)
-    usable, left_out, found = _with_poses([with_named_ground(run, terrain) for run in runs], config)
-    known, not_used, _ = _with_poses([with_named_ground(run, terrain) for run in train], config)
+    usable, left_out, found = _with_poses(
+        [with_named_terrain(run, terrain) for run in runs], config
+    )
+    known, not_used, _ = _with_poses([with_named_terrain(run, terrain) for run in train], config)
     if not usable or (train and not known):
         raise ComparisonError(
             "\n  ".join(["no run to compare on", *(left_out | not_used).values()])

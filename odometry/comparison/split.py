@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from odometry.arrays import BoolArray
-from odometry.grounds import terrains_of
 from odometry.identification.from_positions import stretches_for
+from odometry.row_terrains import row_terrains
 from odometry.run import Run
 from odometry.runs import check_no_run_twice, robot_labels, run_names
 from odometry.windows.config import WindowConfig
@@ -45,7 +45,7 @@ class Part:
         """Whether each row (N,) of the whole run is in this part."""
         inside = np.zeros(len(self.run.odometry), dtype=np.bool_)
         inside[self.start : self.stop] = True
-        return np.asarray(inside & (terrains_of(self.run) == self.terrain))
+        return np.asarray(inside & (row_terrains(self.run) == self.terrain))
 
     def cut(self) -> Run:
         """A run of these rows and the poses within their time, and nothing else."""
@@ -60,7 +60,7 @@ class Part:
 
 def parts_by_terrain(run: Run, name: str) -> dict[str, Part]:
     """All of a run, by terrain."""
-    terrains = dict.fromkeys(map(str, terrains_of(run)))
+    terrains = dict.fromkeys(map(str, row_terrains(run)))
     return {terrain: Part(run, name, terrain, 0, len(run.odometry)) for terrain in terrains}
 
 

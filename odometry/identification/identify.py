@@ -10,7 +10,6 @@ from odometry.effects.corrected import Added
 from odometry.effects.measured import on_measurement, robot_run
 from odometry.effects.tables import effects_of
 from odometry.errors import ParameterError
-from odometry.grounds import with_named_ground
 from odometry.identification.asked import Asked, Wanted, asked_on
 from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
@@ -20,6 +19,7 @@ from odometry.identification.from_positions import windows_or_stretches
 from odometry.identification.held_out import MOST_FOLDS, by_halves, by_runs, held_out_errors
 from odometry.identification.identification import Identification, Identified
 from odometry.models.catalogue import MODELS
+from odometry.row_terrains import with_named_terrain
 from odometry.run import UNKNOWN, Robot, Run
 from odometry.runs import check_no_run_twice
 from odometry.windows.config import WindowConfig
@@ -73,7 +73,7 @@ def identify(
         raise ParameterError(f"the terrain name {UNKNOWN!r} is reserved; name another, or none")
     check_no_run_twice(runs)
     robot = robot_of(runs)
-    named = [with_named_ground(run, terrain) for run in runs]
+    named = [with_named_terrain(run, terrain) for run in runs]
     windows = windows_or_stretches(named, window_config)
     asked = {
         str(name): asked_on(str(name), model, robot) for name in dict.fromkeys(windows.terrain)

@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.arrays import BoolArray
-from odometry.grounds import terrains_of
 from odometry.identification.errors import IdentificationError
 from odometry.modes.signals import STANDING_M_S
 from odometry.modes.stretches import stretches_by_label
 from odometry.modes.traction import LEFT_TURN, RIGHT_TURN, turns_of
 from odometry.modes.yaw_rate_noise import Heard, heard_of
+from odometry.row_terrains import row_terrains
 from odometry.run import UNKNOWN, Run
 from odometry.windows.dense import DenseWindows, dense_windows_of, thinned
 from odometry.windows.errors import WindowError
@@ -41,7 +41,7 @@ def _windows(
     scenes: dict[str, list[DenseWindows]] = {}
     for run in runs:
         scene = _fewer_poses(dense_windows_of(run, horizon_s))
-        for name in map(str, np.unique(terrains_of(run))):
+        for name in map(str, np.unique(row_terrains(run))):
             if name == UNKNOWN:
                 raise IdentificationError(
                     f"{run.folder}: names no mode; expected [run] terrain in run.toml or a column "
@@ -67,7 +67,7 @@ def heard_by_mode(runs: Sequence[Run]) -> dict[str, list[Heard]]:
     """Stretches of each mode that a gyroscope heard."""
     found: dict[str, list[Heard]] = {}
     for run in runs:
-        for name, rows in stretches_by_label(run, terrains_of(run)):
+        for name, rows in stretches_by_label(run, row_terrains(run)):
             heard = heard_of(run, rows)
             found.setdefault(name, []).extend([] if heard is None else [heard])
     return found
@@ -110,7 +110,7 @@ def inside(scene: DenseWindows) -> BoolArray:
 
 def _on(scene: DenseWindows, name: str) -> DenseWindows:
     """Windows of which every pose is in one mode."""
-    labels = terrains_of(scene.run)
+    labels = row_terrains(scene.run)
     odometry_s = scene.run.odometry.stamps_s - scene.run.odometry.stamps_s[0]
     poses_s = scene.pose_s[scene.windows]
     rows = np.clip(np.searchsorted(odometry_s, poses_s, side="right") - 1, 0, len(labels) - 1)

@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import RunFolderError
-from odometry.grounds import terrains_of
+from odometry.row_terrains import row_terrains
 from odometry.run import Run
 from odometry.windows.gaps import odometry_gaps
 from odometry.windows.turns import continuous_yaw
@@ -86,7 +86,7 @@ def velocity_signals(run: Run) -> Signals:
         speed = _nearest(run.velocity.stamps_s, run.velocity["vx"], stamps_s)
     measured = np.column_stack([speed, omega])
     speeds = run.odometry.stack("v_left", "v_right")
-    return Signals(stamps_s, speeds, measured, terrains_of(run), odometry_gaps(run).spans_s)
+    return Signals(stamps_s, speeds, measured, row_terrains(run), odometry_gaps(run).spans_s)
 
 
 def pose_signals(run: Run) -> Signals:
@@ -116,7 +116,7 @@ def pose_signals(run: Run) -> Signals:
         measured[np.searchsorted(stamps_s, odometry_s), 3] = yaw_rates
     speeds = run.odometry.stack("v_left", "v_right")[rows]
     gaps_s = odometry_gaps(run).spans_s
-    return Signals(stamps_s, speeds, measured, terrains_of(run)[rows], gaps_s)
+    return Signals(stamps_s, speeds, measured, row_terrains(run)[rows], gaps_s)
 
 
 def yaw_rates_of(run: Run) -> FloatArray | None:

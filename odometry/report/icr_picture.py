@@ -10,13 +10,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from odometry.arrays import FloatArray
-from odometry.grounds import with_named_ground
 from odometry.icrs.measured import SHORT_WINDOWS, MeasuredIcrs, icrs_of_windows
 from odometry.icrs.medians import LEAST_WINDOWS
 from odometry.icrs.points import NO_SLIP
 from odometry.identification.identification import Identification
 from odometry.report.figure import save_figure
 from odometry.report.icr_map import FITTED_STYLE, TURN_STYLES, Frame, frame_of, plot_icrs
+from odometry.row_terrains import with_named_terrain
 from odometry.run import Robot, Run
 from odometry.windows.windows import windows_of
 
@@ -54,7 +54,7 @@ def save_identified_icrs(
         position_sigma_m=stated.position_sigma_m,
         yaw_sigma_rad=stated.yaw_sigma_rad,
     )
-    windows = windows_of([with_named_ground(run, terrain) for run in runs], config)
+    windows = windows_of([with_named_terrain(run, terrain) for run in runs], config)
     measured, fitted = {}, {}
     for name, ground in found.grounds.items():
         fit, alphas = ground.fit, np.array(NO_SLIP)

@@ -9,8 +9,8 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.geometry import se2
-from odometry.grounds import terrains_of
 from odometry.models.inputs import Inputs
+from odometry.row_terrains import row_terrains
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.errors import WindowError
@@ -152,7 +152,7 @@ def dense_windows_of(run: Run, horizon_s: float) -> DenseWindows:
             f"{run.folder}: no window of {horizon_s:g} s with {LEAST_POSES} measured poses "
             f"without a gap; {told + '; ' if told else ''}choose a longer horizon"
         )
-    inputs = replace(record.inputs, time_s=time_s, terrain=terrains_of(run)[rows])
+    inputs = replace(record.inputs, time_s=time_s, terrain=row_terrains(run)[rows])
     return DenseWindows(
         run,
         inputs,

@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
-from odometry.grounds import terrains_of
 from odometry.models.inputs import Inputs
+from odometry.row_terrains import row_terrains
 from odometry.run import Run
 from odometry.run_inputs import inputs_with_heading
 from odometry.windows.config import WindowConfig
@@ -137,7 +137,7 @@ def _record(run: Run, config: WindowConfig, measured: _Poses) -> Record:
     speed = np.abs(inputs.tread_speeds_m_s).mean(axis=1)
     travel_m = np.concatenate([[0.0], np.cumsum(speed[:-1] * np.diff(stamps_s))])
     samples = np.searchsorted(stamps_s, pose_s)
-    terrains = terrains_of(run)[rows]
+    terrains = row_terrains(run)[rows]
     changes = np.concatenate([[0], np.cumsum(terrains[1:] != terrains[:-1])])[samples]
     longest_s = max(config.pose_gap_s, POSE_PERIODS * np.median(np.diff(pose_s)))
     breaks = np.select(

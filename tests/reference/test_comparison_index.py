@@ -11,8 +11,8 @@ import numpy as np
 
 from odometry.comparison.evaluation import evaluation_windows
 from odometry.comparison.split import parts_by_terrain
-from odometry.grounds import with_named_ground
 from odometry.models.catalogue import MODELS
+from odometry.row_terrains import with_named_terrain
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.window_errors import window_errors
@@ -28,7 +28,7 @@ def test_errors_over_two_metres_meet_the_index(shared_data):
     ratios, counts = [], []
     with (shared_data / "motion" / "INDEX.csv").open(newline="") as file:
         for row in csv.DictReader(file):
-            run = with_named_ground(Run.read(shared_data / "motion" / row["run"]), None)
+            run = with_named_terrain(Run.read(shared_data / "motion" / row["run"]), None)
             if run.pose is None:
                 continue
             (part,) = parts_by_terrain(run, run.name).values()

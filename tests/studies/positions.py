@@ -20,12 +20,12 @@ import numpy as np
 
 from odometry.comparison.split import halves, parts_by_terrain
 from odometry.errors import OdometryError
-from odometry.grounds import with_named_ground
 from odometry.identification.config import SolverConfig
 from odometry.identification.fitters import fitter
 from odometry.identification.from_positions import windows_or_stretches
 from odometry.models.base import KinematicModel
 from odometry.models.catalogue import MODELS
+from odometry.row_terrains import with_named_terrain
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.motion import level_path
@@ -102,7 +102,7 @@ def loop_error(model: KinematicModel, values: np.ndarray, run: Run) -> float:
 
 def report(name: str, model: str) -> None:
     """Print the rows of one recording."""
-    run = with_named_ground(Run.read(MOTION / name), None)
+    run = with_named_terrain(Run.read(MOTION / name), None)
     part = next(iter(parts_by_terrain(run, name).values()))
     first, second = (half.cut() for half in halves(part))
     width = np.array([run.robot.track_width])

@@ -71,9 +71,9 @@ def new_camera(old: Grounds, new: Grounds, way: Way) -> None:
             shown = draw_photos(new, n_photos, np.random.default_rng(seed))
             rest = new.only(~shown)
             both = joined(old, new.only(shown))
-            mixed.append(tested(way, both, rest))
+            mixed.append(patch_accuracy(way, both, rest))
             if n_photos:
-                alone.append(tested(way, new.only(shown), rest))
+                alone.append(patch_accuracy(way, new.only(shown), rest))
         line = f"  {n_photos:2d} new photographs a class: with the old {np.mean(mixed):.3f}"
         print(line + (f", without the old {np.mean(alone):.3f}" if alone else ""), flush=True)
 
@@ -87,7 +87,7 @@ def draw_photos(grounds: Grounds, n_photos: int, rng: np.random.Generator) -> An
     return np.isin(grounds.groups, np.concatenate(drawn))
 
 
-def tested(way: Way, train: Grounds, test: Grounds) -> float:
+def patch_accuracy(way: Way, train: Grounds, test: Grounds) -> float:
     """Balanced accuracy by patch, the preset's own structure, k chosen on `train`."""
     model = choose(way.preset, way.structures[-1:], way.features(train), train)
     return balanced_accuracy(test.codes, model.probabilities(way.features(test)).argmax(axis=1))

@@ -13,8 +13,8 @@ from odometry.comparison.split import parts_by_terrain, windows_of_parts
 from odometry.dead_reckoning import dead_reckon
 from odometry.evaluation.relative import EvaluationConfig
 from odometry.evaluation.score import reference_of, score
-from odometry.grounds import with_named_ground
 from odometry.models.catalogue import MODELS
+from odometry.row_terrains import with_named_terrain
 from odometry.run import Run
 from odometry.run_inputs import inputs_of
 from odometry.windows.config import WindowConfig
@@ -23,7 +23,7 @@ from odometry.windows.window_errors import window_errors
 
 
 def whole(run):
-    (part,) = parts_by_terrain(with_named_ground(run, None), run.name).values()
+    (part,) = parts_by_terrain(with_named_terrain(run, None), run.name).values()
     return part
 
 

@@ -19,7 +19,7 @@ from odometry.comparison.split import (
     windows_of_parts,
 )
 from odometry.errors import RunFolderError
-from odometry.grounds import with_named_ground
+from odometry.row_terrains import with_named_terrain
 from odometry.run import Robot, Run
 from odometry.table import Table
 from odometry.windows.config import WindowConfig
@@ -46,7 +46,7 @@ def recordings(draw):
         speed = np.array(draw(st.lists(st.integers(0, 2), min_size=len(t), max_size=len(t))), float)
         odometry = table(t=t, v_left=speed, v_right=speed, terrain=np.array(grounds))
         run = Run(Path(f"/runs/{number}"), draw(ROBOTS), {"run": {"terrain": "mud"}}, odometry)
-        runs.append(with_named_ground(run, None))
+        runs.append(with_named_terrain(run, None))
     return runs
 
 
@@ -82,7 +82,7 @@ def test_with_training_runs_only_these_are_seen(runs, train):
 
 @pytest.mark.parametrize("count", [1, 3])
 def test_no_window_of_training_shares_a_moment_with_an_evaluated_one(grass, count):
-    runs = [with_named_ground(run, None) for run in grass[:count]]
+    runs = [with_named_terrain(run, None) for run in grass[:count]]
     config = WindowConfig()
     for split in splits(runs):
         seen = windows_of_parts(split.training, config)
@@ -104,7 +104,7 @@ def spans(windows, run=None):
 
 
 def test_words_name_what_is_seen(grass):
-    runs = [with_named_ground(run, None) for run in grass]
+    runs = [with_named_terrain(run, None) for run in grass]
     assert [split.training_names for split in splits(runs)] == [
         "run_1, run_2",
         "run_0, run_2",
@@ -116,12 +116,12 @@ def test_words_name_what_is_seen(grass):
     ]
     (split,) = splits(runs[:2], runs[2:])
     assert split.training_names == "run_2"
-    (split,) = splits(runs[:2], [with_named_ground(replace(grass[2], settings={}), "ice")])
+    (split,) = splits(runs[:2], [with_named_terrain(replace(grass[2], settings={}), "ice")])
     assert split.training_names == "nothing"
 
 
 def test_one_split_of_all_sees_everything(grass):
-    runs = [with_named_ground(run, None) for run in grass]
+    runs = [with_named_terrain(run, None) for run in grass]
     (split,) = of_all(splits(runs))
     assert {part.name for part in split.training} == {"run_0", "run_1", "run_2"}
     (split,) = of_all(splits(runs[:1]))
@@ -129,14 +129,14 @@ def test_one_split_of_all_sees_everything(grass):
 
 
 def test_a_run_given_twice_is_refused(grass):
-    run = with_named_ground(grass[0], None)
+    run = with_named_terrain(grass[0], None)
     again = replace(run, folder=run.folder / ".." / run.folder.name)
     with pytest.raises(RunFolderError, match="run_0 is given twice"):
         splits([run], [again])
 
 
 def test_a_part_holds_its_rows_and_the_poses_within_them(make_run):
-    run = with_named_ground(Run.read(make_run(odometry=ROWS, pose=POSES)), "sand")
+    run = with_named_terrain(Run.read(make_run(odometry=ROWS, pose=POSES)), "sand")
     part = replace(parts_by_terrain(run, "a")["ice"], start=1, stop=4)
     assert part.rows.tolist() == [False, True, True, False, False]
     cut = part.cut()
@@ -147,14 +147,14 @@ def test_a_part_holds_its_rows_and_the_poses_within_them(make_run):
 
 def test_halves_share_the_wheel_travel_on_their_ground(make_run):
     """On ice 1 m, then 3 m: half is reached in the row of 3 m/s. Sand does not count."""
-    run = with_named_ground(Run.read(make_run(odometry=ROWS, pose=POSES)), "sand")
+    run = with_named_terrain(Run.read(make_run(odometry=ROWS, pose=POSES)), "sand")
     first, second = halves(parts_by_terrain(run, "a")["ice"])
     assert (first.start, first.stop, second.start, second.stop) == (0, 2, 2, 5)
     assert not (first.rows & second.rows).any()
 
 
 def test_halves_of_a_robot_that_stands_are_not_empty(make_run):
-    run = with_named_ground(Run.read(make_run(odometry="t,v_left,v_right\n0,0,0\n1,0,0\n")), None)
+    run = with_named_terrain(Run.read(make_run(odometry="t,v_left,v_right\n0,0,0\n1,0,0\n")), None)
     first, second = halves(parts_by_terrain(run, "a")["ground"])
     assert (first.stop, second.start) == (1, 1)
 
@@ -162,7 +162,7 @@ def test_halves_of_a_robot_that_stands_are_not_empty(make_run):
 def test_windows_keep_to_the_ground_of_the_part(bench, tmp_path):
     speeds = np.full((400, 2), 0.5)
     names = ["grass"] * 220 + ["ice"] * 180
-    run = with_named_ground(
+    run = with_named_terrain(
         Run.read(bench.write(tmp_path / "r", speeds, terrain_column=names)), None
     )
     parts = parts_by_terrain(run, "r")

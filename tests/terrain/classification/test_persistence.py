@@ -39,7 +39,7 @@ def rewritten(file, change):
     return file
 
 
-def refused(file, match):
+def assert_refused(file, match):
     with pytest.raises(ModelFileError, match=match) as caught:
         read_model(file)
     assert str(file) in str(caught.value)
@@ -82,33 +82,33 @@ def test_a_changed_byte_is_noticed_or_harmless(tmp_path_factory, data):
 def test_a_cut_file_is_refused(file, share):
     whole = file.read_bytes()
     file.write_bytes(whole[: int(share * len(whole))])
-    refused(file, "cannot be read as a model file")
+    assert_refused(file, "cannot be read as a model file")
 
 
 def test_missing_and_foreign_files_are_refused(tmp_path):
-    refused(tmp_path / "absent.model", "cannot be read")
+    assert_refused(tmp_path / "absent.model", "cannot be read")
     (tmp_path / "text.model").write_text("not a zip")
-    refused(tmp_path / "text.model", "cannot be read")
+    assert_refused(tmp_path / "text.model", "cannot be read")
     with zipfile.ZipFile(tmp_path / "zip.model", "w") as archive:
         archive.writestr("readme.txt", "a zip of somebody else")
-    refused(tmp_path / "zip.model", "not a model file")
+    assert_refused(tmp_path / "zip.model", "not a model file")
     np.savez(tmp_path / "arrays.npz", np.zeros(3))
-    refused(tmp_path / "arrays.npz", "not a model file")
+    assert_refused(tmp_path / "arrays.npz", "not a model file")
 
 
 def test_other_formats_and_newer_versions_are_named(file):
-    refused(
+    assert_refused(
         rewritten(file, lambda header, _: header.update(version=2)),
         "newer version.*format 2.*up to 1",
     )
-    refused(rewritten(file, lambda header, _: header.update(format="other")), "does not say")
+    assert_refused(rewritten(file, lambda header, _: header.update(format="other")), "does not say")
 
 
 @pytest.mark.parametrize("header", ["[]", '{"format": 1}', "{", "null", "[" * 100_000])
 def test_headers_of_another_kind_are_refused(file, header):
     with zipfile.ZipFile(file, "w") as archive:
         archive.writestr("header.json", header)
-    refused(file, "not a model file")
+    assert_refused(file, "not a model file")
 
 
 @pytest.mark.parametrize("table", ["settings", "sha256"])
@@ -119,7 +119,7 @@ def test_headers_without_their_tables_are_refused(file, table):
     with zipfile.ZipFile(file, "w") as archive:
         archive.writestr("header.json", text)
         archive.writestr("sha256", hashlib.sha256(text).hexdigest())
-    refused(file, f"'{table}'")
+    assert_refused(file, f"'{table}'")
 
 
 def test_added_and_lost_members_are_refused(file):
@@ -129,13 +129,13 @@ def test_added_and_lost_members_are_refused(file):
     shutil.copy(file, added)
     with zipfile.ZipFile(added, "a") as archive:
         archive.writestr("more.npy", stream.getvalue())
-    refused(added, "holds .*more")
+    assert_refused(added, "holds .*more")
     with zipfile.ZipFile(file) as archive:
         members = {name: archive.read(name) for name in archive.namelist()}
     with zipfile.ZipFile(file, "w") as archive:
         for name in set(members) - {"codes.npy"}:
             archive.writestr(name, members[name])
-    refused(file, "expected .*codes")
+    assert_refused(file, "expected .*codes")
 
 
 def test_an_exchanged_array_is_noticed(file, tmp_path):
@@ -147,7 +147,7 @@ def test_an_exchanged_array_is_noticed(file, tmp_path):
     with zipfile.ZipFile(file, "w") as archive:
         for name, data in members.items():
             archive.writestr(name, data)
-    refused(file, r"checksum of points\.npy does not agree")
+    assert_refused(file, r"checksum of points\.npy does not agree")
 
 
 def test_nothing_is_unpickled(file, tmp_path):
@@ -159,11 +159,11 @@ def test_nothing_is_unpickled(file, tmp_path):
 
     stream = io.BytesIO()
     np.save(stream, np.array([Trap()], dtype=object), allow_pickle=True)
-    refused(
+    assert_refused(
         rewritten(file, lambda _, members: members.update({"points.npy": stream.getvalue()})),
         r"points\.npy",
     )
-    refused(
+    assert_refused(
         rewritten(file, lambda _, m: m.update({"points.npy": pickle.dumps(Trap())})),
         r"points\.npy is not an array",
     )
@@ -171,7 +171,7 @@ def test_nothing_is_unpickled(file, tmp_path):
     np.lib.format.write_array_header_1_0(
         pointers, {"descr": "|O", "fortran_order": False, "shape": (2,)}
     )
-    refused(
+    assert_refused(
         rewritten(file, lambda _, m: m.update({"points.npy": pointers.getvalue() + bytes(16)})),
         "of object",
     )
@@ -182,12 +182,12 @@ def test_absurd_sizes_are_refused_before_they_are_filled(file, tmp_path):
     bomb = tmp_path / "bomb.model"
     with zipfile.ZipFile(bomb, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("header.json", b" " * 50_000_000)
-    refused(bomb, "claim 50000000 bytes")
+    assert_refused(bomb, "claim 50000000 bytes")
     stream = io.BytesIO()
     np.lib.format.write_array_header_1_0(
         stream, {"descr": "<f8", "fortran_order": False, "shape": (10**6, 10**6)}
     )
-    refused(
+    assert_refused(
         rewritten(file, lambda _, members: members.update({"points.npy": stream.getvalue()})),
         "claims",
     )
@@ -195,7 +195,7 @@ def test_absurd_sizes_are_refused_before_they_are_filled(file, tmp_path):
     entry = whole.rindex(b"PK\x01\x02")
     whole[entry + 24 : entry + 28] = (2**31).to_bytes(4, "little")
     file.write_bytes(whole)
-    refused(file, "claim 2147")
+    assert_refused(file, "claim 2147")
 
 
 def test_overlapping_members_cannot_add_up_to_more_than_the_file(file):
@@ -208,20 +208,20 @@ def test_overlapping_members_cannot_add_up_to_more_than_the_file(file):
     tail[8:10] = tail[10:12] = count.to_bytes(2, "little")
     tail[12:16] = len(directory).to_bytes(4, "little")
     file.write_bytes(whole[:start] + directory + tail)
-    refused(file, "stores them uncompressed")
+    assert_refused(file, "stores them uncompressed")
 
 
 def test_packed_members_are_refused(file):
     """A member that unpacks to more than the file has is a bomb; this one has 100 MB of zeros."""
     with zipfile.ZipFile(file, "a", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("zeros.npy", bytes(100_000_000))
-    refused(file, "claim .* bytes, the file has")
+    assert_refused(file, "claim .* bytes, the file has")
 
 
 @pytest.mark.parametrize("odd", [np.nan, np.inf])
 def test_numbers_that_are_not_finite_are_refused(tmp_path, odd):
     write_model(tmp_path / "a.model", SETTINGS, ARRAYS | {"points": np.array([0.0, odd])})
-    refused(tmp_path / "a.model", "points.npy holds numbers that are not finite")
+    assert_refused(tmp_path / "a.model", "points.npy holds numbers that are not finite")
 
 
 def test_an_array_header_that_does_not_end_is_refused(file):
@@ -230,4 +230,4 @@ def test_an_array_header_that_does_not_end_is_refused(file):
     def cut(_, members):
         members["points.npy"] = members["points.npy"].replace(b"(4, 3), }", b"(4, 3), (")
 
-    refused(rewritten(file, cut), "points.npy is not an array")
+    assert_refused(rewritten(file, cut), "points.npy is not an array")

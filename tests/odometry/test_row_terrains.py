@@ -1,6 +1,6 @@
 import pytest
 
-from odometry.grounds import terrains_of, with_named_ground
+from odometry.row_terrains import row_terrains, with_named_terrain
 from odometry.run import Run
 
 ROWS = "t,v_left,v_right,terrain\n0,1,1,\n1,1,1,ice\n2,3,3,ice\n3,0,0,unknown\n4,1,1,ice\n"
@@ -8,16 +8,16 @@ ROWS = "t,v_left,v_right,terrain\n0,1,1,\n1,1,1,ice\n2,3,3,ice\n3,0,0,unknown\n4
 
 @pytest.mark.parametrize(("given", "expected"), [(None, "ground"), ("sand", "sand")])
 def test_every_ground_gets_a_name(make_run, given, expected):
-    run = with_named_ground(Run.read(make_run(odometry=ROWS)), given)
+    run = with_named_terrain(Run.read(make_run(odometry=ROWS)), given)
     assert run.terrain == expected
-    assert terrains_of(run).tolist() == [expected, "ice", "ice", expected, "ice"]
+    assert row_terrains(run).tolist() == [expected, "ice", "ice", expected, "ice"]
 
 
 def test_the_name_in_the_run_goes_before_the_given_one(make_run):
     settings = '[robot]\ntrack_width = 0.4\n[run]\nterrain = "snow"\n'
-    run = with_named_ground(Run.read(make_run(settings=settings)), "sand")
-    assert terrains_of(run).tolist() == ["snow"] * 3
+    run = with_named_terrain(Run.read(make_run(settings=settings)), "sand")
+    assert row_terrains(run).tolist() == ["snow"] * 3
 
 
 def test_what_nobody_names_is_unknown(make_run):
-    assert terrains_of(Run.read(make_run())).tolist() == ["unknown"] * 3
+    assert row_terrains(Run.read(make_run())).tolist() == ["unknown"] * 3

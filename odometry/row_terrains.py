@@ -8,7 +8,7 @@ from odometry.arrays import AnyArray
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
 
 
-def with_named_ground(run: Run, given: str | None) -> Run:
+def with_named_terrain(run: Run, given: str | None) -> Run:
     """The run with a name for every terrain: `given`, or "ground", where nobody names it."""
     usual = run.terrain if run.terrain not in (None, UNKNOWN) else given or UNNAMED_TERRAIN
     settings = {**run.settings, "run": {**run.settings.get("run", {}), "terrain": usual}}
@@ -20,7 +20,7 @@ def with_named_ground(run: Run, given: str | None) -> Run:
     return replace(run, settings=settings, odometry=odometry)
 
 
-def terrains_of(run: Run) -> AnyArray:
+def row_terrains(run: Run) -> AnyArray:
     """Name of the terrain (N,) at each row of odometry.csv.
 
     Its column `terrain` where there is one, else the run's; "unknown" where neither says.
