@@ -130,6 +130,15 @@ class GapResult:
         return tuple(kind.variable for kind in kinds if isinstance(kind, Residual))
 
     @property
+    def stages(self) -> dict[str, tuple[Base, tuple[Added, ...]]]:
+        """The model "before" and, where something was added or moved, "after"."""
+        before: dict[str, tuple[Base, tuple[Added, ...]]]
+        before = {"before": (self.calibration.base, ())}
+        if not self.added and self.base is self.calibration.base:
+            return before
+        return {**before, "after": (self.base, self.added)}
+
+    @property
     def added(self) -> tuple[Added, ...]:
         """All effects with their values."""
         return tuple(effect.added for effect in self.effects)

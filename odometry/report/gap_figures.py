@@ -8,8 +8,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
 from odometry.arrays import FloatArray
-from odometry.gap.result import Closing, GapResult
-from odometry.gap.statistic import squared_errors
+from odometry.gap.quantities import metres
+from odometry.gap.result import GapResult
+from odometry.gap.statistic import Gap, squared_errors
 from odometry.report.figure import save_figure
 from odometry.report.html import Picture
 from odometry.report.palette import LINE_STYLES, LineStyle
@@ -17,6 +18,7 @@ from odometry.windows.dense import DenseWindows
 
 WIDTH_IN = 7.0
 BEFORE, AFTER = LINE_STYLES[1], LINE_STYLES[0]
+STAGES = {"before": BEFORE, "after": AFTER}
 FLOOR = "#999999"
 RUNS = 4  # that are drawn of each kind
 ROOM = 1.15  # to the right of the last interval, for its number
@@ -36,10 +38,13 @@ def closing_picture(result: GapResult, folder: Path) -> Picture:
         axes.axvline(floor.value, color=FLOOR, linewidth=1.2)
         labels = []
         for number, (name, closing) in enumerate(closings.items()):
-            _draw_closing(axes, 2.4 * number, closing)
-            labels += [(2.4 * number, f"{name}: before"), (2.4 * number + 1, f"{name}: after")]
+            gaps = {"before": closing.before, "after": closing.after}
+            for place, stage in enumerate(result.stages):
+                row = number * (len(result.stages) + 0.4) + place
+                _draw_gap(axes, row, gaps[stage], STAGES[stage])
+                labels.append((row, f"{name}: {stage}"))
         axes.set_yticks([row for row, _ in labels], [label for _, label in labels])
-        axes.set_ylim(2.4 * len(closings) - 0.8, -0.7)
+        axes.set_ylim(labels[-1][0] + 0.6, -0.7)
         ends = [gap.high for c in closings.values() for gap in (c.before, c.after, c.noise_floor)]
         axes.set_xlim(0.0, ROOM * max(ends))
         axes.grid(visible=True, axis="x")
@@ -103,13 +108,13 @@ def evidence_picture(result: GapResult, folder: Path) -> Picture | None:
     height_in = 0.8 + 0.27 * len(rivals)
 
     def draw(figure: Figure) -> None:
-        axes = figure.add_axes((0.33, 0.5 / height_in, 0.57, 1 - 0.65 / height_in))
+        axes = figure.add_axes((0.4, 0.5 / height_in, 0.5, 1 - 0.65 / height_in))
         for row, rival in enumerate(rivals):
             chosen = bool(result.effects) and row == 0
             colour = AFTER.colour if chosen else "#AAAAAA"
             axes.barh(row, rival.evidence, height=0.65, color=colour)
             axes.annotate(
-                f"{rival.evidence:.0f}",
+                f"{round(rival.evidence)}",
                 (max(rival.evidence, 0.0), row),
                 (4.0, 0.0),
                 textcoords="offset points",
@@ -139,31 +144,27 @@ def rolling_rms(time_s: FloatArray, squares: FloatArray, span_s: float) -> Float
     return np.asarray(np.sqrt(near @ squares / near.sum(axis=1)))
 
 
-def _draw_closing(axes: Axes, row: float, closing: Closing) -> None:
-    for place, gap, style in ((row, closing.before, BEFORE), (row + 1, closing.after, AFTER)):
-        axes.plot([gap.low, gap.high], [place, place], color=style.colour, linewidth=2.2)
-        axes.plot(gap.value, place, "o", color=style.colour, markersize=6)
-        axes.annotate(
-            f"{gap.value:.3g}",
-            (gap.high, place),
-            (6.0, 0.0),
-            textcoords="offset points",
-            va="center",
-            fontsize=9,
-            color=style.colour,
-        )
+def _draw_gap(axes: Axes, row: float, gap: Gap, style: LineStyle) -> None:
+    axes.plot([gap.low, gap.high], [row, row], color=style.colour, linewidth=2.2)
+    axes.plot(gap.value, row, "o", color=style.colour, markersize=6)
+    axes.annotate(
+        metres(gap.value),
+        (gap.high, row),
+        (6.0, 0.0),
+        textcoords="offset points",
+        va="center",
+        fontsize=9,
+        color=style.colour,
+    )
 
 
 def _draw_over_time(axes: Axes, result: GapResult, scene: DenseWindows) -> None:
     floor = result.holdout.noise_floor
     axes.axhspan(floor.low, floor.high, color=FLOOR, alpha=0.3, linewidth=0)
     axes.axhline(floor.value, color=FLOOR, linewidth=1.0, label="noise floor")
-    lines: tuple[tuple[str, LineStyle, FloatArray], ...] = (
-        ("before", BEFORE, squared_errors(result.calibration.base, (), scene)),
-        ("after", AFTER, squared_errors(result.base, result.added, scene)),
-    )
-    for name, style, squares in lines:
-        rms = rolling_rms(scene.start_s, squares, ROLLING_S)
+    for name, (base, effects) in result.stages.items():
+        style = STAGES[name]
+        rms = rolling_rms(scene.start_s, squared_errors(base, effects, scene), ROLLING_S)
         axes.plot(
             scene.start_s,
             rms,

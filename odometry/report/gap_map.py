@@ -80,12 +80,11 @@ def map_picture(result: GapResult, folder: Path) -> Picture | None:
     if len(chosen) < 2:
         return None
     across, up = scale_of(chosen[0]), scale_of(chosen[1])
-    pairs = {"before": (base, ()), "after": (result.base, result.added)}
     maps = {
         name: binned_rms(
             np.concatenate([squared_errors(model, added, scene) for scene in scenes]), across, up
         )
-        for name, (model, added) in pairs.items()
+        for name, (model, added) in result.stages.items()
     }
     floor_m = result.holdout.noise_floor.value
     highest = max(float(np.nanmax(of)) for of in maps.values())
@@ -107,8 +106,8 @@ def map_picture(result: GapResult, folder: Path) -> Picture | None:
 
     return Picture(
         save_figure(folder / "gap_map.png", (WIDTH_IN, HEIGHT_IN), draw),
-        f"RMS gap over {chosen[0].name} and {chosen[1].name}, before and after.",
-        "The gap on what was held out over two variables, before and after, with one logarithmic "
+        f"RMS gap over {chosen[0].name} and {chosen[1].name}: {', '.join(maps)}.",
+        f"The gap on held-out data over two variables, {' and '.join(maps)}, with one logarithmic "
         "scale of colours from half the noise floor up; white where there was no window. "
         + _said(result, chosen),
     )
@@ -128,8 +127,8 @@ def _draw_map(axes: Axes, values: FloatArray, across: Scale, up: Scale, norm: Lo
     shown: AnyArray = np.ma.masked_invalid(values)
     mesh = axes.pcolormesh(across.edges, up.edges, shown, norm=norm, cmap="cividis")
     axes.set_xlabel(across.title)
-    axes.xaxis.set_major_locator(MaxNLocator(5))
-    axes.yaxis.set_major_locator(MaxNLocator(5))
+    axes.xaxis.set_major_locator(MaxNLocator(5, prune="both"))
+    axes.yaxis.set_major_locator(MaxNLocator(5, prune="both"))
     if across.labels:
         axes.set_xticks(range(len(across.labels)), across.labels, parse_math=False)
     if up.labels:

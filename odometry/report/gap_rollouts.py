@@ -12,15 +12,15 @@ from odometry.gap.result import GapResult
 from odometry.gap.simulate import simulated_poses
 from odometry.geometry import se2
 from odometry.report.figure import save_figure
-from odometry.report.gap_figures import AFTER, BEFORE, RUNS, WIDTH_IN
+from odometry.report.gap_figures import RUNS, STAGES, WIDTH_IN
 from odometry.report.html import Picture
 from odometry.report.map_plots import plot_paths
 from odometry.report.palette import REFERENCE_STYLE
 from odometry.trajectory import Trajectory
 from odometry.windows.dense import DenseWindows
 
-MEASURED_NAME, BEFORE_NAME, AFTER_NAME = "measured", "before", "after"
-STYLES = {MEASURED_NAME: REFERENCE_STYLE, BEFORE_NAME: BEFORE, AFTER_NAME: AFTER}
+MEASURED_NAME = "measured"
+STYLES = {MEASURED_NAME: REFERENCE_STYLE, **STAGES}
 
 
 def rollout_pictures(result: GapResult, folder: Path) -> list[Picture]:
@@ -34,7 +34,7 @@ def rollout_pictures(result: GapResult, folder: Path) -> list[Picture]:
         found.append(
             Picture(
                 save_figure(file, (WIDTH_IN, height_in), _drawing(paths, height_in)),
-                f"Paths of {scene.run.name}: measured, and open loop before and after.",
+                f"Paths of {scene.run.name}: measured, and open loop.",
                 f"{scene.run.name}, open loop over the whole run of "
                 f"{paths[MEASURED_NAME].stamps_s[-1]:.0f} s, starting at its first measured pose, "
                 "without any correction: " + _ends(paths),
@@ -45,12 +45,9 @@ def rollout_pictures(result: GapResult, folder: Path) -> list[Picture]:
 
 def rollouts(result: GapResult, scene: DenseWindows) -> dict[str, Trajectory]:
     """Paths by name at the stamps of the measured poses."""
-    bare = rollout(result.calibration.base, (), scene)
-    return {
-        MEASURED_NAME: Trajectory(scene.pose_s, scene.poses),
-        BEFORE_NAME: bare,
-        AFTER_NAME: rollout(result.base, result.added, scene),
-    }
+    measured = {MEASURED_NAME: Trajectory(scene.pose_s, scene.poses)}
+    stages = result.stages.items()
+    return measured | {name: rollout(base, added, scene) for name, (base, added) in stages}
 
 
 def rollout(base: Base, effects: Sequence[Added], scene: DenseWindows) -> Trajectory:
@@ -71,9 +68,11 @@ def _drawing(paths: dict[str, Trajectory], height_in: float) -> Callable[[Figure
 def _ends(paths: dict[str, Trajectory]) -> str:
     true = paths[MEASURED_NAME].poses[:, :2]
     words = []
-    for name in (BEFORE_NAME, AFTER_NAME):
-        away = np.hypot(*(paths[name].poses[:, :2] - true).T)
+    for name, path in paths.items():
+        if name == MEASURED_NAME:
+            continue
+        away = np.hypot(*(path.poses[:, :2] - true).T)
         words.append(
             f"{np.sqrt((away**2).mean()):.3g} m RMS and {away[-1]:.3g} m at the end {name}"
         )
-    return f"{words[0]}, {words[1]}."
+    return f"{', '.join(words)}."

@@ -85,7 +85,7 @@ def rival_grid(result: GapResult) -> Grid:
         (
             r.name,
             r.form_in_words,
-            f"{r.evidence:.0f}",
+            f"{round(r.evidence)}",
             evidence_words(r.evidence),
             f"{r.gap_after:.3g}",
         )

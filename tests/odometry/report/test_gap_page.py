@@ -14,7 +14,7 @@ from odometry.gap.words import sentences
 from odometry.report.gap_figures import rolling_rms
 from odometry.report.gap_map import binned_rms, scale_of
 from odometry.report.gap_page import write_gap_report
-from odometry.report.gap_rollouts import AFTER_NAME, BEFORE_NAME, MEASURED_NAME, rollout, rollouts
+from odometry.report.gap_rollouts import MEASURED_NAME, rollout, rollouts
 from odometry.report.gap_shapes import shape_of
 from odometry.report.gap_tables import worst_grid
 
@@ -132,7 +132,7 @@ def test_rollouts_start_at_the_first_measured_pose(scaled_result):
     for path in paths.values():
         np.testing.assert_allclose(path.poses[0, :2], true[0, :2], atol=1e-12)
     away = {n: np.hypot(*(p.poses[-1, :2] - true[-1, :2])) for n, p in paths.items()}
-    assert away[AFTER_NAME] < 0.2 * away[BEFORE_NAME]
+    assert away["after"] < 0.2 * away["before"]
 
 
 def test_a_rollout_of_short_windows_is_the_simulation_of_the_gap(scaled_result, known):
@@ -198,3 +198,10 @@ def test_worst_stretches_are_those_of_the_largest_gap(scaled_result):
     assert [float(row[3]) for row in grid.rows] == sorted(
         (float(row[3]) for row in grid.rows), reverse=True
     )
+
+
+def test_where_nothing_was_added_there_is_no_after(none_result, scaled_result):
+    assert list(none_result.stages) == ["before"]
+    assert list(scaled_result.stages) == ["before", "after"]
+    scene = none_result.holdout_scenes[0]
+    assert list(rollouts(none_result, scene)) == [MEASURED_NAME, "before"]
