@@ -47,4 +47,14 @@ def _of_images(sightings: list[Sighting], in_force: list[str]) -> dict[str, Any]
     if any(sighting.left for sighting in sightings):
         columns["left"] = np.array([sighting.left for sighting in sightings])
         columns["right"] = np.array([sighting.right for sighting in sightings])
-    return columns
+    return columns | _numbers(sightings)
+
+
+def _numbers(sightings: list[Sighting]) -> dict[str, Any]:
+    """What the classifier gave beside the label; NaN where it was not asked, or twice."""
+    names = sorted({name for sighting in sightings for name in sighting.probabilities})
+    of = {
+        f"probability_{name}": np.array([s.probabilities.get(name, np.nan) for s in sightings])
+        for name in names
+    }
+    return {"class_distance": np.array([s.class_distance for s in sightings])} | of

@@ -45,6 +45,9 @@ class Sighting:
         Labels of the tread strips, where they were classified apart.
     probabilities : Mapping of str to float
         What the classifier gave to each terrain, where it was asked once.
+    class_distance : float
+        Distance to the nearest class, which the rejection threshold judges; of tread strips that
+        were classified apart the larger one. NaN without a label.
     """
 
     stamp_s: float
@@ -56,6 +59,7 @@ class Sighting:
     left: str = ""
     right: str = ""
     probabilities: Mapping[str, float] = field(default_factory=dict)
+    class_distance: float = float("nan")
 
 
 class TerrainWatcher:
@@ -205,13 +209,19 @@ def _sighting(stamp_s: float, name: str, region: Region, answers: list[Classific
             answer.confidence,
             region,
             probabilities=answer.probabilities,
+            class_distance=answer.distance,
         )
+    distance = max(answer.distance for answer in answers)
     left, right = (answer.label for answer in answers)
     confidence = min(answer.confidence for answer in answers)
     if left == right:
-        return Sighting(stamp_s, name, left, confidence, region, "", left, right)
+        return Sighting(
+            stamp_s, name, left, confidence, region, "", left, right, class_distance=distance
+        )
     reason = f"astride: {left} on the left, {right} on the right"
-    return Sighting(stamp_s, name, UNKNOWN, confidence, region, reason, left, right)
+    return Sighting(
+        stamp_s, name, UNKNOWN, confidence, region, reason, left, right, class_distance=distance
+    )
 
 
 def _carried(

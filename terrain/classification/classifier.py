@@ -17,6 +17,7 @@ from terrain.classification.neighbours import vote
 from terrain.classification.patches import cut_patches
 from terrain.classification.persistence import read_model, write_model
 from terrain.classification.presets import PRESETS
+from terrain.classification.trained_on import TrainedOn
 from terrain.classification.training_set import check_codes, check_labels, common_size, has_colour
 from terrain.classification.validation import CrossValidation, cross_validate
 from terrain.errors import ImageError, ModelFileError, PatchError
@@ -76,6 +77,9 @@ class TerrainClassifier:
     rejected_share : float
         The share of known terrain that may be called unknown: the rejection distance is this
         upper quantile of out-of-fold distances.
+    n_neighbors : int, optional
+        The number k of neighbours that vote; by default the one of the preset's that is best in
+        cross-validation.
 
     Attributes
     ----------
@@ -86,6 +90,8 @@ class TerrainClassifier:
     rejection_distance_ : float
     cross_validation_ : CrossValidation
         Of the last `fit`; a loaded classifier has none.
+    trained_on_ : TrainedOn or None
+        None where nobody said.
 
     References
     ----------
@@ -99,6 +105,7 @@ class TerrainClassifier:
         colour: bool = False,
         metres_per_pixel: float | None = None,
         rejected_share: float = 0.05,
+        n_neighbors: int | None = None,
     ) -> None:
         if preset not in PRESETS:
             raise ConfigError(f"preset '{preset}' is not one of {', '.join(sorted(PRESETS))}")
@@ -106,10 +113,13 @@ class TerrainClassifier:
             raise ConfigError(f"rejected_share is {rejected_share}, expected between 0 and 1")
         if metres_per_pixel is not None and not 0 < metres_per_pixel < math.inf:
             raise ConfigError(f"metres_per_pixel is {metres_per_pixel}, expected above zero")
+        if n_neighbors is not None and n_neighbors < 1:
+            raise ConfigError(f"n_neighbors is {n_neighbors}, expected 1 or more")
         self.preset = preset
         self.colour = colour
         self.metres_per_pixel = metres_per_pixel
         self.rejected_share = rejected_share
+        self.n_neighbors = n_neighbors
 
     def fit(
         self,
@@ -117,6 +127,7 @@ class TerrainClassifier:
         labels: Sequence[str],
         groups: Sequence[str],
         progress: bool = False,
+        trained_on: TrainedOn | None = None,
     ) -> Self:
         """Learn from labelled patches.
 
@@ -129,25 +140,30 @@ class TerrainClassifier:
             the rejection distance are chosen by cross-validation that keeps groups whole.
         progress : bool
             Show a progress bar.
+        trained_on : TrainedOn, optional
+            The photographs that the patches are of; kept in the model.
 
         Raises
         ------
         PatchError
             If the patches differ in size, or there are fewer than two classes, or a class has
-            patches of fewer than two groups, or nothing varies within the classes.
+            patches of fewer than two groups or fewer than `n_neighbors` in training, or nothing
+            varies within the classes.
         """
         check_labels(len(images), labels, groups)
         self.patch_size_px = common_size(images)
         self.classes_ = sorted(set(labels))
         codes: IntArray = np.searchsorted(self.classes_, labels)
+        self.trained_on_ = trained_on
         preset = PRESETS[self.preset]
+        counts = (self.n_neighbors,) if self.n_neighbors else preset.neighbour_counts
         wanted = self.colour and has_colour(images, labels)
         self._features = preset.colour_features if wanted else preset.features
         self.colour_ = bool(self._features.colour_copies)
         features = feature_matrix(images, self._features, progress)
         try:
             self.cross_validation_: CrossValidation = cross_validate(
-                preset.neighbours, preset.neighbour_counts, features, codes, np.asarray(groups)
+                preset.neighbours, counts, features, codes, np.asarray(groups)
             )
             self._neighbours = preset.neighbours().fit(features, codes)
         except np.linalg.LinAlgError as error:
@@ -156,6 +172,11 @@ class TerrainClassifier:
                 "alike, to tell how patches of one class differ"
             ) from error
         self.n_neighbors_ = self.cross_validation_.n_neighbors
+        if self.n_neighbors_ not in counts and self.n_neighbors:
+            raise PatchError(
+                f"k = {self.n_neighbors}, but with a part held back a class has fewer patches in "
+                "training; choose a smaller k"
+            )
         self.rejection_distance_ = float(
             np.quantile(self.cross_validation_.distances, 1 - self.rejected_share)
         )
@@ -210,6 +231,7 @@ class TerrainClassifier:
             self.n_neighbors_,
             self.rejection_distance_,
             self._features,
+            self.trained_on_,
         )
         write_model(Path(path), settings.to_table(), self._neighbours.arrays(), made)
 
@@ -243,6 +265,7 @@ class TerrainClassifier:
         model.n_neighbors_ = settings.n_neighbors
         model.rejection_distance_ = settings.rejection_distance
         model._features = settings.features
+        model.trained_on_ = settings.trained_on
         check_codes(arrays["codes"], len(settings.classes))
         model._neighbours = PRESETS[model.preset].neighbours.from_arrays(arrays)
         model._check_that_parts_fit()

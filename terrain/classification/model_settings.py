@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 from typing import Any, Self
 
 from terrain.classification.features import FeatureSettings
+from terrain.classification.trained_on import TrainedOn
 
 
 @dataclass(frozen=True)
@@ -21,10 +22,11 @@ class ModelSettings:
     n_neighbors: int
     rejection_distance: float
     features: FeatureSettings
+    trained_on: TrainedOn | None = None
 
     def to_table(self) -> dict[str, Any]:
         """Turn into values that JSON can hold."""
-        return asdict(self)
+        return asdict(self) | {"trained_on": self.trained_on and self.trained_on.to_table()}
 
     @classmethod
     def from_table(cls, table: Mapping[str, Any]) -> Self:
@@ -62,4 +64,6 @@ class ModelSettings:
         values = {name: table[name] for name in kinds}
         values["classes"] = tuple(map(str, table["classes"]))
         values["features"] = FeatureSettings.from_table(table["features"])
+        if table.get("trained_on") is not None:  # files of version 0.4 do not say
+            values["trained_on"] = TrainedOn.from_table(table["trained_on"])
         return cls(**values)

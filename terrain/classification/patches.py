@@ -10,6 +10,7 @@ import numpy as np
 from odometry.arrays import ByteImage
 from odometry.run import UNKNOWN
 from terrain.classification.manifest import Manifest, read_manifest
+from terrain.classification.trained_on import TrainedOn, image_sum
 from terrain.errors import PatchError
 from terrain.images import read_image
 
@@ -28,13 +29,27 @@ class LabelledPhoto:
 
 @dataclass(frozen=True)
 class LabelledPatches:
-    """Patches of one size with their terrain names, groups and the photographs they are of."""
+    """Patches of one size with their terrain names, groups and the photographs they are of.
+
+    `image_sums` are those of the photographs, by `image_sum`.
+    """
 
     images: list[ByteImage]
     labels: list[str]
     groups: list[str]
     photos: list[Path]
     too_small: list[Path]
+    image_sums: list[str]
+
+    @property
+    def trained_on(self) -> TrainedOn:
+        """What a classifier is trained on that learns from these."""
+        given = {
+            group
+            for photo, group in zip(self.photos, self.groups, strict=True)
+            if group != str(photo)
+        }
+        return TrainedOn(frozenset(self.image_sums), frozenset(given))
 
 
 def find_photos(root: Path) -> list[LabelledPhoto]:
@@ -106,13 +121,15 @@ def load_patches(
     ImageError
         If a photograph cannot be read.
     """
-    patches = LabelledPatches([], [], [], [], [])
+    patches = LabelledPatches([], [], [], [], [], [])
     for photo in photos:
-        cut = cut_patches(read_image(photo.path), size_px, max(size_px // 2, 1))
+        image = read_image(photo.path)
+        cut = cut_patches(image, size_px, max(size_px // 2, 1))
         if len(cut) > max_per_photo:
             cut = [cut[i] for i in np.linspace(0, len(cut) - 1, max_per_photo).astype(int)]
         if not cut:
             patches.too_small.append(photo.path)
+        patches.image_sums.append(image_sum(image))
         patches.images.extend(patch.copy() for patch in cut)  # so that no photograph is kept
         patches.labels.extend([photo.label] * len(cut))
         patches.groups.extend([photo.group] * len(cut))

@@ -36,6 +36,8 @@ def train(
     patch_size_px: int | None = None,
     metres_per_pixel: float | None = None,
     colour: bool = False,
+    k: int | None = None,
+    rejected_share: float = 0.05,
     show_progress: bool = False,
 ) -> Training:
     """Cut the photographs of a folder to patches of one size and fit a classifier.
@@ -52,6 +54,10 @@ def train(
         Without either, a run's images are cropped, not warped.
     colour : bool
         Whether colour is used beside grey.
+    k : int, optional
+        Neighbours that vote; by default chosen in cross-validation.
+    rejected_share : float
+        Share of known patches that may be called unknown.
     show_progress : bool
 
     Raises
@@ -65,6 +71,18 @@ def train(
     photos = find_photos(root)
     patches = load_patches(photos, patch_size_px or min(LARGEST_PATCH_PX, fitting_side_px(photos)))
     scale = metres_per_pixel or stated_metres_per_pixel(root)
-    classifier = TerrainClassifier(preset, colour=colour, metres_per_pixel=scale)
-    classifier.fit(patches.images, patches.labels, patches.groups, progress=show_progress)
+    classifier = TerrainClassifier(
+        preset,
+        colour=colour,
+        metres_per_pixel=scale,
+        rejected_share=rejected_share,
+        n_neighbors=k,
+    )
+    classifier.fit(
+        patches.images,
+        patches.labels,
+        patches.groups,
+        progress=show_progress,
+        trained_on=patches.trained_on,
+    )
     return Training(classifier, patches)

@@ -1,4 +1,4 @@
-"""The verb that names the terrain of images."""
+"""The verb that names the terrain of images, or judges a model on labelled ones."""
 
 import json
 import sys
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("model", type=click.Path(path_type=Path))
 @click.argument("images", type=click.Path(path_type=Path), nargs=-1, required=True)
-@click.option("--json", "as_json", is_flag=True, help="Print a JSON list, with probabilities.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON, with probabilities.")
 def classify(model: Path, images: tuple[Path, ...], as_json: bool) -> None:
     """Name the terrain of each of IMAGES with MODEL, a file that `train` wrote.
 
@@ -22,16 +22,28 @@ def classify(model: Path, images: tuple[Path, ...], as_json: bool) -> None:
     distance is beyond the rejection threshold. An image larger than the model's patches is cut
     into patches. An image that cannot be used becomes a row with the reason, and the exit code 1.
 
+    With one folder FOLDER/<terrain>/*.jpg or *.png in place of images: how often each terrain gets
+    each label, on those images that the model was not trained on.
+
     \b
     Example:
       terrain-odometry classify terrain.model photo_1.jpg photo_2.jpg --json
+      terrain-odometry classify terrain.model other_photos
     """
     from terrain.classification.classifier import TerrainClassifier
+    from terrain.cli.labelled_images import print_held_out
 
     classifier = TerrainClassifier.load(model)
-    rows = [_row(classifier, path) for path in images]
-    click.echo(json.dumps(rows, indent=2) if as_json else _table(classifier, rows))
-    if any("error" in row for row in rows):
+    folders = [path for path in images if path.is_dir()]
+    if folders and len(images) > 1:
+        raise click.UsageError(f"{folders[0]} is a folder: give one folder alone, or images")
+    if folders:
+        all_used = print_held_out(classifier, model, folders[0], as_json=as_json)
+    else:
+        rows = [_row(classifier, path) for path in images]
+        click.echo(json.dumps(rows, indent=2) if as_json else _table(classifier, rows))
+        all_used = not any("error" in row for row in rows)
+    if not all_used:
         sys.exit(1)
 
 

@@ -40,6 +40,20 @@ if TYPE_CHECKING:
     help="Scale of the photographs on the ground; kept in the model.  [default: as manifest.csv "
     "states it]",
 )
+@click.option(
+    "--k",
+    type=click.IntRange(min=1),
+    help="Neighbours that vote.  [default: best in cross-validation]",
+)
+@click.option(
+    "--reject",
+    type=click.FloatRange(0, 1, min_open=True, max_open=True),
+    default=0.05,
+    show_default=True,
+    metavar="SHARE",
+    help="Share of known patches that may be called unknown: with more, less that is foreign gets "
+    "a name.",
+)
 @click.option("--colour", is_flag=True, help="Use colour: for one camera in training and in use.")
 def train(
     *,
@@ -49,6 +63,8 @@ def train(
     patch_size: int | None,
     metres_per_pixel: float | None,
     colour: bool,
+    k: int | None,
+    reject: float,
 ) -> None:
     """Train a terrain classifier on PATCHES/<terrain>/*.jpg or *.png.
 
@@ -71,6 +87,8 @@ def train(
         patch_size_px=patch_size,
         metres_per_pixel=metres_per_pixel,
         colour=colour,
+        k=k,
+        rejected_share=reject,
         show_progress=True,
     )
     classifier, loaded = training.classifier, training.patches
@@ -115,13 +133,14 @@ def _summary(classifier: "TerrainClassifier", photos: list[Path]) -> str:
     names = np.array([str(photos[row]) for row in found.rows])
     photo_codes, photo_answers, _ = photo_votes(found.codes, found.probabilities, names)
     table = confusion(found.codes, answers, len(classifier.classes_))
+    chosen = "given" if classifier.n_neighbors else "chosen"
     return (
         f"{len(photos)} patches of {classifier.patch_size_px} px from {len(set(photos))} "
         "photographs, cross-validated by photograph (true terrain down, answer across, %):\n\n"
         f"{confusion_text(table, classifier.classes_)}\n\n"
         f"balanced accuracy by patch {balanced_accuracy(found.codes, answers):.3f}, by vote of a "
         f"photograph's patches {balanced_accuracy(photo_codes, photo_answers):.3f}\n"
-        f"chosen k {classifier.n_neighbors_}, rejection threshold "
+        f"{chosen} k {classifier.n_neighbors_}, rejection threshold "
         f"{classifier.rejection_distance_:.4g} ({100 * classifier.rejected_share:g} % of known "
         "terrain lies beyond)"
     )

@@ -152,6 +152,21 @@ def test_the_terrain_table_says_what_was_seen_and_where(across_out, across_run, 
     assert not np.array(on_boards)[outside].any()
 
 
+def test_labels_follow_from_the_numbers_in_the_terrain_table(across_out, classifier):
+    """So that another threshold can be tried on a finished run."""
+    _, table = columns(across_out / "terrain.csv")
+    given = np.column_stack([table["probability_boards"], table["probability_gravel"]])
+    given, distance = given.astype(float), np.array(table["class_distance"], float)
+    names = np.array(["boards", "gravel"])[given.argmax(axis=1)]
+    beyond = distance > classifier.rejection_distance_
+    asked = np.array(table["label"]) != ""
+    expected = np.where(beyond, "unknown", names)[asked]
+    assert expected.tolist() == np.array(table["label"])[asked].tolist()
+    np.testing.assert_allclose(
+        given[asked].max(axis=1), np.array(table["confidence"], float)[asked]
+    )
+
+
 def test_result_json_is_strict_and_names_the_switches(across_out, across_result):
     content = strict((across_out / "result.json").read_text())
     assert content["vision"] is True

@@ -89,3 +89,90 @@ def test_bad_images_become_rows_and_the_exit_code_tells(trained, photos, tmp_pat
     table = CliRunner().invoke(classify, arguments)
     assert table.exit_code == 1
     assert table.stdout.count("error: ") == 3
+
+
+def test_k_and_the_share_that_may_be_refused_are_as_given(photos, trained, tmp_path):
+    model, _ = trained
+    options = ["--patch-size", "32", "--k", "3", "--reject", "0.3"]
+    answer = CliRunner().invoke(train, [str(photos), "--out", str(tmp_path / "a"), *options])
+    assert answer.exit_code == 0, answer.output
+    strict, usual = TerrainClassifier.load(tmp_path / "a"), TerrainClassifier.load(model)
+    assert (strict.n_neighbors_, strict.rejected_share) == (3, 0.3)
+    assert usual.rejected_share == 0.05
+    assert strict.rejection_distance_ < usual.rejection_distance_
+    assert "given k 3, rejection threshold" in answer.stdout
+    assert "(30 % of known terrain lies beyond)" in answer.stdout
+
+
+@pytest.mark.parametrize("options", [["--k", "0"], ["--reject", "0"], ["--reject", "1"]])
+def test_numbers_out_of_range_are_a_wrong_command_line(photos, tmp_path, options):
+    answer = CliRunner().invoke(train, [str(photos), "--out", str(tmp_path / "a"), *options])
+    assert answer.exit_code == 2
+
+
+def test_more_neighbours_than_patches_are_refused(photos, tmp_path):
+    options = ["--patch-size", "32", "--k", "500"]
+    answer = CliRunner().invoke(train, [str(photos), "--out", str(tmp_path / "a"), *options])
+    assert answer.exit_code == 1
+    assert "k = 500" in str(answer.exception)
+
+
+@pytest.fixture
+def fresh(tmp_path, photos):
+    """New ground in class folders, one terrain that the model does not know, one old image."""
+    rng = np.random.default_rng(5)
+    images = {
+        "boards": np.tile(np.where(np.arange(64) % 10 < 6, 190, 60), (64, 1)),
+        "gravel": np.kron(rng.integers(30, 226, (32, 32)), np.ones((2, 2))),
+        "ice": np.full((64, 64), 200),
+    }
+    for name, image in images.items():
+        (tmp_path / "fresh" / name).mkdir(parents=True)
+        for k in range(3):
+            noisy = np.clip(image + rng.normal(0, 3, image.shape), 0, 255).astype(np.uint8)
+            assert cv2.imwrite(str(tmp_path / "fresh" / name / f"{k}.png"), noisy)
+    old = tmp_path / "fresh/gravel/old.png"
+    old.write_bytes((photos / "gravel/060.png").read_bytes())
+    return tmp_path / "fresh"
+
+
+def test_a_folder_of_labelled_images_gives_their_confusion(trained, fresh):
+    model, _ = trained
+    answer = CliRunner().invoke(classify, [str(model), str(fresh), "--json"])
+    assert answer.exit_code == 0, answer.output
+    content = json.loads(answer.stdout)
+    assert len(content["images"]) == 10
+    counted = {name: sum(row.values()) for name, row in content["confusion"].items()}
+    assert counted == {"boards": 3, "gravel": 3, "ice": 3}
+    for image in content["images"]:
+        assert image["in_training"] == image["image"].endswith("old.png")
+    said = [i["label"] for i in content["images"] if i["true"] == "ice"]
+    assert content["confusion"]["ice"]["unknown"] == said.count("unknown")
+    text = CliRunner().invoke(classify, [str(model), str(fresh)])
+    assert text.stdout.splitlines()[0].startswith("9 images")
+    assert f"balanced accuracy {content['balanced_accuracy']:.3f}, 95 %" in text.stdout
+    assert f"unknown: {said.count('unknown')} of 3 images of foreign terrains" in text.stdout
+    assert "was trained on 1 of 10 images" in text.stderr
+
+
+def test_images_that_were_all_trained_on_are_no_test(trained, photos):
+    model, _ = trained
+    answer = CliRunner().invoke(classify, [str(model), str(photos)])
+    assert answer.exit_code == 1
+    assert "nothing is held out" in str(answer.exception)
+
+
+def test_a_folder_stands_alone(trained, fresh):
+    model, _ = trained
+    answer = CliRunner().invoke(classify, [str(model), str(fresh), str(fresh / "ice/0.png")])
+    assert answer.exit_code == 2
+    assert "give one folder alone" in answer.output
+
+
+def test_a_broken_image_is_left_out_and_the_exit_code_tells(trained, fresh):
+    model, _ = trained
+    (fresh / "ice/broken.png").write_bytes(b"no image")
+    answer = CliRunner().invoke(classify, [str(model), str(fresh)])
+    assert answer.exit_code == 1
+    assert answer.stdout.splitlines()[0].startswith("9 images")
+    assert "left out: " in answer.stderr

@@ -1,0 +1,128 @@
+"""What `classify` prints of a folder of labelled images."""
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from terrain.classification.classifier import TerrainClassifier
+    from terrain.classification.held_out import HeldOutScore, LabelledAnswer
+
+
+def print_held_out(
+    classifier: "TerrainClassifier", model: Path, folder: Path, *, as_json: bool
+) -> bool:
+    """Print confusion and accuracy on the labelled images that are held out.
+
+    Returns
+    -------
+    bool
+        Whether every image could be used.
+
+    Raises
+    ------
+    PatchError
+        If the folder is not as the format says, or the model was trained on every image in it.
+    """
+    from terrain.classification.held_out import answer_photos, held_out_score
+    from terrain.classification.patches import find_photos
+    from terrain.errors import PatchError
+
+    answers, unusable = answer_photos(classifier, find_photos(folder))
+    for path, reason in unusable.items():
+        click.echo(f"left out: {path}: {reason}", err=True)
+    held_out = [each for each in answers if not each.in_training]
+    if not held_out:
+        cause = "could not be used" if unusable else "is one that the model was trained on"
+        raise PatchError(f"{folder}: nothing is held out: each of its images {cause}")
+    for note in _notes(classifier, model, answers):
+        click.echo(f"Note: {note}", err=True)
+    score = held_out_score(classifier.classes_, held_out)
+    click.echo(
+        json.dumps(_json(score, answers), indent=2) if as_json else _text(score, len(held_out))
+    )
+    return not unusable
+
+
+def _notes(
+    classifier: "TerrainClassifier", model: Path, answers: "list[LabelledAnswer]"
+) -> list[str]:
+    if classifier.trained_on_ is None:
+        return [
+            f"{model} does not say which images it was trained on; whether these are held out "
+            "cannot be told"
+        ]
+    notes = []
+    trained = [each for each in answers if each.in_training]
+    if trained:
+        notes.append(
+            f"{model} was trained on {len(trained)} of {len(answers)} images, such as "
+            f"{trained[0].photo.path}: they do not count"
+        )
+    shared = [each for each in answers if each.shares_photo_id and not each.in_training]
+    if shared:
+        notes.append(
+            f"{len(shared)} images have a photo_id that training images have, such as "
+            f"{shared[0].photo.path} ({shared[0].photo.group}): if it is the same photograph or "
+            "place, they are not held out, and the figures are too good"
+        )
+    return notes
+
+
+def _text(score: "HeldOutScore", images: int) -> str:
+    width = max(9, *(len(name) + 2 for name in (*score.labels, *score.true)))
+    header = "".join(name.rjust(width) for name in (*score.labels, "images"))
+    lines = [f"{images} images (true terrain down, answer across, %):\n", " " * width + header]
+    for name, row in zip(score.true, score.counts, strict=True):
+        shares = "".join(f"{100 * n / row.sum():{width}.1f}" for n in row)
+        lines.append(name.ljust(width) + shares + f"{row.sum():{width}d}")
+    return "\n".join([*lines, "", *_sentences(score)])
+
+
+def _sentences(score: "HeldOutScore") -> list[str]:
+    unknown = score.counts[:, -1]
+    is_known = [name in score.labels for name in score.true]
+    lines = []
+    if score.balanced_accuracy is not None and score.interval is not None:
+        low, high = score.interval
+        lines.append(
+            f"balanced accuracy {score.balanced_accuracy:.3f}, 95 % interval {low:.3f} to "
+            f"{high:.3f} (whole photographs drawn); unknown is not right here"
+        )
+        if score.of_named is not None:
+            lines.append(f"of those with a name {score.of_named:.3f}")
+    for kind, chosen in (("known", True), ("foreign", False)):
+        rows = [of is chosen for of in is_known]
+        if any(rows):
+            lines.append(
+                f"unknown: {unknown[rows].sum()} of {score.counts[rows].sum()} images of {kind} "
+                "terrains"
+            )
+    return lines
+
+
+def _json(score: "HeldOutScore", answers: "list[LabelledAnswer]") -> dict[str, Any]:
+    images = [
+        {
+            "image": str(each.photo.path),
+            "true": each.photo.label,
+            "photo_id": each.photo.group,
+            "in_training": each.in_training,
+        }
+        | asdict(each.answer)
+        for each in answers
+    ]
+    counts = {
+        name: dict(zip(score.labels, row, strict=True))
+        for name, row in zip(score.true, score.counts.tolist(), strict=True)
+    }
+    return {
+        "images": images,
+        "confusion": counts,
+        "balanced_accuracy": score.balanced_accuracy,
+        "balanced_accuracy_interval": score.interval,
+        "balanced_accuracy_of_named": score.of_named,
+    }

@@ -1,0 +1,104 @@
+"""Labelled photographs that were not trained on: counts, accuracy, and what was trained on."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from sklearn.metrics import recall_score
+
+from terrain.classification.classifier import Classification, TerrainClassifier
+from terrain.classification.held_out import LabelledAnswer, answer_photos, held_out_score
+from terrain.classification.patches import LabelledPhoto, find_photos
+from terrain.classification.trained_on import TrainedOn, image_sum
+from terrain.images import read_image
+
+
+def answers(pairs):
+    """One answer for each (true terrain, label, photo_id)."""
+    return [
+        LabelledAnswer(
+            LabelledPhoto(Path(f"{i}.png"), true, group),
+            Classification(label, 0.9, 1.0, {}),
+            in_training=False,
+            shares_photo_id=False,
+        )
+        for i, (true, label, group) in enumerate(pairs)
+    ]
+
+
+def test_counts_and_accuracy_are_those_of_scikit_learn(rng):
+    names = ["grass", "sand", "ice"]
+    true = rng.choice(["grass", "sand"], 80)
+    said = np.where(rng.random(80) < 0.7, true, rng.choice([*names, "unknown"], 80))
+    groups = [f"{name} {k // 8}" for k, name in enumerate(true)]
+    score = held_out_score(names, answers(zip(true, said, groups, strict=True)))
+    assert score.true == ("grass", "sand")
+    assert score.labels == ("grass", "sand", "ice", "unknown")
+    expected = [[((true == t) & (said == s)).sum() for s in score.labels] for t in score.true]
+    assert score.counts.tolist() == expected
+    recalls = [(said[true == t] == t).mean() for t in score.true]
+    assert score.balanced_accuracy == pytest.approx(np.mean(recalls))
+    named = said != "unknown"
+    of_named = recall_score(true[named], said[named], labels=["grass", "sand"], average=None)
+    assert score.of_named == pytest.approx(np.mean(of_named))
+    low, high = score.interval
+    assert low < score.balanced_accuracy < high
+
+
+def test_a_terrain_that_the_model_does_not_know_is_counted_and_not_scored():
+    pairs = [("grass", "grass", "a"), ("moss", "grass", "b"), ("moss", "unknown", "c")]
+    score = held_out_score(["grass", "sand"], answers(pairs))
+    assert score.true == ("grass", "moss")
+    assert score.counts.tolist() == [[1, 0, 0], [1, 0, 1]]
+    assert score.balanced_accuracy == 1.0
+    foreign = held_out_score(["sand"], answers(pairs[2:]))
+    assert (foreign.balanced_accuracy, foreign.interval, foreign.of_named) == (None, None, None)
+
+
+def test_a_terrain_that_is_always_refused_has_no_accuracy_of_named():
+    pairs = [("grass", "grass", "a"), ("sand", "unknown", "b")]
+    score = held_out_score(["grass", "sand"], answers(pairs))
+    assert score.balanced_accuracy == 0.5
+    assert score.of_named is None
+
+
+def test_images_of_the_training_set_are_known_under_any_name(training_patches, tmp_path):
+    images, labels, groups = training_patches
+    trained_on = TrainedOn(frozenset(map(image_sum, images)), frozenset({"gravel 3"}))
+    model = TerrainClassifier().fit(images, labels, groups, trained_on=trained_on)
+    model.save(tmp_path / "a.model")
+    model = TerrainClassifier.load(tmp_path / "a.model")
+    assert model.trained_on_ == trained_on
+    folder = tmp_path / "photos/gravel"
+    folder.mkdir(parents=True)
+    changed = images[-1].copy()
+    changed[0, 0] ^= 1
+    for name, image in {"copy": images[-1], "changed": changed}.items():
+        assert cv2.imwrite(str(folder / f"{name}.png"), image)
+    (folder / "broken.png").write_bytes(b"no image")
+    (tmp_path / "photos/manifest.csv").write_text(
+        "path,photo_id\ngravel/copy.png,gravel 4\ngravel/changed.png,gravel 3\n"
+    )
+    found, unusable = answer_photos(model, find_photos(tmp_path / "photos"))
+    assert [each.photo.path.stem for each in found] == ["changed", "copy"]
+    assert [each.in_training for each in found] == [False, True]
+    assert [each.shares_photo_id for each in found] == [True, False]
+    assert list(unusable) == [folder / "broken.png"]
+    (said,) = model.classify([read_image(folder / "copy.png")])
+    assert found[1].answer == said
+
+
+def test_a_model_that_does_not_say_what_it_was_trained_on(training_patches, tmp_path):
+    model = TerrainClassifier().fit(*training_patches)
+    model.save(tmp_path / "a.model")
+    assert TerrainClassifier.load(tmp_path / "a.model").trained_on_ is None
+
+
+@pytest.mark.parametrize(
+    "table",
+    [{}, {"image_sums": "abc", "photo_ids": []}, {"image_sums": [1], "photo_ids": []}],
+)
+def test_damaged_lists_are_refused(table):
+    with pytest.raises((KeyError, TypeError)):
+        TrainedOn.from_table(table)
