@@ -17,6 +17,7 @@ from .icrs.medians import icr_medians
 from .icrs.points import icr_covariances, icr_indices, icrs_of_twist, turn_is_told
 from .identification.identify import identify
 from .io.run_folder import write_run_folder
+from .io.trajectory_files import read_trajectory, write_trajectory
 from .io.tum import read_spatial_tum, read_tum, write_spatial_tum, write_tum
 from .models.catalogue import MODELS
 from .models.inputs import Inputs
@@ -79,6 +80,7 @@ __all__ = [
     "read_mode_set",
     "read_parameters",
     "read_spatial_tum",
+    "read_trajectory",
     "read_tum",
     "relative_errors",
     "replay",
@@ -89,5 +91,6 @@ __all__ = [
     "write_parameters",
     "write_run_folder",
     "write_spatial_tum",
+    "write_trajectory",
     "write_tum",
 ]

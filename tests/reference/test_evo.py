@@ -20,6 +20,7 @@ from odometry.evaluation.pose_pairs import (
     consecutive_path_pairs,
 )
 from odometry.evaluation.relative import EvaluationConfig, position_errors, relative_errors
+from odometry.io.trajectory_files import write_trajectory
 from odometry.io.tum import write_spatial_tum, write_tum
 from odometry.spatial_trajectory import SpatialTrajectory
 
@@ -108,10 +109,13 @@ def evo(tmp_path_factory):
         process.stdin.close()
 
 
-def evo_results(evo, folder, program, *options):
+TUM_FILES = ("tum", "reference.tum", "drifting.tum")
+
+
+def evo_results(evo, folder, program, *options, files=TUM_FILES):
     """The error array and the statistics that an evo program saves."""
-    result = folder / f"{program}{''.join(options)}.zip"
-    command = [str(folder), program, "tum", "reference.tum", "drifting.tum", *options]
+    result = folder / f"{program}{files[0]}{''.join(options)}.zip"
+    command = [str(folder), program, *files, *options]
     print(
         json.dumps([*command, "--save_results", str(result), "--no_warnings"]),
         file=evo.stdin,
@@ -173,6 +177,24 @@ def test_relative_pose_errors(evo, trajectories, kind, relation, delta):
     assert 5 < len(pairs) < STEPS
     ours = getattr(relative_pose_errors(drifting, reference, pairs), RELATIONS[relation])
     assert_agrees(ours, *evo_results(evo, folder, "evo_rpe", "-r", relation, *delta.split()))
+
+
+@pytest.mark.parametrize(
+    ("name", "files"),
+    [
+        ("kitti", ("kitti", "reference_kitti.txt", "drifting_kitti.txt")),
+        ("euroc", ("euroc", "reference_euroc.csv", "drifting.tum")),
+    ],
+)
+@pytest.mark.parametrize("relation", RELATIONS)
+def test_other_formats_are_read_alike(evo, trajectories, name, files, relation):
+    """KITTI files have other axes, body and fixed frame alike: no error depends on them."""
+    folder, reference, drifting = trajectories["space"]
+    write_trajectory(folder, "reference", reference, name)
+    write_trajectory(folder, "drifting", drifting, name)
+    theirs = evo_results(evo, folder, "evo_ape", "-r", relation, files=files)
+    ours = absolute_pose_errors(drifting, reference)
+    assert_agrees(getattr(ours, RELATIONS[relation]), *theirs)
 
 
 def test_position_errors_of_the_plane(evo, trajectories):

@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from odometry.errors import TrajectoryError
 from odometry.geometry import se3
-from odometry.io import tum
+from odometry.io import number_rows
 from odometry.io.tum import read_spatial_tum, read_tum, write_spatial_tum, write_tum
 from odometry.spatial_trajectory import SpatialTrajectory
 from odometry.trajectory import Trajectory
@@ -114,7 +114,7 @@ def test_a_missing_file_is_named(tmp_path):
 
 @pytest.mark.parametrize("rows", [1, 2, 5])
 def test_blocks_make_one_trajectory(tmp_path, monkeypatch, rows):
-    monkeypatch.setattr(tum, "BLOCK_ROWS", rows)
+    monkeypatch.setattr(number_rows, "BLOCK_ROWS", rows)
     file = tmp_path / "a.tum"
     file.write_text("# c\n1 2 3 0 0 0 0 1\n\n2 3 4 0 0 0 0 1\n3 4 5 0 0 0 0 1\n")
     assert read_tum(file).poses[:, 0].tolist() == [2, 3, 4]

@@ -1,0 +1,67 @@
+"""A trajectory from elsewhere as the poses or the truth of a run folder."""
+
+from pathlib import Path
+
+import numpy as np
+
+from odometry.arrays import AnyArray
+from odometry.errors import TrajectoryError
+from odometry.io.csv_table import write_csv_table
+from odometry.spatial_trajectory import SpatialTrajectory
+from odometry.table import Table
+
+
+def pose_columns(trajectory: SpatialTrajectory) -> dict[str, AnyArray]:
+    """Columns of pose.csv by name: t, x, y, yaw, z, roll, pitch."""
+    x, y, z = trajectory.positions_m.T
+    roll, pitch, yaw = trajectory.roll_pitch_yaw.T
+    return {
+        "t": trajectory.stamps_s,
+        "x": x,
+        "y": y,
+        "yaw": yaw,
+        "z": z,
+        "roll": roll,
+        "pitch": pitch,
+    }
+
+
+def add_poses(file: Path, trajectory: SpatialTrajectory, odometry: Table) -> int:
+    """Write pose.csv or truth.csv of a run folder; how many poses lie within its odometry.
+
+    Raises
+    ------
+    TrajectoryError
+        If none does: other clocks, or another run.
+    """
+    within = int(
+        np.sum(
+            (trajectory.stamps_s >= odometry.stamps_s[0])
+            & (trajectory.stamps_s <= odometry.stamps_s[-1])
+        )
+    )
+    if not within:
+        raise TrajectoryError(
+            f"the poses are of {trajectory.stamps_s[0]:.3f} to {trajectory.stamps_s[-1]:.3f} s, "
+            f"{odometry.file} of {odometry.stamps_s[0]:.3f} to {odometry.stamps_s[-1]:.3f} s; "
+            "expected stamps of one clock"
+        )
+    write_csv_table(file, pose_columns(trajectory))
+    return within
+
+
+def doubt_of_axes(trajectory: SpatialTrajectory) -> str:
+    """Why a trajectory seems not to have robot axes; empty where it seems to.
+
+    A skid-steer robot moves most along x of its body.
+    """
+    moved = np.diff(trajectory.positions_m, axis=0)
+    body = np.einsum("nji,nj->ni", trajectory.poses[:-1, :3, :3], moved)
+    squares = np.sum(body**2, axis=0)
+    told = int(np.argmax(squares))
+    if told == 0:  # so it is where nothing moves
+        return ""
+    return (
+        f"the body moves most along its {'xyz'[told]} axis; expected x "
+        "forward. Poses of a camera (z along the view, y down) need --axes optical"
+    )

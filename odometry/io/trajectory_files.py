@@ -1,0 +1,156 @@
+"""The file formats of trajectories by name, and which way their axes point."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from odometry.errors import TrajectoryError
+from odometry.geometry import se3
+from odometry.geometry.optical_frame import OPTICAL_FROM_CAMERA
+from odometry.io.euroc import read_euroc, write_euroc
+from odometry.io.input_file import opened_lines
+from odometry.io.kitti import read_kitti, write_kitti
+from odometry.io.tum import read_spatial_tum, write_spatial_tum
+from odometry.spatial_trajectory import SpatialTrajectory
+
+ROBOT, OPTICAL = "robot", "optical"  # x forward, z up; or x right, y down, z along the view
+AXES = (ROBOT, OPTICAL)
+
+
+@dataclass(frozen=True)
+class TrajectoryFormat:
+    """How one format is read and written.
+
+    Attributes
+    ----------
+    about : str
+    axes : str
+        Which its files have unless someone says otherwise.
+    read : callable
+        Of the file and the file of its stamps, None where there is none.
+    write : callable
+        Into a folder, by the trajectory's name; the files that it wrote.
+    """
+
+    about: str
+    axes: str
+    read: Callable[[Path, Path | None], SpatialTrajectory]
+    write: Callable[[Path, str, SpatialTrajectory], tuple[Path, ...]]
+
+
+def read_trajectory(
+    file: str | Path, *, named: str = "", times: str | Path | None = None, axes: str = ""
+) -> SpatialTrajectory:
+    """Read a trajectory of any known format in robot axes: x forward, y left, z up.
+
+    Parameters
+    ----------
+    file : path
+    named : {"", "tum", "kitti", "euroc"}
+        The format; "" takes the one that the first row has.
+    times : path, optional
+        Stamps of a KITTI file.
+    axes : {"", "robot", "optical"}
+        Of the file, body and fixed frame alike; "" takes those of the format: optical of KITTI,
+        robot of the others.
+
+    Raises
+    ------
+    TrajectoryError
+        If the file has no known format, is not as its format says, or a KITTI file comes without
+        stamps.
+    """
+    file = Path(file)
+    chosen = FORMATS[named or format_of(file)]
+    trajectory = chosen.read(file, None if times is None else Path(times))
+    return from_optical(trajectory) if (axes or chosen.axes) == OPTICAL else trajectory
+
+
+def write_trajectory(
+    folder: Path, name: str, trajectory: SpatialTrajectory, named: str
+) -> tuple[Path, ...]:
+    """Write a trajectory of robot axes in the axes of a format; the files are returned."""
+    chosen = FORMATS[named]
+    turned = to_optical(trajectory) if chosen.axes == OPTICAL else trajectory
+    return chosen.write(folder, name, turned)
+
+
+def format_of(file: Path) -> str:
+    """The format that the first row of a file has, by its separator and its count of numbers.
+
+    Raises
+    ------
+    TrajectoryError
+        If it is none of them, or the file cannot be read.
+    """
+    with opened_lines(file, TrajectoryError) as lines:
+        row = next((line for line in lines if line.strip() and not line.startswith("#")), "")
+    if len(row.split(",")) >= 8:
+        return "euroc"
+    found = {8: "tum", 12: "kitti"}.get(len(row.split()))
+    if found is None:
+        raise TrajectoryError(
+            f"{file}: the first row {row.strip()[:60]!r} is of no known format; expected 8 numbers "
+            "(tum: stamp x y z qx qy qz qw), 12 (kitti), or 8 and more with commas (euroc)"
+        )
+    return found
+
+
+def from_optical(trajectory: SpatialTrajectory) -> SpatialTrajectory:
+    """Poses whose body and fixed frame have optical axes, said in robot axes: C^T T C."""
+    turn = se3.pose(np.zeros(3), OPTICAL_FROM_CAMERA)
+    return SpatialTrajectory(trajectory.stamps_s, turn.T @ trajectory.poses @ turn)
+
+
+def to_optical(trajectory: SpatialTrajectory) -> SpatialTrajectory:
+    """The inverse of `from_optical`: C T C^T."""
+    turn = se3.pose(np.zeros(3), OPTICAL_FROM_CAMERA)
+    return SpatialTrajectory(trajectory.stamps_s, turn @ trajectory.poses @ turn.T)
+
+
+def _read_kitti(file: Path, times: Path | None) -> SpatialTrajectory:
+    if times is None:
+        raise TrajectoryError(
+            f"{file}: KITTI poses have no stamps; give the file of their times as well, one number "
+            "of seconds a line (--times times.txt)"
+        )
+    return read_kitti(file, times)
+
+
+def _write_tum(folder: Path, name: str, trajectory: SpatialTrajectory) -> tuple[Path, ...]:
+    file = folder / f"{name}.tum"
+    write_spatial_tum(file, trajectory)
+    return (file,)
+
+
+def _write_kitti(folder: Path, name: str, trajectory: SpatialTrajectory) -> tuple[Path, ...]:
+    file, times = folder / f"{name}_kitti.txt", folder / f"{name}_times.txt"
+    write_kitti(file, times, trajectory)
+    return file, times
+
+
+def _write_euroc(folder: Path, name: str, trajectory: SpatialTrajectory) -> tuple[Path, ...]:
+    file = folder / f"{name}_euroc.csv"
+    write_euroc(file, trajectory)
+    return (file,)
+
+
+FORMATS = {
+    "tum": TrajectoryFormat(
+        "stamp x y z qx qy qz qw", ROBOT, lambda file, _: read_spatial_tum(file), _write_tum
+    ),
+    "kitti": TrajectoryFormat(
+        "twelve numbers a pose, stamps in a second file, optical axes",
+        OPTICAL,
+        _read_kitti,
+        _write_kitti,
+    ),
+    "euroc": TrajectoryFormat(
+        "nanoseconds, position, quaternion w first, with commas",
+        ROBOT,
+        lambda file, _: read_euroc(file),
+        _write_euroc,
+    ),
+}

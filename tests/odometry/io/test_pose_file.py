@@ -1,0 +1,50 @@
+"""A trajectory of another program as pose.csv of a run."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from odometry.errors import TrajectoryError
+from odometry.geometry import se3
+from odometry.io.csv_table import read_csv_table
+from odometry.io.pose_file import add_poses, doubt_of_axes
+from odometry.io.trajectory_files import to_optical
+from odometry.spatial_trajectory import SpatialTrajectory
+from odometry.table import Table
+
+
+def odometry(first_s, last_s):
+    stamps_s = np.linspace(first_s, last_s, 5)
+    return Table(Path("odometry.csv"), {"t": stamps_s}, np.arange(2, 7))
+
+
+def driving(stamps_s):
+    """A circle to the left over a hill, nose along the way."""
+    yaw = 0.3 * (stamps_s - stamps_s[0])
+    places = np.column_stack([np.sin(yaw), 1 - np.cos(yaw), 0.1 * np.sin(yaw)]) * 4
+    angles = np.column_stack([0 * yaw + 0.05, -0.1 * np.cos(yaw), yaw])
+    return SpatialTrajectory(stamps_s, se3.pose(places, se3.rotation_from_roll_pitch_yaw(angles)))
+
+
+def test_every_pose_is_a_row(tmp_path):
+    moving = driving(np.linspace(99, 104, 11))
+    assert add_poses(tmp_path / "pose.csv", moving, odometry(100, 110)) == 9
+    table = read_csv_table(tmp_path / "pose.csv", ["t", "x", "y", "yaw"])
+    assert table.stamps_s.tolist() == moving.stamps_s.tolist()
+    np.testing.assert_allclose(table.stack("x", "y", "z"), moving.positions_m, atol=1e-9)
+    of = Rotation.from_euler("ZYX", table.stack("yaw", "pitch", "roll")).as_matrix()
+    np.testing.assert_allclose(of, moving.poses[:, :3, :3], atol=1e-8)
+
+
+def test_poses_of_another_clock_are_refused(tmp_path):
+    with pytest.raises(TrajectoryError, match=r"99.000 to 104.000 s.* 0.000 to 60.000 s"):
+        add_poses(tmp_path / "pose.csv", driving(np.linspace(99, 104, 11)), odometry(0, 60))
+    assert not list(tmp_path.iterdir())
+
+
+def test_poses_of_a_camera_are_doubted():
+    moving = driving(np.linspace(0, 5, 11))
+    assert doubt_of_axes(moving) == ""
+    assert "along its z axis; expected x forward" in doubt_of_axes(to_optical(moving))
