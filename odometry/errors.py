@@ -23,3 +23,7 @@ class TrajectoryError(OdometryError):
 
 class OutputError(OdometryError):
     """Results cannot be written where they are wanted."""
+
+
+class ExtraError(OdometryError):
+    """An optional package is needed and not installed."""

@@ -3,11 +3,13 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
 from odometry.errors import RunFolderError
+from odometry.extras import extra_module
 
 
 @dataclass(frozen=True)
@@ -60,3 +62,16 @@ class Table:
         repeats_of = self.lines[np.searchsorted(self.lines, self.repeated_lines) - 1]
         repeated = self.repeated_lines[np.isin(repeats_of, lines)]
         return replace(self, columns=columns, lines=lines, repeated_lines=repeated)
+
+    def to_pandas(self) -> Any:
+        """The columns as a pandas DataFrame, rows numbered from 0; an empty name is missing.
+
+        Raises
+        ------
+        ExtraError
+            If pandas is not installed.
+        """
+        pandas = extra_module("pandas", "tables", "Table.to_pandas")
+        frame = pandas.DataFrame(dict(self.columns))
+        names = [name for name, column in self.columns.items() if column.dtype.kind == "U"]
+        return frame.assign(**{name: frame[name].replace("", None) for name in names})
