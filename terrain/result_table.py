@@ -1,11 +1,15 @@
 """The content of result.json."""
 
+from collections.abc import Mapping
+from dataclasses import asdict
 from importlib.metadata import version
+from math import isfinite
 from typing import Any
 
 from odometry.evaluation.withheld import JUDGED_EVERY_S, SILENT_S
 from terrain.filter_summary import filter_table
 from terrain.label_confusion import label_confusion_table
+from terrain.reference_table import reference_place_m
 from terrain.run_result import RunResult
 from terrain.switch import SwitchEvent
 from terrain.switch_delay import switch_delays
@@ -22,6 +26,8 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "format": FORMAT,
         "program": f"terrain-odometry {version('terrain-odometry')}",
         "run": result.run.name,
+        "robot": asdict(result.run.robot),
+        "origin": _origin(result),
         "vision": result.watcher is not None,
         "terrain_source": result.source,
         "initial_terrain": result.initial_terrain,
@@ -29,6 +35,7 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "duration_s": float(result.replay.stamps_s[-1] - result.replay.stamps_s[0]),
         "wheel_travel_m": float(result.run.wheel_travel_m[-1]),
         "reference": result.reference_name or None,
+        "reference_place_m": reference_place_m(result),
         "horizon_m": result.config.evaluation.horizon_m,
         "gyroscope": result.replay.has_gyroscope,
         "errors": error_tables(result),
@@ -45,6 +52,17 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "learned": {name: dict(of.values) for name, of in result.learned.terrains.items()},
         "config": result.config.to_table(),
     }
+
+
+def _origin(result: RunResult) -> list[float] | None:
+    """Latitude, longitude [deg] and height [m] of x = y = z = 0, where run.toml says them."""
+    source = result.run.settings.get("source")
+    origin = source.get("origin") if isinstance(source, Mapping) else None
+    if not isinstance(origin, list) or len(origin) not in {2, 3}:
+        return None
+    if not all(type(number) in {int, float} and isfinite(number) for number in origin):
+        return None
+    return [float(number) for number in origin]
 
 
 def error_tables(result: RunResult) -> dict[str, dict[str, Any]]:

@@ -17,6 +17,7 @@ from odometry.outputs.manifest import check_finished
 from odometry.parameters import write_parameters
 from odometry.trajectory import Trajectory
 from terrain.errors import ResultError
+from terrain.reference_table import reference_columns
 from terrain.result_table import FORMAT, result_table
 from terrain.run_result import RunResult
 from terrain.terrain_table import terrain_columns
@@ -48,7 +49,7 @@ def write_results(
     list of Path
         odometer.csv and .tum, estimate.csv and .tum, result.json; learned.toml where there is
         anything to hand on; terrain.csv where images were seen or another source told the
-        terrain.
+        terrain; reference.csv where there are poses to judge by.
     """
     out = Path(out)
     replay = result.replay
@@ -68,11 +69,12 @@ def write_results(
     if result.learned.terrains:
         write_parameters(out / "learned.toml", result.learned)
         names.append("learned.toml")
-    terrain = terrain_columns(result)
-    if terrain:
-        write_csv_table(out / "terrain.csv", terrain)
-        names.append("terrain.csv")
-    for name in {"learned.toml", "terrain.csv"} - set(names):
+    tables = {"terrain.csv": terrain_columns(result), "reference.csv": reference_columns(result)}
+    for name, columns in tables.items():
+        if columns:
+            write_csv_table(out / name, columns)
+            names.append(name)
+    for name in {"learned.toml", *tables} - set(names):
         (out / name).unlink(missing_ok=True)  # of an earlier run
     text = json.dumps(result_table(result) | dict(about or {}), indent=2, allow_nan=False)
     with atomic_write(out / "result.json") as part:

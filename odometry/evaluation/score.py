@@ -82,17 +82,23 @@ def reference_of(run: Run) -> tuple[str, Trajectory] | None:
     return None
 
 
-def window_errors(
-    run: Run, trajectory: Trajectory, reference: Trajectory, config: EvaluationConfig
-) -> RelativeErrors:
-    """Relative errors of a trajectory of a run, the reference's turns counted by the run."""
+def counted_reference_yaw(run: Run, reference: Trajectory) -> FloatArray:
+    """Yaw (N,) of the reference with whole turns counted by the run; NaN where not measured."""
     yaw = reference.poses[:, 2]
     measured = np.isfinite(yaw)
     continuous = np.full(len(yaw), np.nan)
     if measured.any():
         turns = counted_turns(run, reference.stamps_s[measured], yaw[measured])
         continuous[measured] = turns.yaw_rad
+    return continuous
+
+
+def window_errors(
+    run: Run, trajectory: Trajectory, reference: Trajectory, config: EvaluationConfig
+) -> RelativeErrors:
+    """Relative errors of a trajectory of a run, the reference's turns counted by the run."""
     travel_s, travel_m = run.odometry.stamps_s, run.wheel_travel_m
+    continuous = counted_reference_yaw(run, reference)
     return relative_errors(
         trajectory, reference, travel_s, travel_m, config, reference_yaw_rad=continuous
     )
@@ -103,14 +109,18 @@ def score(
 ) -> Score:
     """Errors of a trajectory of a run against a reference."""
     relative = window_errors(run, trajectory, reference, config)
-    _, distances = position_errors(trajectory, reference)
+    return summary(relative, position_errors(trajectory, reference)[1])
+
+
+def summary(relative: RelativeErrors, distances_m: FloatArray) -> Score:
+    """Errors of windows, and distances (K,) from the reference, in a few numbers."""
     position: dict[str, Any] = (
         {
-            "mean_position_m": float(distances.mean()),
-            "median_position_m": float(np.median(distances)),
-            "final_position_m": float(distances[-1]),
+            "mean_position_m": float(distances_m.mean()),
+            "median_position_m": float(np.median(distances_m)),
+            "final_position_m": float(distances_m[-1]),
         }
-        if len(distances)
+        if len(distances_m)
         else {}
     )
     if not len(relative.start_s):

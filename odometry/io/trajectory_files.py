@@ -113,8 +113,8 @@ def to_optical(trajectory: SpatialTrajectory) -> SpatialTrajectory:
 def _read_kitti(file: Path, times: Path | None) -> SpatialTrajectory:
     if times is None:
         raise TrajectoryError(
-            f"{file}: KITTI poses have no stamps; give the file of their times as well, one number "
-            "of seconds a line (--times times.txt)"
+            f"{file}: KITTI poses have no stamps; the file of their times is needed as well, one "
+            "number of seconds a line (times.txt)"
         )
     return read_kitti(file, times)
 

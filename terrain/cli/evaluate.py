@@ -2,7 +2,7 @@
 
 import json
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,18 +15,37 @@ from terrain.cli.results import HEADER, error_cells, print_table
 @click.argument(
     "folders", metavar="DIR...", nargs=-1, required=True, type=click.Path(path_type=Path)
 )
+@click.option(
+    "--with",
+    "others",
+    multiple=True,
+    metavar="NAME=FILE",
+    help="Poses of another program on the same run (TUM, EuRoC), judged by the same rules; repeat.",
+)
+@click.option(
+    "--axes",
+    type=click.Choice(["robot", "optical"]),
+    default="robot",
+    show_default=True,
+    help="Of these files: x forward and z up, or those of images, z along the view and y down.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print the numbers as JSON.")
-def evaluate(folders: tuple[Path, ...], as_json: bool) -> None:
+def evaluate(
+    folders: tuple[Path, ...], *, others: tuple[str, ...], axes: str, as_json: bool
+) -> None:
     """Show the errors of finished runs side by side.
 
     DIR is a folder that `run` wrote. One that cannot be read becomes a row that says why, and
-    the exit code is then 1.
+    the exit code is then 1. Odometry of other programs stands beside ours: files of --with, and
+    what a run folder keeps in other_odometry. It starts where ours does; nothing else is fitted.
 
     \b
     Example:
       terrain-odometry evaluate with_vision without_vision
+      terrain-odometry evaluate results --with slam=slam.tum
     """
-    results = {str(folder): _read(folder) for folder in folders}
+    given = _named_files(others)
+    results = {str(folder): _read(folder, given, axes) for folder in folders}
     if as_json:
         click.echo(json.dumps(results, indent=2))
     else:
@@ -34,19 +53,44 @@ def evaluate(folders: tuple[Path, ...], as_json: bool) -> None:
         rows = [row for name, of in results.items() for row in _rows(name, runs[name], of)]
         print_table([("folder", "run", "trajectory", "against", *HEADER[1:]), *rows])
         click.echo("Per metre of wheel travel, over the horizon that each result.json names.")
-    if any("error" in result for result in results.values()):
+        for name, of in results.items():
+            for other, errors in _others(of).items():
+                for note in errors.get("notes", []):
+                    click.echo(f"Note: {name}: {other}: {note}", err=True)
+    if any("error" in each for of in results.values() for each in (of, *_others(of).values())):
         sys.exit(1)
 
 
-def _read(folder: Path) -> dict[str, Any]:
+def _named_files(texts: Sequence[str]) -> dict[str, Path]:
+    """Files by name, from texts like slam=slam.tum."""
+    files = {}
+    for text in texts:
+        name, equals, file = text.partition("=")
+        if not (name and equals and file) or name in files:
+            raise click.BadParameter(
+                f"{text!r}, expected NAME=FILE, each name once", param_hint="--with"
+            )
+        files[name] = Path(file)
+    return files
+
+
+def _read(folder: Path, given: Mapping[str, Path], axes: str) -> dict[str, Any]:
     """Errors of one folder; what went wrong where they cannot be read."""
     from odometry.errors import OdometryError
+    from terrain.other_odometry import other_errors
     from terrain.results import read_errors
 
     try:
-        return read_errors(folder)
+        found = read_errors(folder)
+        others = other_errors(folder, given, run_path=found["run_path"], axes=axes)
     except OdometryError as error:
         return {"error": str(error)}
+    return found | ({"others": others} if others else {})
+
+
+def _others(result: Mapping[str, Any]) -> Mapping[str, Any]:
+    found: Mapping[str, Any] = result.get("others", {})
+    return found
 
 
 def _run_names(results: Mapping[str, dict[str, Any]]) -> dict[str, str]:
@@ -65,10 +109,17 @@ def _rows(name: str, run: str, result: dict[str, Any]) -> list[tuple[str, ...]]:
     empty = [""] * len(HEADER)
     if "error" in result:
         return [(name, run, f"failed: {result['error']}", *empty)]
-    if not result["errors"]:
-        return [(name, run, "nothing to compare with", *empty)]
     against = str(result.get("reference") or "-")
-    return [
+    rows = [
         (name, run, trajectory, errors.get("against", against), *error_cells(errors))
         for trajectory, errors in result["errors"].items()
-    ]
+    ] or [(name, run, "nothing to compare with", *empty)]
+    for other, errors in _others(result).items():
+        if "error" in errors:
+            rows.append((name, run, f"{other} failed: {errors['error']}", *empty))
+            continue
+        rows.append((name, run, other, against, *error_cells(errors)))
+        if errors["share"] < 1:
+            same = f"odometer, stamps of {other}"
+            rows.append((name, run, same, against, *error_cells(errors["odometer"])))
+    return rows

@@ -23,6 +23,9 @@ from odometry.evaluation.relative import EvaluationConfig, position_errors, rela
 from odometry.io.trajectory_files import write_trajectory
 from odometry.io.tum import write_spatial_tum, write_tum
 from odometry.spatial_trajectory import SpatialTrajectory
+from terrain.results import write_results
+from terrain.run_odometry import run_odometry
+from terrain.shipped import shipped_data
 
 STEP_S, SPEED, STEPS = 0.25, 1.0, 160  # binary fractions: wheel travel has no rounding
 STAMPS_S = STEP_S * np.arange(STEPS + 1)
@@ -217,3 +220,17 @@ def test_relative_errors_over_five_metres(evo, trajectories, relation, name):
     assert len(theirs) == 8
     np.testing.assert_allclose(getattr(ours, name) * 5, theirs, rtol=0, atol=1e-8)
     assert theirs.mean() > 0.05
+
+
+def test_the_odometer_of_a_run(evo, tmp_path):
+    """odometer.tum and the truth, by evo; ours is what result.json says."""
+    result = run_odometry(shipped_data() / "runs" / "demo", vision=False)
+    write_results(result, tmp_path)
+    write_tum(tmp_path / "truth.tum", result.reference)
+    files = ("tum", "truth.tum", "odometer.tum")
+    theirs, _ = evo_results(evo, tmp_path, "evo_ape", "-r", "trans_part", files=files)
+    content = json.loads((tmp_path / "result.json").read_text())
+    ours = content["errors"]["odometer"]["position_m"]
+    assert len(theirs) == len(result.reference)
+    assert ours["mean"] == pytest.approx(theirs.mean(), rel=1e-9)
+    assert ours["final"] == pytest.approx(theirs[-1], rel=1e-9)

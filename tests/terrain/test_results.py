@@ -61,6 +61,7 @@ def strict(text):
 
 def test_every_promised_file_is_written_and_nothing_else(across_result, curvy_result, tmp_path):
     always = {"odometer.csv", "odometer.tum", "estimate.csv", "estimate.tum", "result.json"}
+    always |= {"reference.csv"}
     for name, result, expected in (
         ("across", across_result, always | {"terrain.csv"}),
         ("curvy", curvy_result, always | {"learned.toml"}),
