@@ -1,12 +1,14 @@
 """A filter that takes another bias of its gyroscope where the poses tell one."""
 
+import math
+
 from odometry.estimation import bias_watch
 from odometry.estimation.bias_watch import BiasWatch, Rates
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.measurement import Gaussian, turned_by_treads
 from odometry.estimation.pose_update import Seen
 from odometry.estimation.prediction import Predicted
-from odometry.estimation.sensor_watch import Events, SensorWatch
+from odometry.estimation.sensor_watch import Events, SensorWatch, with_bias
 from odometry.estimation.transition import GYRO_BIAS, YAW
 from odometry.geometry.angles import wrap_one
 
@@ -29,7 +31,9 @@ def bias_followed(
     if watch is None:
         return belief, watch, ()
     if after.course is not None or after.events or watch.is_gyroscope_held:
-        return belief, watch._replace(bias=BiasWatch()), ()
+        return belief, with_bias(watch, BiasWatch()), ()
+    if not watch.bias.lasts_s and math.isnan(predicted.yaw_rate_rad_s):
+        return belief, watch, ()
     step_s = stamp_s - estimate.stamp_s
     if not step_s:
         return belief, watch, ()
@@ -44,6 +48,6 @@ def bias_followed(
     is_new = bias.biases_rad_s is not watch.bias.biases_rad_s
     told = bias_watch.told_bias(bias, believed_rad_s) if is_new else None
     if told is None:
-        return belief, watch._replace(bias=bias), ()
+        return belief, with_bias(watch, bias), ()
     event = bias_watch.change_event(believed_rad_s, told[0], stamp_s)
-    return bias_watch.changed(belief, told), watch._replace(bias=bias._replace(since=0)), (event,)
+    return bias_watch.changed(belief, told), with_bias(watch, bias._replace(since=0)), (event,)

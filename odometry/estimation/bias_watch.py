@@ -67,28 +67,21 @@ def watched(
     posed : bool
         Whether a pose was accepted at its end.
     """
-    posed_s = stamp_s if posed else watch.posed_s
-    begun = BiasWatch(
-        biases_rad_s=watch.biases_rad_s,
-        by_treads_rad_s=watch.by_treads_rad_s,
-        since=watch.since,
+    turned_rad, past_treads_rad, lasts_s, biases, by_treads, since, posed_s = watch
+    posed_s = stamp_s if posed else posed_s
+    by_gyroscope, by_poses, of_treads = rates_rad_s
+    if math.isnan(by_gyroscope + of_treads) or stamp_s - posed_s > POSE_S:
+        return BiasWatch(0.0, 0.0, 0.0, biases, by_treads, since, posed_s)
+    turned_rad += (by_gyroscope - by_poses) * step_s
+    past_treads_rad += (by_gyroscope - of_treads) * step_s
+    lasts_s += step_s
+    if lasts_s < SPAN_S:
+        return BiasWatch(turned_rad, past_treads_rad, lasts_s, biases, by_treads, since, posed_s)
+    return BiasWatch(
+        biases_rad_s=(*biases, turned_rad / lasts_s)[-SPANS:],
+        by_treads_rad_s=(*by_treads, past_treads_rad / lasts_s)[-SPANS:],
+        since=min(since + 1, SPANS),
         posed_s=posed_s,
-    )
-    by_gyroscope, by_poses, by_treads = rates_rad_s
-    if math.isnan(by_gyroscope + by_treads) or stamp_s - posed_s > POSE_S:
-        return begun
-    after = begun._replace(
-        turned_rad=watch.turned_rad + (by_gyroscope - by_poses) * step_s,
-        past_treads_rad=watch.past_treads_rad + (by_gyroscope - by_treads) * step_s,
-        lasts_s=watch.lasts_s + step_s,
-    )
-    if after.lasts_s < SPAN_S:
-        return after
-    bias, past_treads = after.turned_rad / after.lasts_s, after.past_treads_rad / after.lasts_s
-    return begun._replace(
-        biases_rad_s=(*watch.biases_rad_s, bias)[-SPANS:],
-        by_treads_rad_s=(*watch.by_treads_rad_s, past_treads)[-SPANS:],
-        since=min(watch.since + 1, SPANS),
     )
 
 

@@ -88,19 +88,19 @@ def watched(
         In force then.
     """
     if hold is None:
-        return GyroscopeHold(yaw_rate, begin_s, begin_s, belief, terrain)
+        return _begun(yaw_rate, begin_s, belief, terrain, 0.0)
+    if math.isnan(yaw_rate) and math.isnan(hold.rate_rad_s):
+        return hold
     if not abs(yaw_rate - hold.rate_rad_s) <= SAME_RAD_S:
         same_s = begin_s - hold.same_since_s
         sound = same_s < HELD_S / 2 and not math.isnan(hold.rate_rad_s)
         changing_s = hold.changing_s + same_s if sound else 0.0
-        return GyroscopeHold(yaw_rate, begin_s, begin_s, belief, terrain, changing_s=changing_s)
+        return _begun(yaw_rate, begin_s, belief, terrain, changing_s)
     left, right = speeds_m_s.tolist()
     if hold.is_found or math.isnan(left + right):
         return hold
     if terrain != hold.terrain:
-        return GyroscopeHold(
-            yaw_rate, begin_s, begin_s, belief, terrain, changing_s=hold.changing_s
-        )
+        return _begun(yaw_rate, begin_s, belief, terrain, hold.changing_s)
     if not hold.excess_rad:
         hold = hold._replace(off_since_s=begin_s, owed_rad=0.0)
     off_rad_s, allowed_rad_s = _difference(hold, left, right)
@@ -111,6 +111,13 @@ def watched(
         owed_rad=hold.owed_rad + off_rad_s * step_s,
         is_found=excess_rad > EXCESS_RAD and stamp_s - hold.same_since_s > HELD_S,
     )
+
+
+def _begun(
+    yaw_rate: float, begin_s: float, belief: Gaussian, terrain: str, changing_s: float
+) -> GyroscopeHold:
+    """The watch of a value from the step on in which it came first."""
+    return GyroscopeHold(yaw_rate, begin_s, begin_s, belief, terrain, 0.0, 0.0, False, changing_s)
 
 
 def _difference(hold: GyroscopeHold, left: float, right: float) -> tuple[float, float]:

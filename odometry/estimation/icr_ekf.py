@@ -11,7 +11,6 @@ from odometry.estimation.errors import EstimationError
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.first_belief import first_belief
 from odometry.estimation.measurement import Place
-from odometry.estimation.pose_kalman import PoseKalman
 from odometry.estimation.pose_update import PoseUpdate
 from odometry.estimation.prediction import Prediction
 from odometry.estimation.terrain_beliefs import TerrainBeliefs
@@ -70,10 +69,9 @@ class IcrEkf:
         self.corrections = corrections or {}
         require_corrections(self.parameters, self.corrections)
         self._terrains = TerrainBeliefs(track_width, self.parameters, self.config)
-        kalman = PoseKalman()
-        self._prediction = Prediction(self.config, track_width, kalman)
-        self._velocity_update = VelocityUpdate(self.config, track_width, kalman)
-        self._pose_update = PoseUpdate(self.config, track_width, kalman, lever_m)
+        self._prediction = Prediction(self.config, track_width)
+        self._velocity_update = VelocityUpdate(self.config, track_width)
+        self._pose_update = PoseUpdate(self.config, track_width, lever_m)
         self._lever_m = lever_m
 
     def start(self, frame: Frame, terrain: str, *, yaw_sigma_rad: float | None = None) -> Estimate:
@@ -124,8 +122,8 @@ class IcrEkf:
         EstimationError
             If the frame is older than the estimate, or its stamp is not finite.
         """
-        _require_finite(frame.stamp_s)
-        if frame.stamp_s < estimate.stamp_s:
+        if not frame.stamp_s >= estimate.stamp_s or math.isinf(frame.stamp_s):
+            _require_finite(frame.stamp_s)
             raise EstimationError(
                 f"a frame of {frame.stamp_s} s came after the estimate of {estimate.stamp_s} s; "
                 "expected frames in time order (odometry.estimation.in_order puts late ones in "
@@ -133,24 +131,24 @@ class IcrEkf:
             )
         predicted = self._prediction.at(frame, estimate)
         belief, yaw_rate = predicted.belief, predicted.yaw_rate_rad_s
-        footing, recent = Footing.of(terrain), estimate.recent
-        learned, crossing = estimate.learned, estimate.crossing
-        if crossing or not footing.is_whole or footing.terrain != estimate.terrain:
-            belief, learned, crossing = self._terrains.moved(belief, estimate, footing)
-            recent = ()
+        recent, learned, crossing = estimate.recent, estimate.learned, estimate.crossing
+        if crossing is not None or terrain != estimate.terrain:
+            footing = Footing.of(terrain)
+            terrain = footing.terrain
+            if crossing is not None or not footing.is_whole or terrain != estimate.terrain:
+                belief, learned, crossing = self._terrains.moved(belief, estimate, footing)
+                recent = ()
         if frame.velocity is not None:
             belief = self._velocity_update.seen(belief, estimate, frame, yaw_rate)
         after = self._pose_update.seen(estimate, belief, predicted.pose, frame, recent)
         belief, watch, of_bias = bias_followed(estimate, predicted, after, frame.stamp_s)
-        added_speeds, added_twist = added_from(
-            self.corrections, footing.terrain, frame.odometry_row
-        )
+        added_speeds, added_twist = added_from(self.corrections, terrain, frame.odometry_row)
         return Estimate(
             stamp_s=frame.stamp_s,
             mean=belief[0],
             covariance=belief[1],
             tread_speeds_m_s=predicted.speeds_m_s,
-            terrain=footing.terrain,
+            terrain=terrain,
             yaw_rate_rad_s=frame.yaw_rate_rad_s,
             believed_yaw_rate_rad_s=yaw_rate,
             added_speeds_m_s=added_speeds,

@@ -51,6 +51,21 @@ class Measurement(NamedTuple):
         )
 
 
+class MeasuredNumber(NamedTuple):
+    """A measurement of one number against the state that is believed.
+
+    Attributes
+    ----------
+    residual : float
+        Measured less expected.
+    by_state : (9,)
+        Derivative of what is expected by the state.
+    """
+
+    residual: float
+    by_state: FloatArray
+
+
 def reference_point(mean: FloatArray, lever_m: Place) -> FloatArray:
     """Place (2,) of a point `lever_m` of the robot frame in the reference frame."""
     cosine, sine = math.cos(mean[YAW]), math.sin(mean[YAW])
@@ -102,15 +117,15 @@ def turned_by_treads(mean: FloatArray, left: float, right: float) -> float:
 
     Of the mean (9,) of the state and tread speeds [m/s].
     """
-    slipped = mean[ALPHA_RIGHT] * right - mean[ALPHA_LEFT] * left
-    return float(slipped) / float(mean[Y_LEFT] - mean[Y_RIGHT])
+    _, _, _, y_left, y_right, _, _, alpha_left, alpha_right = mean.tolist()
+    return float((alpha_right * right - alpha_left * left) / (y_left - y_right))
 
 
-def tread_yaw_rate(mean: FloatArray, tread_speeds: FloatArray, yaw_rate: float) -> Measurement:
+def tread_yaw_rate(mean: FloatArray, tread_speeds: FloatArray, yaw_rate: float) -> MeasuredNumber:
     """Of the gyroscope's yaw rate against that of the treads, which has the noise.
 
     Expected of the gyroscope: (alpha_right v_right - alpha_left v_left) / (y_left - y_right)
-    plus its bias. The covariance (1, 1) is left at zero.
+    plus its bias.
 
     Parameters
     ----------
@@ -121,12 +136,12 @@ def tread_yaw_rate(mean: FloatArray, tread_speeds: FloatArray, yaw_rate: float) 
         [rad/s]
     """
     left, right = tread_speeds.tolist()
-    width = float(mean[Y_LEFT] - mean[Y_RIGHT])
-    omega = turned_by_treads(mean, left, right)
-    jacobian = np.zeros((1, STATES))
-    jacobian[0, 3:] = (-omega / width, omega / width, 0.0, 1.0, -left / width, right / width)
-    residual = np.array([yaw_rate - omega - mean[GYRO_BIAS]])
-    return Measurement(residual, jacobian, np.zeros((1, 1)))
+    _, _, _, y_left, y_right, _, bias, alpha_left, alpha_right = mean.tolist()
+    width = y_left - y_right
+    omega = (alpha_right * right - alpha_left * left) / width
+    by_width, by_left, by_right = -omega / width, -left / width, right / width
+    by_state = np.array([0.0, 0.0, 0.0, by_width, -by_width, 0.0, 1.0, by_left, by_right])
+    return MeasuredNumber(yaw_rate - omega - bias, by_state)
 
 
 def velocity_measurement(

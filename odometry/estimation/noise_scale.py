@@ -68,9 +68,14 @@ def adapted(
     likeness = 0.0
     if scale.weighed is not None and len(scale.weighed) == size:
         likeness = SHARE_OF_CORRELATION * float(shortened.dot(scale.weighed)) / size
-        likeness = min(max(likeness, -1.0), 1.0)
+        likeness = _within(likeness, (-1.0, 1.0))
     return NoiseScale(
-        min(max(scale.slip_log + rate * (excess + likeness), SLIP_LOGS[0]), SLIP_LOGS[1]),
-        min(max(scale.pose_log + rate * (excess - likeness), POSE_LOGS[0]), POSE_LOGS[1]),
+        _within(scale.slip_log + rate * (excess + likeness), SLIP_LOGS),
+        _within(scale.pose_log + rate * (excess - likeness), POSE_LOGS),
         weighed,
     )
+
+
+def _within(value: float, bounds: tuple[float, float]) -> float:
+    least, most = bounds
+    return least if value < least else most if value > most else value

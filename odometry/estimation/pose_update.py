@@ -12,10 +12,10 @@ from odometry.estimation.estimate import OF_TERRAIN, Estimate, Innovation
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.gaussian import gate_threshold
 from odometry.estimation.heading_search import searched
+from odometry.estimation.kalman import updated
 from odometry.estimation.measurement import Gaussian, Measurement, Place, pose_measurement
 from odometry.estimation.new_start import agree, new_start_event, started_anew
 from odometry.estimation.noise_scale import NoiseScale, adapted
-from odometry.estimation.pose_kalman import PoseKalman
 from odometry.frames import Frame
 
 
@@ -41,20 +41,16 @@ class PoseUpdate:
     config : IcrEkfConfig
     track_width : float
         [m]
-    kalman : PoseKalman
     lever_m : (x, y)
         Place of the measured point in the robot frame.
     """
 
-    def __init__(
-        self, config: IcrEkfConfig, track_width: float, kalman: PoseKalman, lever_m: Place
-    ) -> None:
+    def __init__(self, config: IcrEkfConfig, track_width: float, lever_m: Place) -> None:
         self.config = config
         self.covariance = np.diag(  # Chen 2023 eq. 14
             np.square([config.position_sigma_m, config.position_sigma_m, config.yaw_sigma_rad])
         )
         self.lever_m = lever_m
-        self._kalman = kalman
         self._track_width = track_width
         self._reset_variances = np.square(
             [config.reset_sigma_widths * track_width] * 3 + [config.reset_sigma_alpha] * 2
@@ -110,7 +106,7 @@ class PoseUpdate:
         frame: Frame,
         recent: tuple[float, ...],
     ) -> Seen:
-        mean, covariance, squared = self._kalman.updated(*belief, measured)
+        mean, covariance, squared, weighed = updated(belief, measured)
         size, scale = len(measured.residual), estimate.scale
         jumped, gate = False, self._gates[size]
         accepted = squared <= gate
@@ -118,7 +114,7 @@ class PoseUpdate:
         # an outlier tells nothing of the noise; refused poses that agree tell that it is larger
         if self.config.adapt_rate > 0 and (accepted or agree(refused[-2:], self.covariance)):
             rate = self.config.adapt_rate
-            scale = adapted(scale, measured.residual, self._kalman.weighed, squared, rate)
+            scale = adapted(scale, measured.residual, weighed, squared, rate)
         if self.config.detect_jumps and size == 3:
             recent = (*recent, min(squared, gate))[-self.config.jump_window :]
             jumped = len(recent) == self.config.jump_window and sum(recent) > self._jump
@@ -137,7 +133,7 @@ class PoseUpdate:
         if jumped or squared > self._tails[size]:
             factor = max(1.0, squared / self._tails[size])
             heavy = measured._replace(covariance=measured.covariance * factor)
-            mean, covariance, _ = self._kalman.updated(*belief, heavy)
+            mean, covariance, _, _ = updated(belief, heavy)
         mean, covariance = bounded(mean, covariance, self._track_width)
         return Seen(mean, covariance, innovation, (), recent, jumped, scale, None)
 

@@ -38,15 +38,9 @@ class PoseWatch(NamedTuple):
 
 def moved(watch: PoseWatch, travel_m: float, turn_rad: float) -> PoseWatch:
     """The watch after a step of the wheels and the gyroscope."""
-    return PoseWatch(
-        watch.pose,
-        watch.changed_s,
-        watch.seen_s,
-        watch.fresh_s,
-        watch.period_s,
-        watch.travel_m + travel_m,
-        watch.turn_rad + turn_rad,
-    )
+    pose, changed_s, seen_s, fresh_s, period_s, gone_m, turned_rad = watch
+    gone_m, turned_rad = gone_m + travel_m, turned_rad + turn_rad
+    return PoseWatch(pose, changed_s, seen_s, fresh_s, period_s, gone_m, turned_rad)
 
 
 def watched(
@@ -73,7 +67,8 @@ def watched(
     period_s = watch.period_s
     if watch.pose is not None:
         away_s = stamp_s - watch.seen_s
-        events = ongoing(watch, stamp_s)
+        if away_s > OUTAGE_S or watch.seen_s > watch.fresh_s:
+            events = ongoing(watch, stamp_s)
         if away_s <= max(OUTAGE_S, OUTAGE_PERIODS * period_s) or period_s == 0:
             period_s = away_s if period_s == 0 else 0.9 * period_s + 0.1 * away_s
     return PoseWatch(cells, stamp_s, stamp_s, stamp_s, period_s), True, events

@@ -9,8 +9,8 @@ from odometry.estimation import sensor_watch
 from odometry.estimation.bounds import bounded
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.estimate import Estimate
-from odometry.estimation.measurement import Gaussian, Measurement, tread_yaw_rate
-from odometry.estimation.pose_kalman import PoseKalman
+from odometry.estimation.kalman import predicted, updated_by_number
+from odometry.estimation.measurement import Gaussian, tread_yaw_rate
 from odometry.estimation.process_noise import ProcessNoise
 from odometry.estimation.sensor_watch import Events, SensorWatch
 from odometry.estimation.transition import ALPHA_LEFT, YAW, transition
@@ -51,14 +51,12 @@ class Prediction:
     config : IcrEkfConfig
     track_width : float
         [m]
-    kalman : PoseKalman
     """
 
-    def __init__(self, config: IcrEkfConfig, track_width: float, kalman: PoseKalman) -> None:
+    def __init__(self, config: IcrEkfConfig, track_width: float) -> None:
         self._use_gyroscope = config.use_gyroscope
         self._track_width = track_width
         self._noise = ProcessNoise(config, track_width)
-        self._kalman = kalman
 
     def at(self, frame: Frame, estimate: Estimate) -> Predicted:
         """What is believed at a frame's stamp, given the estimate before it.
@@ -95,7 +93,7 @@ class Prediction:
     def _moved(self, estimate: Estimate, frame: Frame, yaw_rate: float) -> Gaussian:
         """Chen 2023 eq. 7, and the treads against the gyroscope."""
         step_s, speeds = frame.stamp_s - estimate.stamp_s, estimate.tread_speeds_m_s
-        if math.isnan(speeds[0] + speeds[1]):
+        if math.isnan(sum(speeds.tolist())):
             return estimate.mean, estimate.covariance
         by_gyroscope = not math.isnan(yaw_rate)
         mean, jacobian = transition(
@@ -106,18 +104,19 @@ class Prediction:
             added_speeds=estimate.added_speeds_m_s,
             added_twist=estimate.added_twist,
         )
-        noise = self._noise.over(
+        half_noise = self._noise.over_half(
             speeds,
             step_s,
             slip_scale=estimate.scale.slip,
             by_gyroscope=by_gyroscope,
             in_gap=frame.in_gap,
         )
-        covariance = self._kalman.predicted(mean, jacobian, estimate.covariance, noise)
-        doubtful = frame.in_gap or (estimate.watch is not None and estimate.watch.is_doubtful)
-        if by_gyroscope and step_s > 0 and not doubtful:
-            return self._compared(mean, covariance, estimate, yaw_rate, step_s)
-        return mean, covariance
+        covariance = predicted(estimate.covariance, jacobian, half_noise)
+        if not by_gyroscope or step_s == 0 or frame.in_gap:
+            return mean, covariance
+        if estimate.watch is not None and estimate.watch.is_doubtful:
+            return mean, covariance
+        return self._compared(mean, covariance, estimate, yaw_rate, step_s)
 
     def _compared(
         self,
@@ -128,26 +127,37 @@ class Prediction:
         step_s: float,
     ) -> Gaussian:
         speeds = estimate.tread_speeds_m_s + estimate.added_speeds_m_s
-        measured = tread_yaw_rate(mean, speeds, yaw_rate - float(estimate.added_twist[YAW]))
+        residual, by_state = tread_yaw_rate(
+            mean, speeds, yaw_rate - float(estimate.added_twist[YAW])
+        )
         # the turn that the treads say: that of the gyroscope has their noise in it, and a weight
         # that depends on the noise would bend the width
-        turn = yaw_rate - float(measured.residual[0])
         variance = tread_variance(
-            estimate.tread_speeds_m_s, turn, self._track_width, estimate.scale.slip, step_s
+            estimate.tread_speeds_m_s,
+            yaw_rate - residual,
+            self._track_width,
+            estimate.scale.slip,
+            step_s,
         )
-        variance *= huber_factor(measured, covariance, variance)
+        shared = covariance.dot(by_state)
+        expected = float(by_state.dot(shared))
+        variance *= huber_factor(residual, expected + variance)
         if estimate.scale.weighed is None:
-            variance += _held_slip_factors(measured, covariance)
-        measured.covariance[0, 0] = variance
-        return bounded(*self._kalman.updated(mean, covariance, measured)[:2], self._track_width)
+            variance += _of_slip_factors(by_state, covariance)
+            by_state[ALPHA_LEFT:] = 0.0
+            shared = covariance.dot(by_state)
+            expected = float(by_state.dot(shared))
+        return bounded(
+            *updated_by_number((mean, covariance), shared, residual, expected + variance),
+            self._track_width,
+        )
 
 
-def _held_slip_factors(measured: Measurement, covariance: FloatArray) -> float:
-    """Take slip factors out of a yaw rate before any pose; the variance that they then add.
+def _of_slip_factors(by_state: FloatArray, covariance: FloatArray) -> float:
+    """Variance of the treads' yaw rate by what is not known of slip factors.
 
     A yaw rate tells slip factors and y_left - y_right only as one ratio: where no pose has told
     how far the robot moves, it teaches the difference alone.
     """
-    by_slip = measured.jacobian[:, ALPHA_LEFT:].copy()
-    measured.jacobian[:, ALPHA_LEFT:] = 0.0
-    return float((by_slip @ covariance[ALPHA_LEFT:, ALPHA_LEFT:] @ by_slip.T)[0, 0])
+    by_slip = by_state[ALPHA_LEFT:]
+    return float(by_slip.dot(covariance[ALPHA_LEFT:, ALPHA_LEFT:]).dot(by_slip))

@@ -11,7 +11,7 @@ GAP_DENSITY = 25.0, 9.0  # [m^2/s], [rad^2/s]: while speeds are not known, all m
 
 
 class ProcessNoise:
-    """Variances per step of each state, from the settings of the filter.
+    """Covariance that a step adds to the state, from the settings of the filter.
 
     Parameters
     ----------
@@ -27,13 +27,14 @@ class ProcessNoise:
         self._yaw_by_slip = self._slip / track_width**2
         self._gyro = config.gyro_noise**2
         alpha_noise = config.alpha_noise if config.reset_sigma_alpha > 0 else 0.0
-        self._density = np.zeros(STATES)
-        self._density[ICRS] = (config.icr_noise_widths * track_width) ** 2
-        self._density[ALPHAS] = alpha_noise**2
+        density = np.zeros(STATES)
+        density[ICRS] = (config.icr_noise_widths * track_width) ** 2
+        density[ALPHAS] = alpha_noise**2
         if config.use_gyroscope:
-            self._density[GYRO_BIAS] = config.bias_noise**2
+            density[GYRO_BIAS] = config.bias_noise**2
+        self._density = np.diag(density)
 
-    def over(
+    def over_half(
         self,
         tread_speeds: FloatArray,
         step_s: float,
@@ -42,7 +43,7 @@ class ProcessNoise:
         by_gyroscope: bool,
         in_gap: bool,
     ) -> FloatArray:
-        """Variances (9,) that a step adds.
+        """Covariance (9, 9) that half of a step adds.
 
         Parameters
         ----------
@@ -61,7 +62,8 @@ class ProcessNoise:
         if in_gap:
             position += GAP_DENSITY[0]
             yaw += 0.0 if by_gyroscope else GAP_DENSITY[1]
-        variances = self._density * step_s
-        variances[X] = variances[Y] = position * step_s
-        variances[YAW] = yaw * step_s
-        return variances
+        half_s = step_s / 2
+        covariance = self._density * half_s
+        covariance[X, X] = covariance[Y, Y] = position * half_s
+        covariance[YAW, YAW] = yaw * half_s
+        return covariance

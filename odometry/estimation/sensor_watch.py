@@ -76,6 +76,12 @@ class Sensed(NamedTuple):
     belief: Gaussian
 
 
+def with_bias(watch: SensorWatch, bias: BiasWatch) -> SensorWatch:
+    """The watch with another one of the gyroscope's bias."""
+    treads, gyroscope, poses, gap_since_s, hold, _ = watch
+    return SensorWatch(treads, gyroscope, poses, gap_since_s, hold, bias)
+
+
 def begun(frame: Frame, belief: Gaussian) -> SensorWatch:
     """At the first frame."""
     poses = PoseWatch()
@@ -150,11 +156,8 @@ def _carried(poses: PoseWatch, speeds_m_s: FloatArray, yaw_rate: float, step_s: 
         return poses
     left, right = speeds_m_s.tolist()
     travel_m, turn_rad = (abs(left) + abs(right)) / 2 * step_s, yaw_rate * step_s
-    return pose_watch.moved(
-        poses,
-        0.0 if math.isnan(travel_m) else travel_m,
-        0.0 if math.isnan(turn_rad) else turn_rad,
-    )
+    travel_m = 0.0 if math.isnan(travel_m) else travel_m
+    return pose_watch.moved(poses, travel_m, 0.0 if math.isnan(turn_rad) else turn_rad)
 
 
 def _gap(since_s: float, frame: Frame, begin_s: float) -> tuple[float, Events]:

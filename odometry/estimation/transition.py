@@ -53,7 +53,9 @@ def transition(
     the two disagree by slip, and v_x is their mean.
     """
     x, y, yaw, y_left, y_right, x_icr, bias, alpha_left, alpha_right = state.tolist()
-    left, right = (tread_speeds + added_speeds).tolist()
+    left, right = tread_speeds.tolist()
+    added_left, added_right = added_speeds.tolist()
+    left, right = left + added_left, right + added_right
     added_x, added_y, added_omega = added_twist.tolist()
     if math.isnan(yaw_rate_rad_s):
         width = y_left - y_right
@@ -101,17 +103,19 @@ def transition(
         by_omega_y * by_left + two * left * half,
         by_omega_y * by_right + two * right * half,
     )
-    jacobian[2, 3:] = (
-        by_width * step_s,
-        -by_width * step_s,
-        0.0,
-        by_bias * step_s,
-        by_left * step_s,
-        by_right * step_s,
-    )
-    moved = state.copy()
-    moved[:3] = x + moved_x, y + moved_y, wrap_one(yaw + angle)
-    return moved, jacobian
+    if math.isnan(yaw_rate_rad_s):
+        jacobian[2, 3:] = (
+            by_width * step_s,
+            -by_width * step_s,
+            0.0,
+            0.0,
+            by_left * step_s,
+            by_right * step_s,
+        )
+    else:
+        jacobian[2, GYRO_BIAS] = -step_s
+    ends = x + moved_x, y + moved_y, wrap_one(yaw + angle)
+    return np.array([*ends, y_left, y_right, x_icr, bias, alpha_left, alpha_right]), jacobian
 
 
 def _arc(angle: float) -> tuple[float, float, float, float]:

@@ -4,7 +4,6 @@ import math
 
 from odometry.arrays import FloatArray
 from odometry.estimation.config import IcrEkfConfig
-from odometry.estimation.measurement import Measurement
 from odometry.estimation.transition import Y_LEFT, Y_RIGHT
 
 CORRELATED_S = 0.5  # slip stays about the same for so long
@@ -32,21 +31,9 @@ def width_sigma_m(covariance: FloatArray) -> float:
     return math.sqrt(max(float(of_sides - 2 * covariance[Y_LEFT, Y_RIGHT]), 0.0))
 
 
-def huber_factor(measured: Measurement, covariance: FloatArray, variance: float) -> float:
-    """Factor on the variance of one number: above 1 beyond two standard deviations.
-
-    Parameters
-    ----------
-    measured : Measurement
-        Of one number, with its derivative (1, 9).
-    covariance : (9, 9)
-        Of the state.
-    variance : float
-        Of the number itself, in its unit squared.
-    """
-    by_state = measured.jacobian[0]
-    expected = variance + float(by_state.dot(covariance).dot(by_state))
-    squared = float(measured.residual[0]) ** 2 / expected if expected > 0 else 0.0
+def huber_factor(residual: float, variance: float) -> float:
+    """Factor on the noise of a number of this variance: above 1 beyond two standard deviations."""
+    squared = residual**2 / variance if variance > 0 else 0.0
     return max(1.0, squared / HUBER_SQUARED)
 
 

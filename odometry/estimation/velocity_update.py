@@ -8,8 +8,8 @@ import numpy as np
 from odometry.estimation.bounds import bounded
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.estimate import Estimate
+from odometry.estimation.kalman import updated
 from odometry.estimation.measurement import Gaussian, velocity_measurement
-from odometry.estimation.pose_kalman import PoseKalman
 from odometry.estimation.transition import YAW
 from odometry.estimation.tread_noise import velocity_variances
 from odometry.frames import Frame
@@ -24,12 +24,10 @@ class VelocityUpdate:
     config : IcrEkfConfig
     track_width : float
         [m]
-    kalman : PoseKalman
     """
 
     config: IcrEkfConfig
     track_width: float
-    kalman: PoseKalman
 
     def seen(self, belief: Gaussian, estimate: Estimate, frame: Frame, yaw_rate: float) -> Gaussian:
         """Mean (9,) and covariance (9, 9) after a frame's velocity, against the speeds before it.
@@ -65,4 +63,5 @@ class VelocityUpdate:
         )
         if not len(measured.residual):
             return belief
-        return bounded(*self.kalman.updated(*belief, measured)[:2], self.track_width)
+        after = updated(belief, measured)
+        return bounded(after.mean, after.covariance, self.track_width)

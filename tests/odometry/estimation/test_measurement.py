@@ -52,7 +52,7 @@ def test_the_derivative_of_a_pose_with_a_lever_arm(state, place):
 @given(states, speeds, st.floats(-2, 2))
 def test_the_derivative_of_the_yaw_rate_of_treads(state, treads, rate):
     measured = tread_yaw_rate(state, treads, rate)
-    assert_derivative(lambda s: tread_yaw_rate(s, treads, rate).residual, state, measured.jacobian)
+    assert_derivative(lambda s: tread_yaw_rate(s, treads, rate).residual, state, measured.by_state)
 
 
 @given(states, speeds, st.just(np.nan) | st.floats(-2, 2))
