@@ -47,7 +47,14 @@ def _of_images(sightings: list[Sighting], in_force: list[str]) -> dict[str, Any]
     if any(sighting.left for sighting in sightings):
         columns["left"] = np.array([sighting.left for sighting in sightings])
         columns["right"] = np.array([sighting.right for sighting in sightings])
-    return columns | _numbers(sightings)
+    return columns | _numbers(sightings) | _places(sightings)
+
+
+def _places(sightings: list[Sighting]) -> dict[str, Any]:
+    """Where the middle of what was classified lay, in the robot frame at the image's stamp [m]."""
+    unseen = np.full(2, np.nan)
+    places = np.stack([unseen if s.region is None else s.region.place for s in sightings])
+    return {"place_x": places[:, 0], "place_y": places[:, 1]}
 
 
 def _numbers(sightings: list[Sighting]) -> dict[str, Any]:

@@ -117,4 +117,5 @@ class Identification:
                 f"{runs}"
             )
             terrains[terrain] = found.to_parameters(source)
-        return ParameterSet(terrains, {"name": self.robot.name} if self.robot.name else {})
+        named = {"name": self.robot.name} if self.robot.name else {}
+        return ParameterSet(terrains, named | {"track_width": self.robot.track_width})

@@ -6,25 +6,19 @@ float64 of seconds: up to 97 days from zero each nanosecond is another number, a
 from 1970 keep 240 ns. Written is the whole nanosecond nearest to that number.
 """
 
-from decimal import Decimal
 from pathlib import Path
 
 from odometry.io.csv_columns import LARGEST, LARGEST_BY_NAME
 from odometry.io.files import atomic_write
+from odometry.io.nanoseconds import NANOSECONDS, nanoseconds, seconds
 from odometry.io.number_rows import Column, read_rows, require_increasing
 from odometry.io.quaternion_rows import poses_of
 from odometry.spatial_trajectory import SpatialTrajectory
 
-NANOSECONDS = 10**9  # in a second
 HEADER = (
     "#timestamp [ns], p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], "
     "q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z []"
 )
-
-
-def seconds(word: str) -> float:
-    """The float64 nearest to a whole number of nanoseconds; ValueError for any other word."""
-    return int(word) / NANOSECONDS  # Python's division of integers rounds once
 
 
 COLUMNS = (
@@ -62,7 +56,6 @@ def write_euroc(file: str | Path, trajectory: SpatialTrajectory) -> None:
     with atomic_write(Path(file)) as part, part.open("w", encoding="ascii") as stream:
         stream.write(f"{HEADER}\n")
         for stamp_s, position, quaternion in columns:
-            nanoseconds = (Decimal(stamp_s) * NANOSECONDS).to_integral_value()
             numbers = [f"{value:.12f}" for value in position]
             numbers += [f"{value:.15f}" for value in quaternion]
-            stream.write(f"{int(nanoseconds)},{','.join(numbers)}\n")
+            stream.write(f"{nanoseconds(stamp_s)},{','.join(numbers)}\n")

@@ -9,12 +9,17 @@ from pathlib import Path
 from odometry.io.run_folder import FILES
 
 RUN_FILES = ("run.toml", *(f"{name}.csv" for name in FILES))
+RESULT_FILES = (
+    "result.json",
+    "learned.toml",
+    *(f"{name}.csv" for name in ("odometer", "estimate", "terrain", "reference")),
+)
 PHOTO_SUFFIXES = (".jpg", ".jpeg", ".png")
 
 
 @dataclass(frozen=True)
 class Input:
-    """A file, a run folder or a folder of photographs, as the user named it.
+    """A file, a run folder, a folder of results or of photographs, as the user named it.
 
     Attributes
     ----------
@@ -40,6 +45,8 @@ class Input:
         if (path / "run.toml").exists():
             images = tuple(_files(path / name for name in _image_names(path / "images.csv")))
             return cls(role, path, tuple(_files(path / name for name in RUN_FILES)), images)
+        if (path / "result.json").exists():
+            return cls(role, path, tuple(_files(path / name for name in RESULT_FILES)))
         photos = sorted(f for f in path.glob("*/*") if f.suffix.lower() in PHOTO_SUFFIXES)
         manifests = (path / "manifest.csv", path.parent / "manifest.csv")
         return cls(role, path, tuple(_files([*photos, *manifests])))

@@ -11,7 +11,7 @@ from odometry.outputs.inputs import RUN_FILES
 from odometry.outputs.leftovers import remove_temporaries
 from odometry.outputs.made import MADE_BY
 
-HEAD_BYTES = 4096  # of a PNG file, with its texts
+HEAD_BYTES = 4096  # of a PNG file with its texts, or of a text
 SET_SOURCES_0_4 = {
     "identify": "identified by terrain-odometry",
     "identify-modes": "identify-modes of terrain-odometry",
@@ -56,6 +56,20 @@ def is_set_of(verb: str) -> Callable[[Path], bool]:
         except (OdometryError, OSError):
             return False
         return head[-1] == f"# {MADE_BY}{verb}" or _is_of_version_0_4(content, verb)
+
+    return is_own
+
+
+def is_text_of(verb: str) -> Callable[[Path], bool]:
+    """Whether the second line of a text file says that `verb` made it."""
+
+    def is_own(file: Path) -> bool:
+        try:
+            with file.open("rb") as opened:
+                head = opened.read(HEAD_BYTES).split(b"\n", 2)[:2]
+        except OSError:
+            return False
+        return head[-1] == f"# {MADE_BY}{verb}".encode()
 
     return is_own
 

@@ -23,6 +23,7 @@ MODES_NAMES = (
     *("modes.csv", "modes_with_sight.csv", "result.json", "report.html"),
     *("figures/modes.png", "figures/path.png"),
 )
+TRAJECTORY_ENDS = (".tum", "_kitti.txt", "_times.txt", "_euroc.csv")
 RECORDING_NAMES = tuple(f"{name}.csv" for name in ("odometry", "pose", "truth", "images"))
 NAMES: dict[str, tuple[str, ...]] = {
     "run": RUN_NAMES,
@@ -35,6 +36,10 @@ NAMES: dict[str, tuple[str, ...]] = {
         "figures/training_horizons_*.png",
     ),
     "modes": (*MODES_NAMES, "runs.csv", *(f"*/{name}" for name in MODES_NAMES)),
+    "export": (
+        *("ros.yaml", "results.mcap", "terrain.geojson", "terrain_cells.csv", "*.parquet"),
+        *(f"{name}{end}" for name in ("odometer", "estimate") for end in TRAJECTORY_ENDS),
+    ),
     "simulate": ("run.toml", *RECORDING_NAMES),
     "synthesise": (
         *("run.toml", *RECORDING_NAMES, "parameters.toml", "images/*.jpg"),

@@ -7,16 +7,12 @@ from typing import TYPE_CHECKING
 import click
 
 from terrain.cli.identification_text import print_identification, require_determined
+from terrain.cli.identify_files import claimed, draw, require_icr_form, write_ros
 from terrain.cli.options import MODEL_NAMES, OUTPUT, assignments, require_model, window_options
 from terrain.cli.recordings import span_options
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from odometry.identification.identification import Identification
-    from odometry.outputs.made import Made
     from odometry.parameters import ParameterSet
-    from odometry.run import Run
     from odometry.run_span import Span
     from odometry.windows.config import WindowConfig
 
@@ -48,6 +44,12 @@ if TYPE_CHECKING:
     metavar="FILE.png",
     type=OUTPUT,
     help="Draw the ICRs of every turn over the robot, beside those of the model.",
+)
+@click.option(
+    "--ros",
+    metavar="FILE.yaml",
+    type=OUTPUT,
+    help="Write the same for ROS 2: diff_drive_controller, robot_localization, slip by terrain.",
 )
 @window_options
 @span_options
@@ -88,6 +90,7 @@ def identify(
     model: str,
     out: Path,
     picture: Path | None,
+    ros: Path | None,
     windows: "WindowConfig",
     fix: tuple[str, ...],
     free: tuple[str, ...],
@@ -117,7 +120,9 @@ def identify(
     from terrain.cli.recordings import read_runs
 
     require_model(model)
-    made = _claimed(out, picture)
+    if ros is not None:
+        require_icr_form(model)
+    made = claimed(out, picture, ros)
     solver_config = SolverConfig(loss=loss, starts=starts, seed=seed)
     runs = read_runs(folders, span)
     found = identify_runs(
@@ -138,41 +143,10 @@ def identify(
     write_parameters(out, identified, comment(made))
     click.echo(f"Wrote {out}")
     if picture is not None:
-        _draw(picture, runs, found, terrain)
+        draw(picture, runs, found, terrain)
+    if ros is not None:
+        write_ros(ros, runs, found, comment(made))
     click.echo(_next(identified, out, terrain))
-
-
-def _draw(
-    picture: Path, runs: "Sequence[Run]", found: "Identification", terrain: str | None
-) -> None:
-    """Draw the picture, or say why there is none: the parameter set stands without it."""
-    from odometry.errors import OdometryError
-    from odometry.outputs.output_file import picture_source
-    from odometry.positions.heading import headed
-    from odometry.report.icr_picture import save_identified_icrs
-
-    try:
-        with_yaw = headed(runs).runs
-        save_identified_icrs(picture, with_yaw, found, terrain, source=picture_source("identify"))
-    except OdometryError as error:
-        picture.unlink(missing_ok=True)  # that of an earlier call shows other parameters
-        click.echo(f"Note: no picture is drawn: {error}", err=True)
-    else:
-        click.echo(f"Wrote {picture}")
-
-
-def _claimed(out: Path, picture: Path | None) -> "Made":
-    """Claim the files that are going to be written; what makes them is returned."""
-    from odometry.outputs.output_file import is_set_of
-    from terrain.cli.outputs import claim_file, claim_picture
-
-    for option, file, suffix in (("--out", out, ".toml"), ("--picture", picture, ".png")):
-        if file is not None and file.suffix != suffix:
-            raise click.UsageError(f"{option} {file}: expected a name that ends in {suffix}")
-    made = claim_file(out, is_set_of("identify"))
-    if picture is not None:
-        claim_picture(picture)
-    return made
 
 
 def _next(identified: "ParameterSet", out: Path, terrain: str | None) -> str:

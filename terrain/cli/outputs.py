@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from odometry.outputs.made import Made
     from odometry.outputs.output_folder import OutputFolder
 
-OUTPUTS = ("out", "picture")  # options that name what a command writes
+OUTPUTS = ("out", "picture", "ros")  # options that name what a command writes
 
 
 def claim_folder(out: Path, *, reads_images: bool = False) -> "OutputFolder":

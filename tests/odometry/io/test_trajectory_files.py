@@ -8,7 +8,8 @@ from scipy.spatial.transform import Rotation
 
 from odometry.errors import TrajectoryError
 from odometry.geometry import se3
-from odometry.io.euroc import read_euroc, seconds, write_euroc
+from odometry.io.euroc import read_euroc, write_euroc
+from odometry.io.nanoseconds import seconds
 from odometry.io.trajectory_files import (
     FORMATS,
     format_of,

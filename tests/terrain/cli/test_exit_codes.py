@@ -8,7 +8,7 @@ from terrain.cli.main import VERBS, cli
 from terrain.shipped import shipped_data
 
 OUTPUTS = {"out", "picture"}
-READ = {"RUN", "PATCHES", "VEHICLE"}
+READ = {"RUN", "PATCHES", "VEHICLE", "SET.toml"}
 # What each verb needs beside its output.
 NEEDED = {
     "check": ("RUN",),
@@ -21,6 +21,7 @@ NEEDED = {
     "gap": ("RUN", "--calibration", "RUN"),
     "identify-modes": ("RUN",),
     "modes": ("RUN", "--models", "VEHICLE"),
+    "export": ("SET.toml", "--to", "ros"),
     "demo": (),
 }
 OF_FILE = {"train": ".model", "identify": ".toml", "identify-modes": ".toml"}  # of what they write
@@ -33,6 +34,7 @@ def places(tmp_path, world):
     world.drive_curves(tmp_path / "RUN")
     (tmp_path / "PATCHES").symlink_to(shipped_data() / "patches")
     (tmp_path / "VEHICLE").write_text("[robot]\ntrack_width = 0.5\n")
+    (tmp_path / "SET.toml").write_text("[terrain.a]\ny_left = 1\ny_right = -1\nx_icr = 0\n")
     (tmp_path / "thesis").mkdir()
     (tmp_path / "thesis" / "thesis.tex").write_text("years of work")
     for suffix in ("", ".toml", ".model", ".png"):

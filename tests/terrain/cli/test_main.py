@@ -13,7 +13,7 @@ from terrain.cli.main import cli, main
 
 VERBS = ("check", "train", "classify", "run", "evaluate", "synthesise")
 VERBS += ("simulate", "identify", "compare", "gap")
-VERBS += ("identify-modes", "modes", "demo")
+VERBS += ("identify-modes", "modes", "export", "demo")
 SLOW = ("numpy", "scipy", "sklearn", "skimage", "cv2", "matplotlib", "filterpy", "pandas")
 
 
