@@ -5,6 +5,10 @@ from .classification.training import Training, train
 from .config import Config
 from .demo import run_demo
 from .errors import TerrainError
+from .labelling.label_runs import label_runs
+from .labelling.patch_files import write_labelled_patches
+from .labelling.scale import LabelConfig
+from .labelling.told_terrain import TerrainSpan, told_by_spans, told_terrain
 from .report.page import write_report
 from .results import read_errors, write_results
 from .run_odometry import run_odometry
@@ -17,18 +21,24 @@ __all__ = [
     "Camera",
     "Classification",
     "Config",
+    "LabelConfig",
     "RunResult",
     "SynthesisConfig",
     "TerrainClassifier",
     "TerrainError",
+    "TerrainSpan",
     "Training",
     "check_run",
+    "label_runs",
     "read_errors",
     "run_demo",
     "run_odometry",
     "sfta",
     "synthesise",
+    "told_by_spans",
+    "told_terrain",
     "train",
+    "write_labelled_patches",
     "write_report",
     "write_results",
 ]

@@ -40,6 +40,7 @@ NAMES: dict[str, tuple[str, ...]] = {
         *("ros.yaml", "results.mcap", "terrain.geojson", "terrain_cells.csv", "*.parquet"),
         *(f"{name}{end}" for name in ("odometer", "estimate") for end in TRAJECTORY_ENDS),
     ),
+    "label": ("manifest.csv", "contact_sheet_*.png"),
     "simulate": ("run.toml", *RECORDING_NAMES),
     "synthesise": (
         *("run.toml", *RECORDING_NAMES, "parameters.toml", "images/*.jpg"),

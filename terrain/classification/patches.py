@@ -176,14 +176,34 @@ def stated_metres_per_pixel(root: Path) -> float | None:
 
 
 def _photo_ids(manifest: Manifest | None, photos: Sequence[Path]) -> dict[Path, str]:
-    """The photo_id of each resolved path that the manifest names; PatchError if it names none."""
+    """The photo_id of each resolved path that the manifest names; PatchError if it names none.
+
+    A file that was moved to another class is named by its old path: where nothing lies there, and
+    no other row of a class beside has its name, the row is of the moved file.
+    """
     if manifest is None:
         return {}
-    found = {photo.resolve() for photo in photos} & set(manifest.photo_ids)
+    present = {photo.resolve() for photo in photos}
+    names = Counter(map(_beside, manifest.photo_ids))
+    gone = {
+        _beside(path): photo_id
+        for path, photo_id in manifest.photo_ids.items()
+        if path not in present and names[_beside(path)] == 1
+    }
+    found = {
+        path: photo_id
+        for path in present
+        if (photo_id := manifest.photo_ids.get(path, gone.get(_beside(path)))) is not None
+    }
     if not found:
         raise PatchError(
             f"{manifest.file}: none of its {len(manifest.photo_ids)} paths is one of the "
             f"{len(photos)} photographs: it names {next(iter(manifest.photo_ids))}, and there is "
             f"{photos[0].resolve()}; paths are relative to the folder of manifest.csv"
         )
-    return dict(manifest.photo_ids)
+    return found
+
+
+def _beside(path: Path) -> tuple[Path, str]:
+    """What a file keeps when it is moved to a class beside: the folder of classes and its name."""
+    return path.parent.parent, path.name

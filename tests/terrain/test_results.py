@@ -2,12 +2,15 @@
 
 import csv
 import json
+import re
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from odometry.parameters import read_parameters
+from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config
 from terrain.region import RegionConfig
 from terrain.results import write_results
@@ -166,6 +169,23 @@ def test_labels_follow_from_the_numbers_in_the_terrain_table(across_out, classif
     np.testing.assert_allclose(
         given[asked].max(axis=1), np.array(table["confidence"], float)[asked]
     )
+
+
+def test_the_threshold_of_the_readme(across_result, classifier, tmp_path, monkeypatch, capsys):
+    """What README.md shows does run, and the share that it prints lies beyond."""
+    text = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"```py\n(.*?)```", text, flags=re.DOTALL)
+    write_results(across_result, tmp_path / "results")
+    classifier.save(tmp_path / "terrain.model")
+    monkeypatch.chdir(tmp_path)
+    exec(compile(code, "README.md", "exec"), {})  # noqa: S102
+    _, table = columns(tmp_path / "results/terrain.csv")
+    given = np.array([value for value in table["class_distance"] if value], float)
+    for line in capsys.readouterr().out.splitlines():
+        share, _, distance = line.split()
+        assert (given > float(distance)).mean() == pytest.approx(float(share), abs=0.06)
+    lenient = TerrainClassifier.load(tmp_path / "lenient.model")
+    assert lenient.rejection_distance_ == 1.2 * classifier.rejection_distance_
 
 
 def test_result_json_is_strict_and_names_the_switches(across_out, across_result):

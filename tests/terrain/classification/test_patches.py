@@ -178,3 +178,30 @@ def test_an_empty_manifest_is_an_error_and_one_of_something_else_is_not(tmp_path
     (tmp_path / "manifest.csv").write_text("a,b\n1,2,3\n")
     assert stated_metres_per_pixel(tmp_path) is None
     assert len(find_photos(tmp_path)) == 1
+
+
+def test_a_moved_file_keeps_its_group(tmp_path):
+    for path in ("grass/a.png", "grass/b.png", "sand/c.png", "sand/a_copy.png"):
+        (tmp_path / path).parent.mkdir(exist_ok=True)
+        assert cv2.imwrite(str(tmp_path / path), np.zeros((8, 8), np.uint8))
+    (tmp_path / "manifest.csv").write_text(
+        "path,photo_id\ngrass/a.png,one\ngrass/b.png,two\nsand/c.png,three\n"
+    )
+    (tmp_path / "grass/b.png").rename(tmp_path / "sand/b.png")
+    groups = {photo.path.name: (photo.label, photo.group) for photo in find_photos(tmp_path)}
+    own = str(tmp_path / "sand/a_copy.png")
+    assert groups == {
+        "a.png": ("grass", "one"),
+        "b.png": ("sand", "two"),
+        "c.png": ("sand", "three"),
+        "a_copy.png": ("sand", own),
+    }
+
+
+def test_a_name_that_several_rows_have_is_no_moved_file(tmp_path):
+    for path in ("grass/1.png", "moss/1.png"):
+        (tmp_path / path).parent.mkdir(exist_ok=True)
+        assert cv2.imwrite(str(tmp_path / path), np.zeros((8, 8), np.uint8))
+    (tmp_path / "manifest.csv").write_text("path,photo_id\ngrass/1.png,one\nsand/1.png,two\n")
+    groups = [photo.group for photo in find_photos(tmp_path)]
+    assert groups == ["one", str(tmp_path / "moss/1.png")]

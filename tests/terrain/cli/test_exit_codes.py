@@ -12,6 +12,7 @@ READ = {"RUN", "PATCHES", "VEHICLE", "SET.toml"}
 # What each verb needs beside its output.
 NEEDED = {
     "check": ("RUN",),
+    "label": ("RUN", "--span", "0:5=grass"),
     "train": ("PATCHES",),
     "run": ("RUN",),
     "synthesise": ("--vehicle", "VEHICLE"),

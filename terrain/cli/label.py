@@ -1,0 +1,144 @@
+"""The verb that cuts labelled patches from recordings."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from terrain.cli.options import OUTPUT, Positive
+from terrain.cli.recordings import span_options
+
+if TYPE_CHECKING:
+    from odometry.run_span import Span
+
+SOURCES = ("truth.csv", "odometry.csv", "images.csv", "run.toml")
+
+
+@click.command()
+@click.argument(
+    "runs",
+    metavar="RUN...",
+    type=click.Path(file_okay=False, path_type=Path),
+    nargs=-1,
+    required=True,
+)
+@click.option("--out", required=True, metavar="PATCHES", type=OUTPUT, help="Folder to make.")
+@click.option(
+    "--span",
+    "spans",
+    multiple=True,
+    metavar="[RUN:]FROM:TO=TERRAIN",
+    help="Terrain under the robot from one second of run time to another; repeat. With several "
+    "runs each begins with the name of its run.",
+)
+@click.option(
+    "--labels",
+    "source",
+    type=click.Choice(SOURCES),
+    help="The file whose terrain counts.  [default: spans, else the first of these that names one]",
+)
+@click.option(
+    "--parameters",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="Parameter set: ICRs by terrain, for runs without gyroscope and poses.",
+)
+@click.option(
+    "--patch-size",
+    type=click.IntRange(min=8),
+    metavar="PX",
+    help="Side of a patch.  [default: 0.6 of the robot's width, at most 128]",
+)
+@click.option(
+    "--metres-per-pixel",
+    type=Positive(1000.0),
+    help="Scale of the patches.  [default: what the camera resolves of the nearest squares]",
+)
+@click.option(
+    "--per-place",
+    type=click.IntRange(min=1),
+    default=24,
+    show_default=True,
+    help="Patches of a terrain at one place, at the most.",
+)
+@click.option(
+    "--place",
+    "place_m",
+    type=Positive(1000.0),
+    default=2.0,
+    show_default=True,
+    help="Distance between places [m]; five sides of a patch if that is more.",
+)
+@span_options
+def label(
+    *,
+    runs: tuple[Path, ...],
+    out: Path,
+    spans: tuple[str, ...],
+    source: str | None,
+    parameters: Path | None,
+    patch_size: int | None,
+    metres_per_pixel: float | None,
+    per_place: int,
+    place_m: float,
+    span: "Span",
+) -> None:
+    """Cut labelled patches from recordings, for `train`.
+
+    A patch is a square that an image shows and that the robot then drove over, as seen from
+    above. Its label is the terrain that was told while the footprint was over it: by --span, by a
+    column `terrain`, or by [run] terrain. A square astride two terrains is left out. Patches of
+    one place share a photo_id, so that `train` holds them back together.
+
+    Look at contact_sheet_<terrain>.png. Move a wrong patch to the folder of another class, or
+    delete it: `train` follows, and the next `label` into the same folder keeps it so.
+
+    \b
+    Example:
+      terrain-odometry label my_run --span 0:20=grass --span 25:60=gravel --out my_patches
+    """
+    from dataclasses import replace
+
+    from odometry.parameters import read_parameters
+    from terrain.cli.label_spans import spans_by_run
+    from terrain.cli.label_text import summary
+    from terrain.cli.outputs import claim_folder
+    from terrain.cli.recordings import read_run
+    from terrain.labelling.corrections import read_corrections
+    from terrain.labelling.label_runs import label_runs
+    from terrain.labelling.patch_files import write_labelled_patches
+    from terrain.labelling.scale import LabelConfig
+    from terrain.labelling.told_terrain import told_by_spans, told_terrain
+
+    if spans and source:
+        raise click.UsageError("--span and --labels: give one of them")
+    config = LabelConfig(patch_size, metres_per_pixel, per_place, place_m)
+    by_run = spans_by_run(spans, runs)
+    output = claim_folder(out, reads_images=True)
+    corrections = read_corrections(out)
+    read = [read_run(folder, span, images=True) for folder in runs]
+    told = [
+        told_by_spans(run, by_run[run.folder], run.odometry.stamps_s[0] - span.from_s)
+        if spans
+        else told_terrain(run, source)
+        for run in read
+    ]
+    ground = label_runs(
+        read,
+        told,
+        config,
+        parameters=read_parameters(parameters) if parameters else None,
+        corrections=corrections,
+        show_progress=True,
+    )
+    output = replace(output, earlier=(*output.earlier, *corrections.paths))
+    with output.writing() as part:
+        unusable = write_labelled_patches(part, ground, corrections, show_progress=True)
+    for file, reason in unusable.items():
+        click.echo(f"left out: {file}: {reason}", err=True)
+    click.echo(summary(ground, told))
+    if corrections.moved or corrections.removed:
+        click.echo(
+            f"Corrections kept: {len(corrections.moved)} moved, {len(corrections.removed)} removed."
+        )
+    click.echo(f"\nWrote {out}. Look at {out}/contact_sheet_*.png; move or delete wrong patches.")
+    click.echo(f"Next: terrain-odometry train {out} --out terrain.model")

@@ -1,0 +1,85 @@
+"""The label of each square: what was told of the terrain while the footprint was over it."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.geometry import se2
+from odometry.run import Run
+from terrain.labelling.squares import DrivenSquare, SquareFinder
+from terrain.labelling.told_terrain import ToldTerrain
+
+STRADDLES, UNTOLD = "astride two terrains", "of no terrain that was told"
+
+
+@dataclass(frozen=True)
+class LabelledSquare:
+    """A square and its terrain.
+
+    Attributes
+    ----------
+    run : Run
+    square : DrivenSquare
+    label : str
+    name : str
+        Of the patch, and of its file; no other square has it.
+    """
+
+    run: Run
+    square: DrivenSquare
+    label: str
+    name: str
+
+
+def labelled_squares(
+    finder: SquareFinder, told: ToldTerrain, squares: Sequence[DrivenSquare], run_name: str
+) -> tuple[list[LabelledSquare], Counter[str]]:
+    """Squares of one terrain, and how many others there are, by why they are left out.
+
+    The label is what was told of all the time during which the footprint was over any part of the
+    square. Where images are labelled, it is what all images say that show the middle of the
+    square before the robot gets there.
+
+    Parameters
+    ----------
+    finder : SquareFinder
+    told : ToldTerrain
+    squares : sequence of DrivenSquare
+        Of the finder.
+    run_name : str
+        A name that no other run has.
+    """
+    found, left_out = [], Counter[str]()
+    for square in squares:
+        names = _names(finder, told, square)
+        if len(names - {""}) > 1:
+            left_out[STRADDLES] += 1
+        elif "" in names:
+            left_out[UNTOLD] += 1
+        else:
+            (label,) = names
+            name = f"{run_name}_{_place(square)}.png"
+            found.append(LabelledSquare(finder.run, square, label, name))
+    return found, left_out
+
+
+def _names(finder: SquareFinder, told: ToldTerrain, square: DrivenSquare) -> frozenset[str]:
+    if not told.of_images:
+        return told.between(square.passing.begin_s, square.passing.end_s)
+    first, end = finder.rows_before(square)
+    stamps_s = told.stamps_s[first:end]
+    from_robot = se2.transform(
+        se2.inverse(finder.odometer.at(stamps_s).poses), np.array(square.middle_m)
+    )
+    shows = finder.camera.in_image(finder.camera.ground_to_pixels(from_robot))
+    names = {told.names[first + int(image)] for image in np.flatnonzero(shows)}
+    return frozenset(names - {""} or {""})
+
+
+def _place(square: DrivenSquare) -> str:
+    """Image and place in it: so many centimetres ahead and to the left of the robot."""
+    image = square.image.rsplit(".", 1)[0].removeprefix("images/").replace("/", "-")
+    ahead, left = np.rint(100 * square.rectangle.middle).astype(int).tolist()
+    return f"{image}_{ahead:+04d}_{left:+04d}"

@@ -1,0 +1,133 @@
+"""Labelled patches as files: images by class, their manifest, and a contact sheet of each class."""
+
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from pathlib import Path
+
+import cv2
+import numpy as np
+from tqdm import tqdm
+
+from odometry.arrays import ByteImage
+from odometry.io.csv_table import write_csv_table
+from odometry.io.files import atomic_write
+from terrain.camera import Camera
+from terrain.errors import CameraError, ImageError
+from terrain.images import read_image
+from terrain.labelling.contact_sheet import write_contact_sheet
+from terrain.labelling.corrections import Corrections
+from terrain.labelling.label_runs import ChosenSquare, LabelledTerrain
+from terrain.warp import ground_view
+
+
+def write_labelled_patches(
+    folder: Path,
+    ground: LabelledTerrain,
+    corrections: Corrections | None = None,
+    *,
+    show_progress: bool = False,
+) -> dict[str, str]:
+    """Write `folder/<class>/*.png`, manifest.csv and contact_sheet_<class>.png.
+
+    Parameters
+    ----------
+    folder : Path
+        Readable by `train` afterwards.
+    ground : LabelledTerrain
+    corrections : Corrections, optional
+        Names that were removed are kept in the manifest, so that they stay removed.
+    show_progress : bool
+
+    Returns
+    -------
+    dict of str to str
+        Why images could not be used, by their file; their patches are left out.
+
+    Raises
+    ------
+    ImageError
+        If no image can be used.
+    """
+    unusable: dict[str, str] = {}
+    written: list[ChosenSquare] = []
+    bar = tqdm(total=len(ground.chosen), desc="patches", disable=None if show_progress else True)
+    for squares, patches in _patches(ground, unusable):
+        for each, patch in zip(squares, patches, strict=True):
+            with atomic_write(folder / _path(each)) as part:
+                part.write_bytes(_png(patch))
+        written += squares
+        bar.update(len(squares))
+    bar.close()
+    if not written:
+        file, reason = next(iter(unusable.items()))
+        raise ImageError(f"none of {len(unusable)} images can be used: {file}: {reason}")
+    removed = sorted(corrections.removed) if corrections else []
+    _write_manifest(folder / "manifest.csv", written, removed, ground.scale.metres_per_pixel)
+    for label in sorted({each.label for each in written}):
+        paths = [_path(each) for each in written if each.label == label]
+        write_contact_sheet(folder / f"contact_sheet_{label}.png", folder, paths)
+    return unusable
+
+
+def _patches(
+    ground: LabelledTerrain, unusable: dict[str, str]
+) -> Iterator[tuple[list[ChosenSquare], list[ByteImage]]]:
+    """The squares of each image and their patches; each image is read once."""
+    by_image = sorted(ground.chosen, key=_image)
+    scale = ground.scale.metres_per_pixel
+    for file, group in groupby(by_image, key=_image):
+        squares = list(group)
+        run = squares[0].of.run
+        camera = Camera.from_table(run.settings["camera"], str(run.folder / "run.toml"))
+        try:
+            image = read_image(Path(file))
+            camera.check_size(image)
+        except (ImageError, CameraError) as error:
+            unusable[file] = str(error)
+            continue
+        rectangles = [each.of.square.rectangle for each in squares]
+        yield squares, [ground_view(image, camera, one, scale) for one in rectangles]
+
+
+def _image(each: ChosenSquare) -> str:
+    return str(each.of.run.folder / each.of.square.image)
+
+
+def _path(each: ChosenSquare) -> str:
+    return f"{each.label}/{each.of.name}"
+
+
+def _png(image: ByteImage) -> bytes:
+    stored = image if image.ndim == 2 else image[..., ::-1]
+    return cv2.imencode(".png", stored)[1].tobytes()
+
+
+def _write_manifest(
+    file: Path, written: Sequence[ChosenSquare], removed: Sequence[str], scale: float
+) -> None:
+    """A row a patch: its group, and where it comes from; then the names that were removed."""
+    chosen = sorted(written, key=_path)
+    squares = [each.of.square for each in chosen]
+    middles = np.array([square.rectangle.middle for square in squares])
+    gone, nothing = len(removed), np.full(len(removed), np.nan)
+    numbers = {
+        "t": [square.stamp_s for square in squares],
+        "ahead": middles[:, 0],
+        "left": middles[:, 1],
+        "x": [square.place_m[0] for square in squares],
+        "y": [square.place_m[1] for square in squares],
+        "over_from": [square.passing.begin_s for square in squares],
+        "over_to": [square.passing.end_s for square in squares],
+    }
+    texts = {
+        "path": [*map(_path, chosen), *(f"removed/{name}" for name in removed)],
+        "class": [*(each.label for each in chosen), *[""] * gone],
+        "photo_id": [*(each.photo_id for each in chosen), *["removed"] * gone],
+        "metres_per_pixel": [f"{scale:g}"] * (len(chosen) + gone),
+        "told": [*(each.of.label for each in chosen), *["removed"] * gone],
+        "run": [*(each.of.run.name for each in chosen), *[""] * gone],
+        "image": [*(each.of.square.image for each in chosen), *[""] * gone],
+    }
+    columns = {name: np.array(cells) for name, cells in texts.items()}
+    columns |= {name: np.concatenate([cells, nothing]) for name, cells in numbers.items()}
+    write_csv_table(file, columns)

@@ -1,0 +1,165 @@
+"""Squares of ground that an image shows finely enough and the robot then drove over."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from tqdm import tqdm
+
+from odometry.arrays import FloatArray, IntArray
+from odometry.geometry import se2
+from odometry.run import Run
+from odometry.table import Table
+from odometry.trajectory import Trajectory
+from odometry.windows.gaps import odometry_gaps
+from terrain.camera import Camera
+from terrain.labelling.driven_way import DrivenWay, Passing
+from terrain.rectangle import Rectangle
+from terrain.region import RegionConfig
+from terrain.shown import is_shown
+
+ASIDE = 0.8  # of what a footprint is wider than a square: so far the outer squares lie apart
+GRID = 5  # points along each side of a square; all of them are shown and driven over
+
+
+@dataclass(frozen=True)
+class DrivenSquare:
+    """A square of ground in one image.
+
+    Attributes
+    ----------
+    image : str
+        File, as images.csv names it.
+    stamp_s : float
+        Of the image.
+    rectangle : Rectangle
+        In the robot frame at that stamp.
+    passing : Passing
+        When the footprint was over it.
+    middle_m : (float, float)
+        In the odometry frame.
+    place_m : (float, float)
+        Its middle in the frame of the poses, where there are some.
+    """
+
+    image: str
+    stamp_s: float
+    rectangle: Rectangle
+    passing: Passing
+    middle_m: tuple[float, float]
+    place_m: tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class SquareFinder:
+    """Finds the squares of one run.
+
+    Attributes
+    ----------
+    run : Run
+    images : Table
+        Of the run.
+    camera : Camera
+    way : DrivenWay
+    odometer, estimate : Trajectory
+        The same run without and with corrections by poses.
+    """
+
+    run: Run
+    images: Table
+    camera: Camera
+    way: DrivenWay
+    odometer: Trajectory
+    estimate: Trajectory
+    gaps_s: FloatArray = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "gaps_s", odometry_gaps(self.run).spans_s)
+
+    @property
+    def reach_m(self) -> float:
+        """How far ahead a square may lie, in wheel travel: as far as a region."""
+        return RegionConfig.most_ahead_lengths * self.way.footprint.length_m
+
+    def image_rows(self, apart_m: float) -> IntArray:
+        """Rows of images.csv that the odometer covers, `apart_m` of wheel travel apart or more."""
+        stamps_s = self.images.stamps_s
+        covered = np.flatnonzero(self.odometer.covers(stamps_s))
+        way_s = self.way.trajectory.stamps_s
+        travel_m = np.interp(stamps_s[covered], way_s, self.way.travel_m)
+        _, first = np.unique(np.floor(travel_m / apart_m), return_index=True)
+        return np.asarray(covered[first], dtype=np.int64)
+
+    def squares(
+        self, side_m: float, coarsest_m: float, rows: IntArray, *, show_progress: bool = False
+    ) -> Iterator[DrivenSquare]:
+        """The squares of some images, near ones first.
+
+        Parameters
+        ----------
+        side_m : float
+        coarsest_m : float
+            A pixel may cover so much of the ground at the most.
+        rows : (n,)
+            Of images.csv.
+        show_progress : bool
+        """
+        bar = tqdm(rows, desc=self.run.name, unit="image", disable=None if show_progress else True)
+        for row in bar:
+            yield from self._of_image(int(row), side_m, coarsest_m)
+
+    def rows_before(self, square: DrivenSquare) -> tuple[int, int]:
+        """First and end row of images.csv of the way from which the square is within reach."""
+        way_s, stamps_s = self.way.trajectory.stamps_s, self.images.stamps_s
+        begin_m = float(np.interp(square.passing.begin_s, way_s, self.way.travel_m))
+        first_s = float(np.interp(begin_m - self.reach_m, self.way.travel_m, way_s))
+        first, end = np.searchsorted(stamps_s, [first_s, square.passing.begin_s], side="right")
+        return int(np.searchsorted(stamps_s, max(first_s, way_s[0]))), max(int(end), int(first))
+
+    def _of_image(self, row: int, side_m: float, coarsest_m: float) -> list[DrivenSquare]:
+        stamp_s = float(self.images.stamps_s[row])
+        pose = self.odometer.at(np.array([stamp_s])).poses[0]
+        middles = self._middles_ahead(stamp_s, pose, side_m)
+        grid = np.linspace(-side_m / 2, side_m / 2, GRID)
+        points = np.stack(np.meshgrid(grid, grid), axis=-1).reshape(-1, 2)
+        points = middles[:, None] + points
+        shown = is_shown(self.camera, points, coarsest_m).all(axis=1)
+        middles, points = middles[shown], se2.transform(pose, points[shown])
+        rows = self.way.ahead(stamp_s, self.reach_m + 2 * self.way.footprint.radius_m)
+        passings = self.way.passings(points, rows)
+        at = self.estimate.at(np.array([stamp_s])).poses[0]
+        half_m = np.full(2, side_m / 2)
+        return [
+            DrivenSquare(
+                str(self.images["file"][row]),
+                stamp_s,
+                Rectangle.round(middle, half_m),
+                passing,
+                _point(pose, middle),
+                _point(at, middle),
+            )
+            for middle, passing in zip(middles, passings, strict=True)
+            if passing is not None and not self._in_gap(stamp_s, passing.end_s)
+        ]
+
+    def _middles_ahead(self, stamp_s: float, pose: FloatArray, side_m: float) -> FloatArray:
+        """Middles (n, 2) along the way ahead, a side apart, in the robot frame at the image."""
+        rows = self.way.ahead(stamp_s, self.reach_m)
+        travel_m = self.way.travel_m[rows]
+        if not len(travel_m):
+            return np.empty((0, 2))
+        steps_m = np.arange(travel_m[0], travel_m[-1], side_m)
+        poses = self.way.trajectory.poses[rows][np.searchsorted(travel_m, steps_m)]
+        aside_m = ASIDE * max(self.way.footprint.width_m - side_m, 0.0) / 2
+        across = np.array([[0.0, aside_m], [0.0, 0.0], [0.0, -aside_m]])
+        ahead = se2.between(pose, poses)
+        return np.asarray(se2.transform(ahead[:, None], across)).reshape(-1, 2)
+
+    def _in_gap(self, begin_s: float, end_s: float) -> bool:
+        """Whether the odometry is silent between two stamps: where the robot went is not known."""
+        return bool(((self.gaps_s[:, 0] < end_s) & (self.gaps_s[:, 1] > begin_s)).any())
+
+
+def _point(pose: FloatArray, middle: FloatArray) -> tuple[float, float]:
+    x, y = se2.transform(pose, middle).tolist()
+    return x, y

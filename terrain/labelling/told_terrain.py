@@ -1,0 +1,154 @@
+"""What a recording, or its owner, tells of the terrain: by time or by image."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.errors import RunFolderError
+from odometry.row_terrains import row_terrains
+from odometry.run import UNKNOWN, Run
+
+SOURCES = ("truth.csv", "odometry.csv", "images.csv", "run.toml")
+SPANS = "the spans"
+
+
+@dataclass(frozen=True)
+class TerrainSpan:
+    """A terrain from one moment of run time to another.
+
+    Attributes
+    ----------
+    from_s, to_s : float
+        From the first stamp of the odometry.
+    terrain : str
+    """
+
+    from_s: float
+    to_s: float
+    terrain: str
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.from_s < self.to_s < float("inf"):
+            raise RunFolderError(
+                f"a span of {self.from_s:g} to {self.to_s:g} s for {self.terrain!r}: expected a "
+                "start of 0 or more, and an end after it"
+            )
+
+
+@dataclass(frozen=True)
+class ToldTerrain:
+    """Names of terrain, each from its stamp until the next one; "" where nothing is told.
+
+    Attributes
+    ----------
+    source : str
+        What tells them.
+    stamps_s : (N,)
+    names : tuple of str, length N
+    of_images : bool
+        Whether a name is of what an image shows; else of what the robot stands on.
+    """
+
+    source: str
+    stamps_s: FloatArray
+    names: tuple[str, ...]
+    of_images: bool = False
+
+    def between(self, begin_s: float, end_s: float) -> frozenset[str]:
+        """All names that hold at a moment between two, these included; "" where none does."""
+        first = int(np.searchsorted(self.stamps_s, begin_s, side="right")) - 1
+        end = int(np.searchsorted(self.stamps_s, end_s, side="right"))
+        before = {""} if first < 0 else set()
+        return frozenset(before | set(self.names[max(first, 0) : end]))
+
+    @property
+    def terrains(self) -> tuple[str, ...]:
+        """The names of terrain, sorted."""
+        return tuple(sorted({*self.names} - {""}))
+
+
+def told_by_spans(run: Run, spans: Sequence[TerrainSpan], start_s: float) -> ToldTerrain:
+    """Spans of run time; nothing is told between them.
+
+    Parameters
+    ----------
+    run : Run
+    spans : sequence of TerrainSpan
+    start_s : float
+        The stamp from which they count.
+
+    Raises
+    ------
+    RunFolderError
+        If two spans overlap, or a name cannot name a folder.
+    """
+    ordered = sorted(spans, key=lambda span: span.from_s)
+    stamps_s: list[float] = []
+    names: list[str] = []
+    end_s = 0.0
+    for span in ordered:
+        if span.from_s < end_s:
+            raise RunFolderError(
+                f"{run.folder}: the span of {span.terrain!r} from {span.from_s:g} s begins before "
+                f"the one before it ends, at {end_s:g} s"
+            )
+        if span.from_s > end_s:
+            stamps_s, names = [*stamps_s, start_s + end_s], [*names, ""]
+        stamps_s, names = [*stamps_s, start_s + span.from_s], [*names, span.terrain]
+        end_s = span.to_s
+    return _told(SPANS, np.array([*stamps_s, start_s + end_s]), [*names, ""])
+
+
+def told_terrain(run: Run, source: str | None = None) -> ToldTerrain:
+    """What a file of the run tells.
+
+    Parameters
+    ----------
+    run : Run
+    source : {"truth.csv", "odometry.csv", "images.csv", "run.toml"}, optional
+        By default the first of these that names a terrain.
+
+    Raises
+    ------
+    RunFolderError
+        If it names none, or one that cannot name a folder.
+    """
+    for name in SOURCES if source is None else (source,):
+        told = _of_file(run, name)
+        if told is not None and told.terrains:
+            return told
+    raise RunFolderError(
+        f"{run.folder}: no terrain is named by {source or 'any file'}; expected a column `terrain` "
+        "of truth.csv, odometry.csv or images.csv, [run] terrain of run.toml, or spans "
+        "(--span 0:20=grass)"
+    )
+
+
+def _of_file(run: Run, name: str) -> ToldTerrain | None:
+    start_s = run.odometry.stamps_s[:1]
+    if name == "odometry.csv":
+        if "terrain" not in run.odometry:
+            return None
+        return _told(name, run.odometry.stamps_s, row_terrains(run).tolist())
+    if name == "run.toml":
+        return None if run.terrain is None else _told(name, start_s, [run.terrain])
+    table = run.truth if name == "truth.csv" else run.images
+    if table is None or "terrain" not in table:
+        return None
+    of_images = name == "images.csv"
+    return _told(name, table.stamps_s, table["terrain"].tolist(), of_images=of_images)
+
+
+def _told(
+    source: str, stamps_s: FloatArray, names: Sequence[str], *, of_images: bool = False
+) -> ToldTerrain:
+    known = tuple("" if name == UNKNOWN else str(name) for name in names)
+    for name in sorted(set(known)):
+        if name.startswith(".") or any(sign in name for sign in "/\\\0"):
+            raise RunFolderError(
+                f"{source}: the terrain {name!r} cannot name a folder of patches; expected a name "
+                "without slashes that does not begin with a dot"
+            )
+    return ToldTerrain(source, stamps_s, known, of_images)

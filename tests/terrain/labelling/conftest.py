@@ -1,0 +1,26 @@
+"""The run over gravel, boards and gravel, told by spans of time."""
+
+import pytest
+
+from odometry.run import Run
+from terrain.labelling.label_runs import label_runs
+from terrain.labelling.scale import LabelConfig
+from terrain.labelling.told_terrain import TerrainSpan, told_by_spans
+
+SMALL = LabelConfig(place_m=1.0)
+
+
+@pytest.fixture(scope="session")
+def told_spans(world):
+    """Spans of a run over the world's three stretches; the robot's middle is told exactly."""
+    ends_s = [0.0, *(edge / world.speed_m_s for edge in world.edges_m), 60.0]
+    names = ("gravel", "boards", "gravel")
+    spans = [TerrainSpan(*ends_s[k : k + 2], name) for k, name in enumerate(names)]
+    return lambda run: told_by_spans(run, spans, 0.0)
+
+
+@pytest.fixture(scope="session")
+def labelled(across_run, told_spans):
+    """Its labelled ground; not to be changed."""
+    run = Run.read(across_run)
+    return label_runs([run], [told_spans(run)], SMALL)
