@@ -27,14 +27,7 @@ OF_PERIOD = 0.25  # of the pose period, by which interpolated poses may seem lat
 
 def timing(evidence: Evidence) -> Iterator[Finding]:
     """Lags of pose, treads and gyroscope against each other, and how they grow."""
-    signals = _headings(evidence)
-    lags = {
-        (late, early): lag
-        for late, early in (("pose", "gyroscope"), ("pose", "treads"), ("treads", "gyroscope"))
-        if late in signals
-        and early in signals
-        and (lag := _lag(evidence, signals, late, early)) is not None
-    }
+    lags = lags_of(evidence)
     drifting = _drifting(evidence, lags)
     if drifting:
         yield clocks_apart(evidence, drifting)
@@ -45,12 +38,24 @@ def timing(evidence: Evidence) -> Iterator[Finding]:
         if _is_late(
             lag,
             max(
-                OF_PERIOD * _pose_period_s(evidence) * ("pose" in pair),
+                OF_PERIOD * pose_period_s(evidence) * ("pose" in pair),
                 LEAST_LAG_S + evidence.period_s - USUAL_PERIOD_S,
             ),
         )
     }
     yield from _late(evidence, lags, late)
+
+
+def lags_of(evidence: Evidence) -> dict[tuple[str, str], Lag]:
+    """Lags of the first of two sensors behind the second, of those that can be told."""
+    signals = _headings(evidence)
+    return {
+        (late, early): lag
+        for late, early in (("pose", "gyroscope"), ("pose", "treads"), ("treads", "gyroscope"))
+        if late in signals
+        and early in signals
+        and (lag := _lag(evidence, signals, late, early)) is not None
+    }
 
 
 def _headings(evidence: Evidence) -> dict[str, Signal]:
@@ -73,7 +78,8 @@ def _between(at_s: FloatArray, stamps_s: FloatArray, heading: FloatArray) -> Flo
     return np.asarray(np.interp(at_s, stamps_s, heading, left=np.nan, right=np.nan))
 
 
-def _pose_period_s(evidence: Evidence) -> float:
+def pose_period_s(evidence: Evidence) -> float:
+    """Usual time between poses; 0 where there are fewer than two."""
     if evidence.run.pose is None or len(evidence.run.pose) < 2:
         return 0.0
     return float(np.median(np.diff(evidence.run.pose.stamps_s)))
@@ -83,7 +89,7 @@ def _lag(
     evidence: Evidence, signals: dict[str, Signal], late_name: str, early_name: str
 ) -> Lag | None:
     start_s, end_s = float(evidence.stamps_s[0]), float(evidence.stamps_s[-1])
-    period_s = _pose_period_s(evidence) if "pose" in (late_name, early_name) else 0.0
+    period_s = pose_period_s(evidence) if "pose" in (late_name, early_name) else 0.0
     width_s = max(0.5, 2 * period_s, 2 * evidence.period_s)
     late, early = signals[late_name], signals[early_name]
     found = lag_between(late, early, (start_s, end_s), width_s, MOST_LAG_S)
@@ -114,7 +120,7 @@ def _drifts(evidence: Evidence, lag: Lag) -> bool:
         lag.pieces >= 5
         and lag.together >= TOGETHER
         and abs(lag.drift) > CERTAIN * lag.drift_sigma
-        and abs(lag.drift) * evidence.duration_s > max(LEAST_DRIFT_S, _pose_period_s(evidence))
+        and abs(lag.drift) * evidence.duration_s > max(LEAST_DRIFT_S, pose_period_s(evidence))
         and abs(lag.drift) > LEAST_DRIFT
     )
 

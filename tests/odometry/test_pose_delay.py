@@ -30,21 +30,30 @@ def run_of(late_s, *, with_gyroscope=True):
     return Run(Path("run"), Robot(WIDTH), {}, table("odometry.csv", **columns), pose)
 
 
-@pytest.mark.parametrize("late_s", [0.3, 0.6])
-def test_a_long_delay_is_found_and_undone(late_s):
+@pytest.mark.parametrize("late_s", [0.1, 0.3, 0.6])
+def test_a_delay_is_found_and_undone(late_s):
     run, (event,) = without_pose_delay(run_of(late_s), IcrEkfConfig())
     assert event.kind == "late_poses"
     assert event.values[0] == pytest.approx(late_s, abs=0.06)
     np.testing.assert_allclose(run.pose.stamps_s, run_of(0.0).pose.stamps_s, atol=0.06)
 
 
-@pytest.mark.parametrize("late_s", [-0.4, 0.0, 0.1])
+@pytest.mark.parametrize("late_s", [-0.4, -0.1, 0.0, 0.03])
 def test_what_is_not_certain_is_left_alone(late_s):
-    """Early poses have another cause, and short delays cannot be told."""
+    """Early poses have another cause, and very short delays cannot be told."""
     given = run_of(late_s)
     run, events = without_pose_delay(given, IcrEkfConfig())
     assert run is given
     assert events == ()
+
+
+def test_a_gyroscope_that_is_early_leaves_poses_alone():
+    """Poses and treads agree; against the gyroscope both are late."""
+    run = run_of(0.0)
+    t, rates = run.odometry.stamps_s, run.odometry["gyro_z"]
+    columns = {**run.odometry.columns, "gyro_z": np.interp(t + 0.1, t, rates)}
+    given = replace(run, odometry=table("odometry.csv", **columns))
+    assert without_pose_delay(given, IcrEkfConfig()) == (given, ())
 
 
 def test_without_a_gyroscope_late_poses_cannot_be_told_from_early_treads():
