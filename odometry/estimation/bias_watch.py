@@ -41,6 +41,8 @@ class BiasWatch(NamedTuple):
         How many of them belong to the bias that is believed.
     posed_s : float
         Stamp of the last pose that was accepted.
+    walk : float
+        Factor on the noise of the bias's random walk: above 1 once a drift was found.
     """
 
     turned_rad: float = 0.0
@@ -50,6 +52,7 @@ class BiasWatch(NamedTuple):
     by_treads_rad_s: tuple[float, ...] = ()
     since: int = 0
     posed_s: float = -math.inf
+    walk: float = 1.0
 
 
 def watched(
@@ -67,21 +70,23 @@ def watched(
     posed : bool
         Whether a pose was accepted at its end.
     """
-    turned_rad, past_treads_rad, lasts_s, biases, by_treads, since, posed_s = watch
+    turned_rad, past_treads_rad, lasts_s, biases, by_treads, since, posed_s, walk = watch
     posed_s = stamp_s if posed else posed_s
     by_gyroscope, by_poses, of_treads = rates_rad_s
     if math.isnan(by_gyroscope + of_treads) or stamp_s - posed_s > POSE_S:
-        return BiasWatch(0.0, 0.0, 0.0, biases, by_treads, since, posed_s)
+        return BiasWatch(0.0, 0.0, 0.0, biases, by_treads, since, posed_s, walk)
     turned_rad += (by_gyroscope - by_poses) * step_s
     past_treads_rad += (by_gyroscope - of_treads) * step_s
     lasts_s += step_s
     if lasts_s < SPAN_S:
-        return BiasWatch(turned_rad, past_treads_rad, lasts_s, biases, by_treads, since, posed_s)
+        sums = turned_rad, past_treads_rad, lasts_s
+        return BiasWatch(*sums, biases, by_treads, since, posed_s, walk)
     return BiasWatch(
         biases_rad_s=(*biases, turned_rad / lasts_s)[-SPANS:],
         by_treads_rad_s=(*by_treads, past_treads_rad / lasts_s)[-SPANS:],
         since=min(since + 1, SPANS),
         posed_s=posed_s,
+        walk=walk,
     )
 
 
@@ -105,11 +110,15 @@ def told_bias(watch: BiasWatch, believed_rad_s: float) -> tuple[float, float] | 
         least = max(SIGMAS * sigma, LEAST_RAD / (count * SPAN_S))
         halves = biases[-count:].reshape(2, -1).mean(axis=1) - believed_rad_s
         sure = abs(halves.sum()) > 2 * least and np.abs(halves).min() > least / 2
-        past_treads = sum(watch.by_treads_rad_s[-count:]) / count
-        treads_agree = (past_treads - believed_rad_s) / (bias - believed_rad_s) > TREADS_SHARE
-        if sure and halves.prod() > 0 and treads_agree:
+        if sure and halves.prod() > 0 and treads_agree(watch, count, bias, believed_rad_s):
             return bias, sigma
     return None
+
+
+def treads_agree(watch: BiasWatch, count: int, bias_rad_s: float, believed_rad_s: float) -> bool:
+    """Whether the treads show in the last spans that the bias is another than believed."""
+    past_treads = sum(watch.by_treads_rad_s[-count:]) / count
+    return (past_treads - believed_rad_s) / (bias_rad_s - believed_rad_s) > TREADS_SHARE
 
 
 def changed(belief: Gaussian, told: tuple[float, float]) -> Gaussian:

@@ -110,6 +110,7 @@ class Prediction:
             slip_scale=estimate.scale.slip,
             by_gyroscope=by_gyroscope,
             in_gap=frame.in_gap,
+            bias_walk=1.0 if estimate.watch is None else estimate.watch.bias.walk,
         )
         covariance = predicted(estimate.covariance, jacobian, half_noise)
         if not by_gyroscope or step_s == 0 or frame.in_gap:

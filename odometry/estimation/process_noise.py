@@ -42,6 +42,7 @@ class ProcessNoise:
         slip_scale: float,
         by_gyroscope: bool,
         in_gap: bool,
+        bias_walk: float = 1.0,
     ) -> FloatArray:
         """Covariance (9, 9) that half of a step adds.
 
@@ -54,6 +55,8 @@ class ProcessNoise:
             Factor on the variance of slip.
         by_gyroscope, in_gap : bool
             Whether the gyroscope turns the robot, and whether the tread speeds are not known.
+        bias_walk : float
+            Factor on the noise of the random walk of the gyroscope's bias.
         """
         left, right = tread_speeds.tolist()
         travel_per_s = (abs(left) + abs(right)) / 2 * slip_scale
@@ -66,4 +69,6 @@ class ProcessNoise:
         covariance = self._density * half_s
         covariance[X, X] = covariance[Y, Y] = position * half_s
         covariance[YAW, YAW] = yaw * half_s
+        if bias_walk != 1.0:
+            covariance[GYRO_BIAS, GYRO_BIAS] *= bias_walk**2
         return covariance

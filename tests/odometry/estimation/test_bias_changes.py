@@ -1,13 +1,19 @@
 """A gyroscope whose bias steps or drifts: poses tell it, the open-loop odometer turns by it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from odometry.estimation.bias_drift import drifted_bias
 from odometry.estimation.bias_watch import BiasWatch, Rates, told_bias, watched
+from odometry.estimation.gyroscope_hold import GyroscopeHold
+from odometry.estimation.icr_ekf import IcrEkf
 from odometry.geometry.angles import wrap
 from odometry.replay import Replay
 from tests.odometry.estimation.sensor_drives import (
     STEP_S,
+    WIDTH,
     drive,
     estimates_of,
     frames_of,
@@ -45,6 +51,45 @@ def test_a_step_is_found_within_seconds(driven, rng):
     assert estimates[-1].gyro_bias_rad_s == pytest.approx(STEP_RAD_S, abs=0.01)
     turned = wrap(Replay(tuple(estimates)).odometer().poses[-1, 2] - driven.poses[-1, 2])
     assert abs(turned) < 8 * STEP_RAD_S  # what it turned wrongly until then; the drive lasts 40 s
+
+
+def drifted(driven, by_rad_s):
+    return driven.yaw_rates_rad_s + by_rad_s * driven.stamps_s / driven.stamps_s[-1]
+
+
+@pytest.mark.parametrize("by_rad_s", [-0.03, 0.03])
+def test_a_slow_drift_is_followed(by_rad_s, rng):
+    driven = drive(240.0)
+    poses = noisy_poses(driven, rng, yaw_rad=0.003)
+    estimates = estimated(driven, drifted(driven, by_rad_s), poses)
+    assert len(changes(estimates)) >= 1
+    off = [e.gyro_bias_rad_s - by_rad_s * e.stamp_s / 240.0 for e in estimates[1200:]]
+    assert np.abs(off).max() < 0.004  # the walk of the settings alone lags by 0.010
+
+
+def test_a_drift_is_told_once_it_is_surer_than_the_scatter_of_spans():
+    drift = tuple(0.015 * k / 48 + 0.002 * (-1) ** k for k in range(48))
+    watch = BiasWatch(biases_rad_s=drift, by_treads_rad_s=drift, since=48)
+    (bias, sigma), walk = drifted_bias(watch, 0.0)
+    assert bias == pytest.approx(0.0138, abs=0.001)  # of the last 8 spans
+    assert 0 < sigma < 0.001
+    assert walk == 10.0
+    assert drifted_bias(watch._replace(since=15), 0.0) is None
+    assert drifted_bias(watch, 0.012) is None
+    noisy = tuple(bias + 0.03 * (-1) ** k for k, bias in enumerate(drift))
+    assert drifted_bias(watch._replace(biases_rad_s=noisy), 0.0) is None
+
+
+def test_the_walk_that_a_drift_set_outlives_what_is_forgotten(driven, rng):
+    frames = frames_of(driven, poses=noisy_poses(driven, rng), yaw_rates=driven.yaw_rates_rad_s)
+    start = estimates_of(frames[:BEGIN])[-1]
+    drifting = start.watch._replace(bias=BiasWatch(walk=3.0))
+    same = GyroscopeHold(0.1, 0.0, 0.0, (start.mean, start.covariance), "a", is_found=True)
+    frame = replace(frames[BEGIN], yaw_rate_rad_s=0.1)
+    held = replace(start, watch=drifting._replace(hold=same))
+    after = IcrEkf(WIDTH).step(held, frame, "a")
+    assert after.watch.is_gyroscope_held
+    assert after.watch.bias == BiasWatch(walk=3.0)
 
 
 def test_a_step_is_found_by_positions_alone(driven, rng):
