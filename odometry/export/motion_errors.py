@@ -61,18 +61,18 @@ class MotionErrors:
         along, yaw = translation_m_per_m / sqrt(pi / 2), rotation_rad_per_m * sqrt(pi / 2)
         return cls(along, yaw, horizon_m, source)
 
-    def twist_variances(self, pace: Pace, leftover_m: tuple[float, float]) -> FloatArray:
+    def twist_variances(self, pace: Pace, left_over_m: tuple[float, float]) -> FloatArray:
         """Variances (3,) of v_x, v_y [m^2/s^2] and omega [rad^2/s^2] at a pace.
 
         Parameters
         ----------
         pace : Pace
-        leftover_m : (2,)
+        left_over_m : (2,)
             Of v_x and v_y over the yaw rate, where the odometry has no such term: the middle of
             the ICRs and `x_icr`.
         """
         own = np.array([self.along_m_per_m, self.along_m_per_m, self.yaw_rad_per_m])
-        left_over = np.array([*leftover_m, 0.0]) * pace.yaw_rate_rad_s
+        left_over = np.array([*left_over_m, 0.0]) * pace.yaw_rate_rad_s
         return np.asarray((own * pace.wheel_speed_m_s) ** 2 + left_over**2)
 
     def pose_variances_per_s(self, pace: Pace) -> FloatArray:

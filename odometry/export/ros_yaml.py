@@ -73,7 +73,24 @@ def _controller(
     yield f"    wheel_separation_multiplier: {_with_interval(drive.separation)}"
     yield f"    left_wheel_radius_multiplier: {_with_interval(drive.left)}"
     yield f"    right_wheel_radius_multiplier: {_with_interval(drive.right)}"
-    x, y = drive.x_icr_m, drive.y_middle_m
+    yield from _left_over(drive.x_icr_m, drive.y_middle_m)
+    if errors is None or pace is None:
+        yield "    # twist_covariance_diagonal is left out: nothing told how far the motion errs."
+        yield "    # Export a folder that `run` wrote with poses, or use `identify --ros`."
+        return
+    left_over_m = (drive.y_middle_m.value, drive.x_icr_m.value)
+    v_x, v_y, omega = errors.twist_variances(pace, left_over_m).tolist()
+    diagonal = (v_x, v_y, NOT_MEASURED, NOT_MEASURED, NOT_MEASURED, omega)
+    yield f"    # v_x, v_y [m^2/s^2] and yaw rate [rad^2/s^2] {_at(pace)}, with what the"
+    yield f"    # multipliers leave out; {_words(errors.source)}"
+    yield f"    twist_covariance_diagonal: [{', '.join(map(_number, diagonal))}]"
+
+
+def _left_over(x: Stated, y: Stated) -> Iterable[str]:
+    """What the controller's numbers have no place for."""
+    if x.value == y.value == 0:
+        yield "    # The model supposes x_icr = 0 and symmetric ICRs, as this controller does."
+        return
     yield "    # These numbers have no place for v_y = -x_icr omega and for y_middle omega in v_x:"
     yield f"    #   x_icr = {_number(x.value)} m, {_interval(x)}"
     yield f"    #   y_middle = (y_left + y_right) / 2 = {_number(y.value)} m, {_interval(y)}"
@@ -82,15 +99,6 @@ def _controller(
         f"    #   ros2 run tf2_ros static_transform_publisher --x {_number(-x.value)} "
         f"--y {_number(-y.value)} --frame-id icr_link --child-frame-id base_link"
     )
-    if errors is None or pace is None:
-        yield "    # twist_covariance_diagonal is left out: nothing told how far the motion errs."
-        yield "    # Export a folder that `run` wrote with poses, or use `identify --ros`."
-        return
-    v_x, v_y, omega = errors.twist_variances(pace, (y.value, x.value)).tolist()
-    diagonal = (v_x, v_y, NOT_MEASURED, NOT_MEASURED, NOT_MEASURED, omega)
-    yield f"    # v_x, v_y [m^2/s^2] and yaw rate [rad^2/s^2] {_at(pace)}, with what the"
-    yield f"    # multipliers leave out; {_words(errors.source)}"
-    yield f"    twist_covariance_diagonal: [{', '.join(map(_number, diagonal))}]"
 
 
 def _filter(errors: MotionErrors | None, pace: Pace | None) -> Iterable[str]:

@@ -1,12 +1,9 @@
 """A trajectory from elsewhere as the poses or the truth of a run folder."""
 
-from pathlib import Path
-
 import numpy as np
 
 from odometry.arrays import AnyArray
 from odometry.errors import TrajectoryError
-from odometry.io.csv_table import write_csv_table
 from odometry.spatial_trajectory import SpatialTrajectory
 from odometry.table import Table
 
@@ -26,27 +23,21 @@ def pose_columns(trajectory: SpatialTrajectory) -> dict[str, AnyArray]:
     }
 
 
-def add_poses(file: Path, trajectory: SpatialTrajectory, odometry: Table) -> int:
-    """Write pose.csv or truth.csv of a run folder; how many poses lie within its odometry.
+def poses_within(trajectory: SpatialTrajectory, odometry: Table) -> int:
+    """How many poses lie within the odometry of a run.
 
     Raises
     ------
     TrajectoryError
         If none does: other clocks, or another run.
     """
-    within = int(
-        np.sum(
-            (trajectory.stamps_s >= odometry.stamps_s[0])
-            & (trajectory.stamps_s <= odometry.stamps_s[-1])
-        )
-    )
+    first_s, last_s = odometry.stamps_s[[0, -1]]
+    within = int(np.sum((trajectory.stamps_s >= first_s) & (trajectory.stamps_s <= last_s)))
     if not within:
         raise TrajectoryError(
             f"the poses are of {trajectory.stamps_s[0]:.3f} to {trajectory.stamps_s[-1]:.3f} s, "
-            f"{odometry.file} of {odometry.stamps_s[0]:.3f} to {odometry.stamps_s[-1]:.3f} s; "
-            "expected stamps of one clock"
+            f"{odometry.file} of {first_s:.3f} to {last_s:.3f} s; expected stamps of one clock"
         )
-    write_csv_table(file, pose_columns(trajectory))
     return within
 
 

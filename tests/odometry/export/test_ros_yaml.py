@@ -11,7 +11,7 @@ from odometry.export.drive_numbers import drive_numbers
 from odometry.export.motion_errors import MotionErrors, Pace
 from odometry.export.ros_yaml import ros_yaml
 from odometry.export.source import read_export_source
-from odometry.parameters import ParameterSet, write_parameters
+from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
 from tests.odometry.export.result_folder import TABLE, YAW_RATE_RAD_S, write_results
 
 ruamel = pytest.importorskip("ruamel.yaml")
@@ -82,6 +82,15 @@ def test_what_cannot_be_expressed_is_said(sand):
     assert "twist_covariance_diagonal is left out" in text
     assert "ekf_filter_node is left out" in text
     assert set(parsed(text)) == {"diff_drive_controller", "slip_by_terrain"}
+
+
+def test_a_symmetric_model_has_nothing_left_over():
+    table = TerrainParameters("icr_symmetric", {"alpha": 0.9, "b_hat": 1.1})
+    symmetric = drive_numbers("sand", table, 0.6)
+    text = ros_yaml(symmetric, [symmetric])
+    assert "supposes x_icr = 0" in text
+    assert "icr_link" not in text
+    assert "# not identified" in text
 
 
 @pytest.mark.parametrize("name", ['a "b": [c', "tab\tand\nline", "ä#: x", "\\", "on"])
