@@ -28,6 +28,10 @@ RECORDING_NAMES = tuple(f"{name}.csv" for name in ("odometry", "pose", "truth", 
 NAMES: dict[str, tuple[str, ...]] = {
     "run": RUN_NAMES,
     "demo": (*RUN_NAMES, "terrain.model", *(f"without_vision/{name}" for name in RUN_NAMES)),
+    "camera": (
+        *("camera.toml", "camera_before.toml", "figures/terrain_*.png"),
+        *(f"figures/{name}.png" for name in ("points", "flow", "chessboard")),
+    ),
     "gap": ("gap.json", "model.toml", "report.html", "figures/gap_*.png"),
     "compare": (
         *("comparison.json", "windows.csv", "training_horizons.csv", "report.html"),

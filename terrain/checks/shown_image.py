@@ -1,13 +1,15 @@
-"""The one image of a run that is drawn, and what the camera says of the ground there."""
+"""The images of a run that are drawn, and what the camera says of the ground there."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.arrays import ByteImage
+from odometry.arrays import ByteImage, FloatArray
 from odometry.run import Run
 from terrain.camera import Camera
 from terrain.checks.looks import image_rows, motion_at, seen_region
+from terrain.checks.sampled import spread
 from terrain.errors import CameraError, ImageError
 from terrain.images import read_image
 from terrain.region import Region
@@ -39,27 +41,71 @@ class ShownImage:
 
 def shown_image(run: Run) -> ShownImage | None:
     """An image in the middle of the motion in which the region ahead is seen, else any one."""
-    stamps_s = image_rows(run)
-    if run.images is None or not len(stamps_s):
-        return None
     camera, reason = _camera(run)
-    twists, speeds_m_s = motion_at(run, stamps_s)
-    regions: list[Region | str] = [
-        seen_region(camera, run.robot, twist, speed) if camera is not None else reason
-        for twist, speed in zip(twists, speeds_m_s, strict=True)
-    ]
+    stamps_s = image_rows(run)
+    regions = _regions(run, stamps_s, camera, reason)
     by_middle = np.argsort(np.abs(np.arange(len(stamps_s)) - len(stamps_s) / 2), kind="stable")
     best_first = sorted(by_middle, key=lambda place: isinstance(regions[place], str))
     for place in best_first[:TRIES]:
-        stamp_s = float(stamps_s[place])
-        row = int(np.searchsorted(run.images.stamps_s, stamp_s))
-        try:
-            image = read_image(run.folder / str(run.images["file"][row]))
-        except ImageError:
-            continue
-        run_time_s = stamp_s - float(run.odometry.stamps_s[0])
-        return _shown(run_time_s, image, camera, regions[place])
+        image = _image_at(run, float(stamps_s[place]))
+        if image is not None:
+            return _shown(_run_time_s(run, stamps_s[place]), image, camera, regions[place])
     return None
+
+
+def shown_images(
+    run: Run, camera: Camera, most: int, region_at: Callable[[FloatArray, float], Region | str]
+) -> list[ShownImage]:
+    """Up to so many images spread over the motion of a run, or over all of it where it stands.
+
+    Parameters
+    ----------
+    run : Run
+    camera : Camera
+    most : int
+    region_at : callable
+        The region ahead by a twist (3,) and a mean tread speed, or why there is none.
+    """
+    stamps_s = image_rows(run)
+    if not len(stamps_s) and run.images is not None:
+        stamps_s = run.images.stamps_s
+    stamps_s = stamps_s[spread(len(stamps_s), most)] if len(stamps_s) else stamps_s
+    found = []
+    for stamp_s, twist, speed in zip(stamps_s, *motion_at(run, stamps_s), strict=True):
+        image, run_time_s = _image_at(run, float(stamp_s)), _run_time_s(run, stamp_s)
+        if image is None:
+            continue
+        camera.check_size(image)
+        region = region_at(twist, float(speed))
+        if isinstance(region, str):
+            found.append(ShownImage(run_time_s, image, camera, None, region))
+        else:
+            found.append(ShownImage(run_time_s, image, camera, region, ""))
+    return found
+
+
+def _regions(
+    run: Run, stamps_s: FloatArray, camera: Camera | None, reason: str
+) -> list[Region | str]:
+    twists, speeds_m_s = motion_at(run, stamps_s)
+    return [
+        seen_region(camera, run.robot, twist, speed) if camera is not None else reason
+        for twist, speed in zip(twists, speeds_m_s, strict=True)
+    ]
+
+
+def _image_at(run: Run, stamp_s: float) -> ByteImage | None:
+    if run.images is None:
+        return None
+    row = int(np.searchsorted(run.images.stamps_s, stamp_s))
+    try:
+        return read_image(run.folder / str(run.images["file"][row]))
+    except ImageError:
+        return None
+
+
+def _run_time_s(run: Run, stamp_s: float) -> float:
+    return float(stamp_s) - float(run.odometry.stamps_s[0])
 
 
 def _shown(

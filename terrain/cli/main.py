@@ -12,6 +12,7 @@ from terrain.cli.interrupt import Interrupted, raise_on_signals
 
 VERBS = {
     "check": "What is odd about recordings, before anything is fitted to them.",
+    "camera": "What the camera sees of the terrain; calibrate its lens and mount.",
     "label": "Cut labelled patches from recordings.",
     "train": "Train a terrain classifier on labelled patches.",
     "classify": "Name the terrain of images.",

@@ -17,14 +17,8 @@ from odometry.report.check_plots import (
 )
 from odometry.report.figure import save_figure
 from odometry.run import Run
-from terrain.checks.shown_image import ShownImage, shown_image
-from terrain.report.ground_plots import (
-    draw_footprint,
-    draw_ground_grid,
-    draw_region_ahead,
-    ground_legend,
-)
-from terrain.report.plots import plot_image
+from terrain.checks.shown_image import shown_image
+from terrain.report.ground_picture import plot_ground
 
 _WIDTH_IN = 10.0
 _SIGNALS_IN, _PLACES_IN = 5.4, 3.6  # height of the panels over time, and of path and image
@@ -70,7 +64,7 @@ def write_check_figure(report: CheckReport, file: Path) -> Path | None:
             middle = 0.48 if shown is not None else _RIGHT
             plot_measured_path(axes(_LEFT, 0.5, middle, 2.8), evidence, marks)
         if shown is not None:
-            _draw_ground(axes(0.53, 0.5, _RIGHT, 2.8), run, shown)
+            plot_ground(axes(0.53, 0.5, _RIGHT, 2.8), run.robot, shown)
 
     return save_figure(file, (_WIDTH_IN, height_in), draw, source=picture_source("check"))
 
@@ -82,22 +76,6 @@ def _write_findings(figure: Figure, title: str, lines: list[str]) -> None:
     for number, line in enumerate(lines):
         figure.text(_LEFT, 1 - (0.5 + _LINE_IN * number) / height_in, line, fontsize=8.5,
                     va="center", parse_math=False)  # fmt: skip
-
-
-def _draw_ground(axes: Axes, run: Run, shown: ShownImage) -> None:
-    ahead = f"region {shown.region.distance_ahead_m:.2g} m ahead" if shown.region else shown.reason
-    plot_image(axes, shown.image, "")
-    axes.set_title(f"image at {shown.run_time_s:.1f} s: {ahead}", fontsize=9.5, loc="left",
-                   parse_math=False)  # fmt: skip
-    if shown.camera is None:
-        return
-    height, width = shown.image.shape[:2]
-    step_m = draw_ground_grid(axes, shown.camera, shown.region)
-    draw_footprint(axes, shown.camera, run.robot)
-    if shown.region is not None:
-        draw_region_ahead(axes, shown.camera, shown.region)
-    axes.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5))
-    ground_legend(axes, step_m)
 
 
 def _title(report: CheckReport) -> str:

@@ -1,0 +1,119 @@
+"""Search the mount under which the terrain flows as the odometer says."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray
+from terrain.calibration.ground_flow import GroundFlow
+
+FEATURE_PX = 0.5  # scale of Cauchy's loss: features that are farther off count ever less
+STEPS = 40
+DIFFERENCE = 1e-6  # of derivatives [m, rad]
+AT_REST = 1e-7  # of a change of the mount [m, rad]
+MOST_DAMPING = 1e6
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """What fits best.
+
+    Attributes
+    ----------
+    values : (4,)
+        z [m], roll, pitch, yaw [rad] of the mount.
+    motions : (P, 3)
+        What was added to the steps of the odometer.
+    residuals_px : (N, 2)
+        Of the features; NaN where the mount sees no terrain.
+    """
+
+    values: FloatArray
+    motions: FloatArray
+    residuals_px: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class _Blocks:
+    """J^T W J and J^T W r: mount (F, F), (F,); both (P, F, 3); steps (P, 3, 3), (P, 3)."""
+
+    mount: FloatArray
+    both: FloatArray
+    step: FloatArray
+    mount_right: FloatArray
+    step_right: FloatArray
+
+
+def solve_mount(
+    flow: GroundFlow, start: FloatArray, free: BoolArray, feature_px: float = FEATURE_PX
+) -> Solution:
+    """Search the mount, and small errors of each step, that make the flow agree.
+
+    Gauss-Newton with Levenberg's damping on Cauchy's loss by reweighting. The errors of steps, of
+    which each concerns one pair of images, are eliminated (Schur complement).
+
+    Parameters
+    ----------
+    flow : GroundFlow
+    start : (4,)
+        z, roll, pitch, yaw.
+    free : (4,)
+        Which of them are searched.
+    feature_px : float
+        Scale of the loss.
+    """
+    values, motions = start.copy(), np.zeros_like(flow.tracks.steps)
+    damping, cost = 1e-3, flow.cost(values, motions, feature_px)
+    for _ in range(STEPS):
+        blocks = _blocks(flow, values, motions, free, feature_px)
+        change = np.zeros(0)
+        while damping < MOST_DAMPING:
+            change, changes = _change(blocks, flow.step_sigmas, motions, damping)
+            tried, tried_motions = values.copy(), motions + changes
+            tried[free] += change
+            new_cost = flow.cost(tried, tried_motions, feature_px) if tried[0] > 0 else np.inf
+            if new_cost <= cost:
+                values, motions, cost, damping = tried, tried_motions, new_cost, damping / 5
+                break
+            damping *= 5
+        if damping >= MOST_DAMPING or np.abs(change).max(initial=0.0) < AT_REST:
+            break
+    return Solution(values, motions, flow.residuals(values, flow.tracks.steps + motions))
+
+
+def _blocks(
+    flow: GroundFlow, values: FloatArray, motions: FloatArray, free: BoolArray, feature_px: float
+) -> _Blocks:
+    steps, pairs = flow.tracks.steps + motions, flow.tracks.pair
+    here = flow.residuals(values, steps)
+    columns = [flow.residuals(values + DIFFERENCE * axis, steps) for axis in np.eye(4)[free]]
+    columns += [flow.residuals(values, steps + DIFFERENCE * axis) for axis in np.eye(3)]
+    slopes = [(column - here) / DIFFERENCE for column in columns]
+    rows = np.stack([*slopes, here], axis=-1) / feature_px
+    weights = 1 / (1 + (rows[..., -1] ** 2).sum(axis=1))  # Cauchy's
+    rows = np.nan_to_num(rows * np.sqrt(weights)[:, None, None])
+    summed = np.zeros((len(steps), rows.shape[2], rows.shape[2]))
+    np.add.at(summed, pairs, np.einsum("nki,nkj->nij", rows, rows))
+    mount, step = slice(0, -4), slice(-4, -1)
+    return _Blocks(
+        summed[:, mount, mount].sum(axis=0),
+        summed[:, mount, step],
+        summed[:, step, step],
+        summed[:, mount, -1].sum(axis=0),
+        summed[:, step, -1],
+    )
+
+
+def _change(
+    blocks: _Blocks, sigmas: FloatArray, motions: FloatArray, damping: float
+) -> tuple[FloatArray, FloatArray]:
+    """The change of the mount (F,) and of the steps (P, 3)."""
+    known = blocks.step + np.eye(3) * (1 / sigmas**2)[:, None, :]
+    right = blocks.step_right + motions / sigmas**2
+    eliminated = blocks.both @ np.linalg.inv(known)
+    left = blocks.mount - (eliminated @ np.swapaxes(blocks.both, 1, 2)).sum(axis=0)
+    left = left + damping * np.diag(np.diag(blocks.mount) + 1e-9)
+    mount_right = blocks.mount_right - (eliminated @ right[..., None]).sum(axis=0)[:, 0]
+    change = -np.linalg.solve(left, mount_right)
+    shifted = right + np.einsum("pfk,f->pk", blocks.both, change)
+    return change, np.asarray(-np.linalg.solve(known, shifted[..., None])[..., 0])

@@ -1,0 +1,100 @@
+"""Where `run` would look when the robot drives straight on, and how large a metre is there."""
+
+from dataclasses import dataclass, replace
+from math import inf
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.run import Robot
+from terrain.camera import Camera
+from terrain.classification.classifier import Classifier
+from terrain.rectangle import Rectangle
+from terrain.region import Region, RegionConfig, predict_region
+from terrain.suited import coarsest_m, unsuited
+
+Motion = tuple[FloatArray, float]  # body twist (3,) and mean tread speed [m/s]
+STRAIGHT_ON: Motion = (np.array([1.0, 0.0, 0.0]), 1.0)
+WHERE_RUN_LOOKS = RegionConfig()
+WHOLE = replace(WHERE_RUN_LOOKS, least_share=1.0)
+NEAREST_M, FARTHEST_M, STEP_M = -2.0, 20.0, 0.01
+
+
+@dataclass(frozen=True)
+class LookAhead:
+    """The region ahead of a robot that drives straight on.
+
+    Attributes
+    ----------
+    region : Region
+    whole : bool
+        Whether the image shows all of the footprint there, not a part.
+    across_px, along_px : float
+        A metre at its middle, across and along the way, in pixels.
+    """
+
+    region: Region
+    whole: bool
+    across_px: float
+    along_px: float
+
+
+def look_ahead(
+    camera: Camera, robot: Robot, classifier: Classifier | None = None
+) -> LookAhead | str:
+    """The region that `run` would classify, or why there is none.
+
+    Parameters
+    ----------
+    camera : Camera
+    robot : Robot
+    classifier : Classifier, optional
+        Which looks no farther than the image is fine enough for it.
+    """
+    region = run_region(camera, robot, classifier)
+    if isinstance(region, str):
+        return region
+    whole = run_region(camera, robot, classifier, config=WHOLE)
+    across_px, along_px = metre_px(camera, region.place)
+    seen_whole = (
+        not isinstance(whole, str)
+        and abs(whole.distance_ahead_m - region.distance_ahead_m) < 1e-9
+        and whole.rectangle == region.rectangle
+    )
+    return LookAhead(region, seen_whole, across_px, along_px)
+
+
+def metre_px(camera: Camera, place_m: FloatArray) -> tuple[float, float]:
+    """Length of a metre in the image [px] at a place (2,): across (y) and along the way (x)."""
+    step = 1e-4
+    here = camera.ground_to_pixels(place_m)
+    by_y, by_x = (
+        float(np.linalg.norm(camera.ground_to_pixels(place_m + step * axis) - here)) / step
+        for axis in (np.array([0.0, 1.0]), np.array([1.0, 0.0]))
+    )
+    return by_y, by_x
+
+
+def nearest_seen_m(camera: Camera) -> float | None:
+    """X of the nearest terrain straight ahead that the image shows, None where it shows none."""
+    x = np.arange(NEAREST_M, FARTHEST_M, STEP_M)
+    seen = camera.in_image(camera.ground_to_pixels(np.stack([x, 0 * x], axis=-1)))
+    return float(x[seen.argmax()]) if seen.any() else None
+
+
+def run_region(
+    camera: Camera,
+    robot: Robot,
+    classifier: Classifier | None,
+    motion: Motion = STRAIGHT_ON,
+    config: RegionConfig = WHERE_RUN_LOOKS,
+) -> Region | str:
+    """The region that `run` would classify in a motion, or why there is none."""
+
+    def misfit(rectangle: Rectangle) -> str:
+        if classifier is None:
+            return ""
+        return unsuited(classifier, camera, rectangle, config.coarsest)
+
+    coarsest = inf if classifier is None else coarsest_m(classifier, config.coarsest)
+    return predict_region(robot, camera, *motion, config, coarsest_m=coarsest, unsuited=misfit)

@@ -1,0 +1,122 @@
+"""The mount from a run, against tracks and images made with a mount that is known."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from odometry.run import Run
+from terrain.calibration.errors import CalibrationError
+from terrain.calibration.mount_from_motion import mount_from_motion
+from terrain.calibration.mount_sources import mount_of_motion
+from terrain.calibration.tracks import Tracks
+from terrain.camera_files.calibration import Lens
+from tests.terrain.calibration.rendered import OPTICAL, rotation
+
+LENS = Lens.of((640, 480), [[460.0, 0, 319.5], [0, 460.0, 239.5], [0, 0, 1]])
+MOUNT = [0.2, 0.05, 0.8, 0.03, 0.5, -0.04]
+
+
+def tracks(mount, rng, *, pairs=24, noise_px=0.0, turn=0.05, outliers=0.0):
+    """Points of the terrain in view, before and after steps of the robot."""
+    mount = np.array(mount)
+    optical = rotation(*mount[3:]) @ OPTICAL
+    befores, afters, of_pair, steps = [], [], [], []
+    for pair in range(pairs):
+        rays = rng.uniform([-0.65, -0.5], [0.65, 0.5], (60, 2))
+        robot = np.column_stack([rays, np.ones(60)]) @ optical.T
+        rays, robot = rays[robot[:, 2] < -0.1], robot[robot[:, 2] < -0.1]
+        ground = mount[:3] + robot * (mount[2] / -robot[:, 2])[:, None]
+        step = np.array([rng.uniform(0.08, 0.16), rng.normal(0, 0.002), rng.normal(0, turn)])
+        seen = ((ground - [*step[:2], 0]) @ rotation(0, 0, step[2]) - mount[:3]) @ optical
+        after = seen[:, :2] / seen[:, 2:]
+        wild = rng.random(len(after)) < outliers
+        after[wild] += rng.uniform(-0.1, 0.1, (np.count_nonzero(wild), 2))
+        befores.append(rays)
+        afters.append(after + rng.normal(0, noise_px / 460, after.shape))
+        of_pair.append(np.full(len(rays), pair))
+        steps.append(step)
+    return Tracks(
+        np.concatenate(befores), np.concatenate(afters), np.concatenate(of_pair), np.array(steps),
+        pairs,
+    )  # fmt: skip
+
+
+@settings(max_examples=8)
+@given(
+    st.floats(0.25, 2.0), st.floats(-0.15, 0.15), st.floats(0.1, 1.3),
+    st.sampled_from([0.0, np.pi - 0.1, 0.2]),
+)  # fmt: skip
+def test_exact_tracks_give_the_exact_mount(z, roll, pitch, yaw):
+    """Cameras that look ahead, and one that looks back, low and high."""
+    mount = np.array([0.2, 0.05, z, roll, pitch, yaw])
+    exact = tracks(mount, np.random.default_rng(1))
+    found, _ = mount_from_motion(exact, LENS, mount * [1, 1, 0, 0, 0, 0])
+    np.testing.assert_allclose(found.mount, mount, atol=1e-4)
+    assert found.agrees.all()
+
+
+def test_noise_and_outliers():
+    """A third of the features on things that move; steps wrong by 2 %."""
+    rng = np.random.default_rng(2)
+    made = tracks(MOUNT, rng, pairs=60, noise_px=0.4, outliers=0.33)
+    steps = made.steps * (1 + rng.normal(0, 0.02, made.steps.shape))
+    made = Tracks(made.before, made.after, made.pair, steps, made.tried)
+    found, _ = mount_from_motion(made, LENS, np.array(MOUNT) * [1, 1, 0, 0, 0, 0])
+    error = np.abs(found.mount - MOUNT)
+    assert np.degrees(error[3:5]).max() < 0.15
+    assert error[2] < 0.01
+    assert (found.half_interval[2:] < [0.02, 0.01, 0.01, 0.02]).all()
+    assert np.isnan(found.half_interval[:2]).all()
+    assert 0.6 < found.agrees.mean() < 0.75
+
+
+def test_features_that_do_not_move_as_terrain():
+    rng = np.random.default_rng(3)
+    made = tracks(MOUNT, rng)
+    wild = Tracks(made.before, rng.uniform(-0.5, 0.5, made.after.shape), made.pair, made.steps, 24)
+    with pytest.raises(CalibrationError, match="% of the features move as terrain would"):
+        mount_from_motion(wild, LENS)
+
+
+def test_too_few_pairs():
+    with pytest.raises(CalibrationError, match=r"10 pairs of images .* at least 16"):
+        mount_from_motion(tracks(MOUNT, np.random.default_rng(1), pairs=10), LENS)
+
+
+def test_too_little_texture():
+    made = tracks(MOUNT, np.random.default_rng(1), pairs=10)
+    blind = Tracks(made.before, made.after, made.pair, made.steps, 80)
+    with pytest.raises(CalibrationError, match=r"10 of 80 pairs .* too little texture"):
+        mount_from_motion(blind, LENS)
+
+
+def test_a_narrow_view_with_noise_tells_no_pitch():
+    """All features within a degree, a pixel of noise each."""
+    rng = np.random.default_rng(4)
+    made = tracks(MOUNT, rng)
+    near = (np.abs(made.before) < 0.02).all(axis=1)
+    few = Tracks(
+        made.before[near], made.after[near] + rng.normal(0, 1.5 / 460, made.after[near].shape),
+        made.pair[near], made.steps, 24,
+    )  # fmt: skip
+    with pytest.raises(CalibrationError, match="cannot"):
+        mount_from_motion(few, LENS)
+
+
+def test_rendered_images(across_run, world):
+    """Images of 160 x 120 pixels over two terrains: pitch within half a degree."""
+    run = Run.read(across_run)
+    camera = world.camera
+    lens = Lens.of(camera["image_size"], camera["matrix"], camera["distortion"])
+    found = mount_of_motion(run, lens, np.array(camera["mount"]) * [1, 1, 0, 0, 0, 0])
+    error = np.abs(found.fit.mount - camera["mount"])
+    assert np.degrees(error[3:5]).max() < 0.5
+    assert error[2] < 0.02
+    assert found.fit.rms_px < 1.0
+
+
+def test_a_run_without_images(curvy_run, world):
+    lens = Lens.of(world.camera["image_size"], world.camera["matrix"])
+    with pytest.raises(CalibrationError, match="no images"):
+        mount_of_motion(Run.read(curvy_run), lens)
