@@ -4,8 +4,8 @@ from itertools import islice
 from pathlib import Path
 
 from odometry.checks.finding import Finding, Level
+from odometry.io.bag_names import import_command, is_named_bag
 
-BAGS = (".bag", ".mcap", ".db3")
 MOST_ENTRIES = 1000  # of a folder that are looked at
 NEEDED = "a run folder holds run.toml and odometry.csv"
 
@@ -15,20 +15,18 @@ def no_run_folder(folder: Path) -> Finding | None:
     if not folder.exists():
         return _finding(f"{folder}: there is no such folder", "The path is misspelt or was moved")
     if not folder.is_dir():
-        bag = folder.suffix.lower() in BAGS
         nothing = _finding(
             f"{folder}: this is a file; expected a run folder", f"This is no run folder: {NEEDED}"
         )
-        return _bag(folder) if bag else nothing
+        return _bag(folder) if is_named_bag(folder) else nothing
     if (folder / "run.toml").exists() or (folder / "odometry.csv").exists():
         return None  # what is missing is said by the error of reading
     return _without_run(folder, sorted(islice(folder.iterdir(), MOST_ENTRIES)))
 
 
 def _without_run(folder: Path, entries: list[Path]) -> Finding:
-    bags = [entry for entry in entries if entry.suffix.lower() in BAGS]
-    if bags:
-        return _bag(bags[0])
+    if any(map(is_named_bag, entries)):
+        return _bag(folder)
     runs = [entry.name for entry in entries if (entry / "run.toml").is_file()]
     if runs:
         shown = ", ".join(runs[:3]) + (" ..." if len(runs) > 3 else "")
@@ -40,12 +38,11 @@ def _without_run(folder: Path, entries: list[Path]) -> Finding:
     return _finding(f"{folder}: no run.toml, no odometry.csv", f"This is no run folder: {NEEDED}")
 
 
-def _bag(file: Path) -> Finding:
+def _bag(path: Path) -> Finding:
     return _finding(
-        f"{file}: this is a bag (a log of ROS)",
+        f"{path}: this is a bag (a log of ROS)",
         f"A bag is no run folder: {NEEDED}",
-        "Write its wheel speeds as t, v_left, v_right to odometry.csv, its poses as t, x, y, yaw "
-        "to pose.csv, and [robot] track_width to run.toml",
+        f"Import it: {import_command(path)}",
     )
 
 

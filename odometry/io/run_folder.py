@@ -9,6 +9,7 @@ import tomli_w
 
 from odometry.arrays import AnyArray
 from odometry.errors import RunFolderError
+from odometry.io.bag_names import bag_at, this_is_a_bag
 from odometry.io.csv_table import read_csv_table, write_csv_table
 from odometry.io.files import atomic_write
 from odometry.io.inside import leads_out
@@ -32,8 +33,10 @@ def read_settings(folder: Path) -> dict[str, Any]:
     Raises
     ------
     RunFolderError
-        If the folder or the file is missing, or as `odometry.io.structured.read_toml`.
+        If the folder or the file is missing, it is a bag, or as `odometry.io.structured.read_toml`.
     """
+    if bag_at(folder):
+        raise RunFolderError(this_is_a_bag(folder))
     if not folder.is_dir():
         seen = "this is a file" if folder.exists() else "there is no such folder"
         raise RunFolderError(f"{folder}: {seen}; expected a run folder")

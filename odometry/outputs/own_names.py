@@ -45,6 +45,10 @@ NAMES: dict[str, tuple[str, ...]] = {
         *(f"{name}{end}" for name in ("odometer", "estimate") for end in TRAJECTORY_ENDS),
     ),
     "label": ("manifest.csv", "contact_sheet_*.png"),
+    "import": (
+        *("run.toml", "imu.csv", *RECORDING_NAMES, "other_odometry/*.csv"),
+        *("images/*.jpg", "images/*.png"),
+    ),
     "simulate": ("run.toml", *RECORDING_NAMES),
     "synthesise": (
         *("run.toml", *RECORDING_NAMES, "parameters.toml", "images/*.jpg"),

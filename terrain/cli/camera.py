@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from terrain.cli.options import OUTPUT
+from terrain.cli.options import OUTPUT, RunFolder
 from terrain.cli.recordings import span_options
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ def board_size(text: str) -> tuple[int, int]:
 
 
 @click.command()
-@click.argument("run_folder", metavar="RUN", type=click.Path(file_okay=False, path_type=Path))
+@click.argument("run_folder", metavar="RUN", type=RunFolder())
 @click.option("--out", required=True, metavar="DIR", type=OUTPUT, help="For pictures, camera.toml.")
 @click.option(
     "--file",

@@ -55,18 +55,19 @@ def check(
     for folder in dict.fromkeys(folders):
         reports[folder] = check_run(folder, classifier)
         if not as_json:
-            _print_findings(folder, reports[folder])
+            print_findings(folder, reports[folder])
         if folder in files and write_check_figure(reports[folder], files[folder]) is None:
             click.echo(f"Note: {folder}: no picture, it is refused", err=True)
     if as_json:
         click.echo(json.dumps([report.to_table() for report in reports.values()], indent=2))
     else:
-        click.echo(_next(reports, files))
+        click.echo(next_step(reports, files))
     if any(report.misleads for report in reports.values()):
         sys.exit(1)
 
 
-def _print_findings(folder: Path, report: "CheckReport") -> None:
+def print_findings(folder: Path, report: "CheckReport") -> None:
+    """Print what a check found, a line each."""
     if not report.findings:
         click.echo(f"{folder}: no findings")
     else:
@@ -77,7 +78,7 @@ def _print_findings(folder: Path, report: "CheckReport") -> None:
         click.echo(f"  not checked: {reason}")
 
 
-def _next(reports: Mapping[Path, "CheckReport"], files: Mapping[Path, Path]) -> str:
+def next_step(reports: Mapping[Path, "CheckReport"], files: Mapping[Path, Path]) -> str:
     """What to do next, in one line."""
     from odometry.checks.finding import Level
 

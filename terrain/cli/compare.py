@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import click
 
 from terrain.cli.comparison_text import print_comparison
-from terrain.cli.options import MODEL_NAMES, OUTPUT, require_model, window_options
+from terrain.cli.options import MODEL_NAMES, OUTPUT, RunFolder, require_model, window_options
 from terrain.cli.recordings import span_options
 from terrain.cli.results import print_written
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from odometry.run_span import Span
     from odometry.windows.config import WindowConfig
 
-FOLDER = click.Path(file_okay=False, path_type=Path)
+FOLDER = RunFolder()
 
 
 @click.command()

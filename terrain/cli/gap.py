@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import MODEL_NAMES, OUTPUT, require_model
+from terrain.cli.options import MODEL_NAMES, OUTPUT, RunFolder, require_model
 from terrain.cli.recordings import span_options
 from terrain.cli.results import print_table, print_written
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from odometry.gap.result import GapResult
     from odometry.run_span import Span
 
-FOLDER = click.Path(file_okay=False, path_type=Path)
+FOLDER = RunFolder()
 
 
 @click.command()

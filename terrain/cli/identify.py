@@ -8,7 +8,14 @@ import click
 
 from terrain.cli.identification_text import print_identification, require_determined
 from terrain.cli.identify_files import claimed, draw, require_icr_form, write_ros
-from terrain.cli.options import MODEL_NAMES, OUTPUT, assignments, require_model, window_options
+from terrain.cli.options import (
+    MODEL_NAMES,
+    OUTPUT,
+    RunFolder,
+    assignments,
+    require_model,
+    window_options,
+)
 from terrain.cli.recordings import span_options
 
 if TYPE_CHECKING:
@@ -23,7 +30,7 @@ if TYPE_CHECKING:
     metavar="RUN...",
     nargs=-1,
     required=True,
-    type=click.Path(file_okay=False, path_type=Path),
+    type=RunFolder(),
 )
 @click.option(
     "--model",

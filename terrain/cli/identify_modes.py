@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import OUTPUT, Positive
+from terrain.cli.options import OUTPUT, Positive, RunFolder
 from terrain.cli.recordings import span_options
 from terrain.cli.results import print_table
 
@@ -26,7 +26,7 @@ SLOW_TIGHT_TURNS_M_S = ((0.05, 0.15), (0.15, 0.05))  # to the left, to the right
     metavar="RUN...",
     nargs=-1,
     required=True,
-    type=click.Path(file_okay=False, path_type=Path),
+    type=RunFolder(),
 )
 @click.option(
     "--out",

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import OUTPUT, Positive
+from terrain.cli.options import OUTPUT, Positive, RunFolder
 from terrain.cli.recordings import span_options
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ SOURCES = ("truth.csv", "odometry.csv", "images.csv", "run.toml")
 @click.argument(
     "runs",
     metavar="RUN...",
-    type=click.Path(file_okay=False, path_type=Path),
+    type=RunFolder(),
     nargs=-1,
     required=True,
 )

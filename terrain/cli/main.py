@@ -4,6 +4,7 @@ import importlib
 import signal
 import sys
 from difflib import get_close_matches
+from keyword import iskeyword
 
 import click
 
@@ -11,6 +12,7 @@ from odometry.errors import OdometryError
 from terrain.cli.interrupt import Interrupted, raise_on_signals
 
 VERBS = {
+    "import": "Make a run folder from bags of ROS 1 or ROS 2.",
     "check": "What is odd about recordings, before anything is fitted to them.",
     "camera": "What the camera sees of the terrain; calibrate its lens and mount.",
     "label": "Cut labelled patches from recordings.",
@@ -42,6 +44,7 @@ class LazyGroup(click.Group):
         if cmd_name not in VERBS:
             return None
         name = cmd_name.replace("-", "_")
+        name += "_" if iskeyword(name) else ""
         module = importlib.import_module(f"terrain.cli.{name}")
         command: click.Command = getattr(module, name)
         return command

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import OUTPUT
+from terrain.cli.options import OUTPUT, RunFolder
 from terrain.cli.recordings import span_options
 from terrain.cli.results import print_written
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from odometry.run_span import Span
 
 FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
-FOLDER = click.Path(file_okay=False, path_type=Path)
+FOLDER = RunFolder()
 
 
 @click.command()

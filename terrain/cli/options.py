@@ -20,6 +20,22 @@ MODEL_NAMES = (
 OUTPUT = click.Path(path_type=Path)
 
 
+class RunFolder(click.Path):
+    """A run folder; a bag is told how to become one."""
+
+    def __init__(self) -> None:
+        super().__init__(file_okay=False, path_type=Path)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The path, click's error for another file, or a RunFolderError for a bag."""
+        from odometry.errors import RunFolderError
+        from odometry.io.bag_names import bag_at, this_is_a_bag
+
+        if bag_at(Path(value)):
+            raise RunFolderError(this_is_a_bag(Path(value)))
+        return super().convert(value, param, ctx)
+
+
 class Positive(click.FloatRange):
     """A number well above zero that is finite: click lets nan and inf pass."""
 

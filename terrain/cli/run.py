@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import OUTPUT
+from terrain.cli.options import OUTPUT, RunFolder
 from terrain.cli.recordings import span_options
 
 if TYPE_CHECKING:
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 SOURCES = ("camera", "labels", "modes", "none")
 PRESETS = ("chen2023",)
 FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
-FOLDER = click.Path(file_okay=False, path_type=Path)
+FOLDER = RunFolder()
 
 
 @click.command()

@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from odometry.checks.finding import CheckReport, Finding, Level
-from terrain.cli.check import _next, check
+from terrain.cli.check import check, next_step
 
 
 @pytest.fixture
@@ -76,10 +76,10 @@ def test_true_slip_is_not_to_be_mended():
         Path("both"): found("both", "slip", "tread_unit"),
         Path("good"): found("good"),
     }
-    last = _next(reports, {})
+    last = next_step(reports, {})
     assert "mend or leave out both, and check again" in last
     assert "use ice as recorded if the robot truly slipped" in last
-    alone = _next({Path("ice"): reports[Path("ice")]}, {})
+    alone = next_step({Path("ice"): reports[Path("ice")]}, {})
     assert "leave out" not in alone
     assert "nothing can be mended" in alone
 

@@ -11,7 +11,7 @@ from click.testing import CliRunner
 
 from terrain.cli.main import cli, main
 
-VERBS = ("check", "camera", "label", "train", "classify", "run", "evaluate", "synthesise")
+VERBS = ("import", "check", "camera", "label", "train", "classify", "run", "evaluate", "synthesise")
 VERBS += ("simulate", "identify", "compare", "gap")
 VERBS += ("identify-modes", "modes", "export", "demo")
 SLOW = ("numpy", "scipy", "sklearn", "skimage", "cv2", "matplotlib", "filterpy", "pandas")

@@ -1,0 +1,99 @@
+"""The streams of a plan: which topic goes to which file of a run folder."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from odometry.arrays import FloatArray, IntArray
+from odometry.bags.image_files import ImageFiles
+from odometry.bags.message_kinds import FIX, TRANSFORM_LISTS, body_frame
+from odometry.bags.ordered_rows import OrderedRows
+from odometry.bags.plan import Plan
+from odometry.bags.poses import (
+    POSE_COLUMNS,
+    AttitudesOf,
+    LocalMetres,
+    PosesOfRobot,
+    fix_row,
+    pose_reader,
+)
+from odometry.bags.speeds import TreadSpeeds, row_reader
+from odometry.bags.streams import Images, Rows, Stream, TransformRows
+from odometry.bags.survey import Survey
+from odometry.bags.transform_poses import TransformPoses
+
+IMU_COLUMNS = ("gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z")
+OTHER = "other_odometry"
+
+
+def make_streams(
+    plan: Plan, survey: Survey, folder: Path, local: LocalMetres
+) -> dict[str, list[Stream]]:
+    """Streams by topic; `local` learns the origin of satellite fixes."""
+    streams: dict[str, list[Stream]] = {}
+    made: list[Stream] = [_wheels(plan, survey, folder)]
+    if plan.imu:
+        made.append(_imu(plan, survey, folder))
+    if plan.reference:
+        made.append(_reference(plan, survey, folder, local))
+    if plan.images:
+        made.append(Images(plan.images, ImageFiles(folder), by_header=plan.by_header))
+    made += [_other(topic, plan, survey, folder) for topic in plan.other_odometry]
+    for stream in made:
+        streams.setdefault(stream.topic, []).append(stream)
+    return streams
+
+
+def _wheels(plan: Plan, survey: Survey, folder: Path) -> Stream:
+    source = plan.wheels
+    speeds = TreadSpeeds(source, plan.separation_m)
+    rows = OrderedRows(folder / "odometry.csv", ("v_left", "v_right"), speeds, 2)
+    read = row_reader(source, survey.topics[source.topic].message_type)
+    return Rows(source.topic, "odometry.csv", rows, read, by_header=plan.by_header)
+
+
+def _imu(plan: Plan, survey: Survey, folder: Path) -> Stream:
+    sample = survey.topics[plan.imu].sample
+    # REP-145: a covariance that begins with -1 says that the sensor does not measure this
+    gyro = sample.angular_velocity_covariance[0] != -1
+    accel = sample.linear_acceleration_covariance[0] != -1
+    names = IMU_COLUMNS[: 3 * gyro] + IMU_COLUMNS[3 : 3 + 3 * accel]
+
+    def read(message: Any) -> tuple[float, ...]:
+        rate, force = message.angular_velocity, message.linear_acceleration
+        rates = (rate.x, rate.y, rate.z) if gyro else ()
+        return (*rates, force.x, force.y, force.z) if accel else rates
+
+    rows = OrderedRows(folder / "imu.csv", names, _as_they_are, 0)
+    return Rows(plan.imu, "imu.csv", rows, read, by_header=plan.by_header)
+
+
+def _reference(plan: Plan, survey: Survey, folder: Path, local: LocalMetres) -> Stream:
+    topic, file = survey.topics[plan.reference], folder / "pose.csv"
+    if topic.message_type == FIX:
+        rows = OrderedRows(file, ("x", "y", "yaw", "z"), local, 2)
+        return Rows(topic.name, "pose.csv", rows, fix_row, by_header=plan.by_header)
+    frame = plan.frames.get(topic.name, "")
+    pose = plan.robot.pose_of(frame, survey.robot)
+    turned = AttitudesOf(np.eye(4) if pose is None else pose)
+    rows = OrderedRows(file, POSE_COLUMNS, turned, 2)
+    if topic.message_type in TRANSFORM_LISTS:
+        poses = TransformPoses(plan.world, frame, survey.robot.fixed)
+        return TransformRows(topic.name, "pose.csv", rows, poses, by_header=plan.by_header)
+    read = pose_reader(topic.message_type)
+    return Rows(topic.name, "pose.csv", rows, read, by_header=plan.by_header)
+
+
+def _other(name: str, plan: Plan, survey: Survey, folder: Path) -> Stream:
+    topic = survey.topics[name]
+    pose = plan.robot.pose_of(body_frame(topic.sample), survey.robot)
+    file = f"{OTHER}/{re.sub(r'[^A-Za-z0-9.-]+', '_', name).strip('_.') or 'odometry'}.csv"
+    columns = PosesOfRobot(np.eye(4) if pose is None else pose)
+    rows = OrderedRows(folder / file, ("x", "y", "yaw"), columns, 3)
+    return Rows(name, file, rows, pose_reader(topic.message_type), by_header=plan.by_header)
+
+
+def _as_they_are(stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:
+    return stamps_ns, rows

@@ -1,0 +1,133 @@
+"""Messages decoded by the definitions that a bag carries.
+
+Where a bag has no definition of a type (ROS 2 before Iron), the one that ROS itself ships is
+taken. A type that ROS does not ship cannot be read without its definition.
+"""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from rosbags.typesys import (
+    Stores,
+    TypesysError,
+    get_types_from_idl,
+    get_types_from_msg,
+    get_typestore,
+)
+
+from odometry.bags.connection import READABLE, Buffer, Connection, Message
+from odometry.bags.errors import BagError
+
+Reader = Callable[[Buffer, str], Any]
+
+
+class MessageTypes:
+    """Decodes messages; the definitions of a type are compiled once."""
+
+    def __init__(self) -> None:
+        self._shipped: dict[str, dict[str, Any]] = {
+            "ros1": get_typestore(Stores.ROS1_NOETIC).fielddefs,
+            "cdr": get_typestore(Stores.LATEST).fielddefs,
+        }
+        self._of_type: dict[tuple[str, str, str], Reader] = {}
+        self._of_connection: dict[int, tuple[Connection, Reader]] = {}
+
+    def decode(self, message: Message) -> Any:
+        """The message as an object with the fields of its definition.
+
+        Raises
+        ------
+        BagError
+            If its type is not known, or its bytes are not as the definition says.
+        """
+        connection = message.connection
+        known = self._of_connection.get(id(connection))
+        if known is None:
+            known = self._of_connection[id(connection)] = connection, self._reader(connection)
+        try:
+            return known[1](message.data, connection.message_type)
+        except Exception as problem:  # generated code raises whatever the bytes lead it to
+            raise BagError(
+                f"{connection.topic}: a message of {len(message.data)} bytes is not as the "
+                f"definition of {connection.message_type} says: {problem}"
+            ) from problem
+
+    def problem(self, connection: Connection) -> str:
+        """Why messages of a connection cannot be read; empty where they can."""
+        try:
+            self._reader(connection)
+        except BagError as problem:
+            return str(problem)
+        return ""
+
+    def _reader(self, connection: Connection) -> Reader:
+        if connection.encoding not in READABLE:
+            raise BagError(
+                f"{connection.topic}: its messages are encoded as {connection.encoding!r}; "
+                f"expected one of {', '.join(READABLE)}"
+            )
+        key = (connection.message_type, connection.encoding, connection.definition)
+        if key not in self._of_type:
+            store = get_typestore(Stores.EMPTY)
+            try:
+                store.register(self._definitions(connection))
+                store.get_msgdef(connection.message_type)
+            except BagError:
+                raise
+            except Exception as problem:  # rosbags raises several, and KeyError for what is missing
+                raise BagError(
+                    f"{connection.topic}: the definition of {connection.message_type} cannot be "
+                    f"used: {problem}"
+                ) from problem
+            ros1 = connection.encoding == "ros1"
+            self._of_type[key] = store.deserialize_ros1 if ros1 else store.deserialize_cdr
+        return self._of_type[key]
+
+    def _definitions(self, connection: Connection) -> dict[str, Any]:
+        """Definitions of a type and of its parts, the bag's own before shipped ones."""
+        shipped = self._shipped[connection.encoding]
+        own: dict[str, Any] = {}
+        try:
+            if connection.definition and connection.schema == "msg":
+                own = get_types_from_msg(connection.definition, connection.message_type)
+            elif connection.definition:
+                for text in _idl_texts(connection.definition):
+                    own |= get_types_from_idl(text)
+        except TypesysError:
+            if connection.message_type not in shipped:
+                raise
+            own = {}
+        wanted, found = [connection.message_type], dict(own)
+        while wanted:
+            name = wanted.pop()
+            if name not in found:
+                if name not in shipped:
+                    raise BagError(
+                        f"{connection.topic}: the bag has no definition of {name}, and ROS does "
+                        "not ship one; record the bag again with a recorder that stores "
+                        "definitions (MCAP does, SQLite since ROS 2 Iron)"
+                    )
+                found[name] = shipped[name]
+            if name not in own or name == connection.message_type:
+                wanted += [other for other in _parts(found[name]) if other not in found]
+        return found
+
+
+def _idl_texts(definition: str) -> Iterator[str]:
+    """The parts of a definition in IDL; parts of several types are parted by a ruler."""
+    ruler = 80 * "=" + "\n"
+    if not definition.startswith(f"{ruler}IDL: "):
+        yield definition
+        return
+    for part in definition.split(ruler)[1:]:
+        yield part.partition("\n")[2]
+
+
+def _parts(definition: Any) -> Iterator[str]:
+    """Names of the types that the fields of a definition are made of."""
+    for _, description in definition[1]:
+        kind, content = description
+        if int(kind) in (3, 4):  # an array or a sequence of another description
+            kind, content = content[0]
+        if int(kind) == 2:  # a name
+            yield content

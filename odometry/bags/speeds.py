@@ -1,0 +1,117 @@
+"""Tread speeds from wheel speeds, wheel places, twists and poses of odometry."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from odometry.arrays import FloatArray, IntArray
+from odometry.bags.errors import BagError
+from odometry.bags.fields import number_at
+from odometry.bags.message_kinds import TWISTS
+from odometry.bags.wheel_source import WheelSource
+from odometry.geometry.angles import wrap
+
+FASTEST_M_S = 50.0  # no robot's tread is faster: an encoder was reset, or a number is broken
+Row = tuple[float, ...]
+
+
+def row_reader(source: WheelSource, message_type: str) -> Callable[[Any], Row]:
+    """A function that takes the numbers of a source out of a message.
+
+    It raises BagError where a message does not hold them.
+    """
+    if source.kind == "joints":
+        return _joints(source)
+    if source.kind == "fields":
+        readers = [number_at(path) for path in source.left + source.right]
+        return lambda message: tuple(read(message) for read in readers)
+    if source.speeds:
+        twist_of = TWISTS[message_type]
+
+        def twist_row(message: Any) -> Row:
+            twist = twist_of(message)
+            return twist.linear.x, twist.angular.z
+
+        return twist_row
+    return _pose_row
+
+
+def _pose_row(message: Any) -> Row:
+    place, turn = message.pose.pose.position, message.pose.pose.orientation
+    sine = 2 * (turn.w * turn.z + turn.x * turn.y)
+    return place.x, place.y, math.atan2(sine, 1 - 2 * (turn.y**2 + turn.z**2))
+
+
+def _joints(source: WheelSource) -> Callable[[Any], Row]:
+    wanted = source.left + source.right
+    places: dict[tuple[str, ...], list[int] | None] = {}
+
+    def read(message: Any) -> Row:
+        names = tuple(message.name)
+        if names not in places:
+            there = all(name in names for name in wanted)
+            places[names] = [names.index(name) for name in wanted] if there else None
+        found = places[names]
+        values = message.velocity if source.speeds else message.position
+        if found is None or len(values) < len(names):
+            raise BagError(f"{source.topic}: a message without all wheels")
+        return tuple(float(values[place]) for place in found)
+
+    return read
+
+
+class TreadSpeeds:
+    """Turns rows of a source into tread speeds (left, right) [m/s], in the order of time.
+
+    A difference of two places is the speed from the stamp of the first on, as a speed of
+    odometry.csv holds until the next stamp.
+    """
+
+    def __init__(self, source: WheelSource, separation_m: float) -> None:
+        self._source = source
+        self._separation_m = separation_m
+        self._held: tuple[IntArray, FloatArray] | None = None
+
+    def __call__(self, stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Stamps (M,) and tread speeds (M, 2) of rows (N, k)."""
+        source = self._source
+        if not source.speeds:
+            stamps_ns, rows = self._differences(stamps_ns, rows)
+        if source.kind == "twist":
+            half = rows[:, 1] * self._separation_m / 2
+            left, right = source.left_factor * (rows[:, 0] - half), rows[:, 0] + half
+            speeds = np.column_stack([left, source.right_factor * right])
+        else:
+            count = len(source.left)
+            speeds = np.column_stack(
+                [
+                    source.left_factor * rows[:, :count].mean(axis=1),
+                    source.right_factor * rows[:, count:].mean(axis=1),
+                ]
+            )
+        return stamps_ns, np.where(np.abs(speeds) <= FASTEST_M_S, speeds, np.nan)
+
+    def _differences(self, stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Rates of change (N - 1, k) of places, with the last row of the call before."""
+        if self._held is not None:
+            stamps_ns = np.concatenate([self._held[0], stamps_ns])
+            rows = np.concatenate([self._held[1], rows])
+        self._held = stamps_ns[-1:], rows[-1:]
+        seconds = np.diff(stamps_ns)[:, None] / 1e9
+        steps = np.diff(rows, axis=0)
+        if self._source.kind == "twist":
+            return stamps_ns[:-1], _twists(rows, steps) / seconds
+        if np.isfinite(self._source.wraps_at):
+            turn = self._source.wraps_at
+            steps -= turn * np.rint(steps / turn)
+        return stamps_ns[:-1], steps / seconds
+
+
+def _twists(poses: FloatArray, steps: FloatArray) -> FloatArray:
+    """Way ahead [m] and turn [rad] (N - 1, 2) between poses x, y, yaw."""
+    turns = wrap(steps[:, 2])
+    middle = poses[:-1, 2] + turns / 2
+    chord = np.cos(middle) * steps[:, 0] + np.sin(middle) * steps[:, 1]
+    return np.column_stack([chord / np.sinc(turns / (2 * np.pi)), turns])

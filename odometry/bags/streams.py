@@ -1,0 +1,95 @@
+"""What becomes of the messages of one topic: numbers into a file, what is dropped is counted."""
+
+from collections import Counter
+from collections.abc import Callable
+from typing import Any
+
+from odometry.bags.connection import Message
+from odometry.bags.errors import BagError
+from odometry.bags.image_files import ImageFiles
+from odometry.bags.ordered_rows import OrderedRows
+from odometry.bags.survey import header_ns
+from odometry.bags.transform_poses import TransformPoses
+
+Row = tuple[float, ...]
+
+
+class Stream:
+    """Turns messages of one topic into rows, or image files.
+
+    Attributes
+    ----------
+    topic, file : str
+        Where it comes from, and the file of the run folder.
+    sink : OrderedRows or ImageFiles
+    dropped : Counter
+        How many messages were dropped, by reason.
+    """
+
+    def __init__(
+        self, topic: str, file: str, sink: OrderedRows | ImageFiles, *, by_header: bool
+    ) -> None:
+        self.topic, self.file, self.sink = topic, file, sink
+        self.dropped: Counter[str] = Counter()
+        self._by_header = by_header
+
+    def add(self, message: Message, content: Any) -> None:
+        """Take in a message; one that cannot be used is counted."""
+        try:
+            self.take(self._stamp_ns(message, header_ns(content)), content)
+        except BagError as problem:
+            self.dropped[str(problem)] += 1
+
+    def take(self, stamp_ns: int, content: Any) -> None:
+        """Take in the content of a message."""
+        raise NotImplementedError
+
+    def _stamp_ns(self, message: Message, stamped_ns: int) -> int:
+        return stamped_ns if self._by_header and stamped_ns else message.received_ns
+
+
+class Rows(Stream):
+    """A row a message."""
+
+    def __init__(
+        self,
+        topic: str,
+        file: str,
+        sink: OrderedRows,
+        read: Callable[[Any], Row],
+        *,
+        by_header: bool,
+    ) -> None:
+        super().__init__(topic, file, sink, by_header=by_header)
+        self._rows, self._read = sink, read
+
+    def take(self, stamp_ns: int, content: Any) -> None:
+        """Take in the content of a message."""
+        self._rows.add(stamp_ns, self._read(content))
+
+
+class TransformRows(Stream):
+    """As many rows a message as it moves the robot."""
+
+    def __init__(
+        self, topic: str, file: str, sink: OrderedRows, poses: TransformPoses, *, by_header: bool
+    ) -> None:
+        super().__init__(topic, file, sink, by_header=by_header)
+        self._rows, self._poses = sink, poses
+
+    def add(self, message: Message, content: Any) -> None:
+        """Take in a message."""
+        for stamped_ns, row in self._poses.rows(content):
+            self._rows.add(self._stamp_ns(message, stamped_ns), row)
+
+
+class Images(Stream):
+    """An image a message."""
+
+    def __init__(self, topic: str, sink: ImageFiles, *, by_header: bool) -> None:
+        super().__init__(topic, "images.csv", sink, by_header=by_header)
+        self._images = sink
+
+    def take(self, stamp_ns: int, content: Any) -> None:
+        """Take in the content of a message."""
+        self._images.add(stamp_ns, content)

@@ -1,0 +1,209 @@
+"""What bags hold: their topics, the frames of the robot, and what cannot be read."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from statistics import median
+from types import SimpleNamespace
+from typing import Any
+
+from odometry.bags.bag_files import BagFile
+from odometry.bags.connection import Connection, Message
+from odometry.bags.errors import BagError
+from odometry.bags.message_types import MessageTypes
+from odometry.bags.motion_seen import MOVING_TYPES, Ranges, widen
+from odometry.bags.robot_seen import RobotSeen
+
+FIRST_LOOKS, EVERY = 200, 20  # of topics that tell motion: all of the first, then each 20th
+IMAGES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
+REPORT_EVERY = 1000  # messages
+Progress = Callable[[int], None]
+
+
+@dataclass(frozen=True)
+class Topic:
+    """What the bags hold of a topic.
+
+    Attributes
+    ----------
+    name, message_type : str
+    count : int
+    first_ns, last_ns : int
+        When the first and the last message were received.
+    sample : object or None
+        The first message that could be decoded, images without their pixels.
+    header_offset_s : float or None
+        Median of header stamp minus time of reception; None where there is no header stamp.
+    ranges : Mapping
+        Of the numbers that tell motion, see `motion_seen`.
+    problem : str
+        Why it cannot be read; empty where it can.
+    """
+
+    name: str
+    message_type: str
+    count: int
+    first_ns: int
+    last_ns: int
+    sample: Any = None
+    header_offset_s: float | None = None
+    ranges: Ranges = field(default_factory=dict)
+    problem: str = ""
+
+    @property
+    def duration_s(self) -> float:
+        """Between the first and the last message."""
+        return (self.last_ns - self.first_ns) / 1e9
+
+    @property
+    def rate_hz(self) -> float:
+        """Mean rate; 0 of a single message."""
+        return (self.count - 1) / self.duration_s if self.duration_s > 0 else 0.0
+
+
+@dataclass(frozen=True)
+class Survey:
+    """What a set of bag files holds.
+
+    Attributes
+    ----------
+    files : tuple of BagFile
+        In the order of their first messages.
+    topics : Mapping of name to Topic
+    robot : RobotSeen
+    losses : tuple of str
+        What could not be read.
+    """
+
+    files: tuple[BagFile, ...]
+    topics: Mapping[str, Topic]
+    robot: RobotSeen
+    losses: tuple[str, ...]
+
+    @property
+    def count(self) -> int:
+        """Messages that could be read."""
+        return sum(topic.count for topic in self.topics.values())
+
+
+def survey(
+    files: Sequence[BagFile], types: MessageTypes, losses: Sequence[str], progress: Progress
+) -> Survey:
+    """Read files once, and decode some messages of each topic.
+
+    Parameters
+    ----------
+    files : of BagFile
+    types : MessageTypes
+    losses : of str
+        What is known to be lost already.
+    progress : callable
+        Called with numbers of messages that were read since the call before.
+
+    Raises
+    ------
+    BagError
+        If no message can be read.
+    """
+    lost, tallies, robot = list(losses), dict[str, _Tally](), RobotSeen()
+    begins: dict[BagFile, int] = {}
+    for file in files:
+        of_file: dict[int, _Tally | None] = {}
+        begin, count = None, 0
+        for message in file.messages(lost):
+            count += 1
+            if count % REPORT_EVERY == 0:
+                progress(REPORT_EVERY)
+            begin = message.received_ns if begin is None else min(begin, message.received_ns)
+            key = id(message.connection)
+            if key not in of_file:
+                of_file[key] = _tally(message.connection, tallies, lost)
+            tally = of_file[key]
+            if tally is not None:
+                tally.add(message, types, robot)
+        progress(count % REPORT_EVERY)
+        if begin is None:
+            lost.append(f"{file.path}: there is no message in it")
+        else:
+            begins[file] = begin
+    if not begins:
+        raise BagError(f"there is no message to read: {'; '.join(lost)}")
+    topics = {name: tally.topic() for name, tally in sorted(tallies.items())}
+    return Survey(tuple(sorted(begins, key=begins.__getitem__)), topics, robot, tuple(lost))
+
+
+class _Tally:
+    """Counts the messages of a topic, and decodes some of them."""
+
+    def __init__(self, connection: Connection) -> None:
+        self.connection = connection
+        self.count, self.first_ns, self.last_ns = 0, 2**63, -1
+        self.sample: Any = None
+        self.offsets_s: list[float] = []
+        self.ranges: Ranges = {}
+        self.problem = ""
+        self.tells_motion = connection.message_type in MOVING_TYPES
+
+    def add(self, message: Message, types: MessageTypes, robot: RobotSeen) -> None:
+        self.count += 1
+        self.first_ns = min(self.first_ns, message.received_ns)
+        self.last_ns = max(self.last_ns, message.received_ns)
+        of_robot = robot.wants(message)
+        if not (of_robot or self._looks()):
+            return
+        try:
+            content = types.decode(message)
+        except BagError as problem:
+            self.problem = str(problem)
+            return
+        if of_robot:
+            robot.look(message, content)
+        if self.tells_motion:
+            widen(self.ranges, content)
+        stamp_ns = header_ns(content)
+        if stamp_ns:
+            self.offsets_s.append((stamp_ns - message.received_ns) / 1e9)
+        if self.sample is None:
+            small = self.connection.message_type in IMAGES
+            self.sample = _without_pixels(content) if small else content
+
+    def _looks(self) -> bool:
+        """The first messages, then ever fewer; of those that tell motion a fixed share."""
+        if self.tells_motion:
+            return self.count <= FIRST_LOOKS or self.count % EVERY == 0
+        return self.count <= 2 or self.count & (self.count - 1) == 0
+
+    def topic(self) -> Topic:
+        return Topic(
+            self.connection.topic,
+            self.connection.message_type,
+            self.count,
+            self.first_ns,
+            self.last_ns,
+            self.sample,
+            median(self.offsets_s) if self.offsets_s else None,
+            self.ranges,
+            self.problem if self.sample is None else "",
+        )
+
+
+def header_ns(content: Any) -> int:
+    """Header stamp of a message, 0 where it has none."""
+    stamp = getattr(getattr(content, "header", None), "stamp", None)
+    return stamp.sec * 10**9 + stamp.nanosec if stamp is not None else 0
+
+
+def _tally(connection: Connection, tallies: dict[str, _Tally], losses: list[str]) -> _Tally | None:
+    """Tally of a topic; None, and a loss, where the topic has another type elsewhere."""
+    tally = tallies.setdefault(connection.topic, _Tally(connection))
+    if tally.connection.message_type != connection.message_type:
+        losses.append(
+            f"{connection.topic}: its messages of the type {connection.message_type}, where others "
+            f"are {tally.connection.message_type}"
+        )
+        return None
+    return tally
+
+
+def _without_pixels(content: Any) -> Any:
+    kept = ("header", "height", "width", "encoding", "format")
+    return SimpleNamespace(**{key: getattr(content, key) for key in kept if hasattr(content, key)})

@@ -1,0 +1,40 @@
+"""The topics of bags in lines: type, rate, duration, and what each is probably good for."""
+
+from collections.abc import Iterator
+
+from odometry.bags.guess import best, guess
+from odometry.bags.message_kinds import TRANSFORM_LISTS
+from odometry.bags.survey import Survey, Topic
+
+ROLES = ("wheels", "imu", "reference", "images")
+
+
+def topic_lines(survey: Survey) -> Iterator[str]:
+    """A line a topic; an asterisk marks what an import takes by itself."""
+    taken = {best(survey.topics, role) for role in ROLES}
+    rows = [
+        (
+            "*" if name in taken else "",
+            name,
+            topic.message_type,
+            str(topic.count),
+            f"{topic.rate_hz:.4g} Hz",
+            f"{topic.duration_s:.1f} s",
+            said_of(topic),
+        )
+        for name, topic in survey.topics.items()
+    ]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
+        yield "  ".join(cells).rstrip()
+
+
+def said_of(topic: Topic) -> str:
+    """What a topic is probably good for, or why it cannot be read."""
+    if topic.problem:
+        return f"cannot be read: {topic.problem}"
+    if topic.message_type in TRANSFORM_LISTS:
+        return "frames of the robot"
+    guesses = sorted(guess(topic), key=lambda one: one.rank)
+    return "; ".join(": ".join(filter(None, (one.role, one.why))) for one in guesses)

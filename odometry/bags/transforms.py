@@ -1,0 +1,75 @@
+"""Where frames of a robot stand: transforms from messages and robot descriptions."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.geometry import se3
+
+
+@dataclass(frozen=True)
+class Transforms:
+    """A forest of frames.
+
+    Attributes
+    ----------
+    parents : Mapping of frame to (parent, (4, 4))
+        Pose of the frame in its parent [m].
+    """
+
+    parents: Mapping[str, tuple[str, FloatArray]] = field(default_factory=dict)
+
+    @property
+    def frames(self) -> set[str]:
+        """Names of all frames."""
+        return {*self.parents, *(parent for parent, _ in self.parents.values())}
+
+    def between(self, target: str, source: str) -> FloatArray | None:
+        """Pose (4, 4) of the frame `source` in the frame `target`; None where they do not meet."""
+        target_chain, source_chain = self._chain(target), self._chain(source)
+        common = next((name for name in source_chain if name in target_chain), None)
+        if common is None:
+            return None
+        return np.asarray(se3.inverse(target_chain[common]) @ source_chain[common])
+
+    def _chain(self, frame: str) -> dict[str, FloatArray]:
+        """Pose of `frame` in itself and in each of its ancestors, nearest first."""
+        chain, pose = {frame: np.eye(4)}, np.eye(4)
+        while frame in self.parents:
+            frame, step = self.parents[frame]
+            if frame in chain:
+                break  # a circle
+            pose = step @ pose
+            chain[frame] = pose
+        return chain
+
+
+def plain_frame(name: str) -> str:
+    """A frame's name without the slash that old drivers write before it."""
+    return name.lstrip("/")
+
+
+def matrix_of(transform: Any) -> FloatArray | None:
+    """Pose (4, 4) of a geometry_msgs/Transform or Pose; None where it has no rotation."""
+    place = getattr(transform, "translation", None)
+    place = transform.position if place is None else place
+    turn = getattr(transform, "rotation", None)
+    turn = transform.orientation if turn is None else turn
+    values = np.array([place.x, place.y, place.z, turn.w, turn.x, turn.y, turn.z], dtype=float)
+    if not np.isfinite(values).all() or not np.linalg.norm(values[3:]) > 0.5:
+        return None
+    return se3.pose(values[:3], se3.rotation_from_quaternion_wxyz(values[3:]))
+
+
+def stated(messages: Iterable[Any]) -> dict[str, tuple[str, FloatArray]]:
+    """Transforms by child frame of geometry_msgs/TransformStamped messages, the last of each."""
+    found = {}
+    for one in messages:
+        pose = matrix_of(one.transform)
+        if pose is not None:
+            parent, child = plain_frame(one.header.frame_id), plain_frame(one.child_frame_id)
+            found[child] = (parent, pose)
+    return found

@@ -1,0 +1,211 @@
+"""Where the tread speeds come from: which topic, which numbers of it, in which unit."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from odometry.bags.errors import BagError
+from odometry.bags.fields import number_at, number_paths
+from odometry.bags.guess import SIMPLE_ARRAY, sided, unit_of
+from odometry.bags.message_kinds import JOINTS, ODOMETRY, TWISTS
+from odometry.bags.motion_seen import PLACE, VELOCITY, moved
+from odometry.bags.sides import side_of
+from odometry.bags.survey import Topic
+
+# Unit: (what one is in radians or metres, whether it is of the wheel's angle, whether a speed)
+UNITS: dict[str, tuple[float, bool, bool]] = {
+    "rad/s": (1.0, True, True),
+    "deg/s": (math.pi / 180, True, True),
+    "rpm": (2 * math.pi / 60, True, True),
+    "turns/s": (2 * math.pi, True, True),
+    "m/s": (1.0, False, True),
+    "mm/s": (1e-3, False, True),
+    "rad": (1.0, True, False),
+    "deg": (math.pi / 180, True, False),
+    "turns": (2 * math.pi, True, False),
+    "m": (1.0, False, False),
+}
+HOW_RADIUS = (
+    "roll the robot straight ahead for ten turns of a wheel, and divide the way by 62.83; or "
+    "measure from the centre of a wheel to the terrain, with the robot's weight on it"
+)
+
+
+@dataclass(frozen=True)
+class WheelSource:
+    """Which numbers of which topic are wheel speeds.
+
+    Attributes
+    ----------
+    topic : str
+    kind : str
+        "joints" (of a JointState), "fields" (paths) or "twist".
+    left, right : tuple of str
+        Names of joints, or paths; empty for a twist.
+    left_factor, right_factor : float
+        Tread speed (or way) in metres for a number of one: unit, radius, gear and sign.
+    speeds : bool
+        Whether the numbers are speeds; else places, which are differenced.
+    wraps_at : float
+        Places that jump by more than half of this have wrapped; infinite where they do not.
+    why : str
+        In a sentence.
+    """
+
+    topic: str
+    kind: str
+    left: tuple[str, ...] = ()
+    right: tuple[str, ...] = ()
+    left_factor: float = 1.0
+    right_factor: float = 1.0
+    speeds: bool = True
+    wraps_at: float = math.inf
+    why: str = ""
+
+
+def wheel_source(topic: Topic, wishes: Mapping[str, Any], radius_m: float | None) -> WheelSource:
+    """Decide what of a topic is taken as wheel speeds.
+
+    Parameters
+    ----------
+    topic : Topic
+    wishes : Mapping
+        The table [wheels] of a map; what it does not say is told by names.
+    radius_m : float or None
+        Of the wheels; needed where the numbers are angles.
+
+    Raises
+    ------
+    BagError
+        If it cannot be told which numbers are left and right, or their unit, or the radius is not
+        known: it says what to give.
+    """
+    if topic.sample is None:
+        raise BagError(f"{topic.name}: no message of it can be read: {topic.problem}")
+    if topic.message_type in TWISTS:
+        return _twist(topic, wishes)
+    joints = topic.message_type == JOINTS
+    left, right = _sides(topic, wishes, list(topic.sample.name) if joints else None)
+    speeds, unit = _joint_values(topic, wishes, left + right) if joints else _unit(topic, wishes)
+    one, of_angle, is_speed = UNITS[unit]
+    if of_angle and radius_m is None:
+        raise BagError(
+            f"{topic.name}: wheel speeds in {unit} need the radius of the wheels, and no robot "
+            "description in the bag gives it: add --wheel-radius METRES. To measure it, "
+            f"{HOW_RADIUS}"
+        )
+    reach_m = radius_m if of_angle and radius_m is not None else 1.0
+    metres = one * reach_m / _gear(wishes)
+    return WheelSource(
+        topic.name,
+        "joints" if joints else "fields",
+        left,
+        right,
+        metres * float(wishes.get("left_sign", 1)),
+        metres * float(wishes.get("right_sign", 1)),
+        is_speed,
+        _wrap(topic, left + right, one) if joints and not speeds else math.inf,
+        f"{'speeds' if is_speed else 'differences of places'} of {', '.join(left)} (left) and "
+        f"{', '.join(right)} (right) in {unit}",
+    )
+
+
+def _twist(topic: Topic, wishes: Mapping[str, Any]) -> WheelSource:
+    zero = not moved(topic.ranges, VELOCITY, "ahead") and not moved(topic.ranges, VELOCITY, "turn")
+    by_pose = topic.message_type == ODOMETRY and (
+        wishes.get("values") == "position" or (zero and moved(topic.ranges, PLACE, "x"))
+    )
+    what = "differences of its poses" if by_pose else "its twist"
+    why = f"{what}, as v -/+ w * separation / 2"
+    signs = (float(wishes.get("left_sign", 1)), float(wishes.get("right_sign", 1)))
+    return WheelSource(topic.name, "twist", (), (), *signs, speeds=not by_pose, why=why)
+
+
+def _sides(
+    topic: Topic, wishes: Mapping[str, Any], joints: list[str] | None
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Names of joints, or paths, of the left and of the right wheels."""
+    if ("left" in wishes) != ("right" in wishes):
+        raise BagError(f"{topic.name}: left and right wheels belong together; give both")
+    array = SIMPLE_ARRAY.match(topic.message_type) is not None
+    if "left" in wishes:
+        left, right = (tuple(map(str, wishes[side])) for side in ("left", "right"))
+        if array:
+            left, right = (tuple(_in_array(one) for one in side) for side in (left, right))
+        _check_there(topic, left + right, joints)
+    elif joints is not None:
+        left, right = sided(joints)
+    elif array:
+        pair = len(topic.sample.data) == 2
+        left, right = (("data[0]",), ("data[1]",)) if pair else ((), ())
+    else:
+        left, right = sided(path for path in number_paths(topic.sample) if side_of(path))
+    if not left or not right:
+        seen = joints if joints is not None else list(number_paths(topic.sample))
+        raise BagError(
+            f"{topic.name}: which are the wheels of the left and of the right side? Seen: "
+            f"{', '.join(seen[:24])}. Give --left and --right, several parted by commas"
+        )
+    return left, right
+
+
+def _in_array(place: str) -> str:
+    return f"data[{place}]" if place.lstrip("-").isdigit() else place
+
+
+def _check_there(topic: Topic, names: tuple[str, ...], joints: list[str] | None) -> None:
+    for name in names:
+        if joints is None:
+            number_at(name)(topic.sample)
+        elif name not in joints:
+            raise BagError(f"{topic.name}: there is no joint {name!r}; seen: {', '.join(joints)}")
+
+
+def _joint_values(
+    topic: Topic, wishes: Mapping[str, Any], names: tuple[str, ...]
+) -> tuple[bool, str]:
+    """Whether velocities are taken, else positions; and their unit."""
+    said = wishes.get("values")
+    if said not in (None, "velocity", "position"):
+        raise BagError(f"[wheels] values = {said!r}, expected velocity or position")
+    has_velocity = any(moved(topic.ranges, VELOCITY, name) for name in names)
+    has_place = any(moved(topic.ranges, PLACE, name) for name in names)
+    speeds = said == "velocity" if said else has_velocity or not has_place
+    unit = str(wishes.get("unit", "rad/s" if speeds else "rad"))
+    _check_unit(unit)
+    if UNITS[unit][2] != speeds:
+        kind = "speeds" if speeds else "places"
+        raise BagError(f"{topic.name}: unit {unit!r}, expected a unit of {kind}")
+    return speeds, unit
+
+
+def _unit(topic: Topic, wishes: Mapping[str, Any]) -> tuple[bool, str]:
+    unit = str(wishes.get("unit") or unit_of(topic.name, number_paths(topic.sample)))
+    if not unit:
+        raise BagError(
+            f"{topic.name}: the unit of its wheel speeds is not known: add --unit with one of "
+            f"{', '.join(UNITS)}"
+        )
+    _check_unit(unit)
+    return UNITS[unit][2], unit
+
+
+def _check_unit(unit: str) -> None:
+    if unit not in UNITS:
+        raise BagError(f"unit {unit!r}, expected one of {', '.join(UNITS)}")
+
+
+def _gear(wishes: Mapping[str, Any]) -> float:
+    gear = float(wishes.get("gear", 1.0))
+    if not 1e-6 <= abs(gear) <= 1e6:
+        raise BagError(f"gear = {gear!r}, expected the turns that are counted for one of a wheel")
+    return gear
+
+
+def _wrap(topic: Topic, names: tuple[str, ...], one: float) -> float:
+    """Places that all stay within one turn are taken as wrapped ones."""
+    turn = 2 * math.pi / one
+    ranges = [topic.ranges[PLACE, name] for name in names if (PLACE, name) in topic.ranges]
+    within = all(most - least <= turn * 1.001 for least, most in ranges)
+    return turn if ranges and within else math.inf

@@ -1,0 +1,115 @@
+"""What a user says of a bag: a map of its topics (TOML), and options that override it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+from odometry.bags.errors import BagError
+from odometry.io.structured import read_toml
+
+TIMES = ("auto", "header", "log")
+NONE = "none"  # as a topic: leave this out
+# Keys by table, and the kinds of their values
+KEYS: dict[str, dict[str, tuple[type, ...]]] = {
+    "": {"time": (str,), "other_odometry": (list,)},
+    "robot": {
+        "name": (str,),
+        "frame": (str,),
+        "track_width": (int, float),
+        "wheel_radius": (int, float),
+        "length": (int, float),
+        "width": (int, float),
+        "mass": (int, float),
+        "frame_height": (int, float),
+    },
+    "wheels": {
+        "topic": (str,),
+        "left": (list,),
+        "right": (list,),
+        "left_sign": (int, float),
+        "right_sign": (int, float),
+        "gear": (int, float),
+        "unit": (str,),
+        "values": (str,),
+        "separation": (int, float),
+    },
+    "imu": {"topic": (str,), "frame": (str,)},
+    "reference": {"topic": (str,), "frame": (str,), "world": (str,)},
+    "images": {"topic": (str,), "camera_info": (str,), "frame": (str,)},
+}
+WHAT = {str: "a text", list: "a list", int: "a number", float: "a number"}
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """What a map and the options say; what they do not say is guessed.
+
+    Attributes
+    ----------
+    time : str
+        "header", "log", or "auto".
+    other_odometry : tuple of str, or None
+        Topics kept beside the run; None: all that are guessed.
+    robot, wheels, imu, reference, images : Mapping
+        Tables of the map, see KEYS.
+    """
+
+    time: str = "auto"
+    other_odometry: tuple[str, ...] | None = None
+    robot: Mapping[str, Any] = field(default_factory=dict)
+    wheels: Mapping[str, Any] = field(default_factory=dict)
+    imu: Mapping[str, Any] = field(default_factory=dict)
+    reference: Mapping[str, Any] = field(default_factory=dict)
+    images: Mapping[str, Any] = field(default_factory=dict)
+
+    def overridden(self, options: Mapping[str, Any]) -> "Wishes":
+        """The same with options: `time`, or "table.key" for a key of a table; None is unsaid."""
+        changed: dict[str, Any] = {}
+        for name, value in options.items():
+            table, _, key = name.rpartition(".")
+            if value is None:
+                continue
+            if not table:
+                changed[key] = value
+            else:
+                changed[table] = {**changed.get(table, getattr(self, table)), key: value}
+        return replace(self, **changed)
+
+
+def read_wishes(file: Path) -> Wishes:
+    """Read a map of topics.
+
+    Raises
+    ------
+    BagError
+        If the file cannot be read, or holds a key or a value that is not expected.
+    """
+    content = read_toml(file, BagError)
+    tables = {name: value for name, value in content.items() if isinstance(value, dict)}
+    _check(content.keys() - tables.keys(), content, "", str(file))
+    for name, table in tables.items():
+        if name not in KEYS:
+            raise BagError(f"{file}: [{name}]: {_expected(name, KEYS)}")
+        _check(table.keys(), table, name, f"{file}: [{name}]")
+    if content.get("time", "auto") not in TIMES:
+        raise BagError(f"{file}: time = {content['time']!r}, expected one of {', '.join(TIMES)}")
+    other = content.get("other_odometry")
+    kept = tuple(map(str, other)) if other is not None else None
+    return Wishes(content.get("time", "auto"), kept, **tables)
+
+
+def _check(keys: Any, table: Mapping[str, Any], name: str, where: str) -> None:
+    for key in keys:
+        kinds = KEYS[name].get(key)
+        if kinds is None:
+            raise BagError(f"{where}: {key}: {_expected(key, KEYS[name])}")
+        if isinstance(table[key], bool) or not isinstance(table[key], kinds):
+            raise BagError(f"{where}: {key} = {table[key]!r}, expected {WHAT[kinds[0]]}")
+
+
+def _expected(key: str, known: Mapping[str, Any]) -> str:
+    near = get_close_matches(key, list(known), n=1)
+    meant = f"did you mean {near[0]}? " if near else ""
+    return f"there is no such key; {meant}Known: {', '.join(filter(None, known))}"

@@ -1,0 +1,27 @@
+"""Maps of topics: the shipped example is one."""
+
+from pathlib import Path
+
+from odometry.bags.wheel_source import UNITS
+from odometry.bags.wishes import KEYS, read_wishes
+
+EXAMPLE = Path(__file__).parents[3] / "data/bags/map.toml"
+
+
+def test_the_shipped_map_can_be_read():
+    wishes = read_wishes(EXAMPLE)
+    assert wishes.wheels["left"] == ["front_left_wheel", "rear_left_wheel"]
+    assert wishes.robot["frame_height"] == 0.132
+    assert wishes.other_odometry == ("/odometry/filtered",)
+    assert wishes.wheels["unit"] in UNITS
+
+
+def test_options_override_the_map_key_by_key():
+    changed = read_wishes(EXAMPLE).overridden({"robot.track_width": 1.0, "time": None})
+    assert changed.robot["track_width"] == 1.0
+    assert changed.robot["wheel_radius"] == 0.165
+    assert changed.time == "auto"
+
+
+def test_every_key_of_a_table_is_a_field_of_the_wishes():
+    assert set(KEYS) - {""} == {"robot", "wheels", "imu", "reference", "images"}
