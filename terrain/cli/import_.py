@@ -5,6 +5,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from terrain.cli.import_poses import (
+    PoseFiles,
+    add_to_run,
+    pose_options,
+    without_reference,
+    write_poses,
+)
 from terrain.cli.options import OUTPUT, Positive
 
 if TYPE_CHECKING:
@@ -74,26 +81,33 @@ KEYS = {
     help="Stamps of headers, or the times at which the bag received the messages.  [default: "
     "headers, where all clocks agree]",
 )
+@pose_options
 def import_(
     *,
     bags: tuple[Path, ...],
     out: Path | None,
     as_list: bool,
     map_file: Path | None,
+    poses: PoseFiles,
     **options: Any,
 ) -> None:
     """Make a run folder from bags of ROS 1 or ROS 2 (SQLite, MCAP); several are one recording.
 
     Wheel speeds come from joint states, odometry, twists or numbers of any message; what each
     topic is good for is guessed from types and names, and said. What is damaged is read as far as
-    possible, and what was lost is said.
+    possible, and what was lost is said. With --pose or --truth BAG may be a run folder: a
+    trajectory of another program is added to it.
 
     \b
     Example:
       terrain-odometry import drive.bag --list
       terrain-odometry import drive.bag --out my_run
       terrain-odometry import rosbag2_folder --map my_robot_bags.toml --out my_run
+      terrain-odometry import my_run --pose slam.tum
     """
+    if poses.files and any((bag / "run.toml").exists() for bag in bags):
+        _check(add_to_run(bags, out, poses))
+        return
     if out is None and not as_list:
         raise click.UsageError("--out RUN is missing (or --list, to look into the bags first)")
     _require_extra()
@@ -104,11 +118,15 @@ def import_(
     from terrain.cli.outputs import claim_folder
 
     wishes = read_wishes(map_file) if map_file is not None else Wishes()
+    options = without_reference(options, poses)
     wishes = wishes.overridden({KEYS[name]: _value(name, said) for name, said in options.items()})
     output = claim_folder(out)
     with output.writing() as part:
         imported = _write(bags, wishes, part)
+        added = write_poses(part, poses)
     _print_imported(out, imported)
+    for line in added:
+        click.echo(line)
     _check(out)
 
 

@@ -1,0 +1,129 @@
+"""`import --pose FILE`, `--truth FILE`: trajectories of other programs in a run folder."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import wraps
+from pathlib import Path
+from typing import Any
+
+import click
+
+FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
+
+
+@dataclass(frozen=True)
+class PoseFiles:
+    """Trajectories to be added to a run.
+
+    Attributes
+    ----------
+    files : dict of str to Path
+        By the table that they become: pose, truth.
+    times : Path or None
+        Stamps of KITTI files.
+    axes : str
+        "robot", "optical", or "" for those of the format.
+    """
+
+    files: dict[str, Path]
+    times: Path | None = None
+    axes: str = ""
+
+
+def pose_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Add --pose, --truth, --times and --axes; the command gets them as `poses`."""
+
+    @click.option(
+        "--pose", type=FILE, help="Poses of another program (TUM, KITTI, EuRoC) as pose.csv."
+    )
+    @click.option("--truth", type=FILE, help="The same as truth.csv: for scoring alone.")
+    @click.option("--times", type=FILE, help="Stamps of a KITTI file, one a line [s].")
+    @click.option(
+        "--axes",
+        type=click.Choice(["robot", "optical"]),
+        help="Of these files: x forward and z up, or those of images, z along the view and y "
+        "down.  [default: optical of KITTI, else robot]",
+    )
+    @wraps(command)
+    def with_poses(
+        *,
+        pose: Path | None,
+        truth: Path | None,
+        times: Path | None,
+        axes: str | None,
+        **others: Any,
+    ) -> None:
+        named = {"pose": pose, "truth": truth}
+        files = {name: file for name, file in named.items() if file is not None}
+        if not files and (times or axes):
+            raise click.UsageError("--times and --axes are of --pose or --truth: name one")
+        command(poses=PoseFiles(files, times, axes or ""), **others)
+
+    return with_poses
+
+
+def without_reference(options: dict[str, Any], poses: PoseFiles) -> dict[str, Any]:
+    """Options of a bag whose reference a file of --pose replaces."""
+    if "pose" not in poses.files:
+        return options
+    if options["reference"] not in {None, "none"}:
+        raise click.UsageError("--pose and --reference both become pose.csv: name one")
+    return options | {"reference": "none"}
+
+
+def write_poses(folder: Path, poses: PoseFiles) -> list[str]:
+    """Write the tables into a run folder that has its odometry; what was written, a line each.
+
+    Raises
+    ------
+    OdometryError
+        If a file cannot be read, or has no stamp in common with the odometry.
+    """
+    from odometry.io.csv_table import write_csv_table
+    from odometry.io.pose_file import doubt_of_axes, pose_columns, poses_within
+    from odometry.io.run_folder import read_tables
+    from odometry.io.trajectory_files import read_trajectory
+
+    odometry = read_tables(folder)["odometry"]
+    trajectories = {
+        name: read_trajectory(file, times=poses.times, axes=poses.axes)
+        for name, file in poses.files.items()
+    }
+    counts = {name: poses_within(each, odometry) for name, each in trajectories.items()}
+    lines = []
+    for name, trajectory in trajectories.items():
+        write_csv_table(folder / f"{name}.csv", pose_columns(trajectory))
+        file = poses.files[name]
+        lines.append(
+            f"  {name}.csv: {len(trajectory)} rows from {file}, {counts[name]} of them within the "
+            "odometry"
+        )
+        doubt = doubt_of_axes(trajectory)
+        if doubt:
+            click.echo(f"Warning: {file}: {doubt}", err=True)
+    return lines
+
+
+def add_to_run(folders: tuple[Path, ...], out: Path | None, poses: PoseFiles) -> Path:
+    """Add poses to the run folder that is there; a table that it has is not replaced.
+
+    Raises
+    ------
+    OutputError
+        If the folder has such a table already.
+    OdometryError
+        As `write_poses`.
+    """
+    from odometry.errors import OutputError
+    from odometry.outputs.manifest import check_finished
+
+    if len(folders) > 1 or out is not None:
+        raise click.UsageError("poses are added to one run folder, in its place: leave out --out")
+    (folder,) = folders
+    check_finished(folder)
+    for name in poses.files:
+        if (folder / f"{name}.csv").exists():
+            raise OutputError(f"{folder / name}.csv is there already; move it, or delete it")
+    lines = write_poses(folder, poses)
+    click.echo("\n".join([f"Added to the run {folder}:", *lines]))
+    return folder
