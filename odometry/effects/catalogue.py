@@ -14,6 +14,7 @@ from odometry.effects.curvature import Curvature
 from odometry.effects.drive_limit import Deadband, RateLimit, Saturation
 from odometry.effects.gyroscope_error import GyroscopeError
 from odometry.effects.heading_offset import HeadingOffset
+from odometry.effects.history import History
 from odometry.effects.in_course import in_course
 from odometry.effects.inertia_contact import InertiaByContact
 from odometry.effects.inertia_icr import InertiaByIndices
@@ -58,7 +59,7 @@ EFFECTS: tuple[type[Effect], ...] = (
     Compass,
     GyroscopeError,
 )
-KNOWN: tuple[type[Effect], ...] = (*EFFECTS, Residual)
+KNOWN: tuple[type[Effect], ...] = (*EFFECTS, Residual, History)
 BY_FORM = {(effect.name, effect.form): effect for effect in KNOWN}
 
 

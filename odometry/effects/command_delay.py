@@ -3,11 +3,9 @@
 from collections.abc import Mapping
 from typing import ClassVar
 
-import numpy as np
-
 from odometry.arrays import FloatArray
 from odometry.effects.base import CommandEffect, EffectParameter
-from odometry.effects.held_commands import held_spans
+from odometry.effects.held_commands import held_spans, late_speeds
 from odometry.effects.time_offset import BY_GYROSCOPE
 from odometry.models.inputs import Inputs
 
@@ -39,25 +37,5 @@ class CommandDelay(CommandEffect):
         """
         if inputs.time_s is None or not values[0]:
             return inputs.tread_speeds_m_s
-        speeds = np.array(inputs.tread_speeds_m_s, dtype=np.float64)
         held_s, starts = held_spans(inputs.time_s)
-        for rows in np.split(np.arange(len(speeds)), np.flatnonzero(starts)[1:]):
-            speeds[rows] = _late(speeds[rows], held_s[rows], float(values[0]))
-        return speeds
-
-
-def _late(speeds: FloatArray, held_s: FloatArray, delay_s: float) -> FloatArray:
-    """Mean speeds (N, 2) of one record, late: differences of its travel."""
-    ends_s = np.concatenate([[0.0], np.cumsum(held_s)])
-    first = ends_s[0] - delay_s
-    moved = held_s > 0
-    late = speeds.copy()
-    for tread in (0, 1):
-        travel_m = np.concatenate([[0.0], np.cumsum(speeds[:, tread] * held_s)])
-        at_m = np.interp(
-            ends_s - delay_s,
-            np.concatenate([[first], ends_s]),
-            np.concatenate([[-delay_s * speeds[0, tread]], travel_m]),
-        )
-        late[moved, tread] = (np.diff(at_m) / np.where(moved, held_s, 1.0))[moved]
-    return late
+        return late_speeds(inputs.tread_speeds_m_s, held_s, starts, float(values[0]))

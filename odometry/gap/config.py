@@ -45,12 +45,20 @@ class GapConfig:
         of twenty).
     general_margin : float
         Of evidence by which a smooth function must beat names to stand in their place.
+    least_beside : float
+        Share of what a name closes alone that it must still close beside a smooth function that
+        beats it. Beside a function that does the same it closes 0.1 at most.
     unexplained : float
         Chi-squared a degree of freedom above which what is left is not noise.
     left_over, mostly_closed, contact_closed : float
         Chi-squared a degree of freedom that names may leave, unless they close this share of its
         excess. Beside a wrong name 1.8 to 190 is left and 0.75 closed at most. Forces of contacts,
         for which no equation here is exact, need to close less.
+    uneven, uneven_probability : float
+        Standard deviation of the strength of a name between pieces of the runs, as a share of it,
+        above which it is no one strength; and the probability of such pieces by chance below
+        which that counts. Right names differ by 0.16 at most, a constant delay in the place of a
+        clock that was set by 0.37.
     base_probability : float
         Of a base that moves as far within its calibration by chance: less is a base that left it.
     brought_back : float
@@ -84,10 +92,13 @@ class GapConfig:
     near_bound: float = 0.1
     equivalent_margin: float = 6.0
     general_margin: float = 6.0
+    least_beside: float = 0.5
     unexplained: float = 1.3
     left_over: float = 1.5
     mostly_closed: float = 0.8
     contact_closed: float = 0.4
+    uneven: float = 0.25
+    uneven_probability: float = 0.001
     base_probability: float = 0.001
     brought_back: float = 0.25
     contact_spread: float = 1.1
@@ -104,6 +115,7 @@ class GapConfig:
             self,
             *("horizon_s", "part_s", "least_evidence", "least_excess", "sure", "near_bound"),
             *("equivalent_margin", "general_margin", "unexplained", "left_over", "contact_spread"),
+            "uneven",
         )
         require(self.folds >= 2, f"folds = {self.folds}, expected 2 or more")
         require(self.held_back >= 2, f"held_back = {self.held_back}, expected 2 or more")
@@ -112,6 +124,7 @@ class GapConfig:
             "least_rest",
             "first_share",
             "mostly_closed",
+            "least_beside",
             "base_probability",
         ):
             value = getattr(self, name)

@@ -5,11 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from odometry.effects.history import History
 from odometry.effects.residual import Residual
 from odometry.gap.candidates import quick_effects
 from odometry.gap.config import GapConfig
 from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitter
+from odometry.gap.form import names_alone, of_their_form
 from odometry.gap.general import general_candidates
 from odometry.gap.own_moments import with_own_moments
 from odometry.gap.search import Search
@@ -45,7 +47,7 @@ def explained(
     scenes = fitter.measured.scenes
     quick = quick_effects(scenes, fitter.calibration)
     found = search.simplest(search.by_fewer(search.stepwise(quick), quick), quick)
-    smooth = general_candidates(scenes, fitter.calibration.base, config)
+    smooth = (*general_candidates(scenes, fitter.calibration.base, config), History())
     best = search.best_smooth(search.start, smooth, found.fitted.cost if found.steps else np.inf)
     rest = search.best_smooth(found.fitted, smooth) if found.steps else None
     options = [] if rest is None else [search.without_idle(found.with_step(rest))]
@@ -74,15 +76,17 @@ class _Naming(Search):
 
     def that_stand(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
         """The effects that close the gap where they were not fitted, and leave noise alone."""
-        found = self._less_doubtful(found, smooth)
+        found = self._less_doubtful(self._of_their_form(found, smooth), smooth)
         while found.steps:
             reason = self._fails(found)
             if not reason:
                 break
             last = found.effects[-1]
             self.refuse(last, reason)
-            alone = len(found.steps) == 1 and not isinstance(last, Residual)
-            found = self._unknown(found, smooth) if alone else found.less_last()
+            if len(found.steps) == 1 and not isinstance(last, Residual):
+                found = self._unknown(found, smooth)
+            else:
+                found = self._of_their_form(found.less_last(), smooth)
         refused = tuple(one for name, one in self.refusals.items() if name not in found.names)
         unexplained = not found.steps and self.unexplained()
         return replace(
@@ -101,18 +105,23 @@ class _Naming(Search):
             believed, moved, self.held_out, self.config
         )
 
+    def _of_their_form(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
+        """Without names that do not have the form of what they stand for."""
+        left = of_their_form(self, found, smooth)
+        return left if left.steps or not found.steps else self._unknown(found, smooth)
+
     def _less_doubtful(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
         """Without any name where all names together leave what is not noise."""
-        names = [e for e in found.effects if not isinstance(e, Residual)]
+        alone = names_alone(self.fitter, found)
+        names = [added.effect for added in alone.effects]
         if not names:
             return found
-        alone = found if len(names) == len(found.effects) else self.in_order(found, names)
         noise = self.fitter.measured.expected
         excess = max(self.start.cost - noise, self.config.least_excess * noise)
-        closed = (self.start.cost - alone.fitted.cost) / excess
+        closed = (self.start.cost - alone.cost) / excess
         by_contact = any(effect.slow for effect in names)
         most = self.config.contact_closed if by_contact else self.config.mostly_closed
-        reason = leaves_noise(self.fitter.spread(alone.fitted), closed, self.config.left_over, most)
+        reason = leaves_noise(self.fitter.spread(alone), closed, self.config.left_over, most)
         if not reason:
             return found
         for name in names:
@@ -138,9 +147,15 @@ class _Naming(Search):
         return over and self.fitter.spread(self.start) > self.config.unexplained
 
     def _fails(self, found: Explanation) -> str:
-        """Why the last effect does not stand on held-out data, beyond what the others close."""
+        """Why the last effect does not stand on held-out data, beyond what the others close.
+
+        What a base beside the others closes by leaving its calibration is the effect's, if that
+        brings the base back.
+        """
         fit, before = found.fitted, (found.steps[-2].fitted if found.steps[1:] else self.start)
-        pairs = [(before.base, before.effects), (self.fitter.calibration.base, ())]
+        hidden = found.steps[1:] and self._left(before) and self._brings_back(fit, before)
+        less_base = fit.base if hidden else before.base
+        pairs = [(less_base, before.effects), (self.fitter.calibration.base, ())]
         effects, held_out = with_own_moments(
             fit.base, fit.effects, self.held_out, self.fitter.measured.scenes
         )

@@ -101,6 +101,7 @@ SPOKEN: Mapping[str, Signed | Plain] = {
     "left_wheel_angle": Plain("angle of the left wheels", "degrees", DEGREES),
     "right_wheel_angle": Plain("angle of the right wheels", "degrees", DEGREES),
     "speed_before": Plain("previous speed", "m/s"),
+    "speed_history": Plain("speeds recorded shortly before and after", "s"),
     "speed_change": Signed(
         "speeding up", "slowing down", "by more than", "change of speed", "m/s", 1.0, 0.05
     ),

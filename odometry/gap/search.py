@@ -158,16 +158,17 @@ class Search:
 
     def _excess(self, before: Fitted) -> bool:
         """Whether the gap is above the interval of the noise floor, or hidden in a moved base."""
+        return self._gap(before) > self.floor.high or self._left(before)
+
+    def _left(self, fit: Fitted) -> bool:
+        """Whether the base left its calibration."""
         free = len(self.fitter.calibration.uncertain.values)
-        return self._gap(before) > self.floor.high or base_left_calibration(
-            before, free, self.config
-        )
+        return base_left_calibration(fit, free, self.config)
 
     def _brings_back(self, fit: Fitted, before: Fitted) -> bool:
         """Whether a base that had left its calibration is near it again."""
-        free = len(self.fitter.calibration.uncertain.values)
         near = fit.base_alone < self.config.brought_back * before.base_alone
-        return near or not base_left_calibration(fit, free, self.config)
+        return near or not self._left(fit)
 
     def _gap(self, fit: Fitted) -> float:
         scenes = self.fitter.measured.scenes

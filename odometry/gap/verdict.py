@@ -16,8 +16,10 @@ from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import sure_sum
+from odometry.gap.evenness import Unevenness
 from odometry.gap.fit import Fitted
 from odometry.gap.pieces import numbered_pieces
+from odometry.gap.region_words import noun_of
 from odometry.gap.statistic import SEED, Gap, drawn_gaps, squared_errors
 from odometry.windows.dense import DenseWindows
 
@@ -152,6 +154,23 @@ def leaves_noise(spread: float, closed: float, left_over: float, most: float) ->
     return (
         f"it closes {100 * max(closed, 0.0):.0f} % and leaves {spread:.1f} times the chi-squared "
         "of noise: not the cause, or not the only one"
+    )
+
+
+def is_special(instead: Residual | None) -> str:
+    """Whether no smooth function does better in the place of a name."""
+    if instead is None:
+        return ""
+    return f"a smooth function of {noun_of(instead.variable)} explains more in its place"
+
+
+def is_even(of: Unevenness, config: GapConfig) -> str:
+    """Whether an effect has one strength, in all pieces of the runs."""
+    if of.share <= config.uneven or of.probability >= config.uneven_probability:
+        return ""
+    return (
+        f"its strength differs by {100 * of.share:.0f} % from one stretch of the runs to the next: "
+        "something else comes and goes"
     )
 
 

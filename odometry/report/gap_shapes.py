@@ -6,7 +6,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from odometry.arrays import FloatArray
-from odometry.effects.residual import COMPONENTS, Residual, basis_of, variables_of
+from odometry.effects.history import BOTH, History
+from odometry.effects.residual import COMPONENTS, TREADS, Residual, basis_of, variables_of
 from odometry.gap.gap import WITHIN_95
 from odometry.gap.region_words import noun_of, shown_unit
 from odometry.gap.result import GapResult, NamedEffect
@@ -17,7 +18,7 @@ from odometry.report.html import Picture
 POINTS = 200
 TAILS = 0.01  # of the samples on either side are not drawn
 HEIGHT_IN = 2.3
-UNITS = {"v_x": "m/s", "v_y": "m/s", "omega": "rad/s"}
+UNITS = {"v_x": "m/s", "v_y": "m/s", "omega": "rad/s", "left": "m/s", "right": "m/s", BOTH: ""}
 
 
 def shape_pictures(result: GapResult, folder: Path) -> list[Picture]:
@@ -31,9 +32,10 @@ def shape_pictures(result: GapResult, folder: Path) -> list[Picture]:
 
 
 def shape_of(effect: NamedEffect, variable: FloatArray) -> dict[str, tuple[FloatArray, FloatArray]]:
-    """Value and standard deviation (N,) of each component of the twist that it adds to.
+    """Value and standard deviation (N,) of each component of the twist, or tread, that it adds to.
 
-    At values (N,) of the variable; parameters are taken as independent.
+    At values (N,) of the variable; parameters are taken as independent. Of a history the weight
+    at each lag.
     """
     residual = effect.added.effect
     if not isinstance(residual, Residual):
@@ -41,7 +43,7 @@ def shape_of(effect: NamedEffect, variable: FloatArray) -> dict[str, tuple[Float
     basis = basis_of(variable, residual.knots)
     sigmas = (effect.high - effect.low) / (2 * WITHIN_95)
     shapes = {}
-    for component in COMPONENTS:
+    for component in (*COMPONENTS, *TREADS, BOTH):
         own = [i for i, (name, _) in enumerate(residual.terms) if name == component]
         if own:
             columns = basis[:, [residual.terms[i][1] for i in own]]
@@ -54,8 +56,15 @@ def _span(result: GapResult, residual: Residual) -> tuple[float, float]:
     """Of the values recorded; a turn where the function is one of an angle."""
     if not residual.knots:
         return -np.pi, np.pi
+    if isinstance(residual, History):
+        return residual.knots[0], residual.knots[-1]
+    base = result.base
+    twists = [base.model.twist(base.values, scene.inputs) for scene in result.measured_scenes]
     recorded = np.concatenate(
-        [variables_of(scene.inputs)[residual.variable] for scene in result.measured_scenes]
+        [
+            variables_of(scene.inputs, twist)[residual.variable].ravel()
+            for scene, twist in zip(result.measured_scenes, twists, strict=True)
+        ]
     )
     low, high = np.quantile(recorded, [TAILS, 1 - TAILS])
     return float(low), float(high)

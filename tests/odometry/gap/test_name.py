@@ -57,3 +57,17 @@ def test_both_of_a_pair_are_named_and_nothing_freer_in_place_of_one(studied):
     assert set(names(result)) == set(case.effects)
     assert "lever_arm" in {one.name for one in result.equivalent}
     assert result.holdout.share_closed > 0.9
+
+
+def test_a_clock_that_was_set_is_no_constant_delay(studied):
+    """A delay explains much of it, but each stretch of the run asks for another."""
+    _, result = studied("clock_step", 50)
+    assert result.verdict == "unknown"
+    (refusal,) = [one for one in result.refusals if one.name == "time_offset"]
+    assert "its strength differs" in refusal.reason
+
+
+def test_what_a_moved_base_hides_is_named_beside_the_first(studied):
+    """Without a wheel scale the base would leave its calibration and close as much."""
+    case, result = studied("wheel_scale+time_offset", 50)
+    assert set(names(result)) == set(case.effects)

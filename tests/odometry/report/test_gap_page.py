@@ -6,6 +6,10 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
+from odometry.effects.corrected import Added
+from odometry.effects.history import History
+from odometry.gap.config import GapConfig
+from odometry.gap.general import general_candidates
 from odometry.gap.locate import Location, Predictor
 from odometry.gap.quantities import with_interval
 from odometry.gap.statistic import gap_of, squared_errors
@@ -15,7 +19,7 @@ from odometry.report.gap_figures import rolling_rms
 from odometry.report.gap_map import binned_rms, scale_of
 from odometry.report.gap_page import write_gap_report
 from odometry.report.gap_rollouts import MEASURED_NAME, rollout, rollouts
-from odometry.report.gap_shapes import shape_of
+from odometry.report.gap_shapes import shape_of, shape_pictures
 from odometry.report.gap_tables import worst_grid
 
 
@@ -184,6 +188,20 @@ def test_the_shape_of_what_is_unknown_by_hand(unknown_result):
     np.testing.assert_allclose(shapes["v_x"], [0.001 * np.cos(at), sigma * np.abs(np.cos(at))])
     np.testing.assert_allclose(shapes["v_y"], [0 * at, sigma * np.abs(np.sin(at))], atol=1e-12)
     assert set(shapes) == {"v_x", "v_y"}
+
+
+def test_a_shape_of_every_smooth_function_is_drawn(unknown_result, known, tmp_path):
+    candidates = general_candidates(unknown_result.measured_scenes, known.base, GapConfig())
+    (tested,) = unknown_result.effects
+    for number, residual in enumerate((*candidates, History())):
+        values = np.linspace(-0.01, 0.02, len(residual.terms))
+        effect = replace(
+            tested, added=Added(residual, values), low=values - 0.01, high=values + 0.01
+        )
+        folder = tmp_path / f"{number}"
+        folder.mkdir()
+        (picture,) = shape_pictures(replace(unknown_result, effects=(effect,)), folder)
+        assert picture.file.stat().st_size > 2000
 
 
 def test_worst_stretches_are_those_of_the_largest_gap(scaled_result):

@@ -1,0 +1,77 @@
+"""A part of the motion that follows what the treads were told before or will be told after."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.effects.base import EffectParameter
+from odometry.effects.base_model import Base
+from odometry.effects.held_commands import held_spans, late_speeds
+from odometry.effects.residual import Residual
+from odometry.errors import ParameterError
+from odometry.models.inputs import Inputs
+
+HISTORY = "speed_history"
+BOTH = "treads"
+LAGS_S = (-0.8, -0.4, -0.2, -0.1, 0.1, 0.2, 0.4, 0.8)
+
+
+@dataclass(frozen=True)
+class History(Residual):
+    """Tread speeds as a weighted sum of those recorded at several lags: any linear filter.
+
+    Delays, lags, swings and means over a while are all of this form, and none of them by name.
+    Of `Residual`, `variable` is HISTORY, `knots` are the lags [s], a term is (BOTH, number of the
+    lag), and `by_speed` says nothing.
+    """
+
+    variable: str = HISTORY
+    terms: tuple[tuple[str, int], ...] = tuple((BOTH, number) for number in range(len(LAGS_S)))
+    knots: tuple[float, ...] = LAGS_S
+
+    def __post_init__(self) -> None:
+        known = [(BOTH, number) for number in range(len(self.knots))]
+        if self.variable != HISTORY or any(tuple(term) not in known for term in self.terms):
+            raise ParameterError(
+                f"the residual of {self.variable!r} has terms {self.terms}, expected {HISTORY!r} "
+                f"and terms of {known}"
+            )
+
+    form = "history"
+    equation = "v(t) -> v(t) + sum of c_k (v(t - lag_k) - v(t))"
+    looks_like = "errors after or before changes of speed"
+    remedy = "compare the recorded speeds with what the treads do, sample by sample"
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`."""
+        return tuple(
+            EffectParameter(f"{name}_{number}", "", -10.0, 10.0, 0.0, 0.01)
+            for name, number in self.terms
+        )
+
+    def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the interface
+        """See `Effect.lacks`."""
+        return "stamps" if inputs.time_s is None else ""
+
+    def twist(
+        self, values: FloatArray, twist: FloatArray, inputs: Inputs, base: Base
+    ) -> FloatArray:
+        """See `MotionEffect.twist`; what is added to treads is a change to first order.
+
+        Raises
+        ------
+        ParameterError
+            If there are no stamps.
+        """
+        if inputs.time_s is None:
+            raise ParameterError("the residual is a function of earlier speeds: no stamps")
+        speeds = np.asarray(inputs.tread_speeds_m_s)
+        held_s, starts = held_spans(inputs.time_s)
+        added = np.zeros_like(speeds)
+        for (_, number), value in zip(self.terms, values, strict=True):
+            if value:
+                added += value * (late_speeds(speeds, held_s, starts, self.knots[number]) - speeds)
+        slopes = base.model.speed_jacobian(base.values, inputs)
+        return np.asarray(twist + np.einsum("nij,nj->ni", slopes, added))

@@ -1,0 +1,90 @@
+"""Whether names have the form of what they stand for.
+
+A name that does not is beaten in its place by a smooth function of something, or fits each piece
+of the runs with another strength.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from odometry.effects.corrected import Added
+from odometry.effects.residual import Residual
+from odometry.gap.config import GapConfig
+from odometry.gap.contest import cost_of
+from odometry.gap.evenness import unevenness
+from odometry.gap.explanation import Explanation
+from odometry.gap.fit import Fitted, Fitter
+from odometry.gap.search import Search
+from odometry.gap.verdict import is_even, is_special
+
+PROMISING = 2  # smooth functions that are fitted in full
+
+
+def of_their_form(search: Search, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
+    """Without names that do not have it: with the function that does better in the place of one.
+
+    Without any step where no name is left.
+    """
+    for effect in found.effects:
+        if isinstance(effect, Residual):
+            continue
+        alone = names_alone(search.fitter, found)
+        names = [added.effect for added in alone.effects]
+        place = names.index(effect)
+        instead = smooth_in_place(search.fitter, alone, place, smooth, search.config)
+        of = unevenness(search.fitter, found.fitted, found.effects.index(effect))
+        reason = is_special(instead) or is_even(of, search.config)
+        if not reason:
+            continue
+        search.refuse(effect, reason)
+        others = [name for name in names if name is not effect]
+        if not others:
+            return replace(found, steps=())
+        found = search.in_order(found, [*others, instead] if instead else others)
+    return found
+
+
+def names_alone(fitter: Fitter, found: Explanation) -> Fitted:
+    """Fitted without smooth functions."""
+    effects = found.fitted.effects
+    names = [one for one in effects if not isinstance(one.effect, Residual)]
+    return found.fitted if len(names) == len(effects) else _fit(fitter, names)
+
+
+def smooth_in_place(
+    fitter: Fitter,
+    names: Fitted,
+    place: int,
+    smooth: Sequence[Residual],
+    config: GapConfig,
+) -> Residual | None:
+    """The smooth function that stands in the place of one name with more evidence.
+
+    None where no function beats the name by the margin, or where the name still closes its share
+    beside the best: then the function stands for something else.
+    """
+    others = [*names.effects[:place], *names.effects[place + 1 :]]
+    before = _fit(fitter, others)
+    losses = fitter.linear_losses(before, smooth)
+    promising = np.argsort(losses, kind="stable")[:PROMISING]
+    fits = {
+        smooth[i]: fitter.fit([*(one.effect for one in others), smooth[i]], others, pin_slow=True)
+        for i in promising
+        if losses[i] < names.cost
+    }
+    if not fits:
+        return None
+    best = min(fits, key=lambda function: cost_of(fits[function]))
+    cost = cost_of(fits[best])
+    margin = config.general_margin * max(1.0, fitter.spread(fits[best]))
+    if cost_of(names) - cost < margin:
+        return None
+    both = _fit(fitter, [*fits[best].effects, names.effects[place]])
+    still = (cost - cost_of(both)) / (cost_of(before) - cost_of(names))
+    return best if still < config.least_beside else None
+
+
+def _fit(fitter: Fitter, effects: Sequence[Added]) -> Fitted:
+    return fitter.fit([one.effect for one in effects], effects, pin_slow=True)
