@@ -53,10 +53,10 @@ def between_pieces(strengths: FloatArray, weights: FloatArray, pieces: IntArray)
     numbers, piece = np.unique(pieces, return_inverse=True)
     if len(numbers) <= LEAST_PIECES:
         return Unevenness(0.0, 1.0)
-    of_pieces = np.bincount(piece, weights=weights)
-    means = np.bincount(piece, weights=weights * strengths) / of_pieces
+    summed = np.bincount(piece, weights=weights)
+    means = np.bincount(piece, weights=weights * strengths) / summed
     within = float(weights @ (strengths - means[piece]) ** 2)
-    of_pieces /= max(1.0, within / max(1, len(strengths) - len(numbers)))
+    of_pieces = summed / max(1.0, within / max(1, len(strengths) - len(numbers)))
     apart = of_pieces * (means - np.average(means, weights=of_pieces)) ** 2
     kept = np.arange(len(means)) != np.argmax(apart)
     means, of_pieces = means[kept], of_pieces[kept]

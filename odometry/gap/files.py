@@ -13,6 +13,7 @@ from odometry.effects.in_course import lasting
 from odometry.effects.terrain import SHIFTED, Terrain
 from odometry.effects.time_offset import TimeOffset
 from odometry.gap.locate import Region
+from odometry.gap.moved import moves_of
 from odometry.gap.result import Closing, GapResult, NamedEffect
 from odometry.gap.statistic import Gap
 from odometry.io.files import atomic_write
@@ -63,6 +64,17 @@ def content_of(result: GapResult) -> dict[str, Any]:
         "reference": any(one.added.effect.of_reference for one in result.effects),
         "reasons": [
             {"name": one.name, "form": one.form, "reason": one.reason} for one in result.refusals
+        ],
+        "base": [
+            {
+                "name": one.name,
+                "calibrated": one.before,
+                "value": one.after,
+                "sigma": one.sigma,
+                "sigmas": one.sigmas,
+                "unit": one.unit,
+            }
+            for one in moves_of(result.calibration, result.base)
         ],
         "next_drives": [
             {"words": one.words, "between": list(one.between), "odds": one.odds}

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from odometry.effects.residual import Residual
 from odometry.gap.lead import lead
+from odometry.gap.moved import moved_words, moves_of
 from odometry.gap.quantities import evidence_words, metres, rounded, with_interval
 from odometry.gap.region_words import EVERYWHERE, noun_of
 from odometry.gap.result import GapResult, NamedEffect
@@ -19,6 +20,7 @@ def sentences(result: GapResult) -> tuple[str, ...]:
         _disagreement(result),
         *_where(result),
         *(_effect(effect, number) for number, effect in enumerate(result.effects, start=1)),
+        *(moved_words(one) for one in moves_of(result.calibration, result.base) if one.is_far),
         *(
             f"Not {_refused(one.name)}, though it has evidence: {one.reason}."
             for one in result.refusals

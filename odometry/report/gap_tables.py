@@ -4,6 +4,7 @@ import numpy as np
 
 from odometry.gap.closed import Share
 from odometry.gap.config import GapConfig
+from odometry.gap.moved import moves_of
 from odometry.gap.quantities import evidence_words, percent, rounded, with_interval
 from odometry.gap.region_words import noun_of
 from odometry.gap.result import Closing, GapResult
@@ -64,19 +65,25 @@ def parameter_grid(result: GapResult) -> Grid:
 def base_grid(result: GapResult) -> Grid:
     """The base before, and moved within what its calibration leaves open."""
     before, after = result.calibration.base, result.base
-    rows = [
-        (parameter.name, f"{old:.4g}", f"{new:.4g}", parameter.unit or "-")
-        for parameter, old, new in zip(
+    numbers = [
+        (parameter.name, parameter.unit or "-", *values)
+        for parameter, *values in zip(
             before.model.parameters, before.values, after.values, strict=True
         )
     ]
-    rows.append(("latency", f"{before.latency_s:.5g}", f"{after.latency_s:.5g}", "s"))
+    numbers.append(("latency", "s", before.latency_s, after.latency_s))
+    sigmas = {one.name: one.sigmas for one in moves_of(result.calibration, result.base)}
+    rows = [
+        (name, f"{old:.4g}", f"{new:.4g}", unit, f"{sigmas[name]:.1f}" if name in sigmas else "-")
+        for name, unit, old, new in numbers
+    ]
     caption = (
-        f"The model {before.model.name}: as calibrated, and moved within what the calibration "
-        "leaves open when the effects were fitted. Latency: by how much the robot always follows "
+        f"The model {before.model.name}: as calibrated, and moved when the effects were fitted, "
+        "in standard deviations of its calibration. Latency: by how much the robot always follows "
         "its recorded speeds late."
     )
-    return Grid(("parameter", "calibrated", "with the effects", "unit"), rows, caption)
+    heads = ("parameter", "calibrated", "with the effects", "unit", "moved by sigmas")
+    return Grid(heads, rows, caption)
 
 
 def rival_grid(result: GapResult) -> Grid:
