@@ -8,6 +8,7 @@ from odometry.effects.tables import table_of
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
 from odometry.identification.from_stretches import contradicted, not_told
+from odometry.identification.halves import Halves
 from odometry.identification.plausibility import CAUSES, refusals
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.run import Robot
@@ -32,6 +33,8 @@ class Identified:
         Of the ideal differential drive on the same windows.
     given : Mapping of name to float
         Parameters that were held at a stated value.
+    halves : Halves or None
+        Fits to either half of every run; None where one cannot be fitted.
     """
 
     fit: Fit
@@ -39,6 +42,7 @@ class Identified:
     held_out_by: str
     ideal: WindowErrors
     given: Mapping[str, float] = field(default_factory=dict)
+    halves: Halves | None = None
 
     def to_parameters(self, source: str) -> TerrainParameters:
         """The table of a parameter set, with the effects that the model has."""

@@ -16,6 +16,7 @@ from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
 from odometry.identification.fitters import FitTo, fitter
 from odometry.identification.from_positions import windows_or_stretches
+from odometry.identification.halves import Halves, halves_of
 from odometry.identification.held_out import MOST_FOLDS, by_halves, by_runs, held_out_errors
 from odometry.identification.identification import Identification, Identified
 from odometry.models.catalogue import MODELS
@@ -82,7 +83,8 @@ def identify(
         name: _windows_on(name, effects_of(of.model), named, windows, window_config)
         for name, of in asked.items()
     }
-    fits = sum(1 + max(2, min(len(set(here.run)), MOST_FOLDS)) for here in by_ground.values())
+    runs_by_ground = (len(set(here.run)) for here in by_ground.values())
+    fits = sum(3 + (min(count, MOST_FOLDS) if count > 1 else 0) for count in runs_by_ground)
     off = None if show_progress else True
     grounds = {}
     with tqdm(total=fits, unit="fit", disable=off) as bar:
@@ -166,19 +168,26 @@ def _identified(
 ) -> Identified:
     fitted = fit_to(windows)
     ideal = errors_over(MODELS["differential_drive"], np.array([robot.track_width]), windows)
-    return Identified(fitted, *_held_out(windows, fit_to, fitted.values), ideal, given)
+    halves = halves_of(windows, fit_to, fitted.values)
+    held_out = _held_out(windows, fit_to, fitted.values, halves)
+    return Identified(fitted, *held_out, ideal, given, halves)
 
 
 def _held_out(
-    windows: Windows | Stretches, fit_to: FitTo, near: Mapping[str, float]
+    windows: Windows | Stretches,
+    fit_to: FitTo,
+    near: Mapping[str, float],
+    halves: Halves | None,
 ) -> tuple[WindowErrors | None, str]:
     """Errors by runs, else by halves of every run, and which it was.
 
     The fit to all windows tells where to search, and nothing else.
     """
-    for words, parts in (("runs", by_runs(windows)), ("halves", by_halves(windows))):
-        try:
-            return held_out_errors(windows, parts, lambda part: fit_to(part, near)), words
-        except IdentificationError:
-            continue
-    return None, ""
+    try:
+        by_run = held_out_errors(windows, by_runs(windows), lambda part: fit_to(part, near))
+    except IdentificationError:
+        if halves is None:
+            return None, ""
+        others = iter((halves.second, halves.first))
+        return held_out_errors(windows, by_halves(windows), lambda _: next(others)), "halves"
+    return by_run, "runs"

@@ -23,6 +23,7 @@ def print_identification(found: "Identification") -> None:
             *notes(of_terrain.fit),
             *_assumed(of_terrain),
             *_no_gain(of_terrain),
+            of_terrain.halves and of_terrain.halves.note(),
             short,
         )
         for doubt in filter(None, (*how_told(of_terrain.fit), *doubts)):
