@@ -136,9 +136,9 @@ def _notes(found: OtherScore) -> list[str]:
         )
     if abs(found.scale - 1) > LEAST_SCALE:
         notes.append(
-            f"its path fits the reference best when it grows by the factor {found.scale:.3g}: a "
-            "single camera does not tell the scale. Nothing is scaled: the errors are of the path "
-            "as it stands"
+            f"its path fits the reference best when it grows by the factor {found.scale:.3g} (the "
+            "scale of a single camera is not known, and wheels slip). Nothing is scaled: the "
+            "errors are of the path as it stands"
         )
     if abs(degrees(found.turned_rad)) > LEAST_TURN_DEG:
         notes.append(

@@ -3,6 +3,7 @@
 import csv
 import json
 import re
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from odometry.parameters import read_parameters
 from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config
 from terrain.region import RegionConfig
+from terrain.result_table import result_table
 from terrain.results import write_results
 from terrain.run_odometry import run_odometry
 
@@ -293,3 +295,23 @@ def test_the_tread_strips_have_columns_of_their_own(astride_run, classifier, tmp
     assert header[:5] == TERRAIN
     assert "gravel" in table["left"]
     assert "boards" in table["right"]
+
+
+@pytest.mark.parametrize(
+    ("source", "origin"),
+    [
+        ({"origin": [48.1, 11, 519.5]}, [48.1, 11.0, 519.5]),
+        ({"origin": [48.1, 11]}, [48.1, 11.0]),
+        ({"origin": [48.1]}, None),
+        ({"origin": [48.1, float("nan")]}, None),
+        ({"origin": [True, False]}, None),
+        ({"origin": "Munich"}, None),
+        ("anything", None),
+    ],
+)
+def test_the_origin_that_run_toml_says_is_kept(curvy_result, source, origin):
+    run = curvy_result.run
+    run = replace(run, settings={**run.settings, "source": source})
+    content = result_table(replace(curvy_result, run=run))
+    assert content["origin"] == origin
+    assert content["robot"]["track_width"] == run.robot.track_width
