@@ -9,12 +9,14 @@ next pose; its covariance is not known, and as large.
 
 import shutil
 from collections.abc import Callable, Iterator
+from heapq import merge
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import AnyArray, FloatArray
 from odometry.export.errors import ExportError
 from odometry.export.source import ExportSource
 from odometry.extras import extra_module
@@ -27,6 +29,7 @@ FRAME, BODY = "map", "base_link"
 NOT_MEASURED = 1e6  # variance of what is not known
 LAST_S = 2**31  # seconds of a ROS 2 stamp are signed 32-bit
 PLANE = (0, 1, 5)  # x, y and yaw of x y z roll pitch yaw
+ODOMETRY, STRING = "nav_msgs/msg/Odometry", "std_msgs/msg/String"
 Message = tuple[str, float, Any]  # topic, stamp, message
 
 
@@ -42,14 +45,15 @@ def write(source: ExportSource, folder: Path) -> None:
     """
     rosbag2 = extra_module("rosbags.rosbag2", "bags", "MCAP")
     store = _typestore()
-    messages = sorted(_messages(source, store.types), key=lambda message: message[1])
+    streams = _streams(source, store.types)
     bag = folder / "results"
     with rosbag2.Writer(bag, version=9, storage_plugin=rosbag2.StoragePlugin.MCAP) as writer:
         connections = {
             topic: writer.add_connection(topic, kind, typestore=store)
-            for topic, kind in {topic: of.__msgtype__ for topic, _, of in messages}.items()
+            for topic, (kind, _) in streams.items()
         }
-        for topic, stamp_s, message in messages:
+        ordered = merge(*(messages for _, messages in streams.values()), key=itemgetter(1))
+        for topic, stamp_s, message in ordered:
             data = store.serialize_cdr(message, message.__msgtype__)
             writer.write(connections[topic], nanoseconds(stamp_s), data)
     (bag / "results.mcap").replace(folder / "results.mcap")
@@ -61,15 +65,26 @@ def _typestore() -> Any:
     return typesys.get_typestore(typesys.Stores.ROS2_JAZZY)
 
 
-def _messages(source: ExportSource, types: Any) -> Iterator[Message]:
+def _streams(source: ExportSource, types: Any) -> dict[str, tuple[str, Iterator[Message]]]:
+    """Type and messages in order of time, by topic; made one at a time."""
+    streams = {}
     for name in ("odometer", "estimate"):
-        yield from _odometry(f"{TOPICS}/{name}", source.table(name), types)
+        topic = f"{TOPICS}/{name}"
+        streams[topic] = ODOMETRY, _odometry(topic, source.table(name), types)
     if (source.folder / "terrain.csv").exists():
-        table, string = source.table("terrain"), types["std_msgs/msg/String"]
-        for topic, column in (("terrain", "terrain_in_force"), ("seen", "label")):
-            for stamp_s, label in zip(table.stamps_s.tolist(), table[column], strict=True):
-                if str(label):
-                    yield f"{TOPICS}/{topic}", stamp_s, string(str(label))
+        table = source.table("terrain")
+        for name, column in (("terrain", "terrain_in_force"), ("seen", "label")):
+            topic = f"{TOPICS}/{name}"
+            streams[topic] = STRING, _labels(topic, table.stamps_s, table[column], types[STRING])
+    return streams
+
+
+def _labels(
+    topic: str, stamps_s: FloatArray, labels: AnyArray, string: Callable[[str], Any]
+) -> Iterator[Message]:
+    for stamp_s, label in zip(stamps_s.tolist(), labels, strict=True):
+        if str(label):
+            yield topic, stamp_s, string(str(label))
 
 
 def _odometry(topic: str, table: Table, types: Any) -> Iterator[Message]:
@@ -85,7 +100,7 @@ def _odometry(topic: str, table: Table, types: Any) -> Iterator[Message]:
     for k, stamp_s in enumerate(table.stamps_s.tolist()):
         header = frame(stamp(*_whole_and_rest(stamp_s)), FRAME)
         posed = pose(places[k], quaternions[k], covariances[k])
-        yield topic, stamp_s, types["nav_msgs/msg/Odometry"](header, BODY, posed, twist(twists[k]))
+        yield topic, stamp_s, types[ODOMETRY](header, BODY, posed, twist(twists[k]))
 
 
 def _pose_maker(types: Any) -> Callable[[FloatArray, list[float], FloatArray], Any]:
