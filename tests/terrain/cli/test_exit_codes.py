@@ -8,11 +8,13 @@ from terrain.cli.main import VERBS, cli
 from terrain.shipped import shipped_data
 
 OUTPUTS = {"out", "picture"}
-READ = {"RUN", "PATCHES", "VEHICLE", "SET.toml"}
+READ = {"RUN", "PATCHES", "VEHICLE", "SET.toml", "drive.bag"}
 # What each verb needs beside its output.
 NEEDED = {
+    "import": ("drive.bag",),
     "check": ("RUN",),
     "label": ("RUN", "--span", "0:5=grass"),
+    "camera": ("RUN",),
     "train": ("PATCHES",),
     "run": ("RUN",),
     "synthesise": ("--vehicle", "VEHICLE"),
@@ -36,6 +38,7 @@ def places(tmp_path, world):
     (tmp_path / "PATCHES").symlink_to(shipped_data() / "patches")
     (tmp_path / "VEHICLE").write_text("[robot]\ntrack_width = 0.5\n")
     (tmp_path / "SET.toml").write_text("[terrain.a]\ny_left = 1\ny_right = -1\nx_icr = 0\n")
+    (tmp_path / "drive.bag").write_bytes(b"#ROSBAG V2.0\n")
     (tmp_path / "thesis").mkdir()
     (tmp_path / "thesis" / "thesis.tex").write_text("years of work")
     for suffix in ("", ".toml", ".model", ".png"):
