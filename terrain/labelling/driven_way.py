@@ -55,7 +55,11 @@ class DrivenWay:
         return slice(first, int(np.searchsorted(self.travel_m, at_m + most_m, side="right")))
 
     def passings(self, points: FloatArray, rows: slice) -> list[Passing | None]:
-        """When the footprint first was over each of several pieces of ground.
+        """When the robot first went over each of several pieces of ground.
+
+        It goes over a piece that its footprint covers in one passing, and that lies between where
+        its middle comes from and where it goes to: terrain is told of the middle, so that it is
+        not known ahead of a place where the robot turned round or went back.
 
         Parameters
         ----------
@@ -67,24 +71,44 @@ class DrivenWay:
         Returns
         -------
         list of n Passing or None
-            None where the footprint was not over every point of the piece in one passing.
+            None where the robot did not go over the piece, or not the first time that its
+            footprint was over any part of it.
         """
-        robot = se2.inverse(self.trajectory.poses[rows])[:, None, None]
-        from_robot = np.abs(se2.transform(robot, points))
+        poses = self.trajectory.poses[rows]
+        from_robot = np.abs(se2.transform(se2.inverse(poses)[:, None, None], points))
         half_m = np.array([self.footprint.length_m, self.footprint.width_m]) / 2
         over = np.all(from_robot <= half_m, axis=-1)  # (rows, n, m)
         stamps_s = self.trajectory.stamps_s[rows]
-        return [_first_passing(over[:, piece], stamps_s) for piece in range(len(points))]
+        found: list[Passing | None] = []
+        for piece, of_piece in enumerate(points):
+            span = _first_rows(over[:, piece])
+            if span is None or not _is_between(of_piece, poses[list(span), :2], half_m[1]):
+                found.append(None)
+            else:
+                found.append(Passing(*stamps_s[list(span)].tolist()))
+        return found
 
 
-def _first_passing(over: BoolArray, stamps_s: FloatArray) -> Passing | None:
-    """Of the rows of `over` (rows, points) the first ones in a row in which any point is under."""
+def _first_rows(over: BoolArray) -> tuple[int, int] | None:
+    """Rows before and after the first ones in which any point of a piece (rows, points) is under.
+
+    None where not all points are under in one of these.
+    """
     touched = np.any(over, axis=1)
     if not touched.any():
         return None
     first = int(touched.argmax())
     after = np.flatnonzero(~touched[first:])
     end = first + int(after[0]) if len(after) else len(touched)
-    if not over[first:end].any(axis=0).all():
+    if not np.all(np.any(over[first:end], axis=0)):
         return None
-    return Passing(float(stamps_s[max(first - 1, 0)]), float(stamps_s[min(end, len(touched) - 1)]))
+    return max(first - 1, 0), min(end, len(touched) - 1)
+
+
+def _is_between(points: FloatArray, ends_m: FloatArray, half_width_m: float) -> bool:
+    """Whether points (m, 2) lie in a straight strip from one place to another (2, 2)."""
+    begin_m, end_m = ends_m
+    length_m = float(np.hypot(*(end_m - begin_m)))
+    ahead = (end_m - begin_m) / max(length_m, STEP_M)
+    along, across = (points - begin_m) @ ahead, (points - begin_m) @ [-ahead[1], ahead[0]]
+    return bool(np.all((along >= 0) & (along <= length_m) & (np.abs(across) <= half_width_m)))

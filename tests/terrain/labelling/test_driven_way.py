@@ -59,6 +59,38 @@ def test_ground_is_passed_first_and_again(tmp_path, world):
     assert again.begin_s == pytest.approx(6.0 + (3.0 - 1.1 - LENGTH_M / 2) / SPEED_M_S, abs=0.13)
 
 
+def test_ground_before_which_the_robot_went_back_is_not_passed(tmp_path, world):
+    """The front of the footprint is over it; the middle, of which terrain is told, never."""
+    stamps_s = np.arange(0.0, 12.0, 0.1)
+    speeds = np.where(stamps_s > 5.95, -SPEED_M_S, SPEED_M_S)
+    there = way(tmp_path / "back", world, speeds, stamps_s)
+    front_m = 3.0 + LENGTH_M / 2
+    assert there.passings(square(front_m - 0.12, 0.0), slice(None)) == [None]
+    assert there.passings(square(2.0, 0.0), slice(None)) != [None]
+
+
+def test_ground_on_which_the_robot_turned_round_is_not_passed(tmp_path, world):
+    """To x = 2, a quarter turn on the spot, and on along y."""
+    folder = tmp_path / "round"
+    folder.mkdir()
+    world.write_toml(folder / "run.toml", robot=world.robot)
+    stamps_s = np.arange(0.0, 12.0, 0.1)
+    turning = (stamps_s > 3.95) & (stamps_s < 5.95)
+    right = np.full(len(stamps_s), SPEED_M_S)
+    left = np.where(turning, -SPEED_M_S, SPEED_M_S)
+    world.write_csv(
+        folder / "odometry.csv", "t,v_left,v_right", zip(stamps_s, left, right, strict=True)
+    )
+    x = SPEED_M_S * np.minimum(stamps_s, 4.0)
+    y = SPEED_M_S * np.maximum(stamps_s - 6.0, 0.0)
+    yaw = np.clip((stamps_s - 4.0) / 2.0, 0.0, 1.0) * np.pi / 2
+    poses = np.column_stack([x, y, yaw])
+    there = DrivenWay.of(Run.read(folder), Trajectory(stamps_s, poses))
+    pieces = np.concatenate([square(x, y) for x, y in ((2.06, 0.0), (1.0, 0.0), (2.0, 1.0))])
+    passed = [passing is not None for passing in there.passings(pieces, slice(None))]
+    assert passed == [False, True, True]
+
+
 def test_rows_ahead_reach_so_much_wheel_travel(ahead):
     rows = ahead.ahead(2.0, 1.0)
     x = ahead.trajectory.poses[rows, 0]
