@@ -4,7 +4,11 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.effects.base import EffectParameter, MeasurementEffect
+from odometry.effects.base_model import Base
+from odometry.models.inputs import Inputs
 
+SECTORS, LEAST_SECTORS = 12, 6  # of the circle, and in how many of them the robot must look
+LEAST_SHARE = 0.01  # of the samples, in a sector
 ROUNDS = 50  # of the inverse: each shrinks its error by the size of the distortion
 
 
@@ -18,7 +22,17 @@ class Compass(MeasurementEffect):
     source = "hard-iron error, to first order"
     looks_like = "turns that come out short towards one direction and long towards the opposite"
     remedy = "calibrate the compass on the robot, away from steel and motors"
+    needs = "headings over half a turn or more: on a straight a wave is a constant or a drift"
     of_reference = True
+
+    def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the interface
+        """See `Effect.lacks`."""
+        if inputs.heading_rad is None:
+            return "headings"
+        sector = np.floor(inputs.heading_rad / (2 * np.pi) * SECTORS) % SECTORS
+        shares = np.bincount(sector.astype(np.int64), minlength=SECTORS) / len(sector)
+        enough = np.count_nonzero(shares >= LEAST_SHARE) >= LEAST_SECTORS
+        return "" if enough else "headings over half a turn"
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:

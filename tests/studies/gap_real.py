@@ -2,7 +2,7 @@
 
     TERRAIN_ODOMETRY_DATA=... python tests/studies/gap_real.py [--out gap_real] [--only WORD ...]
 
-Three kinds of cases, on recordings with a pose, each ground as INDEX.csv names it:
+Four kinds of cases, on recordings with a pose, each ground as INDEX.csv names it:
 
 - real: nothing was done to the data. The Husky on tile with a base that is told x_icr = 0; the
   Warthog on the steepest grass recorded; the Marmotte, one sequence each to calibrate, measure
@@ -11,7 +11,8 @@ Three kinds of cases, on recordings with a pose, each ground as INDEX.csv names 
   poses late by 0.15 s; roll and pitch taken out of a run on a slope;
 - control: each recording by halves, calibrated on one half and measured on the other, both ways
   round. The robot, ground and hour are the same, so that a name is a false one, or an effect that
-  came up within minutes.
+  came up within minutes;
+- changed: the same first halves, and second halves changed by hand (`gap_real_changes`).
 
 Windows last 1.5 s: the lidar poses of most recordings are chained in stretches of 2 s, of which a
 window of the usual 2 s would leave one pose in three.
@@ -45,6 +46,7 @@ from odometry.gap.words import parameter_words, percent, with_interval
 from odometry.io.files import atomic_write
 from odometry.report.gap_page import write_gap_report
 from tests.studies.gap_real_cases import Case, controls, real, recordings, withheld
+from tests.studies.gap_real_changes import changed, count_of_changes
 
 CONFIG = GapConfig(horizon_s=1.5)
 SAID = 3  # parameters of an effect that are printed
@@ -55,6 +57,7 @@ COLUMNS = (
         "before",
         "after",
         "floor",
+        "ratio",
         "closed",
         "chi_squared",
         "latency_s",
@@ -73,7 +76,7 @@ def main() -> None:
     )
     arguments = parser.parse_args()
     runs = recordings(Path(os.environ["TERRAIN_ODOMETRY_DATA"]) / "motion")
-    every = [*real(runs), *withheld(runs), *controls(runs)]
+    every = [*real(runs), *withheld(runs), *controls(runs), *changed(runs)]
     wanted = [c for c in every if any(word in f"{c.kind} {c.name}" for word in arguments.only)]
     arguments.out.mkdir(parents=True, exist_ok=True)
     rows = []
@@ -85,7 +88,8 @@ def main() -> None:
             sheet.writerow(rows[-1])
             stream.flush()
             print(*(f"{name}={text}" for name, text in rows[-1].items() if text), sep="  ")
-    text = "\n".join([*table(rows), "", *count_of_controls(rows), ""])
+    counts = [*count_of_controls(rows), *count_of_changes(rows)]
+    text = "\n".join([*table(rows), "", *counts, ""])
     print(text)
     with atomic_write(arguments.out / "gap_real.md") as part:
         part.write_text(text, encoding="utf-8")
@@ -103,7 +107,7 @@ def study(case: Case, out: Path) -> dict[str, str]:
     except OdometryError as error:
         return row | {"verdict": "not judged", "error": str(error).splitlines()[0]}
     row["seconds"] = f"{time.perf_counter() - begin:.0f}"
-    if case.kind != "control":
+    if case.kind not in ("control", "changed"):
         write_gap(result, out / case.name)
         write_gap_report(result, out / case.name)
     return row | said(result)
@@ -124,6 +128,7 @@ def said(result: GapResult) -> dict[str, str]:
         "before": with_interval(held.before),
         "after": with_interval(held.after),
         "floor": with_interval(held.noise_floor),
+        "ratio": f"{held.before.value / held.noise_floor.value:.2f}",
         "closed": "no excess" if share is None else percent(share),
         "latency_s": f"{result.base.latency_s:.3f}",
         "chi_squared": " -> ".join(f"{one:.1f}" for one in chi_squared(result)),

@@ -34,3 +34,18 @@ def test_a_drive_that_began_at_the_origin_is_bent_by_its_true_heading():
     simulated = np.column_stack([np.zeros((7, 2)), true_yaw - 1.0])
     found = Compass().seen(np.array([0.0, 0.2]), simulated, measured)
     np.testing.assert_allclose(found[:, 2] - simulated[:, 2], 0.2 * np.sin(true_yaw), atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("headings", "lacking"),
+    [
+        (np.linspace(-3.0, 3.0, 200), ""),
+        (np.linspace(0.1, 12.0, 200), ""),
+        (1.0 + 0.3 * np.sin(np.arange(200)), "headings over half a turn"),
+        (np.repeat([0.1, 3.3], 100), "headings over half a turn"),
+        (None, "headings"),
+    ],
+)
+def test_a_compass_is_told_by_headings_all_round_alone(headings, lacking):
+    inputs = Inputs(np.zeros((200, 2)), heading_rad=headings)
+    assert Compass().lacks(inputs, None) == lacking
