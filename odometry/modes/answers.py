@@ -6,13 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray
+from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
 from odometry.modes.track import ModeTrack
 from odometry.run import UNKNOWN
 
-UNDETERMINED = "undetermined"
-NONE_OF_THESE = "none of these"
 BOUND = 2.0  # standard deviations: 95 % of what is left of a mode that is true
-NO_MODES = (NONE_OF_THESE, UNDETERMINED)  # answers that name none
 
 
 @dataclass(frozen=True)
@@ -75,6 +73,7 @@ def named_modes(track: ModeTrack, sure: float) -> AnyArray:
     of_most = (np.arange(len(most)), most)
     fits = track.fit.against_none[of_most] >= sure
     fits &= np.exp(track.fit.log_probabilities[of_most]) >= 1 - sure
+    fits &= ~track.fit.lasts
     return np.where(track.fit.none >= sure, NONE_OF_THESE, np.where(fits, named, UNDETERMINED))
 
 

@@ -1,8 +1,8 @@
 """The terrain by feel: answers of the interacting multiple model estimator as a source."""
 
 from odometry.errors import ParameterError
-from odometry.modes.answers import NO_MODES, named_modes
-from odometry.modes.mode_set import ModeSet
+from odometry.modes.answers import named_modes
+from odometry.modes.mode_set import NO_MODES, ModeSet
 from odometry.modes.track import ModesConfig, follow_modes
 from odometry.modes.velocity import VelocityModes
 from odometry.run import UNKNOWN, Run

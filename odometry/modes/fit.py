@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.arrays import FloatArray, IntArray
+from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.estimation.markov import ModeChain
 
 WINDOW_S = 0.5  # of the rolling test
@@ -20,7 +20,52 @@ SPREAD = 6.0  # standard deviation of a window's sum where no mode fits; 1 where
 MOST_EVIDENCE = 3.0  # [nat] of a window for none: less than it takes to be sure of it
 CLIP = 4.0  # of one innovation: a single outlier is no window
 MISFIT_LASTS_S = 20.0
-"""Chosen on seeds 0 to 2 of `tests/studies/modes_faults.py`."""
+LONG_WINDOW_S = 6.0  # in which a small misfit shows that lasts
+LONG_EVIDENCE = 30.0  # [nat] of a long window for none, at most
+LONG_CLIP = 2.0  # of one innovation: what is large shows in a short window
+LONG_BOUND = 3.0  # standard deviations of a long sum beyond which no mode is named
+"""Chosen on seeds 10 and 20 of `tests/studies/modes_faults.py`."""
+
+
+@dataclass(frozen=True)
+class Innovations:
+    """What is left of each measurement.
+
+    Attributes
+    ----------
+    normalised : (N, M, m)
+        Of the own filter of each mode, in its standard deviation; NaN: not measured.
+    leading : (N,)
+        The most probable mode.
+    stamps_s : (N,)
+    independent : float
+        The share of an innovation that is news, where errors of a model last.
+    """
+
+    normalised: FloatArray
+    leading: IntArray
+    stamps_s: FloatArray
+    independent: float
+
+    @property
+    def of_leading(self) -> FloatArray:
+        """Those (N, m) of the most probable mode."""
+        return np.asarray(self.normalised[np.arange(len(self.leading)), self.leading])
+
+    def summed(
+        self, values: FloatArray, window_s: float, clip: float
+    ) -> tuple[FloatArray, FloatArray]:
+        """Sums of values (N, ..., m) over a window, in standard deviations; mean squares."""
+        known = np.isfinite(values)
+        clipped = np.where(known, np.clip(np.nan_to_num(values), -clip, clip), 0.0)
+        begin_s = self.stamps_s - window_s + 1e-9
+        first = np.searchsorted(self.stamps_s, begin_s, side="right")
+        count, sums, squares = (
+            _within(of, first) for of in (known.astype(float), clipped, clipped**2)
+        )
+        variance = np.minimum(count**2, count / self.independent)
+        some = np.where(count > 0, count, np.nan)
+        return sums / np.sqrt(np.maximum(variance, 1.0)) + 0 * some, squares / some
 
 
 @dataclass(frozen=True)
@@ -32,12 +77,20 @@ class ModeFit:
     sums : (N, M, m)
         Sum of the innovations of each mode and measured entry in the window up to each stamp, in
         its standard deviation if the mode is true; NaN where none was measured.
+    lasting : (N, m)
+        The same over a long window, of whichever mode was in the lead at each stamp.
     log_probabilities : (N, M + 1)
         Of each mode and, last, of none.
     """
 
     sums: FloatArray
+    lasting: FloatArray
     log_probabilities: FloatArray
+
+    @property
+    def lasts(self) -> BoolArray:
+        """Where (N,) something small is left that lasts, whichever mode is taken."""
+        return np.asarray((np.abs(self.lasting) > LONG_BOUND).any(axis=1))
 
     @property
     def none(self) -> FloatArray:
@@ -57,23 +110,19 @@ class ModeFit:
         return np.asarray(self.sums[np.arange(len(place)), place])
 
 
-def mode_fit(
-    innovations: FloatArray,
-    stamps_s: FloatArray,
-    independent: float,
-    dwell_s: FloatArray,
-    misfit_share: float,
-) -> ModeFit:
-    """The test of normalised innovations (N, M, m) at stamps (N,); NaN: not measured.
-
-    `independent` is the share of an innovation that is news, where errors of a model last.
-    """
-    sums, mean_squares = _windows(innovations, stamps_s, independent)
+def mode_fit(innovations: Innovations, dwell_s: FloatArray, misfit_share: float) -> ModeFit:
+    """The test of innovations of modes that last (M,) [s], with the share of the time of none."""
+    stamps_s = innovations.stamps_s
+    sums, mean_squares = innovations.summed(innovations.normalised, WINDOW_S, CLIP)
+    lasting, _ = innovations.summed(innovations.of_leading, LONG_WINDOW_S, LONG_CLIP)
     chain = _chain(dwell_s, misfit_share)
     steps_s = np.diff(stamps_s, prepend=stamps_s[0])
     # a window is one measurement, whatever the rate of the stamps
     weights = np.minimum(steps_s / WINDOW_S, 1.0)[:, None]
-    evidence = weights * _log_likelihoods(np.maximum(sums**2, mean_squares))
+    evidence = weights * _log_likelihoods(np.maximum(sums**2, mean_squares), MOST_EVIDENCE)
+    long = _log_likelihoods(lasting[:, None] ** 2, LONG_EVIDENCE)
+    weights = np.minimum(steps_s / LONG_WINDOW_S, 1.0)
+    evidence[:, -1] += weights * (long[:, 1] - long[:, 0])
     logs = np.empty((len(stamps_s), chain.modes))
     share = np.full(chain.modes, (1 - misfit_share) / (chain.modes - 1))
     share[-1] = misfit_share
@@ -82,22 +131,7 @@ def mode_fit(
         share = share * np.exp(evidence[row] - evidence[row].max())
         share = share / share.sum()
         logs[row] = np.log(np.maximum(share, 1e-300))
-    return ModeFit(sums, logs)
-
-
-def _windows(
-    innovations: FloatArray, stamps_s: FloatArray, independent: float
-) -> tuple[FloatArray, FloatArray]:
-    """`ModeFit.sums`, and the mean squares, each (N, M, m)."""
-    known = np.isfinite(innovations)
-    clipped = np.where(known, np.clip(np.nan_to_num(innovations), -CLIP, CLIP), 0.0)
-    first = np.searchsorted(stamps_s, stamps_s - WINDOW_S + 1e-9, side="right")
-    count, summed, squares = (
-        _within(values, first) for values in (known.astype(float), clipped, clipped**2)
-    )
-    variance = np.minimum(count**2, count / independent)
-    some = np.where(count > 0, count, np.nan)
-    return summed / np.sqrt(np.maximum(variance, 1.0)) + 0 * some, squares / some
+    return ModeFit(sums, lasting, logs)
 
 
 def _within(values: FloatArray, first: IntArray) -> FloatArray:
@@ -106,7 +140,7 @@ def _within(values: FloatArray, first: IntArray) -> FloatArray:
     return np.asarray(whole[1:] - whole[first])
 
 
-def _log_likelihoods(squared: FloatArray) -> FloatArray:
+def _log_likelihoods(squared: FloatArray, most: float) -> FloatArray:
     """Of each mode and of none (N, M + 1), from squared sums (N, M, m) of unit variance."""
     measured = np.isfinite(squared).any(axis=1)
     squared = np.nan_to_num(squared)
@@ -116,7 +150,7 @@ def _log_likelihoods(squared: FloatArray) -> FloatArray:
     variance = SPREAD**2
     none = (-(least / variance + np.log(variance)) / 2 * measured).sum(axis=1)
     # in a window in which the mode changes, no mode fits: that says little
-    of_modes = np.maximum(of_modes, none[:, None] - MOST_EVIDENCE)
+    of_modes = np.maximum(of_modes, none[:, None] - most)
     return np.column_stack([of_modes, none])
 
 

@@ -7,9 +7,6 @@ import numpy as np
 
 from odometry.arrays import AnyArray, IntArray
 from odometry.modes.answers import (
-    NO_MODES,
-    NONE_OF_THESE,
-    UNDETERMINED,
     Detection,
     Misfit,
     candidates,
@@ -20,7 +17,7 @@ from odometry.modes.answers import (
     misfits,
     named_modes,
 )
-from odometry.modes.mode_set import ModeSet
+from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED, ModeSet
 from odometry.modes.sight import SeenGround, seen_labels
 from odometry.modes.signals import Signals
 from odometry.modes.track import ModesConfig, ModeTrack, follow_signals, judged_signals

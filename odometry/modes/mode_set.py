@@ -16,7 +16,10 @@ from odometry.io.structured import read_toml
 from odometry.modes.traction import TractionModes
 from odometry.modes.velocity import VelocityModes
 from odometry.outputs.formats import check_first_line, format_line
+from odometry.run import UNKNOWN
 
+UNDETERMINED, NONE_OF_THESE = "undetermined", "none of these"
+NO_MODES = (NONE_OF_THESE, UNDETERMINED)  # answers that name none
 FORMAT = 1  # of the file, in its first line
 DWELL_S = 20.0  # of a mode of which nothing else is said
 LARGEST, SMALLEST = 1e9, 1e-18  # of a number, and of one above 0: a standard deviation of 1e-9
@@ -71,11 +74,24 @@ class ModeSet:
         Mean time in each mode [s].
     source : str
         Where the numbers come from.
+
+    Raises
+    ------
+    ParameterError
+        If a mode has the name of an answer that names none, or of a terrain that is not known.
     """
 
     modes: VelocityModes | TractionModes
     dwell_s: FloatArray
     source: str = ""
+
+    def __post_init__(self) -> None:
+        reserved = (*NO_MODES, UNKNOWN)
+        for name in set(self.modes.names) & set(reserved):
+            raise ParameterError(
+                f"a mode of the name {name!r}, expected none of the reserved names "
+                f"{', '.join(map(repr, reserved))}"
+            )
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -133,9 +149,9 @@ def read_mode_set(file: Path) -> ModeSet:
     dwell_s = values.pop("dwell_s")
     try:
         modes = KINDS[kind](names=tuple(tables), **values)
+        return ModeSet(modes, dwell_s, str(head.get("source", "")))
     except ParameterError as error:
         raise ParameterError(f"{file}: {error}") from error
-    return ModeSet(modes, dwell_s, str(head.get("source", "")))
 
 
 def _plain(values: FloatArray | float) -> Any:

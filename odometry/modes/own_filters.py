@@ -40,6 +40,19 @@ class OwnFilters:
         return ModeBelief(means, covariances, belief.log_probabilities), innovations
 
 
+def with_lead(alone: ModeBelief, belief: ModeBelief, led: int) -> ModeBelief:
+    """The belief of own filters, that of a mode which takes the lead begun anew.
+
+    While the mode did not hold, its own filter went astray. `led` is the most probable mode before.
+    """
+    lead = int(belief.log_probabilities.argmax())
+    if lead == led:
+        return alone
+    means, covariances = alone.means.copy(), alone.covariances.copy()
+    means[lead], covariances[lead] = belief.means[lead], belief.covariances[lead]
+    return ModeBelief(means, covariances, alone.log_probabilities)
+
+
 def with_bias(belief: ModeBelief, mean: FloatArray, covariance: FloatArray) -> ModeBelief:
     """A belief with the bias, the last entry, of a mean (n,) and covariance (n, n).
 

@@ -7,16 +7,17 @@ from functools import lru_cache
 import numpy as np
 from tqdm import tqdm
 
-from odometry.arrays import AnyArray, BoolArray, FloatArray
+from odometry.arrays import AnyArray, FloatArray, IntArray
 from odometry.config import require, require_positive
 from odometry.estimation.ekf_bank import EkfBank
 from odometry.estimation.imm import Imm
 from odometry.estimation.mode_belief import ModeBelief
-from odometry.modes.fit import ModeFit, mode_fit
+from odometry.modes.fit import Innovations, ModeFit, mode_fit
 from odometry.modes.mode_set import ModeSet
-from odometry.modes.own_filters import OwnFilters, with_bias
+from odometry.modes.own_filters import OwnFilters, with_bias, with_lead
 from odometry.modes.sight import SeenGround, mode_chains
-from odometry.modes.signals import STANDING_M_S, Signals
+from odometry.modes.signals import Signals
+from odometry.modes.standing import moving, standing_biases, told_standing
 from odometry.modes.tempered import TemperedBank
 from odometry.run import Run
 from odometry.windows.spans import touched
@@ -156,16 +157,13 @@ def follow_signals(
 
     roughness = modes.roughness(signals)
     gap_ends = np.searchsorted(signals.stamps_s, signals.gaps_s[:, 1])
-    told = _moving(signals) & ~touched(signals.gaps_s, signals.stamps_s, signals.stamps_s)
-    told[gap_ends] = False
-    measured = np.where(told[:, None], signals.measured, np.nan)
+    measured, stands = _judged(signals, gap_ends), standing_biases(signals)
     first = chains[in_force[0]].transition(SETTLED_S).mean(axis=0)
     merged = modes.start(signals, independent)
     belief = alone = ModeBelief.alike(*merged, first)
     size = len(signals)
-    probabilities = np.empty((size, count))
+    probabilities, squared = np.empty((size, count)), np.empty(size)
     means, sigmas = np.empty((2, size, states))
-    squared = np.full(size, np.nan)
     believed = np.append(np.ones(states - 1), independent)  # share of each variance
     innovations = np.full((size, count, measured.shape[1]), np.nan)
     steps: Iterable[int] = tqdm(range(size), unit="step", disable=None if show_progress else True)
@@ -179,7 +177,11 @@ def follow_signals(
             own = OwnFilters(imm.bank, filters(rough))
             alone, innovations[row] = own.step(alone, u, measured[row], step_s)
             merged = imm.merged(belief)
-            alone = with_bias(alone, *merged)
+            if row in stands:
+                merged = told_standing(*merged, stands[row], independent)
+                belief = with_bias(belief, *merged)
+            led = with_lead(alone, belief, int(probabilities[row - 1].argmax()))
+            alone = with_bias(led, *merged)
         if row in gap_ends:  # what moved in a gap tells nothing of the modes
             begun = ModeBelief.alike(
                 *modes.start(signals.after(row), independent), belief.probabilities
@@ -190,12 +192,9 @@ def follow_signals(
         mean, covariance = merged
         variances = np.diag(covariance) / believed + probabilities[row] @ lasting
         means[row], sigmas[row] = mean, np.sqrt(variances)
-        if belief.innovations is not None:
-            of_mode = belief.innovations.normalised_squared[probabilities[row].argmax()]
-            squared[row] = of_mode / np.isfinite(measured[row]).sum()
-    fit = mode_fit(
-        innovations, signals.stamps_s, independent, mode_set.dwell_s, config.misfit_share
-    )
+        squared[row] = _normalised_squared(belief, measured[row])
+    leading = probabilities.argmax(axis=1)
+    left = Innovations(innovations, leading, signals.stamps_s, independent)
     return ModeTrack(
         mode_set.names,
         signals.stamps_s,
@@ -204,14 +203,23 @@ def follow_signals(
         sigmas,
         squared,
         signals.labels,
-        fit,
+        mode_fit(left, mode_set.dwell_s, config.misfit_share),
     )
 
 
-def _moving(signals: Signals) -> BoolArray:
-    """Where (N,) a tread turned before the stamp: who stands learns nothing of the terrain."""
-    turning = np.abs(signals.tread_speeds_m_s).max(axis=1) > STANDING_M_S
-    return np.append(False, turning[:-1])
+def _normalised_squared(belief: ModeBelief, measured: FloatArray) -> float:
+    """Of the most probable mode by how many entries were measured; NaN where none was."""
+    if belief.innovations is None:
+        return float("nan")
+    of_mode = belief.innovations.normalised_squared[belief.log_probabilities.argmax()]
+    return float(of_mode / np.isfinite(measured).sum())
+
+
+def _judged(signals: Signals, gap_ends: IntArray) -> FloatArray:
+    """What is measured (N, m) where it tells of the modes: not while standing, nor in a gap."""
+    told = moving(signals) & ~touched(signals.gaps_s, signals.stamps_s, signals.stamps_s)
+    told[gap_ends] = False
+    return np.where(told[:, None], signals.measured, np.nan)
 
 
 def _independent(signals: Signals, errors_last_s: float) -> float:

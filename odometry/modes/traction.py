@@ -175,14 +175,15 @@ def requested(tread_speeds_m_s: FloatArray, track_width: float) -> FloatArray:
     u_4 = u_1 r / (1 + r^2), which makes wide turns differ from those on the spot, where both are 0.
 
     Inertia asks for the lateral acceleration u_1 u_2 from the ground. Contacts that roll slip aside
-    in proportion to force and speed, so that u_5 = u_1 (u_1 u_2): the less friction, the more.
+    in proportion to force and speed, so that u_5 = |u_1| (u_1 u_2): the less friction, the more.
+    Outward, also backward.
     """
     left, right = np.moveaxis(tread_speeds_m_s, -1, 0)
     speed, difference = (left + right) / 2, right - left
     size = speed**2 + difference**2
     share = speed * difference / np.where(size > 0, size, 1.0)
     turn = difference / track_width
-    terms = [speed, turn, difference * share, speed * share, speed**2 * turn]
+    terms = [speed, turn, difference * share, speed * share, np.abs(speed) * speed * turn]
     return np.stack(terms, axis=-1)
 
 

@@ -4,8 +4,9 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from odometry.modes.answers import NO_MODES, UNDETERMINED, Detection, Misfit
+from odometry.modes.answers import Detection, Misfit
 from odometry.modes.followed import SIGHTED, Followed, Score
+from odometry.modes.mode_set import NO_MODES, UNDETERMINED
 from odometry.modes.track import ModeTrack
 
 FEW = 4  # stretches, or answers, that are said one by one

@@ -11,8 +11,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from odometry.arrays import AnyArray
-from odometry.modes.answers import NO_MODES
 from odometry.modes.followed import MOTION, SIGHTED, Followed
+from odometry.modes.mode_set import NO_MODES
 from odometry.report.figure import save_figure
 from odometry.report.html import Picture
 from odometry.report.mode_panels import (

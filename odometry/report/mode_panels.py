@@ -10,7 +10,7 @@ from matplotlib.transforms import blended_transform_factory
 
 from odometry.arrays import AnyArray, FloatArray
 from odometry.evaluation.stretches import stretches
-from odometry.modes.answers import NO_MODES, NONE_OF_THESE, UNDETERMINED
+from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
 from odometry.modes.track import ModeTrack
 from odometry.report.palette import UNKNOWN_TINT, line_styles
 from odometry.run import UNKNOWN

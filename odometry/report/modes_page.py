@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
-from odometry.modes.answers import NO_MODES, NONE_OF_THESE, UNDETERMINED, confusion
+from odometry.modes.answers import confusion
 from odometry.modes.followed import Followed
+from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
 from odometry.modes.words import in_short, percent, scale_word, sentences, signal_of
 from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
 from odometry.report.mode_figures import modes_picture, path_picture

@@ -20,17 +20,16 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from odometry.modes.answers import UNDETERMINED, named_modes
+from odometry.modes.answers import named_modes
 from odometry.modes.identify_traction import identify_traction_modes
 from odometry.modes.identify_velocity import identify_velocity_modes
-from odometry.modes.mode_set import DWELL_S, ModeSet
+from odometry.modes.mode_set import DWELL_S, NONE_OF_THESE, UNDETERMINED, ModeSet
 from odometry.modes.track import ModesConfig, follow_modes
 from odometry.run import Run
 from tests.blind.modes.faults import NAMED, OWN, make_case, possible
 from tests.blind.modes.worlds import World, calibration_runs, worlds
 
 IDENTIFY = {"velocity": identify_velocity_modes, "traction": identify_traction_modes}
-NONE_OF_THESE = "none of these"
 SHARES = ("wrong", "right", "none", "undetermined")
 COLUMNS = ("world", "fault", "seed", *SHARES)
 MOST_MEAN, MOST_WORST = 0.05, 0.15  # of the time with a wrong name

@@ -21,10 +21,10 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from odometry.arrays import FloatArray
-from odometry.modes.answers import NO_MODES, confusion
+from odometry.modes.answers import confusion
 from odometry.modes.identify_traction import identify_traction_modes
 from odometry.modes.identify_velocity import identify_velocity_modes
-from odometry.modes.mode_set import DWELL_S, ModeSet
+from odometry.modes.mode_set import DWELL_S, NO_MODES, ModeSet
 from odometry.modes.signals import Signals
 from odometry.modes.track import ModesConfig, ModeTrack, follow_modes, follow_signals
 from odometry.run import Run

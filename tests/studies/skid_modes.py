@@ -30,10 +30,10 @@ from tqdm import tqdm
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from odometry.modes.answers import NO_MODES, UNDETERMINED, detections, false_switches, named_modes
+from odometry.modes.answers import detections, false_switches, named_modes
 from odometry.modes.identify_traction import identify_traction_modes
 from odometry.modes.identify_velocity import identify_velocity_modes
-from odometry.modes.mode_set import DWELL_S, ModeSet
+from odometry.modes.mode_set import DWELL_S, NO_MODES, UNDETERMINED, ModeSet
 from odometry.modes.track import ModesConfig, ModeTrack, follow_modes
 from odometry.run import Run
 from odometry.simulation.contact.drive import ContactDrive, simulate_contact

@@ -65,7 +65,7 @@ def asked_twists(gains, treads, track_width):
         angle = np.arctan2(difference, speed)
         turn = difference / track_width
         terms = [speed, turn, speed * np.sin(angle) ** 2, difference * np.cos(angle) ** 2]
-        terms.append(speed * (speed * turn))
+        terms.append(abs(speed) * (speed * turn))
         rows.append([sum(g * u for g, u in zip(row, terms, strict=True)) for row in of_turn])
     return np.array(rows)
 

@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from odometry.modes.answers import (
-    UNDETERMINED,
     candidates,
     confusion,
     detections,
@@ -17,6 +16,7 @@ from odometry.modes.answers import (
     false_switches,
     named_modes,
 )
+from odometry.modes.mode_set import UNDETERMINED
 from tests.odometry.modes.mode_examples import track
 
 NAMES = ("a", "b", "c")

@@ -3,8 +3,17 @@
 import numpy as np
 import pytest
 
-from odometry.modes.answers import NONE_OF_THESE, UNDETERMINED, misfits, named_modes
-from odometry.modes.fit import CLIP, MISFIT_LASTS_S, WINDOW_S, mode_fit
+from odometry.modes.answers import misfits, named_modes
+from odometry.modes.fit import (
+    CLIP,
+    LONG_CLIP,
+    LONG_WINDOW_S,
+    MISFIT_LASTS_S,
+    WINDOW_S,
+    Innovations,
+    mode_fit,
+)
+from odometry.modes.mode_set import NONE_OF_THESE, UNDETERMINED
 from odometry.modes.track import ModeTrack
 
 STEP_S, SIZE = 0.02, 1500
@@ -19,8 +28,9 @@ def drawn(off=(0.0, 3.0), entries=1, seed=5):
     return noise + np.array(off)[:, None]
 
 
-def fit_of(innovations, independent=1.0, share=0.05):
-    return mode_fit(innovations, STAMPS_S, independent, DWELL_S, share)
+def fit_of(innovations, independent=1.0, share=0.05, lead=0):
+    leading = np.full(SIZE, lead)
+    return mode_fit(Innovations(innovations, leading, STAMPS_S, independent), DWELL_S, share)
 
 
 def track_of(fit, first=0.99):
@@ -104,8 +114,38 @@ def test_a_mode_that_does_not_fit_is_not_named():
 
 
 def test_a_mode_is_not_named_where_the_test_rules_it_out_for_another():
-    track = track_of(fit_of(drawn((5.0, 0.0))))
+    track = track_of(fit_of(drawn((5.0, 0.0)), lead=1))
     assert set(named_modes(track, 0.9)[200:]) == {UNDETERMINED}
+
+
+def test_long_sums_are_of_the_mode_in_the_lead():
+    """Of 300 samples in six seconds; modes that change in between are joined."""
+    innovations = np.clip(drawn(), -LONG_CLIP, LONG_CLIP)
+    leading = (np.arange(SIZE) > HALF).astype(int)
+    lasting = mode_fit(Innovations(drawn(), leading, STAMPS_S, 1.0), DWELL_S, 0.05).lasting
+    rows = np.arange(HALF - 99, HALF + 201)
+    direct = innovations[rows, leading[rows], 0].sum() / np.sqrt(300)
+    assert lasting[HALF + 200, 0] == pytest.approx(direct)
+
+
+def test_a_small_misfit_that_lasts_is_none():
+    """A third of a standard deviation is hidden in half a second, and six of a sum in six."""
+    off = (0.35, 0.35)
+    innovations = np.concatenate([drawn()[:HALF], drawn(off)[HALF:]])
+    window = round(LONG_WINDOW_S / STEP_S)
+    fit = fit_of(innovations)
+    assert not fit.lasts[100:HALF].any()
+    assert fit.lasts[HALF + window :].all()
+    answers = named_modes(track_of(fit), 0.9)
+    assert set(answers[100:HALF]) == {"a"}
+    assert "a" not in answers[HALF + window :]
+    assert answers[-1] == NONE_OF_THESE
+
+
+def test_a_misfit_that_changes_its_sign_within_the_long_window_is_no_lasting_one():
+    sign = np.where(np.arange(SIZE) // 50 % 2, 1.0, -1.0)
+    fit = fit_of(drawn((0.0, 0.0)) + 0.5 * sign[:, None, None])
+    assert not fit.lasts[round(LONG_WINDOW_S / STEP_S) :].any()
 
 
 def test_the_signal_that_fits_least_is_said():

@@ -80,6 +80,9 @@ def edited(tmp_path):
         ("dwell_s = 20.0", "dwell_s = 1e-300", r"\[mode\.ice\]: dwell_s = 1e-300, expected"),
         ("-500.0", "inf", r"\[mode\.ice\]: A = .*expected finite numbers, shape \(2, 2\)"),
         ("kind =", "kind", "cannot be read as TOML"),
+        ("mode.ice", "mode.unknown", r"set\.toml: a mode of the name 'unknown', expected none of"),
+        ("mode.ice", "mode.undetermined", r"a mode of the name 'undetermined'"),
+        ("mode.ice", "mode.'none of these'", r"a mode of the name 'none of these'"),
     ],
 )
 def test_what_cannot_be_is_told_with_its_place(edited, old, new, message):

@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -17,8 +19,11 @@ from odometry.modes.traction import (
     turns_of,
     twists_of,
 )
+from odometry.simulation.contact.drive import simulate_contact
+from odometry.simulation.contact.vehicle import read_contact_vehicle
 from tests.odometry.modes.mode_drives import asked_twists, integrated, run_of_tables
 
+VEHICLE = Path(__file__).parents[3] / "data" / "vehicles" / "husky_like.toml"
 WIDTH = 0.5
 LAGS_S = np.array([0.0, 0.08, 0.3])
 RNG = np.random.default_rng(11)
@@ -120,13 +125,27 @@ def test_what_was_requested_by_hand():
     for treads, expected, side in [
         (left, [3, turn, square, wide, aside], LEFT_TURN),
         (left[::-1], [3, -turn, square, -wide, -aside], RIGHT_TURN),
-        ([-1.0, -5.0], [-3, -turn, -square, -wide, -aside], LEFT_TURN),
-        ([-5.0, -1.0], [-3, turn, -square, wide, aside], RIGHT_TURN),
+        ([-1.0, -5.0], [-3, -turn, -square, -wide, aside], LEFT_TURN),
+        ([-5.0, -1.0], [-3, turn, -square, wide, -aside], RIGHT_TURN),
         ([-2.0, 2.0], [0, turn, 0, 0, 0], LEFT_TURN),
         ([0.0, 0.0], [0, 0, 0, 0, 0], LEFT_TURN),
     ]:
         np.testing.assert_allclose(requested(np.array(treads), WIDTH), expected, atol=1e-12)
         assert turns_of(np.array(treads)) == side
+
+
+def test_inertia_pushes_outward_also_backward():
+    """As in the contact simulator: the lateral speed of a turn is that of the turn driven back."""
+    vehicle = read_contact_vehicle(VEHICLE)
+    treads = np.array([0.4, 1.0])
+    aside, inertia = [], []
+    for back in (1.0, -1.0):
+        found = simulate_contact(vehicle, np.tile(back * treads, (100, 1)), 0.02)
+        aside.append(found.twists_body[-1, 1])
+        inertia.append(requested(back * treads, WIDTH)[4])
+    assert aside[0] == pytest.approx(aside[1], rel=1e-3)
+    assert aside[0] < -0.01
+    assert inertia[0] == inertia[1] > 0
 
 
 @given(speeds, st.floats(0.1, 5))

@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from odometry.modes.answers import NONE_OF_THESE
 from odometry.modes.files import content_of
 from odometry.modes.followed import followed
+from odometry.modes.mode_set import NONE_OF_THESE
 from odometry.modes.words import in_short, percent, scale_word
 from tests.odometry.modes.mode_examples import run_of, velocity_set
 

@@ -1,0 +1,75 @@
+"""Standing teaches the bias of the gyroscope: readings are drawn about one that is known."""
+
+import numpy as np
+import pytest
+
+from odometry.modes.signals import BIAS_SIGMA_RAD_S, Signals
+from odometry.modes.standing import SETTLES_S, StandingBias, standing_biases, told_standing
+from odometry.modes.track import follow_signals
+from tests.odometry.modes.mode_examples import velocity_set
+
+STEP_S, NOISE_RAD_S, SIZE = 0.02, 0.01, 1000
+STAMPS_S = STEP_S * np.arange(SIZE)
+BIAS_RAD_S = 0.06
+
+
+def signals_of(stands, bias_rad_s, noise_rad_s=NOISE_RAD_S):
+    """Straight on at 0.5 m/s, but between the rows of each stand."""
+    speeds = np.full((SIZE, 2), 0.5)
+    for first, last in stands:
+        speeds[first:last] = 0.0
+    omega = bias_rad_s + noise_rad_s * np.random.default_rng(3).normal(size=SIZE)
+    measured = np.column_stack([np.full(SIZE, np.nan), omega])
+    return Signals(STAMPS_S, speeds, measured, np.full(SIZE, "ice", dtype=object))
+
+
+def test_a_stand_is_the_mean_of_what_is_read_once_it_settled():
+    signals = signals_of([(0, 100), (400, 700)], BIAS_RAD_S)
+    found = standing_biases(signals)
+    assert list(found) == [100, 700]
+    settled = round(SETTLES_S / STEP_S)
+    readings = signals.measured[401 + settled : 701, 1]
+    assert found[700].bias_rad_s == pytest.approx(readings.mean())
+    assert found[700].variance == pytest.approx(NOISE_RAD_S**2 / len(readings), rel=0.2)
+
+
+@pytest.mark.parametrize(
+    ("stands", "bias_rad_s", "noise_rad_s"),
+    [
+        ([(400, 440)], BIAS_RAD_S, NOISE_RAD_S),  # too short
+        ([(400, 700)], 0.5, NOISE_RAD_S),  # it turns though no tread does
+        ([(400, 700)], BIAS_RAD_S, 0.0),  # a value that is held
+        ([(400, 700)], np.nan, NOISE_RAD_S),
+    ],
+)
+def test_what_is_no_bias_is_not_taken(stands, bias_rad_s, noise_rad_s):
+    assert not standing_biases(signals_of(stands, bias_rad_s, noise_rad_s))
+
+
+def test_what_is_read_is_weighed_with_what_is_believed():
+    """Two Gaussians of one quantity; the filter holds the variance by its share of news."""
+    mean, covariance = np.array([1.0, 2.0, 0.004]), np.diag([1.0, 1.0, 0.5 * 0.002**2])
+    told, left = told_standing(mean, covariance, StandingBias(0.002, 0.001**2), independent=0.5)
+    weights = np.array([1 / 0.002**2, 1 / 0.001**2])
+    assert told[2] == pytest.approx(weights @ [0.004, 0.002] / weights.sum())
+    assert left[2, 2] == pytest.approx(0.5 / weights.sum())
+    np.testing.assert_array_equal(told[:2], mean[:2])
+
+
+def test_a_bias_that_is_another_one_replaces_what_was_believed():
+    mean, covariance = np.zeros(3), np.diag([1.0, 1.0, 0.001**2])
+    told, left = told_standing(mean, covariance, StandingBias(0.06, 0.001**2), independent=1.0)
+    assert told[2] == pytest.approx(0.06)
+    assert left[2, 2] == pytest.approx(0.001**2)
+
+
+def test_who_stood_knows_the_bias_from_then_on():
+    """It is twenty times what is expected; before the stand a filter is far from it."""
+    signals = signals_of([(400, 600)], BIAS_RAD_S)
+    track = follow_signals(signals, velocity_set())
+    assert BIAS_RAD_S > 10 * BIAS_SIGMA_RAD_S
+    before, after = track.means[[399, 601], -1]
+    assert before < BIAS_RAD_S - 0.02
+    assert after == pytest.approx(BIAS_RAD_S, abs=4 * NOISE_RAD_S / np.sqrt(175))
+    assert track.sigmas[601, -1] < 2 * NOISE_RAD_S / np.sqrt(175)
+    np.testing.assert_allclose(track.probabilities[601], track.probabilities[599], atol=0.05)
