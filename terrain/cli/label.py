@@ -137,8 +137,7 @@ def label(
         click.echo(f"left out: {file}: {reason}", err=True)
     click.echo(summary(ground, told))
     if corrections.moved or corrections.removed:
-        click.echo(
-            f"Corrections kept: {len(corrections.moved)} moved, {len(corrections.removed)} removed."
-        )
+        moved = sum(each.label != each.of.label for each in ground.chosen)
+        click.echo(f"Corrections kept: {moved} moved, {len(corrections.removed)} removed.")
     click.echo(f"\nWrote {out}. Look at {out}/contact_sheet_*.png; move or delete wrong patches.")
     click.echo(f"Next: terrain-odometry train {out} --out terrain.model")

@@ -11,6 +11,8 @@ if TYPE_CHECKING:
     from terrain.classification.classifier import TerrainClassifier
     from terrain.classification.held_out import HeldOutScore, LabelledAnswer
 
+SAME_SCALE = 0.02  # share by which two scales may differ
+
 
 def print_held_out(
     classifier: "TerrainClassifier", model: Path, folder: Path, *, as_json: bool
@@ -38,7 +40,7 @@ def print_held_out(
     if not held_out:
         cause = "could not be used" if unusable else "is one that the model was trained on"
         raise PatchError(f"{folder}: nothing is held out: each of its images {cause}")
-    for note in _notes(classifier, model, answers):
+    for note in (*_notes(classifier, model, answers), *_of_scale(classifier, folder)):
         click.echo(f"Note: {note}", err=True)
     score = held_out_score(classifier.classes_, held_out)
     click.echo(
@@ -70,6 +72,18 @@ def _notes(
             "place, they are not held out, and the figures are too good"
         )
     return notes
+
+
+def _of_scale(classifier: "TerrainClassifier", folder: Path) -> list[str]:
+    from terrain.classification.patches import stated_metres_per_pixel
+
+    own, stated = classifier.metres_per_pixel, stated_metres_per_pixel(folder)
+    if own is None or stated is None or abs(stated - own) <= SAME_SCALE * own:
+        return []
+    return [
+        f"manifest.csv states {stated:g} m per pixel, the model was trained at {own:g}: its "
+        "answers are for that scale"
+    ]
 
 
 def _text(score: "HeldOutScore", images: int) -> str:

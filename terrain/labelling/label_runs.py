@@ -91,7 +91,8 @@ def label_runs(
     Raises
     ------
     OdometryError
-        If a run has no images or camera, or nothing of it can be labelled.
+        If a run has no images or camera, nothing can be labelled, or a patch that was moved by
+        hand is not among the squares any more.
     """
     config, corrections = config or LabelConfig(), corrections or Corrections()
     finders = [square_finder(run, of, parameters) for run, of in zip(runs, told, strict=True)]
@@ -106,6 +107,7 @@ def label_runs(
         seen[finder.run.folder] = len(found)
         left_out[finder.run.folder] += counts
         squares += labelled
+    _check_moved(corrections, squares)
     chosen, others = _choose(squares, config, scale, corrections)
     for square, why in others:
         left_out[square.run.folder][why] += 1
@@ -137,6 +139,16 @@ def square_finder(
     way = DrivenWay.of(run, odometer)
     at = odometer if run.pose is None else estimate
     return SquareFinder(run, run.images, camera, way, odometer, at)
+
+
+def _check_moved(corrections: Corrections, squares: Sequence[LabelledSquare]) -> None:
+    """Raise before anyone's corrections are lost."""
+    lost = sorted(set(corrections.moved) - {each.name for each in squares})
+    if lost:
+        raise PatchError(
+            f"{len(lost)} patches that were moved by hand, such as {lost[0]}, would not be made "
+            "again: other runs, labels or another size; choose another --out, or delete them"
+        )
 
 
 def _choose(

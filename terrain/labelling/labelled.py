@@ -69,10 +69,8 @@ def _names(finder: SquareFinder, told: ToldTerrain, square: DrivenSquare) -> fro
     if not told.of_images:
         return told.between(square.passing.begin_s, square.passing.end_s)
     first, end = finder.rows_before(square)
-    stamps_s = told.stamps_s[first:end]
-    from_robot = se2.transform(
-        se2.inverse(finder.odometer.at(stamps_s).poses), np.array(square.middle_m)
-    )
+    robot = se2.inverse(finder.poses[first:end])
+    from_robot = se2.transform(robot, np.array(square.middle_m))
     shows = finder.camera.in_image(finder.camera.ground_to_pixels(from_robot))
     names = {told.names[first + int(image)] for image in np.flatnonzero(shows)}
     return frozenset(names - {""} or {""})

@@ -1,7 +1,8 @@
 """Squares of ground that an image shows finely enough and the robot then drove over."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from tqdm import tqdm
@@ -71,10 +72,20 @@ class SquareFinder:
     way: DrivenWay
     odometer: Trajectory
     estimate: Trajectory
-    gaps_s: FloatArray = field(init=False)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "gaps_s", odometry_gaps(self.run).spans_s)
+    @cached_property
+    def poses(self) -> FloatArray:
+        """Pose (n, 3) at each image in the odometry frame; NaN where the odometer has none."""
+        return self._at_images(self.odometer)
+
+    @cached_property
+    def estimated_poses(self) -> FloatArray:
+        """The same by the estimate."""
+        return self._at_images(self.estimate)
+
+    @cached_property
+    def _gaps_s(self) -> FloatArray:
+        return odometry_gaps(self.run).spans_s
 
     @property
     def reach_m(self) -> float:
@@ -84,7 +95,7 @@ class SquareFinder:
     def image_rows(self, apart_m: float) -> IntArray:
         """Rows of images.csv that the odometer covers, `apart_m` of wheel travel apart or more."""
         stamps_s = self.images.stamps_s
-        covered = np.flatnonzero(self.odometer.covers(stamps_s))
+        covered = np.flatnonzero(np.isfinite(self.poses[:, 0]))
         way_s = self.way.trajectory.stamps_s
         travel_m = np.interp(stamps_s[covered], way_s, self.way.travel_m)
         _, first = np.unique(np.floor(travel_m / apart_m), return_index=True)
@@ -113,12 +124,12 @@ class SquareFinder:
         way_s, stamps_s = self.way.trajectory.stamps_s, self.images.stamps_s
         begin_m = float(np.interp(square.passing.begin_s, way_s, self.way.travel_m))
         first_s = float(np.interp(begin_m - self.reach_m, self.way.travel_m, way_s))
-        first, end = np.searchsorted(stamps_s, [first_s, square.passing.begin_s], side="right")
-        return int(np.searchsorted(stamps_s, max(first_s, way_s[0]))), max(int(end), int(first))
+        first = int(np.searchsorted(stamps_s, first_s))
+        return first, int(np.searchsorted(stamps_s, square.passing.begin_s, side="right"))
 
     def _of_image(self, row: int, side_m: float, coarsest_m: float) -> list[DrivenSquare]:
         stamp_s = float(self.images.stamps_s[row])
-        pose = self.odometer.at(np.array([stamp_s])).poses[0]
+        pose, estimated = self.poses[row], self.estimated_poses[row]
         middles = self._middles_ahead(stamp_s, pose, side_m)
         grid = np.linspace(-side_m / 2, side_m / 2, GRID)
         points = np.stack(np.meshgrid(grid, grid), axis=-1).reshape(-1, 2)
@@ -127,7 +138,6 @@ class SquareFinder:
         middles, points = middles[shown], se2.transform(pose, points[shown])
         rows = self.way.ahead(stamp_s, self.reach_m + 2 * self.way.footprint.radius_m)
         passings = self.way.passings(points, rows)
-        at = self.estimate.at(np.array([stamp_s])).poses[0]
         half_m = np.full(2, side_m / 2)
         return [
             DrivenSquare(
@@ -136,7 +146,7 @@ class SquareFinder:
                 Rectangle.round(middle, half_m),
                 passing,
                 _point(pose, middle),
-                _point(at, middle),
+                _point(estimated, middle),
             )
             for middle, passing in zip(middles, passings, strict=True)
             if passing is not None and not self._in_gap(stamp_s, passing.end_s)
@@ -157,7 +167,14 @@ class SquareFinder:
 
     def _in_gap(self, begin_s: float, end_s: float) -> bool:
         """Whether the odometry is silent between two stamps: where the robot went is not known."""
-        return bool(((self.gaps_s[:, 0] < end_s) & (self.gaps_s[:, 1] > begin_s)).any())
+        return bool(((self._gaps_s[:, 0] < end_s) & (self._gaps_s[:, 1] > begin_s)).any())
+
+    def _at_images(self, trajectory: Trajectory) -> FloatArray:
+        stamps_s = self.images.stamps_s
+        covered = trajectory.covers(stamps_s)
+        poses = np.full((len(stamps_s), 3), np.nan)
+        poses[covered] = trajectory.at(stamps_s[covered]).poses
+        return poses
 
 
 def _point(pose: FloatArray, middle: FloatArray) -> tuple[float, float]:

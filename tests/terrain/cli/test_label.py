@@ -177,6 +177,19 @@ def test_spans_of_several_runs_name_their_run(across_run, astride_run, tmp_path)
     assert runs <= {("across", "boards"), ("astride", "gravel")}
 
 
+def test_spans_count_from_the_first_stamp_also_of_a_part(across_run, tmp_path):
+    part = tmp_path / "part"
+    answer = invoke(across_run, "--out", part, *SPANS, "--from", "1", "--to", "8")
+    assert answer.exit_code == 0, answer.output
+    rows = rows_of(part)
+    assert {row["class"] for row in rows.values()} == {"boards", "gravel"}
+    for row in rows.values():
+        edges_s = [3.2, 6.0]
+        inside = edges_s[0] <= float(row["over_from"]) and float(row["over_to"]) <= edges_s[1]
+        assert inside == (row["class"] == "boards")
+        assert 1 <= float(row["t"]) <= 8
+
+
 def test_a_run_that_names_no_terrain_is_told_how_to(across_run, tmp_path):
     answer = invoke(across_run, "--out", tmp_path / "a")
     assert answer.exit_code == 1

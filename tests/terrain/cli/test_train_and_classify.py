@@ -155,6 +155,16 @@ def test_a_folder_of_labelled_images_gives_their_confusion(trained, fresh):
     assert "was trained on 1 of 10 images" in text.stderr
 
 
+def test_another_scale_than_that_of_the_model_is_said(trained, fresh):
+    model, _ = trained
+    for scale, said in ((0.006, False), (0.012, True)):
+        rows = [f"ice/{k}.png,{k},{scale}" for k in range(3)]
+        text = "\n".join(["path,photo_id,metres_per_pixel", *rows])
+        (fresh / "manifest.csv").write_text(text)
+        answer = CliRunner().invoke(classify, [str(model), str(fresh)])
+        assert ("trained at 0.006" in answer.stderr) == said
+
+
 def test_images_that_were_all_trained_on_are_no_test(trained, photos):
     model, _ = trained
     answer = CliRunner().invoke(classify, [str(model), str(photos)])

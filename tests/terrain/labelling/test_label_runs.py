@@ -138,6 +138,12 @@ def test_corrections_are_kept(run, told_spans, labelled):
     assert not set(names[1:3]) & set(labels)
 
 
+def test_corrections_are_not_lost(run, told_spans):
+    corrections = Corrections({"across_000_+999_+000.png": "moss"})
+    with pytest.raises(PatchError, match="1 patches that were moved by hand"):
+        label_runs([run], [told_spans(run)], SMALL, corrections=corrections)
+
+
 @pytest.mark.parametrize("part", ["images", "camera"])
 def test_a_run_without_images_or_camera_is_refused(run, told_spans, part):
     settings = {name: of for name, of in run.settings.items() if name != "camera"}
