@@ -10,6 +10,7 @@ from pathlib import Path
 from odometry.bags.compression import ZSTD_MAGIC, zstd_package
 from odometry.bags.connection import Message
 from odometry.bags.errors import BagError
+from odometry.bags.losses import Losses
 from odometry.bags.mcap_file import MAGIC as MCAP_MAGIC
 from odometry.bags.mcap_file import mcap_messages
 from odometry.bags.ros1_file import MAGIC as ROS1_MAGIC
@@ -43,7 +44,7 @@ class BagFile:
     kind: str
     compressed: bool = False
 
-    def messages(self, losses: list[str]) -> Iterator[Message]:
+    def messages(self, losses: Losses) -> Iterator[Message]:
         """Messages in the order of the file; what cannot be read is added to `losses`."""
         if not self.compressed:
             yield from _READERS[self.kind](self.path, losses)
@@ -62,14 +63,14 @@ class BagFile:
 _READERS = {"ros1": ros1_messages, "mcap": mcap_messages, "sqlite3": sqlite_messages}
 
 
-def bag_files(paths: Sequence[Path], losses: list[str]) -> list[BagFile]:
+def bag_files(paths: Sequence[Path], losses: Losses) -> list[BagFile]:
     """Files of bags, each a file or a folder of ROS 2, with or without metadata.yaml.
 
     Parameters
     ----------
     paths : of Path
         Several are taken as one recording.
-    losses : list of str
+    losses : Losses
         What cannot be read is added: files that are missing, empty or no bag.
 
     Raises
@@ -86,7 +87,7 @@ def bag_files(paths: Sequence[Path], losses: list[str]) -> list[BagFile]:
             if one is not None and one not in found:
                 found.append(one)
     if not found:
-        reason = f": {losses[0]}" if losses else ""
+        reason = f": {losses.lines[0]}" if losses.lines else ""
         raise BagError(f"{', '.join(map(str, paths))}: there is nothing to read{reason}")
     return found
 
@@ -101,7 +102,7 @@ def is_bag(path: Path) -> bool:
         return False
 
 
-def _in_folder(folder: Path, losses: list[str]) -> list[Path]:
+def _in_folder(folder: Path, losses: Losses) -> list[Path]:
     files = _named_as_bags(folder)
     metadata = folder / "metadata.yaml"
     if metadata.is_file() and metadata.stat().st_size <= METADATA_BYTES:
@@ -126,7 +127,7 @@ def _named_as_bags(folder: Path) -> list[Path]:
     )
 
 
-def _bag_file(file: Path, losses: list[str]) -> BagFile | None:
+def _bag_file(file: Path, losses: Losses) -> BagFile | None:
     """What a file is; None, and a loss, where it is no bag."""
     try:
         if file.stat().st_size == 0:

@@ -8,6 +8,7 @@ from odometry.arrays import FloatArray
 from odometry.geometry.optical_frame import mount_of_optical
 
 MODELS = ("plumb_bob", "rational_polynomial", "")
+STEEP = 0.5  # sine of 30 degrees
 COUNTS = (0, 4, 5, 8, 12, 14)  # of coefficients that OpenCV knows
 
 
@@ -45,6 +46,15 @@ def camera_table(
     if robot_from_optical is not None:
         table["mount"] = list(mount_of_optical(robot_from_optical))
     return table, []
+
+
+def looks_along_z(robot_from_frame: FloatArray) -> bool:
+    """Whether a frame may be an optical one: along its z it does not look up, or along x no less.
+
+    Some drivers name the frame of the camera's body, x ahead and z upwards, in their images.
+    """
+    up = robot_from_frame[2, :3]  # the height of each axis
+    return bool(up[2] < STEEP or up[0] > STEEP)
 
 
 def _numbers(info: Any, key: str) -> FloatArray:

@@ -8,6 +8,7 @@ import tomli_w
 
 from odometry.bags.connection import Connection, Message
 from odometry.bags.errors import BagError
+from odometry.bags.losses import Losses
 from odometry.bags.make_streams import make_streams
 from odometry.bags.message_types import MessageTypes
 from odometry.bags.plan import Plan
@@ -62,7 +63,7 @@ def write_run(
     local = LocalMetres()
     streams = make_streams(plan, survey, folder, local)
     for file in survey.files:
-        _read(file.messages([]), streams, types, progress)
+        _read(file.messages(Losses()), streams, types, progress)
     made = [one for several in streams.values() for one in several]
     for stream in made:
         stream.sink.close()

@@ -89,10 +89,17 @@ def _reference(plan: Plan, survey: Survey, folder: Path, local: LocalMetres) -> 
 def _other(name: str, plan: Plan, survey: Survey, folder: Path) -> Stream:
     topic = survey.topics[name]
     pose = plan.robot.pose_of(body_frame(topic.sample), survey.robot)
-    file = f"{OTHER}/{re.sub(r'[^A-Za-z0-9.-]+', '_', name).strip('_.') or 'odometry'}.csv"
+    plain = [_plain(one) for one in plan.other_odometry]
+    again = plain[: plan.other_odometry.index(name)].count(_plain(name))
+    file = f"{OTHER}/{_plain(name)}{f'_{again + 1}' if again else ''}.csv"
     columns = PosesOfRobot(np.eye(4) if pose is None else pose)
     rows = OrderedRows(folder / file, ("x", "y", "yaw"), columns, 3)
     return Rows(name, file, rows, pose_reader(topic.message_type), by_header=plan.by_header)
+
+
+def _plain(topic: str) -> str:
+    """A topic's name as that of a file."""
+    return re.sub(r"[^A-Za-z0-9.-]+", "_", topic).strip("_.") or "odometry"
 
 
 def _as_they_are(stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:

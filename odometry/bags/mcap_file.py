@@ -14,11 +14,14 @@ from typing import BinaryIO, NamedTuple
 from odometry.bags.compression import decompressed
 from odometry.bags.connection import Connection, Message, ros2_name
 from odometry.bags.errors import BagError
+from odometry.bags.losses import Losses
 
 MAGIC = b"\x89MCAP0\r\n"
 SCHEMA, CHANNEL, MESSAGE, CHUNK, DATA_END = 0x03, 0x04, 0x05, 0x06, 0x0F
 RECORD = struct.Struct("<BQ")
 MESSAGE_HEAD = struct.Struct("<HIQQ")  # channel, sequence, received, published
+HEAD_BYTES = MESSAGE_HEAD.size
+LATEST_NS = 2**63 - 1
 CHUNK_HEAD = struct.Struct("<QQQI")  # first and last stamp, size and CRC of the content
 LARGEST_RECORD = 2**31
 CHUNK_MARK = re.compile(
@@ -42,7 +45,7 @@ class _Announced(NamedTuple):
     connections: dict[Connection, Connection]  # each once, however often it is announced
 
 
-def mcap_messages(file: Path, losses: list[str]) -> Iterator[Message]:
+def mcap_messages(file: Path, losses: Losses) -> Iterator[Message]:
     """Messages in the order of the file; what cannot be read is added to `losses`.
 
     Raises
@@ -82,7 +85,7 @@ def _plausible(kind: int, length: int, left: int) -> bool:
 
 
 def _record(
-    kind: int, data: bytes, announced: _Announced, file: Path, losses: list[str]
+    kind: int, data: bytes, announced: _Announced, file: Path, losses: Losses
 ) -> Iterator[Message]:
     if kind != CHUNK:
         records: Iterator[tuple[int, memoryview]] = iter([(kind, memoryview(data))])
@@ -90,27 +93,33 @@ def _record(
         content, problem = _content(data)
         if problem:
             losses.append(f"{file}: a part of a chunk of {len(data)} bytes: {problem}")
-        records = _inside(content, file, losses)
+        records = _inside(content, file, losses, whole=not problem)
     for inner, record in records:
         try:
             if inner == MESSAGE:
                 number, _, received_ns, _ = MESSAGE_HEAD.unpack_from(record)
-                data_of_it = record[MESSAGE_HEAD.size :]
-                yield Message(announced.channels[number], received_ns, data_of_it)
+                connection = announced.channels[number]
+                if received_ns <= LATEST_NS:
+                    yield Message(connection, received_ns, record[HEAD_BYTES:])
+                else:
+                    losses.append(f"{file}: a message of {connection.topic} with no true stamp")
             elif inner in (SCHEMA, CHANNEL):
                 _announce(inner, record, announced)
         except (struct.error, UnicodeDecodeError, KeyError):
             losses.append(f"{file}: a record of {len(record)} bytes that is not as the format says")
 
 
-def _inside(content: bytes, file: Path, losses: list[str]) -> Iterator[tuple[int, memoryview]]:
-    """Whole records of a chunk, kind and content, up to where it is cut or damaged."""
+def _inside(
+    content: bytes, file: Path, losses: Losses, *, whole: bool
+) -> Iterator[tuple[int, memoryview]]:
+    """Records of a chunk, kind and content, up to where it is cut or, said here, damaged."""
     view, position, end = memoryview(content), 0, len(content)
     while position + RECORD.size <= end:
         kind, length = RECORD.unpack_from(view, position)
         position += RECORD.size
         if kind == 0 or length > end - position:
-            losses.append(f"{file}: {end - position} bytes at the end of a chunk of {end}")
+            if whole:
+                losses.append(f"{file}: {end - position} bytes at the end of a chunk of {end}")
             return
         yield kind, view[position : position + length]
         position += length

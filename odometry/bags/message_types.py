@@ -48,8 +48,8 @@ class MessageTypes:
             return known[1](message.data, connection.message_type)
         except Exception as problem:  # generated code raises whatever the bytes lead it to
             raise BagError(
-                f"{connection.topic}: a message of {len(message.data)} bytes is not as the "
-                f"definition of {connection.message_type} says: {problem}"
+                f"{connection.topic}: a message is not as the definition of "
+                f"{connection.message_type} says"
             ) from problem
 
     def problem(self, connection: Connection) -> str:

@@ -1,14 +1,17 @@
 """Rows of numbers into a CSV file, in the order of their stamps, block by block."""
 
 from collections.abc import Callable
+from itertools import chain
 from pathlib import Path
 from typing import TextIO
 
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
+from odometry.io.csv_columns import LARGEST, LARGEST_BY_NAME
 
-BLOCK = 2048  # rows that are held back; those out of order by less than half of it are sorted
+LARGEST_NUMBER = 1e12  # of a number in a message
+HELD = 1024  # rows that are held back: those out of order by fewer are sorted
 Columns = Callable[[IntArray, FloatArray], tuple[IntArray, FloatArray]]
 
 
@@ -48,31 +51,39 @@ class OrderedRows:
         self._stream: TextIO | None = None
         self._stamps: list[int] = []
         self._rows: list[tuple[float, ...]] = []
+        self._held: tuple[IntArray, FloatArray] | None = None
         self._last_ns = -(2**63)
+        self._largest = np.array([LARGEST_BY_NAME.get(name, LARGEST) for name in names])
+        self._line = "%d.%09d" + len(names) * ",%.10g" + "\n"
 
     def add(self, stamp_ns: int, row: tuple[float, ...]) -> None:
         """Take in a row."""
         self._stamps.append(stamp_ns)
         self._rows.append(row)
-        if len(self._stamps) >= BLOCK:
-            self._write(BLOCK // 2)
+        if len(self._stamps) >= HELD:
+            self._write(HELD)
 
     def close(self) -> None:
         """Write what is held; a file without rows is not made."""
-        self._write(len(self._stamps))
+        self._write(0)
         if self._stream is not None:
             self._stream.close()
 
-    def _write(self, count: int) -> None:
-        """Write the earliest `count` rows that are held."""
-        if not self._stamps:
+    def _write(self, kept: int) -> None:
+        """Write all rows but the latest `kept`."""
+        stamps, rows = np.array(self._stamps, dtype=np.int64), np.array(self._rows, dtype=float)
+        self._stamps, self._rows = [], []
+        if self._held is not None:
+            pair = (self._held, (stamps, rows)) if len(stamps) else (self._held,)
+            stamps, rows = (np.concatenate(parts) for parts in zip(*pair, strict=True))
+        if not len(stamps):
             return
-        order = np.argsort(np.array(self._stamps), kind="stable")
-        stamps = np.array(self._stamps)[order]
-        rows = np.array(self._rows, dtype=np.float64)[order]
-        self._stamps, self._rows = stamps[count:].tolist(), list(map(tuple, rows[count:]))
-        stamps, rows = self._in_order(stamps[:count], rows[:count])
-        stamps, values = self._columns(stamps, rows)
+        order = np.argsort(stamps, kind="stable")
+        count = max(0, len(order) - kept)
+        self._held = stamps[order[count:]], rows[order[count:]]
+        stamps, rows = self._in_order(stamps[order[:count]], rows[order[:count]])
+        stamps, values = self._columns(stamps, _plausible(rows, LARGEST_NUMBER))
+        values = _plausible(values, self._largest)
         whole = np.isfinite(values[:, : self._needed]).all(axis=1)
         self.incomplete += int(np.count_nonzero(~whole))
         self._put(stamps[whole], values[whole])
@@ -98,10 +109,16 @@ class OrderedRows:
             self._file.parent.mkdir(parents=True, exist_ok=True)
             self._stream = self._file.open("w", encoding="utf-8", newline="")
             self._stream.write(",".join(("t", *self._names)) + "\n")
-        for stamp, row in zip(stamps.tolist(), values.tolist(), strict=True):
-            cells = ["" if value != value else f"{value:.10g}" for value in row]  # noqa: PLR0124 - NaN
-            self._stream.write(f"{seconds(stamp)},{','.join(cells)}\n")
+        columns = [*np.divmod(stamps, 10**9), *values.T]
+        cells = chain.from_iterable(zip(*(column.tolist() for column in columns), strict=True))
+        lines = len(stamps) * self._line % tuple(cells)
+        self._stream.write(lines.replace("nan", ""))
         self.written += len(stamps)
+
+
+def _plausible(values: FloatArray, largest: FloatArray | float) -> FloatArray:
+    """Values (N, k), NaN where they are larger than any that is meant: bytes were damaged."""
+    return np.where(np.abs(values) <= largest, values, np.nan)
 
 
 def seconds(stamp_ns: int) -> str:

@@ -85,7 +85,7 @@ def make_plan(survey: Survey, wishes: Wishes) -> Plan:
     info = _camera_info(topics, wishes.images, images)
     named = {imu: wishes.imu, reference: wishes.reference, images: wishes.images}
     frames = {
-        name: str(said.get("frame") or body_frame(topics[name].sample)).lstrip("/")
+        name: str(said.get("frame") or _frame_of(topics[name], robot)).lstrip("/")
         for name, said in named.items()
         if name
     }
@@ -112,6 +112,12 @@ def make_plan(survey: Survey, wishes: Wishes) -> Plan:
         tuple(notes),
         frames,
     )
+
+
+def _frame_of(topic: Topic, robot: RobotFrame) -> str:
+    """The frame that a topic tells of; a list of transforms tells of the robot's."""
+    lists = topic.message_type in TRANSFORM_LISTS
+    return robot.base if lists else body_frame(topic.sample)
 
 
 def _named(imu: str, reference: str, images: str, info: str) -> list[tuple[str, str]]:

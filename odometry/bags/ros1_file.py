@@ -7,27 +7,30 @@ was stopped, is read as any other. Source: https://wiki.ros.org/Bags/Format/2.0.
 import re
 import struct
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
 from odometry.bags.compression import decompressed
-from odometry.bags.connection import Connection, Message, ros2_name
+from odometry.bags.connection import Connection, Message
 from odometry.bags.errors import BagError
+from odometry.bags.losses import Losses
+from odometry.bags.ros1_records import (
+    DamageError,
+    Header,
+    announce,
+    fields_of,
+    message_of,
+    record_start,
+)
 
 MAGIC = b"#ROSBAG V2.0\n"
 MESSAGE, BAG_HEADER, CHUNK, CONNECTION = 2, 3, 5, 7
-LONGEST_HEADER = 65536  # definitions stand in the data of a record
-LARGEST_RECORD = 2**31
 CHUNK_MARK = re.compile(rb"\x04\x00\x00\x00op=\x05")
 SEARCHED = 4 * 1024**2  # bytes at a time, in search of a chunk
-Header = dict[bytes, bytes]
 
 
-class DamageError(ValueError):
-    """A record is not as the format says."""
-
-
-def ros1_messages(file: Path, losses: list[str]) -> Iterator[Message]:
+def ros1_messages(file: Path, losses: Losses) -> Iterator[Message]:
     """Messages in the order of the file; what cannot be read is added to `losses`.
 
     Raises
@@ -42,9 +45,10 @@ def ros1_messages(file: Path, losses: list[str]) -> Iterator[Message]:
             raise BagError(f"{file}: no bag file of ROS 1, version 2.0 (it starts otherwise)")
         while (begin := stream.tell()) < size:
             try:
-                header, length = _record_start(stream)
+                header, length = record_start(stream)
                 if header[b"op"][0] == BAG_HEADER:
                     losses += _unfinished(header, file, size)
+                    connections |= _indexed(header, file, size)
                 yield from _record(header, stream.read(length), connections, file, losses)
             except DamageError as problem:
                 stream.seek(begin)
@@ -54,14 +58,6 @@ def ros1_messages(file: Path, losses: list[str]) -> Iterator[Message]:
                 if found is None:
                     return
                 stream.seek(found)
-
-
-def _record_start(stream: BinaryIO) -> tuple[Header, int]:
-    """Header of the record that starts here, and the length of its data."""
-    header = _fields(_exactly(stream, _length(stream, LONGEST_HEADER)))
-    if b"op" not in header:
-        raise DamageError("a record without a kind")
-    return header, _length(stream, LARGEST_RECORD)
 
 
 def _unfinished(header: Header, file: Path, size: int) -> Iterator[str]:
@@ -75,12 +71,27 @@ def _unfinished(header: Header, file: Path, size: int) -> Iterator[str]:
         yield f"{file}: it is cut off: {size} bytes are there of more than {index}"
 
 
+def _indexed(header: Header, file: Path, size: int) -> dict[int, Connection]:
+    """Topics as the end of the file announces them again, where it is there."""
+    found: dict[int, Connection] = {}
+    index = int.from_bytes(header.get(b"index_pos", b""), "little")
+    with file.open("rb") as stream:
+        stream.seek(index or size)
+        with suppress(DamageError):
+            while stream.tell() < size:
+                record, length = record_start(stream)
+                if record[b"op"][0] != CONNECTION:
+                    break
+                announce(record, stream.read(length), found)
+    return found
+
+
 def _record(
     header: Header,
     data: bytes,
     connections: dict[int, Connection],
     file: Path,
-    losses: list[str],
+    losses: Losses,
 ) -> Iterator[Message]:
     kind = header[b"op"][0]
     if kind == CHUNK:
@@ -88,83 +99,40 @@ def _record(
         chunk, problem = decompressed(data, compression)
         if problem:
             losses.append(f"{file}: a part of a chunk of {len(data)} bytes: {problem}")
-        yield from _inside(memoryview(chunk), connections, file, losses)
+        yield from _inside(memoryview(chunk), connections, file, losses, whole=not problem)
     elif kind == CONNECTION:
-        _announce(header, data, connections)
+        announce(header, data, connections)
     elif kind == MESSAGE:  # a bag without chunks
-        yield _message(header, memoryview(data), connections)
+        yield message_of(header, memoryview(data), connections)
 
 
 def _inside(
-    chunk: memoryview, connections: dict[int, Connection], file: Path, losses: list[str]
+    chunk: memoryview,
+    connections: dict[int, Connection],
+    file: Path,
+    losses: Losses,
+    *,
+    whole: bool,
 ) -> Iterator[Message]:
-    """Records of a chunk, up to its end or to where it is cut or damaged."""
-    position, end = 0, len(chunk)
+    """Records of a chunk, up to where it is cut or, said here, damaged."""
+    position, end, begin = 0, len(chunk), 0
     try:
         while position < end:
+            begin = position
             (length,) = struct.unpack_from("<I", chunk, position)
-            header = _fields(chunk[position + 4 : position + 4 + length].tobytes())
+            header = fields_of(chunk[position + 4 : position + 4 + length].tobytes())
             position += 4 + length
             (length,) = struct.unpack_from("<I", chunk, position)
             data = chunk[position + 4 : position + 4 + length]
             position += 4 + length
-            if position > end:
-                return  # cut; it is said where the file ends
-            if header[b"op"] == b"\x02":
-                yield _message(header, data, connections)
-            elif header[b"op"] == b"\x07":
-                _announce(header, data.tobytes(), connections)
+            if position <= end and header[b"op"] == b"\x02":
+                yield message_of(header, data, connections)
+            elif position <= end and header[b"op"] == b"\x07":
+                announce(header, data.tobytes(), connections)
     except (struct.error, KeyError, DamageError):
-        losses.append(f"{file}: {end - position} bytes at the end of a chunk of {end}")
-
-
-def _message(header: Header, data: memoryview, connections: dict[int, Connection]) -> Message:
-    (number,) = struct.unpack("<I", header[b"conn"])
-    seconds, nanoseconds = struct.unpack("<II", header[b"time"])
-    if number not in connections:
-        raise DamageError("a message of a topic that is announced nowhere before it")
-    return Message(connections[number], seconds * 10**9 + nanoseconds, data)
-
-
-def _announce(header: Header, data: bytes, connections: dict[int, Connection]) -> None:
-    about = _fields(data)
-    try:
-        (number,) = struct.unpack("<I", header[b"conn"])
-        topic, message_type = header[b"topic"].decode(), about[b"type"].decode()
-    except (KeyError, struct.error, UnicodeDecodeError) as problem:
-        raise DamageError("a topic without a name or a type") from problem
-    definition = about.get(b"message_definition", b"").decode(errors="replace")
-    connections.setdefault(number, Connection(topic, ros2_name(message_type), "ros1", definition))
-
-
-def _fields(header: bytes) -> Header:
-    """Fields of a header: each a length, a name, an equals sign and a value."""
-    fields: Header = {}
-    position, end = 0, len(header)
-    while position < end:
-        if position + 4 > end:
-            raise DamageError("a header that is not as the format says")
-        length = int.from_bytes(header[position : position + 4], "little")
-        name, equals, value = header[position + 4 : position + 4 + length].partition(b"=")
-        position += 4 + length
-        if not equals or position > end:
-            raise DamageError("a header that is not as the format says")
-        fields[name] = value
-    return fields
-
-
-def _length(stream: BinaryIO, most: int) -> int:
-    length = int.from_bytes(_exactly(stream, 4), "little")
-    if length > most:
-        raise DamageError(f"a record of {length} bytes, expected at most {most}")
-    return length
-
-
-def _exactly(stream: BinaryIO, count: int) -> bytes:
-    data = stream.read(count)
-    if len(data) < count:
-        raise DamageError("the file ends within a record")
-    return data
+        position = end + 1
+    if position > end and whole:
+        losses.append(f"{file}: {max(0, end - begin)} bytes at the end of a chunk of {end}")
 
 
 def _next_chunk(stream: BinaryIO, begin: int) -> int | None:
@@ -189,7 +157,7 @@ def _is_chunk(window: bytes) -> bool:
     if not 20 <= length <= 128:
         return False
     try:
-        header = _fields(window[4 : 4 + length])
+        header = fields_of(window[4 : 4 + length])
     except DamageError:
         return False
     return header.get(b"op") == b"\x05" and {b"compression", b"size"} <= header.keys()

@@ -3,7 +3,9 @@
 from collections.abc import Sequence
 from typing import Any
 
-from odometry.bags.camera_table import camera_table
+import numpy as np
+
+from odometry.bags.camera_table import camera_table, looks_along_z
 from odometry.bags.guess import RECTIFIED
 from odometry.bags.message_kinds import FIX, body_frame
 from odometry.bags.plan import Plan
@@ -11,7 +13,12 @@ from odometry.bags.poses import LocalMetres
 from odometry.bags.robot_frame import HOW_HEIGHT
 from odometry.bags.survey import Survey
 from odometry.geometry import se3
+from odometry.geometry.optical_frame import OPTICAL_FROM_CAMERA
 
+HOW_MOUNT = (
+    "Or find the mount: terrain-odometry camera RUN --from-motion --out camera --write; or give it "
+    "there as measured: --mount X Y Z ROLL PITCH YAW"
+)
 NO_PLACE = 1e-9  # metres and radians that are not worth a line
 
 
@@ -75,8 +82,8 @@ def _camera(plan: Plan, survey: Survey, notes: list[str]) -> dict[str, Any]:
         return {}
     if not plan.camera_info:
         notes.append(
-            f"{plan.images}: there is no CameraInfo that goes with it; name one by --camera-info, "
-            "or write [camera] to run.toml"
+            f"{plan.images}: there is no CameraInfo that goes with it, so that run.toml has no "
+            "[camera]. Name one by --camera-info, or calibrate: terrain-odometry camera --help"
         )
         return {}
     info = survey.topics[plan.camera_info].sample
@@ -85,15 +92,21 @@ def _camera(plan: Plan, survey: Survey, notes: list[str]) -> dict[str, Any]:
     if pose is None:
         notes.append(
             f"{plan.images}: where its frame {frame or '(not named)'} sits on the robot is not in "
-            "the bag; write mount = [x, y, z, roll, pitch, yaw] to [camera] of run.toml"
+            f"the bag, so that [camera] has no mount. {HOW_MOUNT}"
         )
     elif not plan.robot.height_known:
         notes.append(
             f"{plan.images}: the height of {plan.robot.base} above the terrain is not known, so "
-            f"that the camera's is not either: add --frame-height METRES ({HOW_HEIGHT}); [camera] "
-            "has no mount"
+            "that [camera] has no mount. Add --frame-height METRES "
+            f"({HOW_HEIGHT}). {HOW_MOUNT}"
         )
         pose = None
+    elif not looks_along_z(pose):
+        notes.append(
+            f"{plan.images}: its frame {frame} has z upwards, as no optical frame has: its x axis "
+            "is taken as the view"
+        )
+        pose = pose @ se3.pose(np.zeros(3), OPTICAL_FROM_CAMERA.T)
     rectified = bool(RECTIFIED.search(plan.images))
     table, said = camera_table(info, pose, rectified=rectified)
     notes += said

@@ -12,6 +12,7 @@ from urllib.parse import quote
 from odometry.bags.compression import ZSTD_MAGIC, decompressed
 from odometry.bags.connection import Connection, Message, ros2_name
 from odometry.bags.errors import BagError
+from odometry.bags.losses import Losses
 from odometry.bags.sqlite_pages import Row, rows_of_pages
 
 MAGIC = b"SQLite format 3\0"
@@ -19,7 +20,7 @@ ROWS = "SELECT id, topic_id, timestamp, data FROM messages ORDER BY id"
 SCHEMAS = {"ros2msg": "msg", "ros2idl": "idl"}
 
 
-def sqlite_messages(file: Path, losses: list[str]) -> Iterator[Message]:
+def sqlite_messages(file: Path, losses: Losses) -> Iterator[Message]:
     """Messages in the order of the file; what cannot be read is added to `losses`.
 
     Raises
@@ -38,12 +39,14 @@ def sqlite_messages(file: Path, losses: list[str]) -> Iterator[Message]:
         )
     database = sqlite3.connect(f"file:{quote(str(file.resolve()))}?mode=ro&immutable=1", uri=True)
     losses += _missing_pages(file)
+    database.text_factory = _text
     try:
         database.execute("PRAGMA writable_schema = ON")  # else a file that was cut is not opened
         connections = _connections(database, file)
         for _, number, received_ns, data in _rows(database, file, connections, losses):
-            if number not in connections or not isinstance(data, bytes):
-                losses.append(f"{file}: a message of no topic")
+            stamped = isinstance(received_ns, int) and received_ns >= 0
+            if number not in connections or not stamped or not isinstance(data, bytes):
+                losses.append(f"{file}: a message without a topic, a stamp or data")
                 continue
             packed = data.startswith(ZSTD_MAGIC)  # no message starts so by itself
             content, problem = decompressed(data, "zstd" if packed else "")
@@ -53,6 +56,10 @@ def sqlite_messages(file: Path, losses: list[str]) -> Iterator[Message]:
             yield Message(connections[number], received_ns, content)
     finally:
         database.close()
+
+
+def _text(content: bytes) -> str:
+    return content.decode(errors="replace")
 
 
 def _missing_pages(file: Path) -> Iterator[str]:
@@ -66,7 +73,7 @@ def _missing_pages(file: Path) -> Iterator[str]:
 
 
 def _rows(
-    database: sqlite3.Connection, file: Path, topics: Container[int], losses: list[str]
+    database: sqlite3.Connection, file: Path, topics: Container[int], losses: Losses
 ) -> Iterator[Row]:
     """Rows in their order; those that SQLite does not reach are looked for page by page."""
     last = 0
@@ -97,7 +104,9 @@ def _connections(database: sqlite3.Connection, file: Path) -> dict[int, Connecti
     definitions = _definitions(database)
     return {
         number: Connection(name, ros2_name(kind), encoding, *definitions.get(kind, ("", "msg")))
-        for number, name, kind, encoding in topics
+        for number, *texts in topics
+        if all(isinstance(text, str) for text in texts)
+        for name, kind, encoding in [texts]
     }
 
 

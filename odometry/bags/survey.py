@@ -9,6 +9,7 @@ from typing import Any
 from odometry.bags.bag_files import BagFile
 from odometry.bags.connection import Connection, Message
 from odometry.bags.errors import BagError
+from odometry.bags.losses import Losses
 from odometry.bags.message_types import MessageTypes
 from odometry.bags.motion_seen import MOVING_TYPES, Ranges, widen
 from odometry.bags.robot_seen import RobotSeen
@@ -86,7 +87,7 @@ class Survey:
 
 
 def survey(
-    files: Sequence[BagFile], types: MessageTypes, losses: Sequence[str], progress: Progress
+    files: Sequence[BagFile], types: MessageTypes, lost: Losses, progress: Progress
 ) -> Survey:
     """Read files once, and decode some messages of each topic.
 
@@ -94,8 +95,8 @@ def survey(
     ----------
     files : of BagFile
     types : MessageTypes
-    losses : of str
-        What is known to be lost already.
+    lost : Losses
+        What is known to be lost already; it is added to.
     progress : callable
         Called with numbers of messages that were read since the call before.
 
@@ -104,7 +105,7 @@ def survey(
     BagError
         If no message can be read.
     """
-    lost, tallies, robot = list(losses), dict[str, _Tally](), RobotSeen()
+    tallies, robot = dict[str, _Tally](), RobotSeen()
     begins: dict[BagFile, int] = {}
     for file in files:
         of_file: dict[int, _Tally | None] = {}
@@ -126,9 +127,9 @@ def survey(
         else:
             begins[file] = begin
     if not begins:
-        raise BagError(f"there is no message to read: {'; '.join(lost)}")
+        raise BagError(f"there is no message to read: {'; '.join(lost.lines)}")
     topics = {name: tally.topic() for name, tally in sorted(tallies.items())}
-    return Survey(tuple(sorted(begins, key=begins.__getitem__)), topics, robot, tuple(lost))
+    return Survey(tuple(sorted(begins, key=begins.__getitem__)), topics, robot, lost.lines)
 
 
 class _Tally:
@@ -189,10 +190,10 @@ class _Tally:
 def header_ns(content: Any) -> int:
     """Header stamp of a message, 0 where it has none."""
     stamp = getattr(getattr(content, "header", None), "stamp", None)
-    return stamp.sec * 10**9 + stamp.nanosec if stamp is not None else 0
+    return max(0, stamp.sec * 10**9 + stamp.nanosec) if stamp is not None else 0
 
 
-def _tally(connection: Connection, tallies: dict[str, _Tally], losses: list[str]) -> _Tally | None:
+def _tally(connection: Connection, tallies: dict[str, _Tally], losses: Losses) -> _Tally | None:
     """Tally of a topic; None, and a loss, where the topic has another type elsewhere."""
     tally = tallies.setdefault(connection.topic, _Tally(connection))
     if tally.connection.message_type != connection.message_type:

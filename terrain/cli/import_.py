@@ -171,9 +171,10 @@ def _surveyed(bags: tuple[Path, ...], types: "MessageTypes") -> "Survey":
     from tqdm import tqdm
 
     from odometry.bags.bag_files import bag_files
+    from odometry.bags.losses import Losses
     from odometry.bags.survey import survey
 
-    losses: list[str] = []
+    losses = Losses()
     files = bag_files(bags, losses)
     with tqdm(desc="look", unit=" messages", leave=False, disable=None) as bar:
         return survey(files, types, losses, bar.update)

@@ -2,6 +2,7 @@
 
 from odometry.bags.bag_files import bag_files
 from odometry.bags.import_bags import write_run
+from odometry.bags.losses import Losses
 from odometry.bags.message_types import MessageTypes
 from odometry.bags.plan import make_plan
 from odometry.bags.survey import survey
@@ -14,7 +15,7 @@ SIZE = {"robot.wheel_radius": RADIUS_M, "robot.track_width": TRACK_M}
 
 def looked_at(*paths):
     """Survey of bags, and the types that decode them."""
-    types, losses = MessageTypes(), []
+    types, losses = MessageTypes(), Losses()
     return survey(bag_files(paths, losses), types, losses, lambda _: None), types
 
 

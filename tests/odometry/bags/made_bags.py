@@ -217,7 +217,7 @@ class Bag:
         """Write what was added; messages whose stamp `only` denies are left out."""
         ros1 = self.kind.startswith("ros1")
         serialize = self.types.serialize_ros1 if ros1 else self.types.serialize_cdr
-        with _writer(self.kind, path) as writer:
+        with writer_of(self.kind, path) as writer:
             connections: dict[str, Any] = {}
             for topic, kind, t_s, message in sorted(self.written, key=lambda one: one[2]):
                 if not only(t_s):
@@ -229,7 +229,8 @@ class Bag:
         return path
 
 
-def _writer(kind: str, path: Path) -> Any:
+def writer_of(kind: str, path: Path) -> Any:
+    """A writer of a kind of bag."""
     if kind.startswith("ros1"):
         writer = Writer1(path)
         if kind != "ros1":

@@ -7,6 +7,7 @@ import pytest
 
 from odometry.bags.bag_files import bag_files
 from odometry.bags.errors import BagError
+from odometry.bags.losses import Losses
 from odometry.bags.message_types import MessageTypes
 from odometry.bags.survey import survey
 from tests.odometry.bags.imports import imported
@@ -92,7 +93,7 @@ def test_a_ros1_bag_is_read_on_behind_a_damaged_record(bag_file, tmp_path):
 
 
 def looked_at(*paths):
-    losses = []
+    losses = Losses()
     return survey(bag_files(paths, losses), MessageTypes(), losses, lambda _: None)
 
 

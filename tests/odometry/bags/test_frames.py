@@ -111,7 +111,17 @@ def test_without_the_height_of_base_link_the_camera_has_no_mount(tmp_path):
     static(bag, ("base_link", "camera_optical", (0.3, 0, 0.2), OPTICAL))
     run, said = tables(bag, tmp_path)
     assert "mount" not in run.settings["camera"]
-    assert any("add --frame-height METRES" in note for note in said.notes)
+    assert any("Add --frame-height METRES" in note for note in said.notes)
+
+
+def test_a_camera_frame_that_is_no_optical_frame_looks_along_its_x_axis(tmp_path):
+    """A driver that names camera_link in its images: x ahead and down by 0.5, z upwards."""
+    bag = drive()
+    down = (np.cos(0.25), 0, np.sin(0.25), 0)
+    static(bag, ("base_footprint", "camera_optical", (0.4, 0.1, 0.6), down))
+    run, said = tables(bag, tmp_path)
+    assert run.settings["camera"]["mount"] == pytest.approx([0.4, 0.1, 0.6, 0, 0.5, 0], abs=1e-9)
+    assert any("its x axis is taken as the view" in note for note in said.notes)
 
 
 def test_the_height_of_base_link_may_be_given(tmp_path):
