@@ -13,6 +13,8 @@ from odometry.estimation.first_belief import first_belief
 from odometry.estimation.measurement import Place
 from odometry.estimation.pose_update import PoseUpdate
 from odometry.estimation.prediction import Prediction
+from odometry.estimation.rest_change import followed_at_rest
+from odometry.estimation.rest_watch import stand
 from odometry.estimation.terrain_beliefs import TerrainBeliefs
 from odometry.estimation.velocity_update import VelocityUpdate
 from odometry.footing import Footing
@@ -141,6 +143,17 @@ class IcrEkf:
         if frame.velocity is not None:
             belief = self._velocity_update.seen(belief, estimate, frame, yaw_rate)
         after = self._pose_update.seen(estimate, belief, predicted.pose, frame, recent)
+        watch = predicted.watch
+        if watch is not None and (watch.rest or stand(estimate.tread_speeds_m_s)):
+            after, rest = followed_at_rest(
+                estimate,
+                predicted.pose,
+                frame.stamp_s,
+                after,
+                pose_covariance=self._pose_update.covariance,
+                lever_m=self._lever_m,
+            )
+            predicted = predicted._replace(watch=watch._replace(rest=rest))
         belief, watch, of_bias = bias_followed(estimate, predicted, after, frame.stamp_s)
         added_speeds, added_twist = added_from(self.corrections, terrain, frame.odometry_row)
         return Estimate(

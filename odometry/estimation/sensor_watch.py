@@ -4,13 +4,20 @@ import math
 from typing import NamedTuple
 
 from odometry.arrays import FloatArray
-from odometry.estimation import gyroscope_hold, gyroscope_watch, pose_watch, tread_watch
+from odometry.estimation import (
+    gyroscope_hold,
+    gyroscope_watch,
+    pose_watch,
+    rest_watch,
+    tread_watch,
+)
 from odometry.estimation.bias_watch import BiasWatch
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.gyroscope_hold import GyroscopeHold
 from odometry.estimation.gyroscope_watch import GyroscopeWatch
 from odometry.estimation.measurement import Gaussian
 from odometry.estimation.pose_watch import PoseWatch
+from odometry.estimation.rest_watch import RestWatch
 from odometry.estimation.tread_watch import TreadWatch
 from odometry.frames import Frame
 
@@ -31,6 +38,8 @@ class SensorWatch(NamedTuple):
         Of the gyroscope; None before the first step.
     bias : BiasWatch
         Of the gyroscope against the poses.
+    rest : RestWatch or None
+        Of the poses while the treads stand.
     """
 
     treads: TreadWatch
@@ -39,6 +48,7 @@ class SensorWatch(NamedTuple):
     gap_since_s: float = math.nan
     hold: GyroscopeHold | None = None
     bias: BiasWatch = BiasWatch()
+    rest: RestWatch | None = None
 
     @property
     def is_doubtful(self) -> bool:
@@ -78,8 +88,8 @@ class Sensed(NamedTuple):
 
 def with_bias(watch: SensorWatch, bias: BiasWatch) -> SensorWatch:
     """The watch with another one of the gyroscope's bias."""
-    treads, gyroscope, poses, gap_since_s, hold, _ = watch
-    return SensorWatch(treads, gyroscope, poses, gap_since_s, hold, bias)
+    treads, gyroscope, poses, gap_since_s, hold, _, rest = watch
+    return SensorWatch(treads, gyroscope, poses, gap_since_s, hold, bias, rest)
 
 
 def begun(frame: Frame, belief: Gaussian) -> SensorWatch:
@@ -146,7 +156,7 @@ def sensed(
         poses, use, of_poses = pose_watch.watched(poses, pose, frame.stamp_s)
         pose, events = pose if use else None, events + of_poses
     gap_since_s, of_gap = _gap(watch.gap_since_s, frame, begin_s)
-    after = SensorWatch(watch.treads, gyroscope, poses, gap_since_s, hold, watch.bias)
+    after = SensorWatch(watch.treads, gyroscope, poses, gap_since_s, hold, watch.bias, watch.rest)
     return Sensed(after, begin_s, yaw_rate, pose, events + of_gap, belief)
 
 
@@ -222,6 +232,8 @@ def ongoing(watch: SensorWatch, stamp_s: float) -> Events:
     if watch.hold is not None:
         found += gyroscope_hold.ended(watch.hold, stamp_s)
     found += gyroscope_watch.ongoing(watch.gyroscope, stamp_s)
+    if watch.rest is not None:
+        found += rest_watch.ended(watch.rest, stamp_s)
     return (*found, *pose_watch.ongoing(watch.poses, stamp_s))
 
 
