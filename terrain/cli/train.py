@@ -108,7 +108,7 @@ def train(
             err=True,
         )
     classifier.save(out, made.to_table())
-    click.echo(_summary(classifier, loaded.photos))
+    click.echo(_summary(classifier, loaded))
     click.echo(f"\nWrote {out}. Next: terrain-odometry classify {out} IMAGE...")
 
 
@@ -118,7 +118,15 @@ def _grouped(patches: "LabelledPatches") -> set[Path]:
     return {photo for photo, group in pairs if group != str(photo)}
 
 
-def _summary(classifier: "TerrainClassifier", photos: list[Path]) -> str:
+def _origin(patches: "LabelledPatches") -> str:
+    """How many photographs, and what the cross-validation keeps whole."""
+    photos, groups = len(set(patches.photos)), len(set(patches.groups))
+    if groups == photos:
+        return f"{photos} photographs, cross-validated by photograph"
+    return f"{photos} photographs in {groups} groups, cross-validated by group"
+
+
+def _summary(classifier: "TerrainClassifier", patches: "LabelledPatches") -> str:
     import numpy as np
 
     from terrain.classification.evaluation import (
@@ -130,13 +138,13 @@ def _summary(classifier: "TerrainClassifier", photos: list[Path]) -> str:
 
     found = classifier.cross_validation_
     answers = found.probabilities.argmax(axis=1)
-    names = np.array([str(photos[row]) for row in found.rows])
+    names = np.array([str(patches.photos[row]) for row in found.rows])
     photo_codes, photo_answers, _ = photo_votes(found.codes, found.probabilities, names)
     table = confusion(found.codes, answers, len(classifier.classes_))
     chosen = "given" if classifier.n_neighbors else "chosen"
     return (
-        f"{len(photos)} patches of {classifier.patch_size_px} px from {len(set(photos))} "
-        "photographs, cross-validated by photograph (true terrain down, answer across, %):\n\n"
+        f"{len(patches.photos)} patches of {classifier.patch_size_px} px from {_origin(patches)} (true "
+        "terrain down, answer across, %):\n\n"
         f"{confusion_text(table, classifier.classes_)}\n\n"
         f"balanced accuracy by patch {balanced_accuracy(found.codes, answers):.3f}, by vote of a "
         f"photograph's patches {balanced_accuracy(photo_codes, photo_answers):.3f}\n"

@@ -43,7 +43,9 @@ def test_train_prints_confusion_k_and_threshold_and_what_comes_next(trained, pho
     model, answer = trained
     loaded = TerrainClassifier.load(model)
     lines = answer.stdout.splitlines()
-    assert lines[0].startswith("216 patches of 32 px from 24 photographs, cross-validated")
+    assert lines[0].startswith(
+        "216 patches of 32 px from 24 photographs in 12 groups, cross-validated by group"
+    )
     header = next(i for i, line in enumerate(lines) if line.split()[-1:] == ["patches"])
     assert lines[header].split() == ["boards", "gravel", "patches"]
     assert lines[header + 1].split()[0] == "boards"
