@@ -103,6 +103,8 @@ def _added(table: Mapping[str, Any], where: str) -> Added:
         for name, value in values.items()
         if name in BY_FORM[kind].constant_names
     }
+    if settings.pop("by_speed", False):  # of residuals in sets of version 0.6
+        settings["by"] = "speed"
     course = _course(kind, values, settings, where)
     try:
         plain = BY_FORM[kind](**settings, **constants)

@@ -8,7 +8,7 @@ from odometry.arrays import FloatArray
 from odometry.effects.base import EffectParameter
 from odometry.effects.base_model import Base
 from odometry.effects.held_commands import held_spans, late_speeds
-from odometry.effects.residual import Residual
+from odometry.effects.residual import TREADS, Residual
 from odometry.errors import ParameterError
 from odometry.models.inputs import Inputs
 
@@ -22,8 +22,8 @@ class History(Residual):
     """Tread speeds as a weighted sum of those recorded at several lags: any linear filter.
 
     Delays, lags, swings and means over a while are all of this form, and none of them by name.
-    Of `Residual`, `variable` is HISTORY, `knots` are the lags [s], a term is (BOTH, number of the
-    lag), and `by_speed` says nothing.
+    Of `Residual`, `variable` is HISTORY, `knots` are the lags [s], a term is (BOTH or a tread,
+    number of the lag), and `by` says nothing.
     """
 
     variable: str = HISTORY
@@ -31,11 +31,11 @@ class History(Residual):
     knots: tuple[float, ...] = LAGS_S
 
     def __post_init__(self) -> None:
-        known = [(BOTH, number) for number in range(len(self.knots))]
+        known = [(tread, k) for tread in (BOTH, *TREADS) for k in range(len(self.knots))]
         if self.variable != HISTORY or any(tuple(term) not in known for term in self.terms):
             raise ParameterError(
                 f"the residual of {self.variable!r} has terms {self.terms}, expected {HISTORY!r} "
-                f"and terms of {known}"
+                f"and a term of {known}"
             )
 
     form = "history"
@@ -55,10 +55,8 @@ class History(Residual):
         """See `Effect.lacks`."""
         return "stamps" if inputs.time_s is None else ""
 
-    def twist(
-        self, values: FloatArray, twist: FloatArray, inputs: Inputs, base: Base
-    ) -> FloatArray:
-        """See `MotionEffect.twist`; what is added to treads is a change to first order.
+    def columns(self, twist: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
+        """See `Residual.columns`; what is added to treads is a change to first order.
 
         Raises
         ------
@@ -69,9 +67,10 @@ class History(Residual):
             raise ParameterError("the residual is a function of earlier speeds: no stamps")
         speeds = np.asarray(inputs.tread_speeds_m_s)
         held_s, starts = held_spans(inputs.time_s)
-        added = np.zeros_like(speeds)
-        for (_, number), value in zip(self.terms, values, strict=True):
-            if value:
-                added += value * (late_speeds(speeds, held_s, starts, self.knots[number]) - speeds)
         slopes = base.model.speed_jacobian(base.values, inputs)
-        return np.asarray(twist + np.einsum("nij,nj->ni", slopes, added))
+        made = np.zeros((len(self.terms), *twist.shape))
+        for place, (name, number) in enumerate(self.terms):
+            changed = late_speeds(speeds, held_s, starts, self.knots[number]) - speeds
+            own = np.array([name in (BOTH, tread) for tread in TREADS])
+            made[place] = np.einsum("nij,nj->ni", slopes, changed * own)
+        return made

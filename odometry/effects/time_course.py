@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import FloatArray, IntArray
 from odometry.effects.base import EffectParameter
 from odometry.models.inputs import Inputs
 
@@ -112,7 +112,7 @@ class FromAMoment(Course):
     def share(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """Shares (N,): the sample with a moment (P,) in it is shared out; later runs have none."""
         time_s, steps_s = _samples(inputs)
-        numbers = _run_numbers(inputs)
+        numbers = run_numbers(inputs)
         known = numbers < len(values)
         moments = np.where(known, values[np.where(known, numbers, 0)], np.inf)
         return np.clip((time_s + steps_s - moments) / steps_s, 0.0, 1.0)
@@ -143,6 +143,7 @@ def _samples(inputs: Inputs) -> tuple[FloatArray, FloatArray]:
     return time_s, np.where(steps_s > 0, steps_s, LAST_STEP_S)
 
 
-def _run_numbers(inputs: Inputs) -> Any:
+def run_numbers(inputs: Inputs) -> IntArray:
+    """Which of several runs each sample (N,) is of."""
     count = len(inputs.tread_speeds_m_s)
     return np.zeros(count, dtype=np.int64) if inputs.run_number is None else inputs.run_number

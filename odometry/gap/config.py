@@ -107,7 +107,7 @@ class GapConfig:
     knots: int = 5
     tread_knots: int = 4
     most_effects: int = 3
-    most_smooth: int = 2
+    most_smooth: int = 4
     most_windows: int = 300
 
     def __post_init__(self) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from odometry.effects.catalogue import effect_table
 from odometry.effects.corrected import Added
 from odometry.effects.in_course import lasting
+from odometry.effects.residual_of_each_run import ResidualOfEachRun
 from odometry.effects.terrain import SHIFTED, Terrain
 from odometry.effects.time_offset import TimeOffset
 from odometry.gap.locate import Region
@@ -87,14 +88,15 @@ def extended_model(result: GapResult) -> ParameterSet:
     """The base and its effects as a parameter set, one table a terrain that any run names.
 
     Terrains whose ICRs and slip differ are tables of their own; all other effects stand in each,
-    as they were at the end of their course: a moment of one run says nothing of the next.
+    as they were at the end of their course: a moment of one run says nothing of the next, nor do
+    coefficients that are each run's own.
     """
     model = result.base.model
     names = [parameter.name for parameter in model.parameters]
     effects = tuple(
         effect_table(lasting(added))
         for added in with_latency(result)
-        if not isinstance(added.effect, Terrain)
+        if not isinstance(added.effect, Terrain | ResidualOfEachRun)
     )
     words = " and ".join(added.effect.name for added in result.added) or "no effect"
     terrains = {}

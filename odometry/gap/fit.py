@@ -9,10 +9,12 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.effects.base import Effect
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
+from odometry.effects.residual import Residual
 from odometry.gap.calibration import Calibration
 from odometry.gap.hypothesis import Hypothesis
 from odometry.gap.left_out import held_out, left_out_loss
 from odometry.gap.measured import Measured
+from odometry.gap.responses import columns_of
 from odometry.gap.solve import Found, Solved, least_squares, with_jacobian
 
 ITERATIONS = 12
@@ -88,6 +90,11 @@ class Fitter:
         """Chi-squared a degree of freedom."""
         return float(fit.chi_squared.sum()) / self.measured.expected
 
+    def spread_of(self, fit: Fitted) -> float:
+        """Chi-squared a degree of freedom of a fit to the same windows, of more or fewer poses."""
+        rows = self.measured.rows(fit.base, fit.effects)
+        return float(rows @ rows) / self.measured.expected
+
     def by_piece(self, of_windows: FloatArray) -> FloatArray:
         """Sums (P,) over the pieces of the runs of what windows (K,) have."""
         _, piece = np.unique(self.measured.pieces, return_inverse=True)
@@ -102,7 +109,7 @@ class Fitter:
         nothing = np.zeros(len(values), dtype=np.bool_)
         return _derived(hypothesis, Found(values, hypothesis.rows(values)), nothing)
 
-    def linear_losses(self, fit: Fitted, candidates: Sequence[Effect]) -> FloatArray:
+    def linear_losses(self, fit: Fitted, candidates: Sequence[Residual]) -> FloatArray:
         """Chi-squared (C,) that each candidate leaves on windows not fitted, to first order.
 
         Of each fold by least squares on the others, beside the base and the effects of a fit.
@@ -110,14 +117,9 @@ class Fitter:
         design = self.design(fit)
         return np.array([self._linear_loss(fit, design, candidate) for candidate in candidates])
 
-    def _linear_loss(self, fit: Fitted, design: Solved, candidate: Effect) -> float:
-        values, unit = np.zeros(len(candidate.parameters)), np.eye(len(candidate.parameters))
-        columns = []
-        for parameter, axis in zip(candidate.parameters, unit, strict=True):
-            stepped = Added(candidate, values + parameter.scale * axis)
-            rows = self.measured.rows(fit.base, (*fit.effects, stepped))
-            columns.append((rows - design.rows[: len(rows)]) / parameter.scale)
-        own = np.pad(np.stack(columns, axis=-1), ((0, len(design.rows) - len(rows)), (0, 0)))
+    def _linear_loss(self, fit: Fitted, design: Solved, candidate: Residual) -> float:
+        own = columns_of(candidate, fit.base, fit.effects, self.measured)
+        own = np.pad(own, ((0, len(design.rows) - len(own)), (0, 0)))
         return left_out_loss(np.hstack([design.jacobian, own]), design.rows, self.measured)
 
     def _starts(

@@ -7,6 +7,7 @@ import numpy as np
 from tqdm import tqdm
 
 from odometry.effects.corrected import Added
+from odometry.effects.residual import Residual
 from odometry.gap.calibration import calibrated
 from odometry.gap.config import GapConfig
 from odometry.gap.equivalent import equivalents
@@ -99,7 +100,7 @@ def find_gap(
         found = explained(fitter, held_scenes, floors, config, _counting(bar))
     fit = found.fitted
     base = fit.base if found.steps or found.base_closes else known.base
-    effects, held_scenes = with_own_moments(base, fit.effects, held_scenes, fitted_scenes)
+    effects, held_scenes = with_own_moments(base, fit.effects, held_scenes, fitted_scenes, known)
     closings = [
         Closing(
             gap_of(known.base, (), scenes, config.part_s),
@@ -239,7 +240,9 @@ def _named(
     named, place, gap_m = [], 0, before_m
     for step, own, added in zip(found.steps, fit.effects, effects, strict=True):
         spread = WITHIN_95 * sigmas[place : place + len(own.values)]
-        spread = np.append(spread, np.full(len(added.values) - len(own.values), MOMENT_KNOWN_S))
+        more = len(added.values) - len(own.values)
+        likely = spread if isinstance(own.effect, Residual) else [MOMENT_KNOWN_S]
+        spread = np.append(spread, np.resize(likely, more))
         place += len(own.values)
         lows, highs = np.array([(p.low, p.high) for p in added.effect.parameters]).T
         named.append(

@@ -6,10 +6,8 @@ heading. Each function of one variable is a candidate, with as many numbers as i
 
 from collections.abc import Sequence
 
-import numpy as np
-
-from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
+from odometry.effects.history import BOTH, LAGS_S, History
 from odometry.effects.residual import (
     ANGLES,
     COMPONENTS,
@@ -17,57 +15,63 @@ from odometry.effects.residual import (
     OF_TREADS,
     TREADS,
     Residual,
-    variables_of,
 )
+from odometry.effects.residual_variables import WHAT_WENT_BEFORE
 from odometry.gap.config import GapConfig
+from odometry.gap.knots import knots_of_variables
 from odometry.windows.dense import DenseWindows
 
-INNER = (0.02, 0.98)  # quantiles between which knots lie
-LEAST_RANGE = 1e-3  # of a variable that says anything
+MOTIONS = (  # components, each by what it may grow with
+    *(("v_x", ""), ("v_x", "v_x"), ("v_x", "omega"), ("v_y", ""), ("v_y", "speed")),
+    *(("v_y", "omega"), ("omega", ""), ("omega", "speed"), ("omega", "omega")),
+)
 
 
 def general_candidates(
     scenes: Sequence[DenseWindows], base: Base, config: GapConfig
 ) -> tuple[Residual, ...]:
-    """One or two of every variable that all runs have and that varies.
+    """One or two of every variable of the moment that all runs have and that varies.
 
-    What a tread's own motion does, it does to the tread; what angles do grows with speed or not;
-    run time may take away a share of each tread's speed, or add a motion.
+    Of what went before `History` alone is a rival of names. What a tread's own motion does, it
+    does to the tread; what angles do grows with speed or not; run time may take away a share of
+    each tread's speed, or add a motion.
     """
-    of_scenes = [variables_of(s.inputs, base.model.twist(base.values, s.inputs)) for s in scenes]
-    shared = [name for name in of_scenes[0] if all(name in other for other in of_scenes)]
     found: list[Residual] = []
-    for name in shared:
+    for name, knots in knots_of_variables(scenes, base, config).items():
+        if name in WHAT_WENT_BEFORE:
+            continue
         if name in ANGLES:
             terms = _every(COMPONENTS, 2 * HARMONICS)
-            found += [Residual(name, terms, by_speed) for by_speed in (False, True)]
-            continue
-        knots = _knots(np.concatenate([of[name].ravel() for of in of_scenes]), name, config)
-        if len(knots) < 2:
+            found += [Residual(name, terms, by) for by in ("", "speed")]
             continue
         if name in OF_TREADS:
-            found.append(Residual(name, _every(TREADS, len(knots)), False, knots))
+            found.append(Residual(name, _every(TREADS, len(knots)), "", knots))
             continue
-        found.append(Residual(name, _every(COMPONENTS, len(knots)), False, knots))
+        found.append(Residual(name, _every(COMPONENTS, len(knots)), "", knots))
         if name == "time":
-            found.append(Residual(name, _every(TREADS, len(knots)), True, knots))
+            found.append(Residual(name, _every(TREADS, len(knots)), "speed", knots))
     return tuple(found)
 
 
-def _knots(values: FloatArray, name: str, config: GapConfig) -> tuple[float, ...]:
-    """Even in the share of samples between them; none where the variable hardly varies.
+def single_candidates(
+    scenes: Sequence[DenseWindows], base: Base, config: GapConfig
+) -> tuple[Residual, ...]:
+    """Smooth functions of every variable that add to one component or one tread alone.
 
-    Those of a tread's motion are even about zero, where what drives do changes its sign.
+    By themselves, in proportion to the speed, or to a part of the twist: each is so small that
+    several may be added in turn, and a product of two variables is one of them.
     """
-    if name in OF_TREADS:
-        largest = max(float(np.quantile(np.abs(values), INNER[1])), LEAST_RANGE / 2)
-        half = np.geomspace(largest / 16, largest, config.tread_knots)
-        places = np.concatenate([-np.flip(half), [0.0], half])
-    else:
-        places = np.unique(np.quantile(values, np.linspace(*INNER, config.knots)))
-    if len(places) < 2 or np.ptp(places) <= LEAST_RANGE:
-        return ()
-    return tuple(float(place) for place in places)
+    lags = range(len(LAGS_S))
+    found: list[Residual] = [History(terms=tuple((t, k) for k in lags)) for t in (BOTH, *TREADS)]
+    for name, knots in knots_of_variables(scenes, base, config).items():
+        functions = len(knots) or 2 * HARMONICS + 1
+        added: list[tuple[str, str]] = [(tread, "speed") for tread in TREADS]
+        if name in OF_TREADS:
+            added += [(tread, "") for tread in TREADS]
+        elif name != "time":
+            added += MOTIONS
+        found += [Residual(name, _every((to,), functions), by, knots) for to, by in added]
+    return tuple(found)
 
 
 def _every(components: Sequence[str], functions: int) -> tuple[tuple[str, int], ...]:

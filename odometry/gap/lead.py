@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from odometry.effects.residual import Residual
 from odometry.gap.closed import Share, held_out_share
 from odometry.gap.quantities import metres, percent, with_interval
-from odometry.gap.region_words import noun_of
-from odometry.gap.result import GapResult, NamedEffect
+from odometry.gap.region_words import noun_of_residual
+from odometry.gap.result import GapResult
 from odometry.gap.verdict import Refusal
 
 REFUSED = 2  # that are said
@@ -23,7 +23,8 @@ def _missing(result: GapResult) -> str:
     if not result.effects:
         return _nothing_named(result, model)
     named = [e for e in result.effects if not isinstance(e.added.effect, Residual)]
-    rest = [noun_of(_variable(e)) for e in result.effects if isinstance(e.added.effect, Residual)]
+    kinds = [e.added.effect for e in result.effects]
+    rest = list(dict.fromkeys(noun_of_residual(e) for e in kinds if isinstance(e, Residual)))
     if not named:
         return (
             f"Something is missing in {model} that the catalogue of effects does not have "
@@ -40,8 +41,8 @@ def _missing(result: GapResult) -> str:
 def _nothing_named(result: GapResult, model: str) -> str:
     if result.verdict == "unknown":
         return (
-            f"Something is missing in {model} (unknown): neither an effect of the catalogue nor a "
-            "smooth function of what was recorded explains it."
+            f"Something is missing in {model} (unknown): neither an effect of the catalogue, nor "
+            "a smooth function of what was recorded, nor a slow course in run time explains it."
         )
     if not result.measured.before.has_interval:
         return (
@@ -114,11 +115,6 @@ def _is_doubtful(result: GapResult) -> bool:
 
 def _named(refused: Refusal) -> str:
     return "a smooth function" if refused.name == Residual.name else refused.name
-
-
-def _variable(effect: NamedEffect) -> str:
-    kind = effect.added.effect
-    return kind.variable if isinstance(kind, Residual) else ""
 
 
 def listed(names: Sequence[str], word: str = "and") -> str:

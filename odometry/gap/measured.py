@@ -1,7 +1,7 @@
 """Windows of measured runs, whitened by the noise of the calibration."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -77,3 +77,17 @@ def measured_of(
         joined,
         calibration.gyro_expected,
     )
+
+
+def at_fewer_poses(measured: Measured, calibration: Calibration, most: int) -> Measured:
+    """The same windows of at most so many poses after the first: as good, and faster, to choose."""
+    scenes = tuple(with_fewer_poses(scene, most) for scene in measured.scenes)
+    whiteners = tuple(whitening(scene, calibration.noise) for scene in scenes)
+    return replace(measured, scenes=scenes, whiteners=whiteners)
+
+
+def with_fewer_poses(scene: DenseWindows, most: int) -> DenseWindows:
+    """The same windows, of their poses the first, the last and others evenly between."""
+    count = scene.windows.shape[1]
+    chosen = np.unique(np.rint(np.linspace(0, count - 1, min(count, most + 1))).astype(np.int64))
+    return replace(scene, windows=scene.windows[:, chosen])

@@ -16,6 +16,7 @@ from odometry.gap.general import general_candidates
 from odometry.gap.own_moments import with_own_moments
 from odometry.gap.search import Search
 from odometry.gap.statistic import Gap, gap_of
+from odometry.gap.unnamed import grown, last_of_each_run, with_course
 from odometry.gap.verdict import (
     base_left_calibration,
     closes_held_out,
@@ -75,18 +76,15 @@ class _Naming(Search):
         return found if tuple(effects) == found.effects else self.in_order(found, effects)
 
     def that_stand(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
-        """The effects that close the gap where they were not fitted, and leave noise alone."""
-        found = self._less_doubtful(self._of_their_form(found, smooth), smooth)
-        while found.steps:
-            reason = self._fails(found)
-            if not reason:
-                break
-            last = found.effects[-1]
-            self.refuse(last, reason)
-            if len(found.steps) == 1 and not isinstance(last, Residual):
-                found = self._unknown(found, smooth)
-            else:
-                found = self._of_their_form(found.less_last(), smooth)
+        """The effects that close the gap where they were not fitted, and leave noise alone.
+
+        Where no name does, smooth functions do as far as they can; what they leave may follow a
+        course in time that each run has of its own.
+        """
+        found = self._less_doubtful(self._of_their_form(found, smooth))
+        found = self._standing(found if _named(found) else grown(self, found), smooth)
+        if not _named(found) and (found.steps or self.unexplained() or self._is_above()):
+            found = self._standing(with_course(self, found), smooth)
         refused = tuple(one for name, one in self.refusals.items() if name not in found.names)
         unexplained = not found.steps and self.unexplained()
         return replace(
@@ -95,6 +93,29 @@ class _Naming(Search):
             unexplained=unexplained,
             base_closes=not found.steps and self._base_closes(),
         )
+
+    def _standing(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
+        """Without the last effects as long as they do not stand on held-out data.
+
+        A smooth function that does not may have other coefficients in each run.
+        """
+        while found.steps:
+            reason = self._fails(found)
+            if not reason:
+                break
+            last = found.effects[-1]
+            self.refuse(last, reason)
+            if len(found.steps) == 1 and not isinstance(last, Residual):
+                found = grown(self, found)
+            else:
+                own = last_of_each_run(self, found)
+                found = own or self._of_their_form(found.less_last(), smooth)
+        return found
+
+    def _is_above(self) -> bool:
+        """Whether the gap on held-out data is surely above its noise floor."""
+        gap = gap_of(self.fitter.calibration.base, (), self.held_out, self.config.part_s)
+        return gap.low > self.held_floor.high
 
     def _base_closes(self) -> bool:
         """Whether the base, moved beyond its calibration, closes held-out gap by itself."""
@@ -108,9 +129,9 @@ class _Naming(Search):
     def _of_their_form(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
         """Without names that do not have the form of what they stand for."""
         left = of_their_form(self, found, smooth)
-        return left if left.steps or not found.steps else self._unknown(found, smooth)
+        return left if left.steps or not found.steps else grown(self, found)
 
-    def _less_doubtful(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
+    def _less_doubtful(self, found: Explanation) -> Explanation:
         """Without any name where all names together leave what is not noise."""
         alone = names_alone(self.fitter, found)
         names = [added.effect for added in alone.effects]
@@ -126,19 +147,7 @@ class _Naming(Search):
             return found
         for name in names:
             self.refuse(name, reason)
-        return self._unknown(found, smooth)
-
-    def _unknown(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
-        """Smooth functions alone, added one by one."""
-        found = replace(found, steps=())
-        while len(found.steps) < self.config.most_smooth:
-            taken = {one.variable for one in found.effects if isinstance(one, Residual)}
-            left = [one for one in smooth if one.variable not in taken]
-            best = self.best_smooth(found.fitted, left)
-            if best is None:
-                break
-            found = found.with_step(best)
-        return found
+        return grown(self, found)
 
     def unexplained(self) -> bool:
         """Whether the base leaves a gap, and even moved more chi-squared than noise explains."""
@@ -157,7 +166,11 @@ class _Naming(Search):
         less_base = fit.base if hidden else before.base
         pairs = [(less_base, before.effects), (self.fitter.calibration.base, ())]
         effects, held_out = with_own_moments(
-            fit.base, fit.effects, self.held_out, self.fitter.measured.scenes
+            fit.base,
+            fit.effects,
+            self.held_out,
+            self.fitter.measured.scenes,
+            self.fitter.calibration,
         )
         within = within_noise(gap_of(*pairs[1], held_out, self.config.part_s), self.held_floor)
         believed = replace(self.start, base=self.fitter.calibration.base)
@@ -172,3 +185,7 @@ class _Naming(Search):
             ),
         ]
         return next((reason for reason in reasons if reason), "")
+
+
+def _named(found: Explanation) -> bool:
+    return any(not isinstance(effect, Residual) for effect in found.effects)

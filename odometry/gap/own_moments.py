@@ -1,4 +1,4 @@
-"""Effects from a moment on, on runs that were not fitted: each run has a moment of its own."""
+"""Effects on runs that were not fitted, where each run has a moment, or values, of its own."""
 
 from collections.abc import Sequence
 
@@ -8,7 +8,10 @@ from odometry.arrays import BoolArray
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.effects.in_course import CommandsInCourse, MotionInCourse, in_course
+from odometry.effects.residual_of_each_run import ResidualOfEachRun
 from odometry.effects.time_course import FromAMoment
+from odometry.gap.calibration import Calibration
+from odometry.gap.own_values import with_values_of_run
 from odometry.gap.statistic import squared_errors
 from odometry.windows.dense import DenseWindows
 
@@ -26,23 +29,27 @@ def with_own_moments(
     effects: Sequence[Added],
     held_out: Sequence[DenseWindows],
     fitted: Sequence[DenseWindows],
+    calibration: Calibration,
 ) -> tuple[tuple[Added, ...], list[DenseWindows]]:
-    """Effects that know a moment of each held-out run too, and the windows to judge them by.
+    """Effects that know what is each held-out run's own, too, and the windows to judge them by.
 
-    A moment is searched on every other window of a run, and judged on the rest. Pieces of the
-    fitted runs themselves know their moment, and are judged whole, as all are where no effect
-    begins at a moment.
+    A moment, and coefficients, are searched on every other window of a run, and judged on the
+    rest. Pieces of the fitted runs themselves know theirs, and are judged whole, as all are where
+    nothing is a run's own.
     """
     known = {scene.run.folder for scene in fitted}
     others = [scene for scene in held_out if scene.run.folder not in known]
     begins = [place for place, one in enumerate(effects) if _begins(one)]
-    if not begins or not others:
+    own = any(isinstance(one.effect, ResidualOfEachRun) for one in effects)
+    if not (begins or own) or not others:
         return tuple(effects), list(held_out)
     extended = list(effects)
     for scene in others:
         odd = np.arange(len(scene)) % 2 == 1
         for place in begins:
             extended = _with_moment(base, extended, place, scene.where(odd))
+        if own:
+            extended = with_values_of_run(base, extended, scene.where(odd), calibration)
     judged = [scene for scene in held_out if scene.run.folder in known]
     for number, scene in enumerate(others, start=-len(others)):
         moments_s = [extended[place].values[number] for place in begins]

@@ -4,6 +4,9 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from odometry.effects.residual import Residual
+from odometry.effects.residual_of_each_run import ResidualOfEachRun
+
 EVERYWHERE = "everywhere"
 
 
@@ -112,6 +115,11 @@ NAMES = {
     "terrain": "terrain",
     "tread_speed": "speed of each tread",
     "tread_acceleration": "acceleration of each tread",
+    "other_tread_speed": "speed of the other tread",
+    "tread_travel_since_reversal": "travel of each tread since it last reversed",
+    "travel_since_reversal": "travel since the last reversal",
+    "turn_before": "turn over the last metre",
+    "lateral_acceleration_before": "lateral acceleration over the last second",
     "wheel_angle": "angle of the wheels",
 }
 
@@ -124,6 +132,13 @@ def words_of(bounds: Mapping[str, tuple[float | None, float | None]]) -> str:
 def noun_of(name: str) -> str:
     """A variable in words."""
     return SPOKEN[name].noun if name in SPOKEN else NAMES.get(name, name)
+
+
+def noun_of_residual(residual: Residual) -> str:
+    """What a smooth function depends on, in words."""
+    noun = noun_of(residual.variable)
+    own = isinstance(residual, ResidualOfEachRun)
+    return f"{noun} (in each run by its own)" if own else noun
 
 
 def shown_unit(name: str) -> tuple[str, float]:

@@ -45,11 +45,11 @@ class Search:
         found = begun or Explanation(self.start, (), ())
         while len(found.steps) < self.config.most_effects:
             before = found.fitted
-            if found.steps and not self._excess(before):
+            if found.steps and not self.has_excess(before):
                 break
             judged = self._judged(before, [c for c in candidates if c.name not in found.names])
             found = replace(found, first=found.first or tuple(judged))
-            best = self._best_earner(judged, before)
+            best = self.best_earner(judged, before)
             if best is None:
                 break
             contests = {**found.contests, best.effect.name: tuple(judged)}
@@ -100,7 +100,7 @@ class Search:
 
         Those that leave more than `below` even with all their terms are not fitted.
         """
-        if not candidates or not self._excess(before):
+        if not candidates or not self.has_excess(before):
             return None
         losses = self.fitter.linear_losses(before, candidates)
         order = np.argsort(losses, kind="stable")[:PROMISING]
@@ -108,7 +108,7 @@ class Search:
         judged = judge(self.fitter, before, promising, self.config, self.progress)
         sparse = [sparse_residual(self.fitter, one.fitted) for one in judged]
         again = judge(self.fitter, before, sparse, self.config, self.progress)
-        return self._best_earner(again, before) or self._best_earner(judged, before)
+        return self.best_earner(again, before) or self.best_earner(judged, before)
 
     def without_idle(self, found: Explanation) -> Explanation:
         """Less what does not pay beside the others, the least of all first."""
@@ -135,7 +135,7 @@ class Search:
     def _judged(self, before: Fitted, candidates: Sequence[Effect]) -> list[Judged]:
         """The quick forms, and those of contact forces where the quick ones leave something."""
         judged = judge(self.fitter, before, candidates, self.config, self.progress)
-        best = self._best_earner(judged, before)
+        best = self.best_earner(judged, before)
         if best is None or self.fitter.spread(best.fitted) < self.config.contact_spread:
             return judged
         taken = {added.effect.name for added in before.effects}
@@ -156,7 +156,7 @@ class Search:
     def _spread(self, found: Explanation) -> float:
         return max(1.0, self.fitter.spread(found.fitted))
 
-    def _excess(self, before: Fitted) -> bool:
+    def has_excess(self, before: Fitted) -> bool:
         """Whether the gap is above the interval of the noise floor, or hidden in a moved base."""
         return self._gap(before) > self.floor.high or self._left(before)
 
@@ -174,10 +174,10 @@ class Search:
         scenes = self.fitter.measured.scenes
         return gap_of(fit.base, fit.effects, scenes, self.config.part_s).value
 
-    def _best_earner(self, judged: Sequence[Judged], before: Fitted) -> Judged | None:
+    def best_earner(self, judged: Sequence[Judged], before: Fitted) -> Judged | None:
         """Of most evidence among those that earn a name."""
         for one in judged:
-            if not self._pays(one, before):
+            if not self.pays(one, before):
                 continue
             reason = is_the_effect(one.fitted, self.config)
             if not reason:
@@ -185,13 +185,13 @@ class Search:
             self.refuse(one.effect, reason)
         return None
 
-    def _pays(self, one: Judged, before: Fitted) -> bool:
+    def pays(self, one: Judged, before: Fitted) -> bool:
         """Enough evidence, in more than one moment, and enough of the excess closed.
 
         The excess is that before any effect, of the gap above the noise floor or of chi-squared
         above what noise explains: a better heading is worth as much as a better place.
         """
-        if not self._excess(before) or one.least <= self.config.least_evidence:
+        if not self.has_excess(before) or one.least <= self.config.least_evidence:
             return False
         share = self.config.least_share if before.effects else self.config.first_share
         noise = self.fitter.measured.expected

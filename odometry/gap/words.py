@@ -6,7 +6,7 @@ from odometry.effects.residual import Residual
 from odometry.gap.lead import lead
 from odometry.gap.moved import moved_words, moves_of
 from odometry.gap.quantities import evidence_words, metres, rounded, with_interval
-from odometry.gap.region_words import EVERYWHERE, noun_of
+from odometry.gap.region_words import EVERYWHERE, noun_of, noun_of_residual
 from odometry.gap.result import GapResult, NamedEffect
 
 REGIONS, VARIABLES = 2, 4  # said of them all
@@ -32,7 +32,7 @@ def effect_words(effect: NamedEffect) -> str:
     """An effect as a roboticist names it, then its name and form."""
     added = effect.added.effect
     if isinstance(added, Residual):
-        return f"a smooth function of {noun_of(added.variable)}"
+        return f"a smooth function of {noun_of_residual(added)}"
     return f"{added.in_words} ({added.name}, {added.form.replace('_', ' ')})"
 
 

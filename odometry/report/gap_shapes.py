@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from odometry.arrays import FloatArray
 from odometry.effects.history import BOTH, History
-from odometry.effects.residual import COMPONENTS, TREADS, Residual, basis_of, variables_of
+from odometry.effects.residual import COMPONENTS, TREADS, WORLD, Residual, basis_of, variables_of
 from odometry.gap.gap import WITHIN_95
 from odometry.gap.region_words import noun_of, shown_unit
 from odometry.gap.result import GapResult, NamedEffect
@@ -18,7 +18,13 @@ from odometry.report.html import Picture
 POINTS = 200
 TAILS = 0.01  # of the samples on either side are not drawn
 HEIGHT_IN = 2.3
-UNITS = {"v_x": "m/s", "v_y": "m/s", "omega": "rad/s", "left": "m/s", "right": "m/s", BOTH: ""}
+ADDED_TO = {
+    "world_x": "velocity along x",
+    "world_y": "velocity along y",
+    "left": "left tread",
+    "right": "right tread",
+    BOTH: "both treads",
+}
 
 
 def shape_pictures(result: GapResult, folder: Path) -> list[Picture]:
@@ -32,10 +38,10 @@ def shape_pictures(result: GapResult, folder: Path) -> list[Picture]:
 
 
 def shape_of(effect: NamedEffect, variable: FloatArray) -> dict[str, tuple[FloatArray, FloatArray]]:
-    """Value and standard deviation (N,) of each component of the twist, or tread, that it adds to.
+    """Value and standard deviation (N,) of each component of the motion that it adds to.
 
     At values (N,) of the variable; parameters are taken as independent. Of a history the weight
-    at each lag.
+    at each lag; in the first run, where each run has its own.
     """
     residual = effect.added.effect
     if not isinstance(residual, Residual):
@@ -43,7 +49,7 @@ def shape_of(effect: NamedEffect, variable: FloatArray) -> dict[str, tuple[Float
     basis = basis_of(variable, residual.knots)
     sigmas = (effect.high - effect.low) / (2 * WITHIN_95)
     shapes = {}
-    for component in (*COMPONENTS, *TREADS, BOTH):
+    for component in (*COMPONENTS, *WORLD, *TREADS, BOTH):
         own = [i for i, (name, _) in enumerate(residual.terms) if name == component]
         if own:
             columns = basis[:, [residual.terms[i][1] for i in own]]
@@ -76,6 +82,8 @@ def _picture(result: GapResult, effect: NamedEffect, residual: Residual, file: P
     shapes = shape_of(effect, at)
     unit, factor = shown_unit(residual.variable)
     noun = noun_of(residual.variable)
+    parameters = zip(residual.terms, residual.parameters, strict=False)
+    units = {component: parameter.unit for (component, _), parameter in parameters}
 
     def draw(figure: Figure) -> None:
         panels = figure.subplots(1, len(shapes), squeeze=False)[0]
@@ -86,8 +94,8 @@ def _picture(result: GapResult, effect: NamedEffect, residual: Residual, file: P
                 factor * at, value - reach, value + reach, color=AFTER.colour, alpha=0.25, lw=0
             )
             axes.plot(factor * at, value, color=AFTER.colour, linewidth=1.8)
-            per = " per m/s" if residual.by_speed else ""
-            axes.set_title(f"{component} [{UNITS[component]}{per}]", loc="left")
+            unit_of = units[component] or "share"
+            axes.set_title(f"{ADDED_TO.get(component, component)} [{unit_of}]", loc="left")
             axes.set_xlabel(f"{noun} [{unit}]" if unit else noun)
             axes.grid(visible=True)
             axes.margins(x=0.0)

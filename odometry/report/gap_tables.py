@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from odometry.effects.residual_of_each_run import ResidualOfEachRun
 from odometry.gap.closed import Share
 from odometry.gap.config import GapConfig
 from odometry.gap.moved import moves_of
@@ -50,10 +51,12 @@ def effect_grid(result: GapResult) -> Grid:
 
 
 def parameter_grid(result: GapResult) -> Grid:
-    """Parameters of the effects with intervals."""
+    """Parameters of the effects with intervals, but those that each run has of its own."""
     rows = []
     for effect in result.effects:
         added = effect.added
+        if isinstance(added.effect, ResidualOfEachRun):
+            continue  # its shape is drawn
         columns = (added.effect.parameters, added.values, effect.low, effect.high)
         for parameter, *ends in zip(*columns, strict=True):
             value, low, high = rounded(*map(float, ends))

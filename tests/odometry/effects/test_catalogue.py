@@ -42,7 +42,7 @@ ONE_OF_EACH = [
     in_course(WheelScale(), Gradual(40.0)),
     Terrain(("ice", "wet grass")),
     Residual("heading", (("v_x", 0), ("omega", 3))),
-    Residual("pitch", (("v_y", 1),), True, (-0.1, 0.0, 0.2)),
+    Residual("pitch", (("v_y", 1),), "speed", (-0.1, 0.0, 0.2)),
 ]
 each_effect = pytest.mark.parametrize(
     "effect", ONE_OF_EACH, ids=lambda effect: "-".join(effect.key)

@@ -20,6 +20,19 @@ def test_one_lag_of_full_weight_is_a_delay(bench, rng):
     np.testing.assert_allclose(found, late, atol=1e-9)
 
 
+def test_each_tread_may_have_a_history_of_its_own(bench, rng):
+    base, inputs = bench.base, bench.drive(rng)
+    values = np.linspace(-0.1, 0.2, len(LAGS_S))
+
+    def found(tread):
+        effect = History(terms=tuple((tread, k) for k in range(len(LAGS_S))))
+        return corrected_twist(base, [Added(effect, values)], inputs)
+
+    plain = corrected_twist(base, [], inputs)
+    np.testing.assert_allclose(found("left") + found("right"), found(BOTH) + plain, atol=1e-12)
+    assert np.abs(found("left") - plain).max() > 0.01
+
+
 def test_weights_of_nothing_do_nothing_and_those_of_both_sides_smooth(bench, rng):
     base, inputs = bench.base, bench.drive(rng)
     plain = corrected_twist(base, [], inputs)
@@ -37,8 +50,8 @@ def test_a_parameter_set_holds_it():
 
 
 def test_terms_of_something_else_are_refused():
-    with pytest.raises(ParameterError, match="'left', 0"):
-        History(terms=(("left", 0),))
+    with pytest.raises(ParameterError, match="'v_x', 0"):
+        History(terms=(("v_x", 0),))
     with pytest.raises(ParameterError, match="'speed'"):
         History("speed")
     assert History().variable == HISTORY

@@ -1,8 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from odometry.effects.base import Effect
 from odometry.effects.residual import Residual, basis_of, variables_of
+from odometry.effects.residual_of_each_run import ResidualOfEachRun
 from odometry.errors import ParameterError
 from odometry.models.inputs import Inputs
 
@@ -34,8 +37,8 @@ def test_between_knots_it_is_linear_and_beyond_them_level():
 def test_by_speed_it_grows_with_the_treads(bench, rng):
     inputs = bench.drive(rng)
     terms = (("omega", 0),)
-    still = added(Residual("pitch", terms, False, (0.0, 1.0)), [0.5], inputs)
-    grown = added(Residual("pitch", terms, True, (0.0, 1.0)), [0.5], inputs)
+    still = added(Residual("pitch", terms, "", (0.0, 1.0)), [0.5], inputs)
+    grown = added(Residual("pitch", terms, "speed", (0.0, 1.0)), [0.5], inputs)
     speed = np.abs(inputs.tread_speeds_m_s).mean(axis=1)
     np.testing.assert_allclose(grown, speed[:, None] * still, atol=1e-15)
 
@@ -47,13 +50,13 @@ def test_what_it_may_depend_on(bench, rng):
     np.testing.assert_allclose(found["speed"], (inputs.left + inputs.right) / 2)
     np.testing.assert_array_equal(found["right_wheel_angle"], inputs.wheel_angles_rad[:, 1])
     assert set(variables_of(Inputs(np.zeros((2, 2))))) == {
-        *("speed", "speed_difference", "roll", "pitch", "tread_speed")
+        *("speed", "speed_difference", "roll", "pitch", "tread_speed", "other_tread_speed")
     }
 
 
 def test_treads_follow_their_own_speed(bench, rng):
     inputs = bench.drive(rng)
-    shape = Residual("tread_speed", (("left", 0), ("right", 1)), False, (-2.0, 2.0))
+    shape = Residual("tread_speed", (("left", 0), ("right", 1)), "", (-2.0, 2.0))
     changed = added(shape, [0.3, 0.2], inputs, bench.base)
     y_left, y_right, _, *alphas = bench.base.values
     slips = [0.3 * (2 - inputs.left) / 4, 0.2 * (2 + inputs.right) / 4] * np.array(alphas)[:, None]
@@ -64,7 +67,7 @@ def test_treads_follow_their_own_speed(bench, rng):
 
 def test_what_treads_get_by_speed_is_a_share_of_it(bench, rng):
     inputs = bench.drive(rng)
-    shape = Residual("time", (("left", 0), ("right", 0)), True, (0.0, 1e9))
+    shape = Residual("time", (("left", 0), ("right", 0)), "speed", (0.0, 1e9))
     np.testing.assert_allclose(
         added(shape, [0.1, 0.1], inputs, bench.base),
         0.1 * bench.base.model.twist(bench.base.values, inputs),
@@ -95,7 +98,7 @@ def test_a_variable_that_was_not_recorded_is_an_error():
         added(effect, [0.1], plain)
 
 
-@pytest.mark.parametrize("term", [("v_z", 0), ("v_x", 4), ("v_x",)])
+@pytest.mark.parametrize("term", [("v_z", 0), ("v_x", 5), ("v_x",)])
 def test_a_term_that_is_none_is_an_error(term):
     with pytest.raises(ParameterError, match="has a term"):
         Residual("heading", (term,))
@@ -104,3 +107,57 @@ def test_a_term_that_is_none_is_an_error(term):
 def test_a_variable_that_is_no_name_is_refused():
     with pytest.raises(ParameterError, match="expected a name"):
         Residual({"a": 1})
+
+
+def test_by_a_part_of_the_twist_it_is_a_share_of_it(bench, rng):
+    inputs = bench.drive(rng)
+    twist = bench.base.model.twist(bench.base.values, inputs)
+    terms = (("omega", 4),)  # one, at any heading
+    effect = Residual("heading", terms, "omega")
+    changed = effect.twist(np.array([0.2]), twist, inputs, bench.base)
+    np.testing.assert_allclose(changed, twist * [1.0, 1.0, 1.2], atol=1e-14)
+    with pytest.raises(ParameterError, match="by = 'v_y', expected one of speed, v_x, omega"):
+        Residual("heading", terms, "v_y")
+
+
+def test_a_velocity_over_the_world_is_turned_into_the_robot(bench, rng):
+    inputs = bench.drive(rng)
+    terms = (("world_x", 0), ("world_y", 0), ("world_x", 1), ("world_y", 1))
+    effect = Residual("time", terms, "", (0.0, 1e9))
+    found = added(effect, [0.3, -0.2, 0.3, -0.2], inputs)
+    along_world = (found[:, 0] + 1j * found[:, 1]) * np.exp(1j * inputs.heading_rad)
+    np.testing.assert_allclose(along_world, 0.3 - 0.2j, atol=1e-14)
+
+
+def test_travel_since_a_reversal():
+    time_s = np.arange(0.0, 8.0, 0.5)
+    forward = np.where(time_s < 3.0, 1.0, np.where(time_s < 5.0, 0.0, -0.4))
+    found = variables_of(Inputs(np.column_stack([forward, forward]), time_s=time_s))
+    since = found["tread_travel_since_reversal"][:, 0]
+    assert (since[:10] > 9.0).all()
+    np.testing.assert_allclose(since[10:-1], 0.1 + 0.2 * np.arange(5), atol=1e-9)
+
+
+def test_what_went_before():
+    time_s = np.arange(0.0, 10.0, 0.1)
+    turning = (time_s >= 5.0) & (time_s < 5.5)
+    twist = np.column_stack([np.full(100, 2.0), np.zeros(100), np.where(turning, 0.6, 0.0)])
+    found = variables_of(Inputs(np.full((100, 2), 2.0), time_s=time_s), twist)
+    assert found["turn_before"][54] == pytest.approx(0.3)  # half a second is a metre
+    assert found["turn_before"][70] == pytest.approx(0.0)
+    assert found["lateral_acceleration_before"][58] == pytest.approx(0.6)
+    assert found["lateral_acceleration_before"][70] == pytest.approx(0.0)
+
+
+def test_coefficients_of_each_run_act_in_that_run_alone(bench, rng):
+    inputs = replace(bench.drive(rng), run_number=np.repeat([0, 1, 2], [60, 80, 60]))
+    count = len(inputs.left)
+    terms = (("v_x", 0), ("omega", 4))
+    effect = ResidualOfEachRun("heading", terms, runs=2)
+    assert len(effect.parameters) == 4
+    found = added(effect, [0.1, 0.2, 0.3, 0.4], inputs)
+    plain = Residual("heading", terms)
+    for number, values in ((0, [0.1, 0.2]), (1, [0.3, 0.4]), (2, [0.0, 0.0])):
+        own = inputs.run_number == number
+        np.testing.assert_allclose(found[own], added(plain, values, inputs)[own], atol=1e-15)
+    assert count == len(found)

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from odometry.effects.history import HISTORY
 from odometry.effects.residual import (
     ANGLES,
     COMPONENTS,
@@ -14,8 +15,9 @@ from odometry.effects.residual import (
     VARIABLES,
     variables_of,
 )
+from odometry.effects.residual_variables import WHAT_WENT_BEFORE
 from odometry.gap.config import GapConfig
-from odometry.gap.general import general_candidates
+from odometry.gap.general import general_candidates, single_candidates
 
 CONFIG = GapConfig()
 
@@ -36,13 +38,13 @@ def found(scenes, known):
 
 
 def test_every_variable_is_tried(found):
-    assert {one.variable for one in found} == set(VARIABLES)
+    assert {one.variable for one in found} == set(VARIABLES) - set(WHAT_WENT_BEFORE)
 
 
 def test_of_every_angle_with_and_without_the_speed(found):
     for name in ANGLES:
         both = [one for one in found if one.variable == name]
-        assert [one.by_speed for one in both] == [False, True]
+        assert [one.by for one in both] == ["", "speed"]
         for one in both:
             assert len(set(one.terms)) == len(one.terms) == len(COMPONENTS) * 2 * HARMONICS
 
@@ -60,7 +62,7 @@ def test_of_every_other_variable_at_knots_within_its_values(found, scenes, known
 
 
 def test_a_tread_follows_its_own_motion_on_both_sides_of_rest(found):
-    for name in OF_TREADS:
+    for name in set(OF_TREADS) - set(WHAT_WENT_BEFORE):
         (one,) = [other for other in found if other.variable == name]
         assert {component for component, _ in one.terms} == set(TREADS)
         np.testing.assert_allclose(one.knots, -np.flip(one.knots))
@@ -69,7 +71,7 @@ def test_a_tread_follows_its_own_motion_on_both_sides_of_rest(found):
 
 def test_time_takes_shares_of_the_treads_or_adds_a_motion(found):
     shares, motion = sorted(
-        (one for one in found if one.variable == "time"), key=lambda one: -one.by_speed
+        (one for one in found if one.variable == "time"), key=lambda one: -len(one.by)
     )
     assert {component for component, _ in shares.terms} == set(TREADS)
     assert {component for component, _ in motion.terms} == set(COMPONENTS)
@@ -84,3 +86,11 @@ def test_what_does_not_vary_is_left_out(scenes, known, share):
     names = {one.variable for one in general_candidates([scene], known.base, CONFIG)}
     assert names
     assert not names & {"roll", "pitch"}
+
+
+def test_single_ones_add_to_one_component_or_tread(scenes, known):
+    single = single_candidates(scenes, known.base, CONFIG)
+    assert {one.variable for one in single} == {*VARIABLES, HISTORY}
+    assert len({one.key for one in single}) == len(single)
+    for one in single:
+        assert len({component for component, _ in one.terms}) == 1

@@ -37,7 +37,7 @@ def loss(scenes):
 
 
 def test_the_other_run_has_a_moment_of_its_own(known, scenes, loss):
-    (found,), judged = with_own_moments(known.base, [loss], scenes[1:], scenes[:1])
+    (found,), judged = with_own_moments(known.base, [loss], scenes[1:], scenes[:1], known)
     assert found.by_name == pytest.approx(
         {"k": SHARE, "m": SHARE, "moment_1": FIRST_S, "moment_2": SECOND_S}, abs=3.0
     )
@@ -46,7 +46,7 @@ def test_the_other_run_has_a_moment_of_its_own(known, scenes, loss):
 
 
 def test_windows_that_tell_the_moment_and_those_near_it_do_not_judge(known, scenes, loss):
-    (found,), (judged,) = with_own_moments(known.base, [loss], scenes[1:], scenes[:1])
+    (found,), (judged,) = with_own_moments(known.base, [loss], scenes[1:], scenes[:1], known)
     begins_s, moment_s = scenes[1].start_s, found.values[-1]
     np.testing.assert_array_equal(np.isin(judged.start_s, begins_s[::2]), True)
     assert np.abs(judged.start_s - moment_s).min() > 2.0
@@ -54,19 +54,19 @@ def test_windows_that_tell_the_moment_and_those_near_it_do_not_judge(known, scen
 
 def test_a_run_without_it_never_begins(known, make_scene, scenes, loss):
     other = make_scene(3, lambda _, twist: twist, duration_s=120.0, name="whole").numbered(1)
-    (found,), judged = with_own_moments(known.base, [loss], [other], scenes[:1])
+    (found,), judged = with_own_moments(known.base, [loss], [other], scenes[:1], known)
     assert found.values[-1] > observed_s(judged[0])[1]
     assert gap_of(known.base, [found], judged, 10.0).value < 0.03
 
 
 def test_pieces_of_the_measured_run_know_its_moment(known, scenes, loss):
-    (found,), (judged,) = with_own_moments(known.base, [loss], scenes[:1], scenes[:1])
+    (found,), (judged,) = with_own_moments(known.base, [loss], scenes[:1], scenes[:1], known)
     assert found is loss
     assert len(judged) == len(scenes[0])
 
 
 def test_what_is_always_there_is_judged_on_all(known, scenes):
     scale = Added(WheelScale(), np.array([0.9, 0.9]))
-    effects, judged = with_own_moments(known.base, [scale], scenes[1:], scenes[:1])
+    effects, judged = with_own_moments(known.base, [scale], scenes[1:], scenes[:1], known)
     assert effects == (scale,)
     assert judged[0] is scenes[1]

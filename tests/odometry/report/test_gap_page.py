@@ -8,6 +8,7 @@ import pytest
 
 from odometry.effects.corrected import Added
 from odometry.effects.history import History
+from odometry.effects.residual_of_each_run import ResidualOfEachRun
 from odometry.gap.config import GapConfig
 from odometry.gap.general import general_candidates
 from odometry.gap.locate import Location, Predictor
@@ -193,8 +194,11 @@ def test_the_shape_of_what_is_unknown_by_hand(unknown_result):
 def test_a_shape_of_every_smooth_function_is_drawn(unknown_result, known, tmp_path):
     candidates = general_candidates(unknown_result.measured_scenes, known.base, GapConfig())
     (tested,) = unknown_result.effects
-    for number, residual in enumerate((*candidates, History())):
-        values = np.linspace(-0.01, 0.02, len(residual.terms))
+    knots = tuple(np.linspace(0.0, 160.0, 9))
+    terms = tuple((component, k) for component in ("world_x", "left") for k in range(9))
+    course = ResidualOfEachRun("time", terms, "", knots, runs=2)
+    for number, residual in enumerate((*candidates, History(), course)):
+        values = np.linspace(-0.01, 0.02, len(residual.parameters))
         effect = replace(
             tested, added=Added(residual, values), low=values - 0.01, high=values + 0.01
         )

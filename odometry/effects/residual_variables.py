@@ -1,0 +1,151 @@
+"""Variables that an unknown part of the motion may follow, and basis functions of them."""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.models.inputs import Inputs
+
+HARMONICS = 2
+ANGLES = ("heading", "wheel_angle", "left_wheel_angle", "right_wheel_angle")
+OF_TREADS = (  # variables (N, 2): of each tread its own
+    *("tread_speed", "tread_acceleration", "other_tread_speed"),
+    "tread_travel_since_reversal",
+)
+WHAT_WENT_BEFORE = (  # of a moment, or is elsewhere
+    *("other_tread_speed", "tread_travel_since_reversal", "travel_since_reversal"),
+    *("turn_before", "lateral_acceleration_before"),
+)
+ACCELERATION_OVER_S = 0.2
+CREEPING_M_S = 0.05  # below this forward speed a curvature is taken as at it
+REVERSING_M_S = 0.02  # slower is no reversal
+LONG_SINCE_M = 10.0  # before the first reversal
+TURN_OVER_M = 1.0
+FORCE_OVER_S = 1.0
+
+
+def variables_of(inputs: Inputs, twist: FloatArray | None = None) -> dict[str, FloatArray]:
+    """What a residual may depend on, of what was recorded and of the twist (N, 3) simulated.
+
+    Each is (N,), but those of `OF_TREADS` (N, 2).
+    """
+    found = {name: variable_of(name, inputs, twist) for name in VARIABLES}
+    return {name: values for name, values in found.items() if values is not None}
+
+
+def variable_of(name: str, inputs: Inputs, twist: FloatArray | None) -> FloatArray | None:
+    """Values of a variable, None where it was not recorded."""
+    if name in RECORDED:
+        return RECORDED[name](inputs)
+    return None if twist is None or name not in SIMULATED else SIMULATED[name](twist, inputs)
+
+
+def basis_of(variable: FloatArray, knots: tuple[float, ...]) -> FloatArray:
+    """Basis functions (N, B): hats on the knots, or without any cosines, sines and one."""
+    if knots:
+        return np.stack([np.interp(variable, knots, hat) for hat in np.eye(len(knots))], axis=-1)
+    waves = [wave(k * variable) for k in range(1, HARMONICS + 1) for wave in (np.cos, np.sin)]
+    return np.stack([*waves, np.ones_like(variable)], axis=-1)
+
+
+def bases_of_treads(
+    variable: FloatArray, knots: tuple[float, ...]
+) -> tuple[FloatArray, FloatArray]:
+    """Basis functions (N, B) for the left and the right tread."""
+    if variable.ndim == 1:
+        basis = basis_of(variable, knots)
+        return basis, basis
+    return basis_of(variable[:, 0], knots), basis_of(variable[:, 1], knots)
+
+
+def _samples(inputs: Inputs) -> tuple[FloatArray, FloatArray]:
+    """Run time (N,) of samples and how long each lasts, never nothing."""
+    time_s = np.asarray(inputs.time_s)
+    return time_s, np.maximum(np.diff(time_s, append=time_s[-1]), 1e-6)
+
+
+def _wheel_angle(angles_rad: FloatArray | None, which: slice) -> FloatArray | None:
+    return None if angles_rad is None else np.asarray(angles_rad[..., which].mean(axis=-1))
+
+
+def _at_least(values: FloatArray, least: float) -> FloatArray:
+    return np.copysign(np.maximum(np.abs(values), least), values)
+
+
+def _accelerations(speeds_m_s: FloatArray, time_s: FloatArray | None) -> FloatArray | None:
+    """Of both treads (N, 2) [m/s^2]: differences over ACCELERATION_OVER_S."""
+    if time_s is None:
+        return None
+    ends = [
+        np.searchsorted(time_s, time_s + side * ACCELERATION_OVER_S / 2, side="right") - 1
+        for side in (1, -1)
+    ]
+    ahead, behind = (speeds_m_s[np.maximum(end, 0)] for end in ends)
+    return np.asarray((ahead - behind) / ACCELERATION_OVER_S)
+
+
+def _since_reversal(speed_m_s: FloatArray, inputs: Inputs) -> FloatArray:
+    """Travel (N,) [m] since the speed last changed its sign, at the middle of each sample."""
+    _, steps_s = _samples(inputs)
+    moved_m = np.abs(speed_m_s) * steps_s
+    middle_m = np.cumsum(moved_m) - moved_m / 2
+    moving = np.flatnonzero(np.abs(speed_m_s) > REVERSING_M_S)
+    turned = moving[1:][np.sign(speed_m_s[moving[1:]]) != np.sign(speed_m_s[moving[:-1]])]
+    last = np.full(len(speed_m_s), -LONG_SINCE_M)
+    last[turned] = (np.cumsum(moved_m) - moved_m)[turned]
+    return np.asarray(middle_m - np.maximum.accumulate(last))
+
+
+def _each_since_reversal(inputs: Inputs) -> FloatArray | None:
+    if inputs.time_s is None:
+        return None
+    return np.stack([_since_reversal(speed, inputs) for speed in (inputs.left, inputs.right)], -1)
+
+
+def _turn_before(twist: FloatArray, inputs: Inputs) -> FloatArray | None:
+    """Turn (N,) [rad] over the last TURN_OVER_M of travel."""
+    if inputs.time_s is None:
+        return None
+    _, steps_s = _samples(inputs)
+    travel_m = np.cumsum(np.abs(twist[:, 0]) * steps_s)
+    turned_rad = np.cumsum(twist[:, 2] * steps_s)
+    return np.asarray(turned_rad - np.interp(travel_m - TURN_OVER_M, travel_m, turned_rad))
+
+
+def _force_before(twist: FloatArray, inputs: Inputs) -> FloatArray | None:
+    """Mean lateral acceleration (N,) [m/s^2] over the last FORCE_OVER_S."""
+    if inputs.time_s is None:
+        return None
+    time_s, steps_s = _samples(inputs)
+    ends_s = np.append(time_s, time_s[-1] + steps_s[-1])
+    summed = np.concatenate([[0.0], np.cumsum(twist[:, 0] * twist[:, 2] * steps_s)])
+    ago = np.interp(time_s - FORCE_OVER_S, ends_s, summed)
+    return np.asarray((summed[:-1] - ago) / FORCE_OVER_S)
+
+
+RECORDED: Mapping[str, Callable[[Inputs], FloatArray | None]] = {
+    "speed": lambda inputs: (inputs.left + inputs.right) / 2,
+    "speed_difference": lambda inputs: inputs.right - inputs.left,
+    "roll": lambda inputs: inputs.roll_rad,
+    "pitch": lambda inputs: inputs.pitch_rad,
+    "tread_speed": lambda inputs: inputs.tread_speeds_m_s,
+    "tread_acceleration": lambda inputs: _accelerations(inputs.tread_speeds_m_s, inputs.time_s),
+    "other_tread_speed": lambda inputs: inputs.tread_speeds_m_s[:, ::-1],
+    "tread_travel_since_reversal": _each_since_reversal,
+    "time": lambda inputs: inputs.time_s,
+    "heading": lambda inputs: inputs.heading_rad,
+    "wheel_angle": lambda inputs: _wheel_angle(inputs.wheel_angles_rad, slice(None)),
+    "left_wheel_angle": lambda inputs: _wheel_angle(inputs.wheel_angles_rad, slice(0, 1)),
+    "right_wheel_angle": lambda inputs: _wheel_angle(inputs.wheel_angles_rad, slice(1, 2)),
+}
+SIMULATED: Mapping[str, Callable[[FloatArray, Inputs], FloatArray | None]] = {
+    "curvature": lambda twist, _: twist[:, 2] / _at_least(twist[:, 0], CREEPING_M_S),
+    "lateral_acceleration": lambda twist, _: twist[:, 0] * twist[:, 2],
+    "travel_since_reversal": lambda twist, inputs: (
+        None if inputs.time_s is None else _since_reversal(twist[:, 0], inputs)
+    ),
+    "turn_before": _turn_before,
+    "lateral_acceleration_before": _force_before,
+}
+VARIABLES = (*RECORDED, *SIMULATED)

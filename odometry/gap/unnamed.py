@@ -1,0 +1,81 @@
+"""What no name explains: smooth functions of what was recorded, added in turn while they pay."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from odometry.effects.residual import Residual
+from odometry.effects.residual_of_each_run import ResidualOfEachRun
+from odometry.gap.contest import Judged, judge, penalty
+from odometry.gap.course import best_course
+from odometry.gap.explanation import Explanation
+from odometry.gap.fit import Fitted, Fitter
+from odometry.gap.general import single_candidates
+from odometry.gap.measured import at_fewer_poses
+from odometry.gap.own_values import with_values_of_each_run
+from odometry.gap.search import Search
+
+POSES = 10  # of a window, where smooth functions are chosen
+PROMISING = 2  # of them that are fitted in full
+
+
+def grown(search: Search, found: Explanation) -> Explanation:
+    """Smooth functions alone, each of one variable to one component, the best first."""
+    fitter, config = search.fitter, search.config
+    candidates = single_candidates(fitter.measured.scenes, fitter.calibration.base, config)
+    coarse = Fitter(fitter.calibration, at_fewer_poses(fitter.measured, fitter.calibration, POSES))
+    found = replace(found, steps=())
+    while len(found.steps) < config.most_smooth and search.has_excess(found.fitted):
+        taken = {effect.key for effect in found.effects}
+        left = [one for one in candidates if one.key not in taken]
+        promising = _most_promising(coarse, found.fitted, left)
+        judged = judge(fitter, found.fitted, promising, config, search.progress)
+        best = search.best_earner(judged, found.fitted)
+        if best is None:
+            break
+        found = found.with_step(best)
+    return found
+
+
+def _most_promising(
+    coarse: Fitter, before: Fitted, candidates: Sequence[Residual]
+) -> list[Residual]:
+    losses = coarse.linear_losses(before, candidates)
+    paid = penalty(1, before) * max(1.0, coarse.spread_of(before))
+    costs = losses + paid * np.array([len(one.terms) for one in candidates])
+    return [candidates[place] for place in np.argsort(costs, kind="stable")[:PROMISING]]
+
+
+def last_of_each_run(search: Search, found: Explanation) -> Explanation | None:
+    """The same with coefficients of the last smooth function that are each run's own.
+
+    None where they are already.
+    """
+    last = found.fitted.effects[-1]
+    if not isinstance(last.effect, Residual) or isinstance(last.effect, ResidualOfEachRun):
+        return None
+    before = found.less_last().fitted
+    size = float(np.sqrt(np.mean(last.values**2)))
+    plain = last.effect
+    own = ResidualOfEachRun(
+        plain.variable,
+        plain.terms,
+        plain.by,
+        plain.knots,
+        runs=len(search.fitter.measured.scenes),
+        spread=size,
+    )
+    fit = with_values_of_each_run(search.fitter, before, own)
+    step = replace(found.steps[-1], effect=own, fitted=fit)
+    return found.less_last().with_step(step)
+
+
+def with_course(search: Search, found: Explanation) -> Explanation:
+    """And a course in run time, which each run has of its own, if it pays."""
+    if not search.has_excess(found.fitted):
+        return found
+    best: Judged | None = best_course(search.fitter, found.fitted, search.held_out, search.config)
+    if best is None or not search.pays(best, found.fitted):
+        return found
+    return found.with_step(best)

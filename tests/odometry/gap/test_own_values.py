@@ -1,0 +1,89 @@
+"""Coefficients and courses in time that each run has of its own."""
+
+import numpy as np
+import pytest
+
+from odometry.effects.corrected import Added
+from odometry.effects.residual import Residual
+from odometry.effects.residual_of_each_run import ResidualOfEachRun
+from odometry.gap.config import GapConfig
+from odometry.gap.course import best_course
+from odometry.gap.fit import Fitter
+from odometry.gap.measured import measured_of
+from odometry.gap.own_moments import with_own_moments
+from odometry.gap.own_values import by_turns, damped
+from odometry.gap.statistic import gap_of
+from odometry.windows.averaged import averaged_windows
+
+CONFIG = GapConfig()
+NOISE_M = 0.02  # of the position at the end of a window
+
+
+@pytest.fixture(scope="module")
+def pushed(make_scene):
+    """Runs that a wind over the world pushes, each from another side, by times of 20 s."""
+
+    def make(seed, number, towards):
+        def planted(columns, twist):
+            gust = 0.1 * np.clip(np.sin(2 * np.pi * columns["t"] / 40.0 + seed), 0.0, None)
+            yaw = np.concatenate([[0.0], np.cumsum(twist[:-1, 2] * np.diff(columns["t"]))])
+            push = gust * np.exp(1j * (towards - yaw))
+            return twist + np.column_stack([push.real, push.imag, np.zeros(len(yaw))])
+
+        scene = make_scene(seed, planted, duration_s=120.0, name=f"run_{number}")
+        return averaged_windows(scene).numbered(number)
+
+    return make(5, 0, 0.3), make(6, 1, 2.5)
+
+
+@pytest.fixture(scope="module")
+def course(pushed, known):
+    fitter = Fitter(known, measured_of(pushed[:1], known, CONFIG))
+    return best_course(fitter, fitter.fit([]), pushed[1:], CONFIG)
+
+
+def test_a_push_over_the_world_is_told_from_slip(course):
+    assert isinstance(course.effect, ResidualOfEachRun)
+    assert {component for component, _ in course.effect.terms} == {"world_x", "world_y"}
+    assert course.least > CONFIG.least_evidence
+
+
+def test_another_run_has_its_own_course_judged_on_windows_between(pushed, known, course):
+    effects, judged = with_own_moments(
+        known.base, course.fitted.effects, pushed[1:], pushed[:1], known
+    )
+    assert effects[0].effect.runs == 2
+    before = gap_of(known.base, (), judged, CONFIG.part_s).value
+    after = gap_of(known.base, effects, judged, CONFIG.part_s).value
+    assert before > 0.08
+    assert before - after > 0.8 * (before - NOISE_M)
+    np.testing.assert_array_equal(judged[0].start_s, pushed[1].start_s[::2])
+
+
+def test_where_nothing_is_there_the_course_does_not_pay(make_scene, known):
+    still = averaged_windows(make_scene(7, lambda _, twist: twist, duration_s=120.0)).numbered(0)
+    fitter = Fitter(known, measured_of([still], known, CONFIG))
+    found = best_course(fitter, fitter.fit([]), [still], CONFIG)
+    assert found is None or found.least < CONFIG.least_evidence
+
+
+def test_damped_values_are_the_mean_of_normal_ones(rng):
+    """Against the posterior by the covariance of rows and values together."""
+    jacobian, rows, spread = rng.normal(size=(9, 3)), rng.normal(size=9), 0.4
+    prior = spread**2 * np.eye(3)
+    gain = prior @ jacobian.T @ np.linalg.inv(jacobian @ prior @ jacobian.T + np.eye(9))
+    np.testing.assert_allclose(damped(jacobian, rows, spread), -gain @ rows, atol=1e-12)
+
+
+def test_by_turns_each_is_judged_by_the_others(rng):
+    jacobian, rows, turn = rng.normal(size=(8, 2)), rng.normal(size=8), np.arange(8) % 2
+    found = by_turns(jacobian, rows, 0.5, turn)
+    values = damped(jacobian[turn == 1], rows[turn == 1], 0.5)
+    np.testing.assert_allclose(found[turn == 0], (rows + jacobian @ values)[turn == 0])
+
+
+def test_a_plain_smooth_function_is_judged_as_it_is(pushed, known):
+    plain = Added(Residual("heading", (("v_x", 0),)), np.array([0.1]))
+    effects, judged = with_own_moments(known.base, [plain], pushed[1:], pushed[:1], known)
+    assert effects == (plain,)
+    assert judged[0] is pushed[1]
