@@ -25,16 +25,22 @@ class Share:
 def held_out_share(result: GapResult, part_s: float = GapConfig.part_s) -> Share | None:
     """By drawing pieces of the held-out runs, and of the calibration; None without an excess.
 
-    Before and after are paired: both are of the same pieces. There is no excess where the gap
+    Before and after are paired where both are of the same windows. There is no excess where the gap
     before is not above the noise floor in 97.5 % of the draws.
     """
     held, kept = result.holdout_scenes, result.calibration.held_back
     base = result.calibration.base
-    before = np.concatenate([squared_errors(base, (), scene) for scene in held])
+    raw = result.holdout_before or held
+    before = np.concatenate([squared_errors(base, (), scene) for scene in raw])
     after = np.concatenate([squared_errors(result.base, result.added, scene) for scene in held])
     floor = np.concatenate([squared_errors(own, (), scene) for own, scene in kept])
     rng = np.random.default_rng(SEED)
-    gaps = drawn_gaps((before, after), held, part_s, rng)
+    if raw is held:
+        gaps = drawn_gaps((before, after), held, part_s, rng)
+    else:
+        gaps = np.concatenate(
+            [drawn_gaps((of,), s, part_s, rng) for of, s in ((before, raw), (after, held))]
+        )
     (floors,) = drawn_gaps((floor,), [scene for _, scene in kept], part_s, rng)
     floors *= result.holdout.noise_floor.value / np.sqrt(floor.mean())  # as it is on these runs
     excess = gaps[0] - floors

@@ -73,6 +73,12 @@ class GapConfig:
         Of a smooth function; of that of a tread's own motion, to each side of zero.
     most_effects, most_smooth : int
         Names, and smooth functions where no name stands.
+    outlier_sigmas : float
+        Standard deviations by which a single pose must be off its neighbours to be an outlier.
+    least_outliers : int
+        Of all measured runs, to be named.
+    outlier_probability : float
+        With which the calibration runs may have as many by chance.
     most_windows : int
         Where there are more, as many of them at even distances are used to fit.
     """
@@ -108,6 +114,9 @@ class GapConfig:
     tread_knots: int = 4
     most_effects: int = 3
     most_smooth: int = 4
+    outlier_sigmas: float = 8.0
+    least_outliers: int = 4
+    outlier_probability: float = 0.001
     most_windows: int = 300
 
     def __post_init__(self) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from odometry.effects.catalogue import effect_table
 from odometry.effects.corrected import Added
 from odometry.effects.in_course import lasting
+from odometry.effects.reference_outliers import ReferenceOutliers
 from odometry.effects.residual_of_each_run import ResidualOfEachRun
 from odometry.effects.terrain import SHIFTED, Terrain
 from odometry.effects.time_offset import TimeOffset
@@ -22,6 +23,7 @@ from odometry.parameters import ParameterSet, TerrainParameters, write_parameter
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN
 
 FORMAT = 1  # of gap.json
+OF_ONE_RUN = (Terrain, ResidualOfEachRun, ReferenceOutliers)  # no part of the model of another
 LEAST_LATENCY_S = 5e-3  # less is nothing that a model must know
 
 
@@ -96,7 +98,7 @@ def extended_model(result: GapResult) -> ParameterSet:
     effects = tuple(
         effect_table(lasting(added))
         for added in with_latency(result)
-        if not isinstance(added.effect, Terrain | ResidualOfEachRun)
+        if not isinstance(added.effect, OF_ONE_RUN)
     )
     words = " and ".join(added.effect.name for added in result.added) or "no effect"
     terrains = {}

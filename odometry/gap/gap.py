@@ -8,7 +8,7 @@ from tqdm import tqdm
 
 from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual
-from odometry.gap.calibration import calibrated
+from odometry.gap.calibration import Calibration, calibrated
 from odometry.gap.config import GapConfig
 from odometry.gap.equivalent import equivalents
 from odometry.gap.errors import GapError
@@ -18,6 +18,7 @@ from odometry.gap.locate import locate
 from odometry.gap.measured import measured_of
 from odometry.gap.name import explained
 from odometry.gap.next_drives import NextDrive, next_drives
+from odometry.gap.outliers import Outliers, cleaned_runs, closes, outliers_of
 from odometry.gap.own_moments import SPACING_S, with_own_moments
 from odometry.gap.pieces import held_back
 from odometry.gap.result import Closing, GapResult, NamedEffect, Rival
@@ -90,6 +91,10 @@ def find_gap(
         *_scenes(measured, holdout, config),
     )
     known = calibrated(known_scenes, model or Icr(), robot, config, given)
+    raw_scenes = fitted_scenes, held_scenes
+    fitted_scenes, held_scenes, outliers = _cleaned(
+        (measured, holdout), raw_scenes, known_scenes, known, config
+    )
     floor = floor_of(known.held_back, config.part_s)
     fitter = Fitter(known, measured_of(fitted_scenes, known, config))
     with tqdm(desc="candidates", unit="fit", disable=None if show_progress else True) as bar:
@@ -103,16 +108,19 @@ def find_gap(
     effects, held_scenes = with_own_moments(base, fit.effects, held_scenes, fitted_scenes, known)
     closings = [
         Closing(
-            gap_of(known.base, (), scenes, config.part_s),
+            gap_of(known.base, (), scenes if outliers is None else raw, config.part_s),
             gap_of(base, effects, scenes, config.part_s),
             floor_there(floor, known, scenes),
         )
-        for scenes in (fitted_scenes, held_scenes)
+        for scenes, raw in zip((fitted_scenes, held_scenes), raw_scenes, strict=True)
     ]
-    named = _named(found, effects, closings[0].before.value)
+    believed_m = gap_of(known.base, (), fitted_scenes, config.part_s).value
+    named = _named(found, effects, believed_m)
+    if outliers is not None:
+        named = (_named_outliers(outliers, closings[0].before.value, believed_m), *named)
     equivalent = equivalents(found, config)
     return GapResult(
-        verdict=verdict_of(found, closings[1]),
+        verdict=named[0].added.effect.name if named else verdict_of(found, closings[1]),
         effects=named,
         equivalent=equivalent,
         location=locate(known.base, (), fitted_scenes, floor.value, config, calibration=known),
@@ -136,7 +144,27 @@ def find_gap(
         notes=headings.notes,
         next_drives=_next_drives(found, [one.name for one in equivalent], fitter, config),
         refusals=found.refusals,
+        holdout_before=() if outliers is None else tuple(raw_scenes[1]),
     )
+
+
+def _cleaned(
+    runs: tuple[Sequence[Run], Sequence[Run]],
+    scenes: tuple[list[DenseWindows], list[DenseWindows]],
+    known_scenes: Sequence[DenseWindows],
+    known: Calibration,
+    config: GapConfig,
+) -> tuple[list[DenseWindows], list[DenseWindows], Outliers | None]:
+    """Measured and held-out scenes without poses that are far off, where that closes some gap."""
+    held_out = scenes[1] if runs[1] else ()
+    outliers = outliers_of(scenes[0], held_out, known_scenes, known.base, config)
+    if outliers is None:
+        return *scenes, None
+    cut = _scenes(*cleaned_runs(*runs, outliers), config)
+    _, fitted_scenes, held_scenes = alike(known_scenes, *cut)
+    if not closes(scenes[1], held_scenes, known.base, config):
+        return *scenes, None
+    return fitted_scenes, held_scenes, outliers
 
 
 def verdict_of(found: Explanation, held_out: Closing) -> str:
@@ -230,6 +258,12 @@ def alike(*groups: Sequence[DenseWindows]) -> tuple[list[DenseWindows], ...]:
     if all(scene.reported_turns is not None for scenes in groups for scene in scenes):
         return tuple(list(scenes) for scenes in groups)
     return tuple([scene.without_gyroscope() for scene in scenes] for scenes in groups)
+
+
+def _named_outliers(outliers: Outliers, before_m: float, after_m: float) -> NamedEffect:
+    return NamedEffect(
+        outliers.named, outliers.low, outliers.high, before_m, after_m, outliers.evidence
+    )
 
 
 def _named(

@@ -105,6 +105,8 @@ class GapResult:
         What would tell the first effect from those that the data do not tell from it.
     refusals : tuple of Refusal
         Names that had evidence and do not stand, and why.
+    holdout_before : tuple of DenseWindows
+        The held-out windows with poses that are left out after, if there are any.
     """
 
     verdict: str
@@ -122,6 +124,7 @@ class GapResult:
     notes: tuple[str, ...] = ()
     next_drives: tuple[NextDrive, ...] = ()
     refusals: tuple[Refusal, ...] = ()
+    holdout_before: tuple[DenseWindows, ...] = ()
 
     @property
     def depends_on(self) -> tuple[str, ...]:

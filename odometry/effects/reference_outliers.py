@@ -1,0 +1,48 @@
+"""Single poses of the reference that are far off, while the robot drives on."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from odometry.effects.base import Effect, EffectParameter, MeasurementEffect
+from odometry.effects.recorded import Recorded
+
+
+@dataclass(frozen=True)
+class ReferenceOutliers(MeasurementEffect):
+    """Poses that disagree with those before and after, which agree with each other.
+
+    Nothing follows from one for the next: they are left out, and what stays is as it was.
+
+    Attributes
+    ----------
+    stamps_s : tuple of tuples of float
+        Run times of the poses that were left out, run by run.
+    """
+
+    stamps_s: tuple[tuple[float, ...], ...] = ()
+
+    name = "reference_fault"
+    form = "outliers"
+    in_words = "single poses of the reference that are far off"
+    equation = "pose -> pose + jump, at single stamps"
+    source = "heavy tails of a position fix"
+    looks_like = "jumps of one pose, there and back, that treads and gyroscope do not have"
+    remedy = "leave these poses out, or give the filter that uses them a gate"
+    of_reference = True
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """How many there are, and how far off: for the reader."""
+        return (
+            EffectParameter("share", "", 0.0, 1.0, 0.0, 0.01),
+            EffectParameter("distance", "m", 0.0, 1e6, 0.0, 0.01, None),
+        )
+
+    @classmethod
+    def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:  # noqa: ARG003 - of the interface
+        """None: they are found before anything is fitted."""
+        return ()
+
+    def settings(self) -> dict[str, Any]:
+        """See `Effect.settings`."""
+        return {"stamps_s": [list(stamps) for stamps in self.stamps_s]}

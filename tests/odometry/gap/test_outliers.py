@@ -1,0 +1,88 @@
+"""Single poses that are far off are found, and nothing that lasts is taken for one."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.gap.config import GapConfig
+from odometry.gap.outliers import cleaned_runs, closes, isolated, outliers_of
+from odometry.windows.dense import dense_windows_of
+
+CONFIG = GapConfig()
+OFF = np.arange(20, 780, 37)  # in some windows the last pose, in others one between
+
+
+def same(_, twist):
+    return twist
+
+
+def with_poses(scene, change):
+    run = scene.run
+    x, y = change(run.pose["x"], run.pose["y"])
+    pose = replace(run.pose, columns={**run.pose.columns, "x": x, "y": y})
+    return dense_windows_of(replace(run, pose=pose), CONFIG.horizon_s)
+
+
+@pytest.fixture(scope="module")
+def plain(make_scene):
+    return make_scene(31, same)
+
+
+@pytest.fixture(scope="module")
+def jumping(plain):
+    def change(x, y):
+        x, y = x.copy(), y.copy()
+        x[OFF] += 0.5
+        y[OFF[::2]] -= 0.8
+        return x, y
+
+    return with_poses(plain, change)
+
+
+def test_jumps_there_and_back_are_found_each(jumping, plain, known):
+    found = outliers_of([jumping], [jumping], [plain], known.base, CONFIG)
+    stamps_s = jumping.run.pose.stamps_s[OFF] - jumping.run.odometry.stamps_s[0]
+    np.testing.assert_allclose(found.named.effect.stamps_s[0], stamps_s)
+    assert found.named.effect.of_reference
+    share = len(OFF) / len(jumping.pose_s)
+    assert found.named.values[0] == pytest.approx(share)
+    assert found.low[0] < share < found.high[0]
+    assert found.named.values[1] == pytest.approx(np.sqrt(0.25 + 0.32), abs=0.03)
+    assert found.evidence > CONFIG.least_evidence
+
+
+def test_without_them_the_gap_is_that_of_noise(jumping, plain, known):
+    found = outliers_of([jumping], [jumping], [plain], known.base, CONFIG)
+    (measured,), (held,) = cleaned_runs([jumping.run], [jumping.run], found)
+    assert len(measured.pose) == len(jumping.run.pose) - len(OFF)
+    cleaned = dense_windows_of(held, CONFIG.horizon_s)
+    assert closes([jumping], [cleaned], known.base, CONFIG)
+    assert not closes([plain], [plain], known.base, CONFIG)
+
+
+def test_what_the_calibration_has_as_well_is_no_finding(jumping, known):
+    assert outliers_of([jumping], [jumping], [jumping], known.base, CONFIG) is None
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda x, y: (x + np.where(np.arange(len(x)) > 300, 1.0, 0.0), y),
+        lambda x, y: (1.2 * x, y),
+        lambda x, y: (x + 0.5 * np.sin(np.arange(len(x)) / 8), y),
+        lambda x, y: (np.round(x / 0.3) * 0.3, np.round(y / 0.3) * 0.3),
+    ],
+    ids=["a jump that stays", "another scale", "a swing", "a grid"],
+)
+def test_what_lasts_is_none(plain, known, change):
+    scene = with_poses(plain, change)
+    assert outliers_of([scene], [scene], [plain], known.base, CONFIG) is None
+
+
+def test_slip_is_none(make_scene, known):
+    def slipping(columns, twist):
+        gone = (columns["t"] % 11.0) < 1.5
+        return np.where(gone[:, None], 0.4, 1.0) * twist
+
+    assert isolated(make_scene(32, slipping), known.base, CONFIG).off.sum() <= 1
