@@ -143,8 +143,8 @@ def _summary(classifier: "TerrainClassifier", patches: "LabelledPatches") -> str
     table = confusion(found.codes, answers, len(classifier.classes_))
     chosen = "given" if classifier.n_neighbors else "chosen"
     return (
-        f"{len(patches.photos)} patches of {classifier.patch_size_px} px from {_origin(patches)} (true "
-        "terrain down, answer across, %):\n\n"
+        f"{len(patches.photos)} patches of {classifier.patch_size_px} px from {_origin(patches)} "
+        "(true terrain down, answer across, %):\n\n"
         f"{confusion_text(table, classifier.classes_)}\n\n"
         f"balanced accuracy by patch {balanced_accuracy(found.codes, answers):.3f}, by vote of a "
         f"photograph's patches {balanced_accuracy(photo_codes, photo_answers):.3f}\n"
