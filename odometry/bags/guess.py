@@ -13,12 +13,13 @@ from odometry.bags.message_kinds import (
     IMU,
     JOINTS,
     ODOMETRY,
+    POINT,
     POSES,
     TRANSFORM_LISTS,
     TWISTS,
 )
-from odometry.bags.sides import is_wheel, side_of
-from odometry.bags.survey import Topic
+from odometry.bags.sides import side_of, sided
+from odometry.bags.topic import Topic
 
 COMMANDS = re.compile(
     r"cmd|command|goal|target|setpoint|set_point|plan|desired|waypoint|initialpose|joy|teleop",
@@ -85,15 +86,6 @@ def guess(topic: Topic) -> list[Guess]:
     return _fields(topic)
 
 
-def sided(names: Iterable[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Names of the left and of the right wheels among names; both empty where that is unclear."""
-    names = list(names)
-    wheels = [name for name in names if is_wheel(name)] or names
-    left = tuple(name for name in wheels if side_of(name) == "left")
-    right = tuple(name for name in wheels if side_of(name) == "right")
-    return (left, right) if len(left) == len(right) else ((), ())
-
-
 def best(topics: Mapping[str, Topic], role: str) -> str | None:
     """Name of the topic that fits a role best; None where none is likely to."""
     ranked = [
@@ -109,7 +101,7 @@ def _joints(topic: Topic) -> list[Guess]:
     left, right = sided(topic.sample.name)
     if not left:
         return [Guess("", LIKELY, "joints, but no wheels of a left and a right side by name")]
-    return [Guess("wheels", 1, f"wheels {', '.join(left)} | {', '.join(right)}")]
+    return [Guess("wheels", 1, f"{', '.join(left)} | {', '.join(right)}")]
 
 
 def _images(topic: Topic) -> list[Guess]:
@@ -163,6 +155,7 @@ _BY_TYPE: dict[str, Callable[[Topic], list[Guess]]] = {
     JOINTS: _joints,
     IMU: lambda topic: [Guess("imu", 1 + ("raw" in topic.name), "")],
     FIX: lambda _: [Guess("reference", 30, "positions by satellites")],
+    POINT: lambda topic: [Guess("reference", 3 if TRUTH.search(topic.name) else 35, "positions")],
     CAMERA_INFO: lambda _: [Guess("camera_info", 1, "")],
     IMAGE: _images,
     COMPRESSED_IMAGE: _images,

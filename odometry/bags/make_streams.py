@@ -8,7 +8,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.bags.image_files import ImageFiles
-from odometry.bags.message_kinds import FIX, TRANSFORM_LISTS, body_frame
+from odometry.bags.message_kinds import FIX, POINT, TRANSFORM_LISTS, body_frame
 from odometry.bags.ordered_rows import OrderedRows
 from odometry.bags.plan import Plan
 from odometry.bags.poses import (
@@ -17,7 +17,9 @@ from odometry.bags.poses import (
     LocalMetres,
     PosesOfRobot,
     fix_row,
+    point_row,
     pose_reader,
+    positions_alone,
 )
 from odometry.bags.speeds import TreadSpeeds, row_reader
 from odometry.bags.streams import Images, Rows, Stream, TransformRows
@@ -75,6 +77,9 @@ def _reference(plan: Plan, survey: Survey, folder: Path, local: LocalMetres) -> 
     if topic.message_type == FIX:
         rows = OrderedRows(file, ("x", "y", "yaw", "z"), local, 2)
         return Rows(topic.name, "pose.csv", rows, fix_row, by_header=plan.by_header)
+    if topic.message_type == POINT:
+        rows = OrderedRows(file, ("x", "y", "yaw", "z"), positions_alone, 2)
+        return Rows(topic.name, "pose.csv", rows, point_row, by_header=plan.by_header)
     frame = plan.frames.get(topic.name, "")
     pose = plan.robot.pose_of(frame, survey.robot)
     turned = AttitudesOf(np.eye(4) if pose is None else pose)

@@ -11,6 +11,7 @@ IMAGE = "sensor_msgs/msg/Image"
 COMPRESSED_IMAGE = "sensor_msgs/msg/CompressedImage"
 CAMERA_INFO = "sensor_msgs/msg/CameraInfo"
 TRANSFORM = "geometry_msgs/msg/TransformStamped"
+POINT = "geometry_msgs/msg/PointStamped"
 TRANSFORM_LISTS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
 
 # Types with a twist (linear ahead, angular about z), and where it stands

@@ -1,26 +1,34 @@
 """What is taken from which topic: guesses, and what the user says instead."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from odometry.bags.choices import (
+    camera_info_of,
+    clock_of,
+    other_odometry_of,
+    topic_for,
+    topic_named,
+)
 from odometry.bags.errors import BagError
 from odometry.bags.guess import LIKELY, best, guess
 from odometry.bags.message_kinds import (
-    CAMERA_INFO,
     FIX,
     IMAGES,
     IMU,
+    POINT,
     POSES,
     TRANSFORM_LISTS,
     body_frame,
 )
 from odometry.bags.robot_frame import HOW_TRACK, RobotFrame, robot_frame
-from odometry.bags.survey import Survey, Topic
+from odometry.bags.survey import Survey
+from odometry.bags.topic import Topic
 from odometry.bags.wheel_source import WheelSource, wheel_source
-from odometry.bags.wishes import NONE, Wishes
+from odometry.bags.wishes import Wishes
 
-SAME_CLOCK_S = 2.0  # header stamps and times of reception that differ by less share a clock
+REFERENCES = (*POSES, FIX, POINT, *TRANSFORM_LISTS)
 
 
 @dataclass(frozen=True)
@@ -70,7 +78,9 @@ def make_plan(survey: Survey, wishes: Wishes) -> Plan:
         that is not there or of another kind: it says what to give.
     """
     topics = survey.topics
-    reference = _topic(topics, wishes.reference, "reference", (*POSES, FIX, *TRANSFORM_LISTS))
+    reference = topic_for(
+        topics, wishes.reference, "reference", (*POSES, FIX, POINT, *TRANSFORM_LISTS)
+    )
     bodies = [body_frame(one.sample) for one in topics.values() if one.sample is not None]
     robot = robot_frame(survey.robot, wishes.robot, filter(None, bodies))
     wheels = _wheels(topics, wishes.wheels, reference, robot)
@@ -80,23 +90,25 @@ def make_plan(survey: Survey, wishes: Wishes) -> Plan:
             "the track width of the robot is not known, and no robot description in the bag gives "
             f"it: add --track-width METRES. To measure it, {HOW_TRACK}"
         )
-    imu = _topic(topics, wishes.imu, "imu", (IMU,))
-    images = _topic(topics, wishes.images, "images", IMAGES)
-    info = _camera_info(topics, wishes.images, images)
+    world = _world(topics, wishes, reference, survey)
+    imu = topic_for(topics, wishes.imu, "imu", (IMU,))
+    images = topic_for(topics, wishes.images, "images", IMAGES)
+    info = camera_info_of(topics, wishes.images, images)
     named = {imu: wishes.imu, reference: wishes.reference, images: wishes.images}
     frames = {
         name: str(said.get("frame") or _frame_of(topics[name], robot)).lstrip("/")
         for name, said in named.items()
         if name
     }
-    other = _other_odometry(topics, wishes.other_odometry, reference)
+    other = other_odometry_of(topics, wishes.other_odometry, reference)
     used = [topics[name] for name in (wheels.topic, imu, reference, images) if name]
-    by_header, said = _clock(used, wishes.time)
+    by_header, said = clock_of(used, wishes.time)
     notes = [
         *robot.notes,
         f"wheel speeds: {wheels.topic}: {wheels.why}",
         *(f"{role}: {name}" for role, name in _named(imu, reference, images, info) if name),
         *said,
+        *_no_reference(topics, wishes, reference, survey),
     ]
     return Plan(
         robot,
@@ -106,12 +118,26 @@ def make_plan(survey: Survey, wishes: Wishes) -> Plan:
         reference,
         images,
         info,
-        str(wishes.reference.get("world", "map")),
+        world,
         other,
         by_header,
         tuple(notes),
         frames,
     )
+
+
+def _world(topics: Mapping[str, Topic], wishes: Wishes, reference: str, survey: Survey) -> str:
+    """The frame in which poses from transforms are wanted; empty where no transforms are taken."""
+    if not reference or topics[reference].message_type not in TRANSFORM_LISTS:
+        return ""
+    frames = survey.robot.all.frames
+    named = str(wishes.reference.get("world", "map"))
+    if named not in frames:
+        raise BagError(
+            f"{reference}: there is no frame {named!r}; name the one in which poses are wanted as "
+            f"world in [reference] of a map; seen: {', '.join(sorted(frames)[:24])}"
+        )
+    return named
 
 
 def _frame_of(topic: Topic, robot: RobotFrame) -> str:
@@ -120,34 +146,25 @@ def _frame_of(topic: Topic, robot: RobotFrame) -> str:
     return robot.base if lists else body_frame(topic.sample)
 
 
+def _no_reference(
+    topics: Mapping[str, Topic], wishes: Wishes, reference: str, survey: Survey
+) -> Iterator[str]:
+    """What is said where the odometry is compared with nothing."""
+    if reference or "topic" in wishes.reference:
+        return
+    told = [name for name, one in topics.items() if one.message_type in TRANSFORM_LISTS]
+    moving = [name for name in told if not name.endswith("static")]
+    if moving and "map" in survey.robot.all.frames:
+        yield (
+            f"reference: none. {moving[0]} tells the robot's place in the frame map: --reference "
+            f"{moving[0]} takes it (a measurement only where SLAM or satellites made it)"
+        )
+    else:
+        yield "reference: none; the run has no pose.csv"
+
+
 def _named(imu: str, reference: str, images: str, info: str) -> list[tuple[str, str]]:
     return [("imu", imu), ("reference", reference), ("images", images), ("camera", info)]
-
-
-def _topic(
-    topics: Mapping[str, Topic], wishes: Mapping[str, Any], role: str, kinds: tuple[str, ...]
-) -> str:
-    """Name of the topic for a role; empty where there is none, or none is wanted."""
-    said = wishes.get("topic")
-    if said is None:
-        return best(topics, role) or ""
-    if said == NONE:
-        return ""
-    topic = _there(topics, said)
-    if topic.message_type not in kinds:
-        raise BagError(
-            f"{said}: {topic.message_type} cannot be used as {role}; expected {', '.join(kinds)}"
-        )
-    if topic.sample is None:
-        raise BagError(f"{said}: no message of it can be read: {topic.problem}")
-    return topic.name
-
-
-def _there(topics: Mapping[str, Topic], name: str) -> Topic:
-    found = topics.get(name) or topics.get(f"/{name}")
-    if found is None:
-        raise BagError(f"there is no topic {name!r} in the bag; topics: {', '.join(topics)}")
-    return found
 
 
 def _wheels(
@@ -155,7 +172,7 @@ def _wheels(
 ) -> WheelSource:
     named = wishes.get("topic")
     left = {name: topic for name, topic in topics.items() if name != reference}
-    name = _there(topics, named).name if named else best(left, "wheels")
+    name = topic_named(topics, named).name if named else best(left, "wheels")
     if name is None:
         near = [
             f"{name} ({topic.message_type}: {one.why})"
@@ -169,54 +186,3 @@ def _wheels(
             "--list shows all topics"
         )
     return wheel_source(topics[name], wishes, robot.wheel_radius_m)
-
-
-def _camera_info(topics: Mapping[str, Topic], wishes: Mapping[str, Any], images: str) -> str:
-    """The CameraInfo that goes with an image topic: said, else the one of the same folder."""
-    if not images:
-        return ""
-    said = wishes.get("camera_info")
-    if said == NONE:
-        return ""
-    if said is not None:
-        return _there(topics, said).name
-    folder = images.rsplit("/", 1)[0]
-    while folder:
-        name = f"{folder}/camera_info"
-        if name in topics and topics[name].message_type == CAMERA_INFO:
-            return name
-        folder = folder.rsplit("/", 1)[0]
-    return ""
-
-
-def _other_odometry(
-    topics: Mapping[str, Topic], said: tuple[str, ...] | None, reference: str
-) -> tuple[str, ...]:
-    if said is not None:
-        names = [_there(topics, name) for name in said]
-        wrong = [topic.name for topic in names if topic.message_type not in POSES]
-        if wrong:
-            raise BagError(f"{wrong[0]}: there are no poses in it to keep as other odometry")
-        return tuple(topic.name for topic in names)
-    return tuple(
-        name
-        for name, topic in topics.items()
-        if name != reference and any(one.role == "other_odometry" for one in guess(topic))
-    )
-
-
-def _clock(used: list[Topic], wished: str) -> tuple[bool, list[str]]:
-    """Whether header stamps are taken, and what is to be said of it."""
-    if wished != "auto":
-        return wished == "header", []
-    offsets = [one.header_offset_s for one in used if one.header_offset_s is not None]
-    if not offsets:
-        return False, []
-    unstamped = [one.name for one in used if one.header_offset_s is None]
-    spread = max([*offsets, *(0.0 for _ in unstamped)]) - min([*offsets, *(0.0 for _ in unstamped)])
-    if spread <= SAME_CLOCK_S:
-        return True, []
-    return False, [
-        f"times: those of reception, as the clocks of header stamps differ by {spread:.3g} s "
-        "(--time header takes the stamps all the same)"
-    ]

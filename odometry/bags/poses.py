@@ -75,6 +75,16 @@ def fix_row(message: Any) -> Row:
     return message.latitude, message.longitude, message.altitude
 
 
+def point_row(message: Any) -> Row:
+    """x, y, z [m] of a PointStamped."""
+    return message.point.x, message.point.y, message.point.z
+
+
+def positions_alone(stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Columns (N, 4): x, y, yaw (NaN), z of positions (N, 3)."""
+    return stamps_ns, np.insert(rows, 2, np.nan, axis=1)
+
+
 class LocalMetres:
     """Turns geodetic places into metres east, north and up of the first one."""
 

@@ -1,6 +1,7 @@
 """Which names mean a wheel, and on which side it stands."""
 
 import re
+from collections.abc import Iterable
 
 WHEEL = re.compile(r"wheel|track|tread|tyre|tire|drive|motor|sprocket|whl", re.IGNORECASE)
 NO_WHEEL = re.compile(
@@ -28,3 +29,12 @@ def side_of(name: str) -> str:
     words = set(re.findall(r"[a-z]+", re.sub(r"([a-z])([A-Z])", r"\1 \2", name).lower()))
     sides = [side for side, short in SHORT.items() if words & short]
     return sides[0] if len(sides) == 1 else ""
+
+
+def sided(names: Iterable[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Names of the left and of the right wheels among names; both empty where that is unclear."""
+    names = list(names)
+    wheels = [name for name in names if is_wheel(name)] or names
+    left = tuple(name for name in wheels if side_of(name) == "left")
+    right = tuple(name for name in wheels if side_of(name) == "right")
+    return (left, right) if len(left) == len(right) else ((), ())

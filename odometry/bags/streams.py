@@ -8,7 +8,7 @@ from odometry.bags.connection import Message
 from odometry.bags.errors import BagError
 from odometry.bags.image_files import ImageFiles
 from odometry.bags.ordered_rows import OrderedRows
-from odometry.bags.survey import header_ns
+from odometry.bags.topic import header_ns
 from odometry.bags.transform_poses import TransformPoses
 
 Row = tuple[float, ...]

@@ -1,64 +1,19 @@
 """What bags hold: their topics, the frames of the robot, and what cannot be read."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from statistics import median
-from types import SimpleNamespace
-from typing import Any
+from dataclasses import dataclass
 
 from odometry.bags.bag_files import BagFile
-from odometry.bags.connection import Connection, Message
+from odometry.bags.connection import Connection
 from odometry.bags.errors import BagError
 from odometry.bags.losses import Losses
 from odometry.bags.message_types import MessageTypes
-from odometry.bags.motion_seen import MOVING_TYPES, Ranges, widen
 from odometry.bags.robot_seen import RobotSeen
+from odometry.bags.tally import Tally
+from odometry.bags.topic import Topic
 
-FIRST_LOOKS, EVERY = 200, 20  # of topics that tell motion: all of the first, then each 20th
-IMAGES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
 REPORT_EVERY = 1000  # messages
 Progress = Callable[[int], None]
-
-
-@dataclass(frozen=True)
-class Topic:
-    """What the bags hold of a topic.
-
-    Attributes
-    ----------
-    name, message_type : str
-    count : int
-    first_ns, last_ns : int
-        When the first and the last message were received.
-    sample : object or None
-        The first message that could be decoded, images without their pixels.
-    header_offset_s : float or None
-        Median of header stamp minus time of reception; None where there is no header stamp.
-    ranges : Mapping
-        Of the numbers that tell motion, see `motion_seen`.
-    problem : str
-        Why it cannot be read; empty where it can.
-    """
-
-    name: str
-    message_type: str
-    count: int
-    first_ns: int
-    last_ns: int
-    sample: Any = None
-    header_offset_s: float | None = None
-    ranges: Ranges = field(default_factory=dict)
-    problem: str = ""
-
-    @property
-    def duration_s(self) -> float:
-        """Between the first and the last message."""
-        return (self.last_ns - self.first_ns) / 1e9
-
-    @property
-    def rate_hz(self) -> float:
-        """Mean rate; 0 of a single message."""
-        return (self.count - 1) / self.duration_s if self.duration_s > 0 else 0.0
 
 
 @dataclass(frozen=True)
@@ -105,10 +60,10 @@ def survey(
     BagError
         If no message can be read.
     """
-    tallies, robot = dict[str, _Tally](), RobotSeen()
+    tallies, robot = dict[str, Tally](), RobotSeen()
     begins: dict[BagFile, int] = {}
     for file in files:
-        of_file: dict[int, _Tally | None] = {}
+        of_file: dict[int, Tally | None] = {}
         begin, count = None, 0
         for message in file.messages(lost):
             count += 1
@@ -132,70 +87,9 @@ def survey(
     return Survey(tuple(sorted(begins, key=begins.__getitem__)), topics, robot, lost.lines)
 
 
-class _Tally:
-    """Counts the messages of a topic, and decodes some of them."""
-
-    def __init__(self, connection: Connection) -> None:
-        self.connection = connection
-        self.count, self.first_ns, self.last_ns = 0, 2**63, -1
-        self.sample: Any = None
-        self.offsets_s: list[float] = []
-        self.ranges: Ranges = {}
-        self.problem = ""
-        self.tells_motion = connection.message_type in MOVING_TYPES
-
-    def add(self, message: Message, types: MessageTypes, robot: RobotSeen) -> None:
-        self.count += 1
-        self.first_ns = min(self.first_ns, message.received_ns)
-        self.last_ns = max(self.last_ns, message.received_ns)
-        of_robot = robot.wants(message)
-        if not (of_robot or self._looks()):
-            return
-        try:
-            content = types.decode(message)
-        except BagError as problem:
-            self.problem = str(problem)
-            return
-        if of_robot:
-            robot.look(message, content)
-        if self.tells_motion:
-            widen(self.ranges, content)
-        stamp_ns = header_ns(content)
-        if stamp_ns:
-            self.offsets_s.append((stamp_ns - message.received_ns) / 1e9)
-        if self.sample is None:
-            small = self.connection.message_type in IMAGES
-            self.sample = _without_pixels(content) if small else content
-
-    def _looks(self) -> bool:
-        """The first messages, then ever fewer; of those that tell motion a fixed share."""
-        if self.tells_motion:
-            return self.count <= FIRST_LOOKS or self.count % EVERY == 0
-        return self.count <= 2 or self.count & (self.count - 1) == 0
-
-    def topic(self) -> Topic:
-        return Topic(
-            self.connection.topic,
-            self.connection.message_type,
-            self.count,
-            self.first_ns,
-            self.last_ns,
-            self.sample,
-            median(self.offsets_s) if self.offsets_s else None,
-            self.ranges,
-            self.problem if self.sample is None else "",
-        )
-
-
-def header_ns(content: Any) -> int:
-    """Header stamp of a message, 0 where it has none."""
-    stamp = getattr(getattr(content, "header", None), "stamp", None)
-    return max(0, stamp.sec * 10**9 + stamp.nanosec) if stamp is not None else 0
-
-
-def _tally(connection: Connection, tallies: dict[str, _Tally], losses: Losses) -> _Tally | None:
+def _tally(connection: Connection, tallies: dict[str, Tally], losses: Losses) -> Tally | None:
     """Tally of a topic; None, and a loss, where the topic has another type elsewhere."""
-    tally = tallies.setdefault(connection.topic, _Tally(connection))
+    tally = tallies.setdefault(connection.topic, Tally(connection))
     if tally.connection.message_type != connection.message_type:
         losses.append(
             f"{connection.topic}: its messages of the type {connection.message_type}, where others "
@@ -203,8 +97,3 @@ def _tally(connection: Connection, tallies: dict[str, _Tally], losses: Losses) -
         )
         return None
     return tally
-
-
-def _without_pixels(content: Any) -> Any:
-    kept = ("header", "height", "width", "encoding", "format")
-    return SimpleNamespace(**{key: getattr(content, key) for key in kept if hasattr(content, key)})

@@ -4,7 +4,9 @@ from collections.abc import Iterator
 
 from odometry.bags.guess import best, guess
 from odometry.bags.message_kinds import TRANSFORM_LISTS
-from odometry.bags.survey import Survey, Topic
+from odometry.bags.robot_seen import TEXT
+from odometry.bags.survey import Survey
+from odometry.bags.topic import Topic
 
 ROLES = ("wheels", "imu", "reference", "images")
 
@@ -36,5 +38,7 @@ def said_of(topic: Topic) -> str:
         return f"cannot be read: {topic.problem}"
     if topic.message_type in TRANSFORM_LISTS:
         return "frames of the robot"
+    if topic.message_type == TEXT and "<robot" in topic.sample.data:
+        return "robot description"
     guesses = sorted(guess(topic), key=lambda one: one.rank)
     return "; ".join(": ".join(filter(None, (one.role, one.why))) for one in guesses)

@@ -7,25 +7,13 @@ from typing import Any
 
 from odometry.bags.errors import BagError
 from odometry.bags.fields import number_at, number_paths
-from odometry.bags.guess import SIMPLE_ARRAY, sided, unit_of
+from odometry.bags.guess import SIMPLE_ARRAY, unit_of
 from odometry.bags.message_kinds import JOINTS, ODOMETRY, TWISTS
 from odometry.bags.motion_seen import PLACE, VELOCITY, moved
-from odometry.bags.sides import side_of
-from odometry.bags.survey import Topic
+from odometry.bags.sides import side_of, sided
+from odometry.bags.topic import Topic
+from odometry.bags.wheel_units import UNITS, check_unit, gear_of
 
-# Unit: (what one is in radians or metres, whether it is of the wheel's angle, whether a speed)
-UNITS: dict[str, tuple[float, bool, bool]] = {
-    "rad/s": (1.0, True, True),
-    "deg/s": (math.pi / 180, True, True),
-    "rpm": (2 * math.pi / 60, True, True),
-    "turns/s": (2 * math.pi, True, True),
-    "m/s": (1.0, False, True),
-    "mm/s": (1e-3, False, True),
-    "rad": (1.0, True, False),
-    "deg": (math.pi / 180, True, False),
-    "turns": (2 * math.pi, True, False),
-    "m": (1.0, False, False),
-}
 HOW_RADIUS = (
     "roll the robot straight ahead for ten turns of a wheel, and divide the way by 62.83; or "
     "measure from the centre of a wheel to the terrain, with the robot's weight on it"
@@ -96,7 +84,7 @@ def wheel_source(topic: Topic, wishes: Mapping[str, Any], radius_m: float | None
             f"{HOW_RADIUS}"
         )
     reach_m = radius_m if of_angle and radius_m is not None else 1.0
-    metres = one * reach_m / _gear(wishes)
+    metres = one * reach_m / gear_of(wishes)
     return WheelSource(
         topic.name,
         "joints" if joints else "fields",
@@ -173,7 +161,7 @@ def _joint_values(
     has_place = any(moved(topic.ranges, PLACE, name) for name in names)
     speeds = said == "velocity" if said else has_velocity or not has_place
     unit = str(wishes.get("unit", "rad/s" if speeds else "rad"))
-    _check_unit(unit)
+    check_unit(unit)
     if UNITS[unit][2] != speeds:
         kind = "speeds" if speeds else "places"
         raise BagError(f"{topic.name}: unit {unit!r}, expected a unit of {kind}")
@@ -187,20 +175,8 @@ def _unit(topic: Topic, wishes: Mapping[str, Any]) -> tuple[bool, str]:
             f"{topic.name}: the unit of its wheel speeds is not known: add --unit with one of "
             f"{', '.join(UNITS)}"
         )
-    _check_unit(unit)
+    check_unit(unit)
     return UNITS[unit][2], unit
-
-
-def _check_unit(unit: str) -> None:
-    if unit not in UNITS:
-        raise BagError(f"unit {unit!r}, expected one of {', '.join(UNITS)}")
-
-
-def _gear(wishes: Mapping[str, Any]) -> float:
-    gear = float(wishes.get("gear", 1.0))
-    if not 1e-6 <= abs(gear) <= 1e6:
-        raise BagError(f"gear = {gear!r}, expected the turns that are counted for one of a wheel")
-    return gear
 
 
 def _wrap(topic: Topic, names: tuple[str, ...], one: float) -> float:

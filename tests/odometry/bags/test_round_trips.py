@@ -4,6 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
+from odometry.bags.errors import BagError
 from tests.odometry.bags.imports import imported
 from tests.odometry.bags.made_bags import (
     BEGIN_NS,
@@ -151,11 +152,43 @@ def test_the_robot_on_a_map_is_told_by_transforms(tmp_path):
         moved = bag.transform(t_s, "odom", "base_link", (x, y, 0), half_turn(yaw))
         bag.transforms("/tf", t_s, [still, moved])
     bag.written = [one for one in bag.written if one[0] != "/mocap/pose"]
-    options = {"reference__topic": "/tf", "reference__frame": "base_link"}
-    run, _ = imported(tmp_path / "run", bag.write(tmp_path / "drive"), **options)
+    path = bag.write(tmp_path / "drive")
+    _, said = imported(tmp_path / "without", path)
+    assert any("--reference /tf takes it" in note for note in said.notes)
+    run, _ = imported(tmp_path / "run", path, reference__topic="/tf")
     assert run.pose["x"] == pytest.approx(5 - COURSE[:, 4], abs=1e-8)
     assert run.pose["y"] == pytest.approx(COURSE[:, 3], abs=1e-8)
     assert run.pose["yaw"] == pytest.approx(COURSE[:, 5] + np.pi / 2, abs=1e-8)
+
+
+def test_a_frame_of_the_world_that_is_not_there_is_asked_for(tmp_path):
+    bag = drive("mcap")
+    moved = bag.transform(0.0, "odom", "base_link", (1, 0, 0), half_turn(0))
+    bag.transforms("/tf", 0.0, [moved])
+    path = bag.write(tmp_path / "drive")
+    with pytest.raises(BagError, match=r"no frame 'map'.*seen: base_link, odom"):
+        imported(tmp_path / "run", path, reference__topic="/tf")
+
+
+def test_the_prism_of_a_total_station_has_positions_and_no_heading(tmp_path):
+    bag = drive("mcap")
+    bag.written = [one for one in bag.written if one[0] != "/mocap/pose"]
+    for t_s, _, _, x, y, _ in COURSE:
+        point = bag.vector(x, y, 1.5, name="Point")
+        kind = "geometry_msgs/msg/PointStamped"
+        bag.add("/prism", kind, t_s, bag.message(kind, header=bag.header(t_s, "w"), point=point))
+    run, _ = imported(tmp_path / "run", bag.write(tmp_path / "drive"))
+    assert run.pose.stack("x", "y") == pytest.approx(COURSE[:, 3:5], abs=1e-8)
+    assert np.isnan(run.pose["yaw"]).all()
+
+
+def test_topics_whose_names_are_alike_have_files_of_their_own(tmp_path):
+    bag = drive("mcap")
+    for name in ("/a/odom", "/a_odom"):
+        bag.odometry(name, 1.0, bag.pose((1, 0, 0), half_turn(0)), bag.twist(0, 0))
+    _, said = imported(tmp_path / "run", bag.write(tmp_path / "drive"))
+    assert said.rows["other_odometry/a_odom.csv"] == (1, "/a/odom")
+    assert said.rows["other_odometry/a_odom_2.csv"] == (1, "/a_odom")
 
 
 def test_other_odometry_is_named_after_its_topic_and_odometry_may_be_left_out(tmp_path):

@@ -56,6 +56,16 @@ def test_wheels_are_known_by_their_names_in_any_order(names, order, tmp_path):
     assert speeds(bag_of(message), tmp_path)[0] == true()
 
 
+def test_wheels_are_found_where_an_arm_has_its_own_messages_on_the_topic(tmp_path):
+    def message(bag, t, left, right):
+        bag.joints(t, ["elbow", "wrist"], np.zeros(2), np.ones(2))
+        bag.joints(t + 0.001, ["left_wheel", "right_wheel"], np.zeros(2), [left, right])
+
+    found, said = speeds(bag_of(message), tmp_path)
+    assert found == true()
+    assert any("160 messages dropped" in line for line in said.losses)
+
+
 def test_a_side_is_the_mean_of_its_wheels(tmp_path):
     names = ["front_left_wheel", "rear_left_wheel", "front_right_wheel", "rear_right_wheel"]
 
