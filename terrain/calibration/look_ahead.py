@@ -17,7 +17,7 @@ Motion = tuple[FloatArray, float]  # body twist (3,) and mean tread speed [m/s]
 STRAIGHT_ON: Motion = (np.array([1.0, 0.0, 0.0]), 1.0)
 WHERE_RUN_LOOKS = RegionConfig()
 WHOLE = replace(WHERE_RUN_LOOKS, least_share=1.0)
-NEAREST_M, FARTHEST_M, STEP_M = -2.0, 20.0, 0.01
+FARTHEST_M, STEP_M = 20.0, 0.01
 
 
 @dataclass(frozen=True)
@@ -51,17 +51,23 @@ def look_ahead(
     classifier : Classifier, optional
         Which looks no farther than the image is fine enough for it.
     """
+    whole = look_ahead_whole(camera, robot, classifier)
+    if whole is not None:
+        return whole
     region = run_region(camera, robot, classifier)
     if isinstance(region, str):
         return region
-    whole = run_region(camera, robot, classifier, config=WHOLE)
-    across_px, along_px = metre_px(camera, region.place)
-    seen_whole = (
-        not isinstance(whole, str)
-        and abs(whole.distance_ahead_m - region.distance_ahead_m) < 1e-9
-        and whole.rectangle == region.rectangle
-    )
-    return LookAhead(region, seen_whole, across_px, along_px)
+    return LookAhead(region, False, *metre_px(camera, region.place))
+
+
+def look_ahead_whole(
+    camera: Camera, robot: Robot, classifier: Classifier | None = None
+) -> LookAhead | None:
+    """The same where the image shows all of the footprint, else None."""
+    region = run_region(camera, robot, classifier, config=WHOLE)
+    if isinstance(region, str):
+        return None
+    return LookAhead(region, True, *metre_px(camera, region.place))
 
 
 def metre_px(camera: Camera, place_m: FloatArray) -> tuple[float, float]:
@@ -77,7 +83,7 @@ def metre_px(camera: Camera, place_m: FloatArray) -> tuple[float, float]:
 
 def nearest_seen_m(camera: Camera) -> float | None:
     """X of the nearest terrain straight ahead that the image shows, None where it shows none."""
-    x = np.arange(NEAREST_M, FARTHEST_M, STEP_M)
+    x = np.arange(0.0, FARTHEST_M, STEP_M)
     seen = camera.in_image(camera.ground_to_pixels(np.stack([x, 0 * x], axis=-1)))
     return float(x[seen.argmax()]) if seen.any() else None
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.run import Robot
-from terrain.calibration.look_ahead import LookAhead, look_ahead
+from terrain.calibration.look_ahead import LookAhead, look_ahead_whole
 from terrain.camera import Camera
 from terrain.classification.classifier import Classifier
 
@@ -53,8 +53,8 @@ def suggest_pitch(
         raise ValueError("a camera without a mount has no pitch")
     found = {}
     for pitch_deg in map(float, PITCHES_DEG):
-        ahead = look_ahead(pitched(camera, pitch_deg), robot, classifier)
-        if not isinstance(ahead, str) and ahead.whole:
+        ahead = look_ahead_whole(pitched(camera, pitch_deg), robot, classifier)
+        if ahead is not None:
             found[pitch_deg] = ahead
     if not found:
         return None

@@ -133,7 +133,7 @@ def camera(
     if write:
         _write(run_folder, placed)
     is_new = not lens.is_own or any(value is not None for value in sources.values())
-    click.echo(_next(run_folder, out, placed, is_new=is_new, written=write))
+    click.echo(_next(run_folder, out, placed, model, asks=is_new and not write))
 
 
 def _check_sources(
@@ -207,7 +207,7 @@ def _write(run_folder: Path, placed: "MountSource | None") -> None:
 
 
 def _next(
-    run_folder: Path, out: Path, placed: "MountSource | None", *, is_new: bool, written: bool
+    run_folder: Path, out: Path, placed: "MountSource | None", model: Path | None, *, asks: bool
 ) -> str:
     """What to do next, in one line."""
     verb = f"terrain-odometry camera {run_folder}"
@@ -218,6 +218,7 @@ def _next(
             "--from-motion"
         )
     look = f"look at {out / 'figures'}: do grid and footprint lie where they should?"
-    if is_new and not written:
+    if asks:
         return f"Next: {look} Then the same command with --write puts [camera] into run.toml"
-    return f"Next: {look} Then terrain-odometry run {run_folder} --model MODEL --out results"
+    run = f"terrain-odometry run {run_folder} --model {model or 'MODEL'} --out results"
+    return f"Next: {look} Then {run}"

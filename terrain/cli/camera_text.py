@@ -10,15 +10,13 @@ import numpy as np
 from odometry.run import Robot
 from terrain.calibration.look_ahead import LookAhead, look_ahead, nearest_seen_m
 from terrain.calibration.mount_fit import NAMES
-from terrain.calibration.suggested_mount import suggest_pitch
 from terrain.camera import Camera
+from terrain.cli.camera_advice import advice
 
 if TYPE_CHECKING:
     from terrain.calibration.lens_sources import LensSource
     from terrain.calibration.mount_sources import MountSource
     from terrain.classification.classifier import TerrainClassifier
-
-LARGE_PX = 1.0  # a reprojection error of marks or corners above this is worth a word
 
 
 def print_lens(source: "LensSource") -> None:
@@ -76,7 +74,8 @@ def print_seen(camera: Camera, robot: Robot, classifier: "TerrainClassifier | No
     if classifier is not None:
         _print_model(ahead, classifier)
     if isinstance(ahead, str) or not ahead.whole:
-        _print_suggestion(camera, robot, classifier)
+        for line in advice(camera, robot, classifier):
+            click.echo(f"Suggestion: {line}")
 
 
 def print_written(out: Path, names: Sequence[str]) -> None:
@@ -100,14 +99,14 @@ def _print_boards(source: "LensSource") -> None:
         click.echo(f"    {view.file.name}: {error:.3f} px")
     for file, reason in seen.without.items():
         click.echo(f"    {file.name}: not used, {reason}")
-    for advice in fit.next_photos:
-        click.echo(f"Note: for a better lens, {advice}", err=True)
+    for photos in fit.next_photos:
+        click.echo(f"Note: for a better lens, {photos}", err=True)
 
 
 def _told(name: str, value: float, half: float) -> str:
     if name in NAMES[:3]:
         return f"{value:.3f} m" + (f" +- {half:.3f} (95 %)" if np.isfinite(half) else "")
-    words = f"{np.degrees(value):.2f} degrees"
+    words = f"{round(np.degrees(value), 2) + 0.0:.2f} degrees"
     return words + (f" +- {np.degrees(half):.2f} (95 %)" if np.isfinite(half) else "")
 
 
@@ -135,29 +134,11 @@ def _print_model(ahead: LookAhead | str, classifier: "TerrainClassifier") -> Non
             err=True,
         )
     elif not isinstance(ahead, str):
-        coarser = 1 / (min(ahead.along_px, ahead.across_px) * scale)
+        coarsest = _mm(min(ahead.along_px, ahead.across_px))
         click.echo(
-            f"  The model's patches have {1000 * scale:.3g} mm a pixel; the image there is "
-            f"{coarser:.2g} times as coarse along its coarsest axis."
+            f"  The model's patches have {1000 * scale:.3g} mm a pixel, the image there up to "
+            f"{coarsest} mm."
         )
-
-
-def _print_suggestion(camera: Camera, robot: Robot, classifier: "TerrainClassifier | None") -> None:
-    if camera.mount is None:
-        return
-    found = suggest_pitch(camera, robot, classifier)
-    if found is None:
-        click.echo(
-            "Suggestion: no pitch at this place shows the whole region; mount the camera higher or "
-            "nearer to the front, or use a wider lens."
-        )
-        return
-    click.echo(
-        f"Suggestion: a pitch of {found.suggested_deg:.0f} degrees down "
-        f"({np.radians(found.suggested_deg):.3f} rad; now {np.degrees(camera.mount[4]):.0f}) shows "
-        f"the whole region after {found.ahead.region.distance_ahead_m:.2f} m; so do pitches from "
-        f"{found.least_deg:.0f} to {found.most_deg:.0f} degrees."
-    )
 
 
 def _mm(pixels_per_metre: float) -> str:

@@ -61,5 +61,6 @@ def _blind(sightings: Sequence[Sighting]) -> list[str]:
     words = ", ".join(f"{reason} ({count})" for reason, count in reasons.most_common(3))
     return [
         f"vision named no terrain in any of {len(sightings)} images: {words}; the terrain in force "
-        "never changed. Try terrain-odometry check RUN --model MODEL --picture DIR"
+        "never changed. Try terrain-odometry camera RUN --model MODEL --out DIR, which shows what "
+        "the camera sees and suggests a pitch"
     ]

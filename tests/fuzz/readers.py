@@ -21,7 +21,12 @@ from odometry.run_inputs import inputs_of
 from odometry.simulation.contact.vehicle import read_contact_vehicle
 from odometry.windows.config import WindowConfig
 from odometry.windows.windows import windows_of
+from terrain.calibration.marked_points import read_marked_points
+from terrain.calibration.mount_from_points import mount_from_points
 from terrain.camera import Camera
+from terrain.camera_files.calibration import Lens
+from terrain.camera_files.read import read_calibration
+from terrain.camera_files.transforms import mount_in, read_transforms
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.patches import find_photos, stated_metres_per_pixel
 from terrain.cli.evaluate import _rows
@@ -130,6 +135,7 @@ def readers(folder):
         *_of_runs(folder / "run"),
         *_of_settings(folder),
         *_of_images(folder),
+        *_of_cameras(folder),
         _of_classifier(folder / "terrain.model"),
         _of_manifest(folder / "patches"),
         _of_results(folder / "results"),
@@ -222,6 +228,53 @@ def _of_images(folder):
         yield _reader(
             f"image, {suffix}", file, encoded, bytes_changed, lambda file=file: read_image(file)
         )
+
+
+def _of_cameras(folder):
+    flat = "[501.5, 0.0, 322.25, 0.0, 499.0, 239.0, 0.0, 0.0, 1.0]"
+    lens = "[-0.3, 0.1, 1e-05, -0.002, 0.01]"
+    texts = {
+        "camera_info": "image_width: 640\nimage_height: 480\ncamera_matrix:\n  cols: 3\n"
+        f"  data: {flat}\ndistortion_model: plumb_bob\ndistortion_coefficients:\n  data: {lens}\n",
+        "camchain": "cam0:\n  camera_model: pinhole\n  intrinsics: [400.0, 401.0, 322.0, 239.0]\n"
+        "  distortion_model: equidistant\n  distortion_coeffs: [-0.01, 0.02, -0.01, 0.002]\n"
+        "  resolution: [640, 480]\n  T_cam_imu:\n  - [0, -1, 0, 0.1]\n  - [0, 0, -1, 0.2]\n"
+        "  - [1, 0, 0, 0.3]\n  - [0, 0, 0, 1]\n",
+        "camera XML": f'<?xml version="1.0"?>\n<opencv_storage>\n<size>\n  640 480</size>\n'
+        f'<K type_id="opencv-matrix">\n<data>{flat[1:-1].replace(",", "")}</data></K>\n'
+        f"<D><data>{lens[1:-1].replace(',', '')}</data></D>\n</opencv_storage>\n",
+    }
+    for name, text in texts.items():
+        file = folder / f"{name}.yaml"
+        yield _reader(
+            name,
+            file,
+            text.encode(),
+            text_changed,
+            lambda file=file: read_calibration(file, image_size=(640, 480)),
+        )
+    transforms = folder / "transforms.yaml"
+    level = "['0', '0', '1', '0.1', '-1', '0', '0', '0', '0', '-1', '0', '0.5', '0', '0', '0', '1']"
+    text = f"T_base_footprint__eye:\n  cols: 4\n  data: {level}\n  rows: 4\n"
+    yield _reader(
+        "transforms",
+        transforms,
+        text.encode(),
+        text_changed,
+        lambda: mount_in(read_transforms(transforms), "eye"),
+    )
+    marks = folder / "marks.csv"
+    lens = Lens.of((640, 480), [[400, 0, 320], [0, 400, 240], [0, 0, 1]])
+    camera = Camera.from_mount((640, 480), lens.matrix, [], [0.2, 0, 0.8, 0, 0.7, 0])
+    places = np.array([[0.8, 0.3], [0.8, -0.3], [1.2, 0.0], [1.7, 0.5], [1.7, -0.5]])
+    marked = np.hstack([camera.ground_to_pixels(places), places])
+    rows = [",".join(map(str, row)) for row in marked.tolist()]
+    text = "\n".join(["u,v,x,y", *rows]) + "\n"
+
+    def use_marks():
+        mount_from_points(lens, read_marked_points(marks))
+
+    yield _reader("marks.csv", marks, text.encode(), text_changed, use_marks)
 
 
 def _of_classifier(file):

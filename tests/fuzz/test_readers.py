@@ -18,6 +18,7 @@ NAMES = [
     *("odometry.csv", "pose.csv", "velocity.csv", "images.csv", "truth.csv", "imu.csv", "run.toml"),
     *("parameter set", "velocity modes", "traction modes", "config", "camera", "vehicle", "TUM"),
     *("image, png", "image, jpg", "image, tiff", "image, bmp"),
+    *("camera_info", "camchain", "camera XML", "transforms", "marks.csv"),
     *("classifier", "manifest.csv", "result.json"),
 ]
 

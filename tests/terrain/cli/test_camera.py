@@ -1,32 +1,19 @@
 """The verb `camera`: what it says, what it draws, what it writes, and what it leaves alone."""
 
 import shutil
-import sys
 import tomllib
-from types import SimpleNamespace
 
 import cv2
 import numpy as np
 import pytest
 
 from terrain.classification.classifier import TerrainClassifier
-from terrain.cli.main import main
 from tests.terrain.calibration.rendered import marked
+from tests.terrain.cli.verb_calls import verb
+
+__all__ = ["verb"]
 
 GROUND = np.array([[x, y] for x in (0.4, 0.7, 1.1, 1.7) for y in (-0.6, -0.3, 0.0, 0.25, 0.5)])
-
-
-@pytest.fixture
-def command(monkeypatch, capsys):
-    """Run the verb as a user would: its exit code, and all that it says."""
-
-    def call(*arguments):
-        monkeypatch.setattr(sys, "argv", ["terrain-odometry", *map(str, arguments)])
-        with pytest.raises(SystemExit) as caught:
-            main()
-        return SimpleNamespace(exit_code=caught.value.code, output="".join(capsys.readouterr()))
-
-    return call
 
 
 @pytest.fixture
@@ -60,9 +47,9 @@ def marks_file(world, tmp_path):
     return tmp_path / "marks.csv"
 
 
-def test_the_camera_of_a_run(command, run, tmp_path):
+def test_the_camera_of_a_run(verb, run, tmp_path):
     before = (run / "run.toml").read_bytes()
-    answer = command("camera", run, "--out", tmp_path / "out")
+    answer = verb("camera", run, "--out", tmp_path / "out")
     assert answer.exit_code == 0, answer.output
     assert "fx 120.0, fy 118.0" in answer.output
     assert "pitch 48.70 degrees" in answer.output
@@ -76,15 +63,15 @@ def test_the_camera_of_a_run(command, run, tmp_path):
     assert table == tomllib.loads(before.decode())["camera"]
 
 
-def test_lens_from_a_file_and_mount_from_points(command, run, world, tmp_path):
+def test_lens_from_a_file_and_mount_from_points(verb, run, world, tmp_path):
     """The way of a new user: nothing known, then all of it in run.toml."""
     true = tomllib.loads(without_camera(run))["camera"]
     lens, marks = ros_file(world, tmp_path), marks_file(world, tmp_path)
-    first = command("camera", run, "--out", tmp_path / "one", "--file", lens)
+    first = verb("camera", run, "--out", tmp_path / "one", "--file", lens)
     assert first.exit_code == 0, first.output
     assert "where the camera sits is not known" in first.output
     given = ("--file", tmp_path / "one" / "camera.toml", "--points", marks, "--write")
-    second = command("camera", run, "--out", tmp_path / "two", *given)
+    second = verb("camera", run, "--out", tmp_path / "two", *given)
     assert second.exit_code == 0, second.output
     assert "reprojection error 0." in second.output
     assert "Wrote [camera] of" in second.output
@@ -95,12 +82,12 @@ def test_lens_from_a_file_and_mount_from_points(command, run, world, tmp_path):
     np.testing.assert_array_equal(written["camera"]["matrix"], true["matrix"])
 
 
-def test_the_run_itself(command, run, world, tmp_path):
+def test_the_run_itself(verb, run, world, tmp_path):
     text = (run / "run.toml").read_text()
     mount = str(world.camera["mount"])
     assert mount in text
     (run / "run.toml").write_text(text.replace(mount, "[0.2, 0.0, 0.7, 0.0, 0.5, 0.0]"))
-    answer = command("camera", run, "--out", tmp_path / "out", "--from-motion")
+    answer = verb("camera", run, "--out", tmp_path / "out", "--from-motion")
     assert answer.exit_code == 0, answer.output
     found = tomllib.loads((tmp_path / "out" / "camera.toml").read_text())["camera"]["mount"]
     error = np.abs(np.array(found) - world.camera["mount"])
@@ -112,20 +99,20 @@ def test_the_run_itself(command, run, world, tmp_path):
     assert before["camera"]["mount"][4] == 0.5
 
 
-def test_a_camera_that_misses_the_region(command, run, tmp_path):
+def test_a_camera_that_misses_the_region(verb, run, tmp_path):
     stated = ("--mount", 0.2, 0.0, 0.55, 0.0, -0.6, 0.0)
-    answer = command("camera", run, "--out", tmp_path / "out", *stated)
+    answer = verb("camera", run, "--out", tmp_path / "out", *stated)
     assert answer.exit_code == 0, answer.output
     assert "shows no terrain straight ahead" in answer.output
     assert "would see no region straight ahead" in answer.output
     assert "Suggestion: a pitch of" in answer.output
 
 
-def test_a_model_with_and_without_scale(command, run, training_patches, model_file, tmp_path):
+def test_a_model_with_and_without_scale(verb, run, training_patches, model_file, tmp_path):
     TerrainClassifier().fit(*training_patches).save(tmp_path / "plain.model")
-    plain = command("camera", run, "--out", tmp_path / "a", "--model", tmp_path / "plain.model")
+    plain = verb("camera", run, "--out", tmp_path / "a", "--model", tmp_path / "plain.model")
     assert "Warning: the model has no metric scale" in plain.output
-    metric = command("camera", run, "--out", tmp_path / "b", "--model", model_file)
+    metric = verb("camera", run, "--out", tmp_path / "b", "--model", model_file)
     assert "metric scale" not in metric.output
     assert "patches have 6 mm a pixel" in metric.output
 
@@ -139,34 +126,34 @@ def test_a_model_with_and_without_scale(command, run, training_patches, model_fi
         (("--imu", *"000000"), "--imu needs --file"),
     ],
 )
-def test_options_that_contradict(command, run, tmp_path, options, words):
+def test_options_that_contradict(verb, run, tmp_path, options, words):
     (tmp_path / "a.csv").write_text("u,v,x,y\n")
     made = [tmp_path / "a.csv" if option == "a.csv" else option for option in options]
-    answer = command("camera", run, "--out", tmp_path / "out", *made)
+    answer = verb("camera", run, "--out", tmp_path / "out", *made)
     assert answer.exit_code == 2
     assert words in " ".join(answer.output.split())
 
 
-def test_a_lens_of_another_size(command, run, world, tmp_path):
+def test_a_lens_of_another_size(verb, run, world, tmp_path):
     lens = ros_file(world, tmp_path, image_size=[320, 240])
-    answer = command("camera", run, "--out", tmp_path / "out", "--file", lens)
+    answer = verb("camera", run, "--out", tmp_path / "out", "--file", lens)
     assert answer.exit_code == 1
     assert "multiply fx, fy, cx and cy by 0.5" in answer.output
     assert not (tmp_path / "out").exists()
 
 
-def test_a_mount_is_needed_to_write(command, run, world, tmp_path):
+def test_a_mount_is_needed_to_write(verb, run, world, tmp_path):
     without_camera(run)
     before = (run / "run.toml").read_bytes()
     options = ("--file", ros_file(world, tmp_path), "--write")
-    answer = command("camera", run, "--out", tmp_path / "out", *options)
+    answer = verb("camera", run, "--out", tmp_path / "out", *options)
     assert answer.exit_code == 1
     assert "nothing says where the camera sits" in answer.output
     assert (run / "run.toml").read_bytes() == before
 
 
-def test_nothing_is_known_of_the_lens(command, run, tmp_path):
+def test_nothing_is_known_of_the_lens(verb, run, tmp_path):
     without_camera(run)
-    answer = command("camera", run, "--out", tmp_path / "out")
+    answer = verb("camera", run, "--out", tmp_path / "out")
     assert answer.exit_code == 1
     assert "give a calibration file (--file)" in answer.output
