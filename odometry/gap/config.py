@@ -57,8 +57,8 @@ class GapConfig:
     uneven, uneven_probability : float
         Standard deviation of the strength of a name between pieces of the runs, as a share of it,
         above which it is no one strength; and the probability of such pieces by chance below
-        which that counts. Right names differ by 0.16 at most, a constant delay in the place of a
-        clock that was set by 0.37.
+        which that counts. Right names differ by 0.16 at most in simulation and by 0.25 on a real
+        recording, a constant delay in the place of a clock that was set by 0.37.
     base_probability : float
         Of a base that moves as far within its calibration by chance: less is a base that left it.
     brought_back : float
@@ -103,7 +103,7 @@ class GapConfig:
     left_over: float = 1.5
     mostly_closed: float = 0.8
     contact_closed: float = 0.4
-    uneven: float = 0.25
+    uneven: float = 0.3
     uneven_probability: float = 0.001
     base_probability: float = 0.001
     brought_back: float = 0.25
