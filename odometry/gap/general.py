@@ -41,7 +41,7 @@ def general_candidates(
         if name in WHAT_WENT_BEFORE:
             continue
         if name in ANGLES:
-            terms = _every(COMPONENTS, 2 * HARMONICS)
+            terms = _every(COMPONENTS, 2 * HARMONICS + 1)
             found += [Residual(name, terms, by) for by in ("", "speed")]
             continue
         if name in OF_TREADS:

@@ -46,7 +46,7 @@ def test_of_every_angle_with_and_without_the_speed(found):
         both = [one for one in found if one.variable == name]
         assert [one.by for one in both] == ["", "speed"]
         for one in both:
-            assert len(set(one.terms)) == len(one.terms) == len(COMPONENTS) * 2 * HARMONICS
+            assert len(set(one.terms)) == len(one.terms) == len(COMPONENTS) * (2 * HARMONICS + 1)
 
 
 def test_of_every_other_variable_at_knots_within_its_values(found, scenes, known):
