@@ -10,6 +10,7 @@ OUTAGE_S, OUTAGE_PERIODS = 2.0, 10.0  # longer than both is an outage
 FROZEN_TRAVEL_M = 0.1  # of the wheels, or ...
 FROZEN_TURN_RAD = 0.1  # ... of the gyroscope, since a pose that is repeated to the last digit
 FROZEN_S = 1.0  # for an event; a pose or two that were written twice are none
+NOTHING = math.nan, math.nan, math.nan
 
 
 class PoseWatch(NamedTuple):
@@ -36,42 +37,43 @@ class PoseWatch(NamedTuple):
     turn_rad: float = 0.0
 
 
-def moved(watch: PoseWatch, travel_m: float, turn_rad: float) -> PoseWatch:
-    """The watch after a step of the wheels and the gyroscope."""
-    pose, changed_s, seen_s, fresh_s, period_s, gone_m, turned_rad = watch
-    gone_m, turned_rad = gone_m + travel_m, turned_rad + turn_rad
-    return PoseWatch(pose, changed_s, seen_s, fresh_s, period_s, gone_m, turned_rad)
-
-
 def watched(
-    watch: PoseWatch, pose: FloatArray, stamp_s: float
-) -> tuple[PoseWatch, bool, tuple[FilterEvent, ...]]:
-    """The watch after a measured pose (3,), whether that is to be used, and events that ended."""
-    x, y, yaw = cells = tuple(pose.tolist())
+    watch: PoseWatch, pose: FloatArray | None, stamp_s: float, travel_m: float, turn_rad: float
+) -> tuple[PoseWatch, FloatArray | None, tuple[FilterEvent, ...]]:
+    """The watch after a step, the pose (3,) to use at its end, and events that ended there.
+
+    Parameters
+    ----------
+    watch : PoseWatch
+    pose : (3,) or None
+        Measured at the end.
+    stamp_s : float
+        Of the end.
+    travel_m, turn_rad : float
+        Of the wheels and of the gyroscope over the step.
+    """
+    last, changed_s, seen_s, fresh_s, period_s, gone_m, turned_rad = watch
+    gone_m, turned_rad = gone_m + travel_m, turned_rad + turn_rad
+    cells = NOTHING if pose is None else tuple(pose.tolist())
+    x, y, yaw = cells
     if math.isnan(x) and math.isnan(y) and math.isnan(yaw):
-        return watch, False, ()
-    if watch.pose is not None and _are_same(cells, watch.pose):
-        frozen = watch.travel_m > FROZEN_TRAVEL_M or abs(watch.turn_rad) > FROZEN_TURN_RAD
-        fresh_s = watch.fresh_s if frozen else stamp_s
-        after = PoseWatch(
-            cells,
-            watch.changed_s,
-            stamp_s,
-            fresh_s,
-            watch.period_s,
-            watch.travel_m,
-            watch.turn_rad,
-        )
-        return after, not frozen, ()
+        after = PoseWatch(last, changed_s, seen_s, fresh_s, period_s, gone_m, turned_rad)
+        return after, None, ()
+    if last is None:
+        return PoseWatch(cells, stamp_s, stamp_s, stamp_s), pose, ()
+    if _are_same(cells, last):
+        frozen = gone_m > FROZEN_TRAVEL_M or abs(turned_rad) > FROZEN_TURN_RAD
+        fresh_s = fresh_s if frozen else stamp_s
+        after = PoseWatch(cells, changed_s, stamp_s, fresh_s, period_s, gone_m, turned_rad)
+        return after, None if frozen else pose, ()
+    away_s = stamp_s - seen_s
     events: tuple[FilterEvent, ...] = ()
-    period_s = watch.period_s
-    if watch.pose is not None:
-        away_s = stamp_s - watch.seen_s
-        if away_s > OUTAGE_S or watch.seen_s > watch.fresh_s:
-            events = ongoing(watch, stamp_s)
-        if away_s <= max(OUTAGE_S, OUTAGE_PERIODS * period_s) or period_s == 0:
-            period_s = away_s if period_s == 0 else 0.9 * period_s + 0.1 * away_s
-    return PoseWatch(cells, stamp_s, stamp_s, stamp_s, period_s), True, events
+    if away_s > OUTAGE_S or seen_s > fresh_s:
+        ended = PoseWatch(last, changed_s, seen_s, fresh_s, period_s, gone_m, turned_rad)
+        events = ongoing(ended, stamp_s)
+    if away_s <= max(OUTAGE_S, OUTAGE_PERIODS * period_s) or period_s == 0:
+        period_s = away_s if period_s == 0 else 0.9 * period_s + 0.1 * away_s
+    return PoseWatch(cells, stamp_s, stamp_s, stamp_s, period_s), pose, events
 
 
 def ongoing(watch: PoseWatch, stamp_s: float) -> tuple[FilterEvent, ...]:

@@ -96,7 +96,7 @@ def begun(frame: Frame, belief: Gaussian) -> SensorWatch:
     """At the first frame."""
     poses = PoseWatch()
     if frame.pose is not None:
-        poses = pose_watch.watched(poses, frame.pose, frame.stamp_s)[0]
+        poses = pose_watch.watched(poses, frame.pose, frame.stamp_s, 0.0, 0.0)[0]
     return SensorWatch(tread_watch.begun(frame, belief), GyroscopeWatch(), poses)
 
 
@@ -150,24 +150,24 @@ def sensed(
         )
         if watch.hold is not None:
             events += gyroscope_hold.ended(watch.hold, begin_s)
-    poses = _carried(watch.poses, speeds_m_s, yaw_rate, frame.stamp_s - begin_s)
-    pose = frame.pose
-    if pose is not None:
-        poses, use, of_poses = pose_watch.watched(poses, pose, frame.stamp_s)
-        pose, events = pose if use else None, events + of_poses
+    travel_m, turn_rad = _moved(speeds_m_s, yaw_rate, frame.stamp_s - begin_s)
+    poses, pose, of_poses = pose_watch.watched(
+        watch.poses, frame.pose, frame.stamp_s, travel_m, turn_rad
+    )
+    events += of_poses
     gap_since_s, of_gap = _gap(watch.gap_since_s, frame, begin_s)
     after = SensorWatch(watch.treads, gyroscope, poses, gap_since_s, hold, watch.bias, watch.rest)
     return Sensed(after, begin_s, yaw_rate, pose, events + of_gap, belief)
 
 
-def _carried(poses: PoseWatch, speeds_m_s: FloatArray, yaw_rate: float, step_s: float) -> PoseWatch:
-    """The watch of poses after a step; what is not known of the motion counts as none."""
-    if poses.pose is None:
-        return poses
+def _moved(speeds_m_s: FloatArray, yaw_rate: float, step_s: float) -> tuple[float, float]:
+    """Travel of the wheels [m] and turn [rad] over a step; what is not known counts as none."""
     left, right = speeds_m_s.tolist()
     travel_m, turn_rad = (abs(left) + abs(right)) / 2 * step_s, yaw_rate * step_s
-    travel_m = 0.0 if math.isnan(travel_m) else travel_m
-    return pose_watch.moved(poses, travel_m, 0.0 if math.isnan(turn_rad) else turn_rad)
+    return (
+        0.0 if math.isnan(travel_m) else travel_m,
+        0.0 if math.isnan(turn_rad) else turn_rad,
+    )
 
 
 def _gap(since_s: float, frame: Frame, begin_s: float) -> tuple[float, Events]:
