@@ -135,6 +135,11 @@ class Effect(ABC):
         """Name, form and course: what one candidate is and no other."""
         return self.name, self.form, self.course
 
+    @property
+    def searched(self) -> int:
+        """Numbers that were searched beside the parameters, and pay as they do."""
+        return 0
+
     def constants(self) -> dict[str, float]:
         """The numbers of `constant_names` that are known."""
         stated = {name: getattr(self, name) for name in self.constant_names}

@@ -29,7 +29,13 @@ from odometry.effects.terrain import NewIcrs, Terrain
 from odometry.effects.time_course import Course, FromAMoment
 from odometry.effects.time_offset import ClockDrift, TimeOffset
 from odometry.effects.traction_loss import TractionLoss
-from odometry.effects.tread_slip import SlipByAcceleration, SlipByDirection, SlipBySpeed
+from odometry.effects.tread_slip import (
+    SlipByAcceleration,
+    SlipByDirection,
+    SlipBySpeed,
+    SlipOfLeftTread,
+    SlipOfRightTread,
+)
 from odometry.effects.wheel_scale import WheelScale
 from odometry.errors import ParameterError
 from odometry.parameter_covariance import finite_number
@@ -44,6 +50,8 @@ EFFECTS: tuple[type[Effect], ...] = (
     SlipBySpeed,
     SlipByDirection,
     SlipByAcceleration,
+    SlipOfLeftTread,
+    SlipOfRightTread,
     LateralSkid,
     Curvature,
     TractionLoss,

@@ -8,12 +8,13 @@ from odometry.effects.time_course import (
     Course,
     FromAMoment,
     Gradual,
+    InBursts,
     Spans,
 )
 from odometry.errors import ParameterError
 from odometry.parameter_covariance import finite_number
 
-COURSES = (FromAMoment.name, Gradual.name)
+COURSES = (FromAMoment.name, Gradual.name, InBursts.name)
 
 
 def course_of(settings: dict[str, Any], where: str) -> Course:
@@ -29,6 +30,9 @@ def course_of(settings: dict[str, Any], where: str) -> Course:
         raise ParameterError(f"{where}: course = {name!r}, expected one of {', '.join(COURSES)}")
     if name == "gradual":
         return Gradual(finite_number(settings.pop("full_s", UNBOUNDED_S), f"{where}: full_s"))
+    if name == InBursts.name:
+        runs = _list(settings.pop("events_s", []), f"{where}: events_s")
+        return InBursts(tuple(_spans(events, f"{where}: events_s") for events in runs))
     return FromAMoment(
         _spans(settings.pop("observed_s", [[0.0, UNBOUNDED_S]]), f"{where}: observed_s")
     )

@@ -56,6 +56,11 @@ class _InCourse(Effect):
         own, course = self._split(values)
         return self.inner.is_meant(own) and self.in_time.is_meant(course)
 
+    @property
+    def searched(self) -> int:
+        """See `Effect.searched`."""
+        return self.in_time.searched
+
     def constants(self) -> dict[str, float]:
         """See `Effect.constants`."""
         return self.inner.constants()

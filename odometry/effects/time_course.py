@@ -1,4 +1,4 @@
-"""How much of an effect there is over time: from a moment on, or gradually.
+"""How much of an effect there is over time: from a moment on, gradually, or in bursts.
 
 The course of each run is its own: a moment of one run says nothing of another.
 """
@@ -50,6 +50,11 @@ class Course(ABC):
     def settings(self) -> dict[str, Any]:
         """What a parameter set must hold to make it again."""
         return {}
+
+    @property
+    def searched(self) -> int:
+        """Numbers that were searched beside the parameters."""
+        return 0
 
     @abstractmethod
     def share(self, values: FloatArray, inputs: Inputs) -> FloatArray:
@@ -134,6 +139,47 @@ class Gradual(Course):
         """See `Course.share`; it grows on after `full_s`."""
         time_s, steps_s = _samples(inputs)
         return np.asarray((time_s + steps_s / 2) / self.full_s)
+
+
+@dataclass(frozen=True)
+class InBursts(Course):
+    """All of it within events of each run, nothing between them.
+
+    Attributes
+    ----------
+    events_s : tuple of tuples of (float, float)
+        Begin and end of each event in run time, run by run; runs beyond these have none.
+    """
+
+    events_s: tuple[Spans, ...] = ((),)
+
+    name = "in_bursts"
+
+    @property
+    def searched(self) -> int:
+        """Numbers that say when each event begins and ends."""
+        return sum(2 * len(events) for events in self.events_s)
+
+    def with_events(self, events_s: Spans, number: int) -> "InBursts":
+        """The same with more events of the run of a number."""
+        runs = [*self.events_s, *[()] * (number + 1 - len(self.events_s))]
+        runs[number] = tuple(sorted((*runs[number], *events_s)))
+        return InBursts(tuple(runs))
+
+    def settings(self) -> dict[str, Any]:
+        """When the events are."""
+        return {"events_s": [[list(event) for event in events] for events in self.events_s]}
+
+    def share(self, values: FloatArray, inputs: Inputs) -> FloatArray:  # noqa: ARG002
+        """Shares (N,): a sample in which an event begins or ends is shared out."""
+        time_s, steps_s = _samples(inputs)
+        numbers = run_numbers(inputs)
+        inside = np.zeros_like(time_s)
+        for number, events in enumerate(self.events_s):
+            for begin_s, end_s in events:
+                within_s = np.minimum(time_s + steps_s, end_s) - np.maximum(time_s, begin_s)
+                inside += (numbers == number) * np.clip(within_s / steps_s, 0.0, 1.0)
+        return np.asarray(np.minimum(inside, 1.0))
 
 
 def _samples(inputs: Inputs) -> tuple[FloatArray, FloatArray]:

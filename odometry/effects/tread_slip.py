@@ -3,8 +3,9 @@
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base import CommandEffect, EffectParameter
+from odometry.effects.base import CommandEffect, Effect, EffectParameter
 from odometry.effects.held_commands import held_spans
+from odometry.effects.recorded import Recorded
 from odometry.models.inputs import Inputs
 
 SMOOTHED_S = 0.2  # over which the acceleration of a tread is taken
@@ -89,3 +90,47 @@ class SlipByAcceleration(TreadSlip):
                 )
                 changed[rows, tread] = (ahead - behind) / SMOOTHED_S
         return np.asarray(speeds * np.clip(1 - values[0] * changed, 0.0, 2.0))
+
+
+class SlipOfOneTread(TreadSlip):
+    """One tread loses a share of its speed; always there it is a wheel of another size."""
+
+    equation = "v -> kept v, of one tread"
+    looks_like = "sudden turns to one side, while both treads run as before"
+    remedy = "look at this tread, its brake and its track at these times"
+    side: int
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`."""
+        return (EffectParameter("kept", "", 0.0, 1.5, 1.0, 0.01, 1.0),)
+
+    @classmethod
+    def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:  # noqa: ARG003 - of the interface
+        """None: its events are searched where nothing that lasts explains the gap."""
+        return ()
+
+    def is_meant(self, values: FloatArray) -> bool:
+        """Slip is no gain."""
+        return bool(values[0] <= 1.0)
+
+    def tread_speeds(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """See `CommandEffect.tread_speeds`."""
+        factors = np.where(np.arange(2) == self.side, values[0], 1.0)
+        return np.asarray(inputs.tread_speeds_m_s * factors)
+
+
+class SlipOfLeftTread(SlipOfOneTread):
+    """See `SlipOfOneTread`."""
+
+    form = "left_tread"
+    in_words = "slip of the left tread"
+    side = 0
+
+
+class SlipOfRightTread(SlipOfOneTread):
+    """See `SlipOfOneTread`."""
+
+    form = "right_tread"
+    in_words = "slip of the right tread"
+    side = 1

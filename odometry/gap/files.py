@@ -13,6 +13,7 @@ from odometry.effects.in_course import lasting
 from odometry.effects.reference_outliers import ReferenceOutliers
 from odometry.effects.residual_of_each_run import ResidualOfEachRun
 from odometry.effects.terrain import SHIFTED, Terrain
+from odometry.effects.time_course import InBursts
 from odometry.effects.time_offset import TimeOffset
 from odometry.gap.locate import Region
 from odometry.gap.moved import moves_of
@@ -91,14 +92,14 @@ def extended_model(result: GapResult) -> ParameterSet:
 
     Terrains whose ICRs and slip differ are tables of their own; all other effects stand in each,
     as they were at the end of their course: a moment of one run says nothing of the next, nor do
-    coefficients that are each run's own.
+    coefficients or events that are each run's own.
     """
     model = result.base.model
     names = [parameter.name for parameter in model.parameters]
     effects = tuple(
         effect_table(lasting(added))
         for added in with_latency(result)
-        if not isinstance(added.effect, OF_ONE_RUN)
+        if not isinstance(added.effect, OF_ONE_RUN) and added.effect.course != InBursts.name
     )
     words = " and ".join(added.effect.name for added in result.added) or "no effect"
     terrains = {}

@@ -54,8 +54,8 @@ class Fitted:
 
     @property
     def freedom(self) -> int:
-        """Parameters of the effects."""
-        return sum(len(added.values) for added in self.effects)
+        """Parameters of the effects, and what else was searched of them."""
+        return sum(len(added.values) + added.effect.searched for added in self.effects)
 
     @property
     def cost(self) -> float:

@@ -16,7 +16,7 @@ from odometry.gap.general import general_candidates
 from odometry.gap.own_moments import with_own_moments
 from odometry.gap.search import Search
 from odometry.gap.statistic import Gap, gap_of
-from odometry.gap.unnamed import grown, last_of_each_run, with_course
+from odometry.gap.unnamed import grown, in_bursts, last_of_each_run, with_course
 from odometry.gap.verdict import (
     base_left_calibration,
     closes_held_out,
@@ -78,11 +78,14 @@ class _Naming(Search):
     def that_stand(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
         """The effects that close the gap where they were not fitted, and leave noise alone.
 
-        Where no name does, smooth functions do as far as they can; what they leave may follow a
-        course in time that each run has of its own.
+        Where no name does, one in bursts may; else smooth functions do as far as they can, and
+        what they leave may follow a course in time that each run has of its own.
         """
         found = self._less_doubtful(self._of_their_form(found, smooth))
-        found = self._standing(found if _named(found) else grown(self, found), smooth)
+        if not _named(found):
+            bursts, smooth_ones = in_bursts(self, found), grown(self, found)
+            found = bursts if bursts.steps and bursts.cost < smooth_ones.cost else smooth_ones
+        found = self._standing(found, smooth)
         if not _named(found) and (found.steps or self.unexplained() or self._is_above()):
             found = self._standing(with_course(self, found), smooth)
         refused = tuple(one for name, one in self.refusals.items() if name not in found.names)

@@ -10,6 +10,7 @@ from odometry.effects.corrected import Added
 from odometry.effects.in_course import CommandsInCourse, MotionInCourse, in_course
 from odometry.effects.residual_of_each_run import ResidualOfEachRun
 from odometry.effects.time_course import FromAMoment
+from odometry.gap.bursts import is_in_bursts, with_events_of_run
 from odometry.gap.calibration import Calibration
 from odometry.gap.own_values import with_values_of_run
 from odometry.gap.statistic import squared_errors
@@ -35,8 +36,11 @@ def with_own_moments(
 
     A moment, and coefficients, are searched on every other window of a run, and judged on the
     rest. Pieces of the fitted runs themselves know theirs, and are judged whole, as all are where
-    nothing is a run's own.
+    nothing is a run's own. Events of a burst are searched on the poses within the windows, and
+    judged by those at their ends.
     """
+    for scene in held_out if any(is_in_bursts(one.effect) for one in effects) else ():
+        effects = with_events_of_run(base, effects, scene, calibration)
     known = {scene.run.folder for scene in fitted}
     others = [scene for scene in held_out if scene.run.folder not in known]
     begins = [place for place, one in enumerate(effects) if _begins(one)]

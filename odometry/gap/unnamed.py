@@ -7,6 +7,7 @@ import numpy as np
 
 from odometry.effects.residual import Residual
 from odometry.effects.residual_of_each_run import ResidualOfEachRun
+from odometry.gap.bursts import burst_effects
 from odometry.gap.contest import Judged, judge, penalty
 from odometry.gap.course import best_course
 from odometry.gap.explanation import Explanation
@@ -15,9 +16,37 @@ from odometry.gap.general import single_candidates
 from odometry.gap.measured import at_fewer_poses
 from odometry.gap.own_values import with_values_of_each_run
 from odometry.gap.search import Search
+from odometry.gap.verdict import leaves_noise
 
 POSES = 10  # of a window, where smooth functions are chosen
 PROMISING = 2  # of them that are fitted in full
+MOST_BURSTS = 2  # effects: each tread may have its own
+
+
+def in_bursts(search: Search, found: Explanation) -> Explanation:
+    """Effects in bursts alone, added in turn while they earn a name.
+
+    No steps where none does, or where they leave what is not noise: as many events as it takes
+    close much of anything.
+    """
+    nothing = found = replace(found, steps=())
+    while len(found.steps) < MOST_BURSTS and search.has_excess(found.fitted):
+        taken = {effect.key for effect in found.effects}
+        offered = burst_effects(search.fitter, found.fitted)
+        left = [one for one in offered if one.key not in taken]
+        judged = judge(search.fitter, found.fitted, left, search.config, search.progress)
+        best = search.best_earner(judged, found.fitted)
+        if best is None:
+            break
+        contests = {**found.contests, best.effect.name: tuple(judged)}
+        found = replace(found.with_step(best), contests=contests)
+    excess = max(nothing.fitted.cost - search.fitter.measured.expected, 1.0)
+    closed = (nothing.fitted.cost - found.fitted.cost) / excess
+    spread = search.fitter.spread(found.fitted)
+    reason = leaves_noise(spread, closed, search.config.left_over, float("inf"))
+    for effect in found.effects if reason else ():
+        search.refuse(effect, reason)
+    return nothing if reason else found
 
 
 def grown(search: Search, found: Explanation) -> Explanation:

@@ -5,6 +5,7 @@ from pathlib import Path
 from odometry.gap.closed import Share, held_out_share
 from odometry.gap.result import GapResult
 from odometry.gap.words import sentences
+from odometry.report.gap_events import event_grids
 from odometry.report.gap_figures import closing_picture, evidence_picture, time_picture
 from odometry.report.gap_map import map_picture
 from odometry.report.gap_rollouts import rollout_pictures
@@ -80,7 +81,9 @@ def _where(result: GapResult, folder: Path) -> list[Grid | Picture]:
 
 
 def _effects(result: GapResult) -> list[Grid]:
-    return [effect_grid(result), parameter_grid(result)] if result.effects else []
+    if not result.effects:
+        return []
+    return [effect_grid(result), parameter_grid(result), *event_grids(result)]
 
 
 def _evidence(result: GapResult, folder: Path, share: Share | None) -> list[Grid | Picture]:

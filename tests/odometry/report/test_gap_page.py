@@ -8,7 +8,11 @@ import pytest
 
 from odometry.effects.corrected import Added
 from odometry.effects.history import History
+from odometry.effects.in_course import in_course
+from odometry.effects.reference_outliers import ReferenceOutliers
 from odometry.effects.residual_of_each_run import ResidualOfEachRun
+from odometry.effects.time_course import InBursts
+from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
 from odometry.gap.general import general_candidates
 from odometry.gap.locate import Location, Predictor
@@ -16,6 +20,7 @@ from odometry.gap.quantities import with_interval
 from odometry.gap.statistic import gap_of, squared_errors
 from odometry.gap.variables import Variable
 from odometry.gap.words import sentences
+from odometry.report.gap_events import event_grids
 from odometry.report.gap_figures import rolling_rms
 from odometry.report.gap_map import binned_rms, scale_of
 from odometry.report.gap_page import write_gap_report
@@ -227,3 +232,17 @@ def test_where_nothing_was_added_there_is_no_after(none_result, scaled_result):
     assert list(scaled_result.stages) == ["before", "after"]
     scene = none_result.holdout_scenes[0]
     assert list(rollouts(none_result, scene)) == [MEASURED_NAME, "before"]
+
+
+def test_events_are_listed_run_by_run(scaled_result):
+    (scale, *others) = scaled_result.effects
+    bursts = in_course(WheelScale(), InBursts((((1.0, 2.04),), ((4.0, 5.0), (8.5, 9.25)))))
+    jumps = ReferenceOutliers(((3.0, 7.0),))
+    effects = [
+        replace(scale, added=Added(effect, scale.added.values)) for effect in (bursts, jumps)
+    ]
+    first, second = event_grids(replace(scaled_result, effects=(*effects, *others)))
+    assert [row[1] for row in first.rows] == ["1.0 to 2.0", "4.0 to 5.0; 8.5 to 9.2"]
+    assert first.rows[0][0] == "meadow <1>"
+    assert [row[1] for row in second.rows] == ["3.0; 7.0"]
+    assert event_grids(scaled_result) == []
