@@ -19,7 +19,7 @@ from odometry.gap.search import Search
 from odometry.gap.verdict import leaves_noise
 
 POSES = 10  # of a window, where smooth functions are chosen
-PROMISING = 2  # of them that are fitted in full
+PROMISING = 2  # of them that are fitted in full at most
 MOST_BURSTS = 2  # effects: each tread may have its own
 
 
@@ -58,13 +58,21 @@ def grown(search: Search, found: Explanation) -> Explanation:
     while len(found.steps) < config.most_smooth and search.has_excess(found.fitted):
         taken = {effect.key for effect in found.effects}
         left = [one for one in candidates if one.key not in taken]
-        promising = _most_promising(coarse, found.fitted, left)
-        judged = judge(fitter, found.fitted, promising, config, search.progress)
-        best = search.best_earner(judged, found.fitted)
+        best = _first_earner(search, found.fitted, _most_promising(coarse, found.fitted, left))
         if best is None:
             break
         found = found.with_step(best)
     return found
+
+
+def _first_earner(search: Search, before: Fitted, candidates: Sequence[Residual]) -> Judged | None:
+    """The first of some that earns its place: in full, they seldom change their order."""
+    for one in candidates:
+        judged = judge(search.fitter, before, [one], search.config, search.progress)
+        best = search.best_earner(judged, before)
+        if best is not None:
+            return best
+    return None
 
 
 def _most_promising(
