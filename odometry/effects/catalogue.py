@@ -21,7 +21,7 @@ from odometry.effects.inertia_icr import InertiaByIndices
 from odometry.effects.lateral_skid import LateralSkid
 from odometry.effects.lever_arm import LeverArm
 from odometry.effects.reference_fault import Compass
-from odometry.effects.reference_outliers import ReferenceOutliers
+from odometry.effects.reference_outliers import FrozenPoses, ReferenceOutliers
 from odometry.effects.residual import Residual
 from odometry.effects.slope_contact import SlopeByContact
 from odometry.effects.slope_icr import SlopeByIcr
@@ -68,7 +68,7 @@ EFFECTS: tuple[type[Effect], ...] = (
     Compass,
     GyroscopeError,
 )
-KNOWN: tuple[type[Effect], ...] = (*EFFECTS, ReferenceOutliers, Residual, History)
+KNOWN: tuple[type[Effect], ...] = (*EFFECTS, ReferenceOutliers, FrozenPoses, Residual, History)
 BY_FORM = {(effect.name, effect.form): effect for effect in KNOWN}
 
 

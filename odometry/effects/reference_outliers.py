@@ -46,3 +46,21 @@ class ReferenceOutliers(MeasurementEffect):
     def settings(self) -> dict[str, Any]:
         """See `Effect.settings`."""
         return {"stamps_s": [list(stamps) for stamps in self.stamps_s]}
+
+
+@dataclass(frozen=True)
+class FrozenPoses(ReferenceOutliers):
+    """Poses that repeat the one before to every digit, while the treads run.
+
+    Attributes
+    ----------
+    stamps_s : tuple of tuples of float
+        Run times of the poses that were left out, run by run.
+    """
+
+    form = "frozen"
+    in_words = "poses of the reference that repeat the last one"
+    equation = "pose -> the last pose, for a while"
+    source = "a tracker that lost its target and says nothing of it"
+    looks_like = "a robot that stands while its treads run, and then jumps"
+    remedy = "leave these poses out, or have the reference say when it has no new one"

@@ -1,10 +1,10 @@
-"""Single poses of the reference that are far off, found before anything is fitted.
+"""Poses of the reference that are far off or repeat the last, found before anything is fitted.
 
 What the poses drift away from the treads is a slow curve, whatever effect is missing: a pose that
 stands off the median of its neighbours on that curve has jumped there and back.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,7 +14,7 @@ from scipy.stats import binomtest, fisher_exact
 from odometry.arrays import BoolArray, FloatArray
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
-from odometry.effects.reference_outliers import ReferenceOutliers
+from odometry.effects.reference_outliers import FrozenPoses, ReferenceOutliers
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import sure_sum
 from odometry.gap.pieces import pieces
@@ -26,18 +26,19 @@ from odometry.windows.robust import NORMAL
 NEIGHBOURS = 7  # poses of a median: up to three off in a row do not move it
 PLACES = 2  # numbers that say where a pose is
 LEAST_SIGMA_M = 1e-3  # of a reference
+MOVED_M = 5e-3  # less since the last pose is rest
 NINE_IN_TEN = 2.146  # standard deviations within which nine in ten of normal places lie
 
 
 @dataclass(frozen=True)
 class Isolated:
-    """Poses of one run that stand alone.
+    """Poses of one run that are no measurement of its place.
 
     Attributes
     ----------
     off : (M,) of bool
     distances_m : (M,)
-        Of each pose from the median of its neighbours, drift taken off.
+        By which each is off.
     stamps_s : (M,)
         Run time.
     sigmas : (M,)
@@ -52,7 +53,31 @@ class Isolated:
 
 def isolated(scene: DenseWindows, base: Base, config: GapConfig) -> Isolated:
     """Poses that are far off their neighbours, of a run as `base` drives it."""
+    distances_m, sigma_m = _off_neighbours(_drift(scene, base))
+    sigmas = distances_m / sigma_m
+    return Isolated(sigmas > config.outlier_sigmas, distances_m, scene.pose_s, sigmas)
+
+
+def repeated(scene: DenseWindows, base: Base, config: GapConfig) -> Isolated:  # noqa: ARG001
+    """Poses that are those before them to every digit, while the treads run."""
     drift = _drift(scene, base)
+    same = np.append(False, (np.diff(scene.poses, axis=0) == 0).all(axis=1))
+    last_new = np.maximum.accumulate(np.where(same, 0, np.arange(len(same))))
+    distances_m = np.hypot(*(drift - drift[last_new]).T)
+    moving = distances_m > MOVED_M
+    return Isolated(
+        same & moving, distances_m, scene.pose_s, distances_m / _off_neighbours(drift)[1]
+    )
+
+
+KINDS: tuple[tuple[type[ReferenceOutliers], Callable[..., Isolated]], ...] = (
+    (FrozenPoses, repeated),
+    (ReferenceOutliers, isolated),
+)
+
+
+def _off_neighbours(drift: FloatArray) -> tuple[FloatArray, float]:
+    """Distances (M,) from the median of the neighbours [m], and their standard deviation."""
     near = [median_filter(part, NEIGHBOURS, mode="nearest") for part in drift.T]
     off = drift - np.stack(near, axis=-1)
     distances_m = np.hypot(*off.T)
@@ -61,8 +86,7 @@ def isolated(scene: DenseWindows, base: Base, config: GapConfig) -> Isolated:
         float(np.quantile(distances_m, 0.9)) / NINE_IN_TEN,
         LEAST_SIGMA_M,
     )
-    sigmas = distances_m / sigma_m
-    return Isolated(sigmas > config.outlier_sigmas, distances_m, scene.pose_s, sigmas)
+    return distances_m, sigma_m
 
 
 def _drift(scene: DenseWindows, base: Base) -> FloatArray:
@@ -77,7 +101,7 @@ def _drift(scene: DenseWindows, base: Base) -> FloatArray:
 
 @dataclass(frozen=True)
 class Outliers:
-    """Single poses of measured and held-out runs that are far off.
+    """Poses of measured and held-out runs that are no measurement.
 
     Attributes
     ----------
@@ -108,12 +132,26 @@ def outliers_of(
 ) -> Outliers | None:
     """Outliers of the runs; None where the measured have no more of them than the calibration.
 
-    By Fisher's exact test.
+    By Fisher's exact test; of poses that repeat the last one, else of single ones far off.
     """
-    found, usual, others = (
-        tuple(isolated(scene, base, config) for scene in of)
-        for of in (measured, calibration, held_out)
-    )
+    for kind, find in KINDS:
+        found, usual, others = (
+            tuple(find(scene, base, config) for scene in of)
+            for of in (measured, calibration, held_out)
+        )
+        outliers = _more_than_usual(kind, found, usual, others, config)
+        if outliers is not None:
+            return outliers
+    return None
+
+
+def _more_than_usual(
+    kind: type[ReferenceOutliers],
+    found: tuple[Isolated, ...],
+    usual: tuple[Isolated, ...],
+    others: tuple[Isolated, ...],
+    config: GapConfig,
+) -> Outliers | None:
     counts = [[int(one.off.sum()), int((~one.off).sum())] for one in (*found, *usual)]
     table = [np.sum(of, axis=0) for of in (counts[: len(found)], counts[len(found) :])]
     count, rest = map(int, table[0])
@@ -126,7 +164,7 @@ def outliers_of(
     stamps = tuple(tuple(one.stamps_s[one.off].tolist()) for one in found)
     size_m = float(np.sqrt(np.mean(distances_m**2)))
     return Outliers(
-        Added(ReferenceOutliers(stamps), np.array([count / (count + rest), size_m])),
+        Added(kind(stamps), np.array([count / (count + rest), size_m])),
         np.array([share.low, distances_m.min()]),
         np.array([share.high, distances_m.max()]),
         float(np.sum(squares - PLACES * np.log(count + rest))),
@@ -146,7 +184,7 @@ def cleaned_runs(
 
 
 def without(run: Run, found: Isolated) -> Run:
-    """The run without the poses that stand alone."""
+    """The run without these poses."""
     if run.pose is None:
         return run
     stamps_s = run.pose.stamps_s - run.odometry.stamps_s[0]

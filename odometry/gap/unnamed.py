@@ -12,7 +12,7 @@ from odometry.gap.contest import Judged, judge, penalty
 from odometry.gap.course import best_course
 from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitted, Fitter
-from odometry.gap.general import single_candidates
+from odometry.gap.general import general_candidates, single_candidates
 from odometry.gap.measured import at_fewer_poses
 from odometry.gap.own_values import with_values_of_each_run
 from odometry.gap.search import Search
@@ -50,9 +50,13 @@ def in_bursts(search: Search, found: Explanation) -> Explanation:
 
 
 def grown(search: Search, found: Explanation) -> Explanation:
-    """Smooth functions alone, each of one variable to one component, the best first."""
+    """Smooth functions alone, each of one variable, the best first."""
     fitter, config = search.fitter, search.config
-    candidates = single_candidates(fitter.measured.scenes, fitter.calibration.base, config)
+    scenes, base = fitter.measured.scenes, fitter.calibration.base
+    candidates = (
+        *single_candidates(scenes, base, config),
+        *general_candidates(scenes, base, config),
+    )
     coarse = Fitter(fitter.calibration, at_fewer_poses(fitter.measured, fitter.calibration, POSES))
     found = replace(found, steps=())
     while len(found.steps) < config.most_smooth and search.has_excess(found.fitted):

@@ -86,3 +86,17 @@ def test_slip_is_none(make_scene, known):
         return np.where(gone[:, None], 0.4, 1.0) * twist
 
     assert isolated(make_scene(32, slipping), known.base, CONFIG).off.sum() <= 1
+
+
+def test_poses_that_repeat_the_last_one_are_found(plain, known):
+    held = np.arange(len(plain.pose_s))
+    for begin in (60, 200, 410, 600):
+        held[begin : begin + 8] = begin
+    run = plain.run
+    columns = {name: of if name == "t" else of[held] for name, of in run.pose.columns.items()}
+    scene = dense_windows_of(replace(run, pose=replace(run.pose, columns=columns)), 2.0)
+    found = outliers_of([scene], [], [plain], known.base, CONFIG)
+    assert found.named.effect.form == "frozen"
+    frozen_s = run.pose.stamps_s[held < np.arange(len(held))] - run.odometry.stamps_s[0]
+    assert set(found.named.effect.stamps_s[0]) <= set(frozen_s)
+    assert len(found.named.effect.stamps_s[0]) > 0.8 * len(frozen_s)
