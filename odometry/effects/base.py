@@ -69,6 +69,9 @@ class Effect(ABC):
         How it comes and goes in time, "" where it is always there (`odometry.effects.in_course`).
     slow : bool
         Whether it takes long to compute.
+    physics : str
+        Effects of the same physics have the same parameters, which are the same numbers in one
+        model; "" where its parameters are its own.
     """
 
     name: ClassVar[str]
@@ -85,6 +88,7 @@ class Effect(ABC):
     constant_names: ClassVar[tuple[str, ...]] = ()
     course: ClassVar[str] = ""
     slow: ClassVar[bool] = False
+    physics: ClassVar[str] = ""
 
     @classmethod
     def offered(cls, recorded: Recorded) -> "tuple[Effect, ...]":  # noqa: ARG003 - of the interface

@@ -34,6 +34,7 @@ class ContactChange(MotionEffect):
 
     form = "contact"
     slow = True
+    physics = "contact"
     constant_names = ("half_width",)
     source = "force balance of this project (odometry.models.contact)"
 

@@ -11,7 +11,7 @@ from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual
 from odometry.gap.calibration import Calibration
-from odometry.gap.hypothesis import Hypothesis
+from odometry.gap.hypothesis import Hypothesis, own_values
 from odometry.gap.left_out import held_out, left_out_loss
 from odometry.gap.measured import Measured
 from odometry.gap.responses import columns_of
@@ -54,8 +54,12 @@ class Fitted:
 
     @property
     def freedom(self) -> int:
-        """Parameters of the effects, and what else was searched of them."""
-        return sum(len(added.values) + added.effect.searched for added in self.effects)
+        """Parameters of the effects, those of the same physics once, and what else was searched."""
+        own = own_values([added.effect for added in self.effects])
+        return sum(
+            len(one.values) * is_own + one.effect.searched
+            for one, is_own in zip(self.effects, own, strict=True)
+        )
 
     @property
     def cost(self) -> float:
@@ -82,8 +86,9 @@ class Fitter:
             for e, start in zip(effects, known_starts, strict=True)
         ]
         of_base = np.zeros(hypothesis.of_base, dtype=np.bool_)
-        held = np.concatenate([of_base, *pinned])
-        found = self._best(hypothesis, self._starts(effects, known_starts), held)
+        held = hypothesis.held(np.concatenate([of_base, *pinned]))
+        starts = hypothesis.distinct(self._starts(effects, known_starts))
+        found = self._best(hypothesis, starts, held)
         return _finished(hypothesis, _derived(hypothesis, found, held))
 
     def spread(self, fit: Fitted) -> float:
@@ -193,12 +198,13 @@ def _finished(hypothesis: Hypothesis, solved: Solved) -> Fitted:
     inverse = np.zeros_like(normal)
     inverse[np.ix_(active, active)] = np.linalg.pinv(normal[np.ix_(active, active)])
     chi_squared = measured.by_window(solved.rows[:rows])
-    freedom = max(1.0, measured.expected - len(solved.values))
+    of_effects = hypothesis.places[hypothesis.of_base :]
+    freedom = max(1.0, measured.expected - len(np.unique(hypothesis.places)))
     spread = max(1.0, chi_squared.sum() / freedom)
     return Fitted(
         base,
         added,
-        spread * inverse[hypothesis.of_base :, hypothesis.of_base :],
+        spread * inverse[np.ix_(of_effects, of_effects)],
         chi_squared,
         held_out(hypothesis, solved),
         float(solved.rows[rows:] @ solved.rows[rows:]),

@@ -1,14 +1,16 @@
 """A hypothesis: which effects are there, as a least-squares problem in their and the base's values.
 
-Values are in one array: what is uncertain of the base first, then the effects in order.
+Values are in one array: what is uncertain of the base first, then the effects in order. Effects of
+the same physics have the values of the first of them.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray
+from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.effects.base import Effect, EffectParameter
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
@@ -57,12 +59,36 @@ class Hypothesis:
         of_effects = [p.absent is None and not e.slow for e in self.effects for p in e.parameters]
         return np.array([False] * self.of_base + of_effects, dtype=np.bool_)
 
+    @cached_property
+    def places(self) -> IntArray:
+        """Where (V,) each value is: in its own place, or in that of an effect of its physics."""
+        places = np.arange(self.of_base + len(self.parameters))
+        first: dict[str, IntArray] = {}
+        for effect, end in zip(self.effects, self._ends, strict=True):
+            own = np.arange(end - len(effect.parameters), end)
+            places[own] = first.setdefault(effect.physics, own) if effect.physics else own
+        return places
+
+    def held(self, pinned: BoolArray) -> BoolArray:
+        """Which values (V,) a search holds: what is elsewhere, and what is pinned wherever used."""
+        free = np.zeros(len(pinned), dtype=np.bool_)
+        np.logical_or.at(free, self.places, ~pinned)
+        return ~free
+
+    def distinct(self, starts: Sequence[FloatArray]) -> list[FloatArray]:
+        """Those values (V,) that differ where they are used."""
+        return list({start[self.places].tobytes(): start for start in starts}.values())
+
+    @cached_property
+    def _ends(self) -> IntArray:
+        return self.of_base + np.cumsum([len(e.parameters) for e in self.effects], dtype=np.int64)
+
     def split(self, values: FloatArray) -> tuple[Base, tuple[Added, ...]]:
         """The base and the effects at values (V,)."""
-        ends = self.of_base + np.cumsum([len(e.parameters) for e in self.effects])
+        values = values[self.places]
         added = tuple(
             Added(effect, values[end - len(effect.parameters) : end])
-            for effect, end in zip(self.effects, ends, strict=True)
+            for effect, end in zip(self.effects, self._ends, strict=True)
         )
         return self.calibration.uncertain.at(values[: self.of_base]), added
 
@@ -70,7 +96,8 @@ class Hypothesis:
         """Rows of the windows, then those of what is known of the base and usual of effects."""
         base, added = self.split(values)
         moved = values[: self.of_base] - self.calibration.uncertain.values
-        unusual = [_unusual(one, self.calibration.base) for one in added]
+        own = zip(added, own_values(self.effects), strict=True)
+        unusual = [_unusual(one, self.calibration.base) for one, is_own in own if is_own]
         return np.concatenate([self.measured.rows(base, added), self._prior @ moved, *unusual])
 
     @cached_property
@@ -80,6 +107,15 @@ class Hypothesis:
             return np.empty((0, 0))
         information = self.calibration.information + RIDGE * np.eye(self.of_base)
         return np.asarray(np.linalg.cholesky(information).T)
+
+
+def own_values(effects: Sequence[Effect]) -> tuple[bool, ...]:
+    """Whether each effect has values of its own: none before it is of the same physics."""
+    before = [{one.physics for one in effects[:place]} for place in range(len(effects))]
+    return tuple(
+        not effect.physics or effect.physics not in earlier
+        for effect, earlier in zip(effects, before, strict=True)
+    )
 
 
 def _unusual(added: Added, base: Base) -> FloatArray:

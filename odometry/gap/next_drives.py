@@ -129,13 +129,16 @@ def chi_squared_left(
         return measured.rows(*hypothesis.split(at))
 
     rows = rows_at(values)
-    jacobian = differences(rows_at, values, rows, hypothesis.scales, hypothesis.bounds)
-    known = np.zeros((len(values), len(values)))
+    own = np.unique(hypothesis.places)
+    jacobian = differences(rows_at, values, rows, hypothesis.scales, hypothesis.bounds)[:, own]
+    of_effects = own[len(of_base) :] - len(of_base)
+    covariance = other.covariance[np.ix_(of_effects, of_effects)]
+    known = np.zeros((len(own), len(own)))
     known[: len(of_base), : len(of_base)] = calibration.information
-    known[len(of_base) :, len(of_base) :] = np.linalg.pinv(other.covariance, hermitian=True)
+    known[len(of_base) :, len(of_base) :] = np.linalg.pinv(covariance, hermitian=True)
     normal = jacobian.T @ jacobian + known
     gradient = jacobian.T @ rows
-    step = np.linalg.solve(normal + RIDGE * np.eye(len(values)), gradient)
+    step = np.linalg.solve(normal + RIDGE * np.eye(len(own)), gradient)
     return max(0.0, float(rows @ rows - gradient @ step))
 
 
