@@ -64,7 +64,7 @@ def test_a_bias_that_is_another_one_replaces_what_was_believed():
 
 
 def test_who_stood_knows_the_bias_from_then_on():
-    """It is twenty times what is expected; before the stand a filter is far from it."""
+    """It is thirty times what is expected; before the stand a filter is far from it."""
     signals = signals_of([(400, 600)], BIAS_RAD_S)
     track = follow_signals(signals, velocity_set())
     assert BIAS_RAD_S > 10 * BIAS_SIGMA_RAD_S
