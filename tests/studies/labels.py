@@ -56,6 +56,8 @@ def main() -> None:
     """Run the study and print its tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=5)
+    parser.add_argument("--first-seed", type=int, default=0)
+    parser.add_argument("--image-rate", type=float, default=4.0)
     parser.add_argument("--photos", type=Path, default=None)
     parser.add_argument("--terrains", nargs=3, default=None)
     arguments = parser.parse_args()
@@ -65,15 +67,16 @@ def main() -> None:
     placed: dict[str, list[tuple[int, int, int]]] = {}
     driven: dict[str, list[Drive]] = {}
     with tempfile.TemporaryDirectory() as scratch:
-        for seed in tqdm(range(arguments.seeds), "seeds"):
+        for seed in tqdm(range(arguments.first_seed, arguments.first_seed + arguments.seeds)):
             folder = Path(scratch) / f"{seed}"
-            first, second = two_runs(folder, seed, terrains, arguments.photos)
+            photos = parted(arguments.photos, terrains, folder, seed) if arguments.photos else None
+            first, second = two_runs(folder, seed, terrains, photos, arguments.image_rate)
             for name, counts in patches_of(folder, first).items():
                 placed.setdefault(name, []).append(counts)
             for name, drive in drives_over(folder, first, second).items():
                 driven.setdefault(name, []).append(drive)
-            line = "  ".join(f"{name} {drives[-1].per_m:.4f}" for name, drives in driven.items())
-            tqdm.write(f"{seed}: {line}")
+            for name, drives in driven.items():
+                tqdm.write(f"seed {seed}: {name}: {drives[-1]}")
     print("patches: on the terrain of their label, whole and with their middle [%]")
     for name, counts in placed.items():
         number, whole, middle = np.sum(counts, axis=0)
@@ -89,13 +92,17 @@ def main() -> None:
         )
 
 
-def two_runs(out: Path, seed, terrains, photos) -> tuple[Path, Path]:
-    """The first run and the next one."""
-    first, second = parted(photos, terrains, out, seed) if photos else (None, None)
+def two_runs(out: Path, seed, terrains, photos, image_rate_hz) -> list[Path]:
+    """The first run, and the next one in another order of terrains."""
     again = terrains[-1:] + terrains[:-1]
-    return made(out / "first", 2 * seed, terrains, first), made(
-        out / "next", 2 * seed + 1, again, second
-    )
+    folders = []
+    for turn, zones in enumerate((terrains, again)):
+        config = SynthesisConfig(
+            seed=2 * seed + turn, zones=tuple(zones), image_rate_hz=image_rate_hz
+        )
+        own = photos[turn] if photos else None
+        folders.append(synthesise(out / f"run_{turn}", config, photos=own))
+    return folders
 
 
 def patches_of(out: Path, first: Path) -> dict[str, tuple[int, int, int]]:
@@ -132,11 +139,6 @@ def drives_over(out: Path, first: Path, second: Path) -> dict[str, Drive]:
     for name, source in {"true labels": "labels", "one terrain throughout": "none"}.items():
         found[name] = numbers(run_odometry(second, source=source, parameters=parameters))
     return found
-
-
-def made(folder: Path, seed: int, terrains, photos: Path | None) -> Path:
-    """A run over the terrains, in this order."""
-    return synthesise(folder, SynthesisConfig(seed=seed, zones=tuple(terrains)), photos=photos)
 
 
 def parted(photos: Path, terrains, out: Path, seed: int) -> tuple[Path, Path]:
