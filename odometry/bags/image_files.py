@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import AnyArray
+from odometry.bags.connection import Buffer
 from odometry.bags.errors import BagError
 from odometry.bags.message_kinds import COMPRESSED_IMAGE
 from odometry.bags.ordered_rows import seconds
@@ -46,9 +47,10 @@ class ImageFiles:
             return
         content, suffix = encoded(message)
         name = f"images/{self.written:06d}{suffix}"
-        file = self._folder / name
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_bytes(content)
+        if not self.written:
+            (self._folder / "images").mkdir(parents=True, exist_ok=True)
+        with (self._folder / name).open("wb", buffering=0) as stream:
+            stream.write(content)
         self._rows.append(f"{seconds(stamp_ns)},{name}\n")
         self._last_ns = stamp_ns
         self.written += 1
@@ -70,7 +72,7 @@ class ImageFiles:
         self._rows = []
 
 
-def encoded(message: Any) -> tuple[bytes, str]:
+def encoded(message: Any) -> tuple[Buffer, str]:
     """Bytes of an image file, and its suffix.
 
     Raises
@@ -79,9 +81,10 @@ def encoded(message: Any) -> tuple[bytes, str]:
         If it is of an encoding that is not read.
     """
     if message.__msgtype__ == COMPRESSED_IMAGE:
-        content = bytes(memoryview(message.data))
+        content = memoryview(message.data)
+        begin = bytes(content[: len(PNG)])
         for start, suffix in ((JPEG, ".jpg"), (PNG, ".png")):
-            if content.startswith(start):
+            if begin.startswith(start):
                 return content, suffix
         raise BagError(f"an image of the format {message.format!r}, expected JPEG or PNG")
     import cv2  # noqa: PLC0415 - only bags with raw images need it

@@ -5,6 +5,7 @@ taken. A type that ROS does not ship cannot be read without its definition.
 """
 
 from collections.abc import Callable, Iterator
+from functools import cache
 from typing import Any
 
 from rosbags.typesys import (
@@ -25,10 +26,6 @@ class MessageTypes:
     """Decodes messages; the definitions of a type are compiled once."""
 
     def __init__(self) -> None:
-        self._shipped: dict[str, dict[str, Any]] = {
-            "ros1": get_typestore(Stores.ROS1_NOETIC).fielddefs,
-            "cdr": get_typestore(Stores.LATEST).fielddefs,
-        }
         self._of_type: dict[tuple[str, str, str], Reader] = {}
         self._of_connection: dict[int, tuple[Connection, Reader]] = {}
 
@@ -85,7 +82,6 @@ class MessageTypes:
 
     def _definitions(self, connection: Connection) -> dict[str, Any]:
         """Definitions of a type and of its parts, the bag's own before shipped ones."""
-        shipped = self._shipped[connection.encoding]
         own: dict[str, Any] = {}
         try:
             if connection.definition and connection.schema == "msg":
@@ -94,13 +90,14 @@ class MessageTypes:
                 for text in _idl_texts(connection.definition):
                     own |= get_types_from_idl(text)
         except TypesysError:
-            if connection.message_type not in shipped:
+            if connection.message_type not in _shipped(connection.encoding):
                 raise
             own = {}
-        wanted, found = [connection.message_type], dict(own)
+        wanted, found, seen = [connection.message_type], dict(own), set[str]()
         while wanted:
             name = wanted.pop()
             if name not in found:
+                shipped = _shipped(connection.encoding)
                 if name not in shipped:
                     raise BagError(
                         f"{connection.topic}: the bag has no definition of {name}, and ROS does "
@@ -108,9 +105,15 @@ class MessageTypes:
                         "definitions (MCAP does, SQLite since ROS 2 Iron)"
                     )
                 found[name] = shipped[name]
-            if name not in own or name == connection.message_type:
-                wanted += [other for other in _parts(found[name]) if other not in found]
+            seen.add(name)
+            wanted += [other for other in _parts(found[name]) if other not in seen]
         return found
+
+
+@cache
+def _shipped(encoding: str) -> dict[str, Any]:
+    """Definitions that ROS ships; they take a while to load, and few bags need them."""
+    return get_typestore(Stores.ROS1_NOETIC if encoding == "ros1" else Stores.LATEST).fielddefs
 
 
 def _idl_texts(definition: str) -> Iterator[str]:

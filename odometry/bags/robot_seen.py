@@ -12,6 +12,7 @@ from odometry.bags.transforms import Transforms, stated
 TRANSFORMS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
 PARAMETERS = "rcl_interfaces/msg/ParameterEvent"
 TEXT = "std_msgs/msg/String"
+ROBOT_TYPES = (*TRANSFORMS, PARAMETERS, TEXT)
 MOST_DYNAMIC = 200  # messages of /tf that are looked at
 NUMBERS = {"wheel_radius": "wheel_radius", "wheel_separation": "track_width"}
 STILL = 1e-6  # of the values of a transform
@@ -31,7 +32,7 @@ class RobotSeen:
         self.numbers: dict[str, float] = {}
 
     def wants(self, message: Message) -> bool:
-        """Whether a message may say something of the robot."""
+        """Whether a message of ROBOT_TYPES may say something of the robot."""
         kind, topic = message.connection.message_type, message.connection.topic
         if kind in TRANSFORMS:
             return topic.endswith("static") or self._moving_looks < MOST_DYNAMIC

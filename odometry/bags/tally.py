@@ -9,7 +9,7 @@ from odometry.bags.errors import BagError
 from odometry.bags.message_kinds import IMAGES, JOINTS
 from odometry.bags.message_types import MessageTypes
 from odometry.bags.motion_seen import MOVING_TYPES, Ranges, widen
-from odometry.bags.robot_seen import RobotSeen
+from odometry.bags.robot_seen import ROBOT_TYPES, RobotSeen
 from odometry.bags.sides import sided
 from odometry.bags.topic import Topic, header_ns
 
@@ -26,6 +26,7 @@ class Tally:
         self.offsets_s: list[float] = []
         self.ranges: Ranges = {}
         self.problem = ""
+        self._of_robot = connection.message_type in ROBOT_TYPES
         self.tells_motion = connection.message_type in MOVING_TYPES
 
     def add(self, message: Message, types: MessageTypes, robot: RobotSeen) -> None:
@@ -33,7 +34,7 @@ class Tally:
         self.count += 1
         self.first_ns = min(self.first_ns, message.received_ns)
         self.last_ns = max(self.last_ns, message.received_ns)
-        of_robot = robot.wants(message)
+        of_robot = self._of_robot and robot.wants(message)
         if not (of_robot or self._looks()):
             return
         try:
