@@ -145,6 +145,7 @@ def test_repeated_stamps_are_dropped_and_counted(tmp_path):
             bag.joints(t_s + later, JOINTS, np.zeros(2), speeds, stamp_s=t_s)
     run, said = imported(tmp_path / "run", bag.write(tmp_path / "drive"))
     assert true_rows(run) == len(COURSE)
+    assert said.rows["odometry.csv"] == (len(COURSE), "/joint_states")
     assert any("800 messages repeat the stamp" in line for line in said.losses)
 
 
