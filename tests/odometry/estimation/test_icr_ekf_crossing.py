@@ -30,6 +30,17 @@ def carried(ekf, estimate, shares, *, pose=None):
     return estimate
 
 
+def test_a_footing_on_the_terrain_in_force_is_its_name():
+    ekf = filter_of(terrains=TERRAINS)
+    start = driven(ekf)
+    at = frame(start.stamp_s + 0.1, (0.1, 0.0, 0.0), speeds=(0.5, 0.5))
+    by_name, by_footing = (ekf.step(start, at, on) for on in ("a", Footing("a", {"a": 1.0})))
+    np.testing.assert_array_equal(by_footing.mean, by_name.mean)
+    np.testing.assert_array_equal(by_footing.covariance, by_name.covariance)
+    assert by_footing.recent == by_name.recent
+    assert by_footing.terrain == "a"
+
+
 def test_icrs_move_from_one_terrain_to_the_other_by_shares():
     ekf = filter_of(terrains=TERRAINS)
     start = driven(ekf)
