@@ -24,6 +24,8 @@ class MountFit:
         Distance in the image of each point from where the mount puts it.
     notes : tuple of str
         What to know of it.
+    contradiction : str
+        Which point contradicts the others, "" where none does: the mount is not to be used.
     limit_px : float
         A point farther off does not agree, and counts no more.
     """
@@ -32,6 +34,7 @@ class MountFit:
     half_interval: FloatArray
     errors_px: FloatArray
     notes: tuple[str, ...] = ()
+    contradiction: str = ""
     limit_px: float = np.inf
 
     @property

@@ -105,9 +105,9 @@ def mount_from_motion(
     mount, interval = known.copy(), np.full(6, np.nan)
     mount[PLACES], interval[PLACES] = found.values, half
     errors_px = np.linalg.norm(found.residuals_px, axis=1)
-    return MountFit(
-        mount, interval, np.nan_to_num(errors_px, nan=np.inf), tuple(notes), AGREES_PX
-    ), flow.tracks
+    errors_px = np.nan_to_num(errors_px, nan=np.inf)
+    fit = MountFit(mount, interval, errors_px, tuple(notes), limit_px=AGREES_PX)
+    return fit, flow.tracks
 
 
 def _check(tracks: Tracks) -> None:

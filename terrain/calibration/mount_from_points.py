@@ -44,16 +44,16 @@ def mount_from_points(lens: Lens, points: MarkedPoints) -> MountFit:
     residuals, jacobian = _linearised(mount, lens, points)
     half_interval = _half_interval(residuals, jacobian)
     errors_px = np.linalg.norm(residuals.reshape(-1, 2), axis=1)
-    notes, vague = _odd_one(lens, points, errors_px), too_wide(half_interval)
-    if vague.any() and notes:
-        raise CalibrationError(f"the points contradict each other: {notes[0]}")
+    odd, vague = _odd_one(lens, points, errors_px), too_wide(half_interval)
+    if vague.any() and odd:
+        raise CalibrationError(f"the points contradict each other: {odd}")
     if vague.any():
         names = ", ".join(name for name, one in zip(NAMES, vague, strict=True) if one)
         raise CalibrationError(
             f"{len(points.lines)} points cannot tell {names} of the mount; mark more, far apart: "
             "near and far, left and right"
         )
-    return MountFit(mount, half_interval, errors_px, notes)
+    return MountFit(mount, half_interval, errors_px, contradiction=odd)
 
 
 def _check(lens: Lens, points: MarkedPoints) -> None:
@@ -143,13 +143,13 @@ def _half_interval(residuals: FloatArray, jacobian: FloatArray) -> FloatArray:
     return np.asarray(student.ppf(SURE, freedom) * np.sqrt(np.diag(covariance)))
 
 
-def _odd_one(lens: Lens, points: MarkedPoints, errors_px: FloatArray) -> tuple[str, ...]:
+def _odd_one(lens: Lens, points: MarkedPoints, errors_px: FloatArray) -> str:
     """Name the one point without which the others agree, if there is one."""
     count = len(points.lines)
     if count < FEWEST + 2 or errors_px.max() < ODD_PX / 2:
-        return ()
+        return ""
     rms_px = np.sqrt(np.mean(errors_px**2))
-    notes = []
+    found = []
     for left_out in range(count):
         kept = np.arange(count) != left_out
         others = MarkedPoints(points.pixels[kept], points.ground_m[kept], points.lines[kept])
@@ -161,11 +161,11 @@ def _odd_one(lens: Lens, points: MarkedPoints, errors_px: FloatArray) -> tuple[s
         lengths = np.linalg.norm(all_errors, axis=1)
         without_px = float(np.sqrt(np.mean(lengths[kept] ** 2)))
         if lengths[left_out] > ODD_PX and ODD_FACTOR * without_px < rms_px:
-            notes.append((without_px, points.lines[left_out], lengths[left_out]))
-    if not notes:
-        return ()
-    without_px, line, off_px = min(notes)
+            found.append((without_px, points.lines[left_out], lengths[left_out]))
+    if not found:
+        return ""
+    without_px, line, off_px = min(found)
     return (
         f"row {line} is {off_px:.1f} px away from where the others put it, and they agree to "
-        f"{without_px:.2g} px without it: check that row",
+        f"{without_px:.2g} px without it: check that row"
     )

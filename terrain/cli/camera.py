@@ -202,6 +202,10 @@ def _write(run_folder: Path, placed: "MountSource | None") -> None:
             "--write: nothing says where the camera sits, and a run needs it; give --points, "
             "--from-motion, --transforms or --mount as well"
         )
+    if placed.fit is not None and placed.fit.contradiction:
+        raise CalibrationError(
+            f"--write: run.toml is left as it was, {placed.fit.contradiction}, or delete it"
+        )
     write_camera(run_folder, placed.camera.to_table())
     click.echo(f"Wrote [camera] of {run_folder / 'run.toml'}")
 

@@ -52,6 +52,8 @@ def print_mount(source: "MountSource") -> None:
     if source.points is not None:
         for line, error in zip(source.points.lines, fit.errors_px, strict=True):
             click.echo(f"    row {line}: {error:.2f} px")
+    if fit.contradiction:
+        click.echo(f"Warning: {fit.contradiction}", err=True)
     for note in fit.notes:
         click.echo(f"Note: {note}", err=True)
 

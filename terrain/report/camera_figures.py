@@ -45,7 +45,9 @@ def write_points_figure(file: Path, image: ByteImage, camera: Camera, points: Ma
         axes.plot(*points.pixels.T, "+", color=WRONG, markersize=12, markeredgewidth=2.0)
         axes.plot(*put.T, "o", color="white", markersize=11, fillstyle="none", markeredgewidth=1.6)
         for line, pixel, error in zip(points.lines, points.pixels, errors_px, strict=True):
-            axes.annotate(f"row {line}: {error:.1f} px", tuple(pixel), (9, 5), fontsize=8.5,
+            inwards = ("left", 9) if pixel[0] < 0.8 * camera.image_size[0] else ("right", -9)
+            axes.annotate(f"row {line}: {error:.1f} px", tuple(pixel), (inwards[1], 5),
+                          fontsize=8.5, ha=inwards[0],
                           textcoords="offset points", color="white",
                           bbox=_BOX)  # fmt: skip
         height, width = image.shape[:2]

@@ -5,7 +5,8 @@
 Cameras of 640 x 480 pixels, fields of view of 60 to 95 degrees, distortion of real lenses, 0.3 to
 1.6 m above the terrain, pitch 8 to 60 degrees down, roll and yaw of some degrees.
 - lens: 14 rendered photographs of a board of 9 x 6 inner corners, tilted by up to 45 degrees.
-- points: ten marks on terrain in view, at most 4 m away; marks err by 0.5 px, places by 2 mm.
+- points: targets at random on terrain in view, at most 4 m away: 20 of them found to 0.1 px, ten
+  marked by hand to 0.5 px, and the same with places measured to 2 mm.
 - motion: runs of `synthesise` over two terrains of 4 m each, images at 4 Hz, with poses, gyroscope
   and wheel noise, by the verb's own functions; x and y of the mount as they are, then not given
   (zero), then with images stamped 0.1 s late.
@@ -47,6 +48,11 @@ SIZE = (640, 480)
 INNER, SQUARE_M = (9, 6), 0.03
 FARTHEST_M = 4.0
 LATE_S = 0.1
+MARKS = (  # how many, errors in the image [px] and on the terrain [m]
+    ("20 targets, 0.1 px", 20, 0.1, 0.0),
+    ("10 marks, 0.5 px", 10, 0.5, 0.0),
+    ("10 marks, 0.5 px, places to 2 mm", 10, 0.5, 0.002),
+)
 UNITS = ("x", "y", "z", "roll", "pitch", "yaw")
 
 
@@ -101,16 +107,15 @@ def lens_row(camera: dict[str, Any], seed: int, rng: np.random.Generator) -> Ite
 
 
 def points_row(camera: dict[str, Any], seed: int, rng: np.random.Generator) -> Iterator[Any]:
-    """The mount from ten marks."""
+    """The mount from targets that a program found, and from marks by hand."""
     pixels = rng.uniform([20, 20], [SIZE[0] - 20, SIZE[1] - 20], (4000, 2))
     ground = ground_behind(camera, pixels)
-    ground = ground[np.hypot(*ground.T) < FARTHEST_M][:10]
-    rows = marked(camera, ground, 0.5, rng)
-    rows[:, 2:] += rng.normal(0, 0.002, (len(rows), 2))
-    points = MarkedPoints(rows[:, :2], rows[:, 2:], np.arange(len(rows)) + 2)
-    yield from report(
-        "marked points", camera, seed, lambda: mount_from_points(lens_of(camera), points)
-    )
+    ground, lens = ground[np.hypot(*ground.T) < FARTHEST_M], lens_of(camera)
+    for name, count, noise_px, sigma_m in MARKS:
+        rows = marked(camera, ground[:count], noise_px, rng)
+        places = rows[:, 2:] + rng.normal(0, sigma_m, (len(rows), 2))
+        points = MarkedPoints(rows[:, :2], places, np.arange(len(rows)) + 2)
+        yield from report(name, camera, seed, lambda p=points: mount_from_points(lens, p))
 
 
 def motion_rows(camera: dict[str, Any], seed: int, rng: np.random.Generator) -> Iterator[Any]:  # noqa: ARG001

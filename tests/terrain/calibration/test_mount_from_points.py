@@ -69,11 +69,11 @@ def test_a_wrong_row_is_named():
     rows = marked(CAMERA, GROUND, 0.3, np.random.default_rng(0))
     rows[4, 3] += 0.05
     found = mount_from_points(LENS, points(rows))
-    assert "row 6 is" in found.notes[0]
+    assert "row 6 is" in found.contradiction
     rows[4, 3] += 0.8
     with pytest.raises(CalibrationError, match="contradict each other: row 6 is"):
         mount_from_points(LENS, points(rows))
-    assert not mount_from_points(LENS, points(np.delete(rows, 4, axis=0))).notes
+    assert not mount_from_points(LENS, points(np.delete(rows, 4, axis=0))).contradiction
 
 
 @pytest.mark.parametrize(

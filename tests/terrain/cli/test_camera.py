@@ -7,7 +7,12 @@ import cv2
 import numpy as np
 import pytest
 
+from terrain.calibration.errors import CalibrationError
+from terrain.calibration.mount_fit import MountFit
+from terrain.calibration.mount_sources import MountSource
+from terrain.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
+from terrain.cli.camera import _write
 from tests.terrain.calibration.rendered import marked
 from tests.terrain.cli.verb_calls import verb
 
@@ -80,6 +85,15 @@ def test_lens_from_a_file_and_mount_from_points(verb, run, world, tmp_path):
     assert written["robot"] == world.robot
     np.testing.assert_allclose(written["camera"]["mount"], true["mount"], atol=0.01)
     np.testing.assert_array_equal(written["camera"]["matrix"], true["matrix"])
+
+
+def test_marks_that_contradict_each_other_are_not_written(run):
+    before = (run / "run.toml").read_bytes()
+    camera = Camera.from_table(tomllib.loads(before.decode())["camera"])
+    fit = MountFit(camera.mount, np.full(6, 0.01), np.ones(9), contradiction="row 4 is off")
+    with pytest.raises(CalibrationError, match=r"run.toml is left as it was, row 4 is off"):
+        _write(run, MountSource(camera, "marks.csv", fit))
+    assert (run / "run.toml").read_bytes() == before
 
 
 def test_the_run_itself(verb, run, world, tmp_path):
