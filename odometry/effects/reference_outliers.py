@@ -50,7 +50,7 @@ class ReferenceOutliers(MeasurementEffect):
 
 @dataclass(frozen=True)
 class FrozenPoses(ReferenceOutliers):
-    """Poses that repeat the one before to every digit, while the treads run.
+    """Poses that repeat the one before, while the treads run.
 
     Attributes
     ----------

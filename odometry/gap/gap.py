@@ -157,7 +157,7 @@ def _cleaned(
 ) -> tuple[list[DenseWindows], list[DenseWindows], Outliers | None]:
     """Measured and held-out scenes without poses that are far off, where that closes some gap."""
     held_out = scenes[1] if runs[1] else ()
-    outliers = outliers_of(scenes[0], held_out, known_scenes, known.base, config)
+    outliers = outliers_of(scenes[0], held_out, known_scenes, known, config)
     if outliers is None:
         return *scenes, None
     cut = _scenes(*cleaned_runs(*runs, outliers), config)

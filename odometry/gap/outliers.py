@@ -1,102 +1,32 @@
-"""Poses of the reference that are far off or repeat the last, found before anything is fitted.
-
-What the poses drift away from the treads is a slow curve, whatever effect is missing: a pose that
-stands off the median of its neighbours on that curve has jumped there and back.
-"""
+"""Poses of the reference that are no measurement, left out before anything is fitted."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.ndimage import median_filter
 from scipy.stats import binomtest, fisher_exact
 
-from odometry.arrays import BoolArray, FloatArray
+from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.effects.reference_outliers import FrozenPoses, ReferenceOutliers
+from odometry.gap.calibration import Calibration
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import sure_sum
+from odometry.gap.frozen import frozen
+from odometry.gap.isolated import Isolated, isolated
 from odometry.gap.pieces import pieces
-from odometry.gap.simulate import residuals, simulated_poses
+from odometry.gap.simulate import residuals
 from odometry.run import Run
 from odometry.windows.dense import DenseWindows
-from odometry.windows.robust import NORMAL
 
-NEIGHBOURS = 7  # poses of a median: up to three off in a row do not move it
 PLACES = 2  # numbers that say where a pose is
-LEAST_SIGMA_M = 1e-3  # of a reference
-MOVED_M = 5e-3  # less since the last pose is rest
-NINE_IN_TEN = 2.146  # standard deviations within which nine in ten of normal places lie
-
-
-@dataclass(frozen=True)
-class Isolated:
-    """Poses of one run that are no measurement of its place.
-
-    Attributes
-    ----------
-    off : (M,) of bool
-    distances_m : (M,)
-        By which each is off.
-    stamps_s : (M,)
-        Run time.
-    sigmas : (M,)
-        The same in standard deviations of the ordinary ones.
-    """
-
-    off: BoolArray
-    distances_m: FloatArray
-    stamps_s: FloatArray
-    sigmas: FloatArray
-
-
-def isolated(scene: DenseWindows, base: Base, config: GapConfig) -> Isolated:
-    """Poses that are far off their neighbours, of a run as `base` drives it."""
-    distances_m, sigma_m = _off_neighbours(_drift(scene, base))
-    sigmas = distances_m / sigma_m
-    return Isolated(sigmas > config.outlier_sigmas, distances_m, scene.pose_s, sigmas)
-
-
-def repeated(scene: DenseWindows, base: Base, config: GapConfig) -> Isolated:  # noqa: ARG001
-    """Poses that are those before them to every digit, while the treads run."""
-    drift = _drift(scene, base)
-    same = np.append(False, (np.diff(scene.poses, axis=0) == 0).all(axis=1))
-    last_new = np.maximum.accumulate(np.where(same, 0, np.arange(len(same))))
-    distances_m = np.hypot(*(drift - drift[last_new]).T)
-    moving = distances_m > MOVED_M
-    return Isolated(
-        same & moving, distances_m, scene.pose_s, distances_m / _off_neighbours(drift)[1]
-    )
 
 
 KINDS: tuple[tuple[type[ReferenceOutliers], Callable[..., Isolated]], ...] = (
-    (FrozenPoses, repeated),
+    (FrozenPoses, frozen),
     (ReferenceOutliers, isolated),
 )
-
-
-def _off_neighbours(drift: FloatArray) -> tuple[FloatArray, float]:
-    """Distances (M,) from the median of the neighbours [m], and their standard deviation."""
-    near = [median_filter(part, NEIGHBOURS, mode="nearest") for part in drift.T]
-    off = drift - np.stack(near, axis=-1)
-    distances_m = np.hypot(*off.T)
-    sigma_m = max(
-        NORMAL * float(np.median(np.abs(off))),
-        float(np.quantile(distances_m, 0.9)) / NINE_IN_TEN,
-        LEAST_SIGMA_M,
-    )
-    return distances_m, sigma_m
-
-
-def _drift(scene: DenseWindows, base: Base) -> FloatArray:
-    """How far the measured places (M, 2) have gone from those of the treads, step by step."""
-    reckoned = simulated_poses(base, (), scene)
-    steps = np.diff(reckoned[:, 0] + 1j * reckoned[:, 1])
-    steps *= np.exp(1j * (scene.poses[:-1, 2] - reckoned[:-1, 2]))
-    measured = np.diff(scene.poses[:, 0] + 1j * scene.poses[:, 1])
-    drift = np.concatenate([[0.0], np.cumsum(measured - steps)])
-    return np.stack([drift.real, drift.imag], axis=-1)
 
 
 @dataclass(frozen=True)
@@ -126,8 +56,8 @@ class Outliers:
 def outliers_of(
     measured: Sequence[DenseWindows],
     held_out: Sequence[DenseWindows],
-    calibration: Sequence[DenseWindows],
-    base: Base,
+    known: Sequence[DenseWindows],
+    calibration: Calibration,
     config: GapConfig,
 ) -> Outliers | None:
     """Outliers of the runs; None where the measured have no more of them than the calibration.
@@ -136,8 +66,8 @@ def outliers_of(
     """
     for kind, find in KINDS:
         found, usual, others = (
-            tuple(find(scene, base, config) for scene in of)
-            for of in (measured, calibration, held_out)
+            tuple(find(scene, calibration, config) for scene in of)
+            for of in (measured, known, held_out)
         )
         outliers = _more_than_usual(kind, found, usual, others, config)
         if outliers is not None:
