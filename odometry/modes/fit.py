@@ -5,7 +5,8 @@ innovations of each mode's own filter are held against their own covariance, in 
 with time: the sum of what is left in it, in the standard deviation that it has where the mode is
 true, is large where innovations keep their sign or are too large. "None of these" says that such
 sums are SPREAD times as large. It competes from the start: a hidden Markov chain over all modes and
-it, whose prior is `ModesConfig.misfit_share`.
+it, whose prior is `ModesConfig.misfit_share`. Over a long window the innovations of whichever mode
+leads are summed: a misfit that is small and lasts is hidden in a short one.
 """
 
 from dataclasses import dataclass
@@ -24,7 +25,7 @@ LONG_WINDOW_S = 6.0  # in which a small misfit shows that lasts
 LONG_EVIDENCE = 30.0  # [nat] of a long window for none, at most
 LONG_CLIP = 2.0  # of one innovation: what is large shows in a short window
 LONG_BOUND = 3.0  # standard deviations of a long sum beyond which no mode is named
-"""Chosen on seeds 10 and 20 of `tests/studies/modes_faults.py`."""
+"""The long window chosen on seeds 10 and 20 of `tests/studies/modes_faults.py`, the rest on 0 to 2."""
 
 
 @dataclass(frozen=True)
