@@ -25,7 +25,7 @@ LONG_WINDOW_S = 6.0  # in which a small misfit shows that lasts
 LONG_EVIDENCE = 30.0  # [nat] of a long window for none, at most
 LONG_CLIP = 2.0  # of one innovation: what is large shows in a short window
 LONG_BOUND = 3.0  # standard deviations of a long sum beyond which no mode is named
-"""The long window chosen on seeds 10 and 20 of `tests/studies/modes_faults.py`, the rest on 0 to 2."""
+"""Chosen on seeds of `tests/studies/modes_faults.py`: the long window on 10 and 20, else 0 to 2."""
 
 
 @dataclass(frozen=True)
