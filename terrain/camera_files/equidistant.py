@@ -46,15 +46,15 @@ def pinhole_of_equidistant(
     reach = float(np.linalg.norm((corners - matrix[:2, 2]) / focus, axis=1).max())
     theta = np.linspace(0.0, _angle_of(reach, coefficients) * MARGIN, SAMPLES)
     radius, bent = np.tan(theta), _bent(theta, coefficients)
-    fitted = _rational(radius, bent)
-    distortion = np.array([fitted[0], fitted[1], 0.0, 0.0, *fitted[2:]])
-    if radius_limit(distortion) < radius[-1]:
-        raise CameraError(_refused("no rational distortion fits it"))
     points = np.column_stack([radius, np.zeros(SAMPLES)])
-    worst_px = float(np.abs(distort(points, distortion)[:, 0] - bent).max() * focus.max())
-    if not worst_px <= WORST_PX:
-        raise CameraError(_refused(f"the nearest rational distortion errs by {worst_px:.2g} px"))
-    return Lens.of(image_size, matrix, distortion), worst_px
+    for terms in (3, 2):  # three may fit with a pole within the image, where two have none
+        distortion = _rational(radius, bent, terms)
+        if radius_limit(distortion) < radius[-1]:
+            continue
+        worst_px = float(np.abs(distort(points, distortion)[:, 0] - bent).max() * focus.max())
+        if worst_px <= WORST_PX:
+            return Lens.of(image_size, matrix, distortion), worst_px
+    raise CameraError(_refused(f"no rational distortion comes within {WORST_PX:g} px of it"))
 
 
 def _bent(theta: FloatArray, coefficients: FloatArray) -> FloatArray:
@@ -77,21 +77,21 @@ def _angle_of(reach: float, coefficients: FloatArray) -> float:
     return float(np.interp(reach, bent[: int(bent.argmax()) + 1], theta[: int(bent.argmax()) + 1]))
 
 
-def _rational(radius: FloatArray, bent: FloatArray) -> FloatArray:
-    """k1, k2, k3, k4, k5, k6 of bent = r (1 + k1 s + k2 s^2 + k3 s^3) / (1 + k4 s + ...)."""
-    square = radius**2
-    powers = np.stack([square, square**2, square**3], axis=1)
+def _rational(radius: FloatArray, bent: FloatArray, terms: int) -> FloatArray:
+    """Coefficients in OpenCV's order of bent = r (1 + k1 s + k2 s^2 + ...) / (1 + k4 s + ...)."""
+    powers = radius[:, None] ** (2 * np.arange(1, terms + 1))
 
     def errors(coefficients: FloatArray) -> FloatArray:
         above, below = (1 + powers @ part for part in np.split(coefficients, 2))
         return np.asarray(radius * above / below - bent)
 
     # the linear form of the same, each row weighted by the size of its terms, starts the search
-    terms = np.hstack([radius[:, None] * powers, -bent[:, None] * powers])
-    weights = 1 / np.maximum(np.abs(terms).sum(axis=1), 1e-9)
-    start, *_ = np.linalg.lstsq(terms * weights[:, None], (bent - radius) * weights, rcond=None)
+    linear = np.hstack([radius[:, None] * powers, -bent[:, None] * powers])
+    weights = 1 / np.maximum(np.abs(linear).sum(axis=1), 1e-9)
+    start, *_ = np.linalg.lstsq(linear * weights[:, None], (bent - radius) * weights, rcond=None)
     found = least_squares(errors, start, method="lm", x_scale=np.maximum(np.abs(start), 1e-6))
-    return np.asarray(found.x)
+    above, below = (np.pad(part, (0, 3 - terms)) for part in np.split(found.x, 2))
+    return np.array([above[0], above[1], 0.0, 0.0, above[2], *below])
 
 
 def _refused(why: str) -> str:

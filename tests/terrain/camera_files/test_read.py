@@ -115,7 +115,7 @@ def test_a_table_of_a_run(tmp_path):
 @pytest.mark.parametrize(
     ("coefficients", "focus"),
     [((0.0, 0.0, 0.0, 0.0), 400.0), ((-0.01, 0.02, -0.01, 0.002), 350.0),
-     ((-0.04, -0.003, 0.0005, -0.0001), 420.0)],
+     ((-0.04, -0.003, 0.0005, -0.0001), 420.0), ((0.05, -0.01, 0.003, 0.0), 400.0)],
 )  # fmt: skip
 def test_a_fisheye_agrees_with_opencvs(tmp_path, coefficients, focus):
     """Points over the whole image through cv2.fisheye and through the pinhole that is read."""
