@@ -162,12 +162,13 @@ class _Naming(Search):
         """Why the last effect does not stand on held-out data, beyond what the others close.
 
         What a base beside the others closes by leaving its calibration is the effect's, if that
-        brings the base back.
+        brings the base back; a latency that is not as calibrated is an effect by itself.
         """
         fit, before = found.fitted, (found.steps[-2].fitted if found.steps[1:] else self.start)
         hidden = found.steps[1:] and self._left(before) and self._brings_back(fit, before)
-        less_base = fit.base if hidden else before.base
-        pairs = [(less_base, before.effects), (self.fitter.calibration.base, ())]
+        believed = self.fitter.calibration.base
+        less_base = replace(fit.base if hidden else before.base, latency_s=believed.latency_s)
+        pairs = [(less_base, before.effects), (believed, ())]
         effects, held_out = with_own_moments(
             fit.base,
             fit.effects,
@@ -176,10 +177,9 @@ class _Naming(Search):
             self.fitter.calibration,
         )
         within = within_noise(gap_of(*pairs[1], held_out, self.config.part_s), self.held_floor)
-        believed = replace(self.start, base=self.fitter.calibration.base)
         reasons = [
             within,
-            raises_measured(self._gap(believed), self._gap(fit)),
+            raises_measured(self._gap(replace(self.start, base=believed)), self._gap(fit)),
             *(
                 closes_held_out(
                     (base, effects[: len(less)]), (fit.base, effects), held_out, self.config
