@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from odometry.effects.history import History
 from odometry.effects.residual import Residual
 from odometry.effects.residual_of_each_run import ResidualOfEachRun
 from odometry.gap.bursts import burst_effects
@@ -91,10 +92,12 @@ def _most_promising(
 def last_of_each_run(search: Search, found: Explanation) -> Explanation | None:
     """The same with coefficients of the last smooth function that are each run's own.
 
-    None where they are already.
+    None where they are already, and for weights of earlier speeds, which all runs share.
     """
     last = found.fitted.effects[-1]
-    if not isinstance(last.effect, Residual) or isinstance(last.effect, ResidualOfEachRun):
+    if not isinstance(last.effect, Residual) or isinstance(
+        last.effect, ResidualOfEachRun | History
+    ):
         return None
     before = found.less_last().fitted
     size = float(np.sqrt(np.mean(last.values**2)))
