@@ -1,13 +1,14 @@
 """MCAP files, read from front to back: no index and no summary are needed.
 
-The summary at the end of a file is never used, so that a file that was cut off is read as any
-other. Source: https://mcap.dev/spec.
+The index at the end of a file is never used, so that a file that was cut off is read as any other;
+where the end is there, topics are known even if their first announcement is damaged. Source: https://mcap.dev/spec.
 """
 
 import re
 import struct
 import zlib
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
@@ -18,6 +19,7 @@ from odometry.bags.losses import Losses
 
 MAGIC = b"\x89MCAP0\r\n"
 SCHEMA, CHANNEL, MESSAGE, CHUNK, DATA_END = 0x03, 0x04, 0x05, 0x06, 0x0F
+FOOTER, FOOTER_BYTES = 0x02, 37  # with the magic bytes behind it
 RECORD = struct.Struct("<BQ")
 MESSAGE_HEAD = struct.Struct("<HIQQ")  # channel, sequence, received, published
 HEAD_BYTES = MESSAGE_HEAD.size
@@ -58,6 +60,8 @@ def mcap_messages(file: Path, losses: Losses) -> Iterator[Message]:
     with file.open("rb") as stream:
         if stream.read(len(MAGIC)) != MAGIC:
             raise BagError(f"{file}: no MCAP file (it starts otherwise)")
+        _announce_all(stream, size, announced)
+        stream.seek(len(MAGIC))
         while True:
             begin = stream.tell()
             head = stream.read(RECORD.size)
@@ -77,6 +81,22 @@ def mcap_messages(file: Path, losses: Losses) -> Iterator[Message]:
                 stream.seek(found)
                 continue
             yield from _record(kind, stream.read(length), announced, file, losses)
+
+
+def _announce_all(stream: BinaryIO, size: int, announced: _Announced) -> None:
+    """Take in the topics as the end of the file announces them again, where it is there."""
+    stream.seek(max(0, size - FOOTER_BYTES))
+    footer = stream.read()
+    if not footer.endswith(MAGIC) or footer[0] != FOOTER:
+        return
+    (summary,) = struct.unpack_from("<Q", footer, RECORD.size)
+    stream.seek(summary or size)
+    with suppress(struct.error, UnicodeDecodeError):
+        while True:
+            kind, length = RECORD.unpack(stream.read(RECORD.size))
+            if kind not in (SCHEMA, CHANNEL) or length > size:
+                return
+            _announce(kind, memoryview(stream.read(length)), announced)
 
 
 def _plausible(kind: int, length: int, left: int) -> bool:

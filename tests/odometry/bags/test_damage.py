@@ -1,6 +1,7 @@
 """Damaged, truncated, empty and foreign files: what can be read is read, what was lost is said."""
 
 import shutil
+import zlib
 
 import numpy as np
 import pytest
@@ -186,3 +187,21 @@ def test_stamps_of_unlike_clocks_give_way_to_the_times_of_reception(tmp_path):
     run, said = imported(tmp_path / "run", bag.write(tmp_path / "drive"))
     assert run.pose["t"] == pytest.approx(run.odometry["t"], abs=1e-6)
     assert any("clocks of header stamps differ by 1e+03 s" in note for note in said.notes)
+
+
+@pytest.mark.parametrize("damaged", [False, True])
+def test_a_chunk_whose_check_sum_differs_is_left_out(damaged, bag_file, tmp_path):
+    """The sum is put in here: the writer of the other tests leaves it out."""
+    file = bag_file("mcap", tmp_path)
+    content = bytearray(file.read_bytes())
+    place = 8
+    while content[place] != 6:  # the first chunk
+        place += 9 + int.from_bytes(content[place + 1 : place + 9], "little")
+    length = int.from_bytes(content[place + 1 : place + 9], "little")
+    begin, end = place + 9 + 40, place + 9 + length  # of what the chunk holds, not compressed
+    content[place + 33 : place + 37] = zlib.crc32(content[begin:end]).to_bytes(4, "little")
+    content[end - 100] ^= damaged
+    file.write_bytes(content)
+    found = looked_at(file)
+    assert any("check sum differs" in line for line in found.losses) == damaged
+    assert (found.topics["/joint_states"].count < len(COURSE)) == damaged
