@@ -1,4 +1,4 @@
-"""The files that make up bags, in the order in which they were recorded."""
+"""The files that make up bags."""
 
 import re
 import shutil
@@ -120,11 +120,8 @@ def _in_folder(folder: Path, losses: Losses) -> list[Path]:
 
 
 def _named_as_bags(folder: Path) -> list[Path]:
-    """Files of a folder in the order of the numbers in their names: bag_2 before bag_10."""
-    files = [file for file in folder.iterdir() if SUFFIXES.match(file.name) and file.is_file()]
-    return sorted(
-        files, key=lambda file: [f"{part:0>12}" for part in re.split(r"(\d+)", file.name)]
-    )
+    """Files of a folder that are named as bags; a survey finds the order of their messages."""
+    return sorted(file for file in folder.iterdir() if SUFFIXES.match(file.name) and file.is_file())
 
 
 def _bag_file(file: Path, losses: Losses) -> BagFile | None:
