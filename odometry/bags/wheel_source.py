@@ -122,6 +122,8 @@ def _sides(
         if array:
             left, right = (tuple(_in_array(one) for one in side) for side in (left, right))
         _check_there(topic, left + right, joints)
+        if both := sorted(set(left) & set(right)):
+            raise BagError(f"{topic.name}: {', '.join(both)} is said to be left and right")
     elif joints is not None:
         left, right = sided(joints)
     elif array:

@@ -75,6 +75,15 @@ def test_a_side_is_the_mean_of_its_wheels(tmp_path):
     assert speeds(bag_of(message), tmp_path)[0] == true()
 
 
+def test_a_wheel_is_not_on_both_sides(tmp_path):
+    def message(bag, t, left, right):
+        bag.joints(t, ["motor_a", "motor_b"], np.zeros(2), [left, right])
+
+    sides = {"wheels__left": ["motor_a"], "wheels__right": ["motor_a", "motor_b"]}
+    with pytest.raises(BagError, match="motor_a is said to be left and right"):
+        speeds(bag_of(message), tmp_path, wheels__topic="/joint_states", **sides)
+
+
 def test_signs_gear_and_unit_are_given(tmp_path):
     def message(bag, t, left, right):
         rpm = 30 * 60 / (2 * np.pi)
