@@ -123,12 +123,23 @@ def turning(evidence: Evidence) -> Iterator[Finding]:
         yield _finding(
             "gyroscope_reversed",
             f"gyro_z turns against treads and measured yaw ({_correlations(evidence)})",
-            "The gyroscope has the wrong sign (z down, or mounted upside down)",
-            f"Negate gyro_z of {evidence.gyroscope_file}",
+            *_gyroscope_remedy(evidence),
             gyroscope_times(evidence.run, -1.0),
         )
     elif pose is Sense.OPPOSITE and gyroscope is Sense.AGREES:
         yield _pose_opposite(evidence, "treads and gyroscope agree", alone=True)
+
+
+def _gyroscope_remedy(evidence: Evidence) -> tuple[str, str]:
+    """Cause and remedy of a yaw rate of the wrong sign: what `[sensors]` says may be wrong."""
+    negate = f"negate gyro_z of {evidence.gyroscope_file}"
+    if evidence.gyroscope_file == "imu.csv" and evidence.run.sensors.imu_rad is not None:
+        return (
+            "[sensors] imu of run.toml is wrong, or the gyroscope has the wrong sign",
+            "Check [sensors] imu first (an import takes it from the frames of the bag) and correct "
+            f"it; where it is right, {negate}",
+        )
+    return "The gyroscope has the wrong sign (z down, or mounted upside down)", negate.capitalize()
 
 
 def _all_opposite(evidence: Evidence, gyroscope: Sense, pose: Sense) -> Finding:

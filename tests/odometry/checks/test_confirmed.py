@@ -1,6 +1,7 @@
 """A cause that does not explain is not named, and one that does is, with its consequences."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from odometry.checks.mending import (
     treads_times,
 )
 from odometry.checks.recording import check_recording
+from odometry.table import Table
 from tests.odometry.checks.faulty import FAULTS, pose_stamps, positions, put, treads, yaw
 from tests.odometry.checks.test_other_robots import drive, winding
 
@@ -139,3 +141,16 @@ def test_a_mend_is_no_part_of_what_is_told():
     found = Finding("scale", Level.WARNING, "a", "b", "c", mend=lambda run: run)
     assert found == Finding("scale", Level.WARNING, "a", "b", "c")
     assert "mend" not in found.to_table()
+
+
+@pytest.mark.parametrize("attitude_rad", [(0.0,) * 3, ()])
+def test_a_stated_attitude_is_doubted_before_the_gyroscope_is_negated(attitude_rad):
+    run = winding()
+    columns = {"t": run.odometry["t"], "gyro_z": -run.odometry["gyro_z"]}
+    imu = Table(Path("imu.csv"), columns, np.arange(len(columns["t"])))
+    sensors = {"imu": list(attitude_rad)} if attitude_rad else {}
+    run = replace(run, imu=imu, settings={"sensors": sensors})
+    (found,) = (f for f in check_recording(run).findings if f.name == "gyroscope_reversed")
+    assert ("[sensors] imu" in found.cause) == bool(attitude_rad)
+    assert ("[sensors] imu" in found.remedy) == bool(attitude_rad)
+    assert "egate gyro_z of imu.csv" in found.remedy
