@@ -89,6 +89,8 @@ def format_of(file: Path) -> str:
         row = next((line for line in lines if line.strip() and not line.startswith("#")), "")
     if len(row.split(",")) >= 8:
         return "euroc"
+    if not row.strip():
+        raise TrajectoryError(f"{file}: there is no pose in it")
     found = {8: "tum", 12: "kitti"}.get(len(row.split()))
     if found is None:
         raise TrajectoryError(

@@ -89,9 +89,15 @@ def _median(errors: Mapping[str, Any]) -> float | None:
 
 
 def print_table(rows: Sequence[Sequence[str]]) -> None:
-    """Print a header and rows in columns, words to the left, numbers to the right."""
+    """Print a header and rows in columns, words to the left, numbers to the right.
+
+    A text with nothing but empty cells after it, as a reason has, makes no column wider.
+    """
     columns = list(zip(*rows, strict=True))
-    widths = [max(map(len, column)) for column in columns]
+    widths = [
+        max(len(row[i]) for row in rows if i == len(row) - 1 or any(row[i + 1 :]))
+        for i in range(len(columns))
+    ]
     words = [any(cell.strip("-")[:1].isalpha() for cell in column[1:]) for column in columns]
     words[0] = True
     for row in rows:

@@ -82,6 +82,7 @@ def test_a_camera_path_is_told_to_be_one(finished, tmp_path):
     [
         ("9e9 0 0 0 0 0 0 1\n9.1e9 0 0 0 0 0 0 1\n", "fewer than two"),
         ("1 2 3\n", "no known format"),
+        ("# only a comment\n", "no pose"),
         ("1 0 0 0 0 1 0 0 0 0 1 0\n", "no stamps"),
     ],
 )
@@ -92,7 +93,8 @@ def test_what_cannot_be_judged_is_a_row_and_the_exit_code_1(finished, tmp_path, 
     (row,) = [line for line in said.stdout.splitlines() if "other/slam" in line]
     assert "failed: " in row
     assert words in row
-    assert " odometer " in said.stdout  # the other rows stand
+    (ours,) = [line for line in said.stdout.splitlines() if " odometer " in line]
+    assert ours.index(" pose ") < len(row)  # the reason makes no column wider
 
 
 def test_a_result_without_a_reference_table_says_what_to_do(finished, tmp_path):
