@@ -112,7 +112,9 @@ def label_runs(
     for square, why in others:
         left_out[square.run.folder][why] += 1
     if not chosen:
-        raise PatchError(f"no patch is left of {sum(seen.values())} squares of ground: {left_out}")
+        whys = sum(left_out.values(), Counter[str]()).most_common()
+        said = ", ".join(f"{count} {why}" for why, count in whys)
+        raise PatchError(f"no patch is left of {sum(seen.values())} squares of terrain: {said}")
     return LabelledTerrain(tuple(chosen), scale, seen, left_out)
 
 

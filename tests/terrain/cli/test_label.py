@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 import shutil
 from collections import Counter
 
@@ -175,6 +176,12 @@ def test_spans_of_several_runs_name_their_run(across_run, astride_run, tmp_path)
     assert answer.exit_code == 0, answer.output
     runs = {(row["run"], row["class"]) for row in rows_of(tmp_path / "a").values()}
     assert runs <= {("across", "boards"), ("astride", "gravel")}
+
+
+def test_a_span_outside_of_the_run_leaves_no_patch_and_says_why(across_run, tmp_path):
+    answer = invoke(across_run, "--out", tmp_path / "a", "--span", "1000:2000=gravel")
+    assert answer.exit_code == 1
+    assert re.search(r"squares of terrain: \d+ of no terrain that was told", str(answer.exception))
 
 
 def test_spans_count_from_the_first_stamp_also_of_a_part(across_run, tmp_path):
