@@ -38,8 +38,9 @@ def print_held_out(
         click.echo(f"left out: {path}: {reason}", err=True)
     held_out = [each for each in answers if not each.in_training]
     if not held_out:
-        cause = "could not be used" if unusable else "is one that the model was trained on"
-        raise PatchError(f"{folder}: nothing is held out: each of its images {cause}")
+        causes = [f"the model was trained on {len(answers)} of its images"] if answers else []
+        causes += [f"{len(unusable)} could not be used"] if unusable else []
+        raise PatchError(f"{folder}: nothing is held out: {', '.join(causes)}")
     for note in (*_notes(classifier, model, answers), *_of_scale(classifier, folder)):
         click.echo(f"Note: {note}", err=True)
     score = held_out_score(classifier.classes_, held_out)

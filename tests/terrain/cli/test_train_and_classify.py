@@ -171,7 +171,7 @@ def test_images_that_were_all_trained_on_are_no_test(trained, photos):
     model, _ = trained
     answer = CliRunner().invoke(classify, [str(model), str(photos)])
     assert answer.exit_code == 1
-    assert "nothing is held out" in str(answer.exception)
+    assert "nothing is held out: the model was trained on" in str(answer.exception)
 
 
 def test_a_folder_stands_alone(trained, fresh):
