@@ -58,6 +58,8 @@ def _origin(result: RunResult) -> list[float] | None:
     """Latitude, longitude [deg] and height [m] of x = y = z = 0, where run.toml says them."""
     source = result.run.settings.get("source")
     origin = source.get("origin") if isinstance(source, Mapping) else None
+    if isinstance(origin, Mapping):  # as `import` writes it
+        origin = [origin.get(name) for name in ("latitude", "longitude", "altitude")]
     if not isinstance(origin, list) or len(origin) not in {2, 3}:
         return None
     if not all(type(number) in {int, float} and isfinite(number) for number in origin):

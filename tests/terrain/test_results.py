@@ -302,6 +302,11 @@ def test_the_tread_strips_have_columns_of_their_own(astride_run, classifier, tmp
     [
         ({"origin": [48.1, 11, 519.5]}, [48.1, 11.0, 519.5]),
         ({"origin": [48.1, 11]}, [48.1, 11.0]),
+        (
+            {"origin": {"latitude": 48.1, "longitude": 11.0, "altitude": 519.5}},
+            [48.1, 11.0, 519.5],
+        ),
+        ({"origin": {"latitude": 48.1}}, None),
         ({"origin": [48.1]}, None),
         ({"origin": [48.1, float("nan")]}, None),
         ({"origin": [True, False]}, None),
