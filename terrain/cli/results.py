@@ -95,8 +95,8 @@ def print_table(rows: Sequence[Sequence[str]]) -> None:
     """
     columns = list(zip(*rows, strict=True))
     widths = [
-        max(len(row[i]) for row in rows if i == len(row) - 1 or any(row[i + 1 :]))
-        for i in range(len(columns))
+        max((len(row[i]) for row in rows if any(row[i + 1 :])), default=max(map(len, column)))
+        for i, column in enumerate(columns)
     ]
     words = [any(cell.strip("-")[:1].isalpha() for cell in column[1:]) for column in columns]
     words[0] = True

@@ -132,7 +132,7 @@ def test_what_is_wrong_with_kitti_is_named(tmp_path, poses, times, words):
         ("1,0,0,0,1,0,0,1\n", ["row 1", "length 1.41421"]),
         ("2,0,0,0,1,0,0,0\n1,0,0,0,1,0,0,0\n", ["row 2", "increase"]),
         ("1 2 3\n", ["first row '1 2 3'", "no known format"]),
-        ("# nothing\n", ["no known format"]),
+        ("# nothing\n", ["there is no pose in it"]),
     ],
 )
 def test_what_is_wrong_with_a_row_is_named(tmp_path, content, words):
