@@ -58,7 +58,7 @@ def copy_of(tmp_path):
     return make
 
 
-def refused(answer, tmp_path, *words, code=1):
+def assert_refused(answer, tmp_path, *words, code=1):
     """One message of one line, and nothing written."""
     assert answer[0] == code, answer
     assert "Traceback" not in answer[2]
@@ -127,20 +127,22 @@ def test_a_given_set_is_taken_as_it_is_and_without_holdout_stretches_are_held_ba
 
 def test_a_measured_run_without_poses_is_refused(command, copy_of, case, tmp_path):
     blind = copy_of(case.measured)
-    refused(command(measured=blind), tmp_path, str(blind), "pose.csv")
+    assert_refused(command(measured=blind), tmp_path, str(blind), "pose.csv")
 
 
 def test_too_short_a_calibration_is_refused(command, copy_of, case, tmp_path):
     short = copy_of(case.calibration, poses=200)
-    refused(command(calibration=short), tmp_path, "9 windows of 2 s", "expected 20 or more")
+    assert_refused(command(calibration=short), tmp_path, "9 windows of 2 s", "expected 20 or more")
 
 
 def test_a_run_that_is_absent_is_refused(command, tmp_path):
-    refused(command(measured=tmp_path / "absent"), tmp_path, "absent: there is no such folder")
+    assert_refused(
+        command(measured=tmp_path / "absent"), tmp_path, "absent: there is no such folder"
+    )
 
 
 def test_a_run_given_twice_is_refused(command, case, tmp_path):
-    refused(command(holdout=case.measured), tmp_path, "given twice")
+    assert_refused(command(holdout=case.measured), tmp_path, "given twice")
 
 
 @pytest.mark.parametrize("which", ["calibration", "measured", "holdout"])
@@ -154,17 +156,17 @@ def test_results_are_not_written_into_a_run_folder(command, case, which):
 
 
 def test_an_unknown_model_is_refused_with_those_there_are(command, tmp_path):
-    refused(command(model="unicycle"), tmp_path, "unicycle", "icr_symmetric", code=2)
+    assert_refused(command(model="unicycle"), tmp_path, "unicycle", "icr_symmetric", code=2)
 
 
 def test_of_a_set_with_several_grounds_one_must_be_said(command, tmp_path):
     file = tmp_path / "set.toml"
     file.write_text(f"[terrain.grass]\n{ICRS}[terrain.sand]\n{ICRS}")
-    refused(command(model=file), tmp_path, "set.toml", "grass, sand", "--terrain")
+    assert_refused(command(model=file), tmp_path, "set.toml", "grass, sand", "--terrain")
 
 
 def test_a_horizon_of_nothing_is_refused(command, tmp_path):
-    refused(command(**{"horizon-s": 0}), tmp_path, "horizon_s = 0.0")
+    assert_refused(command(**{"horizon-s": 0}), tmp_path, "horizon_s = 0.0")
 
 
 def test_calibration_runs_must_be_given(monkeypatch, capsys, case, tmp_path):
