@@ -1,5 +1,6 @@
 """What becomes of the messages of one topic: numbers into a file, what is dropped is counted."""
 
+from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Callable
 from typing import Any
@@ -14,7 +15,7 @@ from odometry.bags.transform_poses import TransformPoses
 Row = tuple[float, ...]
 
 
-class Stream:
+class Stream(ABC):
     """Turns messages of one topic into rows, or image files.
 
     Attributes
@@ -36,15 +37,16 @@ class Stream:
     def add(self, message: Message, content: Any) -> None:
         """Take in a message; one that cannot be used is counted."""
         try:
-            self.take(self._stamp_ns(message, header_ns(content)), content)
+            self.take(message, content)
         except BagError as problem:
             self.dropped[str(problem)] += 1
 
-    def take(self, stamp_ns: int, content: Any) -> None:
-        """Take in the content of a message."""
-        raise NotImplementedError
+    @abstractmethod
+    def take(self, message: Message, content: Any) -> None:
+        """Take in a message; BagError if it cannot be used."""
 
-    def _stamp_ns(self, message: Message, stamped_ns: int) -> int:
+    def stamp_ns(self, message: Message, stamped_ns: int) -> int:
+        """When a message was made, or received where headers do not count or say nothing."""
         return stamped_ns if self._by_header and stamped_ns else message.received_ns
 
 
@@ -63,9 +65,9 @@ class Rows(Stream):
         super().__init__(topic, file, sink, by_header=by_header)
         self._rows, self._read = sink, read
 
-    def take(self, stamp_ns: int, content: Any) -> None:
-        """Take in the content of a message."""
-        self._rows.add(stamp_ns, self._read(content))
+    def take(self, message: Message, content: Any) -> None:
+        """Take in a message; BagError if it cannot be used."""
+        self._rows.add(self.stamp_ns(message, header_ns(content)), self._read(content))
 
 
 class TransformRows(Stream):
@@ -77,10 +79,10 @@ class TransformRows(Stream):
         super().__init__(topic, file, sink, by_header=by_header)
         self._rows, self._poses = sink, poses
 
-    def add(self, message: Message, content: Any) -> None:
-        """Take in a message."""
+    def take(self, message: Message, content: Any) -> None:
+        """Take in a message; BagError if it cannot be used."""
         for stamped_ns, row in self._poses.rows(content):
-            self._rows.add(self._stamp_ns(message, stamped_ns), row)
+            self._rows.add(self.stamp_ns(message, stamped_ns), row)
 
 
 class Images(Stream):
@@ -90,6 +92,6 @@ class Images(Stream):
         super().__init__(topic, "images.csv", sink, by_header=by_header)
         self._images = sink
 
-    def take(self, stamp_ns: int, content: Any) -> None:
-        """Take in the content of a message."""
-        self._images.add(stamp_ns, content)
+    def take(self, message: Message, content: Any) -> None:
+        """Take in a message; BagError if it cannot be used."""
+        self._images.add(self.stamp_ns(message, header_ns(content)), content)
