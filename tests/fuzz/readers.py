@@ -2,9 +2,6 @@
 
 import json
 import warnings
-from collections.abc import Callable
-from dataclasses import dataclass
-from pathlib import Path
 
 import cv2
 import numpy as np
@@ -21,12 +18,7 @@ from odometry.run_inputs import inputs_of
 from odometry.simulation.contact.vehicle import read_contact_vehicle
 from odometry.windows.config import WindowConfig
 from odometry.windows.windows import windows_of
-from terrain.calibration.marked_points import read_marked_points
-from terrain.calibration.mount_from_points import mount_from_points
 from terrain.camera import Camera
-from terrain.camera_files.calibration import Lens
-from terrain.camera_files.read import read_calibration
-from terrain.camera_files.transforms import mount_in, read_transforms
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.patches import find_photos, stated_metres_per_pixel
 from terrain.cli.evaluate import _rows
@@ -37,7 +29,9 @@ from terrain.run_odometry import run_odometry
 from terrain.shipped import shipped_data
 from terrain.synthesis.config import SynthesisConfig
 from terrain.synthesis.files import read_camera, read_robot
+from tests.fuzz.camera_readers import camera_readers
 from tests.fuzz.mutations import bytes_changed, json_changed, model_changed, text_changed
+from tests.fuzz.reader import reader_of
 from tests.odometry.modes.mode_examples import traction_set, velocity_set
 
 CAMERA = """[camera]
@@ -104,17 +98,6 @@ stride_m = 0.5
 """
 
 
-@dataclass(frozen=True)
-class Reader:
-    """A valid content of a file, how to make it wrong, and what reads and uses it."""
-
-    name: str
-    file: Path
-    valid: bytes
-    changed: Callable[[bytes, np.random.Generator], bytes]
-    read: Callable[[], object]
-
-
 def fails(reader, content):
     """None where it is read, else the error of the project; others and warnings are raised."""
     reader.file.write_bytes(content)
@@ -135,17 +118,11 @@ def readers(folder):
         *_of_runs(folder / "run"),
         *_of_settings(folder),
         *_of_images(folder),
-        *_of_cameras(folder),
+        *camera_readers(folder),
         _of_classifier(folder / "terrain.model"),
         _of_manifest(folder / "patches"),
         _of_results(folder / "results"),
     ]
-
-
-def _reader(name, file, valid, changed, read):
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_bytes(valid)
-    return Reader(name, file, valid, changed, read)
 
 
 def _of_runs(folder):
@@ -164,10 +141,12 @@ def _of_runs(folder):
         (folder / "images" / f"{i}.jpg").touch()
     for name, rows in tables.items():
         text = "\n".join(rows) + "\n"
-        yield _reader(
+        yield reader_of(
             f"{name}.csv", folder / f"{name}.csv", text.encode(), text_changed, lambda: _use(folder)
         )
-    yield _reader("run.toml", folder / "run.toml", RUN.encode(), text_changed, lambda: _use(folder))
+    yield reader_of(
+        "run.toml", folder / "run.toml", RUN.encode(), text_changed, lambda: _use(folder)
+    )
 
 
 def _use(folder):
@@ -193,11 +172,11 @@ def _of_settings(folder):
             model.twist(model.pack(table.values), inputs_of(run))
             prior_belief(given, name, 0.4, 0.1, 0.05)
 
-    yield _reader("parameter set", folder / "set.toml", SET.encode(), text_changed, use_set)
+    yield reader_of("parameter set", folder / "set.toml", SET.encode(), text_changed, use_set)
     for kind, make in (("velocity", velocity_set), ("traction", traction_set)):
         file = folder / f"{kind}.toml"
         write_mode_set(file, make())
-        yield _reader(
+        yield reader_of(
             f"{kind} modes",
             file,
             file.read_bytes(),
@@ -205,19 +184,19 @@ def _of_settings(folder):
             lambda file=file: follow_modes(run, read_mode_set(file)),
         )
     file = folder / "config.toml"
-    yield _reader("config", file, SETTINGS.encode(), text_changed, lambda: Config.read(file))
+    yield reader_of("config", file, SETTINGS.encode(), text_changed, lambda: Config.read(file))
     camera = folder / "camera.toml"
-    yield _reader("camera", camera, CAMERA.encode(), text_changed, lambda: read_camera(camera))
+    yield reader_of("camera", camera, CAMERA.encode(), text_changed, lambda: read_camera(camera))
     vehicle, shipped = folder / "vehicle.toml", shipped_data() / "vehicles" / "husky_like.toml"
 
     def use_vehicle():
         read_contact_vehicle(vehicle)
         SynthesisConfig(robot=read_robot(vehicle))
 
-    yield _reader("vehicle", vehicle, shipped.read_bytes(), text_changed, use_vehicle)
+    yield reader_of("vehicle", vehicle, shipped.read_bytes(), text_changed, use_vehicle)
     tum = folder / "a.tum"
     rows = "\n".join(f"{i} {i}.5 0 0 0 0 0.6 0.8" for i in range(5)) + "\n"
-    yield _reader("TUM", tum, rows.encode(), text_changed, lambda: read_tum(tum))
+    yield reader_of("TUM", tum, rows.encode(), text_changed, lambda: read_tum(tum))
 
 
 def _of_images(folder):
@@ -225,56 +204,9 @@ def _of_images(folder):
     for suffix in ("png", "jpg", "tiff", "bmp"):
         file = folder / f"photo.{suffix}"
         encoded = cv2.imencode(f".{suffix}", pixels)[1].tobytes()
-        yield _reader(
+        yield reader_of(
             f"image, {suffix}", file, encoded, bytes_changed, lambda file=file: read_image(file)
         )
-
-
-def _of_cameras(folder):
-    flat = "[501.5, 0.0, 322.25, 0.0, 499.0, 239.0, 0.0, 0.0, 1.0]"
-    lens = "[-0.3, 0.1, 1e-05, -0.002, 0.01]"
-    texts = {
-        "camera_info": "image_width: 640\nimage_height: 480\ncamera_matrix:\n  cols: 3\n"
-        f"  data: {flat}\ndistortion_model: plumb_bob\ndistortion_coefficients:\n  data: {lens}\n",
-        "camchain": "cam0:\n  camera_model: pinhole\n  intrinsics: [400.0, 401.0, 322.0, 239.0]\n"
-        "  distortion_model: equidistant\n  distortion_coeffs: [-0.01, 0.02, -0.01, 0.002]\n"
-        "  resolution: [640, 480]\n  T_cam_imu:\n  - [0, -1, 0, 0.1]\n  - [0, 0, -1, 0.2]\n"
-        "  - [1, 0, 0, 0.3]\n  - [0, 0, 0, 1]\n",
-        "camera XML": f'<?xml version="1.0"?>\n<opencv_storage>\n<size>\n  640 480</size>\n'
-        f'<K type_id="opencv-matrix">\n<data>{flat[1:-1].replace(",", "")}</data></K>\n'
-        f"<D><data>{lens[1:-1].replace(',', '')}</data></D>\n</opencv_storage>\n",
-    }
-    for name, text in texts.items():
-        file = folder / f"{name}.yaml"
-        yield _reader(
-            name,
-            file,
-            text.encode(),
-            text_changed,
-            lambda file=file: read_calibration(file, image_size=(640, 480)),
-        )
-    transforms = folder / "transforms.yaml"
-    level = "['0', '0', '1', '0.1', '-1', '0', '0', '0', '0', '-1', '0', '0.5', '0', '0', '0', '1']"
-    text = f"T_base_footprint__eye:\n  cols: 4\n  data: {level}\n  rows: 4\n"
-    yield _reader(
-        "transforms",
-        transforms,
-        text.encode(),
-        text_changed,
-        lambda: mount_in(read_transforms(transforms), "eye"),
-    )
-    marks = folder / "marks.csv"
-    lens = Lens.of((640, 480), [[400, 0, 320], [0, 400, 240], [0, 0, 1]])
-    camera = Camera.from_mount((640, 480), lens.matrix, [], [0.2, 0, 0.8, 0, 0.7, 0])
-    places = np.array([[0.8, 0.3], [0.8, -0.3], [1.2, 0.0], [1.7, 0.5], [1.7, -0.5]])
-    marked = np.hstack([camera.ground_to_pixels(places), places])
-    rows = [",".join(map(str, row)) for row in marked.tolist()]
-    text = "\n".join(["u,v,x,y", *rows]) + "\n"
-
-    def use_marks():
-        mount_from_points(lens, read_marked_points(marks))
-
-    yield _reader("marks.csv", marks, text.encode(), text_changed, use_marks)
 
 
 def _of_classifier(file):
@@ -288,7 +220,7 @@ def _of_classifier(file):
     def use():
         TerrainClassifier.load(file).classify(images[:1])
 
-    return _reader("classifier", file, file.read_bytes(), model_changed, use)
+    return reader_of("classifier", file, file.read_bytes(), model_changed, use)
 
 
 def _of_manifest(folder):
@@ -304,7 +236,7 @@ def _of_manifest(folder):
         find_photos(folder)
         stated_metres_per_pixel(folder)
 
-    return _reader("manifest.csv", folder / "manifest.csv", text.encode(), text_changed, use)
+    return reader_of("manifest.csv", folder / "manifest.csv", text.encode(), text_changed, use)
 
 
 def _of_results(folder):
@@ -321,4 +253,4 @@ def _of_results(folder):
             "".join(row).encode()
 
     text = json.dumps(content, indent=1).encode()
-    return _reader("result.json", folder / "result.json", text, json_changed, use)
+    return reader_of("result.json", folder / "result.json", text, json_changed, use)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from terrain.classification.classifier import TerrainClassifier
+from terrain.results import write_results
 from terrain.run_odometry import run_odometry
 
 EDGES_M = (1.6, 3.0)  # gravel, then boards from the first edge on, then gravel again
@@ -239,3 +240,10 @@ def across_result(across_run, classifier):
 def curvy_run(tmp_path_factory):
     """A winding drive with poses and without images; read only."""
     return drive_curves(tmp_path_factory.mktemp("runs") / "curvy")
+
+
+@pytest.fixture(scope="module")
+def across_out(across_result, tmp_path_factory):
+    out = tmp_path_factory.mktemp("out") / "across"
+    write_results(across_result, out)
+    return out

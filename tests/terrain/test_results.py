@@ -1,26 +1,19 @@
 """The output folder: every file, its columns, its numbers, and the same bytes twice."""
 
-import csv
-import json
-import re
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from odometry.parameters import read_parameters
-from terrain.classification.classifier import TerrainClassifier
-from terrain.config import Config
-from terrain.region import RegionConfig
 from terrain.result_table import result_table
 from terrain.results import write_results
 from terrain.run_odometry import run_odometry
+from tests.terrain.output_tables import TERRAIN, columns, numbers, strict
 
 POSE = ["t", "x", "y", "yaw"]
 STATE = [*POSE, "y_left", "y_right", "x_icr", "gyro_bias", "alpha_left", "alpha_right"]
-TERRAIN = ["t", "label", "confidence", "distance_ahead", "terrain_in_force"]
 
 
 @pytest.fixture(scope="module")
@@ -33,35 +26,6 @@ def curvy_out(curvy_result, tmp_path_factory):
     out = tmp_path_factory.mktemp("out") / "curvy"
     write_results(curvy_result, out)
     return out
-
-
-@pytest.fixture(scope="module")
-def across_out(across_result, tmp_path_factory):
-    out = tmp_path_factory.mktemp("out") / "across"
-    write_results(across_result, out)
-    return out
-
-
-def columns(file):
-    """Header, and columns as text by name."""
-    with file.open(newline="") as stream:
-        rows = list(csv.reader(stream))
-    return rows[0], dict(zip(rows[0], zip(*rows[1:], strict=True), strict=True))
-
-
-def numbers(file, names):
-    """The named columns side by side."""
-    _, found = columns(file)
-    return np.column_stack([np.array(found[name], float) for name in names])
-
-
-def refuse(word):
-    raise ValueError(f"{word} is no JSON")
-
-
-def strict(text):
-    """JSON as the standard has it, without NaN and Infinity."""
-    return json.loads(text, parse_constant=refuse)
 
 
 def test_every_promised_file_is_written_and_nothing_else(across_result, curvy_result, tmp_path):
@@ -136,58 +100,6 @@ def test_tum_holds_the_same_poses(curvy_out):
         assert not tum[:, 3:6].any()
         yaw = 2 * np.arctan2(tum[:, 6], tum[:, 7])
         np.testing.assert_allclose(np.exp(1j * yaw), np.exp(1j * poses[:, 3]), atol=1e-8)
-
-
-def test_the_terrain_table_says_what_was_seen_and_where(across_out, across_run, world):
-    _, table = columns(across_out / "terrain.csv")
-    images = (across_run / "images.csv").read_text().split()[1:]
-    stamps_s = [float(line.split(",")[0]) for line in images]
-    np.testing.assert_allclose(np.array(table["t"], float), stamps_s, atol=1e-9)
-    assert set(table["label"]) <= {"gravel", "boards", "unknown"}
-    confidence = np.array(table["confidence"], float)
-    assert ((confidence >= 0) & (confidence <= 1)).all()
-    ahead = np.array(table["distance_ahead"], float)
-    assert np.ptp(ahead) < 0.05  # the same motion again and again
-    assert 0.4 < ahead[0] < 0.8
-    on_boards = [name == "boards" for name in table["terrain_in_force"]]
-    x = world.speed_m_s * np.array(stamps_s)
-    half = world.robot["length"] / 2 + 0.12
-    inside = (x > world.edges_m[0] + half) & (x < world.edges_m[1] - half)
-    outside = (x < world.edges_m[0] - half) | (x > world.edges_m[1] + half)
-    assert np.array(on_boards)[inside].all()
-    assert not np.array(on_boards)[outside].any()
-
-
-def test_labels_follow_from_the_numbers_in_the_terrain_table(across_out, classifier):
-    """So that another threshold can be tried on a finished run."""
-    _, table = columns(across_out / "terrain.csv")
-    given = np.column_stack([table["probability_boards"], table["probability_gravel"]])
-    given, distance = given.astype(float), np.array(table["class_distance"], float)
-    names = np.array(["boards", "gravel"])[given.argmax(axis=1)]
-    beyond = distance > classifier.rejection_distance_
-    asked = np.array(table["label"]) != ""
-    expected = np.where(beyond, "unknown", names)[asked]
-    assert expected.tolist() == np.array(table["label"])[asked].tolist()
-    np.testing.assert_allclose(
-        given[asked].max(axis=1), np.array(table["confidence"], float)[asked]
-    )
-
-
-def test_the_threshold_of_the_readme(across_result, classifier, tmp_path, monkeypatch, capsys):
-    """What README.md shows does run, and the share that it prints lies beyond."""
-    text = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
-    (code,) = re.findall(r"```py\n(.*?)```", text, flags=re.DOTALL)
-    write_results(across_result, tmp_path / "results")
-    classifier.save(tmp_path / "terrain.model")
-    monkeypatch.chdir(tmp_path)
-    exec(compile(code, "README.md", "exec"), {})  # noqa: S102
-    _, table = columns(tmp_path / "results/terrain.csv")
-    given = np.array([value for value in table["class_distance"] if value], float)
-    for line in capsys.readouterr().out.splitlines():
-        share, _, distance = line.split()
-        assert (given > float(distance)).mean() == pytest.approx(float(share), abs=0.06)
-    lenient = TerrainClassifier.load(tmp_path / "lenient.model")
-    assert lenient.rejection_distance_ == 1.2 * classifier.rejection_distance_
 
 
 def test_result_json_is_strict_and_names_the_switches(across_out, across_result):
@@ -273,28 +185,6 @@ def test_no_table_of_an_earlier_run_stays_behind(across_result, across_run, tmp_
     write_results(run_odometry(across_run), tmp_path)
     assert not (tmp_path / "terrain.csv").exists()
     assert strict((tmp_path / "result.json").read_text())["switches"] == []
-
-
-def test_an_image_without_a_label_is_an_empty_cell_with_a_reason(tmp_path, world, classifier):
-    run = world.drive_straight(tmp_path / "run", world.across, 0.5)
-    (run / "images" / "001.png").write_bytes(b"")
-    write_results(run_odometry(run, model=classifier), tmp_path / "out")
-    _, table = columns(tmp_path / "out" / "terrain.csv")
-    assert table["label"][1] == table["confidence"][1] == ""
-    assert table["reason"][1] == "the image cannot be read"
-    assert table["image"][1] == "images/001.png"
-    assert table["label"][0] == table["label"][2] == "gravel"
-    content = strict((tmp_path / "out" / "result.json").read_text())
-    assert content["sightings"]["no label: the image cannot be read"] == 1
-
-
-def test_the_tread_strips_have_columns_of_their_own(astride_run, classifier, tmp_path):
-    config = Config(region=RegionConfig(per_tread=True))
-    write_results(run_odometry(astride_run, model=classifier, config=config), tmp_path)
-    header, table = columns(tmp_path / "terrain.csv")
-    assert header[:5] == TERRAIN
-    assert "gravel" in table["left"]
-    assert "boards" in table["right"]
 
 
 @pytest.mark.parametrize(
