@@ -151,6 +151,7 @@ def _value(name: str, said: Any) -> Any:
 
 
 def _list(bags: tuple[Path, ...]) -> None:
+    from odometry.bags.guess import best
     from odometry.bags.message_types import MessageTypes
     from odometry.bags.topic_list import topic_lines
 
@@ -160,7 +161,8 @@ def _list(bags: tuple[Path, ...]) -> None:
     for loss in found.losses:
         click.echo(f"Lost: {loss}", err=True)
     named = " ".join(map(str, bags))
-    click.echo(f"Next: terrain-odometry import {named} --out {_run_name(bags[0])}")
+    wheels = "" if best(found.topics, "wheels") else " --wheels TOPIC"
+    click.echo(f"Next: terrain-odometry import {named} --out {_run_name(bags[0])}{wheels}")
 
 
 def _run_name(bag: Path) -> str:

@@ -56,6 +56,15 @@ def test_topics_are_listed_with_what_is_guessed(bag):
     assert answer.stdout.splitlines()[-1].startswith("Next: terrain-odometry import ")
 
 
+def test_a_bag_without_wheels_is_listed_with_the_option_that_names_them(tmp_path):
+    made = Bag("mcap")
+    for t_s, _, _, x, y, yaw in course(5.0):
+        made.pose_stamped("/mocap/pose", t_s, made.pose((x, y, 0), half_turn(yaw)))
+    answer = call(made.write(tmp_path / "drive"), "--list")
+    assert answer.exit_code == 0
+    assert answer.stdout.splitlines()[-1].endswith(" --wheels TOPIC")
+
+
 def test_a_missing_number_stops_the_import_and_nothing_is_written(bag, tmp_path):
     answer = call(bag, "--out", tmp_path / "my_run", "--track-width", "0.6")
     assert answer.exit_code == 1
