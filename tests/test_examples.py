@@ -1,10 +1,8 @@
-"""What the README, the docstrings and the notebooks show does run."""
+"""What the docstrings and the notebooks show does run."""
 
 import doctest
 import importlib
 import pkgutil
-import re
-from functools import partial
 from pathlib import Path
 
 import nbformat
@@ -13,7 +11,6 @@ from nbclient import NotebookClient
 
 import odometry
 import terrain
-from terrain.synthetic import SynthesisConfig, synthesise
 
 ROOT = Path(__file__).parents[1]
 MODULES = [
@@ -21,19 +18,6 @@ MODULES = [
     for package in (odometry, terrain)
     for module in pkgutil.walk_packages(package.__path__, package.__name__ + ".")
 ]
-
-
-def test_the_python_of_the_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As it stands there, on a shorter run and fewer patches."""
-    small = SynthesisConfig(zone_length_m=4.0, patches_per_terrain=16)
-    monkeypatch.setattr(terrain, "synthesise", partial(synthesise, config=small))
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    (code,) = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
-    monkeypatch.chdir(tmp_path)
-    names: dict[str, object] = {}
-    exec(compile(code, "README.md", "exec"), names)  # noqa: S102
-    assert (tmp_path / "results" / "report.html").is_file()
-    assert [event.terrain for event in names["result"].watcher.events] == ["grass", "gravel"]  # type: ignore[attr-defined]
 
 
 def test_docstrings() -> None:

@@ -1,0 +1,158 @@
+"""Links, commands, settings and Python of every README."""
+
+import re
+import shlex
+import tomllib
+from dataclasses import asdict
+from functools import partial
+from pathlib import Path
+
+import click
+import pytest
+
+import terrain
+import terrain.synthetic
+from terrain.cli.main import cli
+from terrain.config import Config
+
+ROOT = Path(__file__).parents[1]
+README_FILES = [
+    ROOT / name
+    for name in (
+        "README.md",
+        "data/README.md",
+        "odometry/README.md",
+        "terrain/README.md",
+        "tests/README.md",
+        "tests/studies/README.md",
+    )
+]
+each_readme = pytest.mark.parametrize(
+    "readme", README_FILES, ids=lambda file: str(file.parent.relative_to(ROOT))
+)
+
+
+def blocks(readme: Path, *languages: str) -> list[str]:
+    """Blocks of code in one of these languages; "" is a block that states none."""
+    text = readme.read_text(encoding="utf-8")
+    fences = re.findall(r"^```(\w*)\n(.*?)^```$", text, flags=re.DOTALL | re.MULTILINE)
+    return [code for language, code in fences if language in languages]
+
+
+def prose(readme: Path) -> str:
+    """All but the blocks of code."""
+    text = readme.read_text(encoding="utf-8")
+    return re.sub(r"^```.*?^```", "", text, flags=re.DOTALL | re.MULTILINE)
+
+
+def anchors(readme: Path) -> set[str]:
+    """As GitHub makes them of headings."""
+    headings = re.findall(r"^#+ (.+)$", prose(readme), flags=re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def test_every_readme_is_tested() -> None:
+    folders = ("data", "notebooks", "odometry", "terrain", "tests")
+    found = [file for folder in folders for file in (ROOT / folder).rglob("README.md")]
+    assert {*found, ROOT / "README.md"} == set(README_FILES)
+
+
+@each_readme
+def test_links(readme: Path) -> None:
+    """Files and anchors that it points to are there."""
+    targets = re.findall(r"\]\(([^)\s]+)\)", prose(readme))
+    targets += re.findall(r'(?:src|srcset|href)="([^"]+)"', prose(readme))
+    for target in targets:
+        if target.startswith(("http://", "https://")):
+            continue
+        name, _, anchor = target.partition("#")
+        file = (readme.parent / name) if name else readme
+        assert file.exists(), target
+        assert not anchor or anchor in anchors(file), target
+
+
+def test_the_links_that_are_tested() -> None:
+    assert sum(len(re.findall(r"\]\(", prose(readme))) for readme in README_FILES) > 60
+
+
+@each_readme
+def test_names_of_files(readme: Path) -> None:
+    """Paths of the project between backticks exist."""
+    pattern = r"`((?:odometry|terrain|tests|data|notebooks)/[\w/.]+)`"
+    for name in re.findall(pattern, prose(readme)):
+        assert (ROOT / name).exists(), name
+
+
+def lines_of_commands(readme: Path) -> list[list[str]]:
+    """Words of every line that calls `terrain-odometry`, without its comment."""
+    shown = "\n".join(blocks(readme, "", "bash")).replace("\\\n", " ")
+    calls = re.findall(r"^(?:\$ |.*&& | *)terrain-odometry ([a-z].*)$", shown, flags=re.MULTILINE)
+    return [shlex.split(call, comments=True) for call in calls]
+
+
+@each_readme
+def test_commands(readme: Path) -> None:
+    """Verbs, options and their choices are those of the command line."""
+    for verb, *words in lines_of_commands(readme):
+        command = cli.get_command(click.Context(cli), verb)
+        assert command is not None, verb
+        context = click.Context(command)
+        values, rest, _ = command.make_parser(context).parse_args(words)
+        assert not rest, words
+        for option in command.params:
+            value = values.get(option.name)
+            if isinstance(option.type, click.Choice) and value is not None and "$" not in value:
+                option.type_cast_value(context, value)
+
+
+def test_the_commands_that_are_tested() -> None:
+    assert sum(len(lines_of_commands(readme)) for readme in README_FILES) > 20
+
+
+def test_the_settings_are_the_defaults() -> None:
+    """The block of data/README.md is read by the program and changes nothing."""
+    (block,) = blocks(ROOT / "data/README.md", "toml")
+    stated = tomllib.loads(block)
+    defaults = asdict(Config())
+    for name, table in stated.items():
+        assert table == {key: defaults[name][key] for key in table}, name
+
+
+def test_every_study_is_named() -> None:
+    text = (ROOT / "tests/studies/README.md").read_text(encoding="utf-8")
+    studies = {file.name for file in (ROOT / "tests/studies").glob("*.py")}
+    assert {name for name in studies if f"`{name}`" not in text} == set()
+
+
+def run_blocks(readme: Path) -> dict[str, object]:
+    """Run the Python of a README in its order, as one program."""
+    names: dict[str, object] = {}
+    for code in blocks(readme, "python"):
+        exec(compile(code, str(readme), "exec"), names)  # noqa: S102
+    return names
+
+
+def test_the_python_of_the_guides(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As it stands there, on a shorter run and fewer patches."""
+    small = terrain.synthetic.SynthesisConfig(zone_length_m=4.0, patches_per_terrain=16)
+    monkeypatch.setattr(terrain, "synthesise", partial(terrain.synthetic.synthesise, config=small))
+    monkeypatch.chdir(tmp_path)
+    names = run_blocks(ROOT / "terrain/README.md")
+    assert (tmp_path / "results" / "report.html").is_file()
+    assert (tmp_path / "lenient.model").is_file()
+    assert [event.terrain for event in names["result"].watcher.events] == ["grass", "gravel"]  # type: ignore[attr-defined]
+
+
+def test_the_making_of_the_shipped_data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As data/README.md has it, on a shorter run."""
+    short = partial(terrain.synthetic.SynthesisConfig, zone_length_m=1.0, patches_per_terrain=2)
+    monkeypatch.setattr(terrain.synthetic, "SynthesisConfig", short)
+    monkeypatch.chdir(tmp_path)
+    run_blocks(ROOT / "data/README.md")
+    assert (tmp_path / "demo/run.toml").is_file()
+
+
+@each_readme
+def test_no_python_goes_untested(readme: Path) -> None:
+    tested = {ROOT / "data/README.md", ROOT / "terrain/README.md"}
+    assert readme in tested or not blocks(readme, "python", "py")
