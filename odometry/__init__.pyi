@@ -3,6 +3,7 @@ from .checks.recording import check_recording
 from .comparison.compare import compare
 from .dead_reckoning import dead_reckon, dead_reckon_in_space
 from .errors import OdometryError
+from .estimates import Replay
 from .estimation.config import IcrEkfConfig
 from .estimation.estimate import Estimate
 from .estimation.icr_ekf import IcrEkf
@@ -27,7 +28,6 @@ from .modes.mode_set import ModeSet, read_mode_set, write_mode_set
 from .modes.track import ModeTrack, follow_modes
 from .parameters import ParameterSet, TerrainParameters, read_parameters, write_parameters
 from .pipeline import ConstantTerrain, replay
-from .replay import Replay
 from .run import Robot, Run
 from .run_inputs import inputs_of
 from .run_span import Span, cut_run

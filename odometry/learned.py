@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from odometry.estimates import Replay
 from odometry.estimation.estimate import Estimate, IcrBelief
 from odometry.models.catalogue import ICR_NAMES
 from odometry.parameters import ParameterSet, TerrainParameters
-from odometry.replay import Replay
 from odometry.run import UNKNOWN
 
 MUCH_SURER = 2.0  # times less variance

@@ -8,12 +8,12 @@ import numpy as np
 from tqdm import tqdm
 
 from odometry.errors import RunFolderError
+from odometry.estimates import Replay
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.heading_search import INITIAL_YAW
 from odometry.footing import Footing
 from odometry.frames import Frame
-from odometry.replay import Replay
 from odometry.run import Run
 from odometry.run_end import run_end_events
 from odometry.windows.gaps import odometry_gaps

@@ -9,9 +9,9 @@ from .labelling.label_runs import label_runs
 from .labelling.patch_files import write_labelled_patches
 from .labelling.scale import LabelConfig
 from .labelling.told_terrain import TerrainSpan, told_by_spans, told_terrain
+from .main_job import run_odometry
 from .report.page import write_report
 from .results import read_errors, write_results
-from .run_odometry import run_odometry
 from .run_result import RunResult
 from .synthetic import SynthesisConfig, synthesise
 from .texture import SFTA, sfta

@@ -6,9 +6,9 @@ from typing import Any
 
 from odometry.run import Run
 from terrain.classification.training import train
+from terrain.main_job import run_odometry
 from terrain.report.page import write_report
 from terrain.results import write_results
-from terrain.run_odometry import run_odometry
 from terrain.run_result import RunResult
 from terrain.shipped import shipped_data
 

@@ -4,10 +4,10 @@ from typing import Any
 
 import numpy as np
 
+from odometry.estimates import Replay
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.heading_search import INITIAL_YAW, LATER_YAW
 from odometry.estimation.transition import GYRO_BIAS
-from odometry.replay import Replay
 from odometry.run_end import DRIFT_FOLLOWED
 
 HARMLESS = {  # kinds of events after which the filter may be believed all the same

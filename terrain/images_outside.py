@@ -1,6 +1,6 @@
 """Images that a replay does not come to: before its start and after its end."""
 
-from odometry.replay import Replay
+from odometry.estimates import Replay
 from odometry.run import Run
 from odometry.table import Table
 from terrain.watcher import Sighting, TerrainWatcher

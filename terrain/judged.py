@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from odometry.estimates import Replay
 from odometry.evaluation.withheld import Withheld
 from odometry.geometry import se2
-from odometry.replay import Replay
 from odometry.run import Run
 from odometry.trajectory import Trajectory
 

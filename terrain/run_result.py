@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 
+from odometry.estimates import Replay
 from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.relative import position_errors
 from odometry.evaluation.score import Score
 from odometry.evaluation.stretches import stretches
 from odometry.parameters import ParameterSet
-from odometry.replay import Replay
 from odometry.run import Run
 from odometry.trajectory import Trajectory
 from terrain.config import Config

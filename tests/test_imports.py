@@ -98,6 +98,14 @@ def test_every_public_name_is_there(package):
         assert getattr(module, name) is not None
 
 
+@pytest.mark.parametrize("package", ["odometry", "terrain"])
+def test_no_file_has_the_name_of_a_public_name(package):
+    """Python sets an imported file on its package: it would stand in place of the public name."""
+    module = importlib.import_module(package)
+    files = {file.name for file in pkgutil.iter_modules(module.__path__)}
+    assert not files & set(module.__all__)
+
+
 def test_importing_the_packages_imports_nothing_heavy():
     code = (
         "import sys, terrain, odometry, terrain.cli.main\n"

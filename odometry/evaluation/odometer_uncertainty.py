@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
+from odometry.estimates import Replay
 from odometry.evaluation.learning_errors import learning_covariances
 from odometry.evaluation.odometer_noise import USUAL_NOISE, OdometerNoise, measured_noise
 from odometry.evaluation.open_loop_consistency import (
@@ -15,7 +16,6 @@ from odometry.evaluation.open_loop_consistency import (
 )
 from odometry.evaluation.open_loop_errors import OpenLoopPath
 from odometry.geometry import se2
-from odometry.replay import Replay
 from odometry.run import Run
 from odometry.trajectory import Trajectory
 

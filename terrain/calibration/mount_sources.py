@@ -22,7 +22,7 @@ from terrain.camera_files.calibration import Lens
 from terrain.camera_files.transforms import ROBOT, mount_in, read_transforms
 from terrain.camera_values import finite_array
 from terrain.errors import CameraError
-from terrain.run_odometry import run_odometry
+from terrain.main_job import run_odometry
 
 
 @dataclass(frozen=True, eq=False)

@@ -76,10 +76,10 @@ def run(
     from terrain.cli.recordings import checks_made, read_run
     from terrain.cli.results import print_changes, print_errors, print_sightings, print_written
     from terrain.config import Config
+    from terrain.main_job import run_odometry
     from terrain.report.page import write_report
     from terrain.result_table import sighting_counts
     from terrain.results import write_results
-    from terrain.run_odometry import run_odometry
     from terrain.run_presets import run_preset
     from terrain.sources import source_name
 

@@ -19,7 +19,7 @@ from terrain.labelling.places import place_centres, places_of
 from terrain.labelling.scale import LabelConfig, PatchScale, patch_scale
 from terrain.labelling.squares import SquareFinder
 from terrain.labelling.told_terrain import ToldTerrain
-from terrain.run_odometry import run_odometry
+from terrain.main_job import run_odometry
 
 ASTRIDE_PLACES, NOT_NEEDED = "across the border of two places", "more than a place needs"
 REMOVED = "removed by hand"

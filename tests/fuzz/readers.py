@@ -24,8 +24,8 @@ from terrain.classification.patches import find_photos, stated_metres_per_pixel
 from terrain.cli.evaluate import _rows
 from terrain.config import Config
 from terrain.images import read_image
+from terrain.main_job import run_odometry
 from terrain.results import read_errors
-from terrain.run_odometry import run_odometry
 from terrain.shipped import shipped_data
 from terrain.synthesis.config import SynthesisConfig
 from terrain.synthesis.files import read_camera, read_robot

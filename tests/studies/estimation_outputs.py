@@ -8,8 +8,8 @@ from pathlib import Path as Folder
 import numpy as np
 
 from odometry.table import Table
+from terrain.main_job import run_odometry
 from terrain.results import write_results
-from terrain.run_odometry import run_odometry
 from tests.studies.estimation_reckoning import Path
 
 

@@ -30,7 +30,7 @@ from terrain.label_confusion import label_confusions
 from terrain.labelling.label_runs import label_runs
 from terrain.labelling.patch_files import write_labelled_patches
 from terrain.labelling.told_terrain import TerrainSpan, told_by_spans, told_terrain
-from terrain.run_odometry import RunResult, run_odometry
+from terrain.main_job import RunResult, run_odometry
 from terrain.switch_delay import switch_delays
 from terrain.synthesis.config import SynthesisConfig
 from terrain.synthetic import synthesise

@@ -15,7 +15,7 @@ from odometry.evaluation.odometer_uncertainty import odometer_uncertainty
 from odometry.evaluation.open_loop_consistency import DISTANCES_M
 from odometry.evaluation.open_loop_errors import SOURCES
 from odometry.run import Run
-from terrain.run_odometry import run_odometry
+from terrain.main_job import run_odometry
 from tests.studies.estimation_recordings import SEVEN, motion, recordings
 
 

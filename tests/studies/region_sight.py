@@ -31,8 +31,8 @@ from terrain.camera import Camera
 from terrain.checks.looks import motion_at
 from terrain.classification.training import train
 from terrain.images import read_image
+from terrain.main_job import run_odometry
 from terrain.region import Rectangle, RegionConfig, predict_region
-from terrain.run_odometry import run_odometry
 from terrain.suited import coarsest_m, unsuited
 from terrain.synthesis.config import SynthesisConfig, default_camera
 from terrain.synthetic import synthesise

@@ -25,7 +25,7 @@ from odometry.evaluation.score import score
 from odometry.run import Run
 from terrain.classification.training import train
 from terrain.config import Config
-from terrain.run_odometry import RunResult, run_odometry
+from terrain.main_job import RunResult, run_odometry
 from terrain.switch_delay import SwitchDelay, switch_delays
 from terrain.synthesis.config import SynthesisConfig
 from terrain.synthetic import synthesise

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from terrain.classification.classifier import TerrainClassifier
+from terrain.main_job import run_odometry
 from terrain.results import write_results
-from terrain.run_odometry import run_odometry
 
 EDGES_M = (1.6, 3.0)  # gravel, then boards from the first edge on, then gravel again
 SPEED_M_S = 0.5

@@ -7,7 +7,7 @@ import pytest
 
 from odometry.estimation.filter_event import FilterEvent
 from terrain.filter_summary import event_line, filter_table, misleading
-from terrain.run_odometry import run_odometry
+from terrain.main_job import run_odometry
 
 YAW = FilterEvent("initial_yaw", 0.0, 6.5, "initial yaw 12.0 degrees", (0.2, 0.01))
 ANEW = FilterEvent("reinitialised", 8.0, 8.0, "it started anew")

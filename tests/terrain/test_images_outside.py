@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from terrain.run_odometry import run_odometry
+from terrain.main_job import run_odometry
 
 
 @pytest.fixture(scope="module")

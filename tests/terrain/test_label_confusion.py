@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from terrain.label_confusion import LabelConfusion, label_confusion_table, label_confusions
+from terrain.main_job import run_odometry
 from terrain.report.confusion_table import label_table
-from terrain.run_odometry import run_odometry
 from tests.odometry.modes.mode_drives import run_of_tables
 
 LABELS = ["ice", "mud", "", "unknown", "ice", "ice"]

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from odometry.parameters import read_parameters
+from terrain.main_job import run_odometry
 from terrain.result_table import result_table
 from terrain.results import write_results
-from terrain.run_odometry import run_odometry
 from tests.terrain.output_tables import TERRAIN, columns, numbers, strict
 
 POSE = ["t", "x", "y", "yaw"]

@@ -10,8 +10,8 @@ from odometry.estimation.config import IcrEkfConfig
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
 from odometry.run import Run
 from terrain.config import Config
+from terrain.main_job import run_odometry
 from terrain.region import RegionConfig
-from terrain.run_odometry import run_odometry
 
 SET = ParameterSet(
     {

@@ -4,7 +4,7 @@ import pytest
 
 from odometry.errors import OdometryError, RunFolderError
 from terrain.errors import CameraError, ModelFileError
-from terrain.run_odometry import run_odometry
+from terrain.main_job import run_odometry
 
 
 def test_a_model_without_images_is_an_error(tmp_path, world, classifier):

@@ -10,7 +10,7 @@ from odometry.parameters import ParameterSet, TerrainParameters
 from terrain.classification.classifier import TerrainClassifier
 from terrain.cli import run as cli_run
 from terrain.config import Config
-from terrain.run_odometry import run_odometry
+from terrain.main_job import run_odometry
 from terrain.run_presets import RUN_PRESETS, run_preset
 
 SET = ParameterSet({"gravel": TerrainParameters("icr", {"y_left": 0.2, "y_right": -0.2})})

@@ -11,9 +11,9 @@ import pytest
 from odometry.errors import ConfigError, RunFolderError
 from odometry.pipeline import ConstantTerrain
 from terrain.cli import run as cli_run
+from terrain.main_job import run_odometry
 from terrain.report.page import write_report
 from terrain.results import write_results
-from terrain.run_odometry import run_odometry
 from terrain.sources import SOURCES, source_name
 from tests.odometry.modes.mode_drives import velocity_run
 from tests.odometry.modes.test_felt_terrain import NAMES, SET, A, B

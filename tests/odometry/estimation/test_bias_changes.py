@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from odometry.estimates import Replay
 from odometry.estimation.bias_drift import drifted_bias
 from odometry.estimation.bias_watch import BiasWatch, Rates, told_bias, watched
 from odometry.estimation.gyroscope_hold import GyroscopeHold
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.geometry.angles import wrap
-from odometry.replay import Replay
 from tests.odometry.estimation.sensor_drives import (
     STEP_S,
     WIDTH,

@@ -12,8 +12,8 @@ from odometry.io.tum import write_spatial_tum
 from odometry.run import Run
 from odometry.spatial_trajectory import SpatialTrajectory
 from terrain.cli.evaluate import evaluate
+from terrain.main_job import run_odometry
 from terrain.results import write_results
-from terrain.run_odometry import run_odometry
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ from terrain.cli.results import (
     print_table,
     print_written,
 )
-from terrain.run_odometry import run_odometry
+from terrain.main_job import run_odometry
 from terrain.terrain_change import TerrainChange
 
 

@@ -7,9 +7,9 @@ import pytest
 
 from odometry.evaluation.score import reference_of
 from odometry.table import Table
+from terrain.main_job import run_odometry
 from terrain.report import page
 from terrain.report.page import write_report
-from terrain.run_odometry import run_odometry
 from tests.terrain.report.page_reader import SHORT
 
 

@@ -5,9 +5,9 @@ import struct
 
 import pytest
 
+from terrain.main_job import run_odometry
 from terrain.report.lines import ReportLines
 from terrain.report.page import write_report
-from terrain.run_odometry import run_odometry
 from tests.terrain.report.page_reader import Reader
 
 FIGURES = {"path", "position_errors", "error_per_metre", "labels", "confusion", "regions"}

@@ -9,9 +9,9 @@ from odometry.estimation.filter_event import FilterEvent
 from odometry.evaluation.open_loop_consistency import OpenLoopConsistency
 from odometry.run import Run
 from odometry.trajectory import Trajectory
+from terrain.main_job import run_odometry
 from terrain.report.page import write_report
 from terrain.report.tables import NOTHING
-from terrain.run_odometry import run_odometry
 from tests.terrain.report.page_reader import SHORT, Reader
 
 BOUNDS = np.array([0.6, 7.2])

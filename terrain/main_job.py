@@ -6,6 +6,7 @@ from odometry.effects.catalogue import added_effects
 from odometry.effects.corrected import Added
 from odometry.effects.measured import robot_run, shared_measurement
 from odometry.errors import ParameterError
+from odometry.estimates import Replay
 from odometry.estimation.corrections import corrections_of
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.estimation.means_kept import MeansKept
@@ -17,7 +18,6 @@ from odometry.modes.mode_set import ModeSet
 from odometry.parameters import ParameterSet, read_parameters
 from odometry.pipeline import Estimator, TerrainSource, replay
 from odometry.pose_delay import without_pose_delay
-from odometry.replay import Replay
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
 from odometry.terrain_sources import ToldFooting
 from odometry.windows.measured_poses import lacks_yaw
