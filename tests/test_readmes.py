@@ -2,6 +2,8 @@
 
 import re
 import shlex
+import subprocess
+import sys
 import tomllib
 from dataclasses import asdict
 from functools import partial
@@ -156,3 +158,13 @@ def test_the_making_of_the_shipped_data(tmp_path: Path, monkeypatch: pytest.Monk
 def test_no_python_goes_untested(readme: Path) -> None:
     tested = {ROOT / "data/README.md", ROOT / "terrain/README.md"}
     assert readme in tested or not blocks(readme, "python", "py")
+
+
+def test_the_python_of_the_guides_is_typed(tmp_path: Path) -> None:
+    """One program for each README, judged by mypy as strictly as the packages."""
+    for readme in README_FILES:
+        program = tmp_path / f"{'_'.join(readme.relative_to(ROOT).parts[:-1])}_readme.py"
+        program.write_text("\n".join(blocks(readme, "python")), encoding="utf-8")
+    mypy = [sys.executable, "-m", "mypy", "--strict", *sorted(tmp_path.glob("*.py"))]
+    result = subprocess.run(mypy, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stdout + result.stderr
