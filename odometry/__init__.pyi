@@ -20,6 +20,7 @@ from .identification.identify import identify
 from .io.run_folder import write_run_folder
 from .io.trajectory_files import read_trajectory, write_trajectory
 from .io.tum import read_spatial_tum, read_tum, write_spatial_tum, write_tum
+from .live_frames import LiveFrames
 from .models.catalogue import MODELS
 from .models.inputs import Inputs
 from .modes.identify_traction import identify_traction_modes
@@ -46,6 +47,7 @@ __all__ = [
     "IcrEkf",
     "IcrEkfConfig",
     "Inputs",
+    "LiveFrames",
     "ModeSet",
     "ModeTrack",
     "OdometryError",

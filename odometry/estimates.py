@@ -99,11 +99,15 @@ class Replay:
         Where the gyroscope told the yaw rate, the robot is turned by it, less the bias held. The
         effects of the parameter set are part of the model.
         """
+        return self._reckon(self.odometer_twists())
+
+    def odometer_twists(self) -> FloatArray:
+        """Body twists (N, 3) of the odometer, each to the next stamp; the last by its treads."""
         twists = np.stack([estimate.twist for estimate in self.estimates])
         by_gyroscope = self._turned_by_gyroscope()
         told = np.isfinite(by_gyroscope).all(axis=1)
         twists[:-1][told] = by_gyroscope[told]
-        return self._reckon(twists)
+        return twists
 
     def odometer_without_gyroscope(self) -> Trajectory:
         """The same, the robot turned by its treads throughout."""

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from odometry.arrays import FloatArray, IntArray
+from odometry.arrays import ByteImage, FloatArray, IntArray
 from odometry.gyroscope import Gyroscope
 from odometry.table import Table
 
@@ -29,8 +29,9 @@ class Frame:
         Row of `Run.odometry` in force, -1 before the first.
     pose : (3,) or None
         Measured x, y, yaw in the reference frame at this stamp; NaN for what was not measured.
-    image : Path or None
-        The image taken at this stamp; it is opened by whoever needs it.
+    image : Path, (H, W) or (H, W, 3) of uint8, or None
+        The image taken at this stamp: a file, which is opened by whoever needs it, or grey or
+        RGB pixels.
     in_gap : bool
         Whether the speeds that led to this frame are not known: odometry.csv has a gap there.
     yaw_rate_rad_s : float
@@ -43,7 +44,7 @@ class Frame:
     tread_speeds_m_s: FloatArray
     odometry_row: int
     pose: FloatArray | None
-    image: Path | None
+    image: Path | ByteImage | None
     in_gap: bool = False
     yaw_rate_rad_s: float = math.nan
     velocity: FloatArray | None = None

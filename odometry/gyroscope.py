@@ -49,9 +49,15 @@ def gyroscope_of(yaw_rate: YawRate | None) -> Gyroscope | None:
     """The integrals over measured yaw rates; None without two samples."""
     if yaw_rate is None or len(yaw_rate.stamps_s) < 2:
         return None
-    stamps_s, rates_rad_s = yaw_rate.stamps_s, yaw_rate.yaw_rate_rad_s
+    steps = step_integrals(yaw_rate.stamps_s, yaw_rate.yaw_rate_rad_s)
+    integrals = np.concatenate([np.zeros((1, 4)), np.cumsum(steps, axis=0)])
+    return Gyroscope(yaw_rate.stamps_s, integrals)
+
+
+def step_integrals(stamps_s: FloatArray, rates_rad_s: FloatArray) -> FloatArray:
+    """Integrals (G - 1, 4), as a `Gyroscope` has them, from each sample to the next."""
     steps_s = np.diff(stamps_s)
-    steps = np.column_stack(
+    return np.column_stack(
         [
             (rates_rad_s[1:] + rates_rad_s[:-1]) / 2 * steps_s,
             (np.abs(rates_rad_s[1:]) + np.abs(rates_rad_s[:-1])) / 2 * steps_s,
@@ -59,4 +65,3 @@ def gyroscope_of(yaw_rate: YawRate | None) -> Gyroscope | None:
             np.where(steps_s > SILENT_S, steps_s, 0.0),
         ]
     )
-    return Gyroscope(stamps_s, np.concatenate([np.zeros((1, 4)), np.cumsum(steps, axis=0)]))

@@ -17,6 +17,7 @@ from odometry.frames import Frame
 from odometry.run import Run
 from odometry.run_end import run_end_events
 from odometry.windows.gaps import odometry_gaps
+from odometry.windows.gaps_so_far import GapsSoFar
 
 LEAST_YAW_SIGMA_RAD = 0.1  # of a yaw found before the replay
 
@@ -62,6 +63,7 @@ def replay(
     source: TerrainSource,
     *,
     noticed: tuple[FilterEvent, ...] = (),
+    causal: bool = False,
     show_progress: bool = False,
 ) -> Replay:
     """Replay a run frame by frame, from its first usable position to the end of its odometry.
@@ -76,6 +78,8 @@ def replay(
     source : TerrainSource
     noticed : tuple of FilterEvent
         Of the run before the filter saw it, such as a delay of its poses.
+    causal : bool
+        See `IcrEkfConfig`.
     show_progress : bool
         Whether to draw a bar on standard error.
 
@@ -84,24 +88,47 @@ def replay(
     RunFolderError
         If no frame has both tread speeds and, where the run has poses, a position to start from.
     """
-    frames = _from_start(run)
+    frames = _frames_so_far(run) if causal else _from_start(run)
     first = next(frames, None)
     if first is None:
         raise RunFolderError(
             f"{run.folder}: no position of pose.csv lies within the time of odometry.csv"
         )
-    estimates = [_first_estimate(run, first, estimator, source.initial)]
-    source.terrain(first, estimates[0])  # its image is looked at; a switch takes effect next
+    if causal:
+        estimates = [started(estimator, source, first)]
+    else:
+        estimates = [_first_estimate(run, first, estimator, source.initial)]
+        source.terrain(first, estimates[0])
     bar: Iterable[Frame] = tqdm(
         frames, desc=run.name, unit="frame", disable=None if show_progress else True
     )
     for frame in bar:
-        terrain = source.terrain(frame, estimates[-1])
-        estimates.append(estimator.step(estimates[-1], frame, terrain))
+        estimates.append(stepped(estimator, source, estimates[-1], frame))
     estimates[0] = replace(estimates[0], events=(*noticed, *estimates[0].events))
     ended = run_end_events(run, Replay(tuple(estimates)))
     estimates[-1] = replace(estimates[-1], events=(*estimates[-1].events, *ended))
     return Replay(tuple(estimates))
+
+
+def started(estimator: Estimator, source: TerrainSource, frame: Frame) -> Estimate:
+    """The first estimate; the image of its frame is looked at, and a switch takes effect next."""
+    estimate = estimator.start(frame, source.initial)
+    source.terrain(frame, estimate)
+    return estimate
+
+
+def stepped(
+    estimator: Estimator, source: TerrainSource, estimate: Estimate, frame: Frame
+) -> Estimate:
+    """The next estimate, on the terrain that the source tells."""
+    return estimator.step(estimate, frame, source.terrain(frame, estimate))
+
+
+def can_start(frame: Frame, *, at_pose: bool) -> bool:
+    """Whether a filter can start at a frame: its speeds are known and, if wanted, a position."""
+    if not np.all(np.isfinite(frame.tread_speeds_m_s)):
+        return False
+    return not at_pose or (frame.pose is not None and bool(np.all(np.isfinite(frame.pose[:2]))))
 
 
 def _first_estimate(run: Run, first: Frame, estimator: Estimator, terrain: str) -> Estimate:
@@ -134,17 +161,24 @@ def _from_start(run: Run) -> Iterator[Frame]:
     A held speed goes on in a gap, as the best that is known; the frames say that it is one.
     """
     gap_begins_s, gap_ends_s = odometry_gaps(run).spans_s.T
+    for frame in _usable(run):
+        in_gap = (gap_begins_s < frame.stamp_s) & (frame.stamp_s <= gap_ends_s)
+        yield replace(frame, in_gap=bool(in_gap.any()))
+
+
+def _frames_so_far(run: Run) -> Iterator[Frame]:
+    """The same, with gaps as far as they are known at each frame."""
+    return map(GapsSoFar().told, _usable(run))
+
+
+def _usable(run: Run) -> Iterator[Frame]:
     has_pose = run.pose is not None and bool(
         np.isfinite(run.pose.stack("x", "y")).all(axis=1).any()
     )
-    started = False
+    is_on = False
     for frame in run.frames():
-        moves = bool(np.all(np.isfinite(frame.tread_speeds_m_s)))
-        if not started:
-            posed = frame.pose is not None and bool(np.all(np.isfinite(frame.pose[:2])))
-            started = moves and (posed or not has_pose)
-        in_gap = (gap_begins_s < frame.stamp_s) & (frame.stamp_s <= gap_ends_s)
-        if started:
-            yield replace(frame, in_gap=bool(in_gap.any()))
-            if not moves:
+        is_on = is_on or can_start(frame, at_pose=has_pose)
+        if is_on:
+            yield frame
+            if not np.all(np.isfinite(frame.tread_speeds_m_s)):
                 return

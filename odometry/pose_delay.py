@@ -27,8 +27,9 @@ def without_pose_delay(run: Run, config: IcrEkfConfig) -> Moved:
     run : Run
     config : IcrEkfConfig
         `pose_delay_s` says by how much the stamps are late. With 0, and with `watch_sensors`, it
-        is searched for: where the run has a gyroscope, by the correlation of its yaw rate with
-        that of the poses (`odometry.checks.timing`), and believed only where that is certain.
+        is searched for unless `causal`: where the run has a gyroscope, by the correlation of its
+        yaw rate with that of the poses (`odometry.checks.timing`), and believed only where that
+        is certain.
 
     Returns
     -------
@@ -41,7 +42,8 @@ def without_pose_delay(run: Run, config: IcrEkfConfig) -> Moved:
         return run, ()
     if given_s:
         return _moved(run, pose, given_s, f"by {given_s:.3f} s, as given")
-    delay_s = _certain_delay_s(run) if config.watch_sensors else None
+    searched = config.watch_sensors and not config.causal
+    delay_s = _certain_delay_s(run) if searched else None
     if delay_s is None:
         return run, ()
     return _moved(run, pose, delay_s, f"by {delay_s:.3f} s against the gyroscope")

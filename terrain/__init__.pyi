@@ -9,6 +9,7 @@ from .labelling.label_runs import label_runs
 from .labelling.patch_files import write_labelled_patches
 from .labelling.scale import LabelConfig
 from .labelling.told_terrain import TerrainSpan, told_by_spans, told_terrain
+from .live_odometry import LiveOdometry, LiveStep
 from .main_job import run_odometry
 from .report.page import write_report
 from .results import read_errors, write_results
@@ -22,6 +23,8 @@ __all__ = [
     "Classification",
     "Config",
     "LabelConfig",
+    "LiveOdometry",
+    "LiveStep",
     "RunResult",
     "SynthesisConfig",
     "TerrainClassifier",

@@ -33,16 +33,39 @@ def read_image(path: Path | str) -> ByteImage:
         The file cannot be opened, is no such image, or has more than PIXELS pixels.
     """
     encoded = read_bytes(Path(path), ImageError, IMAGE_BYTES, "a photograph has a few million")
+    return decode_image(encoded, str(path))
+
+
+def decode_image(encoded: bytes, where: str = "image") -> ByteImage:
+    """Pixels of an image file's bytes, such as the data of a compressed image message.
+
+    Parameters
+    ----------
+    encoded : bytes
+        Of a JPEG, PNG, TIFF or BMP file.
+    where : str
+        Named in errors.
+
+    Returns
+    -------
+    ndarray of uint8
+        As `read_image`.
+
+    Raises
+    ------
+    ImageError
+        As `read_image`.
+    """
     size = stated_size(encoded)
     if size is None:
         raise ImageError(
-            f"{path}: {len(encoded)} bytes that do not decode as a JPEG, PNG, TIFF or BMP image"
+            f"{where}: {len(encoded)} bytes that do not decode as a JPEG, PNG, TIFF or BMP image"
         )
     width, height = size
     if not 0 < width * height <= PIXELS:
-        raise ImageError(f"{path}: {width} x {height} pixels, expected 1 to {PIXELS} in all")
+        raise ImageError(f"{where}: {width} x {height} pixels, expected 1 to {PIXELS} in all")
     if not is_whole(encoded):
-        raise ImageError(f"{path}: the image has no end; it was cut off at {len(encoded)} bytes")
+        raise ImageError(f"{where}: the image has no end; it was cut off at {len(encoded)} bytes")
     try:
         decoded: AnyArray | None = cv2.imdecode(
             np.frombuffer(encoded, np.uint8), cv2.IMREAD_UNCHANGED
@@ -50,11 +73,11 @@ def read_image(path: Path | str) -> ByteImage:
     except cv2.error:
         decoded = None
     if decoded is None:
-        raise ImageError(f"{path}: {len(encoded)} bytes that do not decode as an image")
+        raise ImageError(f"{where}: {len(encoded)} bytes that do not decode as an image")
     try:
         image = to_bytes(decoded)
     except ImageError as error:
-        raise ImageError(f"{path}: {error}") from error
+        raise ImageError(f"{where}: {error}") from error
     if image.ndim == 2:
         return image
     return np.ascontiguousarray(image[..., 2::-1])  # OpenCV decodes to B, G, R(, A)

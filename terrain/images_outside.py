@@ -3,7 +3,8 @@
 from odometry.estimates import Replay
 from odometry.run import Run
 from odometry.table import Table
-from terrain.watcher import Sighting, TerrainWatcher
+from terrain.sighting import Sighting
+from terrain.watcher import TerrainWatcher
 
 BEFORE_ODOMETRY = "before the first row of odometry.csv"
 BEFORE_POSE = "before the first pose"

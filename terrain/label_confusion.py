@@ -9,7 +9,7 @@ import numpy as np
 from odometry.arrays import IntArray
 from odometry.run import UNKNOWN, Run
 from terrain.run_result import RunResult
-from terrain.watcher import Sighting
+from terrain.sighting import Sighting
 
 NO_LABEL = "no label"
 

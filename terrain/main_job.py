@@ -5,7 +5,6 @@ from pathlib import Path
 from odometry.effects.catalogue import added_effects
 from odometry.effects.corrected import Added
 from odometry.effects.measured import robot_run, shared_measurement
-from odometry.errors import ParameterError
 from odometry.estimates import Replay
 from odometry.estimation.corrections import corrections_of
 from odometry.estimation.icr_ekf import IcrEkf
@@ -18,7 +17,7 @@ from odometry.modes.mode_set import ModeSet
 from odometry.parameters import ParameterSet, read_parameters
 from odometry.pipeline import Estimator, TerrainSource, replay
 from odometry.pose_delay import without_pose_delay
-from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
+from odometry.run import Run
 from odometry.terrain_sources import ToldFooting
 from odometry.windows.measured_poses import lacks_yaw
 from terrain.classification.classifier import Classifier, TerrainClassifier
@@ -27,7 +26,7 @@ from terrain.images_outside import add_images_outside
 from terrain.judged import SecondReplay, judged_trajectories
 from terrain.run_presets import run_preset, with_preset
 from terrain.run_result import RunResult
-from terrain.sources import OWN_SOURCE, source_name, terrain_source
+from terrain.sources import OWN_SOURCE, initial_terrain, source_name, terrain_source
 from terrain.watcher import TerrainWatcher
 
 __all__ = ["RunResult", "run_odometry"]
@@ -82,10 +81,11 @@ def run_odometry(
     config = config or (run_preset(preset).config if preset else Config())
     if not isinstance(parameters, ParameterSet):
         parameters = read_parameters(parameters) if parameters else ParameterSet()
-    initial = _initial_terrain(run, parameters, terrain)
+    initial = initial_terrain(terrain, parameters, run.terrain)
     corrections = corrections_of(run, parameters)
     effects = _sensor_effects(parameters)
-    if effects or not lacks_yaw(run):  # the filter itself undoes the lever arm of positions
+    # the filter itself undoes the lever arm of positions, and in time of all poses
+    if effects or not (config.filter.causal or lacks_yaw(run)):
         run = robot_run(run, effects)
     run, noticed = without_pose_delay(run, config.filter)
     lever_m = run.sensors.pose_m[:2] if run.sensors.pose_m else (0.0, 0.0)
@@ -109,13 +109,16 @@ def run_odometry(
             show_progress=show_progress,
         )
     watcher = source if isinstance(source, TerrainWatcher) else None
-    result = replay(run, estimator, source, noticed=noticed, show_progress=show_progress)
+    causal = config.filter.causal
+    result = replay(
+        run, estimator, source, noticed=noticed, causal=causal, show_progress=show_progress
+    )
     if watcher is not None and run.images is not None:
         add_images_outside(watcher, run, run.images, result)
     reference_name, reference = reference_of(run) or ("", None)
     second = None
     if reference_name == "pose":
-        second = _second_replay(run, estimator, result, show_progress=show_progress)
+        second = _second_replay(run, estimator, result, causal, show_progress=show_progress)
     judged = judged_trajectories(run, result, reference_name, reference, second)
     return RunResult(
         run,
@@ -138,14 +141,14 @@ def run_odometry(
 
 
 def _second_replay(
-    run: Run, estimator: Estimator, first: Replay, *, show_progress: bool
+    run: Run, estimator: Estimator, first: Replay, causal: bool, *, show_progress: bool
 ) -> SecondReplay | None:
     """Replay without the poses that judge; no image is looked at twice."""
     withheld = withhold(run, float(first.stamps_s[0]), float(first.stamps_s[-1]))
     if withheld is None:
         return None
     source = ToldFooting(first.estimates)
-    again = replay(withheld.run, estimator, source, show_progress=show_progress)
+    again = replay(withheld.run, estimator, source, causal=causal, show_progress=show_progress)
     return SecondReplay(withheld, again)
 
 
@@ -171,11 +174,3 @@ def _trained(
     if name != "camera":
         return name, None
     return name, TerrainClassifier.load(Path(model)) if isinstance(model, str | Path) else model
-
-
-def _initial_terrain(run: Run, parameters: ParameterSet, terrain: str | None) -> str:
-    if terrain == UNKNOWN:
-        raise ParameterError(f"the terrain name {UNKNOWN!r} is reserved; name another, or none")
-    of_run = None if run.terrain == UNKNOWN else run.terrain
-    known = of_run if of_run in parameters.terrains else next(iter(parameters.terrains), None)
-    return terrain or known or of_run or UNNAMED_TERRAIN

@@ -129,6 +129,11 @@ def _with_look_ahead(config: Config, run: Run) -> Config:
     """
     if config.region.ahead_s > 0 or "camera" not in run.settings:
         return config
+    if config.filter.causal:
+        raise ConfigError(
+            "[filter] causal knows no median speed of the run; give [region] ahead_s, the "
+            "look-ahead time t_s"
+        )
     camera = Camera.from_table(run.settings["camera"], str(run.folder / "run.toml"))
     speeds_m_s = np.abs(run.odometry.stack("v_left", "v_right")).mean(axis=1)
     speed_m_s = float(np.nanmedian(speeds_m_s[speeds_m_s > 0])) if np.any(speeds_m_s > 0) else 0.0

@@ -2,11 +2,12 @@
 
 from pathlib import Path
 
-from odometry.errors import ConfigError, RunFolderError
+from odometry.errors import ConfigError, ParameterError, RunFolderError
 from odometry.modes.felt_terrain import felt_terrain
 from odometry.modes.mode_set import ModeSet, read_mode_set
+from odometry.parameters import ParameterSet
 from odometry.pipeline import ConstantTerrain, TerrainSource
-from odometry.run import Run
+from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
 from odometry.terrain_sources import labelled_terrain
 from terrain.camera import Camera
 from terrain.classification.classifier import Classifier
@@ -38,6 +39,24 @@ def source_name(source: str | None, *, vision: bool, has_model: bool) -> str:
     if source == "camera" and not vision:
         raise ConfigError("the terrain source 'camera' needs vision, which was turned off")
     return source
+
+
+def initial_terrain(named: str | None, parameters: ParameterSet, of_run: str | None = None) -> str:
+    """The terrain in force until the first switch.
+
+    The one that was named; else the run's own where `parameters` has it, else the first of
+    `parameters`, else the run's own.
+
+    Raises
+    ------
+    ParameterError
+        If the reserved name was named.
+    """
+    if named == UNKNOWN:
+        raise ParameterError(f"the terrain name {UNKNOWN!r} is reserved; name another, or none")
+    own = None if of_run == UNKNOWN else of_run
+    known = own if own in parameters.terrains else next(iter(parameters.terrains), None)
+    return named or known or own or UNNAMED_TERRAIN
 
 
 def terrain_source(
@@ -96,4 +115,12 @@ def _watcher(run: Run, model: Classifier, initial: str, config: Config) -> Terra
             "a model (--model) reads images: leave it out, or turn vision off (--no-vision)"
         )
     camera = Camera.from_table(run.settings["camera"], str(run.folder / "run.toml"))
-    return TerrainWatcher(run, camera, model, initial, region=config.region, switch=config.switch)
+    return TerrainWatcher(
+        run.robot,
+        camera,
+        model,
+        initial,
+        region=config.region,
+        switch=config.switch,
+        folder=run.folder,
+    )

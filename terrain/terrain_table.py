@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from terrain.run_result import RunResult
+from terrain.sighting import Sighting
 from terrain.terrain_change import TerrainChange
-from terrain.watcher import Sighting
 
 SAID = ("t", "label", "confidence", "distance_ahead", "terrain_in_force", "reason", "image")
 

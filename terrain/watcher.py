@@ -1,7 +1,7 @@
 """The watcher: frame and estimate in, the name of the terrain in force out."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,54 +12,17 @@ from odometry.estimation.transition import transition
 from odometry.footing import Footing
 from odometry.frames import Frame
 from odometry.geometry import se2
-from odometry.run import UNKNOWN, Run
+from odometry.run import Robot
 from terrain.camera import Camera
-from terrain.classification.classifier import Classification, Classifier
+from terrain.classification.classifier import Classifier
 from terrain.errors import CameraError, ImageError
 from terrain.images import read_image
 from terrain.places import Footprint, Sight
 from terrain.region import Rectangle, Region, RegionConfig, predict_region
+from terrain.sighting import Sighting, answered
 from terrain.suited import coarsest_m, unsuited
 from terrain.switch import Switch, SwitchConfig, SwitchEvent
 from terrain.warp import ground_view, pixel_view
-
-
-@dataclass(frozen=True)
-class Sighting:
-    """What one image said of the terrain ahead.
-
-    Attributes
-    ----------
-    stamp_s : float
-    image : str
-        File of the image, as images.csv names it.
-    label : str
-        A terrain, `unknown`, or "" where there was nothing to classify.
-    confidence : float
-        Probability of the most probable terrain; NaN without a label.
-    region : Region or None
-        In the robot frame at this stamp.
-    reason : str
-        Why there is no label, or what `unknown` means here; else "".
-    left, right : str
-        Labels of the tread strips, where they were classified apart.
-    probabilities : Mapping of str to float
-        What the classifier gave to each terrain, where it was asked once.
-    class_distance : float
-        Distance to the nearest class, which the rejection threshold judges; of tread strips that
-        were classified apart the larger one. NaN without a label.
-    """
-
-    stamp_s: float
-    image: str
-    label: str = ""
-    confidence: float = float("nan")
-    region: Region | None = None
-    reason: str = ""
-    left: str = ""
-    right: str = ""
-    probabilities: Mapping[str, float] = field(default_factory=dict)
-    class_distance: float = float("nan")
 
 
 class TerrainWatcher:
@@ -67,7 +30,7 @@ class TerrainWatcher:
 
     Parameters
     ----------
-    run : Run
+    robot : Robot
     camera : Camera
     classifier : Classifier
         Fitted.
@@ -75,6 +38,10 @@ class TerrainWatcher:
         The terrain in force until the first switch.
     region : RegionConfig
     switch : SwitchConfig
+    folder : Path, optional
+        What names of image files are relative to.
+    keep : int, optional
+        How many of the latest sightings and events are kept; by default all.
 
     Attributes
     ----------
@@ -88,31 +55,38 @@ class TerrainWatcher:
 
     def __init__(
         self,
-        run: Run,
+        robot: Robot,
         camera: Camera,
         classifier: Classifier,
         initial: str,
         *,
         region: RegionConfig,
         switch: SwitchConfig,
+        folder: Path | None = None,
+        keep: int | None = None,
     ) -> None:
         self.initial = initial
         self.sightings: list[Sighting] = []
         self.in_force: list[str] = []
         self.events: list[SwitchEvent] = []
-        self._run = run
+        self._robot = robot
         self._camera = camera
         self.classifier = classifier
         self._region = region
-        footprint = Footprint.of(run.robot, region.footprint_scale)
+        self._folder = folder
+        self._keep = keep
+        footprint = Footprint.of(robot, region.footprint_scale)
         self._switch = Switch(initial, footprint, switch)
         self._pose = np.zeros(3)  # of the last estimate, in the odometry frame
         self._last: Estimate | None = None
-        self._travel_m = run.wheel_travel_m
+        self._frame: Frame | None = None
+        self._travel_m = 0.0
+        self._has_answered = False
 
     def terrain(self, frame: Frame, estimate: Estimate) -> Footing:
         """Look at the frame's image, if it has one, and tell what the robot stands on."""
-        travel_m = float(np.interp(frame.stamp_s, self._run.odometry.stamps_s, self._travel_m))
+        self._travel_m += self._travelled_m(frame)
+        travel_m = self._travel_m
         pose = self._pose_at(frame, estimate)
         if frame.in_gap:
             self._switch = self._switch.astray()
@@ -127,7 +101,23 @@ class TerrainWatcher:
             self.events.append(self._switch.event)
         if frame.image is not None:
             self.in_force.append(self._switch.footing.terrain)
+        if self._keep is not None:
+            for one in (self.sightings, self.in_force, self.events):
+                del one[: -self._keep]
         return self._switch.footing
+
+    @property
+    def event(self) -> SwitchEvent | None:
+        """What the latest frame brought into force."""
+        return self._switch.event
+
+    def _travelled_m(self, frame: Frame) -> float:
+        """Wheel travel since the frame before at its speeds; none where they are not known."""
+        before, self._frame = self._frame, frame
+        if before is None:
+            return 0.0
+        travel_m = float(np.abs(before.tread_speeds_m_s).mean()) * (frame.stamp_s - before.stamp_s)
+        return travel_m if math.isfinite(travel_m) else 0.0
 
     def _pose_at(self, frame: Frame, estimate: Estimate) -> FloatArray:
         """The robot at a frame in the odometry frame, by what the filter believed of each step."""
@@ -151,12 +141,12 @@ class TerrainWatcher:
         """
         if frame.image is None:
             raise ValueError(f"the frame at {frame.stamp_s} s has no image")
-        name = frame.image.relative_to(self._run.folder).as_posix()
+        name = self._name(frame.image)
         if not np.all(np.isfinite(frame.tread_speeds_m_s)):
             return Sighting(frame.stamp_s, name, reason="the tread speeds are not known")
         commanded = replace(estimate, tread_speeds_m_s=frame.tread_speeds_m_s)
         region = predict_region(
-            self._run.robot,
+            self._robot,
             self._camera,
             commanded.twist,
             float(np.abs(frame.tread_speeds_m_s).mean()),
@@ -167,26 +157,32 @@ class TerrainWatcher:
         if isinstance(region, str):
             return Sighting(frame.stamp_s, name, reason=region)
         try:
-            image = read_image(frame.image)
+            image = read_image(frame.image) if isinstance(frame.image, Path) else frame.image
         except ImageError:
             return Sighting(frame.stamp_s, name, region=region, reason="the image cannot be read")
-        if not self._is_of_size(image, frame.image):
+        if not self._is_of_size(image, name or f"the image of {frame.stamp_s} s"):
             reason = "the image is not of the camera's size"
             return Sighting(frame.stamp_s, name, region=region, reason=reason)
         if self.classifier.colour_ and image.ndim != 3:
             reason = "the image is grey, the model was trained with colour"
             return Sighting(frame.stamp_s, name, region=region, reason=reason)
         answers = self.classifier.classify([self._view(image, r) for r in region.rectangles])
-        return _sighting(frame.stamp_s, name, region, answers)
+        self._has_answered = True
+        return answered(frame.stamp_s, name, region, answers)
 
-    def _is_of_size(self, image: ByteImage, file: Path) -> bool:
+    def _name(self, image: Path | ByteImage) -> str:
+        if not isinstance(image, Path):
+            return ""
+        return image.relative_to(self._folder).as_posix() if self._folder else image.as_posix()
+
+    def _is_of_size(self, image: ByteImage, name: str) -> bool:
         """Whether an image is of the camera's size; if the first is not, the camera is wrong."""
         try:
             self._camera.check_size(image)
         except CameraError as error:
-            if any(sighting.label for sighting in self.sightings):
+            if self._has_answered:
                 return False
-            raise CameraError(f"{file}: {error}; see [camera] image_size in run.toml") from error
+            raise CameraError(f"{name}: {error}; see [camera] image_size in run.toml") from error
         return True
 
     def _unsuited(self, rectangle: Rectangle) -> str:
@@ -197,31 +193,6 @@ class TerrainWatcher:
         if scale is None:
             return pixel_view(image, self._camera, rectangle)
         return ground_view(image, self._camera, rectangle, scale)
-
-
-def _sighting(stamp_s: float, name: str, region: Region, answers: list[Classification]) -> Sighting:
-    if len(answers) == 1:
-        answer = answers[0]
-        return Sighting(
-            stamp_s,
-            name,
-            answer.label,
-            answer.confidence,
-            region,
-            probabilities=answer.probabilities,
-            class_distance=answer.distance,
-        )
-    distance = max(answer.distance for answer in answers)
-    left, right = (answer.label for answer in answers)
-    confidence = min(answer.confidence for answer in answers)
-    if left == right:
-        return Sighting(
-            stamp_s, name, left, confidence, region, "", left, right, class_distance=distance
-        )
-    reason = f"astride: {left} on the left, {right} on the right"
-    return Sighting(
-        stamp_s, name, UNKNOWN, confidence, region, reason, left, right, class_distance=distance
-    )
 
 
 def _carried(

@@ -51,6 +51,11 @@ class IcrEkfConfig:
         Whether the gyroscope turns the robot where there is one; otherwise the treads do.
     watch_sensors : bool
         Whether spikes, stuck encoders and frozen poses are noticed, kept out and flagged.
+    causal : bool
+        Whether nothing may speak of a moment that comes after it, as on a robot: no delay of poses
+        is searched for, no heading is looked for before the start, odometry has a gap where
+        its speeds are held for long whatever other files say later, and the filter itself undoes
+        the lever arm of poses. A run and `terrain.LiveOdometry` then agree to the last bit.
     detect_jumps : bool
         Reset the ICR covariance where the innovations say that the ICRs jumped.
     jump_probability : float
@@ -86,6 +91,7 @@ class IcrEkfConfig:
     adapt_rate: float = 0.02
     use_gyroscope: bool = True
     watch_sensors: bool = True
+    causal: bool = False
     detect_jumps: bool = False
     jump_probability: float = 0.999999
     jump_window: int = 10

@@ -7,7 +7,7 @@ from odometry.estimation.filter_event import FilterEvent
 from odometry.run import UNKNOWN
 from terrain.filter_summary import event_line
 from terrain.run_result import RunResult
-from terrain.watcher import Sighting
+from terrain.sighting import Sighting
 
 MANY_REFUSED = 0.1
 FEW_EVENTS = 10

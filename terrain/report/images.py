@@ -14,8 +14,9 @@ from terrain.report.figures import Tints, in_force
 from terrain.report.plots import draw_cells, draw_region, plot_confusion, plot_image, plot_labels
 from terrain.report.seen_ahead import Confusion, around_switches
 from terrain.run_result import RunResult
+from terrain.sighting import Sighting
 from terrain.switch_delay import true_stretches
-from terrain.watcher import Sighting, TerrainWatcher
+from terrain.watcher import TerrainWatcher
 from terrain.whole_image import classify_ground
 
 _WIDTH_IN = 7.0

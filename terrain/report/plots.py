@@ -12,7 +12,7 @@ from odometry.evaluation.stretches import Stretch
 from odometry.run import UNKNOWN
 from terrain.camera import Camera
 from terrain.region import Rectangle
-from terrain.watcher import Sighting
+from terrain.sighting import Sighting
 from terrain.whole_image import Cell, outline
 
 NO_LABEL = "no label"

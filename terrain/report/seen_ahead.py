@@ -9,9 +9,9 @@ from odometry.arrays import IntArray
 from odometry.evaluation.stretches import terrain_at
 from odometry.run import UNKNOWN
 from terrain.run_result import RunResult
+from terrain.sighting import Sighting
 from terrain.switch import SwitchEvent
 from terrain.switch_delay import true_stretches
-from terrain.watcher import Sighting
 
 
 @dataclass(frozen=True)

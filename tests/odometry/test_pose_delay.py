@@ -61,9 +61,10 @@ def test_without_a_gyroscope_late_poses_cannot_be_told_from_early_treads():
     assert without_pose_delay(given, IcrEkfConfig()) == (given, ())
 
 
-def test_nobody_searches_for_it_where_nobody_watches():
+@pytest.mark.parametrize("settings", [{"watch_sensors": False}, {"causal": True}])
+def test_nobody_searches_for_it_where_nobody_watches_or_only_the_past_counts(settings):
     given = run_of(0.5)
-    assert without_pose_delay(given, IcrEkfConfig(watch_sensors=False)) == (given, ())
+    assert without_pose_delay(given, IcrEkfConfig(**settings)) == (given, ())
 
 
 def test_a_delay_that_is_given_is_taken():

@@ -23,10 +23,11 @@ from odometry.simulation.noise import ornstein_uhlenbeck
 from terrain.camera import Camera
 from terrain.config import Config
 from terrain.region import predict_region
+from terrain.sighting import Sighting
 from terrain.synthesis.config import SynthesisConfig
 from terrain.synthesis.identified import identified_parameters
 from terrain.synthesis.records import motion_tables, run_settings
-from terrain.watcher import Sighting, TerrainWatcher
+from terrain.watcher import TerrainWatcher
 
 MOST_S = 900.0
 SPIN_M_S, REVERSE_M_S, REST_S = 0.5, 0.5, 0.5
@@ -138,7 +139,7 @@ class LabellingWatcher(TerrainWatcher):
 
     def __init__(self, course: Course, config: Config, *, accuracy, held_m=0.0, seed=0):
         super().__init__(
-            course.run,
+            course.run.robot,
             course.config.camera,
             None,
             course.ground.terrains[0],
@@ -154,14 +155,11 @@ class LabellingWatcher(TerrainWatcher):
         name = frame.image.name
         commanded = replace(estimate, tread_speeds_m_s=frame.tread_speeds_m_s)
         speed_m_s = float(np.abs(frame.tread_speeds_m_s).mean())
-        region = predict_region(
-            self._run.robot, self._camera, commanded.twist, speed_m_s, self._region
-        )
+        region = predict_region(self._robot, self._camera, commanded.twist, speed_m_s, self._region)
         if isinstance(region, str):
             return Sighting(frame.stamp_s, name, reason=region)
         true = self._course.true_terrain(frame.stamp_s, region.place)
-        travel_m = np.interp(frame.stamp_s, self._run.odometry.stamps_s, self._travel_m)
-        label = self._label(true, float(travel_m))
+        label = self._label(true, self._travel_m)
         return Sighting(frame.stamp_s, name, label, self._accuracy, region)
 
     def _label(self, true, travel_m):

@@ -19,7 +19,7 @@ from terrain.report.plots import (
     plot_image,
     plot_labels,
 )
-from terrain.watcher import Sighting
+from terrain.sighting import Sighting
 from terrain.whole_image import Cell
 
 TINTS = {"$ice^$": "#112233", "snow": "#445566", "unknown": "#dddddd"}

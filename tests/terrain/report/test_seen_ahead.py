@@ -11,8 +11,8 @@ from odometry.table import Table
 from terrain.places import Sight
 from terrain.region import Rectangle, Region
 from terrain.report.seen_ahead import around_switches, confusion
+from terrain.sighting import Sighting
 from terrain.switch import SwitchEvent
-from terrain.watcher import Sighting
 
 STAMPS_S = np.arange(0.0, 20.5, 0.5)  # at 0.5 m/s; snow from 10 s on
 ROWS = np.arange(len(STAMPS_S)) + 2

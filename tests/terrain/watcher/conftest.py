@@ -38,12 +38,13 @@ def watch(tmp_path, world):
         run = Run.read(folder)
         classifier = classifier or ByBrightness()
         watcher = TerrainWatcher(
-            run,
+            run.robot,
             Camera.from_table(world.camera),
             classifier,
             "mud",
             region=RegionConfig(per_tread=per_tread, **settings),
             switch=SwitchConfig(),
+            folder=folder,
         )
         return SimpleNamespace(run=run, watcher=watcher, classifier=classifier, folder=folder)
 

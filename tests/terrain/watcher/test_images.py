@@ -60,12 +60,13 @@ def test_a_region_of_which_a_corner_is_outside_the_image_has_a_label(watch):
 def watch_whole(watched):
     """A watcher that labels a region only where the image shows all of it."""
     return TerrainWatcher(
-        watched.run,
+        watched.run.robot,
         Camera.from_table(watched.run.settings["camera"]),
         watched.classifier,
         "mud",
         region=RegionConfig(least_share=1.0),
         switch=SwitchConfig(),
+        folder=watched.folder,
     )
 
 

@@ -94,12 +94,13 @@ def test_the_classifier_is_shown_the_metric_scale_it_was_trained_at(watch):
     watched = watch([DARK], fine)
     drive(watched)
     other = TerrainWatcher(
-        watched.run,
+        watched.run.robot,
         Camera.from_table(watched.run.settings["camera"]),
         coarse,
         "mud",
         region=RegionConfig(),
         switch=SwitchConfig(),
+        folder=watched.folder,
     )
     drive(SimpleNamespace(run=watched.run, watcher=other))
     assert fine.shown[0].shape == (80, 68)  # 0.48 m and 0.408 m

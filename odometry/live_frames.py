@@ -1,0 +1,118 @@
+"""Frames made of messages while they come in."""
+
+import math
+from bisect import bisect_right, insort
+from typing import Any
+
+import numpy as np
+
+from odometry.arrays import ByteImage, FloatArray
+from odometry.frames import Frame
+from odometry.gyroscope import SILENT_S
+from odometry.live_gyroscope import LiveGyroscope
+
+UNKNOWN_SPEEDS = np.full(2, math.nan)
+
+
+class LiveFrames:
+    """Frames of the messages of a robot: those that `Run.frames` makes of the recording.
+
+    Parameters
+    ----------
+    wait_s : float
+        For how long a frame waits for messages with older stamps, such as images, which take
+        their time. With 0 a message that comes after one with a later stamp may be too late.
+    has_gyroscope : bool
+        Whether a frame waits for the gyroscope as well, whose first sample at or after its stamp
+        ends the turn until then; a gyroscope that is silent for longer than 0.5 s is not waited
+        for.
+
+    Attributes
+    ----------
+    too_late : int
+        Messages that were dropped: older than a frame that was given, or repeated.
+
+    Notes
+    -----
+    Stamps are those of measurement, in seconds of one clock; the messages of one sensor come in
+    order. The frames are the same to the last bit as those of the run folder, except for the
+    first after the gyroscope fell silent.
+    """
+
+    def __init__(self, *, wait_s: float = 0.1, has_gyroscope: bool = True) -> None:
+        self.too_late = 0
+        self._wait_s = wait_s
+        self._gyroscope = LiveGyroscope() if has_gyroscope else None
+        self._latest_s = self._given_s = -math.inf
+        self._stamps_s: list[float] = []  # of what is to become frames, rising
+        self._parts: dict[float, dict[str, Any]] = {}  # by stamp
+        self._row = -1
+        self._speeds = UNKNOWN_SPEEDS
+
+    def treads(self, stamp_s: float, left_m_s: float, right_m_s: float) -> None:
+        """Tread speeds, in force from a stamp on."""
+        self._add(stamp_s, "tread_speeds_m_s", np.array([left_m_s, right_m_s], dtype=np.float64))
+
+    def gyroscope(self, stamp_s: float, yaw_rate_rad_s: float) -> None:
+        """A yaw rate, counter-clockwise; it makes no frame."""
+        self._latest_s = max(self._latest_s, stamp_s)
+        if self._gyroscope is not None and not self._gyroscope.add(stamp_s, yaw_rate_rad_s):
+            self.too_late += 1
+
+    def pose(self, stamp_s: float, x: float, y: float, yaw: float = math.nan) -> None:
+        """A measured pose in the reference frame [m, rad]; NaN for what was not measured."""
+        self._add(stamp_s, "pose", np.array([x, y, yaw], dtype=np.float64))
+
+    def velocity(self, stamp_s: float, v_x: float, v_y: float, omega: float) -> None:
+        """A measured body twist [m/s, rad/s]; NaN for what was not measured."""
+        self._add(stamp_s, "velocity", np.array([v_x, v_y, omega], dtype=np.float64))
+
+    def image(self, stamp_s: float, pixels: ByteImage) -> None:
+        """An image, (H, W) grey or (H, W, 3) in RGB order."""
+        self._add(stamp_s, "image", pixels)
+
+    def ready(self) -> list[Frame]:
+        """Frames that need not wait any longer, in order of time."""
+        due_s = self._latest_s - self._wait_s
+        if self._gyroscope is not None:
+            silent_since_s = self._latest_s - SILENT_S
+            due_s = min(due_s, max(self._gyroscope.latest_s, silent_since_s))
+        return self._until(due_s)
+
+    def rest(self) -> list[Frame]:
+        """All frames that are left, where no message will come any more."""
+        return self._until(self._latest_s)
+
+    def _add(self, stamp_s: float, name: str, value: FloatArray | ByteImage) -> None:
+        parts = self._parts.get(stamp_s, {})
+        if not stamp_s > self._given_s or name in parts:
+            self.too_late += 1
+            return
+        self._latest_s = max(self._latest_s, stamp_s)
+        if stamp_s not in self._parts:
+            insort(self._stamps_s, stamp_s)
+        self._parts[stamp_s] = parts | {name: value}
+
+    def _until(self, end_s: float) -> list[Frame]:
+        count = bisect_right(self._stamps_s, end_s)
+        due_s, self._stamps_s = self._stamps_s[:count], self._stamps_s[count:]
+        return [self._frame(stamp_s) for stamp_s in due_s]
+
+    def _frame(self, stamp_s: float) -> Frame:
+        parts = self._parts.pop(stamp_s)
+        if "tread_speeds_m_s" in parts:
+            self._row += 1
+            self._speeds = parts["tread_speeds_m_s"]
+        yaw_rate = math.nan
+        if self._gyroscope is not None:
+            yaw_rate = self._gyroscope.mean_rate_rad_s(self._given_s, stamp_s)
+        self._given_s = stamp_s
+        return Frame(
+            stamp_s,
+            self._speeds,
+            self._row,
+            parts.get("pose"),
+            parts.get("image"),
+            yaw_rate_rad_s=yaw_rate,
+            velocity=parts.get("velocity"),
+        )

@@ -1,0 +1,74 @@
+"""What one image said of the terrain ahead."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from odometry.run import UNKNOWN
+from terrain.classification.classifier import Classification
+from terrain.region import Region
+
+
+@dataclass(frozen=True)
+class Sighting:
+    """What one image said of the terrain ahead.
+
+    Attributes
+    ----------
+    stamp_s : float
+    image : str
+        File of the image, as images.csv names it.
+    label : str
+        A terrain, `unknown`, or "" where there was nothing to classify.
+    confidence : float
+        Probability of the most probable terrain; NaN without a label.
+    region : Region or None
+        In the robot frame at this stamp.
+    reason : str
+        Why there is no label, or what `unknown` means here; else "".
+    left, right : str
+        Labels of the tread strips, where they were classified apart.
+    probabilities : Mapping of str to float
+        What the classifier gave to each terrain, where it was asked once.
+    class_distance : float
+        Distance to the nearest class, which the rejection threshold judges; of tread strips that
+        were classified apart the larger one. NaN without a label.
+    """
+
+    stamp_s: float
+    image: str
+    label: str = ""
+    confidence: float = float("nan")
+    region: Region | None = None
+    reason: str = ""
+    left: str = ""
+    right: str = ""
+    probabilities: Mapping[str, float] = field(default_factory=dict)
+    class_distance: float = float("nan")
+
+
+def answered(
+    stamp_s: float, name: str, region: Region, answers: Sequence[Classification]
+) -> Sighting:
+    """The sighting of a region by the classifier's answer, or by those for the tread strips."""
+    if len(answers) == 1:
+        answer = answers[0]
+        return Sighting(
+            stamp_s,
+            name,
+            answer.label,
+            answer.confidence,
+            region,
+            probabilities=answer.probabilities,
+            class_distance=answer.distance,
+        )
+    distance = max(answer.distance for answer in answers)
+    left, right = (answer.label for answer in answers)
+    confidence = min(answer.confidence for answer in answers)
+    if left == right:
+        return Sighting(
+            stamp_s, name, left, confidence, region, "", left, right, class_distance=distance
+        )
+    reason = f"astride: {left} on the left, {right} on the right"
+    return Sighting(
+        stamp_s, name, UNKNOWN, confidence, region, reason, left, right, class_distance=distance
+    )

@@ -1,0 +1,114 @@
+"""Frames made of messages while they come in are those of the run folder."""
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from odometry.live_frames import LiveFrames
+from odometry.run import Run
+
+
+@pytest.fixture
+def drive(make_run, rng):
+    """A run, and its messages as (when it comes, name, stamp, values)."""
+    stamps = {
+        "treads": np.arange(0.0, 6.0, 0.1),
+        "gyroscope": np.arange(0.013, 6.2, 0.01),
+        "pose": np.arange(0.35, 6.0, 0.25),
+        "velocity": np.arange(0.05, 5.9, 0.1),
+    }
+    stamps["gyroscope"] = np.delete(stamps["gyroscope"], slice(200, 220))  # a short silence
+    widths = {"treads": 2, "gyroscope": 1, "pose": 3, "velocity": 3}
+    values = {name: rng.normal(size=(len(of), widths[name])) for name, of in stamps.items()}
+    delays_s = {"treads": 0.004, "gyroscope": 0.001, "pose": 0.06, "velocity": 0.02}
+    messages = [
+        (stamp_s + delays_s[name] + rng.uniform(0, 0.004), name, stamp_s, of)
+        for name in stamps
+        for stamp_s, of in zip(stamps[name].tolist(), values[name].tolist(), strict=True)
+    ]
+    header = {"treads": "v_left,v_right", "gyroscope": "gyro_z", "pose": "x,y,yaw"}
+    files = {
+        name: f"t,{header.get(name, 'vx,vy,wz')}\n"
+        + "".join(
+            ",".join(map(repr, [stamp_s, *of])) + "\n"
+            for _, kind, stamp_s, of in sorted(messages, key=lambda m: m[2])
+            if kind == name
+        )
+        for name in stamps
+    }
+    folder = make_run(
+        odometry=files["treads"],
+        imu=files["gyroscope"],
+        pose=files["pose"],
+        velocity=files["velocity"],
+    )
+    return Run.read(folder), sorted(messages)
+
+
+def fed(frames, messages):
+    found = []
+    for _, name, stamp_s, values in messages:
+        getattr(frames, name)(stamp_s, *values)
+        found += frames.ready()
+    return found + frames.rest()
+
+
+def assert_same(one, other):
+    assert len(one) == len(other)
+    for mine, theirs in zip(one, other, strict=True):
+        for field in fields(mine):
+            np.testing.assert_array_equal(
+                getattr(mine, field.name), getattr(theirs, field.name), err_msg=field.name
+            )
+
+
+def test_frames_of_messages_are_those_of_the_run_folder(drive):
+    run, messages = drive
+    frames = LiveFrames(wait_s=0.1)
+    expected = [f for f in run.frames() if f.stamp_s <= run.odometry.stamps_s[-1]]
+    found = fed(frames, messages)
+    assert_same([frame for frame in found if frame.stamp_s <= expected[-1].stamp_s], expected)
+    assert frames.too_late == 0
+
+
+def test_a_frame_comes_when_nothing_older_can_and_the_gyroscope_has_told(drive):
+    _, messages = drive
+    frames = LiveFrames(wait_s=0.1)
+    now_s = -np.inf
+    for _, name, stamp_s, values in messages:
+        getattr(frames, name)(stamp_s, *values)
+        now_s = max(now_s, stamp_s)
+        for frame in frames.ready():
+            silent_s = 0.2 if 2.0 < now_s < 2.4 else 0.0
+            assert now_s - 0.13 - silent_s < frame.stamp_s <= now_s - 0.1 + 1e-9
+
+
+def test_without_waiting_what_comes_late_is_dropped_and_counted(drive):
+    run, messages = drive
+    frames = LiveFrames(wait_s=0.0, has_gyroscope=False)
+    found = fed(frames, messages)
+    assert frames.too_late >= len(run.pose)
+    assert [f.stamp_s for f in found] == sorted({f.stamp_s for f in found})
+    assert all(np.isnan(frame.yaw_rate_rad_s) for frame in found)
+
+
+def test_a_repeated_stamp_is_dropped_and_counted():
+    frames = LiveFrames(has_gyroscope=False)
+    frames.treads(1.0, 0.5, 0.5)
+    frames.treads(1.0, 0.7, 0.7)
+    (frame,) = frames.rest()
+    np.testing.assert_array_equal(frame.tread_speeds_m_s, [0.5, 0.5])
+    assert frames.too_late == 1
+
+
+def test_a_silent_gyroscope_is_not_waited_for_longer_than_half_a_second():
+    frames = LiveFrames(wait_s=0.0)
+    frames.gyroscope(0.0, 0.1)
+    frames.gyroscope(0.05, 0.1)
+    given = []
+    for k in range(20):
+        frames.treads(0.1 * k, 0.5, 0.5)
+        given += [(0.1 * k, frame) for frame in frames.ready()]
+    assert [round(now_s - frame.stamp_s, 9) for now_s, frame in given[1:]] == [0.5] * 14
+    assert all(np.isnan(frame.yaw_rate_rad_s) for _, frame in given[2:])
