@@ -18,6 +18,7 @@ from odometry.bags.message_types import MessageTypes
 from odometry.bags.plan import Plan
 from odometry.bags.poses import LocalMetres
 from odometry.bags.run_settings import run_settings
+from odometry.bags.speeds import FASTEST_M_S
 from odometry.bags.streams import Stream
 from odometry.bags.survey import REPORT_EVERY, Progress, Survey
 from odometry.bags.what_was_lost import lost_of
@@ -74,12 +75,20 @@ def write_run(
             stream.sink.close()
         losses = (*survey.losses, *(line for stream in made for line in lost_of(stream)))
         if not (folder / "odometry.csv").exists():
-            raise BagError(f"no wheel speed could be read: {'; '.join(losses)}")
+            said = "; ".join((*losses, *_too_fast(plan)))
+            raise BagError(f"no wheel speed could be read: {said}")
         of_attitudes = _attitudes_added(attitudes, plan.imu, folder)
     settings, notes = run_settings(plan, survey, local, losses)
     (folder / "run.toml").write_text(tomli_w.dumps(settings), encoding="utf-8")
     rows = {one.file: (one.sink.written, one.topic) for one in made if one.sink.written}
     return Imported(rows, (*plan.notes, *notes, *of_attitudes), losses)
+
+
+def _too_fast(plan: Plan) -> list[str]:
+    """What to look at where no row of wheel speeds is left."""
+    unit = plan.wheels.unit
+    why = f"speeds above {FASTEST_M_S:g} m/s are left out; is the unit ({unit}) right? See --unit"
+    return [why] if unit else []
 
 
 def _robot_from_imu(plan: Plan, survey: Survey) -> FloatArray:
