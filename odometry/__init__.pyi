@@ -1,4 +1,3 @@
-from .bags.messages import BagMessage, bag_messages
 from .checks.finding import CheckReport, Finding
 from .checks.recording import check_recording
 from .comparison.compare import compare
@@ -39,7 +38,6 @@ from .trajectory import Trajectory
 
 __all__ = [
     "MODELS",
-    "BagMessage",
     "CheckReport",
     "ConstantTerrain",
     "Estimate",
@@ -61,7 +59,6 @@ __all__ = [
     "SpatialTrajectory",
     "TerrainParameters",
     "Trajectory",
-    "bag_messages",
     "check_recording",
     "compare",
     "cut_run",

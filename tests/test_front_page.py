@@ -1,0 +1,68 @@
+"""The pictures of the READMEs, the citation, and the length of the first page."""
+
+import os
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).parents[1]
+PICTURES = ROOT / "notebooks/pictures"
+LARGEST_BYTES = 1_000_000
+READMES = [ROOT / "README.md", ROOT / "data/README.md"]
+
+
+def test_the_first_page_is_short() -> None:
+    lines = (ROOT / "README.md").read_text(encoding="utf-8").splitlines()
+    assert len(lines) < 180
+
+
+def test_pictures_are_small_and_shown_with_words() -> None:
+    """Each is in a README, with a description for who cannot see it."""
+    files = [file for file in PICTURES.iterdir() if file.suffix in {".png", ".jpg"}]
+    assert sum(file.stat().st_size for file in files) < LARGEST_BYTES
+    shown = {
+        (readme.parent / target).resolve(): words
+        for readme in READMES
+        for words, target in re.findall(r"!\[([^\]]*)\]\(([^)]+)\)", readme.read_text("utf-8"))
+    }
+    assert shown.keys() == {file.resolve() for file in files}
+    assert min(map(len, shown.values())) > 100
+
+
+def draw(out: Path, data: str | None) -> str:
+    environment = {name: value for name, value in os.environ.items() if "_DATA" not in name}
+    if data is not None:
+        environment["TERRAIN_ODOMETRY_DATA"] = data
+    command = [sys.executable, str(ROOT / "notebooks/pictures.py"), "--out", str(out)]
+    return subprocess.run(
+        command, env=environment, cwd=ROOT, check=True, capture_output=True, text=True
+    ).stdout
+
+
+def test_the_command_without_reference_data(tmp_path: Path) -> None:
+    """It makes what it can, says what is missing, and gives the same bytes again."""
+    assert "first_page.jpg needs" in draw(tmp_path, None)
+    first = (tmp_path / "frame.png").read_bytes()
+    draw(tmp_path, None)
+    assert (tmp_path / "frame.png").read_bytes() == first
+    assert [file.name for file in tmp_path.iterdir()] == ["frame.png"]
+
+
+@pytest.mark.skipif("TERRAIN_ODOMETRY_DATA" not in os.environ, reason="needs the reference data")
+def test_the_command_with_reference_data(tmp_path: Path) -> None:
+    draw(tmp_path, os.environ["TERRAIN_ODOMETRY_DATA"])
+    assert (tmp_path / "first_page.jpg").stat().st_size > 100_000
+
+
+def test_the_citation_is_of_this_version() -> None:
+    cited = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert (cited["title"], cited["version"]) == (project["name"], project["version"])
+    assert cited["license"] == project["license"]
+    assert cited["cff-version"] == "1.2.0"
+    assert cited["authors"]
