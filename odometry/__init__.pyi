@@ -1,3 +1,4 @@
+from .bags.messages import BagMessage, bag_messages
 from .checks.finding import CheckReport, Finding
 from .checks.recording import check_recording
 from .comparison.compare import compare
@@ -38,6 +39,7 @@ from .trajectory import Trajectory
 
 __all__ = [
     "MODELS",
+    "BagMessage",
     "CheckReport",
     "ConstantTerrain",
     "Estimate",
@@ -59,6 +61,7 @@ __all__ = [
     "SpatialTrajectory",
     "TerrainParameters",
     "Trajectory",
+    "bag_messages",
     "check_recording",
     "compare",
     "cut_run",

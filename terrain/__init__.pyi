@@ -5,6 +5,7 @@ from .classification.training import Training, train
 from .config import Config
 from .demo import run_demo
 from .errors import TerrainError
+from .images import decode_image
 from .labelling.label_runs import label_runs
 from .labelling.patch_files import write_labelled_patches
 from .labelling.scale import LabelConfig
@@ -32,6 +33,7 @@ __all__ = [
     "TerrainSpan",
     "Training",
     "check_run",
+    "decode_image",
     "label_runs",
     "read_errors",
     "run_demo",

@@ -12,10 +12,12 @@ from pathlib import Path
 import click
 import pytest
 
+import odometry
 import terrain
 import terrain.synthetic
 from terrain.cli.main import cli
 from terrain.config import Config
+from tests.odometry.bags.made_bags import Bag
 
 ROOT = Path(__file__).parents[1]
 README_FILES = [
@@ -139,10 +141,13 @@ def test_the_python_of_the_guides(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     small = terrain.synthetic.SynthesisConfig(zone_length_m=4.0, patches_per_terrain=16)
     monkeypatch.setattr(terrain, "synthesise", partial(terrain.synthetic.synthesise, config=small))
     monkeypatch.chdir(tmp_path)
+    as_bag(odometry.Run.read(ROOT / "data/runs/demo"), tmp_path / "drive.bag")
     names = run_blocks(ROOT / "terrain/README.md")
     assert (tmp_path / "results" / "report.html").is_file()
     assert (tmp_path / "lenient.model").is_file()
     assert [event.terrain for event in names["result"].watcher.events] == ["grass", "gravel"]  # type: ignore[attr-defined]
+    switches = [step.switch.terrain for step in names["steps"] if step.switch]  # type: ignore[attr-defined]
+    assert switches == ["grass", "gravel"]
 
 
 def test_the_making_of_the_shipped_data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -152,6 +157,26 @@ def test_the_making_of_the_shipped_data(tmp_path: Path, monkeypatch: pytest.Monk
     monkeypatch.chdir(tmp_path)
     run_blocks(ROOT / "data/README.md")
     assert (tmp_path / "demo/run.toml").is_file()
+
+
+def as_bag(run: odometry.Run, path: Path) -> None:
+    """A bag of ROS 1 with the wheels, the gyroscope and the images of a run."""
+    bag = Bag("ros1")
+    stamps_s, speeds = run.odometry.stamps_s, run.odometry.stack("v_left", "v_right", "gyro_z")
+    for stamp_s, (left, right, rate) in zip(stamps_s, speeds, strict=True):
+        bag.joints(stamp_s, ["left_wheel", "right_wheel"], [], [left / 0.15, right / 0.15])
+        bag.imu(stamp_s, [0.0, 0.0, rate], [0.0, 0.0, 9.8])
+    for frame in run.frames():
+        if isinstance(frame.image, Path):
+            bag.compressed(frame.stamp_s, frame.image.read_bytes())
+    bag.write(path)
+
+
+def test_the_example_of_ros_is_python_and_no_example_is_long() -> None:
+    (node,) = blocks(ROOT / "terrain/README.md", "py")
+    compile(node, "node.py", "exec")
+    (live,) = (code for code in blocks(ROOT / "terrain/README.md", "python") if "bag_me" in code)
+    assert len(live.splitlines()) <= 40
 
 
 @each_readme

@@ -19,6 +19,14 @@ from odometry.bags.sqlite_file import MAGIC as SQLITE_MAGIC
 from odometry.bags.sqlite_file import sqlite_messages
 
 KINDS = {ROS1_MAGIC: "ros1", MCAP_MAGIC: "mcap", SQLITE_MAGIC: "sqlite3"}
+ARCHIVES = {
+    b"PK\x03\x04": "zip",
+    b"\x1f\x8b": "gzip",
+    b"BZh": "bzip2",
+    b"\xfd7zXZ": "xz",
+    b"7z\xbc\xaf": "7z",
+    b"Rar!": "rar",
+}
 LONGEST_MAGIC = max(map(len, KINDS))
 SUFFIXES = re.compile(r".*\.(?:bag|bag\.active|mcap|db3)(?:\.zstd|\.zst)?$", re.IGNORECASE)
 LISTED = re.compile(
@@ -135,9 +143,21 @@ def _bag_file(file: Path, losses: Losses) -> BagFile | None:
         losses.append(f"{file}: cannot be read: {problem.strerror or problem}")
         return None
     if not kind:
-        losses.append(f"{file}: this is no bag (neither ROS 1, nor MCAP, nor SQLite)")
+        losses.append(f"{file}: {_no_bag(file)}")
         return None
     return BagFile(file, kind, compressed)
+
+
+def _no_bag(file: Path) -> str:
+    """What a file is that does not begin as a bag."""
+    with file.open("rb") as stream:
+        start = stream.read(512)
+    packed = next((name for magic, name in ARCHIVES.items() if start.startswith(magic)), "")
+    if start[257:262] == b"ustar":
+        packed = "tar"
+    if packed:
+        return f"this is an archive ({packed}): unpack it, and import the bag that is in it"
+    return "this is no bag (neither ROS 1, nor MCAP, nor SQLite)"
 
 
 def _kind(file: Path) -> tuple[str, bool]:

@@ -1,11 +1,15 @@
 """Bags into a run folder."""
 
 from collections.abc import Iterator
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import tomli_w
 
+from odometry.arrays import FloatArray
+from odometry.bags.attitudes import Attitudes
 from odometry.bags.connection import Connection, Message
 from odometry.bags.errors import BagError
 from odometry.bags.losses import Losses
@@ -14,6 +18,7 @@ from odometry.bags.message_types import MessageTypes
 from odometry.bags.plan import Plan
 from odometry.bags.poses import LocalMetres
 from odometry.bags.run_settings import run_settings
+from odometry.bags.speeds import FASTEST_M_S
 from odometry.bags.streams import Stream
 from odometry.bags.survey import REPORT_EVERY, Progress, Survey
 from odometry.bags.what_was_lost import lost_of
@@ -61,19 +66,45 @@ def write_run(
         If there is no row of wheel speeds in the end.
     """
     local = LocalMetres()
-    streams = make_streams(plan, survey, folder, local)
-    for file in survey.files:
-        _read(file.messages(Losses()), streams, types, progress)
-    made = [one for several in streams.values() for one in several]
-    for stream in made:
-        stream.sink.close()
-    losses = (*survey.losses, *(line for stream in made for line in lost_of(stream)))
-    if not (folder / "odometry.csv").exists():
-        raise BagError(f"no wheel speed could be read: {'; '.join(losses)}")
+    with closing(Attitudes(_robot_from_imu(plan, survey))) as attitudes:
+        streams = make_streams(plan, survey, folder, local, attitudes)
+        for file in survey.files:
+            _read(file.messages(Losses()), streams, types, progress)
+        made = [one for several in streams.values() for one in several]
+        for stream in made:
+            stream.sink.close()
+        losses = (*survey.losses, *(line for stream in made for line in lost_of(stream)))
+        if not (folder / "odometry.csv").exists():
+            said = "; ".join((*losses, *_too_fast(plan)))
+            raise BagError(f"no wheel speed could be read: {said}")
+        of_attitudes = _attitudes_added(attitudes, plan.imu, folder)
     settings, notes = run_settings(plan, survey, local, losses)
     (folder / "run.toml").write_text(tomli_w.dumps(settings), encoding="utf-8")
     rows = {one.file: (one.sink.written, one.topic) for one in made if one.sink.written}
-    return Imported(rows, (*plan.notes, *notes), losses)
+    return Imported(rows, (*plan.notes, *notes, *of_attitudes), losses)
+
+
+def _too_fast(plan: Plan) -> list[str]:
+    """What to look at where no row of wheel speeds is left."""
+    unit = plan.wheels.unit
+    why = f"speeds above {FASTEST_M_S:g} m/s are left out; is the unit ({unit}) right? See --unit"
+    return [why] if unit else []
+
+
+def _robot_from_imu(plan: Plan, survey: Survey) -> FloatArray:
+    """Rotation (3, 3) of the inertial sensor's axes into the robot's; none where it is not said."""
+    pose = plan.robot.pose_of(plan.frames.get(plan.imu, ""), survey.robot)
+    return np.eye(3) if pose is None else pose[:3, :3]
+
+
+def _attitudes_added(attitudes: Attitudes, topic: str, folder: Path) -> list[str]:
+    """Put roll and pitch into odometry.csv where they can be trusted; what is to be said of it."""
+    if not attitudes.written:
+        return []
+    if doubt := attitudes.doubt():
+        return [f"{topic}: its orientation is not used: {doubt}"]
+    attitudes.into(folder / "odometry.csv")
+    return [f"odometry.csv: roll and pitch from the orientation of {topic}"]
 
 
 def _read(

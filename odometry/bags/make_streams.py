@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
+from odometry.bags.attitudes import Attitudes
 from odometry.bags.image_files import ImageFiles
 from odometry.bags.message_kinds import FIX, POINT, TRANSFORM_LISTS, body_frame
 from odometry.bags.ordered_rows import OrderedRows
@@ -31,13 +32,13 @@ OTHER = "other_odometry"
 
 
 def make_streams(
-    plan: Plan, survey: Survey, folder: Path, local: LocalMetres
+    plan: Plan, survey: Survey, folder: Path, local: LocalMetres, attitudes: Attitudes
 ) -> dict[str, list[Stream]]:
-    """Streams by topic; `local` learns the origin of satellite fixes."""
+    """Streams by topic; `local` learns the origin of satellite fixes, `attitudes` the robot's."""
     streams: dict[str, list[Stream]] = {}
     made: list[Stream] = [_wheels(plan, survey, folder)]
     if plan.imu:
-        made.append(_imu(plan, survey, folder))
+        made.append(_imu(plan, survey, folder, attitudes))
     if plan.reference:
         made.append(_reference(plan, survey, folder, local))
     if plan.images:
@@ -56,19 +57,31 @@ def _wheels(plan: Plan, survey: Survey, folder: Path) -> Stream:
     return Rows(source.topic, "odometry.csv", rows, read, by_header=plan.by_header)
 
 
-def _imu(plan: Plan, survey: Survey, folder: Path) -> Stream:
+def _imu(plan: Plan, survey: Survey, folder: Path, attitudes: Attitudes) -> Stream:
     sample = survey.topics[plan.imu].sample
     # REP-145: a covariance that begins with -1 says that the sensor does not measure this
     gyro = sample.angular_velocity_covariance[0] != -1
     accel = sample.linear_acceleration_covariance[0] != -1
+    turned = sample.orientation_covariance[0] != -1
     names = IMU_COLUMNS[: 3 * gyro] + IMU_COLUMNS[3 : 3 + 3 * accel]
 
     def read(message: Any) -> tuple[float, ...]:
-        rate, force = message.angular_velocity, message.linear_acceleration
+        rate, force, turn = (
+            message.angular_velocity,
+            message.linear_acceleration,
+            message.orientation,
+        )
         rates = (rate.x, rate.y, rate.z) if gyro else ()
-        return (*rates, force.x, force.y, force.z) if accel else rates
+        forces = (force.x, force.y, force.z) if accel else ()
+        return (*rates, *forces, turn.w, turn.x, turn.y, turn.z)
 
-    rows = OrderedRows(folder / "imu.csv", names, _as_they_are, 0)
+    def columns(stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:
+        values = rows[:, : len(names)]
+        if turned:
+            attitudes.add(stamps_ns, rows[:, len(names) :], values[:, 3 * gyro :])
+        return stamps_ns, values
+
+    rows = OrderedRows(folder / "imu.csv", names, columns, 0)
     return Rows(plan.imu, "imu.csv", rows, read, by_header=plan.by_header)
 
 
@@ -105,7 +118,3 @@ def _other(name: str, plan: Plan, survey: Survey, folder: Path) -> Stream:
 def _plain(topic: str) -> str:
     """A topic's name as that of a file."""
     return re.sub(r"[^A-Za-z0-9.-]+", "_", topic).strip("_.") or "odometry"
-
-
-def _as_they_are(stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:
-    return stamps_ns, rows

@@ -28,6 +28,11 @@ POSES: dict[str, Callable[[Any], Any]] = {
     TRANSFORM: lambda message: message.transform,
 }
 IMAGES = (IMAGE, COMPRESSED_IMAGE)
+# Types whose numbers are no speeds of wheels, whatever a user says
+NO_WHEELS = (
+    *(kind for kind in POSES if kind not in TWISTS),
+    *(*TRANSFORM_LISTS, *IMAGES, IMU, FIX, POINT, CAMERA_INFO),
+)
 
 
 def body_frame(message: Any) -> str:

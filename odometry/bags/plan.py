@@ -17,6 +17,7 @@ from odometry.bags.message_kinds import (
     FIX,
     IMAGES,
     IMU,
+    NO_WHEELS,
     POINT,
     POSES,
     TRANSFORM_LISTS,
@@ -29,6 +30,11 @@ from odometry.bags.wheel_source import WheelSource, wheel_source
 from odometry.bags.wishes import Wishes
 
 REFERENCES = (*POSES, FIX, POINT, *TRANSFORM_LISTS)
+NO_SPEEDS = (
+    "the bag has no wheel speeds, which a run needs: only messages of poses, frames, images or "
+    "inertial sensors. Record joint states or wheel odometry as well; poses alone can be added to "
+    "a run that is there: terrain-odometry import RUN --pose FILE (TUM, KITTI, EuRoC)"
+)
 
 
 @dataclass(frozen=True)
@@ -78,9 +84,7 @@ def make_plan(survey: Survey, wishes: Wishes) -> Plan:
         that is not there or of another kind: it says what to give.
     """
     topics = survey.topics
-    reference = topic_for(
-        topics, wishes.reference, "reference", (*POSES, FIX, POINT, *TRANSFORM_LISTS)
-    )
+    reference = topic_for(topics, wishes.reference, "reference", REFERENCES)
     bodies = [body_frame(one.sample) for one in topics.values() if one.sample is not None]
     robot = robot_frame(survey.robot, wishes.robot, filter(None, bodies))
     wheels = _wheels(topics, wishes.wheels, reference, robot)
@@ -180,6 +184,8 @@ def _wheels(
             for one in guess(topic)
             if one.rank >= LIKELY
         ]
+        if not near and all(topic.message_type in NO_WHEELS for topic in topics.values()):
+            raise BagError(NO_SPEEDS)
         seen = f"; perhaps one of {', '.join(near)}" if near else ""
         raise BagError(
             f"no topic is known to hold measured wheel speeds{seen}. Name it with --wheels TOPIC; "

@@ -40,9 +40,9 @@ class AttitudesOf:
 
     def __call__(self, stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:
         """Columns (N, 6) as POSE_COLUMNS of rows (N, 7); no attitude where there is none."""
-        rotations, told = _rotations(rows[:, 3:])
+        rotations, told = rotations_of(rows[:, 3:])
         roll, pitch, yaw = se3.roll_pitch_yaw(rotations @ self._body_from_robot).T
-        angles = np.where(told, np.stack([yaw, roll, pitch]), np.nan)
+        angles = np.where(told, np.stack([yaw, roll, pitch]) + 0.0, np.nan)  # -0 becomes 0
         x, y, z = np.where(np.isfinite(rows[:, :3]).all(axis=1), rows[:, :3].T, np.nan)
         return stamps_ns, np.column_stack([x, y, angles[0], z, angles[1], angles[2]])
 
@@ -55,7 +55,7 @@ class PosesOfRobot:
 
     def __call__(self, stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:
         """Columns (N, 3) of rows (N, 7); NaN where there is no attitude."""
-        rotations, told = _rotations(rows[:, 3:])
+        rotations, told = rotations_of(rows[:, 3:])
         poses = se3.pose(rows[:, :3], rotations) @ self._body_from_robot
         yaw = se3.roll_pitch_yaw(poses[:, :3, :3])[:, 2]
         columns = np.column_stack([poses[:, 0, 3], poses[:, 1, 3], yaw])
@@ -105,7 +105,7 @@ class LocalMetres:
         return stamps_ns, np.column_stack([east, north, np.full(len(rows), np.nan), up])
 
 
-def _rotations(quaternions_wxyz: FloatArray) -> tuple[FloatArray, FloatArray]:
+def rotations_of(quaternions_wxyz: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Rotations (N, 3, 3), and whether each quaternion (N, 4) is one."""
     lengths = np.linalg.norm(quaternions_wxyz, axis=1)
     told = np.abs(lengths - 1) < 0.1

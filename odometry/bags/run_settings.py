@@ -125,6 +125,7 @@ def _source(
     source: dict[str, Any] = {
         "bags": [file.path.name for file in survey.files],
         "topics": {role: name for role, name in topics.items() if name},
+        **({"wheel_unit": plan.wheels.unit} if plan.wheels.unit else {}),
         "time": "header" if plan.by_header else "log",
         "notes": list(plan.notes),
         "lost": list(losses),

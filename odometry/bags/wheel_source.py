@@ -8,7 +8,7 @@ from typing import Any
 from odometry.bags.errors import BagError
 from odometry.bags.fields import number_at, number_paths
 from odometry.bags.guess import SIMPLE_ARRAY, unit_of
-from odometry.bags.message_kinds import JOINTS, ODOMETRY, TWISTS
+from odometry.bags.message_kinds import JOINTS, NO_WHEELS, ODOMETRY, TWISTS
 from odometry.bags.motion_seen import PLACE, VELOCITY, moved
 from odometry.bags.sides import side_of, sided
 from odometry.bags.topic import Topic
@@ -39,6 +39,8 @@ class WheelSource:
         Places that jump by more than half of this have wrapped; infinite where they do not.
     why : str
         In a sentence.
+    unit : str
+        Of the numbers, one of UNITS; "" of a twist.
     """
 
     topic: str
@@ -50,6 +52,7 @@ class WheelSource:
     speeds: bool = True
     wraps_at: float = math.inf
     why: str = ""
+    unit: str = ""
 
 
 def wheel_source(topic: Topic, wishes: Mapping[str, Any], radius_m: float | None) -> WheelSource:
@@ -71,6 +74,11 @@ def wheel_source(topic: Topic, wishes: Mapping[str, Any], radius_m: float | None
     """
     if topic.sample is None:
         raise BagError(f"{topic.name}: no message of it can be read: {topic.problem}")
+    if topic.message_type in NO_WHEELS:
+        raise BagError(
+            f"{topic.name}: a {topic.message_type} holds no speeds of wheels; expected joint "
+            "states, odometry, a twist with a stamp, or numbers of another message"
+        )
     if topic.message_type in TWISTS:
         return _twist(topic, wishes)
     joints = topic.message_type == JOINTS
@@ -96,6 +104,7 @@ def wheel_source(topic: Topic, wishes: Mapping[str, Any], radius_m: float | None
         _wrap(topic, left + right, one) if joints and not speeds else math.inf,
         f"{'speeds' if is_speed else 'differences of places'} of {', '.join(left)} (left) and "
         f"{', '.join(right)} (right) in {unit}",
+        unit,
     )
 
 

@@ -88,6 +88,11 @@ def read_wishes(file: Path) -> Wishes:
     """
     content = read_toml(file, BagError)
     tables = {name: value for name, value in content.items() if isinstance(value, dict)}
+    for name in sorted(content.keys() & KEYS.keys() - tables.keys()):
+        raise BagError(
+            f"{file}: {name} = {content[name]!r}, expected a table [{name}] with keys such as "
+            f"{', '.join(list(KEYS[name])[:3])}"
+        )
     _check(content.keys() - tables.keys(), content, "", str(file))
     for name, table in tables.items():
         if name not in KEYS:

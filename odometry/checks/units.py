@@ -6,6 +6,7 @@ import numpy as np
 
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
+from odometry.checks.imported_unit import imported_unit
 from odometry.checks.mending import times
 from odometry.checks.proportion import holds_the_mean
 from odometry.checks.relation import Relation, pieces
@@ -141,13 +142,15 @@ def _along(evidence: Evidence, forward: float, tight: bool, width: float | None)
     seen = f"the robot moves {forward:.3g} m for each m of tread travel"
     if width is not None:
         seen += f", and turns as if {width:.3g} track widths wide"
+    extreme = not 1 / EXTREME < forward < EXTREME
+    if (tight or extreme) and (imported := imported_unit(evidence, seen, forward, width)):
+        return imported
     tread = matching(
         tread_units(evidence.run.robot.wheel_radius, evidence.period_s),
         lambda unit: forward * unit.factor,
     )
     position = matching(POSITION_UNITS, lambda unit: forward / unit.factor)
     tread_fits = tread is not None and (width is None or 0.95 <= width / tread.factor <= WIDTH[1])
-    extreme = not 1 / EXTREME < forward < EXTREME
     if tread is None and forward * EXTREME < 1 and width is not None and width > EXTREME:
         tread = Unit("encoder ticks or motor RPM (before the gearbox)", 1 / forward)
         tread_fits = True

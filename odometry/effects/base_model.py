@@ -1,12 +1,14 @@
 """The model that effects are added to."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
 from odometry.models.base import KinematicModel
+from odometry.models.icr import Icr
+from odometry.models.icr_by_terrain import IcrByTerrain
 from odometry.run import Robot
 
 
@@ -35,6 +37,12 @@ class Base:
     latency_s: float = 0.0
     gyro_latency_s: float = 0.0
     gyro_bias_rad_s: float = 0.0
+
+    def on(self, terrain: str) -> "Base":
+        """The same as it is on one terrain, where its model has several."""
+        if not isinstance(self.model, IcrByTerrain):
+            return self
+        return replace(self, model=Icr(), values=self.model.values_on(terrain, self.values))
 
 
 def slip_factors(base: Base) -> FloatArray:

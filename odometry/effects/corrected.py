@@ -9,6 +9,7 @@ from odometry.arrays import FloatArray
 from odometry.effects.base import CommandEffect, Effect, MeasurementEffect, MotionEffect
 from odometry.effects.base_model import Base
 from odometry.models.base import KinematicModel, Linearised
+from odometry.models.icr_by_terrain import IcrByTerrain
 from odometry.models.inputs import Inputs
 from odometry.run import Robot
 
@@ -89,8 +90,22 @@ def corrected_twist(base: Base, effects: Sequence[Added], inputs: Inputs) -> Flo
     twist = base.model.twist(base.values, inputs)
     for added in effects:
         if isinstance(added.effect, MotionEffect):
-            twist = added.effect.twist(added.values, twist, inputs, base)
+            twist = _moved(added.effect, added.values, twist, inputs, base)
     return twist
+
+
+def _moved(
+    effect: MotionEffect, values: FloatArray, twist: FloatArray, inputs: Inputs, base: Base
+) -> FloatArray:
+    """Twist (N, 3) with the effect beside the base as it is on the terrain of each sample."""
+    if not isinstance(base.model, IcrByTerrain):
+        return effect.twist(values, twist, inputs, base)
+    first, *others = base.model.labels
+    moved = effect.twist(values, twist, inputs, base.on(first))
+    for label in others if inputs.terrain is not None else ():
+        there = (np.asarray(inputs.terrain) == label)[:, None]
+        moved = np.where(there, effect.twist(values, twist, inputs, base.on(label)), moved)
+    return moved
 
 
 def with_true_speeds(effects: Sequence[Added], inputs: Inputs) -> Inputs:

@@ -94,8 +94,6 @@ def extended_model(result: GapResult) -> ParameterSet:
     as they were at the end of their course: a moment of one run says nothing of the next, nor do
     coefficients or events that are each run's own.
     """
-    model = result.base.model
-    names = [parameter.name for parameter in model.parameters]
     effects = tuple(
         effect_table(lasting(added))
         for added in with_latency(result)
@@ -104,7 +102,9 @@ def extended_model(result: GapResult) -> ParameterSet:
     words = " and ".join(added.effect.name for added in result.added) or "no effect"
     terrains = {}
     for label in _labels(result):
-        values = result.base.values.copy()
+        base = result.base.on(label)
+        model, values = base.model, base.values.copy()
+        names = [parameter.name for parameter in model.parameters]
         for added in result.added:
             if isinstance(added.effect, Terrain) and label in added.effect.labels:
                 shifts = added.values.reshape(-1, len(SHIFTED))

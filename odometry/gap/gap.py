@@ -9,6 +9,7 @@ from tqdm import tqdm
 from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual
 from odometry.gap.calibration import Calibration, calibrated
+from odometry.gap.calibration_by_terrain import by_terrain
 from odometry.gap.config import GapConfig
 from odometry.gap.equivalent import equivalents
 from odometry.gap.errors import GapError
@@ -90,7 +91,9 @@ def find_gap(
         [_scene(run, config) for run in calibration],
         *_scenes(measured, holdout, config),
     )
-    known = calibrated(known_scenes, model or Icr(), robot, config, given)
+    known = by_terrain(
+        calibrated(known_scenes, model or Icr(), robot, config, given), known_scenes, config
+    )
     raw_scenes = fitted_scenes, held_scenes
     fitted_scenes, held_scenes, outliers = _cleaned(
         (measured, holdout), raw_scenes, known_scenes, known, config

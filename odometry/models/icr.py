@@ -79,7 +79,7 @@ class Icr(InvertibleModel):
 
     name = "icr"
     source = "Baril 2020, eq. 7"
-    parameters = (
+    parameters: tuple[Parameter, ...] = (
         Parameter("y_left", "m", search=(1e-3, np.inf)),
         Parameter("y_right", "m", search=(-np.inf, -1e-3)),
         Parameter("x_icr", "m"),

@@ -152,7 +152,9 @@ def _value(name: str, said: Any) -> Any:
 
 def _list(bags: tuple[Path, ...]) -> None:
     from odometry.bags.guess import best
+    from odometry.bags.message_kinds import NO_WHEELS
     from odometry.bags.message_types import MessageTypes
+    from odometry.bags.plan import NO_SPEEDS
     from odometry.bags.topic_list import topic_lines
 
     found = _surveyed(bags, MessageTypes())
@@ -160,6 +162,9 @@ def _list(bags: tuple[Path, ...]) -> None:
         click.echo(line)
     for loss in found.losses:
         click.echo(f"Lost: {loss}", err=True)
+    if all(topic.message_type in NO_WHEELS for topic in found.topics.values()):
+        click.echo(f"Note: {NO_SPEEDS}")
+        return
     named = " ".join(map(str, bags))
     wheels = "" if best(found.topics, "wheels") else " --wheels TOPIC"
     click.echo(f"Next: terrain-odometry import {named} --out {_run_name(bags[0])}{wheels}")

@@ -10,10 +10,10 @@ places, and prints how much of what was left could be read, and what was said. B
 
 import argparse
 import contextlib
+import os
 import shutil
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -90,7 +90,7 @@ def read_with_import(path, out, images):
 
 
 def measured(call, path, out):
-    """Seconds of the processor and largest memory [MB], in a process of its own."""
+    """Seconds of the processor, those of them in the kernel, and largest memory [MB], alone."""
     command = [sys.executable, __file__, "one", "--call", call, "--path", str(path)]
     done = subprocess.run([*command, "--out", str(out)], check=True, capture_output=True, text=True)
     return tuple(map(float, done.stdout.split()))
@@ -98,7 +98,7 @@ def measured(call, path, out):
 
 def one(arguments):
     """Time and memory of one way to read a bag."""
-    begin = time.process_time()
+    begin = os.times()
     if arguments.call == "rosbags":
         read_with_rosbags(arguments.path)
     elif arguments.call == "rosbags_and_images":
@@ -108,7 +108,9 @@ def one(arguments):
     else:
         images = None if arguments.call == "import" else "none"
         read_with_import(arguments.path, arguments.out, images)
-    print(time.process_time() - begin, peak_megabytes())
+    end = os.times()
+    kernel = end.system - begin.system
+    print(end.user - begin.user + kernel, kernel, peak_megabytes())
 
 
 def peak_megabytes():
@@ -118,7 +120,10 @@ def peak_megabytes():
 
 
 def size(arguments):
-    print("seconds of the processor, largest memory [MB], microseconds a message (over rosbags')")
+    print(
+        "seconds of the processor, those of them in the kernel (copies, and files of images made),"
+    )
+    print("largest memory [MB], microseconds a message (over rosbags')")
     print(
         "kind  GB  messages | rosbags | import without images | rosbags, images to files | import"
     )
@@ -132,12 +137,12 @@ def size(arguments):
             parts = [path] if path.is_file() else list(path.iterdir())
             gigabytes = sum(part.stat().st_size for part in parts) / 1e9
             count = looked_at(path)[0].count
-            seconds, megabytes = measured("rosbags", path, folder / "run")
-            row = f"{kind}  {gigabytes:.2f}  {count} | {seconds:.2f} {megabytes:.0f}"
+            seconds, kernel, megabytes = measured("rosbags", path, folder / "run")
+            row = f"{kind}  {gigabytes:.2f}  {count} | {seconds:.2f} {kernel:.2f} {megabytes:.0f}"
             row += f" {seconds / count * 1e6:.1f}"
             for call in ("import_without_images", "rosbags_and_images", "import"):
-                took, megabytes = measured(call, path, folder / "run")
-                row += f" | {took:.2f} {megabytes:.0f} {took / count * 1e6:.1f}"
+                took, kernel, megabytes = measured(call, path, folder / "run")
+                row += f" | {took:.2f} {kernel:.2f} {megabytes:.0f} {took / count * 1e6:.1f}"
                 row += f" ({took / seconds:.2f})"
             print(row, flush=True)
             shutil.rmtree(folder)

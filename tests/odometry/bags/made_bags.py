@@ -94,12 +94,12 @@ class Bag:
         )
         self.add(at.get("topic", "/joint_states"), "sensor_msgs/msg/JointState", t_s, message)
 
-    def imu(self, t_s: float, gyro: Any, accel: Any, frame: str = "imu_link") -> None:
+    def imu(self, t_s: float, gyro: Any, accel: Any, frame: str = "imu_link", **turn: Any) -> None:
         message = self.message(
             "sensor_msgs/msg/Imu",
             header=self.header(t_s, frame),
-            orientation=self.quaternion([1, 0, 0, 0]),
-            orientation_covariance=np.zeros(9),
+            orientation=self.quaternion(turn.get("wxyz", (1, 0, 0, 0))),
+            orientation_covariance=np.array([turn.get("covariance", 0.0), *np.zeros(8)]),
             angular_velocity=self.vector(*gyro),
             angular_velocity_covariance=np.zeros(9),
             linear_acceleration=self.vector(*accel),

@@ -3,11 +3,13 @@ import pytest
 
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added, corrected_twist
+from odometry.effects.curvature import Curvature
 from odometry.effects.recorded import Recorded, labels_of
 from odometry.effects.terrain import NewIcrs, Terrain
 from odometry.errors import ParameterError
 from odometry.models.catalogue import MODELS
 from odometry.models.icr import icr_twist
+from odometry.models.icr_by_terrain import IcrByTerrain
 from odometry.models.inputs import Inputs
 
 EFFECT = Added(
@@ -71,3 +73,19 @@ def test_what_it_lacks(bench, rng):
 def test_labels_are_a_list_of_names(labels):
     with pytest.raises(ParameterError, match="expected a list of names"):
         Terrain(labels)
+
+
+def test_beside_icrs_by_terrain_each_effect_sees_those_of_the_sample(bench, rng):
+    """A base with ICRs for sand and ice moves on each as one of these ICRs alone."""
+    inputs = bench.drive(rng)
+    on_ice = bench.values + np.array([0.3, -0.3, 0.02, -0.2, -0.1])
+    model = IcrByTerrain(("sand", "ice"))
+    base = Base(model, np.concatenate([bench.values, on_ice]), bench.robot)
+    curved = Added(Curvature(), np.array([1.2, 0.4, 0.7]))
+    for effects in ([EFFECT], [curved, EFFECT]):
+        found = corrected_twist(base, effects, inputs)
+        for label, values in (("sand", bench.values), ("ice", on_ice)):
+            plain = corrected_twist(Base(MODELS["icr"], values, bench.robot), effects, inputs)
+            here = inputs.terrain == label
+            assert here.any()
+            np.testing.assert_array_equal(found[here], plain[here])

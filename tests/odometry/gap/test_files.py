@@ -16,6 +16,7 @@ from odometry.effects.traction_loss import TractionLoss
 from odometry.gap.files import write_gap
 from odometry.gap.result import NamedEffect, Rival
 from odometry.gap.statistic import Gap
+from odometry.models.icr_by_terrain import IcrByTerrain
 from odometry.parameters import read_parameters
 
 NUMBER = (int, float)
@@ -163,6 +164,27 @@ def test_grounds_are_tables_of_their_own(none_result, make_scene, tmp_path):
     for label, shift in (("stone", 0 * shifts[0]), ("sand", shifts[0]), ("wet grass", shifts[1])):
         assert list(tables[label].values.values()) == pytest.approx(result.base.values + shift)
         assert [effect["name"] for effect in tables[label].effects] == ["time_offset"]
+
+
+def test_each_terrain_of_the_base_is_a_table_of_its_own(none_result, make_scene, tmp_path):
+    """With its own ICRs, shifted where it has changed since."""
+    own = {"sand": none_result.base.values, "stone": none_result.base.values + 0.1}
+    model, changed = IcrByTerrain(tuple(own)), np.array([0.1, -0.1, 0.0, 0.0, 0.2])
+    base = replace(none_result.base, model=model, values=np.concatenate(list(own.values())))
+    known = none_result.calibration
+    free = np.zeros(len(base.values), dtype=bool)
+    known = replace(known, uncertain=replace(known.uncertain, base=base, free=free))
+    wet = Added(Terrain(("stone",)), changed)
+    effects = (NamedEffect(wet, wet.values - 1, wet.values + 1, 0.2, 0.1, 50.0),)
+    scene = make_scene(1, terrain=lambda t: np.where(t < 30.0, "sand", "stone"))
+    result = replace(
+        none_result, base=base, calibration=known, effects=effects, holdout_scenes=(scene,)
+    )
+    write_gap(result, tmp_path)
+    tables = read_parameters(tmp_path / "model.toml").terrains
+    assert {table.model for table in tables.values()} == {"icr"}
+    assert list(tables["sand"].values.values()) == pytest.approx(own["sand"])
+    assert list(tables["stone"].values.values()) == pytest.approx(own["stone"] + changed)
 
 
 @pytest.mark.parametrize(

@@ -58,11 +58,24 @@ def test_topics_are_listed_with_what_is_guessed(bag):
 
 def test_a_bag_without_wheels_is_listed_with_the_option_that_names_them(tmp_path):
     made = Bag("mcap")
+    made.define("a_robot/msg/Pair", "float64 a\nfloat64 b\n")
+    for t_s, left, right, x, y, yaw in course(5.0):
+        made.pose_stamped("/mocap/pose", t_s, made.pose((x, y, 0), half_turn(yaw)))
+        made.add(
+            "/pair", "a_robot/msg/Pair", t_s, made.message("a_robot/msg/Pair", a=left, b=right)
+        )
+    answer = call(made.write(tmp_path / "drive"), "--list")
+    assert answer.exit_code == 0
+    assert answer.stdout.splitlines()[-1].endswith(" --wheels TOPIC")
+
+
+def test_a_list_of_poses_alone_says_that_there_are_no_wheel_speeds(tmp_path):
+    made = Bag("mcap")
     for t_s, _, _, x, y, yaw in course(5.0):
         made.pose_stamped("/mocap/pose", t_s, made.pose((x, y, 0), half_turn(yaw)))
     answer = call(made.write(tmp_path / "drive"), "--list")
     assert answer.exit_code == 0
-    assert answer.stdout.splitlines()[-1].endswith(" --wheels TOPIC")
+    assert answer.stdout.splitlines()[-1].startswith("Note: the bag has no wheel speeds")
 
 
 def test_a_missing_number_stops_the_import_and_nothing_is_written(bag, tmp_path):

@@ -1,0 +1,103 @@
+"""Roll and pitch of the robot, as the orientation of its Imu messages tells them."""
+
+import math
+import tempfile
+from itertools import islice
+from pathlib import Path
+
+import numpy as np
+
+from odometry.arrays import FloatArray, IntArray
+from odometry.bags.poses import rotations_of
+from odometry.geometry import se3
+
+TILTED_DEG = 50.0  # no skid-steer robot drives there in the mean
+OFF_GRAVITY_DEG = 15.0  # of the mean specific force, from the vertical that orientation tells
+LEAST_GRAVITY_M_S2 = 5.0  # less: gravity is left out of the accelerations, or the unit is another
+BLOCK = 8192  # rows of odometry.csv at a time
+
+
+class Attitudes:
+    """Keeps attitudes in a file without a name: memory does not grow with their number.
+
+    Attributes
+    ----------
+    written : int
+        Attitudes that were told.
+    """
+
+    def __init__(self, robot_from_imu: FloatArray) -> None:
+        """`robot_from_imu` (3, 3) turns vectors of the sensor's axes into the robot's."""
+        self.written = 0
+        self._imu_from_robot = robot_from_imu.T
+        self._robot_up, self._force = np.zeros(3), np.zeros(3)  # sums, in the world
+        self._first: FloatArray | None = None
+        self._turned = False
+        self._file = tempfile.TemporaryFile()  # noqa: SIM115 - closed by close
+
+    def close(self) -> None:
+        """Give the attitudes up."""
+        self._file.close()
+
+    def add(self, stamps_ns: IntArray, orientations: FloatArray, forces_m_s2: FloatArray) -> None:
+        """Take in quaternions (N, 4), w first, of the sensor in a world whose z is up.
+
+        `forces_m_s2` (N, 3 or 0) are the accelerometer's, by which the vertical is checked.
+        """
+        rotations, told = rotations_of(orientations)
+        rotations = rotations[told]
+        if not len(rotations):
+            return
+        if self._first is None:
+            self._first = orientations[told][0]
+        self._turned |= bool((orientations[told] != self._first).any())
+        of_robot = rotations @ self._imu_from_robot
+        self._robot_up += of_robot[:, :, 2].sum(axis=0)
+        if forces_m_s2.shape[1] == 3:
+            self._force += np.einsum("nij,nj->i", rotations, np.nan_to_num(forces_m_s2[told]))
+        angles = se3.roll_pitch_yaw(of_robot)[:, :2]
+        self._file.write(np.column_stack([stamps_ns[told] / 1e9, angles]).tobytes())
+        self.written += len(rotations)
+
+    def doubt(self) -> str:
+        """Why these are no roll and pitch of the robot; empty where nothing says so."""
+        if not self._turned:
+            return "it never changes: the driver does not fill it in"
+        tilt = _from_vertical_deg(self._robot_up)
+        if tilt > TILTED_DEG:
+            return (
+                f"by it the robot is tilted by {tilt:.0f} degrees in the mean: the attitude of the "
+                "sensor on the robot is not known, or its world has z downwards"
+            )
+        off = _from_vertical_deg(self._force)
+        with_gravity = np.linalg.norm(self._force) > LEAST_GRAVITY_M_S2 * self.written
+        if with_gravity and off > OFF_GRAVITY_DEG:
+            return f"its vertical is {off:.0f} degrees off the mean of the accelerations"
+        return ""
+
+    def into(self, odometry_csv: Path) -> None:
+        """Add the columns roll and pitch [rad] to a file; empty before and after the attitudes."""
+        self._file.flush()
+        kept = np.memmap(self._file, dtype=float, mode="r").reshape(-1, 3)
+        part = odometry_csv.with_suffix(".part")
+        with odometry_csv.open(encoding="utf-8") as old, part.open("w", encoding="utf-8") as new:
+            new.write(next(old).rstrip("\n") + ",roll,pitch\n")
+            while lines := list(islice(old, BLOCK)):
+                stamps_s = np.array([float(line[: line.index(",")]) for line in lines])
+                begin, end = np.searchsorted(kept[:, 0], stamps_s[[0, -1]])
+                near = np.array(kept[max(0, begin - 1) : end + 1])
+                angles = [np.interp(stamps_s, near[:, 0], near[:, i], *_NONE) for i in (1, 2)]
+                rows = zip(lines, *(each.tolist() for each in angles), strict=True)
+                new.writelines(f"{line[:-1]},{_cell(r)},{_cell(p)}\n" for line, r, p in rows)
+        part.replace(odometry_csv)
+
+
+_NONE = (math.nan, math.nan)  # before the first, after the last
+
+
+def _cell(angle_rad: float) -> str:
+    return "" if math.isnan(angle_rad) else f"{angle_rad:.6g}"
+
+
+def _from_vertical_deg(vector: FloatArray) -> float:
+    return math.degrees(math.atan2(math.hypot(vector[0], vector[1]), vector[2]))

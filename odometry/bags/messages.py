@@ -1,0 +1,69 @@
+"""The messages of bags, one by one: a recording read as if live."""
+
+from collections.abc import Iterator
+from importlib import import_module
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from odometry.bags.bag_files import BagFile, bag_files
+from odometry.bags.errors import BagError
+from odometry.bags.losses import Losses
+from odometry.bags.topic import header_ns
+from odometry.extras import extra_module
+
+
+class BagMessage(NamedTuple):
+    """A message of a bag.
+
+    Attributes
+    ----------
+    topic : str
+    stamp_s : float
+        Of its header, where it has one that says something; else when the bag received it. Since
+        1970, correctly rounded.
+    content : Any
+        An object with the fields of its definition.
+    """
+
+    topic: str
+    stamp_s: float
+    content: Any
+
+
+def bag_messages(*paths: str | Path) -> Iterator[BagMessage]:
+    """Messages of bags of ROS 1 or ROS 2 in the order in which they were recorded.
+
+    Parameters
+    ----------
+    *paths : path
+        Files or folders; several are one recording, from the file whose messages begin first.
+
+    Yields
+    ------
+    BagMessage
+        Messages that cannot be decoded are left out, as is what is damaged; `import` says what.
+
+    Raises
+    ------
+    BagError
+        If a path is missing, or nothing of all of them is a bag.
+    ExtraError
+        If the packages of the extra `bags` are not installed.
+    """
+    extra_module("rosbags", "bags", "reading bags")
+    types = import_module("odometry.bags.message_types").MessageTypes()
+    files = bag_files([Path(path) for path in paths], Losses())
+    for file in sorted(files, key=_begin_ns):
+        for message in file.messages(Losses()):
+            try:
+                content = types.decode(message)
+            except BagError:
+                continue
+            stamp_ns = header_ns(content) or message.received_ns
+            yield BagMessage(message.connection.topic, stamp_ns / 10**9, content)
+
+
+def _begin_ns(file: BagFile) -> int:
+    """When the first message of a file was received."""
+    first = next(iter(file.messages(Losses())), None)
+    return 0 if first is None else first.received_ns
