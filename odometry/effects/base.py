@@ -61,6 +61,8 @@ class Effect(ABC):
         Which data it needs.
     alike : Mapping of name to str
         Effects that it may be mistaken for, and what tells them apart.
+    includes : Mapping of name to str
+        Effects that are this one at some values, and what tells them apart.
     of_reference : bool
         Whether it is a fault of the reference sensor, not of the robot.
     constant_names : tuple of str
@@ -84,6 +86,7 @@ class Effect(ABC):
     remedy: ClassVar[str]
     needs: ClassVar[str] = "tread speeds and a measured pose"
     alike: ClassVar[Mapping[str, str]] = {}
+    includes: ClassVar[Mapping[str, str]] = {}
     of_reference: ClassVar[bool] = False
     constant_names: ClassVar[tuple[str, ...]] = ()
     course: ClassVar[str] = ""

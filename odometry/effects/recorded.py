@@ -47,6 +47,13 @@ class Recorded:
         return tuple(sorted(set().union(*map(labels_of, self.inputs))))
 
     @cached_property
+    def is_on_one_terrain(self) -> bool:
+        """Whether every sample of every run has one and the same label."""
+        of_runs = [np.asarray(of.terrain) for of in self.inputs if of.terrain is not None]
+        labels = set().union(*(np.unique(of.astype(str)).tolist() for of in of_runs))
+        return len(of_runs) == len(self.inputs) and len(labels) == 1
+
+    @cached_property
     def lateral_m_s2(self) -> float:
         """Lateral acceleration that one sample in twenty of some run exceeds, by the base."""
         return max(self._lateral_m_s2(of) for of in self.inputs)

@@ -1,13 +1,15 @@
 """Terrains on which tread ICRs and slip differ."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.effects.base import Effect, EffectParameter, MotionEffect
 from odometry.effects.base_model import Base, slip_factors, tread_icrs
+from odometry.effects.lateral_skid import TOLD_APART
 from odometry.effects.recorded import Recorded
 from odometry.errors import ParameterError
 from odometry.models.icr import icr_twist
@@ -47,9 +49,14 @@ class Terrain(MotionEffect):
 
     @classmethod
     def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
-        """Those that the calibration has not seen together, and each that it has seen by itself."""
+        """Those that the calibration has not seen together, and each that it has seen by itself.
+
+        One that it has seen and that is everywhere is a set for whole runs, see `NewIcrs`.
+        """
         new = tuple(label for label in recorded.labels if label not in recorded.calibrated)
         changed = [label for label in recorded.labels if label in recorded.calibrated]
+        if changed and recorded.is_on_one_terrain:
+            return ()
         return (*([cls(new)] if new else []), *(cls((label,)) for label in changed))
 
     @property
@@ -97,6 +104,11 @@ class NewIcrs(MotionEffect):
     source = "Chen 2023, Baril 2020 eq. 7"
     looks_like = "a model that is off in every turn of a run, always alike"
     remedy = "identify a parameter set on this terrain"
+    includes: ClassVar[Mapping[str, str]] = {
+        "lever_arm": TOLD_APART,
+        "lateral_skid": TOLD_APART,
+        "wheel_scale": "a run on the terrain of the calibration, or wheels measured with a tape",
+    }
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:

@@ -9,7 +9,11 @@ TELL_APART = "a run in which the two differ: other speeds, turns or terrain"
 
 
 def equivalents(found: Explanation, config: GapConfig) -> tuple[Equivalent, ...]:
-    """What is alike by its equations, and what came as near in the contest for the same place."""
+    """What is alike by its equations, and what came as near in the contest for the same place.
+
+    An effect that includes another has values to spare for whatever else is imperfect: the other
+    is as near where it closes nearly as much.
+    """
     alike: dict[str, Equivalent] = {}
     for added in found.fitted.effects:
         for name, told_apart_by in added.effect.same_as(added.values).items():
@@ -22,7 +26,10 @@ def equivalents(found: Explanation, config: GapConfig) -> tuple[Equivalent, ...]
         for rival in rivals:
             if rival.effect.name == step.effect.name or rival.effect.name in alike:
                 continue
-            if best.evidence - rival.evidence < config.equivalent_margin:
-                reason = best.effect.alike.get(rival.effect.name, TELL_APART)
+            is_part = rival.effect.name in best.effect.includes
+            closes_as_much = is_part and rival.gain > config.mostly_closed * best.gain
+            if closes_as_much or best.evidence - rival.evidence < config.equivalent_margin:
+                reasons = {**best.effect.alike, **best.effect.includes}
+                reason = reasons.get(rival.effect.name, TELL_APART)
                 alike[rival.effect.name] = Equivalent(rival.effect.name, best.effect.name, reason)
     return tuple(one for name, one in alike.items() if name not in found.names)

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -43,6 +45,21 @@ def test_new_terrains_are_offered_together_and_known_ones_each(bench, rng):
     assert [effect.labels for effect in Terrain.offered(recorded)] == [("ice",), ("sand",)]
     nowhere = Recorded(bench.base, (bench.drive(rng),), ((1.0, 4.0),))
     assert [effect.labels for effect in Terrain.offered(nowhere)] == [("ice", "sand")]
+
+
+def test_the_one_terrain_of_all_runs_is_a_set_for_whole_runs(bench, rng):
+    """Its ICRs by label would be those of `NewIcrs`; of one that is new the label says more."""
+    drive = bench.drive(rng)
+    on_ice = replace(drive, terrain=np.full(len(drive.terrain), "ice", dtype=object))
+    whole = Recorded(bench.base, (on_ice,), ((1.0, 4.0),), frozenset({"ice"}))
+    assert Terrain.offered(whole) == ()
+    assert [effect.form for effect in NewIcrs.offered(whole)] == ["icr_set"]
+    new = Recorded(bench.base, (on_ice,), ((1.0, 4.0),), frozenset({"sand"}))
+    assert [effect.labels for effect in Terrain.offered(new)] == [("ice",)]
+    partly = replace(on_ice, terrain=np.where(np.arange(len(drive.terrain)) < 9, "", "ice"))
+    for inputs in ((on_ice, partly), (on_ice, replace(drive, terrain=None))):
+        some = Recorded(bench.base, inputs, ((1.0, 4.0),), frozenset({"ice"}))
+        assert [effect.labels for effect in Terrain.offered(some)] == [("ice",)]
 
 
 def test_labels_that_name_no_terrain_are_none():

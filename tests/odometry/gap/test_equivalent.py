@@ -1,0 +1,59 @@
+"""What is as near as a name: by its equations, by evidence, or as the main part of it."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from odometry.effects.catalogue import EFFECTS
+from odometry.effects.corrected import Added
+from odometry.effects.lever_arm import LeverArm
+from odometry.effects.terrain import NewIcrs
+from odometry.effects.time_offset import TimeOffset
+from odometry.effects.wheel_scale import WheelScale
+from odometry.gap.config import GapConfig
+from odometry.gap.contest import Judged
+from odometry.gap.equivalent import equivalents
+from odometry.gap.explanation import Explanation
+from odometry.gap.simulate import residuals
+
+SHIFT = np.array([0.05, 0.05, -0.3, 0.0, 0.0])
+
+
+def judged(effect, evidence, gain):
+    fitted = SimpleNamespace(effects=(Added(effect, np.zeros(len(effect.parameters))),))
+    return Judged(effect, fitted, gain, evidence, evidence, 0.1)
+
+
+def names_beside(*candidates):
+    best = candidates[0]
+    found = Explanation(None, (best,), candidates, {best.effect.name: candidates})
+    return [one.name for one in equivalents(found, GapConfig())]
+
+
+def test_one_of_near_evidence_is_equivalent():
+    first = judged(TimeOffset(), 100.0, 104.0)
+    assert names_beside(first, judged(WheelScale(), 95.0, 103.0)) == ["wheel_scale"]
+    assert names_beside(first, judged(WheelScale(), 93.0, 103.0)) == []
+
+
+@pytest.mark.parametrize(("gain", "expected"), [(620.0, ["lever_arm"]), (590.0, [])])
+def test_what_new_icrs_include_is_as_near_where_it_closes_nearly_as_much(gain, expected):
+    """Of 740 the arm closes 84 or 79 %; what it leaves the other values may have fitted."""
+    assert names_beside(judged(NewIcrs(), 672.0, 740.0), judged(LeverArm(), 570.0, gain)) == (
+        expected
+    )
+
+
+def test_new_icrs_include_an_arm_and_a_skid(known, make_scene):
+    """Both ICRs aside and forward are, of a measured pose, a sensor at the opposite place."""
+    scene = make_scene(5, duration_s=40.0)
+    moved = residuals(known.base, [Added(NewIcrs(), SHIFT)], scene)
+    arm = residuals(known.base, [Added(LeverArm(), -SHIFT[[2, 0]])], scene)
+    assert np.abs(moved - residuals(known.base, (), scene)).max() > 0.05
+    np.testing.assert_allclose(moved, arm, atol=1e-4)
+
+
+def test_what_is_included_is_in_the_catalogue():
+    names = {effect.name for effect in EFFECTS}
+    assert all(set(effect.includes) <= names for effect in EFFECTS)
