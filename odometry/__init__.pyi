@@ -11,19 +11,24 @@ from .estimation.icr_ekf import IcrEkf
 from .evaluation.fitness import fitness
 from .evaluation.open_loop import measured_poses, open_loop
 from .evaluation.relative import EvaluationConfig, position_errors, relative_errors
+from .evaluation.score import reference_of, score
+from .evaluation.stretches import stretches
 from .frames import Frame
 from .gap.gap import find_gap
 from .geometry.steepest_slope import steepest_slope
 from .icrs.measured import measured_icrs
 from .icrs.medians import icr_medians
 from .icrs.points import icr_covariances, icr_indices, icrs_of_twist, turn_is_told
+from .identification.config import SolverConfig
+from .identification.errors import IdentificationError
 from .identification.identify import identify
 from .io.run_folder import write_run_folder
 from .io.trajectory_files import read_trajectory, write_trajectory
 from .io.tum import read_spatial_tum, read_tum, write_spatial_tum, write_tum
 from .live_frames import LiveFrames
-from .models.catalogue import MODELS
+from .models.catalogue import MODELS, model_named
 from .models.inputs import Inputs
+from .modes.followed import followed
 from .modes.identify_traction import identify_traction_modes
 from .modes.identify_velocity import identify_velocity_modes
 from .modes.mode_set import ModeSet, read_mode_set, write_mode_set
@@ -36,6 +41,9 @@ from .run_span import Span, cut_run
 from .simulation.contact.drive import simulate_contact
 from .spatial_trajectory import SpatialTrajectory
 from .trajectory import Trajectory
+from .windows.config import WindowConfig
+from .windows.window_errors import window_errors
+from .windows.windows import windows_of
 
 __all__ = [
     "MODELS",
@@ -48,6 +56,7 @@ __all__ = [
     "Frame",
     "IcrEkf",
     "IcrEkfConfig",
+    "IdentificationError",
     "Inputs",
     "LiveFrames",
     "ModeSet",
@@ -57,10 +66,12 @@ __all__ = [
     "Replay",
     "Robot",
     "Run",
+    "SolverConfig",
     "Span",
     "SpatialTrajectory",
     "TerrainParameters",
     "Trajectory",
+    "WindowConfig",
     "bag_messages",
     "check_recording",
     "compare",
@@ -70,6 +81,7 @@ __all__ = [
     "find_gap",
     "fitness",
     "follow_modes",
+    "followed",
     "icr_covariances",
     "icr_indices",
     "icr_medians",
@@ -80,6 +92,7 @@ __all__ = [
     "inputs_of",
     "measured_icrs",
     "measured_poses",
+    "model_named",
     "open_loop",
     "position_errors",
     "read_mode_set",
@@ -87,11 +100,16 @@ __all__ = [
     "read_spatial_tum",
     "read_trajectory",
     "read_tum",
+    "reference_of",
     "relative_errors",
     "replay",
+    "score",
     "simulate_contact",
     "steepest_slope",
+    "stretches",
     "turn_is_told",
+    "window_errors",
+    "windows_of",
     "write_mode_set",
     "write_parameters",
     "write_run_folder",

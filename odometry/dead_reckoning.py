@@ -26,6 +26,15 @@ def dead_reckon(stamps_s: FloatArray, twists: FloatArray, start: FloatArray) -> 
     -------
     Trajectory
         N poses. Each step is the exact arc, so that splitting a step changes nothing.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import odometry
+    >>> stamps_s = np.array([0.0, 1.0])
+    >>> twists = np.array([[0.0, 0.0, np.pi / 2], [0.0, 0.0, 0.0]])  # a quarter turn on the spot
+    >>> odometry.dead_reckon(stamps_s, twists, np.zeros(3)).poses[-1].round(3).tolist()
+    [0.0, 0.0, 1.571]
     """
     return Trajectory(np.asarray(stamps_s), _chain(_steps(stamps_s, twists), np.asarray(start)))
 
@@ -53,6 +62,16 @@ def dead_reckon_in_space(
         never measured; with both level this is `dead_reckon`.
     start : (4,)
         x, y, z [m] and yaw [rad] at the first stamp.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import odometry
+    >>> stamps_s, twists = np.array([0.0, 1.0]), np.array([[1.0, 0.0, 0.0]] * 2)
+    >>> pitch_rad = np.full(2, -0.1)  # nose up
+    >>> path = odometry.dead_reckon_in_space(stamps_s, twists, None, pitch_rad, np.zeros(4))
+    >>> print(path.poses[-1, :3, 3].round(3))  # x, y, z [m]
+    [0.995 0.    0.1  ]
     """
     x, y, z, yaw = start
     roll, pitch = (level_where_missing(stamps_s, angle) for angle in (roll_rad, pitch_rad))

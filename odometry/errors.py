@@ -2,7 +2,17 @@
 
 
 class OdometryError(Exception):
-    """Base of every error that this project raises on purpose."""
+    """Base of every error that this project raises on purpose.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> try:
+    ...     odometry.read_parameters("nowhere.toml")
+    ... except odometry.OdometryError as error:
+    ...     print(error)
+    nowhere.toml: cannot be read: No such file or directory
+    """
 
 
 class RunFolderError(OdometryError):

@@ -21,6 +21,16 @@ class Replay:
     Attributes
     ----------
     estimates : tuple of Estimate
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> gravel = odometry.ConstantTerrain("gravel")
+    >>> filtered = odometry.replay(run, odometry.IcrEkf(track_width=0.4), gravel)
+    >>> filtered.means.shape, len(filtered.trajectory())
+    ((1085, 9), 1085)
     """
 
     estimates: tuple[Estimate, ...]

@@ -38,6 +38,15 @@ class Frame:
         Mean of the gyroscope's yaw rate since the frame before; NaN where it was silent.
     velocity : (3,) or None
         Measured v_x, v_y [m/s], omega [rad/s] at this stamp; NaN for what was not measured.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> first = next(run.frames())
+    >>> first.stamp_s, first.image.name, first.pose.shape
+    (0.0, '000000.jpg', (3,))
     """
 
     stamp_s: float

@@ -37,6 +37,15 @@ class LiveFrames:
     Stamps are those of measurement, in seconds of one clock; the messages of one sensor come in
     order. The frames are the same to the last bit as those of the run folder, except for the
     first after the gyroscope fell silent.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> live = odometry.LiveFrames(wait_s=0.1, has_gyroscope=False)
+    >>> live.treads(0.0, 0.5, 0.5)
+    >>> live.treads(0.2, 0.4, 0.6)
+    >>> [frame.stamp_s for frame in live.ready()]  # the other may still get an image of its time
+    [0.0]
     """
 
     def __init__(self, *, wait_s: float = 0.1, has_gyroscope: bool = True) -> None:

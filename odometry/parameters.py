@@ -37,6 +37,13 @@ class TerrainParameters:
         Where the values come from.
     effects : tuple of Mapping
         Effects added to the model, as the set holds them.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> grass = odometry.TerrainParameters("icr", {"y_left": 0.35, "y_right": -0.33, "x_icr": 0.0})
+    >>> grass.model, grass.source
+    ('icr', '')
     """
 
     model: str
@@ -61,6 +68,13 @@ class ParameterSet:
     terrains : Mapping[str, TerrainParameters]
     vehicle : Mapping
         name, source and what else `[vehicle]` holds.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> grass = odometry.TerrainParameters("icr", {"y_left": 0.35, "y_right": -0.33, "x_icr": 0.0})
+    >>> odometry.ParameterSet({"grass": grass}).terrains["grass"].values["y_left"]
+    0.35
     """
 
     terrains: Mapping[str, TerrainParameters] = field(default_factory=dict)
@@ -76,6 +90,15 @@ def read_parameters(file: str | Path) -> ParameterSet:
         Naming file, table and key: not TOML, an unknown model or key, a parameter missing or
         not a finite number, a covariance that is not symmetric and positive semi-definite; a
         file of a newer format.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> sets = terrain.shipped_data() / "parameters"
+    >>> warthog = odometry.read_parameters(sets / "warthog_icr.toml")
+    >>> list(warthog.terrains)
+    ['concrete', 'snow']
     """
     file = Path(file)
     check_first_line(file, FORMAT, ParameterError)
@@ -102,6 +125,16 @@ def write_parameters(file: str | Path, parameters: ParameterSet, comment: str = 
     """Write a parameter set; `read_parameters` gives it back.
 
     `comment` holds whole lines that begin with `#`, and goes below the line of the format.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import odometry
+    >>> ideal = odometry.TerrainParameters("differential_drive", {"track_width": 0.4})
+    >>> with TemporaryDirectory() as folder:
+    ...     odometry.write_parameters(f"{folder}/set.toml", odometry.ParameterSet({"yard": ideal}))
+    ...     print(odometry.read_parameters(f"{folder}/set.toml").terrains["yard"].values)
+    {'track_width': 0.4}
     """
     content: dict[str, Any] = {}
     if parameters.vehicle:

@@ -48,7 +48,18 @@ class TerrainSource(Protocol):
 
 @dataclass(frozen=True)
 class ConstantTerrain:
-    """One terrain for the whole run."""
+    """One terrain for the whole run.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> gravel = odometry.ConstantTerrain("gravel")
+    >>> filtered = odometry.replay(run, odometry.IcrEkf(track_width=0.4), gravel)
+    >>> set(filtered.terrains)
+    {'gravel'}
+    """
 
     initial: str
 
@@ -87,6 +98,16 @@ def replay(
     ------
     RunFolderError
         If no frame has both tread speeds and, where the run has poses, a position to start from.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> gravel = odometry.ConstantTerrain("gravel")
+    >>> filtered = odometry.replay(run, odometry.IcrEkf(track_width=0.4), gravel)
+    >>> len(filtered.estimates)
+    1085
     """
     frames = _frames_so_far(run) if causal else _from_start(run)
     first = next(frames, None)

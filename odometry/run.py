@@ -21,7 +21,14 @@ UNNAMED_TERRAIN = "ground"  # of a run where nobody names the terrain
 
 @dataclass(frozen=True)
 class Robot:
-    """What `[robot]` of run.toml says, in metres and kilograms."""
+    """What `[robot]` of run.toml says, in metres and kilograms.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> odometry.Robot(track_width=0.4, name="my robot").length is None
+    True
+    """
 
     track_width: float
     name: str = ""
@@ -45,6 +52,16 @@ class Run:
         t, v_left, v_right and what else was recorded.
     pose, velocity, images, truth, imu : Table or None
         None where the folder has no such file. `truth` is for scoring alone.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run.robot.track_width, len(run.odometry), run.velocity is None
+    (0.4, 1085, True)
+    >>> f"{run.wheel_travel_m[-1]:.1f} m of wheel travel"
+    '35.7 m of wheel travel'
     """
 
     folder: Path

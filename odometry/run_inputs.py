@@ -16,6 +16,14 @@ def inputs_of(run: Run) -> Inputs:
     Empty cells of roll, pitch and accelerations are interpolated in time and held at the ends.
     Roll and pitch are level where they were not recorded; accelerations are None unless both
     were.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> odometry.inputs_of(run).tread_speeds_m_s.shape
+    (1085, 2)
     """
     return inputs_with_heading(run, _heading(run))
 

@@ -20,6 +20,12 @@ class Span:
     ------
     RunFolderError
         If the numbers are not finite (the end may be infinite), or the end is not after the start.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> odometry.Span(from_s=10.0).is_whole
+    False
     """
 
     from_s: float = 0.0
@@ -47,6 +53,15 @@ def cut_run(run: Run, span: Span) -> Run:
     ------
     RunFolderError
         If the span holds less than two rows of odometry.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> part = odometry.cut_run(run, odometry.Span(10.0, 20.0))
+    >>> part.odometry.stamps_s[[0, -1]].tolist()
+    [10.0, 20.0]
     """
     if span.is_whole:
         return run

@@ -21,6 +21,14 @@ class SpatialTrajectory:
         Strictly increasing.
     poses : (N, 4, 4)
         Homogeneous matrices from the robot's frame to the fixed one, metres.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import odometry
+    >>> path = odometry.SpatialTrajectory(np.array([0.0, 1.0]), np.stack([np.eye(4), np.eye(4)]))
+    >>> len(path)
+    2
     """
 
     stamps_s: FloatArray

@@ -36,6 +36,14 @@ class Trajectory:
         Strictly increasing.
     poses : (N, 3)
         x [m], y [m], yaw [rad].
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import odometry
+    >>> path = odometry.Trajectory(np.array([0.0, 1.0]), np.array([[0.0] * 3, [2.0, 0.0, 0.0]]))
+    >>> path.at(np.array([0.25])).poses.tolist()
+    [[0.5, 0.0, 0.0]]
     """
 
     stamps_s: FloatArray

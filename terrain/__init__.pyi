@@ -1,22 +1,27 @@
 from .camera import Camera
 from .checks.recording import check_run
 from .classification.classifier import Classification, TerrainClassifier
+from .classification.patches import cut_patches
 from .classification.training import Training, train
 from .config import Config
 from .demo import run_demo
 from .errors import TerrainError
-from .images import decode_image
+from .images import decode_image, read_image, to_grey
 from .labelling.label_runs import label_runs
 from .labelling.patch_files import write_labelled_patches
 from .labelling.scale import LabelConfig
 from .labelling.told_terrain import TerrainSpan, told_by_spans, told_terrain
 from .live_odometry import LiveOdometry, LiveStep
 from .main_job import run_odometry
+from .rectangle import Rectangle
 from .report.page import write_report
 from .results import read_errors, write_results
 from .run_result import RunResult
+from .shipped import shipped_data
+from .switch_delay import switch_delays, true_stretches
 from .synthetic import SynthesisConfig, synthesise
 from .texture import SFTA, sfta
+from .warp import ground_view
 
 __all__ = [
     "SFTA",
@@ -26,6 +31,7 @@ __all__ = [
     "LabelConfig",
     "LiveOdometry",
     "LiveStep",
+    "Rectangle",
     "RunResult",
     "SynthesisConfig",
     "TerrainClassifier",
@@ -33,16 +39,23 @@ __all__ = [
     "TerrainSpan",
     "Training",
     "check_run",
+    "cut_patches",
     "decode_image",
+    "ground_view",
     "label_runs",
     "read_errors",
+    "read_image",
     "run_demo",
     "run_odometry",
     "sfta",
+    "shipped_data",
+    "switch_delays",
     "synthesise",
+    "to_grey",
     "told_by_spans",
     "told_terrain",
     "train",
+    "true_stretches",
     "write_labelled_patches",
     "write_report",
     "write_results",

@@ -43,6 +43,16 @@ class Camera:
         third component is positive in front of the camera.
     mount : (6,) array or None
         x, y, z [m], roll, pitch, yaw [rad] of the camera in the robot frame, if known.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import terrain
+    >>> matrix = np.array([[460.0, 0.0, 319.5], [0.0, 460.0, 239.5], [0.0, 0.0, 1.0]])
+    >>> mount = (0.1, 0.0, 1.0, 0.0, 0.6, 0.0)  # 1 m high, looking 34 degrees down
+    >>> camera = terrain.Camera.from_mount((640, 480), matrix, np.zeros(5), mount)
+    >>> print(camera.ground_to_pixels([[1.5, 0.0]]).round(1))
+    [[319.5 248.8]]
     """
 
     image_size: tuple[int, int]

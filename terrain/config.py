@@ -22,6 +22,12 @@ class Config:
     region : RegionConfig
     switch : SwitchConfig
     evaluation : EvaluationConfig
+
+    Examples
+    --------
+    >>> import terrain
+    >>> terrain.Config().evaluation.horizon_m
+    5.0
     """
 
     filter: IcrEkfConfig = field(default_factory=IcrEkfConfig)

@@ -33,6 +33,11 @@ def run_demo(
     -------
     results : dict of str to RunResult
     written : list of Path
+
+    Examples
+    --------
+    >>> import terrain
+    >>> results, written = terrain.run_demo("demo")  # doctest: +SKIP
     """
     out, data = Path(out), shipped_data()
     run = Run.read(data / "runs" / "demo")

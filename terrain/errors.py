@@ -4,7 +4,17 @@ from odometry.errors import OdometryError
 
 
 class TerrainError(OdometryError):
-    """Base of the errors about cameras, images, patches and classifiers."""
+    """Base of the errors about cameras, images, patches and classifiers.
+
+    Examples
+    --------
+    >>> import terrain
+    >>> try:
+    ...     terrain.train("nowhere")
+    ... except terrain.TerrainError as error:
+    ...     print(error)
+    nowhere is not a folder; expected nowhere/<class>/*.jpg or *.png
+    """
 
 
 class CameraError(TerrainError):

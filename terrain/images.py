@@ -31,6 +31,13 @@ def read_image(path: Path | str) -> ByteImage:
     ------
     ImageError
         The file cannot be opened, is no such image, or has more than PIXELS pixels.
+
+    Examples
+    --------
+    >>> import terrain
+    >>> images = terrain.shipped_data() / "runs" / "demo" / "images"
+    >>> terrain.read_image(images / "000000.jpg").shape
+    (480, 640)
     """
     encoded = read_bytes(Path(path), ImageError, IMAGE_BYTES, "a photograph has a few million")
     return decode_image(encoded, str(path))
@@ -55,6 +62,13 @@ def decode_image(encoded: bytes, where: str = "image") -> ByteImage:
     ------
     ImageError
         As `read_image`.
+
+    Examples
+    --------
+    >>> import terrain
+    >>> image = terrain.shipped_data() / "runs" / "demo" / "images" / "000000.jpg"
+    >>> terrain.decode_image(image.read_bytes()).shape
+    (480, 640)
     """
     size = stated_size(encoded)
     if size is None:
@@ -104,6 +118,13 @@ def to_grey(image: AnyArray) -> ByteImage:
     References
     ----------
     Chen et al. 2023, eq. 18.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import terrain
+    >>> terrain.to_grey(np.array([[[255, 0, 0]]], dtype=np.uint8)).tolist()  # 0.30 of red
+    [[77]]
     """
     image = to_bytes(image)
     if image.ndim == 2 or image.shape[2] == 1:

@@ -40,6 +40,16 @@ class LiveStep:
         What the image of the frame said; None where it has none, or nothing reads images.
     switch : SwitchEvent or None
         The terrain that came into force at this frame.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import odometry
+    >>> import terrain
+    >>> live = terrain.LiveOdometry(odometry.Robot(track_width=0.4), terrain="grass")
+    >>> step = live.step(odometry.Frame(0.0, np.array([0.5, 0.5]), 0, None, None))
+    >>> step.terrain, step.switch is None
+    ('grass', True)
     """
 
     estimate: Estimate
@@ -82,6 +92,17 @@ class LiveOdometry:
     The frames of a run (`Run.frames`) give the estimates of `run_odometry` with
     `[filter] causal = true` to the last bit; `odometry.LiveFrames` makes frames of messages.
     Memory does not grow with the number of frames.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import odometry
+    >>> import terrain
+    >>> live = terrain.LiveOdometry(odometry.Robot(track_width=0.4))
+    >>> for i, stamp_s in enumerate([0.0, 0.1, 0.2]):
+    ...     step = live.step(odometry.Frame(stamp_s, np.array([0.5, 0.5]), i, None, None))
+    >>> print(step.odometer.round(3))  # x, y [m], yaw [rad]
+    [0.1 0.  0. ]
     """
 
     def __init__(

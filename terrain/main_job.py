@@ -76,6 +76,16 @@ def run_odometry(
     OdometryError
         If an input is not as its format says, a model is given for a run without images, or
         something contradicts the preset.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> result = terrain.run_odometry(run, vision=False)
+    >>> off_m = result.off_at_the_end_m
+    >>> f"{off_m['differential_drive']:.0f} m, {off_m['odometer']:.0f} m"
+    '11 m, 0 m'
     """
     run = run if isinstance(run, Run) else Run.read(run)
     config = config or (run_preset(preset).config if preset else Config())

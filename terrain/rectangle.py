@@ -9,7 +9,15 @@ from odometry.arrays import FloatArray
 
 @dataclass(frozen=True)
 class Rectangle:
-    """A rectangle on the ground, its sides along the axes of the robot frame now [m]."""
+    """A rectangle on the ground, its sides along the axes of the robot frame now [m].
+
+    Examples
+    --------
+    >>> import terrain
+    >>> ahead = terrain.Rectangle(x_min=0.8, x_max=1.4, y_min=-0.3, y_max=0.3)
+    >>> ahead.corners.shape
+    (4, 2)
+    """
 
     x_min: float
     x_max: float

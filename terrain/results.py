@@ -50,6 +50,17 @@ def write_results(
         odometer.csv and .tum, estimate.csv and .tum, result.json; learned.toml where there is
         anything to hand on; terrain.csv where images were seen or another source told the
         terrain; reference.csv where there are poses to judge by.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> result = terrain.run_odometry(run, vision=False)
+    >>> with TemporaryDirectory() as folder:
+    ...     print([file.name for file in terrain.write_results(result, folder)][:2])
+    ['odometer.csv', 'odometer.tum']
     """
     out = Path(out)
     replay = result.replay
@@ -102,6 +113,18 @@ def read_errors(folder: str | Path) -> dict[str, Any]:
         If the folder has no result of `run`, or one of a newer format.
     OutputError
         If `run` was stopped while it wrote the folder.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> result = terrain.run_odometry(run, vision=False)
+    >>> with TemporaryDirectory() as folder:
+    ...     written = terrain.write_results(result, folder)
+    ...     print(terrain.read_errors(folder)["reference"])
+    truth
     """
     file = Path(folder) / "result.json"
     check_finished(file.parent)

@@ -48,6 +48,15 @@ class RunResult:
         or too few poses.
     source : str
         What told the terrain: "camera", "labels", "modes", "none", or a source of one's own.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> result = terrain.run_odometry(run, vision=False)
+    >>> result.reference_name, sorted(result.scores)[:3]
+    ('truth', ['differential_drive', 'estimate', 'gyroscope'])
     """
 
     run: Run

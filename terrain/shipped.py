@@ -12,6 +12,12 @@ def shipped_data() -> Path:
     ------
     TerrainError
         If the installation has none.
+
+    Examples
+    --------
+    >>> import terrain
+    >>> sorted(folder.name for folder in terrain.shipped_data().iterdir() if folder.is_dir())
+    ['bags', 'cameras', 'parameters', 'patches', 'runs', 'vehicles']
     """
     package = Path(__file__).resolve().parent
     for folder in (package / "data", package.parent / "data"):

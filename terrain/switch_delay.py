@@ -52,6 +52,15 @@ def switch_delays(result: RunResult) -> list[SwitchDelay]:
     list of SwitchDelay
         One for each of `result.changes`, in that order; then the changes that were missed, in
         order of time. Empty where nothing told the terrain.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> result = terrain.run_odometry(run, vision=False)
+    >>> terrain.switch_delays(result)  # no source told the terrain
+    []
     """
     if result.source == "none":
         return []
@@ -73,7 +82,17 @@ def true_changes(result: RunResult) -> tuple[Stretch, ...]:
 
 
 def true_stretches(result: RunResult) -> tuple[Stretch, ...]:
-    """The true terrain over the time of the replay; none where truth.csv names none."""
+    """The true terrain over the time of the replay; none where truth.csv names none.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> result = terrain.run_odometry(run, vision=False)
+    >>> [stretch.terrain for stretch in terrain.true_stretches(result)]
+    ['gravel', 'grass', 'gravel']
+    """
     truth = result.run.truth
     if truth is None or "terrain" not in truth:
         return ()

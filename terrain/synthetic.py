@@ -62,6 +62,16 @@ def synthesise(
     ------
     SynthesisError
         If `out` is not empty, the photographs do not suffice, or the camera sees no ground.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import terrain
+    >>> small = terrain.SynthesisConfig(zones=("grass",), zone_length_m=1.0, patches_per_terrain=2)
+    >>> with TemporaryDirectory() as folder:
+    ...     run = terrain.synthesise(f"{folder}/run", small)
+    ...     print(sorted(file.name for file in run.iterdir() if file.is_dir()))
+    ['images', 'patches']
     """
     out = Path(out)
     config = config or SynthesisConfig()

@@ -29,6 +29,17 @@ def ground_view(
     -------
     (rows, columns) or (rows, columns, 3)
         Far is up, left is left. Sides are rounded down to whole pixels.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> camera = terrain.Camera.from_table(run.settings["camera"])
+    >>> image = terrain.read_image(run.folder / "images" / "000000.jpg")
+    >>> ahead = terrain.Rectangle(x_min=0.8, x_max=1.4, y_min=-0.3, y_max=0.3)
+    >>> terrain.ground_view(image, camera, ahead, metres_per_pixel=0.01).shape
+    (60, 60)
     """
     rows, columns = view_shape(rectangle, metres_per_pixel)
     fineness = max(1, math.ceil(metres_per_pixel / ground_sampling_m(camera, rectangle)[0]))

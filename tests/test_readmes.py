@@ -18,6 +18,7 @@ import terrain.synthetic
 from terrain.cli.main import cli
 from terrain.config import Config
 from tests.odometry.bags.made_bags import Bag
+from tests.public_names import private_imports
 
 ROOT = Path(__file__).parents[1]
 README_FILES = [
@@ -153,7 +154,7 @@ def test_the_python_of_the_guides(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 def test_the_making_of_the_shipped_data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As data/README.md has it, on a shorter run."""
     short = partial(terrain.synthetic.SynthesisConfig, zone_length_m=1.0, patches_per_terrain=2)
-    monkeypatch.setattr(terrain.synthetic, "SynthesisConfig", short)
+    monkeypatch.setattr(terrain, "SynthesisConfig", short)
     monkeypatch.chdir(tmp_path)
     run_blocks(ROOT / "data/README.md")
     assert (tmp_path / "demo/run.toml").is_file()
@@ -183,6 +184,11 @@ def test_the_example_of_ros_is_python_and_no_example_is_long() -> None:
 def test_no_python_goes_untested(readme: Path) -> None:
     tested = {ROOT / "data/README.md", ROOT / "terrain/README.md"}
     assert readme in tested or not blocks(readme, "python", "py")
+
+
+@each_readme
+def test_the_python_imports_public_names(readme: Path) -> None:
+    assert private_imports("\n".join(blocks(readme, "python"))) == set()
 
 
 def test_the_python_of_the_guides_is_typed(tmp_path: Path) -> None:

@@ -23,6 +23,13 @@ class BagMessage(NamedTuple):
         1970, correctly rounded.
     content : Any
         An object with the fields of its definition.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> message = odometry.BagMessage("/imu/data", 12.5, None)
+    >>> message.topic, message.stamp_s
+    ('/imu/data', 12.5)
     """
 
     topic: str
@@ -49,6 +56,16 @@ def bag_messages(*paths: str | Path) -> Iterator[BagMessage]:
         If a path is missing, or nothing of all of them is a bag.
     ExtraError
         If the packages of the extra `bags` are not installed.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> try:
+    ...     for message in odometry.bag_messages("drive.bag"):
+    ...         print(message.topic, message.stamp_s)
+    ... except odometry.OdometryError as error:  # here, as there is no such bag
+    ...     print(error)
+    drive.bag: there is no such file or folder
     """
     extra_module("rosbags", "bags", "reading bags")
     types = import_module("odometry.bags.message_types").MessageTypes()

@@ -36,6 +36,18 @@ class Finding:
         Run time [s] from the first stamp of odometry.csv, where the oddity has a place in time.
     mend : callable of Run to Run, optional
         Undoes the cause, where it can be undone: what is left says whether it is the right one.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> import numpy as np
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> pose = replace(run.pose, columns={**run.pose.columns, "yaw": np.rad2deg(run.pose["yaw"])})
+    >>> (finding,) = odometry.check_recording(replace(run, pose=pose)).findings
+    >>> finding.name, finding.cause
+    ('yaw_in_degrees', 'Yaw is in degrees')
     """
 
     name: str
@@ -74,6 +86,15 @@ class CheckReport:
         By level; within a level a cause stands before what follows from it.
     skipped : tuple of str
         What could not be checked, and why.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> report = odometry.check_recording(run)
+    >>> report.name, report.misleads
+    ('demo', False)
     """
 
     folder: Path

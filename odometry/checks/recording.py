@@ -74,6 +74,14 @@ def check_recording(run: Run | str | Path) -> CheckReport:
     ----------
     run : Run or path of a run folder
         A folder that cannot be read is a finding, not an error.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> [finding.name for finding in odometry.check_recording(run).findings]
+    []
     """
     if not isinstance(run, Run):
         if (nothing := no_run_folder(Path(run))) is not None:

@@ -61,6 +61,15 @@ def compare(
         If no run can be evaluated, one is there twice, or a model is not known.
     ParameterError
         If a file is no parameter set.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> compared = odometry.compare([run], ["differential_drive", "icr"], terrain="yard")
+    >>> compared.models
+    ('differential_drive', 'icr')
     """
     config = config or ComparisonConfig()
     candidates = candidates_named(models)

@@ -68,6 +68,12 @@ class IcrEkfConfig:
     Noises, prior and rates were chosen on the 19 recordings of data/motion that are not among
     the seven by which the odometer is judged: by the mean error per metre of the odometer over
     5 m of wheel travel against that of the gyroscope with the mean wheel speed.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> config = odometry.IcrEkfConfig(position_sigma_m=0.02)
+    >>> ekf = odometry.IcrEkf(track_width=0.4, config=config)
     """
 
     position_sigma_m: float = 0.05

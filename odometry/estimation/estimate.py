@@ -127,6 +127,15 @@ class Estimate:
         What is remembered of the sensors; None where nobody watches them.
     events : tuple of FilterEvent
         What the filter noticed at this stamp.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import odometry
+    >>> frame = odometry.Frame(0.0, np.array([0.5, 0.5]), 0, pose=np.zeros(3), image=None)
+    >>> estimate = odometry.IcrEkf(track_width=0.4).start(frame, "grass")
+    >>> estimate.mean[3:6].tolist()  # y_left, y_right, x_icr [m]
+    [0.2, -0.2, 0.0]
     """
 
     stamp_s: float

@@ -55,6 +55,17 @@ class IcrEkf:
     NaN; where the first one has no yaw, the heading is found from the course of the positions.
     Over a gap of odometry the speed that was held goes on, but where the robot then is counts as
     not known, and nothing is learned of it.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import odometry
+    >>> ekf = odometry.IcrEkf(track_width=0.4)
+    >>> treads = np.array([0.4, 0.6])
+    >>> estimate = ekf.start(odometry.Frame(0.0, treads, 0, np.zeros(3), None), "grass")
+    >>> estimate = ekf.step(estimate, odometry.Frame(0.1, treads, 1, None, None), "grass")
+    >>> print(estimate.mean[:3].round(3))  # x, y [m], yaw [rad]: 0.05 m on, 0.05 rad to the left
+    [0.05  0.001 0.05 ]
     """
 
     def __init__(

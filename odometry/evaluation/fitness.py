@@ -68,6 +68,20 @@ def fitness(
     ------
     TrajectoryError
         If the trajectory covers none of the stamps.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> treads = odometry.inputs_of(run).tread_speeds_m_s
+    >>> forward, turning = treads.mean(axis=1), np.diff(treads)[:, 0] / 0.4
+    >>> twists = np.column_stack([forward, np.zeros(len(treads)), turning])  # ideal drive
+    >>> path = odometry.open_loop(run, twists)
+    >>> judged = odometry.fitness(path, *odometry.measured_poses(run))
+    >>> f"J / N = {judged.mean:.1f}, of it yaw {judged.yaw_rad2:.1f}"
+    'J / N = 22.4, of it yaw 0.2'
     """
     covered = trajectory.covers(reference_s)
     if not covered.any():

@@ -17,6 +17,15 @@ def measured_poses(run: Run) -> tuple[FloatArray, FloatArray]:
     ------
     RunFolderError
         If the run has no pose.csv, or no row of it has x, y and yaw.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> stamps_s, poses = odometry.measured_poses(run)
+    >>> poses.shape == (len(stamps_s), 4)
+    True
     """
     if run.pose is None:
         raise RunFolderError(f"{run.folder / 'pose.csv'}: missing; a reference is needed")
@@ -51,6 +60,17 @@ def open_loop(run: Run, twists: FloatArray) -> SpatialTrajectory:
     ------
     TrajectoryError
         If no such reference pose lies within odometry.csv.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> twists = np.tile([0.5, 0.0, 0.0], (len(run.odometry), 1))
+    >>> path = odometry.open_loop(run, twists)
+    >>> f"{path.poses[-1, 0, 3]:.1f} m straight ahead in {path.stamps_s[-1]:.0f} s"
+    '27.1 m straight ahead in 54 s'
     """
     odometry_s = run.odometry.stamps_s
     reference_s, poses = measured_poses(run)

@@ -23,6 +23,12 @@ class EvaluationConfig:
         Wheel travel over which relative errors are taken.
     stride_m : float
         Wheel travel between the starts of two windows.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> odometry.EvaluationConfig(horizon_m=2.0)
+    EvaluationConfig(horizon_m=2.0, stride_m=0.5)
     """
 
     horizon_m: float = 5.0
@@ -85,6 +91,20 @@ def relative_errors(
     -------
     RelativeErrors
         Without windows where the two have less than a horizon in common.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import odometry
+    >>> stamps_s = np.linspace(0.0, 20.0, 21)
+    >>> along = np.zeros((21, 3))
+    >>> along[:, 0] = stamps_s  # 1 m/s
+    >>> measured = odometry.Trajectory(stamps_s, along)
+    >>> estimated = odometry.Trajectory(stamps_s, along * (1.1, 1.0, 1.0))  # a tenth too far
+    >>> config = odometry.EvaluationConfig(horizon_m=5.0)
+    >>> errors = odometry.relative_errors(estimated, measured, stamps_s, stamps_s, config)
+    >>> f"{errors.translation_per_m.mean():.2f} m per m"
+    '0.10 m per m'
     """
     both = trajectory.covers(reference.stamps_s)
     if both.sum() < 2:
@@ -132,7 +152,17 @@ def _continuous_where_measured(yaw: FloatArray, true_yaw: FloatArray) -> FloatAr
 
 
 def position_errors(trajectory: Trajectory, reference: Trajectory) -> tuple[FloatArray, FloatArray]:
-    """Stamps (K,) of the reference that a trajectory covers, and its distance (K,) there [m]."""
+    """Stamps (K,) of the reference that a trajectory covers, and its distance (K,) there [m].
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import odometry
+    >>> stamps_s = np.array([0.0, 1.0])
+    >>> measured = odometry.Trajectory(stamps_s, np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]))
+    >>> odometry.position_errors(measured.moved(np.array([0.0, 0.5, 0.0])), measured)
+    (array([0., 1.]), array([0.5, 0.5]))
+    """
     stamps_s = reference.stamps_s[trajectory.covers(reference.stamps_s)]
     difference = trajectory.at(stamps_s).poses - reference.at(stamps_s).poses
     return stamps_s, np.hypot(difference[:, 0], difference[:, 1])

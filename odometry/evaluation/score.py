@@ -71,6 +71,15 @@ def reference_of(run: Run) -> tuple[str, Trajectory] | None:
     """The trajectory that a run is compared with: truth.csv, else pose.csv, else none.
 
     It holds the rows with x and y; the yaw of a row without one is NaN.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> name, reference = odometry.reference_of(run)
+    >>> name, len(reference)
+    ('truth', 1085)
     """
     for name, table in (("truth", run.truth), ("pose", run.pose)):
         if table is None:
@@ -107,7 +116,20 @@ def window_errors(
 def score(
     run: Run, trajectory: Trajectory, reference: Trajectory, config: EvaluationConfig
 ) -> Score:
-    """Errors of a trajectory of a run against a reference."""
+    """Errors of a trajectory of a run against a reference.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> gravel = odometry.ConstantTerrain("gravel")
+    >>> filtered = odometry.replay(run, odometry.IcrEkf(track_width=0.4), gravel)
+    >>> _, reference = odometry.reference_of(run)
+    >>> found = odometry.score(run, filtered.odometer(), reference, odometry.EvaluationConfig())
+    >>> found.mean_translation_per_m < 0.1  # m per m of wheel travel
+    True
+    """
     relative = window_errors(run, trajectory, reference, config)
     return summary(relative, position_errors(trajectory, reference)[1])
 

@@ -30,6 +30,14 @@ def stretches(stamps_s: FloatArray, terrains: Sequence[str]) -> tuple[Stretch, .
     -------
     tuple of Stretch
         In order of time, neighbours of different terrains; the last ends at the last stamp.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import odometry
+    >>> found = odometry.stretches(np.array([0.0, 1.0, 2.0]), ["grass", "grass", "ice"])
+    >>> [(stretch.terrain, stretch.end_s) for stretch in found]
+    [('grass', 2.0), ('ice', 2.0)]
     """
     names = np.asarray(terrains, dtype=object)
     rows = np.flatnonzero(names != "")

@@ -1,1 +1,8 @@
-"""Where simulation and measurement disagree, which effect is missing, and the gap closed."""
+"""Where simulation and measurement disagree, which effect is missing, and the gap closed.
+
+Names are imported when they are first used.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -75,6 +75,17 @@ def find_gap(
         If a run has no poses, or the runs are of different robots.
     RunFolderError
         If a run is given twice.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> try:
+    ...     odometry.find_gap([run], calibration=[run])
+    ... except odometry.OdometryError as error:
+    ...     print(str(error).split("; ")[1])
+    expected each run once: none can be its own test
     """
     config = config or GapConfig()
     if not measured or not calibration:

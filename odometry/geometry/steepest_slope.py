@@ -31,6 +31,15 @@ def steepest_slope(roll_rad: FloatArray, pitch_rad: FloatArray) -> tuple[FloatAr
     gamma_rad : (...)
         From straight uphill counter-clockwise to the robot's x axis, -pi to pi; NaN on level
         ground, where no way is up.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import odometry
+    >>> roll_rad, pitch_rad = np.array([0.0]), np.array([-0.1])  # nose up
+    >>> slope_rad, heading_rad = odometry.steepest_slope(roll_rad, pitch_rad)
+    >>> print(slope_rad, abs(heading_rad))
+    [0.1] [0.]
     """
     alpha, phi = paper_attitude(np.asarray(roll_rad), np.asarray(pitch_rad))
     beta = np.hypot(alpha, phi)  # eq. 3

@@ -83,6 +83,15 @@ def measured_icrs(
     ------
     WindowError
         If a run has no measured poses, or there is no window in any of them.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> measured = odometry.measured_icrs([run])
+    >>> measured.icrs.shape[1], bool((measured.icrs[:, 0] > measured.icrs[:, 1]).all())
+    (3, True)
     """
     windows = windows_of(runs, window_config)
     return icrs_of_windows(windows, window_config, alphas=alphas, probability=probability)

@@ -43,6 +43,15 @@ def icr_medians(measured: MeasuredIcrs, *, seed: int = 0) -> tuple[IcrMedian, ..
     A point counts by the inverse of its standard deviation. Intervals are bootstrapped: runs are
     drawn with replacement, and of each blocks of five neighbouring windows. Of one run they do
     not hold what differs from run to run.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> left, right = odometry.icr_medians(odometry.measured_icrs([run]))
+    >>> left.side, left.icrs.shape
+    ('left', (3,))
     """
     found = []
     for terrain in sorted(set(measured.terrain)):

@@ -31,6 +31,14 @@ def icrs_of_twist(
     (..., 3)
         y_left, y_right, x_icr [m]; NaN without any turn. `turn_is_told` says which points noise
         leaves a meaning.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import odometry
+    >>> twist, treads = np.array([0.5, 0.1, 0.25]), np.array([0.4, 0.6])
+    >>> odometry.icrs_of_twist(twist, treads).round(3).tolist()  # y_left, y_right, x_icr [m]
+    [0.4, -0.4, -0.4]
     """
     v_x, v_y, omega = np.moveaxis(np.asarray(twists, dtype=np.float64), -1, 0)
     left, right = np.moveaxis(np.asarray(alphas) * np.asarray(tread_speeds_m_s), -1, 0)
@@ -69,6 +77,16 @@ def icr_covariances(
     -------
     (..., 3, 3)
         Of y_left, y_right, x_icr [m^2]; NaN without any turn.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import odometry
+    >>> twist, treads = np.array([0.5, 0.0, 0.5]), np.array([0.4, 0.6])
+    >>> noise = np.diag([0.01, 0.01, 0.01]) ** 2
+    >>> covariance = odometry.icr_covariances(twist, treads, noise, np.array([0.01, 0.01]) ** 2)
+    >>> np.sqrt(np.diag(covariance)).round(3).tolist()  # of y_left, y_right, x_icr [m]
+    [0.029, 0.029, 0.02]
     """
     icrs = icrs_of_twist(twists, tread_speeds_m_s, alphas)
     by_twist = np.zeros((*icrs.shape, 3))
@@ -94,6 +112,14 @@ def turn_is_told(omega_rad_s: FloatArray, sigma_rad_s: FloatArray, probability: 
         Measured yaw rates and their standard deviations.
     probability : float
         Above 0.5, below 1.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import odometry
+    >>> omega_rad_s = np.array([0.5, 0.01])  # a turn, and nearly straight
+    >>> odometry.turn_is_told(omega_rad_s, np.array([0.02, 0.02]), probability=0.95).tolist()
+    [True, False]
     """
     least_sigmas = NormalDist().inv_cdf(probability)
     return np.asarray(np.abs(omega_rad_s) > least_sigmas * np.asarray(sigma_rad_s))
@@ -114,6 +140,13 @@ def icr_indices(icrs: FloatArray, track_width_m: float) -> FloatArray:
     (..., 3)
         zeta [m]: above 0 the robot heads into the curve; epsilon [m]: above 0 it turns to the
         right less easily than to the left; eta: 1 without slip, larger where turning is resisted.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import odometry
+    >>> odometry.icr_indices(np.array([0.3, -0.4, 0.05]), 0.4).round(2).tolist()
+    [0.05, 0.05, 1.75]
     """
     y_left, y_right, x_icr = np.moveaxis(np.asarray(icrs), -1, 0)
     zeta = x_icr  # eq. 17

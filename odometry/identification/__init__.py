@@ -1,1 +1,8 @@
-"""Parameters of kinematic models from recorded runs."""
+"""Parameters of kinematic models from recorded runs.
+
+Names are imported when they are first used.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -25,6 +25,12 @@ class SolverConfig:
     undetermined : float
         A combination of parameters is undetermined where its standard deviation is above this
         many of the parameters' ordinary sizes.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> odometry.SolverConfig(starts=1).loss
+    'huber'
     """
 
     loss: str = "huber"

@@ -4,4 +4,17 @@ from odometry.errors import OdometryError
 
 
 class IdentificationError(OdometryError):
-    """Runs that do not tell what is asked of them."""
+    """Runs that do not tell what is asked of them.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> still = odometry.cut_run(run, odometry.Span(0.0, 3.0))
+    >>> try:
+    ...     odometry.identify([still], "icr", terrain="yard").require_determined()
+    ... except odometry.IdentificationError as error:
+    ...     print(str(error)[:60])
+    1 windows cannot tell 5 parameters of 'icr'
+    """

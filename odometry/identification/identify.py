@@ -68,6 +68,18 @@ def identify(
         or `terrain` is the reserved name.
     RunFolderError
         If a run is given twice.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> identified = odometry.identify([run], "icr", terrain="yard")
+    >>> fit = identified.grounds["yard"].fit
+    >>> f"y_left - y_right = {fit.values['y_left'] - fit.values['y_right']:.1f} m"
+    'y_left - y_right = 0.8 m'
+    >>> identified.to_parameter_set().terrains["yard"].model
+    'icr'
     """
     window_config, solver_config = window_config or WindowConfig(), solver_config or SolverConfig()
     if terrain == UNKNOWN:

@@ -79,6 +79,19 @@ def write_run_folder(
         The content of `run.toml`; `[robot]` with `track_width` is required.
     tables : Mapping of name to columns
         Names of `FILES`; columns are arrays of one length, the first is `t`.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from pathlib import Path
+    >>> import numpy as np
+    >>> import odometry
+    >>> ahead = {"t": np.array([0.0, 1.0]), "v_left": np.full(2, 0.5), "v_right": np.full(2, 0.5)}
+    >>> settings = {"robot": {"track_width": 0.4}}
+    >>> with TemporaryDirectory() as folder:
+    ...     odometry.write_run_folder(Path(folder), settings, {"odometry": ahead})
+    ...     print(len(odometry.Run.read(folder).odometry))
+    2
     """
     unknown = sorted(set(tables) - set(FILES))
     if unknown:

@@ -61,6 +61,18 @@ def read_trajectory(
     TrajectoryError
         If the file has no known format, is not as its format says, or a KITTI file comes without
         stamps.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from pathlib import Path
+    >>> import numpy as np
+    >>> import odometry
+    >>> still = odometry.SpatialTrajectory(np.array([0.0]), np.eye(4)[None])
+    >>> with TemporaryDirectory() as folder:
+    ...     (file,) = odometry.write_trajectory(Path(folder), "estimate", still, "euroc")
+    ...     print(len(odometry.read_trajectory(file)))  # the format is seen in its first row
+    1
     """
     file = Path(file)
     chosen = FORMATS[named or format_of(file)]
@@ -71,7 +83,20 @@ def read_trajectory(
 def write_trajectory(
     folder: Path, name: str, trajectory: SpatialTrajectory, named: str
 ) -> tuple[Path, ...]:
-    """Write a trajectory of robot axes in the axes of a format; the files are returned."""
+    """Write a trajectory of robot axes in the axes of a format; the files are returned.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from pathlib import Path
+    >>> import numpy as np
+    >>> import odometry
+    >>> still = odometry.SpatialTrajectory(np.array([0.0]), np.eye(4)[None])
+    >>> with TemporaryDirectory() as folder:
+    ...     files = odometry.write_trajectory(Path(folder), "estimate", still, "kitti")
+    ...     print([file.name for file in files])
+    ['estimate_kitti.txt', 'estimate_times.txt']
+    """
     chosen = FORMATS[named]
     turned = to_optical(trajectory) if chosen.axes == OPTICAL else trajectory
     return chosen.write(folder, name, turned)

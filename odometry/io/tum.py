@@ -19,12 +19,37 @@ COLUMNS = (
 
 
 def write_tum(file: str | Path, trajectory: Trajectory) -> None:
-    """Write a plane trajectory as TUM text, z = 0 and rotation about z."""
+    """Write a plane trajectory as TUM text, z = 0 and rotation about z.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import numpy as np
+    >>> import odometry
+    >>> poses = np.array([[0.0, 0.0, 0.0], [0.5, 0.0, 0.1]])
+    >>> path = odometry.Trajectory(np.array([0.0, 1.0]), poses)
+    >>> with TemporaryDirectory() as folder:
+    ...     odometry.write_tum(f"{folder}/path.tum", path)
+    ...     print(len(odometry.read_tum(f"{folder}/path.tum")))
+    2
+    """
     write_spatial_tum(file, SpatialTrajectory.from_plane(trajectory))
 
 
 def write_spatial_tum(file: str | Path, trajectory: SpatialTrajectory) -> None:
-    """Write a trajectory as TUM text, unit quaternions with qw not negative."""
+    """Write a trajectory as TUM text, unit quaternions with qw not negative.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import numpy as np
+    >>> import odometry
+    >>> still = odometry.SpatialTrajectory(np.array([0.0]), np.eye(4)[None])
+    >>> with TemporaryDirectory() as folder:
+    ...     odometry.write_spatial_tum(f"{folder}/path.tum", still)
+    ...     print(odometry.read_spatial_tum(f"{folder}/path.tum").poses[0, 3])
+    [0. 0. 0. 1.]
+    """
     columns = zip(
         trajectory.stamps_s, trajectory.positions_m, trajectory.quaternions_wxyz, strict=True
     )
@@ -43,6 +68,18 @@ def read_tum(file: str | Path) -> Trajectory:
     ------
     TrajectoryError
         As `read_spatial_tum`.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import numpy as np
+    >>> import odometry
+    >>> poses = np.array([[0.0, 0.0, 0.0], [0.5, 0.0, 0.1]])
+    >>> path = odometry.Trajectory(np.array([0.0, 1.0]), poses)
+    >>> with TemporaryDirectory() as folder:
+    ...     odometry.write_tum(f"{folder}/path.tum", path)
+    ...     print(odometry.read_tum(f"{folder}/path.tum").poses.round(6).tolist())
+    [[0.0, 0.0, 0.0], [0.5, 0.0, 0.1]]
     """
     return read_spatial_tum(file).plane
 
@@ -55,6 +92,17 @@ def read_spatial_tum(file: str | Path) -> SpatialTrajectory:
     TrajectoryError
         If the file cannot be read or holds no pose; naming file and row where a row has not
         eight finite numbers, no unit quaternion, or a stamp that does not increase.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import numpy as np
+    >>> import odometry
+    >>> still = odometry.Trajectory(np.zeros(1), np.ones((1, 3)))
+    >>> with TemporaryDirectory() as folder:
+    ...     odometry.write_tum(f"{folder}/path.tum", still)
+    ...     print(odometry.read_spatial_tum(f"{folder}/path.tum").poses[0, :3, 3])  # x, y, z [m]
+    [1. 1. 0.]
     """
     file = Path(file)
     rows, table = read_rows(file, COLUMNS)

@@ -1,4 +1,13 @@
-"""Names of the models, and which parameters each has."""
+"""Names of the models, and which parameters each has.
+
+Examples
+--------
+>>> import odometry
+>>> list(odometry.MODELS)[:3]
+['differential_drive', 'icr_symmetric', 'icr']
+>>> [parameter.name for parameter in odometry.MODELS["icr"].parameters]
+['y_left', 'y_right', 'x_icr', 'alpha_left', 'alpha_right']
+"""
 
 from odometry.errors import ParameterError
 from odometry.models.base import KinematicModel
@@ -45,6 +54,12 @@ def model_named(name: str) -> KinematicModel:
     ------
     ParameterError
         If there is none.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> odometry.model_named("icr_symmetric").parameters[0].name
+    'alpha'
     """
     if name not in MODELS:
         raise ParameterError(f"there is no model {name!r}; known: {', '.join(MODELS)}")

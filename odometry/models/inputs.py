@@ -40,6 +40,14 @@ class Inputs:
         Of a gyroscope less its bias, for whoever carries the yaw by it; no model reads it.
     run_number : (...) of int or None
         Which of several runs a sample is of, from 0; that of one run where absent.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import odometry
+    >>> level = odometry.Inputs(np.array([[0.5, 0.5], [0.4, 0.6]]))
+    >>> level.roll_rad.tolist()
+    [0.0, 0.0]
     """
 
     tread_speeds_m_s: FloatArray

@@ -1,1 +1,8 @@
-"""Skid modes: which terrain, or which slipping wheels, the motion itself speaks for."""
+"""Skid modes: which terrain, or which slipping wheels, the motion itself speaks for.
+
+Names are imported when they are first used.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -189,6 +189,19 @@ def followed(
     """Follow a run by motion alone, and where vision saw something, with sight.
 
     See `follow_modes`.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> import numpy as np
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> on_gravel = replace(run, settings={**run.settings, "run": {"terrain": "gravel"}})
+    >>> modes = odometry.identify_velocity_modes([on_gravel])
+    >>> found = odometry.followed(run, odometry.ModeSet(modes, dwell_s=np.array([20.0])))
+    >>> sorted(set(found.answers(found.motion).tolist()))
+    ['gravel', 'undetermined']
     """
     config = config or ModesConfig()
     signals = judged_signals(run, mode_set)

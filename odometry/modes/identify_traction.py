@@ -47,6 +47,17 @@ def identify_traction_modes(
         both sides, for long enough.
     WindowError
         If a run has no window of 2 s without a gap.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> on_gravel = replace(run, settings={**run.settings, "run": {"terrain": "gravel"}})
+    >>> modes = odometry.identify_traction_modes([on_gravel], paper=True)
+    >>> modes.names, modes.gains.shape
+    (('gravel',), (1, 2, 3, 5))
     """
     width = robot_of(runs).track_width
     horizon_s, scenes = scenes_by_mode(runs, paper=paper)

@@ -50,6 +50,17 @@ def identify_velocity_modes(
         If a run names no terrain, or less than 10 s of one are recorded.
     RunFolderError
         If a run has no yaw rate.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> on_gravel = replace(run, settings={**run.settings, "run": {"terrain": "gravel"}})
+    >>> modes = odometry.identify_velocity_modes([on_gravel])
+    >>> modes.names, modes.A.shape
+    (('gravel',), (1, 2, 2))
     """
     speeds = [forward_speed_m_s(run) for run in runs]
     records: dict[str, list[Record]] = {}

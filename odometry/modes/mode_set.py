@@ -79,6 +79,18 @@ class ModeSet:
     ------
     ParameterError
         If a mode has the name of an answer that names none, or of a terrain that is not known.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> import numpy as np
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> on_gravel = replace(run, settings={**run.settings, "run": {"terrain": "gravel"}})
+    >>> modes = odometry.identify_velocity_modes([on_gravel])
+    >>> odometry.ModeSet(modes, dwell_s=np.array([20.0])).names
+    ('gravel',)
     """
 
     modes: VelocityModes | TractionModes
@@ -103,6 +115,23 @@ def write_mode_set(file: Path, mode_set: ModeSet, comment: str = "") -> None:
     """Write a set of modes: [modes], and a table [mode.NAME] for each.
 
     `comment` holds whole lines that begin with `#`, and goes below the line of the format.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> from tempfile import TemporaryDirectory
+    >>> from pathlib import Path
+    >>> import numpy as np
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> on_gravel = replace(run, settings={**run.settings, "run": {"terrain": "gravel"}})
+    >>> modes = odometry.identify_velocity_modes([on_gravel])
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "modes.toml"
+    ...     odometry.write_mode_set(file, odometry.ModeSet(modes, dwell_s=np.array([20.0])))
+    ...     print(file.read_text().splitlines()[0])
+    # terrain-odometry mode set, format 1
     """
     modes = mode_set.modes
     head: dict[str, Any] = {"kind": modes.kind, "source": mode_set.source}
@@ -125,6 +154,23 @@ def read_mode_set(file: Path) -> ModeSet:
     ParameterError
         Naming file, table and key: not TOML, an unknown or missing key, a number that is not
         finite, a shape or a variance that cannot be, a newer format.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> from tempfile import TemporaryDirectory
+    >>> from pathlib import Path
+    >>> import numpy as np
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> on_gravel = replace(run, settings={**run.settings, "run": {"terrain": "gravel"}})
+    >>> modes = odometry.identify_velocity_modes([on_gravel])
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "modes.toml"
+    ...     odometry.write_mode_set(file, odometry.ModeSet(modes, dwell_s=np.array([20.0])))
+    ...     print(odometry.read_mode_set(file).names)
+    ('gravel',)
     """
     check_first_line(Path(file), FORMAT, ParameterError)
     content = read_toml(Path(file), ParameterError)

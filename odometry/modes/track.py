@@ -77,6 +77,19 @@ class ModeTrack:
         What the run names; "unknown" where it names nothing.
     fit : ModeFit or None
         Whether a mode fits at all; without it one is taken to.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> import numpy as np
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> on_gravel = replace(run, settings={**run.settings, "run": {"terrain": "gravel"}})
+    >>> modes = odometry.identify_velocity_modes([on_gravel])
+    >>> track = odometry.follow_modes(run, odometry.ModeSet(modes, dwell_s=np.array([20.0])))
+    >>> track.names, track.probabilities.shape == (len(track.stamps_s), 1)
+    (('gravel',), True)
     """
 
     names: tuple[str, ...]
@@ -114,6 +127,19 @@ def follow_modes(
         If the run lacks what the modes are told by.
     ParameterError
         If vision saw what is no mode.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> import numpy as np
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> on_gravel = replace(run, settings={**run.settings, "run": {"terrain": "gravel"}})
+    >>> modes = odometry.identify_velocity_modes([on_gravel])
+    >>> track = odometry.follow_modes(run, odometry.ModeSet(modes, dwell_s=np.array([20.0])))
+    >>> len(track.stamps_s)
+    1085
     """
     signals = judged_signals(run, mode_set)
     return follow_signals(signals, mode_set, config, seen, show_progress=show_progress)

@@ -1,1 +1,8 @@
-"""Skid-steer drives made from first principles, to test estimators that know nothing of them."""
+"""Skid-steer drives made from first principles, to test estimators that know nothing of them.
+
+Names are imported when they are first used.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

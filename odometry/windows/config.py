@@ -24,6 +24,12 @@ class WindowConfig:
         Longest time between two poses that is no gap; five usual periods where that is longer.
     position_sigma_m, yaw_sigma_rad : float
         Standard deviations of a measured pose: they state the covariance of the loss.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> odometry.WindowConfig(horizon_m=5.0, position_sigma_m=0.01).yaw_sigma_rad
+    0.01
     """
 
     horizon_m: float = 2.0

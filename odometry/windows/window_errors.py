@@ -44,6 +44,17 @@ def window_errors(model: KinematicModel, values: FloatArray, windows: Windows) -
     ------
     ParameterError
         If the model needs an input that was not recorded.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> windows = odometry.windows_of([run], odometry.WindowConfig())
+    >>> ideal = odometry.model_named("differential_drive")
+    >>> errors = odometry.window_errors(ideal, ideal.pack({"track_width": 0.4}), windows)
+    >>> errors.translation_per_m.shape == (len(windows),)
+    True
     """
     return errors_of_motion(window_motion(model, values, windows), windows)
 

@@ -99,6 +99,14 @@ def windows_of(runs: Sequence[Run], config: WindowConfig) -> Windows:
     ------
     WindowError
         If a run has no measured poses, or there is no window in any of them.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> len(odometry.windows_of([run], odometry.WindowConfig(horizon_m=5.0)))
+    7
     """
     if not runs:
         raise WindowError("no run was given; expected one or more")

@@ -41,6 +41,12 @@ def check_run(
     ------
     ModelFileError
         If the model cannot be read.
+
+    Examples
+    --------
+    >>> import terrain
+    >>> terrain.check_run(terrain.shipped_data() / "runs" / "demo").misleads
+    False
     """
     classifier = TerrainClassifier.load(Path(model)) if isinstance(model, str | Path) else model
     if not isinstance(run, Run):

@@ -38,6 +38,13 @@ class Classification:
         `TerrainClassifier.rejection_distance_`.
     probabilities : dict of str to float
         One per known terrain; they add up to 1.
+
+    Examples
+    --------
+    >>> import terrain
+    >>> answer = terrain.Classification("unknown", 0.9, 3.2, {"grass": 0.9, "gravel": 0.1})
+    >>> max(answer.probabilities, key=answer.probabilities.get)  # what it would have been
+    'grass'
     """
 
     label: str
@@ -96,6 +103,18 @@ class TerrainClassifier:
     References
     ----------
     Chen et al. 2023, eq. 18-21 (features) and 23-26 (neighbours).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import terrain
+    >>> rng = np.random.default_rng(1)
+    >>> mud = [rng.integers(0, 60, (32, 32), dtype=np.uint8) for _ in range(6)]
+    >>> snow = [image + 190 for image in mud]
+    >>> labels, photographs = ["mud"] * 6 + ["snow"] * 6, [str(i % 6) for i in range(12)]
+    >>> classifier = terrain.TerrainClassifier("chen2023").fit(mud + snow, labels, photographs)
+    >>> [answer.label for answer in classifier.classify([mud[0], snow[0]])]
+    ['mud', 'snow']
     """
 
     def __init__(

@@ -94,6 +94,13 @@ def cut_patches(image: ByteImage, size_px: int, stride_px: int | None = None) ->
     -------
     list of ByteImage
         Views of `image`; empty if it is smaller than one patch.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import terrain
+    >>> len(terrain.cut_patches(np.zeros((200, 300), dtype=np.uint8), size_px=96))
+    6
     """
     tops, lefts = (_starts(length, size_px, stride_px or size_px) for length in image.shape[:2])
     return [image[top : top + size_px, left : left + size_px] for top in tops for left in lefts]

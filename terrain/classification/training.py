@@ -23,6 +23,13 @@ class Training:
     ----------
     classifier : TerrainClassifier
     patches : LabelledPatches
+
+    Examples
+    --------
+    >>> import terrain
+    >>> training = terrain.train(terrain.shipped_data() / "patches", preset="chen2023")
+    >>> len(training.patches.images), training.classifier.classes_
+    (96, ['brick', 'grass', 'gravel'])
     """
 
     classifier: TerrainClassifier
@@ -66,6 +73,13 @@ def train(
         If the folder is not as the format says, or has too few photographs of a class.
     ImageError
         If a photograph cannot be read.
+
+    Examples
+    --------
+    >>> import terrain
+    >>> training = terrain.train(terrain.shipped_data() / "patches", preset="chen2023")
+    >>> training.classifier.classes_
+    ['brick', 'grass', 'gravel']
     """
     root = Path(root)
     photos = find_photos(root)

@@ -93,6 +93,16 @@ def label_runs(
     OdometryError
         If a run has no images or camera, nothing can be labelled, or a patch that was moved by
         hand is not among the squares any more.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> whole = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.cut_run(whole, odometry.Span(0.0, 6.0))
+    >>> labelled = terrain.label_runs([run], [terrain.told_terrain(run)])
+    >>> sorted({square.label for square in labelled.chosen})
+    ['gravel']
     """
     config, corrections = config or LabelConfig(), corrections or Corrections()
     finders = [square_finder(run, of, parameters) for run, of in zip(runs, told, strict=True)]

@@ -47,6 +47,20 @@ def write_labelled_patches(
     ------
     ImageError
         If no image can be used.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from pathlib import Path
+    >>> import odometry
+    >>> import terrain
+    >>> whole = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.cut_run(whole, odometry.Span(0.0, 6.0))
+    >>> labelled = terrain.label_runs([run], [terrain.told_terrain(run)])
+    >>> with TemporaryDirectory() as folder:
+    ...     refused = terrain.write_labelled_patches(Path(folder), labelled)
+    ...     print(refused, len(list(Path(folder).rglob("*.png"))) > 1)
+    {} True
     """
     unusable: dict[str, str] = {}
     written: list[ChosenSquare] = []

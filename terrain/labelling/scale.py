@@ -33,6 +33,12 @@ class LabelConfig:
         Patches of one terrain at one place, at the most.
     place_m : float
         Distance between the centres of places, at the least; five sides of a patch if that is more.
+
+    Examples
+    --------
+    >>> import terrain
+    >>> terrain.LabelConfig(patch_size_px=96).per_place
+    24
     """
 
     patch_size_px: int | None = None

@@ -23,6 +23,12 @@ class TerrainSpan:
     from_s, to_s : float
         From the first stamp of the odometry.
     terrain : str
+
+    Examples
+    --------
+    >>> import terrain
+    >>> terrain.TerrainSpan(0.0, 12.5, "grass").terrain
+    'grass'
     """
 
     from_s: float
@@ -83,6 +89,16 @@ def told_by_spans(run: Run, spans: Sequence[TerrainSpan], start_s: float) -> Tol
     ------
     RunFolderError
         If two spans overlap, or a name cannot name a folder.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> span = terrain.TerrainSpan(5.0, 12.5, "grass")
+    >>> told = terrain.told_by_spans(run, [span], start_s=0.0)
+    >>> told.between(6.0, 7.0), told.between(0.0, 1.0)
+    (frozenset({'grass'}), frozenset({''}))
     """
     ordered = sorted(spans, key=lambda span: span.from_s)
     stamps_s: list[float] = []
@@ -114,6 +130,15 @@ def told_terrain(run: Run, source: str | None = None) -> ToldTerrain:
     ------
     RunFolderError
         If it names none, or one that cannot name a folder.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> told = terrain.told_terrain(run)
+    >>> told.source, told.names[0]
+    ('truth.csv', 'gravel')
     """
     for name in SOURCES if source is None else (source,):
         told = _of_file(run, name)

@@ -1,1 +1,8 @@
-"""Figures and one page of a run: what was seen, when the terrain changed, how far off it is."""
+"""Figures and one page of a run: what was seen, when the terrain changed, how far off it is.
+
+Names are imported when they are first used.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

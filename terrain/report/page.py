@@ -67,6 +67,17 @@ def write_report(
     ------
     OdometryError
         If an image cannot be read any more.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import odometry
+    >>> import terrain
+    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> result = terrain.run_odometry(run, vision=False)
+    >>> with TemporaryDirectory() as folder:
+    ...     print(terrain.write_report(result, folder)[-1].name)
+    report.html
     """
     folder = Path(out) / "figures"
     lines = ReportLines(result, compared_with or {})

@@ -84,6 +84,12 @@ class SynthesisConfig:
         Time constant of that disturbance.
     sigma_parameters_m : (float, float, float)
         How far parameters.toml is from the truth, as after an identification run.
+
+    Examples
+    --------
+    >>> import terrain
+    >>> terrain.SynthesisConfig(seed=7, zones=("grass", "brick")).zone_length_m
+    11.5
     """
 
     seed: int = 0

@@ -105,6 +105,18 @@ def simulate_contact(
     ------
     SimulationError
         If the speeds or the traction are not as above, or the vehicle tips over or runs away.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import odometry
+    >>> import terrain
+    >>> from odometry.simulation import read_contact_vehicle
+    >>> husky = read_contact_vehicle(terrain.shipped_data() / "vehicles" / "husky_like.toml")
+    >>> ahead_m_s = np.full((20, 2), 0.5)
+    >>> drive = odometry.simulate_contact(husky, ahead_m_s, step_s=0.1)
+    >>> f"{drive.twists_body[-1, 0]:.2f} m/s"
+    '0.50 m/s'
     """
     speeds = np.asarray(tread_speeds_m_s, dtype=np.float64)
     if speeds.ndim < 2 or speeds.shape[-1] != 2 or not np.isfinite(speeds).all():

@@ -1,0 +1,7 @@
+from .files import write_gap
+from .words import sentences
+
+__all__ = [
+    "sentences",
+    "write_gap",
+]

@@ -1,0 +1,5 @@
+from .fitters import fitter
+
+__all__ = [
+    "fitter",
+]

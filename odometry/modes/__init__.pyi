@@ -1,0 +1,14 @@
+from .answers import detections
+from .files import write_modes
+from .mode_set import DWELL_S, UNDETERMINED
+from .sight import SeenGround
+from .words import sentences
+
+__all__ = [
+    "DWELL_S",
+    "UNDETERMINED",
+    "SeenGround",
+    "detections",
+    "sentences",
+    "write_modes",
+]

@@ -1,0 +1,13 @@
+from .lines import ICR_COORDINATES, ReportLines
+from .plots import draw_region, plot_confusion, plot_image, plot_labels
+from .seen_ahead import confusion
+
+__all__ = [
+    "ICR_COORDINATES",
+    "ReportLines",
+    "confusion",
+    "draw_region",
+    "plot_confusion",
+    "plot_image",
+    "plot_labels",
+]
