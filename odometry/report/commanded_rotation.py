@@ -67,7 +67,7 @@ def plot_commanded_rotation(
         axes.plot(other.differences_m_s, medians, color="#BBBBBB", linewidth=0.9, zorder=1)
     low, middle, high = found.quartiles_deg_per_m.T
     axes.fill_between(found.differences_m_s, low, high, color=style.colour, alpha=0.25, linewidth=0)
-    axes.plot(found.differences_m_s, middle, color=style.colour, linewidth=1.8)
+    axes.plot(found.differences_m_s, middle, ".-", color=style.colour, linewidth=1.8)
     axes.axhline(0.0, color="#999999", linewidth=0.7, zorder=0.5)
     axes.axvline(0.0, color="#999999", linewidth=0.7, zorder=0.5)
     axes.grid(visible=True)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from odometry.io.files import atomic_write
 
+MANY_COLUMNS = 8  # more of them are printed in smaller letters
 _CSS = """
 :root { color-scheme: light dark; }
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 0 auto; padding: 1rem; }
@@ -15,15 +16,35 @@ h1 { font-size: 1.5rem; line-height: 1.25; overflow-wrap: anywhere; }
 h2 { font-size: 1.15rem; margin-top: 2.2rem; border-bottom: 1px solid #8886; }
 .lead { font-size: 1.1rem; }
 figure { margin: 1rem 0; }
+figure .scroll { margin: 0; }
 figure img { display: block; max-width: 100%; height: auto; background: #fff; border-radius: 6px; }
 figcaption, .note { font-size: .9rem; opacity: .85; }
-.scroll { overflow-x: auto; }
+.scroll { overflow-x: auto; margin: 1rem 0; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 caption { text-align: left; font-size: .9rem; opacity: .85; padding-bottom: .3rem; }
 th, td { padding: .25rem .7rem; border-bottom: 1px solid #8884; text-align: right; }
 th:first-child, td:first-child { text-align: left; padding-left: 0; }
 thead th { vertical-align: bottom; }
 tbody th { min-width: 7.5rem; }
+@media screen and (max-width: 45rem) {
+  figure img { max-width: none; width: calc(var(--width) / 2); }
+  th, td { padding: .25rem .4rem; }
+  caption { max-width: calc(100vw - 2rem); }
+}
+@page { size: A4; margin: 1cm; }
+@media print {
+  :root { color-scheme: light; }
+  body { max-width: none; padding: 0; font-size: 11pt; }
+  .scroll { overflow-x: visible; }
+  table { max-width: 100%; font-size: 8pt; }
+  th, td { padding: .15rem .3rem; overflow-wrap: break-word; }
+  tbody th { min-width: 0; }
+  table.wide { font-size: 6.5pt; }
+  table.wide th, table.wide td { overflow-wrap: anywhere; }
+  h2 { break-after: avoid; }
+  figure, tr, caption { break-inside: avoid; }
+  figure img { max-height: 22cm; width: auto; }
+}
 """
 
 
@@ -62,8 +83,9 @@ class Grid:
         head = "".join(f'<th scope="col">{escape(name)}</th>' for name in self.header)
         body = "".join(_row(row) for row in self.rows)
         caption = f"<caption>{escape(self.caption)}</caption>" if self.caption else ""
+        wide = ' class="wide"' if len(self.header) > MANY_COLUMNS else ""
         return (
-            f'<div class="scroll"><table>{caption}<thead><tr>{head}</tr></thead>'
+            f'<div class="scroll"><table{wide}>{caption}<thead><tr>{head}</tr></thead>'
             f"<tbody>{body}</tbody></table></div>"
         )
 
@@ -86,10 +108,12 @@ class Picture:
 
     def html(self) -> str:
         """The element."""
-        data = base64.b64encode(self.file.read_bytes()).decode("ascii")
+        png = self.file.read_bytes()
+        data = base64.b64encode(png).decode("ascii")
         caption = f"<figcaption>{escape(self.caption)}</figcaption>" if self.caption else ""
         return (
-            f'<figure><img alt="{escape(self.alt)}" src="data:image/png;base64,{data}">'
+            f'<figure><div class="scroll"><img alt="{escape(self.alt)}" '
+            f'style="--width: {_width_px(png)}px" src="data:image/png;base64,{data}"></div>'
             f"{caption}</figure>"
         )
 
@@ -147,3 +171,8 @@ def _row(row: Sequence[str]) -> str:
     first, *others = row
     cells = "".join(f"<td>{escape(cell)}</td>" for cell in others)
     return f'<tr><th scope="row">{escape(first)}</th>{cells}</tr>'
+
+
+def _width_px(png: bytes) -> int:
+    """The width in the first chunk of a PNG file (ISO/IEC 15948, 11.2.2)."""
+    return int.from_bytes(png[16:20], "big")

@@ -96,6 +96,7 @@ def test_a_picture_is_its_file_and_says_what_it_shows(page):
     (image,) = Reader(page).named("img")
     assert base64.b64decode(image["src"].partition(",")[2]) == PNG
     assert image["alt"] == f"shows {NASTY}"
+    assert image["style"] == "--width: 1px"
 
 
 def test_sections_without_blocks_are_left_out(page):
@@ -106,6 +107,13 @@ def test_the_page_fits_a_phone_and_both_lights(page):
     (viewport,) = [m for m in Reader(page).named("meta") if m.get("name") == "viewport"]
     assert "width=device-width" in viewport["content"]
     assert "color-scheme: light dark" in page
+
+
+def test_tables_of_many_columns_are_printed_small():
+    for columns, attributes in ((8, {}), (9, {"class": "wide"})):
+        grid = Grid(["a"] * columns, [["b"] * columns])
+        (table,) = Reader(render_page("", "", [Section("", [grid])])).named("table")
+        assert table == attributes
 
 
 def test_the_same_content_gives_the_same_bytes(tmp_path, picture):

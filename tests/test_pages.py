@@ -1,0 +1,72 @@
+"""Pages in a real browser: those that the program writes pass, and each fault is found."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from odometry.report.figure import save_figure
+from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
+from tests.studies.browser import Browser, installed
+from tests.studies.pages import faults
+
+ROOT = Path(__file__).parents[1]
+PROGRAM = installed()
+needs_browser = pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed")
+WORDS = "A sentence that is long enough to be broken at the end of a line of a small screen. " * 3
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with Browser(str(PROGRAM)) as opened:
+        yield opened
+
+
+@needs_browser
+@pytest.mark.parametrize("columns", [3, 8, 9, 14])
+def test_a_page_of_everything_passes(browser, tmp_path, columns):
+    def draw(figure):
+        figure.add_subplot().plot([1, 2])
+
+    picture = Picture(save_figure(tmp_path / "a.png", (9.0, 4.0), draw), "a line", WORDS)
+    header = ["name", *["translation error [m per m]"] * (columns - 1)]
+    rows = [["differential_drive", *["0.1234 +/- 0.0123"] * (columns - 1)]] * 3
+    blocks = [Paragraph(WORDS), Listing([WORDS]), Grid(header, rows, WORDS), picture]
+    page = write_page(tmp_path / "report.html", "A title", WORDS, [Section("Errors", blocks)])
+    assert faults(browser, page, tmp_path) == []
+    made = {file.name.partition("_")[2] for file in tmp_path.rglob(f"{tmp_path.name}_*")}
+    assert {"screen.png", "small.png", "dark.png", "paper.pdf"} <= {
+        name.rpartition("_")[2] for name in made
+    }
+
+
+FAULTS = {
+    "request": '<img src="http://127.0.0.1:9/a.png">',
+    "console": "<script>console.error('no')</script>",
+    "sticks out": "<div style='width: 2000px'>a</div>",
+    "contrast": "<p style='color: #999'>a</p>",
+    "letters of a figure": "<img width=100 src='a.svg'>",
+}
+
+
+@needs_browser
+@pytest.mark.parametrize("kind", FAULTS)
+def test_each_fault_is_found(browser, tmp_path, kind):
+    (tmp_path / "a.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="1350" height="600"/>'
+    )
+    page = tmp_path / "page.html"
+    page.write_text(f"<!DOCTYPE html><meta charset=utf-8><body>{FAULTS[kind]}")
+    assert any(f": {kind}" in fault for fault in faults(browser, page, None))
+
+
+def test_without_a_browser_it_says_so(tmp_path):
+    environment = os.environ | {"PATH": str(tmp_path), "PYTHONPATH": str(ROOT)}
+    ran = subprocess.run(
+        [sys.executable, "-m", "tests.studies.pages", "a.html"],
+        env=environment, cwd=ROOT, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert ran.returncode == 2
+    assert "No Chromium is installed" in ran.stdout
