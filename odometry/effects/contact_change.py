@@ -1,7 +1,7 @@
 """What a force changes of the balance of ground contacts: shared by slope sliding and inertia.
 
-Not the balance itself is the effect but the change that gravity along the slope, or centrifugal
-force, makes to it: on level ground and slow the base stays as it was calibrated. Both change
+Not the balance itself is the effect but the change that gravity along the slope, or inertia,
+makes to it: on level ground and slow the base stays as it was calibrated. Both change
 slowly, so that they are computed on means over a fifth of a second, of the recorded
 speeds before any slip: then they do not depend on what else is fitted, and are remembered.
 """
@@ -95,13 +95,16 @@ class ContactChange(MotionEffect):
             _mean(inputs.tread_speeds_m_s, first),
             _mean(inputs.roll_rad, first),
             _mean(inputs.pitch_rad, first),
+            time_s=None if inputs.time_s is None else inputs.time_s[first],
         )
         counts = np.diff([*first, len(inputs.roll_rad)])
         return np.asarray(twist + np.repeat(self._remembered(values, means, base), counts, axis=0))
 
     def _remembered(self, values: FloatArray, means: Inputs, base: Base) -> FloatArray:
-        half_width = np.array([self._half_width_m(base)])
-        stack = (values, half_width, means.tread_speeds_m_s, means.roll_rad, means.pitch_rad)
+        known = np.array([self._half_width_m(base)])
+        time_s = np.empty(0) if means.time_s is None else means.time_s
+        recorded = (means.tread_speeds_m_s, means.roll_rad, means.pitch_rad, time_s)
+        stack = (values, known, *recorded)
         key = b"".join(np.ascontiguousarray(of).tobytes() for of in stack)
         if key not in self._answers:
             while len(self._answers) >= REMEMBERED:

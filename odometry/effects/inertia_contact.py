@@ -1,4 +1,4 @@
-"""Inertia in fast turns, by the force balance of ground contacts."""
+"""Inertia in fast turns and changes of speed, by the forces of ground contacts."""
 
 import numpy as np
 
@@ -6,6 +6,7 @@ from odometry.arrays import FloatArray
 from odometry.effects.base import Effect
 from odometry.effects.base_model import Base
 from odometry.effects.contact_change import MODEL, ContactChange
+from odometry.effects.contact_following import followed
 from odometry.effects.recorded import Recorded
 from odometry.models.inputs import Inputs
 
@@ -14,12 +15,12 @@ SLOW = 0.02  # of the speeds: centrifugal force is 0.0004 of its own
 
 
 class InertiaByContact(ContactChange):
-    """What centrifugal force changes."""
+    """What centrifugal force changes, and how late mass and yaw inertia follow the balance."""
 
     name = "inertia"
     in_words = "inertia in fast turns"
-    equation = "twist + balance(speeds) - balance(slow speeds) / slowness"
-    looks_like = "turns that come out wider or tighter the faster they are driven"
+    equation = "twist + follows(balance(speeds)) - balance(slow speeds) / slowness"
+    looks_like = "fast turns that come out wider or tighter, and follow changes of speed late"
     remedy = "keep it in the model, or drive turns more slowly"
     needs = "fast turns"
 
@@ -32,9 +33,10 @@ class InertiaByContact(ContactChange):
 
     def change(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
         """See `ContactChange.change`."""
-        fast = Inputs(inputs.tread_speeds_m_s)
+        fast = Inputs(inputs.tread_speeds_m_s, time_s=inputs.time_s)
         slow = Inputs(SLOW * inputs.tread_speeds_m_s)
+        balance = self.balance_values(values, base)
         return np.asarray(
-            MODEL.twist(self.balance_values(values, base), fast)
+            followed(balance, fast, MODEL.twist(balance, fast))
             - MODEL.twist(self.balance_values(values, base, SLOW), slow) / SLOW
         )
