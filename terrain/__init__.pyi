@@ -1,7 +1,9 @@
 from .camera import Camera
 from .checks.recording import check_run
-from .classification.classifier import Classification, TerrainClassifier
+from .classification.answer import Classification
+from .classification.classifier import TerrainClassifier
 from .classification.patches import cut_patches
+from .classification.sfta_features import SftaFeatures
 from .classification.training import Training, train
 from .config import Config
 from .demo import run_demo
@@ -33,6 +35,7 @@ __all__ = [
     "LiveStep",
     "Rectangle",
     "RunResult",
+    "SftaFeatures",
     "SynthesisConfig",
     "TerrainClassifier",
     "TerrainError",

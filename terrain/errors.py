@@ -25,8 +25,8 @@ class ImageError(TerrainError):
     """An image cannot be read, or is not of a kind that has features."""
 
 
-class PatchError(TerrainError):
-    """A set of labelled patches cannot be used for training."""
+class PatchError(TerrainError, ValueError):
+    """A set of labelled patches cannot be used for training; as scikit-learn asks, a ValueError."""
 
 
 class ModelFileError(TerrainError):

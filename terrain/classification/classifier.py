@@ -1,72 +1,38 @@
 """The terrain classifier: SFTA features, a scaler and k nearest neighbours, with rejection."""
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, Protocol, Self
+from collections.abc import Sequence
+from typing import Any, Self
 
 import numpy as np
+from sklearn.base import BaseEstimator, ClassifierMixin
+from sklearn.utils.multiclass import check_classification_targets
+from sklearn.utils.validation import check_is_fitted, validate_data
 
-from odometry.arrays import AnyArray, ByteImage, IntArray
+from odometry.arrays import AnyArray, BoolArray, ByteImage, FloatArray
 from odometry.errors import ConfigError
 from odometry.run import UNKNOWN
+from terrain.classification.answer import Classification, Classifier
 from terrain.classification.features import feature_matrix
-from terrain.classification.model_settings import ModelSettings
+from terrain.classification.model_file import ModelFile
 from terrain.classification.neighbours import vote
 from terrain.classification.patches import cut_patches
-from terrain.classification.persistence import read_model, write_model
 from terrain.classification.presets import PRESETS
 from terrain.classification.trained_on import TrainedOn
-from terrain.classification.training_set import check_codes, check_labels, common_size, has_colour
+from terrain.classification.training_set import (
+    check_labels,
+    common_size,
+    has_colour,
+    holds_images,
+)
 from terrain.classification.validation import CrossValidation, cross_validate
-from terrain.errors import ImageError, ModelFileError, PatchError
+from terrain.errors import ImageError, PatchError
+
+__all__ = ["Classification", "Classifier", "TerrainClassifier"]
 
 
-@dataclass(frozen=True)
-class Classification:
-    """The answer for one image.
-
-    Attributes
-    ----------
-    label : str
-        The terrain, or ``unknown`` where `distance` is beyond the rejection threshold.
-    confidence : float
-        The probability of the likeliest known terrain, also where the label is ``unknown``.
-    distance : float
-        Distance to the nearest class in the preset's measure; compare with
-        `TerrainClassifier.rejection_distance_`.
-    probabilities : dict of str to float
-        One per known terrain; they add up to 1.
-
-    Examples
-    --------
-    >>> import terrain
-    >>> answer = terrain.Classification("unknown", 0.9, 3.2, {"grass": 0.9, "gravel": 0.1})
-    >>> max(answer.probabilities, key=answer.probabilities.get)  # what it would have been
-    'grass'
-    """
-
-    label: str
-    confidence: float
-    distance: float
-    probabilities: dict[str, float]
-
-
-class Classifier(Protocol):
-    """Whatever names the terrain of images of at least the patch size."""
-
-    classes_: list[str]
-    colour_: bool
-    patch_size_px: int
-    metres_per_pixel: float | None
-
-    def classify(self, images: Sequence[ByteImage]) -> list[Classification]:
-        """One answer for each image."""
-
-
-class TerrainClassifier:
-    """Name the terrain of ground patches, or say that it is unknown.
+class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ignore[misc]
+    """Name the terrain of patches, or say that it is unknown; a classifier of scikit-learn.
 
     Parameters
     ----------
@@ -90,8 +56,11 @@ class TerrainClassifier:
 
     Attributes
     ----------
-    classes_ : list of str
+    classes_ : array of str
+    n_features_in_ : int
+        Features of a patch.
     patch_size_px : int
+        Where it was fitted on images.
     colour_ : bool
     n_neighbors_ : int
     rejection_distance_ : float
@@ -99,6 +68,12 @@ class TerrainClassifier:
         Of the last `fit`; a loaded classifier has none.
     trained_on_ : TrainedOn or None
         None where nobody said.
+
+    Notes
+    -----
+    X is images, or a table (n, F) of features that were made before, as by `SftaFeatures`. As
+    scikit-learn asks for, `predict` names one of `classes_`, the likeliest; what may be trusted
+    is said by `is_unknown`, and by `classify`, which says both.
 
     References
     ----------
@@ -126,14 +101,6 @@ class TerrainClassifier:
         rejected_share: float = 0.05,
         n_neighbors: int | None = None,
     ) -> None:
-        if preset not in PRESETS:
-            raise ConfigError(f"preset '{preset}' is not one of {', '.join(sorted(PRESETS))}")
-        if not 0 < rejected_share < 1:
-            raise ConfigError(f"rejected_share is {rejected_share}, expected between 0 and 1")
-        if metres_per_pixel is not None and not 0 < metres_per_pixel < math.inf:
-            raise ConfigError(f"metres_per_pixel is {metres_per_pixel}, expected above zero")
-        if n_neighbors is not None and n_neighbors < 1:
-            raise ConfigError(f"n_neighbors is {n_neighbors}, expected 1 or more")
         self.preset = preset
         self.colour = colour
         self.metres_per_pixel = metres_per_pixel
@@ -142,64 +109,68 @@ class TerrainClassifier:
 
     def fit(
         self,
-        images: Sequence[ByteImage],
-        labels: Sequence[str],
-        groups: Sequence[str],
+        X: Sequence[ByteImage] | AnyArray,
+        y: Sequence[str] | AnyArray,
+        groups: Sequence[str] | AnyArray | None = None,
+        *,
         progress: bool = False,
         trained_on: TrainedOn | None = None,
+        processes: int = 1,
     ) -> Self:
         """Learn from labelled patches.
 
         Parameters
         ----------
-        images : sequence of ByteImage
-            Square patches of one size, grey (S, S) or RGB (S, S, 3).
-        labels, groups : sequences of str
-            The terrain of each patch, and the photograph (or part of one) that it is of. k and
-            the rejection distance are chosen by cross-validation that keeps groups whole.
+        X : sequence of images, or (n, F) array
+            Square patches of one size, grey (S, S) or RGB (S, S, 3); or features.
+        y : sequence of str
+            The terrain of each patch.
+        groups : sequence of str, optional
+            The photograph (or part of one) that each patch is of; by default each is of its own.
+            k and the rejection distance are chosen by cross-validation that keeps groups whole.
         progress : bool
             Show a progress bar.
         trained_on : TrainedOn, optional
             The photographs that the patches are of; kept in the model.
+        processes : int
+            That share the images; -1 takes all cores. What is learned is the same.
 
         Raises
         ------
+        ConfigError
+            If a parameter is out of its range.
         PatchError
             If the patches differ in size, or there are fewer than two classes, or a class has
             patches of fewer than two groups or fewer than `n_neighbors` in training, or nothing
             varies within the classes.
         """
-        check_labels(len(images), labels, groups)
-        self.patch_size_px = common_size(images)
-        self.classes_ = sorted(set(labels))
-        codes: IntArray = np.searchsorted(self.classes_, labels)
+        self._check_parameters()
+        if holds_images(X):
+            labels, photos = _labels_and_groups(len(X), y, groups)
+            features = self._features_of(X, labels, progress, processes)
+            self.n_features_in_ = features.shape[1]
+        else:
+            self._features, self.colour_ = None, False
+            features, labels = validate_data(self, X, y, ensure_min_samples=2)
+            check_classification_targets(labels)
+            labels, photos = _labels_and_groups(len(features), labels, groups)
+        self.classes_, codes = np.unique(labels, return_inverse=True)
         self.trained_on_ = trained_on
-        preset = PRESETS[self.preset]
-        counts = (self.n_neighbors,) if self.n_neighbors else preset.neighbour_counts
-        wanted = self.colour and has_colour(images, labels)
-        self._features = preset.colour_features if wanted else preset.features
-        self.colour_ = bool(self._features.colour_copies)
-        features = feature_matrix(images, self._features, progress)
-        try:
-            self.cross_validation_: CrossValidation = cross_validate(
-                preset.neighbours, counts, features, codes, np.asarray(groups)
-            )
-            self._neighbours = preset.neighbours().fit(features, codes)
-        except np.linalg.LinAlgError as error:
-            raise PatchError(
-                f"{len(images)} patches of {len(self.classes_)} classes are too few, or too much "
-                "alike, to tell how patches of one class differ"
-            ) from error
-        self.n_neighbors_ = self.cross_validation_.n_neighbors
-        if self.n_neighbors_ not in counts and self.n_neighbors:
-            raise PatchError(
-                f"k = {self.n_neighbors}, but with a part held back a class has fewer patches in "
-                "training; choose a smaller k"
-            )
-        self.rejection_distance_ = float(
-            np.quantile(self.cross_validation_.distances, 1 - self.rejected_share)
-        )
+        self._learn(features, codes, photos)
         return self
+
+    def predict(self, X: Sequence[ByteImage] | AnyArray) -> AnyArray:
+        """The likeliest of `classes_` (n,) of each image or row of features, never `unknown`."""
+        likeliest = self.predict_proba(X).argmax(axis=1)  # eq. 26
+        return np.asarray(self.classes_[likeliest])
+
+    def predict_proba(self, X: Sequence[ByteImage] | AnyArray) -> FloatArray:
+        """Probabilities (n, classes) of images, whose patches are averaged, or of features."""
+        return self._votes_and_distances(X)[0]
+
+    def is_unknown(self, X: Sequence[ByteImage] | AnyArray) -> BoolArray:
+        """Whether each image or row of features (n,) lies beyond the rejection distance."""
+        return self._votes_and_distances(X)[1] > self.rejection_distance_
 
     def classify(self, images: Sequence[ByteImage]) -> list[Classification]:
         """Classify images of at least the patch size.
@@ -212,9 +183,75 @@ class TerrainClassifier:
         ImageError
             If an image is smaller than a patch, or grey where the classifier needs colour.
         """
-        return [self._classify(image) for image in images]
+        return [self._classification(*self._of_image(image)) for image in images]
 
-    def _classify(self, image: ByteImage) -> Classification:
+    def _check_parameters(self) -> None:
+        if self.preset not in PRESETS:
+            raise ConfigError(f"preset '{self.preset}' is not one of {', '.join(sorted(PRESETS))}")
+        if not 0 < self.rejected_share < 1:
+            raise ConfigError(f"rejected_share is {self.rejected_share}, expected between 0 and 1")
+        scale = self.metres_per_pixel
+        if scale is not None and not 0 < scale < math.inf:
+            raise ConfigError(f"metres_per_pixel is {scale}, expected above zero")
+        if self.n_neighbors is not None and self.n_neighbors < 1:
+            raise ConfigError(f"n_neighbors is {self.n_neighbors}, expected 1 or more")
+
+    def _features_of(
+        self,
+        images: Sequence[ByteImage],
+        labels: AnyArray,
+        progress: bool,
+        processes: int,
+    ) -> FloatArray:
+        """Features of square patches, which become those that the classifier asks for."""
+        self.patch_size_px = common_size(images)
+        preset = PRESETS[self.preset]
+        wanted = self.colour and len(labels) == len(images) and has_colour(images, labels)
+        settings = preset.colour_features if wanted else preset.features
+        self._features, self.colour_ = settings, bool(settings.colour_copies)
+        return feature_matrix(images, settings, progress, processes)
+
+    def _learn(self, features: FloatArray, codes: AnyArray, groups: AnyArray) -> None:
+        preset = PRESETS[self.preset]
+        counts = (self.n_neighbors,) if self.n_neighbors else preset.neighbour_counts
+        try:
+            self.cross_validation_: CrossValidation = cross_validate(
+                preset.neighbours, counts, features, codes, groups
+            )
+            self._neighbours = preset.neighbours().fit(features, codes)
+        except np.linalg.LinAlgError as error:
+            raise PatchError(
+                f"{len(features)} patches of {len(self.classes_)} classes are too few, or too much "
+                "alike, to tell how patches of one class differ"
+            ) from error
+        self.n_neighbors_ = self.cross_validation_.n_neighbors
+        if self.n_neighbors_ not in counts and self.n_neighbors:
+            raise PatchError(
+                f"k = {self.n_neighbors}, but with a part held back a class has fewer patches in "
+                "training; choose a smaller k"
+            )
+        self.rejection_distance_ = float(
+            np.quantile(self.cross_validation_.distances, 1 - self.rejected_share)
+        )
+
+    def _votes_and_distances(
+        self, X: Sequence[ByteImage] | AnyArray
+    ) -> tuple[FloatArray, FloatArray]:
+        check_is_fitted(self)
+        if holds_images(X):
+            votes, distances = zip(*map(self._of_image, X), strict=True)
+            return np.stack(votes), np.array(distances)
+        return self._of_features(validate_data(self, X, reset=False))
+
+    def _of_features(self, features: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Probabilities (n, classes) and distances to the nearest class (n,)."""
+        labels = self._neighbours.labels(features, self.n_neighbors_)
+        return vote(labels, self._neighbours.class_weights_), self._neighbours.distances(features)
+
+    def _of_image(self, image: ByteImage) -> tuple[FloatArray, float]:
+        """Mean probabilities (classes,) of the patches of an image, and their median distance."""
+        if self._features is None:
+            raise ImageError("the classifier was fitted on features; expected such, not images")
         patches = cut_patches(image, self.patch_size_px)
         if not patches:
             raise ImageError(
@@ -223,78 +260,30 @@ class TerrainClassifier:
             )
         if self.colour_ and image.ndim != 3:
             raise ImageError("the image is grey, the classifier was trained with colour")
-        features = feature_matrix(patches, self._features)
-        labels = self._neighbours.labels(features, self.n_neighbors_)
-        probabilities = vote(labels, self._neighbours.class_weights_).mean(axis=0)
-        distance = float(np.median(self._neighbours.distances(features)))
-        best = int(probabilities.argmax())  # eq. 26
+        votes, distances = self._of_features(feature_matrix(patches, self._features))
+        return votes.mean(axis=0), float(np.median(distances))
+
+    def _classification(self, probabilities: FloatArray, distance: float) -> Classification:
+        best, names = int(probabilities.argmax()), self.classes_.tolist()  # eq. 26
         return Classification(
-            self.classes_[best] if distance <= self.rejection_distance_ else UNKNOWN,
+            names[best] if distance <= self.rejection_distance_ else UNKNOWN,
             float(probabilities[best]),
             distance,
-            dict(zip(self.classes_, probabilities.tolist(), strict=True)),
+            dict(zip(names, probabilities.tolist(), strict=True)),
         )
 
-    def save(self, path: str | Path, made: Mapping[str, Any] | None = None) -> None:
-        """Write the classifier to one file of arrays and JSON; see `persistence`.
+    def __sklearn_tags__(self) -> Any:
+        """Tell scikit-learn that the input is images or features."""
+        tags = super().__sklearn_tags__()
+        tags.input_tags.three_d_array = True
+        return tags
 
-        `made` says what made it, and is kept in the file.
-        """
-        settings = ModelSettings(
-            self.preset,
-            self.colour_,
-            self.metres_per_pixel,
-            self.rejected_share,
-            self.patch_size_px,
-            tuple(self.classes_),
-            self.n_neighbors_,
-            self.rejection_distance_,
-            self._features,
-            self.trained_on_,
-        )
-        write_model(Path(path), settings.to_table(), self._neighbours.arrays(), made)
 
-    @classmethod
-    def load(cls, path: str | Path) -> Self:
-        """Read what `save` wrote. The loaded classifier gives the same answers.
-
-        Raises
-        ------
-        ModelFileError
-            If the file is missing, damaged, foreign, or of a newer program. Nothing in it is
-            executed.
-        """
-        table, arrays = read_model(Path(path))
-        try:
-            return cls._from_file(ModelSettings.from_table(table), arrays)
-        except (KeyError, TypeError, ValueError, ConfigError) as error:
-            raise ModelFileError(f"{path}: its settings or arrays do not fit: {error!r}") from error
-
-    @classmethod
-    def _from_file(cls, settings: ModelSettings, arrays: dict[str, AnyArray]) -> Self:
-        model = cls(
-            settings.preset,
-            colour=settings.colour,
-            metres_per_pixel=settings.metres_per_pixel,
-            rejected_share=settings.rejected_share,
-        )
-        model.colour_ = settings.colour
-        model.patch_size_px = settings.patch_size_px
-        model.classes_ = list(settings.classes)
-        model.n_neighbors_ = settings.n_neighbors
-        model.rejection_distance_ = settings.rejection_distance
-        model._features = settings.features
-        model.trained_on_ = settings.trained_on
-        check_codes(arrays["codes"], len(settings.classes))
-        model._neighbours = PRESETS[model.preset].neighbours.from_arrays(arrays)
-        model._check_that_parts_fit()
-        return model
-
-    def _check_that_parts_fit(self) -> None:
-        """Ask about one blank patch: ValueError if the parts of a file contradict each other."""
-        blank = np.zeros((self.patch_size_px, self.patch_size_px, 3), np.uint8)
-        features = feature_matrix([blank], self._features)
-        self._neighbours.labels(features, self.n_neighbors_)
-        self._neighbours.distances(features)
-        if len(self.classes_) != len(self._neighbours.class_weights_):
-            raise ValueError(f"{len(self.classes_)} class names for the samples of others")
+def _labels_and_groups(
+    count: int, y: Sequence[str] | AnyArray, groups: Sequence[str] | AnyArray | None
+) -> tuple[AnyArray, AnyArray]:
+    """Labels and groups (n,), a group for each patch where none are given; PatchError if bad."""
+    labels = np.asarray(y)
+    of = np.arange(count) if groups is None else np.asarray(groups)
+    check_labels(count, labels, of)
+    return labels, of

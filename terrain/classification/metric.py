@@ -57,7 +57,7 @@ class DiscriminantMetric(TransformerMixin, BaseEstimator):  # type: ignore[misc]
         within = X - means[codes]
         _, share = ledoit_wolf(within, assume_centered=True)
         covariance = shrunk_covariance(within.T @ within / len(X), max(share, SMALLEST_SHRINKAGE))
-        between = np.cov(means.T, fweights=counts, bias=True)
+        between = np.atleast_2d(np.cov(means.T, fweights=counts, bias=True))
         _, vectors = eigh(between, covariance)  # ascending, of unit length within classes
         self.projection_ = np.ascontiguousarray(vectors[:, : -len(classes) : -1])
         return self

@@ -59,6 +59,8 @@ class ModelSettings:
         for name, (low, high) in limits.items():
             if not low <= table[name] <= high:
                 raise ValueError(f"{name} = {table[name]}, expected {low:g} to {high:g}")
+        if not 0 < table["rejected_share"] < 1:
+            raise ValueError(f"rejected_share = {table['rejected_share']}, expected 0 to 1")
         if table["metres_per_pixel"] is not None and not 0 < table["metres_per_pixel"] < math.inf:
             raise ValueError(f"metres_per_pixel = {table['metres_per_pixel']}, expected above 0")
         values = {name: table[name] for name in kinds}

@@ -28,7 +28,7 @@ class Training:
     --------
     >>> import terrain
     >>> training = terrain.train(terrain.shipped_data() / "patches", preset="chen2023")
-    >>> len(training.patches.images), training.classifier.classes_
+    >>> len(training.patches.images), training.classifier.classes_.tolist()
     (96, ['brick', 'grass', 'gravel'])
     """
 
@@ -78,7 +78,7 @@ def train(
     --------
     >>> import terrain
     >>> training = terrain.train(terrain.shipped_data() / "patches", preset="chen2023")
-    >>> training.classifier.classes_
+    >>> training.classifier.classes_.tolist()
     ['brick', 'grass', 'gravel']
     """
     root = Path(root)

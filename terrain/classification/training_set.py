@@ -1,10 +1,20 @@
 """What labelled patches must be before a classifier learns from them."""
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
+from typing import TypeGuard
+
+import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage
 from odometry.run import UNKNOWN
 from terrain.errors import PatchError
+
+
+def holds_images(X: object) -> TypeGuard[Sequence[ByteImage]]:
+    """Whether X is images, each of two axes or three, and not a table of features."""
+    if hasattr(X, "shape"):
+        return len(X.shape) in {3, 4}
+    return isinstance(X, Sequence) and (not X or np.ndim(X[0]) in {2, 3})
 
 
 def common_size(images: Sequence[ByteImage]) -> int:
@@ -15,14 +25,14 @@ def common_size(images: Sequence[ByteImage]) -> int:
     return int(images[0].shape[0])
 
 
-def check_labels(n_images: int, labels: Sequence[str], groups: Sequence[str]) -> None:
+def check_labels(n_images: int, labels: AnyArray, groups: AnyArray) -> None:
     """Raise PatchError unless there are two classes of two groups each, named lawfully."""
     if not n_images == len(labels) == len(groups):
         raise PatchError(f"{n_images} images, {len(labels)} labels and {len(groups)} groups")
-    if UNKNOWN in labels:
+    if UNKNOWN in labels.tolist():
         raise PatchError(f"the label '{UNKNOWN}' is reserved")
-    photos: dict[str, set[str]] = {}
-    for label, group in sorted(zip(labels, groups, strict=True)):
+    photos: dict[Hashable, set[Hashable]] = {}
+    for label, group in sorted(zip(labels.tolist(), groups.tolist(), strict=True)):
         photos.setdefault(label, set()).add(group)
     if len(photos) < 2 or min(map(len, photos.values())) < 2:
         seen = ", ".join(f"{label} {len(members)}" for label, members in photos.items())
@@ -38,7 +48,7 @@ def check_codes(codes: AnyArray, classes: int) -> None:
         raise ValueError(f"codes of {codes.dtype} {codes.shape} do not name {classes} classes")
 
 
-def has_colour(images: Sequence[ByteImage], labels: Sequence[str]) -> bool:
+def has_colour(images: Sequence[ByteImage], labels: AnyArray) -> bool:
     """Tell whether every image has channels, and most of each class differ between them.
 
     A few colourless photographs are nothing unusual; a colourless class would make colour a

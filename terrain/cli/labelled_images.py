@@ -43,7 +43,7 @@ def print_held_out(
         raise PatchError(f"{folder}: nothing is held out: {', '.join(causes)}")
     for note in (*_notes(classifier, model, answers), *_of_scale(classifier, folder)):
         click.echo(f"Note: {note}", err=True)
-    score = held_out_score(classifier.classes_, held_out)
+    score = held_out_score(classifier.classes_.tolist(), held_out)
     click.echo(
         json.dumps(_json(score, answers), indent=2) if as_json else _text(score, len(held_out))
     )

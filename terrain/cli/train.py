@@ -145,7 +145,7 @@ def _summary(classifier: "TerrainClassifier", patches: "LabelledPatches") -> str
     return (
         f"{len(patches.photos)} patches of {classifier.patch_size_px} px from {_origin(patches)} "
         "(true terrain down, answer across, %):\n\n"
-        f"{confusion_text(table, classifier.classes_)}\n\n"
+        f"{confusion_text(table, classifier.classes_.tolist())}\n\n"
         f"balanced accuracy by patch {balanced_accuracy(found.codes, answers):.3f}, by vote of a "
         f"photograph's patches {balanced_accuracy(photo_codes, photo_answers):.3f}\n"
         f"{chosen} k {classifier.n_neighbors_}, rejection threshold "

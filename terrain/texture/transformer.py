@@ -60,8 +60,8 @@ class SFTA(TransformerMixin, BaseEstimator):  # type: ignore[misc]
             As in `transform`.
         """
         feature_names(self.n_thresholds, self.variant)
-        for place, image in enumerate(_images(X)):
-            with _told_where(place):
+        for place, image in enumerate(listed_images(X)):
+            with told_where(place):
                 to_bytes(image)
         return self
 
@@ -85,8 +85,8 @@ class SFTA(TransformerMixin, BaseEstimator):  # type: ignore[misc]
             A parameter of the transformer is not one of those of `terrain.texture.sfta`.
         """
         rows = []
-        for place, image in enumerate(_images(X)):
-            with _told_where(place):
+        for place, image in enumerate(listed_images(X)):
+            with told_where(place):
                 rows.append(sfta(image, self.n_thresholds, self.variant))
         return np.stack(rows)
 
@@ -113,7 +113,7 @@ class SFTA(TransformerMixin, BaseEstimator):  # type: ignore[misc]
         return tags
 
 
-def _images(X: Iterable[AnyArray]) -> list[AnyArray]:
+def listed_images(X: Iterable[AnyArray]) -> list[AnyArray]:
     """List the images of X; one image alone is not a list of images."""
     if isinstance(X, np.ndarray) and X.ndim not in {3, 4}:
         raise ImageError(f"a list of images or an array (N, H, W[, 3]), not an array {X.shape}")
@@ -124,7 +124,7 @@ def _images(X: Iterable[AnyArray]) -> list[AnyArray]:
 
 
 @contextmanager
-def _told_where(place: int) -> Iterator[None]:
+def told_where(place: int) -> Iterator[None]:
     """Add the place of the image to errors about it."""
     try:
         yield

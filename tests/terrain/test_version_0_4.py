@@ -35,7 +35,8 @@ def test_sets_and_models_open():
     for name in ("set.toml", "result/learned.toml", "gap/model.toml"):
         assert read_parameters(FILES / name).terrains
     assert read_mode_set(FILES / "modes.toml").names == ("asphalt", "grass")
-    assert TerrainClassifier.load(FILES / "terrain.model").classes_ == ["brick", "grass", "gravel"]
+    classes = TerrainClassifier.load(FILES / "terrain.model").classes_
+    assert classes.tolist() == ["brick", "grass", "gravel"]
 
 
 def test_evaluate_reads_its_result():

@@ -96,7 +96,8 @@ def test_a_loaded_classifier_gives_the_same_answers_and_bytes(trained, rng, tmp_
     loaded = TerrainClassifier.load(str(tmp_path / "a.model"))
     fresh = [texture(rng) for texture in (grains, stripes, blobs)]
     assert loaded.classify(fresh) == trained.classify(fresh)
-    for name in ("preset", "classes_", "patch_size_px", "metres_per_pixel", "colour_"):
+    assert loaded.classes_.tolist() == trained.classes_.tolist()
+    for name in ("preset", "patch_size_px", "metres_per_pixel", "colour_", "n_features_in_"):
         assert getattr(loaded, name) == getattr(trained, name)
     loaded.save(tmp_path / "b.model")
     assert (tmp_path / "b.model").read_bytes() == (tmp_path / "a.model").read_bytes()
@@ -184,11 +185,18 @@ def test_one_class_of_equal_patches_is_learned(rng):
     assert TerrainClassifier().fit(images, labels, groups).classify(images[:1])[0].label == "grains"
 
 
-def test_settings_outside_their_range_are_errors():
-    with pytest.raises(ConfigError, match="'best' is not one of chen2023, default"):
-        TerrainClassifier("best")
-    with pytest.raises(ConfigError, match="rejected_share is 1"):
-        TerrainClassifier(rejected_share=1)
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"preset": "best"}, "'best' is not one of chen2023, default"),
+        ({"rejected_share": 1}, "rejected_share is 1"),
+        ({"metres_per_pixel": 0.0}, r"metres_per_pixel is 0\.0"),
+        ({"n_neighbors": 0}, "n_neighbors is 0"),
+    ],
+)
+def test_settings_outside_their_range_are_errors_of_fit(rng, settings, message):
+    with pytest.raises(ConfigError, match=message):
+        TerrainClassifier(**settings).fit(*patches(rng, (grains, stripes)))
 
 
 def reddish(rng):
@@ -252,6 +260,6 @@ def test_settings_beyond_all_measure_are_refused(tmp_path, key, value):
 
 
 @pytest.mark.parametrize("scale", [np.nan, np.inf, 0.0, -1.0])
-def test_a_scale_must_be_a_number_above_zero(scale):
+def test_a_scale_must_be_a_number_above_zero(rng, scale):
     with pytest.raises(ConfigError, match="metres_per_pixel"):
-        TerrainClassifier(metres_per_pixel=scale)
+        TerrainClassifier(metres_per_pixel=scale).fit(*patches(rng, (grains, stripes)))

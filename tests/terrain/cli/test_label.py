@@ -83,7 +83,7 @@ def test_train_reads_the_folder_by_place(across_run, elsewhere, tmp_path):
     answer = CliRunner().invoke(train, [str(folder), "--out", str(tmp_path / "a.model")])
     assert answer.exit_code == 0, answer.output
     model = TerrainClassifier.load(tmp_path / "a.model")
-    assert model.classes_ == ["boards", "gravel"]
+    assert model.classes_.tolist() == ["boards", "gravel"]
     rows = rows_of(folder)
     assert model.metres_per_pixel == float(next(iter(rows.values()))["metres_per_pixel"])
     groups = {photo.path.name: photo.group for photo in find_photos(folder)}
