@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 import yaml
 
+from terrain.demo import WITH, WITHOUT, run_demo
+
 ROOT = Path(__file__).parents[1]
 PICTURES = ROOT / "notebooks/pictures"
 LARGEST_BYTES = 1_000_000
@@ -32,6 +34,29 @@ def test_pictures_are_small_and_shown_with_words() -> None:
     }
     assert shown.keys() == {file.resolve() for file in files}
     assert min(map(len, shown.values())) > 100
+
+
+DEMO = {
+    "ideal differential drive": (WITH, "differential_drive"),
+    "gyroscope and mean wheel speed, nothing fitted": (WITH, "gyroscope"),
+    "odometer without camera": (WITHOUT, "odometer"),
+    "odometer with camera": (WITH, "odometer"),
+    "odometer without camera, without gyroscope": (WITHOUT, "odometer_without_gyroscope"),
+    "odometer with camera, without gyroscope": (WITH, "odometer_without_gyroscope"),
+}
+
+
+def test_the_figures_of_the_demo(tmp_path: Path) -> None:
+    """Those of the first page are those that the demo gives."""
+    results, _ = run_demo(tmp_path)
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (.+?) \| ([\d.]+) \| ([\d.]+) \|$", text, flags=re.MULTILINE)
+    assert [name for name, *_ in rows] == list(DEMO)
+    for name, metres, degrees in rows:
+        result, line = DEMO[name]
+        score = results[result].scores[line]
+        assert float(metres) == pytest.approx(score.mean_translation_per_m, rel=0.02, abs=5e-5)
+        assert float(degrees) == pytest.approx(score.mean_rotation_deg_per_m, rel=0.02, abs=5e-3)
 
 
 def draw(out: Path, data: str | None) -> str:

@@ -76,6 +76,15 @@ def test_links(readme: Path) -> None:
         assert not anchor or anchor in anchors(file), target
 
 
+@pytest.mark.parametrize("readme", README_FILES[1:], ids=lambda file: str(file.parent.name))
+def test_contents(readme: Path) -> None:
+    """Every section stands in the line of contents below the title."""
+    text = prose(readme)
+    contents = next(line for line in text.splitlines() if line.startswith("[") and " · " in line)
+    sections = re.findall(r"^## (.+)$", text, flags=re.MULTILINE)
+    assert [name.replace("`", "") for name in sections] == re.findall(r"\[([^]]+)\]\(#", contents)
+
+
 def test_the_links_that_are_tested() -> None:
     assert sum(len(re.findall(r"\]\(", prose(readme))) for readme in README_FILES) > 60
 
@@ -151,6 +160,17 @@ def test_the_python_of_the_guides(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     assert switches == ["grass", "gravel"]
 
 
+def test_the_python_of_the_first_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """On a short run and few patches."""
+    small = terrain.SynthesisConfig(
+        zones=("gravel", "grass"), zone_length_m=2.0, patches_per_terrain=8
+    )
+    monkeypatch.setattr(terrain, "synthesise", partial(terrain.synthetic.synthesise, config=small))
+    monkeypatch.chdir(tmp_path)
+    run_blocks(ROOT / "README.md")
+    assert (tmp_path / "results/report.html").is_file()
+
+
 def test_the_making_of_the_shipped_data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As data/README.md has it, on a shorter run."""
     short = partial(terrain.synthetic.SynthesisConfig, zone_length_m=1.0, patches_per_terrain=2)
@@ -182,7 +202,7 @@ def test_the_example_of_ros_is_python_and_no_example_is_long() -> None:
 
 @each_readme
 def test_no_python_goes_untested(readme: Path) -> None:
-    tested = {ROOT / "data/README.md", ROOT / "terrain/README.md"}
+    tested = {ROOT / name for name in ("README.md", "data/README.md", "terrain/README.md")}
     assert readme in tested or not blocks(readme, "python", "py")
 
 
