@@ -65,16 +65,26 @@ KEYS = {
 @click.option("--right-sign", type=click.Choice(["1", "-1"]), help="-1: they count backwards.")
 @click.option("--gear", type=Positive(1e6), help="Turns that are counted for one of a wheel.")
 @click.option("--unit", metavar="UNIT", help="Of the wheel speeds: rad/s, rpm, m/s, rad, ...")
-@click.option("--wheel-radius", type=Positive(LARGEST_M), metavar="METRES")
-@click.option("--track-width", type=Positive(LARGEST_M), metavar="METRES")
+@click.option(
+    "--wheel-radius",
+    type=Positive(LARGEST_M),
+    metavar="METRES",
+    help="From the axle to the terrain, where the bag does not say.",
+)
+@click.option(
+    "--track-width",
+    type=Positive(LARGEST_M),
+    metavar="METRES",
+    help="Between the middles of the treads, where the bag does not say.",
+)
 @click.option("--frame", metavar="FRAME", help="The robot's base frame.  [default: base_link ...]")
 @click.option(
     "--frame-height", type=float, metavar="METRES", help="Height of that frame above the terrain."
 )
-@click.option("--imu", metavar="TOPIC|none")
+@click.option("--imu", metavar="TOPIC|none", help="The inertial sensor.")
 @click.option("--reference", metavar="TOPIC|none", help="The poses or fixes to compare with.")
-@click.option("--images", metavar="TOPIC|none")
-@click.option("--camera-info", metavar="TOPIC|none")
+@click.option("--images", metavar="TOPIC|none", help="The camera that sees the terrain.")
+@click.option("--camera-info", metavar="TOPIC|none", help="The calibration of its lens.")
 @click.option(
     "--time",
     type=click.Choice(["auto", "header", "log"]),
