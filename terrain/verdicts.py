@@ -59,7 +59,7 @@ def simple_is_better(scores: Mapping[str, Score]) -> list[str]:
     least = min(better)
     return [
         f"{_capital(NEEDS_NO_FIT[better[least]])}, which needs no fit, is better here: "
-        f"{100 * least:.2f} against {100 * own:.2f} cm per metre of wheel travel."
+        f"{least:.4f} against {own:.4f} m per m of wheel travel."
     ]
 
 

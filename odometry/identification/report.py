@@ -120,7 +120,7 @@ def _variables(found: Identified) -> list[tuple[str, ...]]:
 
 
 def _errors(found: Identified) -> list[tuple[str, ...]]:
-    rows: list[tuple[str, ...]] = [("mean error", "m per m", "deg per m")]
+    rows: list[tuple[str, ...]] = [("mean error", "m per m", "degrees per m")]
     for name, errors in (
         (f"held out, by {found.held_out_by}", found.held_out),
         ("ideal differential drive", found.ideal),

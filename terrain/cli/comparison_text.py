@@ -39,7 +39,7 @@ def _print_errors(comparison: "Comparison") -> None:
     rows: list[tuple[str, ...]] = [
         (
             *("robot", "terrain", "over", "model", "windows"),
-            *("m per m: mean", "median", "deg per m: mean", "median", ""),
+            *("m per m: mean", "median", "degrees per m: mean", "median", ""),
         )
     ]
     for place in comparison.places:

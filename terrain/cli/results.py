@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 MOST_CHANGES = 6  # of the terrain in force, that are printed
 HEADER = (
-    *("", "m per m: mean", "median", "deg per m: mean", "median"),
+    *("", "m per m: mean", "median", "degrees per m: mean", "median"),
     *("position m: mean", "median", "final"),
 )
 

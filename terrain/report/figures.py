@@ -85,7 +85,7 @@ def distribution_picture(lines: ReportLines, folder: Path) -> Picture | None:
     }
     if not any(len(errors.start_s) for errors in relative.values()):
         return None
-    translation = {name: 100 * errors.translation_per_m for name, errors in relative.items()}
+    translation = {name: errors.translation_per_m for name, errors in relative.items()}
     rotation = {
         name: np.degrees(errors.rotation_per_m[np.isfinite(errors.rotation_per_m)])
         for name, errors in relative.items()
@@ -96,10 +96,10 @@ def distribution_picture(lines: ReportLines, folder: Path) -> Picture | None:
     def draw(figure: Figure) -> None:
         bottom, height = 0.6 / height_in, 1 - 0.7 / height_in
         left = figure.add_axes((0.29, bottom, 0.32 if has_yaw else 0.69, height))
-        plot_error_distribution(left, translation, lines.styles(), "position [cm/m]")
+        plot_error_distribution(left, translation, lines.styles(), "position [m per m]")
         if has_yaw:
             right = figure.add_axes((0.66, bottom, 0.32, height))
-            plot_error_distribution(right, rotation, lines.styles(), "heading [°/m]")
+            plot_error_distribution(right, rotation, lines.styles(), "heading [degrees per m]")
             right.set_yticklabels([])
 
     horizon_m = result.config.evaluation.horizon_m

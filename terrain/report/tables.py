@@ -24,10 +24,10 @@ def error_table(lines: ReportLines, scores: Mapping[str, Score]) -> Grid:
     return Grid(
         (
             "trajectory",
-            "position, mean [cm/m]",
-            "position, median [cm/m]",
-            "heading, mean [°/m]",
-            "heading, median [°/m]",
+            "position, mean [m per m]",
+            "position, median [m per m]",
+            "heading, mean [degrees per m]",
+            "heading, median [degrees per m]",
             "off course, mean [m]",
             "off course, median [m]",
             "off course, at the end [m]",
@@ -36,10 +36,10 @@ def error_table(lines: ReportLines, scores: Mapping[str, Score]) -> Grid:
         [
             (
                 name,
-                number(of.mean_translation_per_m, 2, 100),
-                number(None if of.translation_per_m is None else of.translation_per_m[1], 2, 100),
-                number(of.mean_rotation_deg_per_m, 2),
-                number(None if of.rotation_deg_per_m is None else of.rotation_deg_per_m[1], 2),
+                number(of.mean_translation_per_m, 4),
+                number(None if of.translation_per_m is None else of.translation_per_m[1], 4),
+                number(of.mean_rotation_deg_per_m, 4),
+                number(None if of.rotation_deg_per_m is None else of.rotation_deg_per_m[1], 4),
                 number(of.mean_position_m, 3),
                 number(of.median_position_m, 3),
                 number(of.final_position_m, 3),
@@ -191,6 +191,6 @@ def _against_truth(delay: SwitchDelay) -> tuple[str, str, str]:
     return number(delay.true_s, 2), number(delay.late_s, 2), number(delay.late_m, 2)
 
 
-def number(value: float | None, digits: int, factor: float = 1.0) -> str:
+def number(value: float | None, digits: int) -> str:
     """A number with so many digits, or a dash for none."""
-    return NOTHING if value is None else f"{factor * value:.{digits}f}"
+    return NOTHING if value is None else f"{value:.{digits}f}"

@@ -39,12 +39,13 @@ def headline(lines: ReportLines, scores: Mapping[str, Score]) -> str:
         rivals["gyroscope with mean wheel speed"] = scores[GYROSCOPE]
     rivals |= {name: scores[other_odometer(name)] for name in lines.compared_with}
     parts = [
-        f"{_less(own, of.mean_translation_per_m)} than {name} ({_cm(of.mean_translation_per_m)})"
+        f"{_less(own, of.mean_translation_per_m)} than {name} "
+        f"({number(of.mean_translation_per_m, 4)})"
         for name, of in rivals.items()
         if of.mean_translation_per_m is not None
     ]
     compared = (
-        f"Over stretches of {horizon_m:g} m the odometer errs by {_cm(own)} per metre of wheel "
+        f"Over stretches of {horizon_m:g} m the odometer errs by {number(own, 4)} m per m of wheel "
         f"travel against the {lines.reference_name}: {', '.join(parts)}."
     )
     by_name = {name: scores[label] for name, label in LABELS.items() if label in scores}
@@ -124,10 +125,6 @@ def _gyroscope_notes(result: RunResult) -> list[str]:
         "Where the gyroscope tells the yaw rate, the odometer is turned by it, less the bias that "
         "the filter held; the odometer without gyroscope is turned by the treads.",
     ]
-
-
-def _cm(metres: float | None) -> str:
-    return f"{number(metres, 2, 100)} cm"
 
 
 def _less(own: float, other: float | None) -> str:

@@ -20,7 +20,7 @@ def test_the_best_of_the_simple_ones_is_named():
     (sentence,) = simple_is_better(scores(differential_drive=0.06, gyroscope=0.044, odometer=0.076))
     assert sentence == (
         "The gyroscope with mean wheel speed, which needs no fit, is better here: "
-        "4.40 against 7.60 cm per metre of wheel travel."
+        "0.0440 against 0.0760 m per m of wheel travel."
     )
     (sentence,) = simple_is_better(scores(differential_drive=0.06, odometer=0.076))
     assert sentence.startswith("The ideal differential drive")

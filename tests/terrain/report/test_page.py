@@ -64,11 +64,13 @@ def test_errors_are_those_of_the_scores(seen, blind, full):
         "estimate",
         "odometer, without <vision>",
     ]
-    place = header.index("position, mean [cm/m]")
+    place = header.index("position, mean [m per m]")
+    turned = header.index("heading, mean [degrees per m]")
     for row in rows:
-        expected = 100 * scores[row[0]].mean_translation_per_m
-        assert float(row[place]) == pytest.approx(expected, abs=0.006)
-    assert float(rows[1][place]) == pytest.approx(2.0, abs=0.3)
+        said = scores[row[0]].to_table()  # the numbers and units of result.json
+        assert row[place] == f"{said['translation_m_per_m']['mean']:.4f}"
+        assert row[turned] == f"{said['rotation_deg_per_m']['mean']:.4f}"
+    assert float(rows[1][place]) == pytest.approx(0.02, abs=0.003)
     aside_m = float(seen.run.truth["y"].mean())
     assert float(rows[1][header.index("off course, mean [m]")]) == pytest.approx(aside_m, abs=0.01)
 

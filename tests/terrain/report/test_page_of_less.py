@@ -73,7 +73,7 @@ def test_a_run_shorter_than_the_horizon_says_so(across_result, tmp_path):
     assert tmp_path / "figures" / "error_per_metre.png" not in written
     assert tmp_path / "figures" / "position_errors.png" in written
     header, rows = read.table("trajectory")
-    assert rows[0][header.index("position, mean [cm/m]")] == NOTHING
+    assert rows[0][header.index("position, mean [m per m]")] == NOTHING
 
 
 def test_a_run_with_nothing_but_odometry_has_a_page(world, tmp_path):
@@ -153,6 +153,6 @@ def test_positions_without_yaw_have_no_box_of_heading_errors(world, tmp_path):
     assert tmp_path / "out" / "figures" / "error_per_metre.png" in written
     read = Reader(tmp_path / "out" / "report.html")
     header, rows = read.table("trajectory")
-    assert {row[header.index("heading, mean [°/m]")] for row in rows} == {NOTHING}
-    assert float(rows[0][header.index("position, mean [cm/m]")]) > 0
+    assert {row[header.index("heading, mean [degrees per m]")] for row in rows} == {NOTHING}
+    assert float(rows[0][header.index("position, mean [m per m]")]) > 0
     assert "Where the reference has no yaw" in read.text

@@ -36,19 +36,19 @@ def scores(own, ideal, without, tuned):
 
 def test_the_first_sentence_says_how_much_less_or_more():
     assert headline(LINES, scores(0.02, 0.2, 0.08, 0.016)) == (
-        "Over stretches of 5 m the odometer errs by 2.00 cm per metre of wheel travel against the "
-        "measured pose: 90% less than an ideal differential drive (20.00 cm), 75% less than "
-        "without vision (8.00 cm), 25% more than tuned (1.60 cm)."
+        "Over stretches of 5 m the odometer errs by 0.0200 m per m of wheel travel against the "
+        "measured pose: 90% less than an ideal differential drive (0.2000), 75% less than "
+        "without vision (0.0800), 25% more than tuned (0.0160)."
     )
 
 
 def test_the_first_sentences_say_where_the_simple_is_better():
     own = scores(0.02, 0.2, 0.08, 0.016) | {"gyroscope, mean speed": errs(0.015)}
     lead = headline(LINES, own)
-    assert "33% more than gyroscope with mean wheel speed (1.50 cm)" in lead
+    assert "33% more than gyroscope with mean wheel speed (0.0150)" in lead
     assert lead.endswith(
-        "The gyroscope with mean wheel speed, which needs no fit, is better here: 1.50 against "
-        "2.00 cm per metre of wheel travel."
+        "The gyroscope with mean wheel speed, which needs no fit, is better here: 0.0150 against "
+        "0.0200 m per m of wheel travel."
     )
 
 
@@ -56,7 +56,7 @@ def test_a_rival_without_errors_is_no_rival():
     without = scores(0.02, 0.2, 0.08, 0.0) | {"odometer, without vision": Score(0)}
     sentence = headline(LINES, without)
     assert "without vision" not in sentence
-    assert sentence.endswith("no less than tuned (0.00 cm).")
+    assert sentence.endswith("no less than tuned (0.0000).")
 
 
 def test_the_first_sentence_without_scores_or_horizons():
@@ -64,7 +64,7 @@ def test_the_first_sentence_without_scores_or_horizons():
     assert "shorter than the 5 m" in headline(LINES, {"odometer": Score(0)})
 
 
-def test_the_table_is_in_centimetres_and_degrees():
+def test_the_table_is_in_metres_and_degrees_per_metre():
     rows = error_table(LINES, {"a": errs(0.0234), "b": Score(0, mean_position_m=0.1)}).rows
-    assert rows[0] == ("a", "2.34", "2.34", "2.50", "2.00", "0.250", "0.125", "0.500", "7")
+    assert rows[0] == ("a", "0.0234", "0.0234", "2.5000", "2.0000", "0.250", "0.125", "0.500", "7")
     assert rows[1] == ("b", *[NOTHING] * 4, "0.100", NOTHING, NOTHING, "0")
