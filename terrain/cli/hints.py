@@ -14,8 +14,17 @@ FEW_EVENTS = 10
 REFUSED_POSES = "refused_poses"  # kind of an event that says the same
 
 
-def hints(result: RunResult, *, vision: bool) -> list[str]:
-    """Sentences about a result that may come from a typing error or a missing option."""
+def hints(result: RunResult, *, vision: bool, named: str | None = None) -> list[str]:
+    """Sentences about a result that may come from a typing error or a missing option.
+
+    Parameters
+    ----------
+    result : RunResult
+    vision : bool
+        Whether images should be looked at.
+    named : str, optional
+        The terrain that was named for the start of the run.
+    """
     known, found = result.parameters.terrains, []
     if known and result.initial_terrain not in known:
         found.append(
@@ -31,6 +40,8 @@ def hints(result: RunResult, *, vision: bool) -> list[str]:
         ]
     if result.watcher is not None:
         found += _blind(result.watcher.sightings)
+        if named is None and len(known) > 1:
+            found += _start(result.initial_terrain, result.run.terrain, result.watcher.sightings)
     innovations = [e.innovation for e in result.replay.estimates if e.innovation is not None]
     refused = sum(not innovation.accepted for innovation in innovations)
     many = refused > MANY_REFUSED * len(innovations)
@@ -43,6 +54,19 @@ def hints(result: RunResult, *, vision: bool) -> list[str]:
             "may jump, or the noise settings ([filter] of --config) may be too small"
         )
     return found
+
+
+def _start(assumed: str, of_run: str | None, sightings: Sequence[Sighting]) -> list[str]:
+    """Say that the run began on a terrain that nobody named and the first label does not show."""
+    labels = (sighting.label for sighting in sightings)
+    seen = next((label for label in labels if label not in ("", UNKNOWN)), assumed)
+    if assumed in (seen, of_run):
+        return []
+    return [
+        f"no terrain was named for the start, so {assumed!r}, the first of the parameter set, was "
+        f"in force, but the first label is {seen!r}; a wrong start misleads the gyroscope's bias. "
+        f"Try --terrain {seen}"
+    ]
 
 
 def _events(events: Sequence[FilterEvent]) -> list[str]:

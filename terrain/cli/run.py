@@ -105,7 +105,8 @@ def run(
         preset=preset,
         show_progress=True,
     )
-    for hint in hints(result, vision=reads_images or (source is None and not no_vision)):
+    looks = reads_images or (source is None and not no_vision)
+    for hint in hints(result, vision=looks, named=terrain):
         click.echo(f"Note: {hint}", err=True)
     with output.writing() as part:
         write_results(result, part, about(output.made))

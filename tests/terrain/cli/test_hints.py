@@ -43,6 +43,23 @@ def test_a_terrain_without_a_table_is_named():
     assert "'ice'" in hint
 
 
+def starting(labels, *, initial="grass", of_run=None):
+    """A run whose set begins with grass, and the first labels of its images."""
+    of = result(initial, ("grass", "gravel"), classes=["grass", "gravel"])
+    of.run.terrain = of_run
+    of.watcher.sightings = [SimpleNamespace(label=label, reason="") for label in labels]
+    return of
+
+
+def test_a_start_that_nobody_named_and_no_image_shows_is_doubted():
+    (hint,) = hints(starting(["", "unknown", "gravel", "grass"]), vision=True)
+    assert "--terrain gravel" in hint
+    assert "'grass'" in hint
+    assert hints(starting(["grass", "gravel"]), vision=True) == []
+    assert hints(starting(["gravel"]), vision=True, named="grass") == []
+    assert hints(starting(["gravel"], of_run="grass"), vision=True) == []
+
+
 def test_images_without_a_model_are_named():
     (hint,) = hints(result(), vision=True)
     assert "--model" in hint
