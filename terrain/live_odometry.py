@@ -5,6 +5,7 @@ from pathlib import Path
 
 from odometry.arrays import FloatArray
 from odometry.errors import ConfigError
+from odometry.estimation.errors import EstimationError
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.frames import Frame
@@ -138,12 +139,18 @@ class LiveOdometry:
         Raises
         ------
         EstimationError
-            If the frame is older than the one before.
+            If the frame is older than the one before; nothing is changed then.
         CameraError
             If the first image to be classified is not of the camera's size.
         """
-        if self._estimate is None and not can_start(frame, at_pose=self._at_pose):
-            return None
+        if self._estimate is None:
+            if not can_start(frame, at_pose=self._at_pose):
+                return None
+        elif not frame.stamp_s >= self._estimate.stamp_s:
+            raise EstimationError(
+                f"a frame of {frame.stamp_s} s came after that of {self._estimate.stamp_s} s; "
+                "expected frames in order of time, as LiveFrames gives them"
+            )
         frame = self._gaps.told(frame)
         if self._estimate is None or self._odometer is None:
             self._estimate = started(self._ekf, self._source, frame)

@@ -1,11 +1,13 @@
 """The messages of bags, one by one: a recording read as if live."""
 
 from collections.abc import Iterator
+from heapq import merge
 from importlib import import_module
+from operator import attrgetter
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from odometry.bags.bag_files import BagFile, bag_files
+from odometry.bags.bag_files import bag_files
 from odometry.bags.errors import BagError
 from odometry.bags.losses import Losses
 from odometry.bags.topic import header_ns
@@ -43,7 +45,7 @@ def bag_messages(*paths: str | Path) -> Iterator[BagMessage]:
     Parameters
     ----------
     *paths : path
-        Files or folders; several are one recording, from the file whose messages begin first.
+        Files or folders; several are one recording, one after another or at the same time.
 
     Yields
     ------
@@ -70,17 +72,11 @@ def bag_messages(*paths: str | Path) -> Iterator[BagMessage]:
     extra_module("rosbags", "bags", "reading bags")
     types = import_module("odometry.bags.message_types").MessageTypes()
     files = bag_files([Path(path) for path in paths], Losses())
-    for file in sorted(files, key=_begin_ns):
-        for message in file.messages(Losses()):
-            try:
-                content = types.decode(message)
-            except BagError:
-                continue
-            stamp_ns = header_ns(content) or message.received_ns
-            yield BagMessage(message.connection.topic, stamp_ns / 10**9, content)
-
-
-def _begin_ns(file: BagFile) -> int:
-    """When the first message of a file was received."""
-    first = next(iter(file.messages(Losses())), None)
-    return 0 if first is None else first.received_ns
+    parts = (file.messages(Losses()) for file in files)
+    for message in merge(*parts, key=attrgetter("received_ns")):
+        try:
+            content = types.decode(message)
+        except BagError:
+            continue
+        stamp_ns = header_ns(content) or message.received_ns
+        yield BagMessage(message.connection.topic, stamp_ns / 10**9, content)

@@ -1,7 +1,7 @@
-"""scikit-learn's shared checks on the SFTA transformer.
+"""scikit-learn's shared checks on the transformers of images: SFTA and SftaFeatures.
 
 The checks feed tables, so a row is shown to the transformer as an image of one row of pixels.
-Nothing else is changed: construction, fitting, names, cloning and errors are SFTA's own.
+Nothing else is changed: construction, fitting, names, cloning and errors are their own.
 """
 
 from contextlib import contextmanager
@@ -9,6 +9,7 @@ from contextlib import contextmanager
 import numpy as np
 from sklearn.utils.estimator_checks import parametrize_with_checks
 
+from terrain.classification.sfta_features import SftaFeatures
 from terrain.errors import ImageError
 from terrain.texture import SFTA
 
@@ -27,8 +28,8 @@ EXPECTED_FAILURES = {
 }
 
 
-class RowsAsImages(SFTA):
-    """SFTA of tables: each row an image of height one, squeezed into 0 to 1."""
+class RowsAsImages:
+    """A transformer of tables: each row an image of height one, squeezed into 0 to 1."""
 
     def fit(self, X, y=None):
         with value_error():
@@ -43,6 +44,14 @@ class RowsAsImages(SFTA):
         tags.input_tags.two_d_array = True
         tags.input_tags.three_d_array = False
         return tags
+
+
+class SftaOfRows(RowsAsImages, SFTA):
+    """SFTA."""
+
+
+class FeaturesOfRows(RowsAsImages, SftaFeatures):
+    """The features of the terrain classifier."""
 
 
 def as_images(table):
@@ -63,7 +72,7 @@ def value_error():
 
 
 @parametrize_with_checks(
-    [RowsAsImages()],
+    [SftaOfRows(), FeaturesOfRows("chen2023")],
     expected_failed_checks=lambda _: EXPECTED_FAILURES,
 )
 def test_scikit_learn_checks(estimator, check):

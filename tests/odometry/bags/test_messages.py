@@ -41,6 +41,15 @@ def test_files_come_in_the_order_of_their_messages_whatever_their_names(tmp_path
     assert np.diff(stamps_s).min() > -0.1
 
 
+def test_files_of_the_same_time_come_interleaved(tmp_path):
+    whole, wheels, rest = driven("mcap"), Bag("mcap"), Bag("mcap")
+    for one in whole.written:
+        (wheels if one[0] == "/joint_states" else rest).written.append(one)
+    parts = [wheels.write(tmp_path / "wheels"), rest.write(tmp_path / "rest")]
+    expected = [(m.topic, m.stamp_s) for m in bag_messages(whole.write(tmp_path / "whole"))]
+    assert [(m.topic, m.stamp_s) for m in bag_messages(*parts)] == expected
+
+
 def test_what_is_no_bag_is_an_error(tmp_path):
     with pytest.raises(BagError, match="there is no such file"):
         next(bag_messages(tmp_path / "none.bag"))
