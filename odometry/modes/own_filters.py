@@ -63,3 +63,24 @@ def with_bias(belief: ModeBelief, mean: FloatArray, covariance: FloatArray) -> M
     covariances[:, -1] = covariances[:, :, -1] = 0.0
     covariances[:, -1, -1] = covariance[-1, -1]
     return ModeBelief(means, covariances, belief.log_probabilities)
+
+
+def with_shared_bias(belief: ModeBelief, independent: float) -> ModeBelief:
+    """A belief with one bias, the last entry, for all modes: its mean and variance over them.
+
+    It is one of the gyroscope. With a bias of its own each mode would explain the same turn; while
+    modes are not told apart, what these biases differ by would count as uncertainty of the bias,
+    and make them differ more. Filters hold its variance by the share `independent`, so that what
+    their means differ by counts by as much. What a mode says of the rest, given the bias, stays.
+    """
+    weights, biases = belief.probabilities, belief.means[:, -1]
+    variances = belief.covariances[:, -1, -1]
+    bias = weights @ biases
+    variance = weights @ (variances + independent * (biases - bias) ** 2)
+    open_variances = np.where(variances > 0, variances, np.inf)  # a bias that is known stays
+    slopes = belief.covariances[:, :, -1] / open_variances[:, None]
+    means = belief.means + slopes * (bias - biases)[:, None]
+    added = (variance - variances)[:, None, None] * slopes[:, :, None] * slopes[:, None, :]
+    return ModeBelief(
+        means, belief.covariances + added, belief.log_probabilities, belief.innovations
+    )

@@ -14,7 +14,7 @@ from odometry.estimation.imm import Imm
 from odometry.estimation.mode_belief import ModeBelief
 from odometry.modes.fit import Innovations, ModeFit, mode_fit
 from odometry.modes.mode_set import ModeSet
-from odometry.modes.own_filters import OwnFilters, with_bias, with_lead
+from odometry.modes.own_filters import OwnFilters, with_bias, with_lead, with_shared_bias
 from odometry.modes.sight import SeenGround, mode_chains
 from odometry.modes.signals import Signals
 from odometry.modes.standing import moving, standing_biases, told_standing
@@ -124,7 +124,7 @@ def follow_modes(
     Raises
     ------
     RunFolderError
-        If the run lacks what the modes are told by.
+        If the run lacks what the modes are recognised by.
     ParameterError
         If vision saw what is no mode.
 
@@ -171,6 +171,7 @@ def follow_signals(
     states = modes.model().states
     lasting = np.zeros((count, states))
     lasting[:, :-1] = (1 - independent) * modes.measurement_variance
+    held = np.append(np.ones(states - 1), independent)  # share of each variance that filters hold
 
     @lru_cache(maxsize=16)
     def filters(roughness: float) -> EkfBank:
@@ -190,7 +191,6 @@ def follow_signals(
     size = len(signals)
     probabilities, squared = np.empty((size, count)), np.empty(size)
     means, sigmas = np.empty((2, size, states))
-    believed = np.append(np.ones(states - 1), independent)  # share of each variance
     innovations = np.full((size, count, measured.shape[1]), np.nan)
     steps: Iterable[int] = tqdm(range(size), unit="step", disable=None if show_progress else True)
     for row in steps:
@@ -199,7 +199,7 @@ def follow_signals(
         if row:
             u = signals.tread_speeds_m_s[row - 1]
             step_s = float(signals.stamps_s[row] - signals.stamps_s[row - 1])
-            belief = imm.step(belief, u, measured[row], step_s)
+            belief = with_shared_bias(imm.step(belief, u, measured[row], step_s), independent)
             own = OwnFilters(imm.bank, filters(rough))
             alone, innovations[row] = own.step(alone, u, measured[row], step_s)
             merged = imm.merged(belief)
@@ -216,7 +216,7 @@ def follow_signals(
             merged = imm.merged(belief)
         probabilities[row] = belief.probabilities
         mean, covariance = merged
-        variances = np.diag(covariance) / believed + probabilities[row] @ lasting
+        variances = np.diag(covariance) / held + probabilities[row] @ lasting
         means[row], sigmas[row] = mean, np.sqrt(variances)
         squared[row] = _normalised_squared(belief, measured[row])
     leading = probabilities.argmax(axis=1)
@@ -243,9 +243,9 @@ def _normalised_squared(belief: ModeBelief, measured: FloatArray) -> float:
 
 def _judged(signals: Signals, gap_ends: IntArray) -> FloatArray:
     """What is measured (N, m) where it tells of the modes: not while standing, nor in a gap."""
-    told = moving(signals) & ~touched(signals.gaps_s, signals.stamps_s, signals.stamps_s)
-    told[gap_ends] = False
-    return np.where(told[:, None], signals.measured, np.nan)
+    tells = moving(signals) & ~touched(signals.gaps_s, signals.stamps_s, signals.stamps_s)
+    tells[gap_ends] = False
+    return np.where(tells[:, None], signals.measured, np.nan)
 
 
 def _independent(signals: Signals, errors_last_s: float) -> float:

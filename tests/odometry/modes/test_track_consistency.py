@@ -14,6 +14,7 @@ from odometry.estimation.markov import ModeChain
 from odometry.estimation.mode_belief import ModeBelief
 from odometry.evaluation.consistency import consistency, normalised_squared_errors
 from odometry.modes.mode_set import ModeSet
+from odometry.modes.own_filters import with_shared_bias
 from odometry.modes.signals import Signals
 from odometry.modes.tempered import TemperedBank
 from odometry.modes.track import follow_signals
@@ -86,7 +87,7 @@ def filtered(factor=1.0, runs=RUNS):
             H = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 1.0]])
             left = signals.measured[row] - H @ mean
             nis[run, row - 1] = normalised_squared_errors(left, H @ P @ H.T + R)
-            belief = imm.updated(predicted, signals.measured[row])
+            belief = with_shared_bias(imm.updated(predicted, signals.measured[row]), 1.0)
             mean, P = imm.merged(belief)
             off = (mean - states[row])[:2]  # a bias is one error of the whole run
             nees[run, row - 1] = normalised_squared_errors(off, P[:2, :2])
