@@ -14,7 +14,7 @@ from odometry.windows.turns import continuous_yaw
 AROUND_S = 0.15  # on either side: over which a speed is read from poses
 STANDING_M_S = 0.01  # of a tread, or less
 BEFORE_S = 0.2  # over which treads speed up
-BIAS_SIGMA_RAD_S = 0.002  # of a gyroscope that was set to zero at rest
+BIAS_SIGMA_RAD_S = 0.005  # of a gyroscope that was set to zero at rest: 0.3 degrees a second
 BIAS_WALK_RAD2_S3 = 1e-8  # variance that a second adds to it
 
 
