@@ -10,12 +10,13 @@ from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
 from odometry.modes.track import ModeTrack
 from odometry.run import UNKNOWN
 
+AGREED = 0.5  # probability from which on the rolling test takes a mode for the one that fits
 BOUND = 2.0  # standard deviations: 95 % of what is left of a mode that is true
 
 
 @dataclass(frozen=True)
 class Detection:
-    """A stretch of one true mode, and how soon it was told.
+    """A stretch of one true mode, and how soon it was detected.
 
     Attributes
     ----------
@@ -63,7 +64,7 @@ def named_modes(track: ModeTrack, sure: float) -> AnyArray:
     """The answer (N,): a mode, "none of these", or "undetermined".
 
     A mode is named whose probability among the modes is `sure` or more, and against "none of
-    these" as well; and which the rolling test does not rule out for another mode.
+    these" as well; and which the rolling test takes for the one that fits, too.
     """
     most = track.probabilities.argmax(axis=1)
     names = np.array(track.names, dtype=object)[most]
@@ -72,7 +73,7 @@ def named_modes(track: ModeTrack, sure: float) -> AnyArray:
         return named
     of_most = (np.arange(len(most)), most)
     fits = track.fit.against_none[of_most] >= sure
-    fits &= np.exp(track.fit.log_probabilities[of_most]) >= 1 - sure
+    fits &= np.exp(track.fit.log_probabilities[of_most]) >= AGREED
     fits &= ~track.fit.lasts
     return np.where(track.fit.none >= sure, NONE_OF_THESE, np.where(fits, named, UNDETERMINED))
 
@@ -111,9 +112,8 @@ def detections(track: ModeTrack, sure: float) -> tuple[Detection, ...]:
 def false_switches(track: ModeTrack, sure: float) -> int:
     """How often the answer turned to a mode that is not the true one."""
     answers = named_modes(track, sure)
-    told = ~np.isin(answers, NO_MODES)
-    told_rows = np.flatnonzero(told & (track.labels != UNKNOWN))
-    names, truth = answers[told_rows], track.labels[told_rows]
+    rows = np.flatnonzero(~np.isin(answers, NO_MODES) & (track.labels != UNKNOWN))
+    names, truth = answers[rows], track.labels[rows]
     turned = np.append(True, names[1:] != names[:-1])
     return int((turned & (names != truth)).sum())
 

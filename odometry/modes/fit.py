@@ -17,7 +17,7 @@ from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.estimation.markov import ModeChain
 
 WINDOW_S = 0.5  # of the rolling test
-SPREAD = 6.0  # standard deviation of a window's sum where no mode fits; 1 where one does
+SPREAD = 4.0  # standard deviation of a window's sum where no mode fits; 1 where one does
 MOST_EVIDENCE = 3.0  # [nat] of a window for none: less than it takes to be sure of it
 CLIP = 4.0  # of one innovation: a single outlier is no window
 MISFIT_LASTS_S = 20.0
@@ -25,7 +25,8 @@ LONG_WINDOW_S = 6.0  # in which a small misfit shows that lasts
 LONG_EVIDENCE = 30.0  # [nat] of a long window for none, at most
 LONG_CLIP = 2.0  # of one innovation: what is large shows in a short window
 LONG_BOUND = 3.0  # standard deviations of a long sum beyond which no mode is named
-"""Chosen on seeds of `tests/studies/modes_faults.py`: the long window on 10 and 20, else 0 to 2."""
+"""Chosen on seeds of `tests/studies/modes_faults.py`: SPREAD and the long window on 10 and 20, else
+0 to 2."""
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from odometry.modes.answers import (
     false_switches,
     named_modes,
 )
+from odometry.modes.fit import ModeFit
 from odometry.modes.mode_set import UNDETERMINED
 from tests.odometry.modes.mode_examples import track
 
@@ -121,3 +122,13 @@ def test_candidates_are_sure_and_none_of_them_can_be_spared(weights, sure):
         assert row[of].sum() >= sure - 1e-12
         assert row[of].sum() - row[of].min() < sure + 1e-12
         assert row[of].min() >= max(row[~of], default=0.0)
+
+
+@pytest.mark.parametrize(("share", "answer"), [(0.45, UNDETERMINED), (0.55, "a")])
+def test_a_mode_is_named_where_the_rolling_test_takes_it_for_likelier_than_not(share, answer):
+    """None of these is as improbable in both, and the other two share what is left."""
+    others = (1 - share - 1e-3) / 2
+    logs = np.log(np.tile([share, others, others, 1e-3], (2, 1)))
+    fit = ModeFit(np.zeros((2, 3, 1)), np.zeros((2, 1)), logs)
+    known = replace(track(["a", "a"], ["a"] * 2), fit=fit)
+    assert named_modes(known, 0.9).tolist() == [answer] * 2
