@@ -36,7 +36,7 @@ def felt_terrain(
     ParameterError
         If the modes are those of slipping wheels, which name no terrain.
     RunFolderError
-        If the run lacks what the modes are told by.
+        If the run lacks what the modes are recognised by.
     """
     if not isinstance(mode_set.modes, VelocityModes):
         raise ParameterError(

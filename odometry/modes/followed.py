@@ -35,9 +35,9 @@ class Score:
     detections : tuple of Detection
         One for each stretch of a mode.
     right, wrong, undetermined, none_of_these : float
-        Shares of the time after each detection, over all stretches; NaN where none was told.
+        Shares of the time after each detection, over all stretches; NaN where none was detected.
     wrong_of_all : float
-        Share of all the time in stretches of a mode, told or not; NaN where there is none.
+        Share of all the time in stretches of a mode, detected or not; NaN where there is none.
     false_switches : int
     """
 
@@ -56,7 +56,7 @@ class Score:
 
     @property
     def median_after_s(self) -> float:
-        """Median time to detection over the stretches told, NaN without one."""
+        """Median time to detection, NaN without one."""
         return float(np.median([one.after_s for one in self.told])) if self.told else float("nan")
 
 
@@ -131,6 +131,13 @@ class Followed:
             for name in (*self.mode_set.names, *NO_MODES)
         }
         return dict(sorted(((n, s) for n, s in held.items() if s > 0), key=lambda one: -one[1]))
+
+    def doubtful(self, track: ModeTrack) -> float:
+        """Share of the time in which a mode is probable enough, and is not named for its fit."""
+        sure = track.probabilities.max(axis=1) >= self.config.sure
+        open_ = self.answers(track) == UNDETERMINED
+        lasts_s = np.append(np.diff(track.stamps_s), 0.0)
+        return float(lasts_s @ (sure & open_)) / max(float(lasts_s.sum()), 1e-12)
 
     def candidates(self, track: ModeTrack) -> AnyArray:
         """Names (N,) of the fewest modes that it may be at each stamp, with " or " between.

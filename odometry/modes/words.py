@@ -1,28 +1,20 @@
 """What was found of the modes of a run in sentences."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
 
 from odometry.modes.answers import Detection, Misfit
 from odometry.modes.followed import SIGHTED, Followed, Score
-from odometry.modes.mode_set import NO_MODES, UNDETERMINED
+from odometry.modes.mode_set import NO_MODES
 from odometry.modes.track import ModeTrack
 
 FEW = 4  # stretches, or answers, that are said one by one
 LEAST_SHARE = 0.005  # less is not said
 LEAST_OPEN = 0.1  # of the undetermined time: sets of modes that are said
-MOSTLY = 0.5  # of the time
 SIGNALS = {
     "velocity": ("forward speed", "yaw rate"),
     "traction": ("position", "position", "heading", "yaw rate"),
-}
-CHECKS = {
-    "forward speed": "the measured speed (its unit and stamps) and the treads (a wheel scaled)",
-    "position": "the poses (late stamps, jumps, where the antenna sits)",
-    "heading": "the heading of the poses (late stamps, jumps, an offset)",
-    "yaw rate": "the gyroscope (unit, scale, bias, a value that is held) and the treads (left and "
-    "right exchanged, a wheel scaled)",
 }
 SCALE = ((3.0, "slightly off"), (6.0, "clearly off"), (np.inf, "far off"))
 
@@ -33,7 +25,7 @@ def sentences(followed: Followed) -> tuple[str, ...]:
 
 
 def answer_words(followed: Followed, track: ModeTrack) -> str:
-    """How soon and how well modes were told; where the run names none, what the answers are."""
+    """How soon and how well modes were detected; where the run names none, what the answers are."""
     score = followed.score(track)
     if not score.detections:
         shares = list(followed.shares(track).items())
@@ -45,56 +37,6 @@ def answer_words(followed: Followed, track: ModeTrack) -> str:
         return _together(score)
     said = [_stretch(one, _answered(followed, track, one)) for one in score.detections]
     return f"{'. '.join(said)}."
-
-
-def in_short(followed: Followed) -> tuple[str, str, str]:
-    """What is in force, how sure that is, and what to do."""
-    return _in_force(followed), _how_sure(followed), _to_do(followed)
-
-
-def _in_force(followed: Followed) -> str:
-    track = followed.last_track
-    answers = followed.answers(track)
-    named = np.flatnonzero(answers != UNDETERMINED)
-    if not len(named):
-        return "nothing that the motion tells: undetermined all the time."
-    last = str(answers[named[-1]])
-    others = np.flatnonzero(answers[named] != last)
-    since = named[others[-1] + 1] if len(others) else named[0]
-    return (
-        f"{last} at the end, answered since {track.stamps_s[since]:.1f} s; of the time "
-        f"{_shares_said(followed.shares(track))}."
-    )
-
-
-def _shares_said(shares: Mapping[str, float]) -> str:
-    said = [f"{name} {percent(share)}" for name, share in list(shares.items())[:FEW]]
-    return ", ".join([*said, f"{len(shares) - FEW} others"] if len(shares) > FEW else said)
-
-
-def _how_sure(followed: Followed) -> str:
-    named = f"a mode is named from a probability of {percent(followed.config.sure)} on"
-    if not followed.misfits:
-        return f"{named}, and a mode of the set fits all along."
-    worst = max(followed.misfits, key=lambda one: one.to_s - one.from_s)
-    more = len(followed.misfits) - 1
-    others = f" and in {more} shorter stretch{'es' if more > 1 else ''}" if more else ""
-    return (
-        f"{named}; no mode fits from {worst.from_s:.1f} s to {worst.to_s:.1f} s{others}: the "
-        f"{signal_of(followed, worst)} is {scale_word(worst.sigmas)} what the nearest mode says."
-    )
-
-
-def _to_do(followed: Followed) -> str:
-    if followed.misfits:
-        signal = signal_of(followed, max(followed.misfits, key=lambda one: one.to_s - one.from_s))
-        return (
-            f"check {CHECKS[signal]}; if they are right, it drove on what the set does not hold (a "
-            "terrain, a slope, a load): record that and identify it with the others."
-        )
-    if followed.shares(followed.last_track).get(UNDETERMINED, 0.0) > MOSTLY:
-        return "drive turns of several radii to both sides: on straights modes are alike."
-    return "nothing; where the answer is undetermined, take the one before it."
 
 
 def signal_of(followed: Followed, misfit: Misfit) -> str:
@@ -157,26 +99,26 @@ def _answered(followed: Followed, track: ModeTrack, one: Detection) -> str:
     """The mode that was answered most in a stretch, where it was, and for how much of it."""
     inside = (track.stamps_s >= one.from_s) & (track.stamps_s <= one.to_s)
     names, counts = np.unique(followed.answers(track)[inside].astype(str), return_counts=True)
-    told = ~np.isin(names, NO_MODES)
-    most = int(np.where(told, counts, 0).argmax())
+    modes = ~np.isin(names, NO_MODES)
+    most = int(np.where(modes, counts, 0).argmax())
     share = counts[most] / inside.sum()
-    if not told[most] or share < LEAST_SHARE:
+    if not modes[most] or share < LEAST_SHARE:
         return ""
     return f"; {names[most]} {percent(share)} of that time"
 
 
 def _stretch(one: Detection, answered: str) -> str:
     if np.isnan(one.after_s):
-        return f"{one.mode}: not told in {one.to_s - one.from_s:.1f} s{answered}"
+        return f"{one.mode}: not detected in {one.to_s - one.from_s:.1f} s{answered}"
     wrong = f", wrong {percent(one.wrong)}" if one.wrong >= LEAST_SHARE else ""
     return (
-        f"{one.mode}: told after {one.after_s:.1f} s; right {percent(one.right)} of the time after "
-        f"that{wrong}"
+        f"{one.mode}: detected after {one.after_s:.1f} s; right {percent(one.right)} of the time "
+        f"after that{wrong}"
     )
 
 
 def _together(score: Score) -> str:
-    count = f"{len(score.told)} of {len(score.detections)} stretches were told"
+    count = f"{len(score.told)} of {len(score.detections)} stretches were detected"
     if not score.told:
         return f"{count}; wrong {percent(score.wrong_of_all)} of all the time."
     return (

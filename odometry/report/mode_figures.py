@@ -191,5 +191,5 @@ def _caption(followed: Followed, *, with_states: bool) -> str:
     said = "Dashed: where the true mode changes. "
     if len(followed.mode_set.names) > MOST_LINES:
         said += "Dark: probable; framed: the true mode. "
-    said += f"A mode is the answer from a probability of {sure}; below, it is undetermined."
+    said += f"A mode is the answer from a probability of {sure} on, where it fits."
     return said + (" V and omega: the estimate over all modes." if with_states else "")

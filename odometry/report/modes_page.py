@@ -4,8 +4,9 @@ from pathlib import Path
 
 from odometry.modes.answers import confusion
 from odometry.modes.followed import Followed
+from odometry.modes.in_short import in_short
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
-from odometry.modes.words import in_short, percent, scale_word, sentences, signal_of
+from odometry.modes.words import percent, scale_word, sentences, signal_of
 from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
 from odometry.report.mode_figures import modes_picture, path_picture
 from odometry.report.mode_innovations import innovations_picture
@@ -73,7 +74,7 @@ def _misfits(followed: Followed) -> list[Grid | Picture]:
 
 def _detections(followed: Followed) -> list[Grid | Picture]:
     header = (
-        *("mode", "from [s]", "to [s]", "told after [s]", "right", "wrong"),
+        *("mode", "from [s]", "to [s]", "detected after [s]", "right", "wrong"),
         *(UNDETERMINED, NONE_OF_THESE),
     )
     grids: list[Grid | Picture] = []

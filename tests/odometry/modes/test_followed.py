@@ -90,7 +90,7 @@ def test_sight_that_lies_is_argued_with():
 
 
 def test_numbers_of_all_stretches_weigh_their_time():
-    """a: told at once, 2 of 4 half seconds right; b: told after 1 s, then 1 of 1."""
+    """a: detected at once, 2 of 4 half seconds right; b after 1 s, then 1 of 1."""
     most = ["a", "a", "b", "", "a", "a", "b", "b"]
     answers = by_hand(most, ["a"] * 4 + ["b"] * 4)
     score = answers.score(answers.motion)
@@ -108,13 +108,13 @@ def test_numbers_of_all_stretches_weigh_their_time():
 @pytest.mark.parametrize(
     ("most", "labels", "words"),
     [
-        (["", "a", "a"], ["a"] * 3, "a: told after 0.5 s; right 100 % of the time after that."),
-        (["", "b"], ["a"] * 2, "a: not told in 0.5 s; b 50 % of that time."),
-        (["", ""], ["a"] * 2, "a: not told in 0.5 s."),
+        (["", "a", "a"], ["a"] * 3, "a: detected after 0.5 s; right 100 % of the time after that."),
+        (["", "b"], ["a"] * 2, "a: not detected in 0.5 s; b 50 % of that time."),
+        (["", ""], ["a"] * 2, "a: not detected in 0.5 s."),
         (
             ["a", "a", "b", ""],
             ["a"] * 4,
-            "a: told after 0.0 s; right 67 % of the time after that, ",
+            "a: detected after 0.0 s; right 67 % of the time after that, ",
         ),
         (["a", "a", "b"], ["unknown"] * 3, "a 100 % of the time."),
         (["a", "", ""], ["unknown"] * 3, "a 50 % of the time, undetermined 50 % of the time."),
@@ -128,11 +128,11 @@ def test_the_answer_in_words(most, labels, words):
 def test_many_stretches_are_said_together():
     answers = by_hand(["a", "b"] * 6, ["a", "a", "b", "b"] * 3)
     words = answer_words(answers, answers.motion)
-    assert words.startswith("6 of 6 stretches were told, after 0.2 s in the median; right ")
+    assert words.startswith("6 of 6 stretches were detected, after 0.2 s in the median; right ")
     assert words.endswith("% of all the time.")
     never = by_hand([""] * 12, ["a", "a", "b", "b"] * 3)
     assert answer_words(never, never.motion) == (
-        "0 of 6 stretches were told; wrong 0 % of all the time."
+        "0 of 6 stretches were detected; wrong 0 % of all the time."
     )
 
 

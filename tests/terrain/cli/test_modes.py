@@ -79,7 +79,8 @@ def test_one_run_is_answered_in_words_and_files(make, models, tmp_path):
     assert answer.exit_code == 0, answer.output
     content = json.loads((out / "result.json").read_text())
     ice, tar = content["motion"]["detections"]
-    words = f"ice: told after {ice['after_s']:.1f} s; right {100 * ice['right']:.0f} % of the time"
+    right = f"right {100 * ice['right']:.0f} % of the time"
+    words = f"ice: detected after {ice['after_s']:.1f} s; {right}"
     assert answer.stdout.startswith("In force: tar at the end, answered since ")
     assert words in answer.stdout
     assert tar["after_s"] < 2.0
@@ -102,7 +103,7 @@ def test_how_sure_one_must_be_is_an_option(make, models, tmp_path):
 def test_what_was_seen_makes_a_second_track(with_sight):
     answer, out = with_sight(SEEN)
     assert answer.exit_code == 0, answer.output
-    assert "With sight: ice: told after" in answer.stdout
+    assert "With sight: ice: detected after" in answer.stdout
     content = json.loads((out / "result.json").read_text())
     assert content["sight"]["told"] == 2
     assert "Sight and motion disagree nowhere for 2 s or longer." in answer.stdout

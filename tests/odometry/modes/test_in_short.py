@@ -1,0 +1,64 @@
+"""The three lines that open the page of modes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.modes.fit import ModeFit
+from odometry.modes.followed import Followed
+from odometry.modes.in_short import in_short
+from odometry.modes.track import ModesConfig
+from tests.odometry.modes.mode_examples import run_of, track, velocity_set
+
+
+def by_hand(most, names=("a", "b"), fit=None):
+    """Answers that are given, each half a second; the run names none."""
+    known = replace(track(most, ["unknown"] * len(most), names=names), fit=fit)
+    mode_set = velocity_set(np.linspace(1.0, 2.0, len(names)), names=names)
+    run = run_of(1.0, size=len(most))
+    return Followed(run, mode_set, ModesConfig(), mode_set.modes.signals(run), known)
+
+
+def small_misfit(lasts):
+    """Modes that fit by all but what lasts, which is given at each stamp."""
+    size = len(lasts)
+    logs = np.log(np.tile([0.98, 0.01, 0.01], (size, 1)))
+    return ModeFit(np.zeros((size, 2, 1)), np.array(lasts, dtype=float)[:, None], logs)
+
+
+@pytest.mark.parametrize(
+    ("most", "words"),
+    [
+        (["b", "a", "a"], "a at the end, answered since 0.5 s; "),
+        (["b", "a", "", ""], "a answered last, at 0.5 s; undetermined after that; "),
+        (["", ""], "nothing that the motion tells"),
+    ],
+)
+def test_an_answer_is_in_force_at_the_end_where_it_is_given_there(most, words):
+    assert in_short(by_hand(most))[0].startswith(words)
+
+
+def test_few_answers_are_said_and_the_others_are_counted():
+    short = in_short(by_hand([*"aaaabbbccd", "e", "e"], names=tuple("abcde")))
+    assert short[0].endswith("of the time a 36 %, b 27 %, c 18 %, d 9 %, 1 other.")
+
+
+def test_a_share_that_rounds_to_nothing_is_not_said():
+    short = in_short(by_hand(["b", *"a" * 400]))
+    assert short[0].endswith("of the time a 100 %.")
+
+
+def test_where_a_probable_mode_does_not_fit_well_it_is_said_why_it_is_not_named():
+    """Half of the time a sum of 4 standard deviations lasts, more than the bound."""
+    answers = by_hand(["a"] * 9, fit=small_misfit([0.0] * 4 + [4.0] * 5))
+    assert answers.doubtful(answers.motion) == pytest.approx(0.5)
+    _, how_sure, to_do = in_short(answers)
+    assert "50 % of the time one is as probable and is not named" in how_sure
+    assert to_do.startswith("look at what is left of each signal")
+
+
+def test_where_modes_are_alike_none_is_doubtful():
+    answers = by_hand(["a", "", "", ""])
+    assert answers.doubtful(answers.motion) == 0.0
+    assert in_short(answers)[1].endswith("fits all along.")
