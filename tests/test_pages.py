@@ -16,6 +16,7 @@ ROOT = Path(__file__).parents[1]
 PROGRAM = installed()
 needs_browser = pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed")
 WORDS = "A sentence that is long enough to be broken at the end of a line of a small screen. " * 3
+WORDS += "a_file_whose_name_is_longer_than_any_line_of_a_small_screen_" * 2
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +35,7 @@ def test_a_page_of_everything_passes(browser, tmp_path, columns):
     header = ["name", *["translation error [m per m]"] * (columns - 1)]
     rows = [["differential_drive", *["0.1234 +/- 0.0123"] * (columns - 1)]] * 3
     blocks = [Paragraph(WORDS), Listing([WORDS]), Grid(header, rows, WORDS), picture]
-    page = write_page(tmp_path / "report.html", "A title", WORDS, [Section("Errors", blocks)])
+    page = write_page(tmp_path / "report.html", "A title", WORDS, [Section(WORDS, blocks)])
     assert faults(browser, page, tmp_path) == []
     made = {file.name.partition("_")[2] for file in tmp_path.rglob(f"{tmp_path.name}_*")}
     assert {"screen.png", "small.png", "dark.png", "paper.pdf"} <= {

@@ -12,8 +12,9 @@ MANY_COLUMNS = 8  # more of them are printed in smaller letters
 _CSS = """
 :root { color-scheme: light dark; }
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 0 auto; padding: 1rem; }
-h1 { font-size: 1.5rem; line-height: 1.25; overflow-wrap: anywhere; }
+h1 { font-size: 1.5rem; line-height: 1.25; }
 h2 { font-size: 1.15rem; margin-top: 2.2rem; border-bottom: 1px solid #8886; }
+h1, h2, p, li, figcaption, caption { overflow-wrap: anywhere; }
 .lead { font-size: 1.1rem; }
 figure { margin: 1rem 0; }
 figure .scroll { margin: 0; }
