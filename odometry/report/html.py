@@ -40,7 +40,7 @@ tbody th { min-width: 7.5rem; }
   table { max-width: 100%; font-size: 8pt; }
   th, td { padding: .15rem .3rem; overflow-wrap: break-word; }
   tbody th { min-width: 0; }
-  table.wide { font-size: 6.5pt; }
+  table.wide { font-size: 7pt; }
   table.wide th, table.wide td { overflow-wrap: anywhere; }
   h2 { break-after: avoid; }
   figure, tr, caption { break-inside: avoid; }
