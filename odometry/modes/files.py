@@ -12,8 +12,8 @@ from odometry.arrays import AnyArray
 from odometry.io.csv_table import write_csv_table
 from odometry.io.files import atomic_write
 from odometry.modes.answers import Detection, confusion
-from odometry.modes.fit import ModeFit
 from odometry.modes.followed import Followed
+from odometry.modes.innovation_test import ModeFit
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE
 from odometry.modes.track import ModeTrack
 from odometry.modes.words import answer_words

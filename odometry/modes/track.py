@@ -12,13 +12,13 @@ from odometry.config import require, require_positive
 from odometry.estimation.ekf_bank import EkfBank
 from odometry.estimation.imm import Imm
 from odometry.estimation.mode_belief import ModeBelief
-from odometry.modes.fit import Innovations, ModeFit, mode_fit
+from odometry.modes.innovation_test import Innovations, ModeFit, mode_fit
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.own_filters import OwnFilters, with_bias, with_lead, with_shared_bias
 from odometry.modes.sight import SeenGround, mode_chains
 from odometry.modes.signals import Signals
-from odometry.modes.standing import moving, standing_biases, told_standing
-from odometry.modes.tempered import TemperedBank
+from odometry.modes.standing_bias import after_standing, moving, standing_biases
+from odometry.modes.tempered_bank import TemperedBank
 from odometry.run import Run
 from odometry.windows.spans import touched
 
@@ -204,7 +204,7 @@ def follow_signals(
             alone, innovations[row] = own.step(alone, u, measured[row], step_s)
             merged = imm.merged(belief)
             if row in stands:
-                merged = told_standing(*merged, stands[row], independent)
+                merged = after_standing(*merged, stands[row], independent)
                 belief = with_bias(belief, *merged)
             led = with_lead(alone, belief, int(probabilities[row - 1].argmax()))
             alone = with_bias(led, *merged)

@@ -10,7 +10,7 @@ from terrain.cli.recordings import span_options
 from terrain.cli.results import print_table
 
 if TYPE_CHECKING:
-    from odometry.modes.alike import Pair
+    from odometry.modes.mode_pairs import Pair
     from odometry.modes.traction import TractionModes
     from odometry.modes.velocity import VelocityModes
     from odometry.run_span import Span
@@ -80,9 +80,9 @@ def identify_modes(
     """
     import numpy as np
 
-    from odometry.modes.alike import pairs
     from odometry.modes.identify_traction import identify_traction_modes
     from odometry.modes.identify_velocity import identify_velocity_modes
+    from odometry.modes.mode_pairs import pairs
     from odometry.modes.mode_set import ModeSet, write_mode_set
     from odometry.modes.traction import TractionModes
     from odometry.outputs.output_file import is_set_of

@@ -16,7 +16,7 @@ from odometry.modes.answers import (
     false_switches,
     named_modes,
 )
-from odometry.modes.fit import ModeFit
+from odometry.modes.innovation_test import ModeFit
 from odometry.modes.mode_set import UNDETERMINED
 from tests.odometry.modes.mode_examples import track
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.modes.fit import ModeFit
 from odometry.modes.followed import Followed
 from odometry.modes.in_short import in_short
+from odometry.modes.innovation_test import ModeFit
 from odometry.modes.track import ModesConfig
 from tests.odometry.modes.mode_examples import run_of, track, velocity_set
 

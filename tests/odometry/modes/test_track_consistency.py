@@ -16,7 +16,7 @@ from odometry.evaluation.consistency import consistency, normalised_squared_erro
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.own_filters import with_shared_bias
 from odometry.modes.signals import Signals
-from odometry.modes.tempered import TemperedBank
+from odometry.modes.tempered_bank import TemperedBank
 from odometry.modes.track import follow_signals
 from odometry.modes.velocity import FIRST_SIGMAS, VelocityModes
 from tests.odometry.modes.mode_drives import integrated

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.modes.alike import pairs
+from odometry.modes.mode_pairs import pairs
 from tests.odometry.modes.mode_examples import run_of, traction_set, velocity_set
 
 

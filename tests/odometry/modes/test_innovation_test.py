@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.modes.answers import misfits, named_modes
-from odometry.modes.fit import (
+from odometry.modes.innovation_test import (
     CLIP,
     LONG_CLIP,
     LONG_WINDOW_S,

@@ -53,7 +53,7 @@ def standing_biases(signals: Signals) -> dict[int, StandingBias]:
     return found
 
 
-def told_standing(
+def after_standing(
     mean: FloatArray, covariance: FloatArray, stood: StandingBias, independent: float
 ) -> tuple[FloatArray, FloatArray]:
     """Mean (n,) and covariance (n, n) over all modes after a stand; the bias is the last entry.
