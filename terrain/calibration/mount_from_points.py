@@ -13,6 +13,7 @@ from terrain.calibration.marked_points import MarkedPoints
 from terrain.calibration.mount_fit import NAMES, MountFit, too_wide
 from terrain.camera_files.calibration import Lens
 
+FARTHEST_M = 5.0  # no skid-steer robot carries its camera as far from its centre
 FEWEST = 4  # three leave up to four mounts
 MARK_PX = 0.5  # a mark is no better than this, whatever few points say
 UNSEEN_PX = 1e4  # error of a point that a mount puts behind the camera
@@ -45,6 +46,8 @@ def mount_from_points(lens: Lens, points: MarkedPoints) -> MountFit:
     half_interval = _half_interval(residuals, jacobian)
     errors_px = np.linalg.norm(residuals.reshape(-1, 2), axis=1)
     odd, vague = _odd_one(lens, points, errors_px), too_wide(half_interval)
+    if not odd:
+        _check_metres(mount)
     if vague.any() and odd:
         raise CalibrationError(f"the points contradict each other: {odd}")
     if vague.any():
@@ -76,6 +79,19 @@ def _check(lens: Lens, points: MarkedPoints) -> None:
             "the marked points lie on a line, which leaves the mount open; mark points to the left "
             "and to the right of it"
         )
+
+
+def _check_metres(mount: FloatArray) -> None:
+    """Raise CalibrationError where x and y of the points put the camera where no robot has it."""
+    farthest = float(np.abs(mount[:3]).max())
+    if farthest <= FARTHEST_M:
+        return
+    unit = "mm" if farthest > 30 * FARTHEST_M else "cm"
+    raise CalibrationError(
+        f"the points put the camera {mount[2]:.3g} m above the terrain, {mount[0]:.3g} m ahead of "
+        f"the robot's centre and {mount[1]:.3g} m to its left: are x and y in {unit}? Expected "
+        "metres from the robot's centre"
+    )
 
 
 def _best(lens: Lens, pixels: FloatArray, ground_m: FloatArray) -> FloatArray:

@@ -34,7 +34,7 @@ def region_ahead(run: Run, table: Mapping[str, Any]) -> Iterator[Finding]:
         return
     found = looks(run, camera)
     seen = f"the region ahead is {_counts(found)}; {_seen(camera, table)}"
-    impossible = _impossible(table)
+    impossible = no_mount(table)
     if not impossible and not found.in_vain:
         return
     if not (impossible or isinstance(found.ahead, str) or tilted(_mount(table))):
@@ -60,7 +60,8 @@ def _unreadable(seen: str, fitting: list[Reading]) -> Finding:
     )
 
 
-def _impossible(table: Mapping[str, Any]) -> bool:
+def no_mount(table: Mapping[str, Any]) -> bool:
+    """Whether the mount of a table that was read is one that no camera for the terrain has."""
     mount = _mount(table)
     return angles_in_degrees(mount) or too_far(mount) or looks_up(mount)
 

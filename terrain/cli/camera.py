@@ -104,6 +104,7 @@ def camera(
     """
     from terrain.classification.classifier import TerrainClassifier
     from terrain.cli.camera_outputs import draw, write_tables
+    from terrain.cli.camera_doubts import print_doubts
     from terrain.cli.camera_text import print_lens, print_mount, print_seen, print_written
     from terrain.cli.outputs import claim_folder
     from terrain.cli.recordings import read_run
@@ -125,6 +126,7 @@ def camera(
     if placed is not None:
         print_mount(placed)
         print_seen(placed.camera, run.robot, classifier)
+        print_doubts(run, placed)
     with output.writing() as part:
         tables = write_tables(part, run, lens, placed, output.made)
         files = [*draw(part, run, lens, placed, classifier), *tables]
@@ -196,6 +198,7 @@ def _placed(
 def _write(run_folder: Path, placed: "MountSource | None") -> None:
     from terrain.calibration.camera_table import write_camera
     from terrain.calibration.errors import CalibrationError
+    from terrain.cli.camera_doubts import is_no_mount
 
     if placed is None:
         raise CalibrationError(
@@ -205,6 +208,11 @@ def _write(run_folder: Path, placed: "MountSource | None") -> None:
     if placed.fit is not None and placed.fit.contradiction:
         raise CalibrationError(
             f"--write: run.toml is left as it was, {placed.fit.contradiction}, or delete it"
+        )
+    if is_no_mount(placed):
+        raise CalibrationError(
+            "--write: run.toml is left as it was: no camera sits so; give x, y, z in metres, roll, "
+            "pitch, yaw in radians, pitch positive downwards"
         )
     write_camera(run_folder, placed.camera.to_table())
     click.echo(f"Wrote [camera] of {run_folder / 'run.toml'}")

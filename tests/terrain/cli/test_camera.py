@@ -171,3 +171,21 @@ def test_nothing_is_known_of_the_lens(verb, run, tmp_path):
     answer = verb("camera", run, "--out", tmp_path / "out")
     assert answer.exit_code == 1
     assert "give a calibration file (--file)" in answer.output
+
+
+@pytest.mark.parametrize(
+    ("mount", "words"),
+    [
+        ((0.2, 0.0, 0.55, 0.6, 48.7, 1.1), "roll, pitch and yaw are in degrees"),
+        ((200, 0, 550, 0.01, 0.85, 0.02), "x, y and z are in mm"),
+        ((0.2, 0.0, 0.55, 0.01, -0.85, 0.02), "pitch has the wrong sign"),
+    ],
+)
+def test_a_mount_in_other_units_is_doubted_and_not_written(verb, run, tmp_path, mount, words):
+    before = (run / "run.toml").read_bytes()
+    answer = verb("camera", run, "--out", tmp_path / "out", "--mount", *mount, "--write")
+    assert answer.exit_code == 1
+    said = answer.output.splitlines()
+    assert any(line.startswith("Warning: ") and f"mount: {words}" in line for line in said)
+    assert "no camera sits so; give x, y, z in metres" in answer.output
+    assert (run / "run.toml").read_bytes() == before
