@@ -52,6 +52,8 @@ class Run:
         t, v_left, v_right and what else was recorded.
     pose, velocity, images, truth, imu : Table or None
         None where the folder has no such file. `truth` is for scoring alone.
+    cut_s : float
+        How much of the recording a span cut off before the first row of the odometry.
 
     Examples
     --------
@@ -73,6 +75,7 @@ class Run:
     images: Table | None = None
     truth: Table | None = None
     imu: Table | None = None
+    cut_s: float = 0.0
 
     @classmethod
     def read(cls, folder: str | Path) -> "Run":
@@ -88,12 +91,18 @@ class Run:
         robot = _robot(settings, folder / "run.toml")
         _check_terrain(settings, folder / "run.toml")
         sensors_of(settings, str(folder / "run.toml"))
-        return cls(folder, robot, settings, **read_tables(folder))
+        tables: dict[str, Any] = read_tables(folder)
+        return cls(folder, robot, settings, **tables)
 
     @property
     def name(self) -> str:
         """The name of the folder."""
         return self.folder.resolve().name
+
+    @property
+    def began_s(self) -> float:
+        """The stamp from which run time counts: the first of the recording's odometry."""
+        return float(self.odometry.stamps_s[0]) - self.cut_s
 
     @property
     def terrain(self) -> str | None:

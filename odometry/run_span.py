@@ -76,7 +76,8 @@ def cut_run(run: Run, span: Span) -> Run:
         )
     others = {name: getattr(run, name) for name in FILES if name != "odometry"}
     parts: dict[str, Any] = {name: table and _cut(table, *ends_s) for name, table in others.items()}
-    return replace(run, odometry=odometry, **parts)
+    cut_s = float(odometry.stamps_s[0]) - run.began_s
+    return replace(run, odometry=odometry, cut_s=cut_s, **parts)
 
 
 def _cut_held(table: Table, from_s: float, to_s: float) -> Table:

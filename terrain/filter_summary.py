@@ -60,8 +60,9 @@ def misleading(replay: Replay) -> list[FilterEvent]:
     return [event for event in replay.events if event.kind not in HARMLESS]
 
 
-def event_line(event: FilterEvent) -> str:
-    """When and what, in one line."""
-    if event.end_s > event.begin_s:
-        return f"{event.begin_s:.1f} to {event.end_s:.1f} s: {event.text}"
-    return f"{event.begin_s:.1f} s: {event.text}"
+def event_line(event: FilterEvent, began_s: float) -> str:
+    """When, in seconds since a stamp, and what, in one line."""
+    begin_s, end_s = event.begin_s - began_s, event.end_s - began_s
+    if end_s > begin_s:
+        return f"{begin_s:.1f} to {end_s:.1f} s: {event.text}"
+    return f"{begin_s:.1f} s: {event.text}"

@@ -163,5 +163,5 @@ class Recorded:
         return np.asarray(np.interp(at_s, self.stamps_s, summed))
 
     def run_time_s(self, stamp_s: float) -> float:
-        """Time from the first row of odometry.csv."""
-        return float(stamp_s - self.stamps_s[0])
+        """Time from the first row of odometry.csv, before any span cut it."""
+        return float(stamp_s - self.run.began_s)

@@ -86,7 +86,7 @@ def contact_run(
     content, columns = recording(drive, sensors, rng, terrain=terrain, settings=settings)
     known = {field.name for field in fields(Robot)}
     robot = Robot(**{key: value for key, value in content["robot"].items() if key in known})
-    tables = {
+    tables: dict[str, Any] = {
         kind: Table(Path(name) / f"{kind}.csv", table, np.arange(len(table["t"])) + 2)
         for kind, table in columns.items()
     }

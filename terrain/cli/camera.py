@@ -103,8 +103,8 @@ def camera(
       terrain-odometry camera my_run --file camera.yaml --points marked.csv --out camera
     """
     from terrain.classification.classifier import TerrainClassifier
-    from terrain.cli.camera_outputs import draw, write_tables
     from terrain.cli.camera_doubts import print_doubts
+    from terrain.cli.camera_outputs import draw, write_tables
     from terrain.cli.camera_text import print_lens, print_mount, print_seen, print_written
     from terrain.cli.outputs import claim_folder
     from terrain.cli.recordings import read_run

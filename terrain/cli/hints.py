@@ -46,7 +46,7 @@ def hints(result: RunResult, *, vision: bool, named: str | None = None) -> list[
     refused = sum(not innovation.accepted for innovation in innovations)
     many = refused > MANY_REFUSED * len(innovations)
     events = [e for e in result.replay.events if not (many and e.kind == REFUSED_POSES)]
-    found += _events(events)
+    found += _events(events, result.run.began_s)
     if many:
         found.append(
             f"the filter refused {refused} of {len(innovations)} poses, because they lie far from "
@@ -69,9 +69,9 @@ def _start(assumed: str, of_run: str | None, sightings: Sequence[Sighting]) -> l
     ]
 
 
-def _events(events: Sequence[FilterEvent]) -> list[str]:
+def _events(events: Sequence[FilterEvent], began_s: float) -> list[str]:
     """What the filter noticed, the first few in full."""
-    lines = [event_line(event) for event in events[:FEW_EVENTS]]
+    lines = [event_line(event, began_s) for event in events[:FEW_EVENTS]]
     if len(events) > FEW_EVENTS:
         lines.append(f"{len(events) - FEW_EVENTS} more events of the filter, see result.json")
     return lines

@@ -61,10 +61,15 @@ def print_changes(result: "RunResult") -> None:
     """Say when which terrain came into force, where anything told it."""
     if result.source == "none":
         return
-    shown = [f"from {of.stamp_s:.1f} s {of.terrain}" for of in result.changes[:MOST_CHANGES]]
+    began_s = result.run.began_s
+    shown = [
+        f"from {of.stamp_s - began_s:.1f} s {of.terrain}" for of in result.changes[:MOST_CHANGES]
+    ]
     more = len(result.changes) - len(shown)
     rest = [f"{more} more changes, see terrain.csv"] if more else []
     click.echo(f"Terrain in force: {', '.join([result.initial_terrain, *shown, *rest])}")
+    if shown and began_s:
+        click.echo(f"  (seconds of run time, which begins at the stamp {began_s:.3f})")
 
 
 def error_cells(errors: Mapping[str, Any]) -> list[str]:

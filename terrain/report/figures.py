@@ -18,6 +18,7 @@ from odometry.report.plots import (
     plot_icr,
     plot_position_errors,
 )
+from odometry.report.run_time_axis import show_run_time
 from terrain.report.lines import ICR_COORDINATES, ReportLines
 from terrain.run_result import RunResult
 from terrain.switch_delay import true_stretches
@@ -66,6 +67,7 @@ def position_picture(lines: ReportLines, folder: Path) -> Picture | None:
     def draw(figure: Figure) -> None:
         axes = figure.add_axes((_LEFT, 0.16, _RIGHT - _LEFT, 0.74))
         plot_position_errors(axes, errors, lines.styles())
+        show_run_time(axes, lines.result.run.began_s)
         mark_changes(axes, in_force(lines.result), names=True)
 
     finals = ", ".join(f"{name} {distances[-1]:.2f} m" for name, (_, distances) in errors.items())
@@ -121,9 +123,10 @@ def icr_picture(lines: ReportLines, folder: Path) -> Picture:
             axes.set_xlim(float(stamps_s[0]), float(stamps_s[-1]))
             plot_icr(axes, name, lines.icr_lines(row), lines.true_icr(name), lines.icr_styles())
             mark_changes(axes, in_force(lines.result), names=row == 0)
+            show_run_time(axes, lines.result.run.began_s)
             if row < len(ICR_COORDINATES) - 1:
-                axes.set_xticklabels([])
-        axes.set_xlabel("time [s]")
+                axes.tick_params(labelbottom=False)
+                axes.set_xlabel("")
 
     return Picture(
         save_figure(folder / "icrs.png", (_WIDTH_IN, 6.4), draw),

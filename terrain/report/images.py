@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 
 from odometry.report.figure import save_figure
 from odometry.report.html import Picture
+from odometry.report.run_time_axis import show_run_time
 from terrain.camera import Camera
 from terrain.classification.classifier import Classifier
 from terrain.images import read_image
@@ -33,6 +34,7 @@ def labels_picture(
     def draw(figure: Figure) -> None:
         axes = figure.add_axes((0.13, 0.17, 0.84, 0.8))
         plot_labels(axes, watcher.sightings, in_force(result), truth, tints)
+        show_run_time(axes, result.run.began_s)
 
     labelled = sum(bool(sighting.label) for sighting in watcher.sightings)
     return Picture(
@@ -85,7 +87,7 @@ def regions_picture(
     return Picture(
         save_figure(folder / "regions.png", _grid_size(camera, rows), draw, _PHOTO_DPI),
         f"{len(chosen)} images with the classified region outlined: "
-        + ", ".join(f"{s.label} at {s.stamp_s:.1f} s" for s in chosen)
+        + ", ".join(f"{s.label} at {s.stamp_s - result.run.began_s:.1f} s" for s in chosen)
         + ".",
         "The region that the robot will stand on, with its label and confidence, "
         + ("around the switches." if watcher.events else "over the run."),
@@ -111,7 +113,8 @@ def whole_image_picture(
             figure.subplots(rows, 2, squeeze=False), chosen, strict=True
         ):
             image = read_image(result.run.folder / sighting.image)
-            plot_image(left, image, f"{sighting.stamp_s:.2f} s: all the ground in sight")
+            at_s = sighting.stamp_s - result.run.began_s
+            plot_image(left, image, f"{at_s:.2f} s: all the ground in sight")
             draw_cells(left, camera, classify_ground(image, camera, classifier), tints)
             _draw_sighting(right, result, camera, sighting, tints)
         figure.subplots_adjust(0.01, 0.01, 0.99, 1 - 0.1 / rows, wspace=0.03, hspace=0.13)
@@ -134,7 +137,8 @@ def _draw_sighting(
     axes: Axes, result: RunResult, camera: Camera, sighting: Sighting, tints: Tints
 ) -> None:
     ahead = f"{sighting.region.distance_ahead_m:.1f} m ahead" if sighting.region else ""
-    title = f"{sighting.stamp_s:.2f} s: {sighting.reason or ahead}"
+    at_s = sighting.stamp_s - result.run.began_s
+    title = f"{at_s:.2f} s: {sighting.reason or ahead}"
     plot_image(axes, read_image(result.run.folder / sighting.image), title)
     draw_region(axes, camera, sighting, tints)
 

@@ -56,8 +56,14 @@ def event_grid(result: RunResult) -> Grid | None:
     events = result.replay.events
     if not events:
         return None
+    began_s = result.run.began_s
     rows = [
-        (e.kind.replace("_", " "), f"{e.begin_s:.2f}", f"{e.end_s:.2f}", e.text) for e in events
+        (
+            e.kind.replace("_", " "),
+            *(f"{stamp_s - began_s:.2f}" for stamp_s in (e.begin_s, e.end_s)),
+            e.text,
+        )
+        for e in events
     ]
     return Grid(("event", "from [s]", "to [s]", "what was noticed"), rows)
 
@@ -100,14 +106,15 @@ def switch_table(result: RunResult) -> Grid | None:
     rows = [
         (
             change.terrain,
-            *_sight(change),
-            f"{change.stamp_s:.2f}",
-            *(_against_truth(delay) if known else ()),
+            *_sight(change, result.run.began_s),
+            f"{change.stamp_s - result.run.began_s:.2f}",
+            *(_against_truth(delay, result.run.began_s) if known else ()),
         )
         for change, delay in zip(changes, delays, strict=False)
     ]
     rows += [
-        (d.terrain, "missed", *[NOTHING] * 2, *_against_truth(d)) for d in delays[len(changes) :]
+        (d.terrain, "missed", *[NOTHING] * 2, *_against_truth(d, result.run.began_s))
+        for d in delays[len(changes) :]
     ]
     truth = ("truly from [s]", "late by [s]", "late by [m]")
     return Grid((*header, *truth) if known else header, rows)
@@ -144,11 +151,11 @@ def settings_table(result: RunResult) -> Grid:
     return Grid(("setting", "value"), rows)
 
 
-def _sight(change: SwitchEvent | TerrainChange) -> tuple[str, str]:
+def _sight(change: SwitchEvent | TerrainChange, began_s: float) -> tuple[str, str]:
     """When the camera saw the terrain first and how far ahead, where there is a camera."""
     if isinstance(change, TerrainChange):
         return NOTHING, NOTHING
-    return f"{change.sight.stamp_s:.2f}", f"{change.sight.distance_ahead_m:.2f}"
+    return f"{change.sight.stamp_s - began_s:.2f}", f"{change.sight.distance_ahead_m:.2f}"
 
 
 def _mean(check: OpenLoopConsistency | None) -> str:
@@ -187,8 +194,9 @@ def _true_icrs(result: RunResult, terrain: str) -> list[str]:
     )
 
 
-def _against_truth(delay: SwitchDelay) -> tuple[str, str, str]:
-    return number(delay.true_s, 2), number(delay.late_s, 2), number(delay.late_m, 2)
+def _against_truth(delay: SwitchDelay, began_s: float) -> tuple[str, str, str]:
+    true_s = None if delay.true_s is None else delay.true_s - began_s
+    return number(true_s, 2), number(delay.late_s, 2), number(delay.late_m, 2)
 
 
 def number(value: float | None, digits: int) -> str:

@@ -65,6 +65,11 @@ def notes(lines: ReportLines) -> list[str]:
         f"Errors per metre are taken over {evaluation.horizon_m:g} m of wheel travel, the mean of "
         f"both treads, starting anew every {evaluation.stride_m:g} m.",
     ]
+    if result.run.began_s:
+        found.append(
+            "Times are run time: seconds since the first stamp of the run, "
+            f"{result.run.began_s:.3f} s."
+        )
     if result.reference is not None and not np.isfinite(result.reference.poses[:, 2]).all():
         found.append(
             "Where the reference has no yaw, its heading at the start of a stretch is the one that "

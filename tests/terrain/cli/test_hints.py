@@ -18,7 +18,7 @@ def result(
         initial_terrain=initial,
         parameters=SimpleNamespace(terrains=dict.fromkeys(tables)),
         watcher=watcher,
-        run=SimpleNamespace(images=images or None),
+        run=SimpleNamespace(images=images or None, began_s=1000.0),
         replay=SimpleNamespace(
             estimates=[estimate(True)] * 10 + [estimate(False)] * refused, events=events
         ),
@@ -90,11 +90,11 @@ def test_vision_that_names_nothing_says_why():
 
 
 def test_what_the_filter_noticed_is_said_the_first_ten_in_full():
-    jump = FilterEvent("reinitialised", 12.0, 14.5, "the poses jumped by 2.0 m")
+    jump = FilterEvent("reinitialised", 1012.0, 1014.5, "the poses jumped by 2.0 m")
     assert hints(result(events=(jump,)), vision=False) == [
         "12.0 to 14.5 s: the poses jumped by 2.0 m"
     ]
-    spike = FilterEvent("spike", 3.0, 3.0, "a spike")
+    spike = FilterEvent("spike", 1003.0, 1003.0, "a spike")
     said = hints(result(events=(spike,) * 13), vision=False)
     assert said[0] == "3.0 s: a spike"
     assert len(said) == 11
