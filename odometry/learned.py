@@ -14,7 +14,9 @@ from odometry.run import UNKNOWN
 MUCH_SURER = 2.0  # times less variance
 
 
-def learned_parameters(before: ParameterSet, replay: Replay, run_name: str) -> ParameterSet:
+def learned_parameters(
+    before: ParameterSet, replay: Replay, run_name: str, track_width_m: float | None = None
+) -> ParameterSet:
     """The parameter set with the ICRs that the filter held when it last left each terrain.
 
     Effects stay as they were.
@@ -29,6 +31,8 @@ def learned_parameters(before: ParameterSet, replay: Replay, run_name: str) -> P
     replay : Replay
     run_name : str
         Named as the source.
+    track_width_m : float, optional
+        Of the robot: [vehicle] gets it, where it says none.
     """
     terrains = dict(before.terrains)
     for name in dict.fromkeys(replay.terrains):
@@ -44,7 +48,8 @@ def learned_parameters(before: ParameterSet, replay: Replay, run_name: str) -> P
             source = f"learned by terrain-odometry from {poses} poses of {run_name}"
             effects = before.terrains[name].effects if name in before.terrains else ()
             terrains[name] = replace(_table(there[-1].belief, source), effects=effects)
-    return ParameterSet(terrains, before.vehicle)
+    robot = {} if track_width_m is None else {"track_width": track_width_m}
+    return ParameterSet(terrains, robot | dict(before.vehicle))
 
 
 def _is_worth_keeping(table: TerrainParameters | None, there: Sequence[Estimate]) -> bool:

@@ -143,7 +143,7 @@ def run_odometry(
             name: score(run, of.trajectory, of.reference, config.evaluation)
             for name, of in judged.items()
         },
-        learned_parameters(parameters, result, run.name),
+        learned_parameters(parameters, result, run.name, run.robot.track_width),
         odometer_uncertainty(run, result, reference if reference_name == "truth" else None),
         second,
         name,

@@ -16,20 +16,34 @@ from odometry.run import Run
 
 
 def write(source: ExportSource, folder: Path) -> None:
-    """Write ros.yaml: of the chosen terrain for the controller, of all for simulators."""
-    chosen = source.chosen_terrain
-    numbers = {
-        name: drive_numbers(name, table, source.track_width_m)
-        for name, table in source.parameters.terrains.items()
-    }
+    """Write ros.yaml: of the chosen terrain for the controller, of all for simulators.
+
+    Terrains without such numbers are left out with a comment.
+
+    Raises
+    ------
+    ParameterError
+        If the chosen one has none.
+    """
+    chosen, terrains = source.chosen_terrain, source.parameters.terrains
+    numbers = {chosen: drive_numbers(chosen, terrains[chosen], source.track_width_m)}
+    left_out = ""
+    for name in terrains:
+        if name == chosen:
+            continue
+        try:
+            numbers[name] = drive_numbers(name, terrains[name], source.track_width_m)
+        except ParameterError as error:
+            left_out += f"# left out: {error}\n"
+    ordered = [numbers[name] for name in terrains if name in numbers]
     robot = source.content.get("robot", {})
     text = ros_yaml(
         numbers[chosen],
-        list(numbers.values()),
+        ordered,
         errors=source.motion_errors,
         pace=source.pace,
         wheel_radius_m=robot.get("wheel_radius"),
-        comment=source.comment,
+        comment=source.comment + left_out,
     )
     write_text(folder / "ros.yaml", text)
 

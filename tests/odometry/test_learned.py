@@ -85,3 +85,9 @@ def test_a_robot_that_stands_or_drives_straight_on_teaches_no_new_terrain(make_r
     run = Run.read(make_run(odometry=odometry, pose=poses))
     still = replay(run, IcrEkf(0.6, BEFORE), Zones())
     assert list(learned_parameters(BEFORE, still, "my_run").terrains) == ["a", "never"]
+
+
+def test_the_set_says_the_track_width_that_exports_need(result):
+    assert learned_parameters(BEFORE, result, "r", 0.6).vehicle["track_width"] == 0.6
+    stated = ParameterSet(BEFORE.terrains, {"track_width": 0.5})
+    assert learned_parameters(stated, result, "r", 0.6).vehicle == {"track_width": 0.5}

@@ -124,3 +124,30 @@ def test_identify_refuses_ros_of_a_model_without_multipliers(tmp_path):
     answer = CliRunner().invoke(identify, arguments)
     assert answer.exit_code == 2
     assert "no constant ICRs" in answer.output
+
+
+TWO = """[terrain.mud]
+model = "full_linear"
+gamma_11 = 0.5
+gamma_12 = 0.5
+gamma_21 = 0.0
+gamma_22 = 0.0
+gamma_31 = -1.0
+gamma_32 = 1.0
+[terrain.sand]
+y_left = 0.5
+y_right = -0.5
+x_icr = 0.0
+"""
+
+
+def test_a_terrain_without_such_numbers_does_not_stop_the_one_that_is_asked_for(tmp_path):
+    """The error of the asked one names it, not the first of the set."""
+    (tmp_path / "set.toml").write_text(TWO)
+    asked = (tmp_path / "set.toml", "--to", "ros", "--terrain", "sand", "--out", tmp_path / "out")
+    assert "[terrain.sand]: the model 'icr' does not tell" in str(call(*asked).exception)
+    answer = call(*asked, "--track-width", 0.5)
+    assert answer.exit_code == 0, answer.output
+    text = (tmp_path / "out" / "ros.yaml").read_text()
+    assert "# left out: [terrain.mud]: " in text
+    assert '"sand":' in text
