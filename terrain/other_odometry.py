@@ -1,6 +1,7 @@
 """Odometry of other programs beside a finished run: what judges it, and where it comes from."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from math import degrees
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from odometry.io.structured import read_json
 from odometry.io.trajectory_files import read_trajectory
 from odometry.trajectory import Trajectory
 from terrain.errors import ResultError
+from terrain.other_stamps import late_by_s
 
 FOLDER = "other_odometry"  # of a run folder: odometry that a bag had, as NAME.csv
 PREFIX = "other/"  # of its name among the trajectories of a run
@@ -24,7 +26,12 @@ LEAST_SCALE, LEAST_TURN_DEG = 0.05, 10.0  # off the reference by more is told
 
 
 def other_errors(
-    folder: Path, given: Mapping[str, Path], *, run_path: str | None, axes: str = ""
+    folder: Path,
+    given: Mapping[str, Path],
+    *,
+    run_path: str | None,
+    axes: str = "",
+    times: Path | None = None,
 ) -> dict[str, dict[str, Any]]:
     """Errors of other odometry on the run of a result, by `other/NAME`.
 
@@ -33,11 +40,14 @@ def other_errors(
     folder : Path
         That `run` wrote.
     given : Mapping of name to Path
-        Trajectory files: TUM, or what else `read_trajectory` reads.
+        Trajectory files: TUM, or what else `read_trajectory` reads, or a table of
+        `other_odometry` (CSV: t, x, y, yaw).
     run_path : str or None
         The run folder, whose `other_odometry` is judged as well where it is there.
     axes : str
         Of the files, as of `read_trajectory`.
+    times : Path, optional
+        Stamps of KITTI files.
 
     Returns
     -------
@@ -54,8 +64,11 @@ def other_errors(
     for name, file in files.items():
         try:
             judge = read_judge(folder)
-            trajectory, doubt = _read(file, axes) if name in given else (_of_run(file), "")
-            found[PREFIX + name] = _table(score_other(trajectory, judge), doubt)
+            is_table = name not in given or _is_table(file)
+            trajectory, doubt = (_of_run(file), "") if is_table else _read(file, axes, times)
+            late_s = late_by_s(trajectory, judge.odometer)
+            doubts = [doubt, "" if late_s is None else _late(late_s)]
+            found[PREFIX + name] = _table(score_other(trajectory, judge), doubts)
         except OdometryError as error:
             found[PREFIX + name] = {"error": str(error)}
     return found
@@ -109,13 +122,29 @@ def _of_run(file: Path) -> Trajectory:
     return Trajectory(table.stamps_s[told], poses[told])
 
 
-def _read(file: Path, axes: str) -> tuple[Trajectory, str]:
-    spatial = read_trajectory(file, axes=axes)
+def _is_table(file: Path) -> bool:
+    """Whether a file is a table of run folders: its first line names the columns."""
+    with suppress(OSError), file.open(encoding="utf-8", errors="replace") as stream:
+        return {"t", "x", "y", "yaw"} <= {name.strip() for name in stream.readline().split(",")}
+    return False
+
+
+def _read(file: Path, axes: str, times: Path | None) -> tuple[Trajectory, str]:
+    spatial = read_trajectory(file, times=times, axes=axes)
     return spatial.plane, doubt_of_axes(spatial)
 
 
-def _table(found: OtherScore, doubt: str) -> dict[str, Any]:
-    notes = [*filter(None, [doubt]), *_notes(found)]
+def _late(late_s: float) -> str:
+    way, sign = ("late", "-") if late_s > 0 else ("early", "+")
+    return (
+        f"its stamps seem {way} by {abs(late_s):.2f} s: shifted by {sign}{abs(late_s):.2f} s its "
+        "turns follow the odometer's best, in all parts of the run. Nothing is shifted: the errors "
+        "hold the shift as well"
+    )
+
+
+def _table(found: OtherScore, doubts: Sequence[str]) -> dict[str, Any]:
+    notes = [*filter(None, doubts), *_notes(found)]
     return found.score.to_table() | {
         "share": found.share,
         "scale": _finite(found.scale),

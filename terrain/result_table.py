@@ -47,6 +47,7 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "switches": _switches(result),
         "missed_changes": _missed_changes(result),
         "sightings": sighting_counts(result),
+        "other_odometry": sorted(of.stem for of in result.run.folder.glob("other_odometry/*.csv")),
         "label_confusion": label_confusion_table(result),
         "filter": filter_table(result.replay),
         "learned": {name: dict(of.values) for name, of in result.learned.terrains.items()},

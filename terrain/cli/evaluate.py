@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from terrain.cli.options import trajectory_options
 from terrain.cli.results import HEADER, error_cells, print_table
 
 
@@ -20,18 +21,18 @@ from terrain.cli.results import HEADER, error_cells, print_table
     "others",
     multiple=True,
     metavar="NAME=FILE",
-    help="Poses of another program on the same run (TUM, EuRoC), judged by the same rules; repeat.",
+    help="Poses of another program on the same run (TUM, KITTI, EuRoC, or a table of "
+    "other_odometry), judged by the same rules; repeat.",
 )
-@click.option(
-    "--axes",
-    type=click.Choice(["robot", "optical"]),
-    default="robot",
-    show_default=True,
-    help="Of these files: x forward and z up, or those of images, z along the view and y down.",
-)
+@trajectory_options
 @click.option("--json", "as_json", is_flag=True, help="Print the numbers as JSON.")
 def evaluate(
-    folders: tuple[Path, ...], *, others: tuple[str, ...], axes: str, as_json: bool
+    folders: tuple[Path, ...],
+    *,
+    others: tuple[str, ...],
+    as_json: bool,
+    times: Path | None,
+    axes: str,
 ) -> None:
     """Show the errors of finished runs side by side.
 
@@ -45,7 +46,7 @@ def evaluate(
       terrain-odometry evaluate results --with slam=slam.tum
     """
     given = _named_files(others)
-    results = {str(folder): _read(folder, given, axes) for folder in folders}
+    results = {str(folder): _read(folder, given, axes, times) for folder in folders}
     if as_json:
         click.echo(json.dumps(results, indent=2))
     else:
@@ -54,6 +55,8 @@ def evaluate(
         print_table([("folder", "run", "trajectory", "against", *HEADER[1:]), *rows])
         click.echo("Per metre of wheel travel, over the horizon that each result.json names.")
         for name, of in results.items():
+            if lost := _not_found(of):
+                click.echo(f"Note: {name}: {lost}", err=True)
             for other, errors in _others(of).items():
                 for note in errors.get("notes", []):
                     click.echo(f"Note: {name}: {other}: {note}", err=True)
@@ -74,7 +77,7 @@ def _named_files(texts: Sequence[str]) -> dict[str, Path]:
     return files
 
 
-def _read(folder: Path, given: Mapping[str, Path], axes: str) -> dict[str, Any]:
+def _read(folder: Path, given: Mapping[str, Path], axes: str, times: Path | None) -> dict[str, Any]:
     """Errors of one folder; what went wrong where they cannot be read."""
     from odometry.errors import OdometryError
     from terrain.other_odometry import other_errors
@@ -82,10 +85,22 @@ def _read(folder: Path, given: Mapping[str, Path], axes: str) -> dict[str, Any]:
 
     try:
         found = read_errors(folder)
-        others = other_errors(folder, given, run_path=found["run_path"], axes=axes)
+        run_path = found["run_path"]
+        others = other_errors(folder, given, run_path=run_path, axes=axes, times=times)
     except OdometryError as error:
         return {"error": str(error)}
     return found | ({"others": others} if others else {})
+
+
+def _not_found(result: Mapping[str, Any]) -> str:
+    """What to say of odometry that the run folder kept, where that folder is elsewhere now."""
+    kept, path = result.get("other_odometry", []), result.get("run_path")
+    if not kept or not path or Path(path).is_dir():
+        return ""
+    return (
+        f"{', '.join(kept)} of its run is not judged: there is no folder {path} here. Name the "
+        f"file: --with {kept[0]}=RUN/other_odometry/{kept[0]}.csv"
+    )
 
 
 def _others(result: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -8,6 +8,8 @@ from typing import Any
 
 import click
 
+from terrain.cli.options import trajectory_options
+
 FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 
 
@@ -37,27 +39,21 @@ def pose_options(command: Callable[..., None]) -> Callable[..., None]:
         "--pose", type=FILE, help="Poses of another program (TUM, KITTI, EuRoC) as pose.csv."
     )
     @click.option("--truth", type=FILE, help="The same as truth.csv: for scoring alone.")
-    @click.option("--times", type=FILE, help="Stamps of a KITTI file, one a line [s].")
-    @click.option(
-        "--axes",
-        type=click.Choice(["robot", "optical"]),
-        help="Of these files: x forward and z up, or those of images, z along the view and y "
-        "down.  [default: optical of KITTI, else robot]",
-    )
+    @trajectory_options
     @wraps(command)
     def with_poses(
         *,
         pose: Path | None,
         truth: Path | None,
         times: Path | None,
-        axes: str | None,
+        axes: str,
         **others: Any,
     ) -> None:
         named = {"pose": pose, "truth": truth}
         files = {name: file for name, file in named.items() if file is not None}
         if not files and (times or axes):
             raise click.UsageError("--times and --axes are of --pose or --truth: name one")
-        command(poses=PoseFiles(files, times, axes or ""), **others)
+        command(poses=PoseFiles(files, times, axes), **others)
 
     return with_poses
 

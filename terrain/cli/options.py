@@ -78,6 +78,27 @@ def assignments(texts: Sequence[str]) -> dict[str, float]:
     return values
 
 
+def trajectory_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Add --times and --axes of trajectory files; the command gets them as `times` and `axes`."""
+
+    @click.option(
+        "--times",
+        type=click.Path(exists=True, dir_okay=False, path_type=Path),
+        help="Stamps of a KITTI file, one a line [s].",
+    )
+    @click.option(
+        "--axes",
+        type=click.Choice(["robot", "optical"]),
+        help="Of these files: x forward and z up, or those of images, z along the view and y "
+        "down.  [default: optical of KITTI, else robot]",
+    )
+    @wraps(command)
+    def with_form(*, times: Path | None, axes: str | None, **others: Any) -> None:
+        command(times=times, axes=axes or "", **others)
+
+    return with_form
+
+
 def window_options(command: Callable[..., None]) -> Callable[..., None]:
     """Add the options that cut runs into windows; the command gets them as `windows`."""
 

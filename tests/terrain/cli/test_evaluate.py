@@ -119,7 +119,11 @@ def test_json_gives_the_numbers_and_the_failures(tmp_path, results):
     answer = CliRunner().invoke(evaluate, ["--json", good, absent])
     assert answer.exit_code == 1
     content = json.loads(answer.output)
-    assert content[good] == finished(0.0123) | {"run": None, "run_path": None}
+    assert content[good] == finished(0.0123) | {
+        "run": None,
+        "run_path": None,
+        "other_odometry": [],
+    }
     assert set(content[absent]) == {"error"}
 
 

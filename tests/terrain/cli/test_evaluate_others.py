@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from odometry.io.trajectory_files import read_trajectory, to_optical
+from odometry.geometry import se3
+from odometry.io.trajectory_files import read_trajectory, to_optical, write_trajectory
 from odometry.io.tum import write_spatial_tum
 from odometry.run import Run
 from odometry.spatial_trajectory import SpatialTrajectory
@@ -30,6 +31,28 @@ def finished(curvy_run, tmp_path_factory):
     text = (out / "results" / "odometer.csv").read_text().splitlines()
     (kept / "wheels.csv").write_text("\n".join(line for line in text[: len(text) // 2]))
     return out
+
+
+@pytest.fixture(scope="module")
+def winding(tmp_path_factory):
+    """A finished run of a minute whose turns never repeat."""
+    run = tmp_path_factory.mktemp("winding") / "run"
+    run.mkdir()
+    rng = np.random.default_rng(2)
+    t = np.arange(0.0, 60.0, 0.05)
+    turn = np.interp(t, np.arange(0.0, 62.0, 1.5), rng.uniform(-0.8, 0.8, 42))
+    yaw = np.concatenate([[0.0], np.cumsum(turn[:-1] * 0.05)])
+    x, y = (np.cumsum(0.5 * 0.05 * of(yaw)) for of in (np.cos, np.sin))
+    rows = zip(t, 0.5 - 0.3 * turn, 0.5 + 0.3 * turn, turn, strict=True)
+    (run / "run.toml").write_text("[robot]\ntrack_width = 0.6\n")
+    lines = [",".join(f"{cell:.9g}" for cell in row) for row in rows]
+    (run / "odometry.csv").write_text("\n".join(["t,v_left,v_right,gyro_z", *lines]))
+    poses = zip(t[::2], x[::2], y[::2], yaw[::2], strict=True)
+    lines = [",".join(f"{cell:.9g}" for cell in row) for row in poses]
+    (run / "pose.csv").write_text("\n".join(["t,x,y,yaw", *lines]))
+    made = {"made": {"inputs": [{"role": "RUN", "path": str(run)}]}}
+    write_results(run_odometry(run, terrain="sand"), run.parent / "results", made)
+    return run.parent
 
 
 def answer(*arguments):
@@ -116,3 +139,65 @@ def test_reference_csv_has_the_wheel_travel_of_the_run(finished, curvy_run):
     table = np.genfromtxt(finished / "results" / "reference.csv", delimiter=",", names=True)
     expected = np.interp(table["t"], run.odometry.stamps_s, run.wheel_travel_m)
     np.testing.assert_allclose(table["wheel_travel"], expected, atol=1e-8)
+
+
+def test_a_kitti_file_comes_with_its_times(finished, tmp_path):
+    """The oracle is the same path as TUM; a KITTI file has optical axes unless it is said."""
+    ours = read_trajectory(finished / "results" / "odometer.tum")
+    write_trajectory(tmp_path, "slam", ours, "kitti")
+    poses, times = sorted(tmp_path.glob("slam*"), key=lambda file: "times" in file.name)
+    same, kitti = (
+        others(finished, "--with", f"slam={file}", *more)[1]["others"]["other/slam"]
+        for file, more in (
+            (finished / "results" / "odometer.tum", ()),
+            (poses, ("--times", times)),
+        )
+    )
+    assert kitti["translation_m_per_m"]["mean"] == pytest.approx(
+        same["translation_m_per_m"]["mean"], rel=1e-3
+    )
+    assert kitti["notes"] == []
+
+
+@pytest.mark.parametrize(("shift_s", "way"), [(0.8, "late by 0.8"), (-0.8, "early by 0.8")])
+def test_a_shift_of_its_clock_is_suspected_where_it_is_plain(winding, tmp_path, shift_s, way):
+    ours = read_trajectory(winding / "results" / "odometer.tum")
+    slam = tmp_path / "slam.tum"
+    write_spatial_tum(slam, SpatialTrajectory(ours.stamps_s + shift_s, ours.poses))
+    (note,) = [
+        note
+        for note in others(winding, "--with", f"slam={slam}")[1]["others"]["other/slam"]["notes"]
+        if "stamps seem" in note
+    ]
+    assert way in note
+    assert "Nothing is shifted" in note
+
+
+def test_no_shift_is_suspected_of_noise_or_of_a_straight_drive(winding, tmp_path):
+    ours = read_trajectory(winding / "results" / "odometer.tum")
+    rng = np.random.default_rng(3)
+    noisy = ours.poses.copy()
+    turns = np.cumsum(rng.normal(0, 0.02, len(noisy)))
+    angles = np.column_stack([np.zeros((len(noisy), 2)), turns])
+    noisy[:, :3, :3] = noisy[:, :3, :3] @ se3.rotation_from_roll_pitch_yaw(angles)
+    straight = np.tile(np.eye(4), (len(noisy), 1, 1))
+    straight[:, 0, 3] = np.linspace(0.0, 10.0, len(noisy))
+    for poses in (noisy, straight):
+        write_spatial_tum(tmp_path / "slam.tum", SpatialTrajectory(ours.stamps_s, poses))
+        found = others(winding, "--with", f"slam={tmp_path / 'slam.tum'}")[1]["others"]
+        assert not any("stamps seem" in note for note in found["other/slam"]["notes"])
+
+
+def test_odometry_of_a_run_folder_that_moved_is_named_and_can_be_given(finished, tmp_path):
+    moved = tmp_path / "results"
+    shutil.copytree(finished / "results", moved)
+    file = moved / "result.json"
+    content = json.loads(file.read_text()) | {"other_odometry": ["wheels"]}
+    content["made"]["inputs"][0]["path"] = str(tmp_path / "gone")
+    file.write_text(json.dumps(content))
+    kept = finished / "run" / "other_odometry" / "wheels.csv"
+    assert "--with wheels=RUN/other_odometry/wheels.csv" in answer(moved).stderr
+    said = answer(moved, "--with", f"wheels={kept}", "--json")
+    given = json.loads(said.stdout)[str(moved)]["others"]["other/wheels"]
+    assert given["share"] < 1
+    assert given["odometer"]["translation_m_per_m"] == given["translation_m_per_m"]
