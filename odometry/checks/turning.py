@@ -142,6 +142,18 @@ def _gyroscope_remedy(evidence: Evidence) -> tuple[str, str]:
     return "The gyroscope has the wrong sign (z down, or mounted upside down)", negate.capitalize()
 
 
+def _imu_hint(evidence: Evidence) -> str:
+    """Where the attitude of the inertial sensor is said, which turns the sign of its yaw rate."""
+    if evidence.gyroscope_file != "imu.csv":
+        return "a sensor mounted upside down has gyro_z negated"
+    if evidence.run.sensors.imu_rad is not None:
+        return "check [sensors] imu of run.toml first (an import takes it from the bag's frames)"
+    return (
+        "run.toml has no [sensors] imu: a sensor mounted upside down needs imu = [3.1416, 0, 0] "
+        "there"
+    )
+
+
 def _all_opposite(evidence: Evidence, gyroscope: Sense, pose: Sense) -> Finding:
     forward = _forward_sign(evidence)
     if pose is Sense.UNKNOWN:
@@ -150,7 +162,7 @@ def _all_opposite(evidence: Evidence, gyroscope: Sense, pose: Sense) -> Finding:
             f"gyro_z turns against the treads ({_correlations(evidence)})",
             "Left and right treads are swapped, or the gyroscope has the wrong sign, or both "
             "treads have it: without poses these cannot be distinguished",
-            "Drive one left turn by hand and see which column is wrong",
+            "Drive one left turn by hand and see which column is wrong; " + _imu_hint(evidence),
             exchanged,
         )
     if gyroscope is Sense.UNKNOWN and not (evidence.heading and _reading_is_plain(evidence)):

@@ -1,7 +1,7 @@
 """`import --pose FILE`, `--truth FILE`: trajectories of other programs in a run folder."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import wraps
 from pathlib import Path
 from typing import Any
@@ -121,5 +121,28 @@ def add_to_run(folders: tuple[Path, ...], out: Path | None, poses: PoseFiles) ->
         if (folder / f"{name}.csv").exists():
             raise OutputError(f"{folder / name}.csv is there already; move it, or delete it")
     lines = write_poses(folder, poses)
+    _say_in_manifest(folder, poses)
     click.echo("\n".join([f"Added to the run {folder}:", *lines]))
     return folder
+
+
+def _say_in_manifest(folder: Path, poses: PoseFiles) -> None:
+    """Add the tables to what made the folder, where the program made it."""
+    from odometry.outputs.inputs import Input
+    from odometry.outputs.manifest import read_manifest
+
+    manifest = read_manifest(folder)
+    if manifest is None:
+        return
+    added = [
+        {
+            "file": f"{name}.csv",
+            "path": str(file),
+            "sha256": Input.of(f"--{name}", file).sha256(with_images=False),
+        }
+        for name, file in poses.files.items()
+    ]
+    before = list(manifest.made.get("added", []))
+    names = dict.fromkeys([*manifest.files, *(f"{name}.csv" for name in poses.files)])
+    made = dict(manifest.made) | {"added": before + added}
+    replace(manifest, files=tuple(names), made=made).write(folder)

@@ -89,6 +89,10 @@ def test_without_poses_what_cannot_be_told_is_said_so(recording):
     report = check_recording(treads(run, lambda left, right: (right, left)))
     assert report.findings[0].name == "treads_or_gyroscope_reversed"
     assert "cannot be distinguished" in report.findings[0].cause
+    assert "mounted upside down" in report.findings[0].remedy
+    turned = replace(run, settings=dict(run.settings) | {"sensors": {"imu": [0.0, 0.0, 0.1]}})
+    report = check_recording(treads(turned, lambda left, right: (right, left)))
+    assert "check [sensors] imu of run.toml first" in report.findings[0].remedy
     assert any("no measured poses" in reason for reason in report.skipped)
 
 

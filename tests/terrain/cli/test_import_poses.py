@@ -8,6 +8,7 @@ from click.testing import CliRunner
 
 from odometry.errors import OdometryError
 from odometry.io.trajectory_files import FORMATS, write_trajectory
+from odometry.outputs.manifest import read_manifest
 from odometry.run import Run
 from odometry.spatial_trajectory import SpatialTrajectory
 from odometry.trajectory import Trajectory
@@ -98,3 +99,27 @@ def test_a_bag_gets_the_poses_of_a_file_instead_of_its_reference(tmp_path):
     found = Run.read(tmp_path / "second").pose.stack("x", "y", "yaw")
     np.testing.assert_allclose(found[:, :2], poses.poses[:, :2], atol=1e-8)
     assert "pose.csv" in (tmp_path / "second" / "terrain-odometry.json").read_text()
+
+
+def test_the_manifest_of_an_imported_run_names_what_was_added(tmp_path):
+    """So that the folder can be made anew, and says where its poses come from."""
+    bag = Bag("mcap")
+    places = []
+    for t_s, left, right, x, y, yaw in course():
+        bag.joints(t_s, ["left_wheel", "right_wheel"], np.zeros(2), [left, right])
+        places.append((x, y, yaw))
+    made = ("import", bag.write(tmp_path / "drive"), "--out", tmp_path / "run")
+    size = ("--wheel-radius", 1, "--track-width", 0.6)
+    assert CliRunner().invoke(cli, list(map(str, made + size))).exit_code == 0
+    stamps_s = Run.read(tmp_path / "run").odometry.stamps_s
+    path = SpatialTrajectory.from_plane(Trajectory(stamps_s, np.array(places)))
+    (file,) = write_trajectory(tmp_path, "slam", path, "tum")
+    assert call(tmp_path / "run", "--pose", file).exit_code == 0
+    manifest = read_manifest(tmp_path / "run")
+    assert "pose.csv" in manifest.files
+    (added,) = manifest.made["added"]
+    assert (added["file"], added["path"]) == ("pose.csv", str(file))
+    assert len(added["sha256"]) == 64
+    again = CliRunner().invoke(cli, list(map(str, made + size)))
+    assert again.exit_code == 0, again.output
+    assert not (tmp_path / "run" / "pose.csv").exists()
