@@ -9,6 +9,7 @@ from odometry.checks.catalogue import CATALOGUE
 from odometry.checks.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.run import Run
+from odometry.table import Table
 from tests.odometry.checks.faulty import FAULTS, gyroscope, put, treads
 
 RECORDINGS = ("warthog_grass_20240729_1404", "warthog_grass_20240729_1446")
@@ -90,9 +91,6 @@ def test_without_poses_what_cannot_be_told_is_said_so(recording):
     assert report.findings[0].name == "treads_or_gyroscope_reversed"
     assert "cannot be distinguished" in report.findings[0].cause
     assert "mounted upside down" in report.findings[0].remedy
-    turned = replace(run, settings=dict(run.settings) | {"sensors": {"imu": [0.0, 0.0, 0.1]}})
-    report = check_recording(treads(turned, lambda left, right: (right, left)))
-    assert "check [sensors] imu of run.toml first" in report.findings[0].remedy
     assert any("no measured poses" in reason for reason in report.skipped)
 
 
@@ -143,3 +141,22 @@ def test_a_short_recording_is_not_judged(make_run):
     report = check_recording(make_run())
     assert report.findings == ()
     assert report.skipped
+
+
+@pytest.mark.parametrize(
+    ("sensors", "words"),
+    [
+        ({}, "run.toml has no [sensors] imu: a sensor mounted upside down needs"),
+        ({"sensors": {"imu": [0.0, 0.0, 0.1]}}, "check [sensors] imu of run.toml first"),
+    ],
+)
+def test_a_gyroscope_that_turns_against_the_treads_asks_for_its_attitude(recording, sensors, words):
+    run = replace(recording(RECORDINGS[0]), pose=None)
+    rates = run.yaw_rate
+    columns = {"t": rates.stamps_s, "gyro_x": 0 * rates.stamps_s, "gyro_y": 0 * rates.stamps_s}
+    columns["gyro_z"] = rates.yaw_rate_rad_s
+    imu = Table(run.folder / "imu.csv", columns, np.arange(len(rates.stamps_s)) + 2)
+    run = replace(run, imu=imu, settings=dict(run.settings) | sensors)
+    found = check_recording(treads(run, lambda left, right: (right, left))).findings[0]
+    assert found.name == "treads_or_gyroscope_reversed"
+    assert words in found.remedy
