@@ -16,6 +16,7 @@ from odometry.bags.compression import decompressed
 from odometry.bags.connection import Connection, Message, ros2_name
 from odometry.bags.errors import BagError
 from odometry.bags.losses import Losses
+from odometry.bags.windows import windows
 
 MAGIC = b"\x89MCAP0\r\n"
 SCHEMA, CHANNEL, MESSAGE, CHUNK, DATA_END = 0x03, 0x04, 0x05, 0x06, 0x0F
@@ -29,7 +30,7 @@ LARGEST_RECORD = 2**31
 CHUNK_MARK = re.compile(
     rb"\x06(?=.{4}\x00{4}.{28}(?:\x00{4}|\x04\x00{3}zstd|\x03\x00{3}lz4))", re.DOTALL
 )
-SEARCHED = 4 * 1024**2  # bytes at a time, in search of a chunk
+MARK_BYTES = 64  # more than CHUNK_MARK and a chunk's head
 SCHEMAS = {"ros2msg": "msg", "ros1msg": "msg", "ros2idl": "idl", "omgidl": "idl"}
 
 
@@ -194,16 +195,11 @@ def _strings(record: memoryview, begin: int, count: int) -> list[str]:
 
 def _next_chunk(stream: BinaryIO, begin: int, size: int) -> int | None:
     """Where the next chunk that looks whole begins; None where there is none."""
-    stream.seek(begin)
-    kept = b""
-    while piece := stream.read(SEARCHED):
-        window = kept + piece
-        first = stream.tell() - len(window)
+    for first, window in windows(stream, begin, MARK_BYTES):
         for mark in CHUNK_MARK.finditer(window):
             start = first + mark.start()
             _, length = RECORD.unpack_from(window, mark.start())
             begin_ns, end_ns, *_ = CHUNK_HEAD.unpack_from(window, mark.start() + RECORD.size)
             if start + RECORD.size + length <= size and begin_ns <= end_ns:
                 return start
-        kept = window[-64:]
     return None

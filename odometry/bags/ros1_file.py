@@ -23,11 +23,12 @@ from odometry.bags.ros1_records import (
     message_of,
     record_start,
 )
+from odometry.bags.windows import windows
 
 MAGIC = b"#ROSBAG V2.0\n"
 MESSAGE, BAG_HEADER, CHUNK, CONNECTION = 2, 3, 5, 7
 CHUNK_MARK = re.compile(rb"\x04\x00\x00\x00op=\x05")
-SEARCHED = 4 * 1024**2  # bytes at a time, in search of a chunk
+MARK_BYTES = 512  # more than the header of a chunk
 
 
 def ros1_messages(file: Path, losses: Losses) -> Iterator[Message]:
@@ -137,17 +138,12 @@ def _inside(
 
 def _next_chunk(stream: BinaryIO, begin: int) -> int | None:
     """Where the next chunk that looks whole begins; None where there is none."""
-    stream.seek(begin)
-    kept = b""
-    while piece := stream.read(SEARCHED):
-        window = kept + piece
-        first = stream.tell() - len(window)
+    for first, window in windows(stream, begin, MARK_BYTES):
         for mark in CHUNK_MARK.finditer(window):
             for back in range(4, 64):
                 start = mark.start() - back
                 if start >= 0 and _is_chunk(window[start : start + 256]):
                     return first + start
-        kept = window[-512:]
     return None
 
 
