@@ -51,6 +51,7 @@ VERBS = {  # a command, and what gives another result of it
     "run": ("run photos --model terrain.model --out out/r", "--no-vision"),
     "identify": ("identify yard --model icr --out out/set.toml", "--from 20"),
     "train": ("train photos/patches --preset chen2023 --out out/t.model", "--patch-size 64"),
+    "label": ("label photos --out out/p", "--per-place 4"),
     "gap": ("gap hill --calibration yard --out out/g", "--horizon-s 1.5"),
     "modes": ("modes grass --models modes.toml --out out/m", "--sure 0.7"),
     "synthesise": (f"{SYNTHESISE} out/s", "--image-rate 2"),
