@@ -6,10 +6,11 @@ import numpy as np
 
 from odometry.modes.followed import Followed
 from odometry.modes.mode_set import UNDETERMINED
-from odometry.modes.words import FEW, LEAST_SHARE, percent, scale_word, signal_of
+from odometry.modes.words import FEW, LEAST_SHARE, SCALE, percent, scale_word, signal_of
 
 MOSTLY = 0.5  # of the time
 LEAST_DOUBT = 0.1  # of the time: less is not said
+SLIGHTLY, _ = SCALE[0]  # standard deviations below which identification may be what is off
 CHECKS = {
     "forward speed": "the measured speed (its unit and stamps) and the treads (a wheel scaled)",
     "position": "the poses (late stamps, jumps, where the antenna sits)",
@@ -68,13 +69,14 @@ def _how_sure(followed: Followed) -> str:
 
 
 def _to_do(followed: Followed) -> str:
-    if followed.misfits:
-        signal = signal_of(followed, max(followed.misfits, key=lambda one: one.to_s - one.from_s))
+    worst = max(followed.misfits, key=lambda one: one.to_s - one.from_s, default=None)
+    if worst is not None and worst.sigmas >= SLIGHTLY:
         return (
-            f"check {CHECKS[signal]}; if they are right, it drove on what the set does not hold (a "
-            "terrain, a slope, a load): record that and identify it with the others."
+            f"check {CHECKS[signal_of(followed, worst)]}; if they are right, it drove on what the "
+            "set does not hold (a terrain, a slope, a load): record that and identify it with the "
+            "others."
         )
-    if followed.doubtful(followed.last_track) >= LEAST_DOUBT:
+    if worst is not None or followed.doubtful(followed.last_track) >= LEAST_DOUBT:
         return (
             "look at what is left of each signal (innovations.png): where it keeps its sign, "
             "identify the modes again on longer runs that are driven as this one was."

@@ -62,3 +62,12 @@ def test_where_modes_are_alike_none_is_doubtful():
     answers = by_hand(["a", "", "", ""])
     assert answers.doubtful(answers.motion) == 0.0
     assert in_short(answers)[1].endswith("fits all along.")
+
+
+@pytest.mark.parametrize(("sigmas", "begins"), [(2.5, "look at what is left"), (3.5, "check ")])
+def test_a_slight_misfit_asks_for_longer_runs_and_a_clear_one_for_checks(sigmas, begins):
+    """None of these for 2 s, and what is left of the nearest mode by so many deviations."""
+    size = 5
+    logs = np.log(np.tile([0.04, 0.01, 0.95], (size, 1)))
+    fit = ModeFit(np.full((size, 2, 2), sigmas), np.zeros((size, 2)), logs)
+    assert in_short(by_hand(["a"] * size, fit=fit))[2].startswith(begins)
