@@ -45,6 +45,10 @@ class GapConfig:
         of twenty).
     general_margin : float
         Of evidence by which a smooth function must beat names to stand in their place.
+    least_better : float
+        And by this share of what the names close: a recording, sampled and averaged, follows no
+        equation more exactly. True delays and lags lose by 0.0001 to 0.003, a delay in the place
+        of a lag by 0.05.
     least_beside : float
         Share of what a name closes alone that it must still close beside a smooth function that
         beats it. Beside a function that does the same it closes 0.1 at most.
@@ -98,6 +102,7 @@ class GapConfig:
     near_bound: float = 0.1
     equivalent_margin: float = 6.0
     general_margin: float = 6.0
+    least_better: float = 0.005
     least_beside: float = 0.5
     unexplained: float = 1.3
     left_over: float = 1.5
@@ -133,6 +138,7 @@ class GapConfig:
             "least_rest",
             "first_share",
             "mostly_closed",
+            "least_better",
             "least_beside",
             "base_probability",
         ):

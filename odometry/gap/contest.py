@@ -118,6 +118,11 @@ def penalty(freedom: int, fit: Fitted) -> float:
     return float(freedom * np.log(len(fit.held_out)))
 
 
+def margin_of(config: GapConfig, spread: float, closed: float) -> float:
+    """By how much a smooth function must cost less than names that close so much of the cost."""
+    return max(config.general_margin * max(1.0, spread), config.least_better * closed)
+
+
 def cost_of(fit: Fitted) -> float:
     """Held-out chi-squared, the move of the base and a penalty for freedom included."""
     return fit.cost + penalty(fit.freedom, fit)

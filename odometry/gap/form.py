@@ -12,7 +12,7 @@ import numpy as np
 from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual
 from odometry.gap.config import GapConfig
-from odometry.gap.contest import cost_of
+from odometry.gap.contest import cost_of, margin_of
 from odometry.gap.evenness import unevenness
 from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitted, Fitter
@@ -78,11 +78,11 @@ def smooth_in_place(
         return None
     best = min(fits, key=lambda function: cost_of(fits[function]))
     cost = cost_of(fits[best])
-    margin = config.general_margin * max(1.0, fitter.spread(fits[best]))
-    if cost_of(names) - cost < margin:
+    closed = cost_of(before) - cost_of(names)
+    if cost_of(names) - cost < margin_of(config, fitter.spread(fits[best]), closed):
         return None
     both = _fit(fitter, [*fits[best].effects, names.effects[place]])
-    still = (cost - cost_of(both)) / (cost_of(before) - cost_of(names))
+    still = (cost - cost_of(both)) / closed
     return best if still < config.least_beside else None
 
 

@@ -5,10 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from odometry.effects.base import Effect
 from odometry.effects.history import History
 from odometry.effects.residual import Residual
 from odometry.gap.candidates import quick_effects
 from odometry.gap.config import GapConfig
+from odometry.gap.contest import cost_of, margin_of
 from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitter
 from odometry.gap.form import names_alone, of_their_form
@@ -16,10 +18,11 @@ from odometry.gap.general import general_candidates
 from odometry.gap.own_moments import with_own_moments
 from odometry.gap.search import Search
 from odometry.gap.statistic import Gap, gap_of
+from odometry.gap.structure import structure_left
 from odometry.gap.unnamed import grown, in_bursts, last_of_each_run, with_course
 from odometry.gap.verdict import (
-    base_left_calibration,
     closes_held_out,
+    leaves_no_structure,
     leaves_noise,
     raises_measured,
     within_noise,
@@ -67,7 +70,7 @@ class _Naming(Search):
     def better(self, names: Explanation, others: Sequence[Explanation]) -> Explanation:
         """The explanation of least cost; names where they lose by less than the margin."""
         best = min(others, key=lambda one: one.cost)
-        margin = self.config.general_margin * self._spread(best)
+        margin = margin_of(self.config, self._spread(best), cost_of(self.start) - names.cost)
         return names if names.steps and names.cost - best.cost < margin else best
 
     def names_first(self, found: Explanation) -> Explanation:
@@ -85,8 +88,8 @@ class _Naming(Search):
         if not _named(found):
             bursts, smooth_ones = in_bursts(self, found), grown(self, found)
             found = bursts if bursts.steps and bursts.cost < smooth_ones.cost else smooth_ones
-        found = self._standing(found, smooth)
-        if not _named(found) and (found.steps or self.unexplained() or self._is_above()):
+        found = self._without_structure(self._standing(found, smooth), smooth)
+        if not _named(found) and (found.steps or self.unexplained() or self.is_above):
             found = self._standing(with_course(self, found), smooth)
         refused = tuple(one for name, one in self.refusals.items() if name not in found.names)
         unexplained = not found.steps and self.unexplained()
@@ -94,7 +97,7 @@ class _Naming(Search):
             found,
             refusals=refused,
             unexplained=unexplained,
-            base_closes=not found.steps and self._base_closes(),
+            base_closes=not found.steps and self.base_closes,
         )
 
     def _standing(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
@@ -115,19 +118,39 @@ class _Naming(Search):
                 found = own or self._of_their_form(found.less_last(), smooth)
         return found
 
-    def _is_above(self) -> bool:
-        """Whether the gap on held-out data is surely above its noise floor."""
-        gap = gap_of(self.fitter.calibration.base, (), self.held_out, self.config.part_s)
-        return gap.low > self.held_floor.high
+    def _without_structure(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
+        """Without any name where what all effects leave has structure of its own."""
+        share = self._held_out_share(found) if _named(found) else 1.0
+        if share >= self._most(found.effects):
+            return found
+        left = structure_left(self.fitter, found.fitted, self.config)
+        reason = leaves_no_structure(share, left)
+        if not reason:
+            return found
+        for effect in found.effects:
+            if not isinstance(effect, Residual):
+                self.refuse(effect, reason)
+        return self._standing(grown(self, found), smooth)
 
-    def _base_closes(self) -> bool:
-        """Whether the base, moved beyond its calibration, closes held-out gap by itself."""
-        free = len(self.fitter.calibration.uncertain.values)
-        believed = (self.fitter.calibration.base, ())
-        moved = (self.start.base, ())
-        return base_left_calibration(self.start, free, self.config) and not closes_held_out(
-            believed, moved, self.held_out, self.config
-        )
+    def _held_out_share(self, found: Explanation) -> float:
+        """Of the gap above its noise floor that is closed on held-out data; 1 within the floor."""
+        fit, part_s = found.fitted, self.config.part_s
+        believed, scenes = self.fitter.calibration, self.fitter.measured.scenes
+        effects, held_out = with_own_moments(fit.base, fit.effects, self.held_out, scenes, believed)
+        after_m = gap_of(fit.base, effects, held_out, part_s).value
+        before_m = gap_of(believed.base, (), held_out, part_s).value
+        if after_m <= self.held_floor.high:
+            return 1.0
+        return (before_m - after_m) / (before_m - self.held_floor.value)
+
+    def _most(self, names: Sequence[Effect]) -> float:
+        """Share of an excess that these need to close where they leave what is not noise."""
+        by_contact = any(effect.slow for effect in names)
+        return self.config.contact_closed if by_contact else self.config.mostly_closed
+
+    def _believed_gap(self) -> float:
+        """On the measured windows, of the base as it was calibrated."""
+        return self._gap(replace(self.start, base=self.fitter.calibration.base))
 
     def _of_their_form(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
         """Without names that do not have the form of what they stand for."""
@@ -143,9 +166,9 @@ class _Naming(Search):
         noise = self.fitter.measured.expected
         excess = max(self.start.cost - noise, self.config.least_excess * noise)
         closed = (self.start.cost - alone.cost) / excess
-        by_contact = any(effect.slow for effect in names)
-        most = self.config.contact_closed if by_contact else self.config.mostly_closed
-        reason = leaves_noise(self.fitter.spread(alone), closed, self.config.left_over, most)
+        reason = leaves_noise(
+            self.fitter.spread(alone), closed, self.config.left_over, self._most(names)
+        )
         if not reason:
             return found
         for name in names:
@@ -154,8 +177,7 @@ class _Naming(Search):
 
     def unexplained(self) -> bool:
         """Whether the base leaves a gap, and even moved more chi-squared than noise explains."""
-        believed = replace(self.start, base=self.fitter.calibration.base)
-        over = self._gap(believed) > self.floor.high
+        over = self._believed_gap() > self.floor.high
         return over and self.fitter.spread(self.start) > self.config.unexplained
 
     def _fails(self, found: Explanation) -> str:
@@ -165,7 +187,9 @@ class _Naming(Search):
         brings the base back; a latency that is not as calibrated is an effect by itself.
         """
         fit, before = found.fitted, (found.steps[-2].fitted if found.steps[1:] else self.start)
-        hidden = found.steps[1:] and self._left(before) and self._brings_back(fit, before)
+        hidden = self.explains_move(fit, before) or (
+            found.steps[1:] and self._left(before) and self._brings_back(fit, before)
+        )
         believed = self.fitter.calibration.base
         less_base = replace(fit.base if hidden else before.base, latency_s=believed.latency_s)
         pairs = [(less_base, before.effects), (believed, ())]
@@ -179,7 +203,7 @@ class _Naming(Search):
         within = within_noise(gap_of(*pairs[1], held_out, self.config.part_s), self.held_floor)
         reasons = [
             within,
-            raises_measured(self._gap(replace(self.start, base=believed)), self._gap(fit)),
+            raises_measured(self._believed_gap(), self._gap(fit)),
             *(
                 closes_held_out(
                     (base, effects[: len(less)]), (fit.base, effects), held_out, self.config

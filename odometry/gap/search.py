@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from odometry.gap.statistic import Gap, gap_of
 from odometry.gap.verdict import (
     Refusal,
     base_left_calibration,
+    closes_held_out,
     is_the_effect,
 )
 from odometry.windows.dense import DenseWindows
@@ -170,6 +172,29 @@ class Search:
         near = fit.base_alone < self.config.brought_back * before.base_alone
         return near or not self._left(fit)
 
+    def explains_move(self, fit: Fitted, before: Fitted) -> bool:
+        """Whether nearly all of a base's move beyond its calibration is the effect's.
+
+        Of a move that closes a gap on held-out data that is surely there: else chance made it.
+        """
+        near = fit.base_alone < self.config.brought_back * before.base_alone
+        return near and self._left(before) and self.is_above and self.base_closes
+
+    @cached_property
+    def is_above(self) -> bool:
+        """Whether the gap on held-out data is surely above its noise floor."""
+        gap = gap_of(self.fitter.calibration.base, (), self.held_out, self.config.part_s)
+        return gap.low > self.held_floor.high
+
+    @cached_property
+    def base_closes(self) -> bool:
+        """Whether the base, moved beyond its calibration, closes held-out gap by itself."""
+        believed = (self.fitter.calibration.base, ())
+        moved = (self.start.base, ())
+        return self._left(self.start) and not closes_held_out(
+            believed, moved, self.held_out, self.config
+        )
+
     def _gap(self, fit: Fitted) -> float:
         scenes = self.fitter.measured.scenes
         return gap_of(fit.base, fit.effects, scenes, self.config.part_s).value
@@ -203,6 +228,9 @@ class Search:
             share_of_rest = closed / max(before.cost - noise, self.config.least_excess * noise)
             if share_of_rest < self.config.least_rest:
                 return False
-        if self._gap(before) <= self.floor.high and not self._brings_back(one.fitted, before):
-            return False
+        if self._gap(before) <= self.floor.high:
+            if self.explains_move(one.fitted, before):
+                return True
+            if not self._brings_back(one.fitted, before):
+                return False
         return bool(closed_m > share * excess_m > 0 or closed > share * excess)

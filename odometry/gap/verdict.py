@@ -19,6 +19,7 @@ from odometry.gap.contest import sure_sum
 from odometry.gap.evenness import Unevenness
 from odometry.gap.fit import Fitted
 from odometry.gap.pieces import numbered_pieces
+from odometry.gap.predictors import Predictor
 from odometry.gap.region_words import noun_of
 from odometry.gap.statistic import SEED, Gap, drawn_gaps, squared_errors
 from odometry.windows.dense import DenseWindows
@@ -154,6 +155,17 @@ def leaves_noise(spread: float, closed: float, left_over: float, most: float) ->
     return (
         f"it closes {100 * max(closed, 0.0):.0f} % and leaves {spread:.1f} times the chi-squared "
         "of noise: not the cause, or not the only one"
+    )
+
+
+def leaves_no_structure(share_closed: float, predictors: Sequence[Predictor]) -> str:
+    """Whether nothing predicts what names leave that close no more than a share of the gap."""
+    found = [one.name for one in predictors if one.discovered]
+    if not found:
+        return ""
+    return (
+        f"it closes {100 * max(share_closed, 0.0):.0f} % of the gap, and what it leaves depends on "
+        f"{noun_of(found[0])}: not the cause, or not the only one"
     )
 
 

@@ -10,7 +10,7 @@ from odometry.effects.corrected import Added
 from odometry.effects.heading_offset import HeadingOffset
 from odometry.effects.slope_icr import SlopeByIcr
 from odometry.gap.config import GapConfig
-from odometry.gap.contest import penalty, ranked
+from odometry.gap.contest import margin_of, penalty, ranked
 from odometry.gap.fit import Fitter
 from odometry.gap.measured import measured_of
 
@@ -111,3 +111,12 @@ def test_of_equal_evidence_and_sureness_fewer_parameters_go_first(fitter, monkey
     )
     for order in ([few, many], [many, few]):
         assert ranked(fitter, before, order, CONFIG)[0].fitted is few
+
+
+@pytest.mark.parametrize(
+    ("spread", "closed", "expected"), [(0.9, 100.0, 6.0), (2.0, 100.0, 12.0), (1.0, 80000.0, 400.0)]
+)
+def test_a_smooth_function_beats_names_by_evidence_and_by_a_share_of_what_they_close(
+    spread, closed, expected
+):
+    assert margin_of(CONFIG, spread, closed) == pytest.approx(expected)

@@ -15,12 +15,14 @@ from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import sure_sum
 from odometry.gap.fit import Fitted
+from odometry.gap.predictors import Predictor
 from odometry.gap.statistic import Gap
 from odometry.gap.verdict import (
     base_left_calibration,
     closes_held_out,
     is_the_effect,
     is_there,
+    leaves_no_structure,
     leaves_noise,
     raises_measured,
     within_bounds,
@@ -124,6 +126,17 @@ def test_names_leave_noise_or_close_nearly_all(spread, closed, stands):
     reason = leaves_noise(spread, closed, CONFIG.left_over, CONFIG.mostly_closed)
     assert (reason == "") == stands
     assert stands or f"leaves {spread:.1f} times" in reason
+
+
+@pytest.mark.parametrize("discovered", [True, False])
+def test_names_leave_no_structure(discovered):
+    left = [
+        Predictor("speed", "m/s", 1e-4, discovered, 0.3, "along"),
+        Predictor("roll", "rad", 0.2, False, 0.0, "size"),
+    ]
+    reason = leaves_no_structure(0.6, left)
+    assert (reason != "") == discovered
+    assert not reason or "closes 60 % of the gap, and what it leaves depends on speed" in reason
 
 
 def test_a_gap_within_the_floor_has_no_name():
