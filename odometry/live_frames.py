@@ -30,7 +30,8 @@ class LiveFrames:
     Attributes
     ----------
     too_late : int
-        Messages that were dropped: older than a frame that was given, or repeated.
+        Messages that were dropped: older than a frame that was given, repeated, or without a
+        finite stamp or yaw rate. One stamp far ahead of the others makes those late.
 
     Notes
     -----
@@ -64,8 +65,11 @@ class LiveFrames:
 
     def gyroscope(self, stamp_s: float, yaw_rate_rad_s: float) -> None:
         """A yaw rate, counter-clockwise; it makes no frame."""
-        self._latest_s = max(self._latest_s, stamp_s)
-        if self._gyroscope is not None and not self._gyroscope.add(stamp_s, yaw_rate_rad_s):
+        if self._gyroscope is None:
+            return
+        if self._gyroscope.add(stamp_s, yaw_rate_rad_s):
+            self._latest_s = max(self._latest_s, stamp_s)
+        else:
             self.too_late += 1
 
     def pose(self, stamp_s: float, x: float, y: float, yaw: float = math.nan) -> None:
@@ -94,7 +98,7 @@ class LiveFrames:
 
     def _add(self, stamp_s: float, name: str, value: FloatArray | ByteImage) -> None:
         parts = self._parts.get(stamp_s, {})
-        if not stamp_s > self._given_s or name in parts:
+        if not self._given_s < stamp_s < math.inf or name in parts:
             self.too_late += 1
             return
         self._latest_s = max(self._latest_s, stamp_s)

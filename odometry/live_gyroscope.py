@@ -24,7 +24,7 @@ class LiveGyroscope:
 
     def add(self, stamp_s: float, yaw_rate_rad_s: float) -> bool:
         """Take in a sample; False where its stamp does not increase, or it is no number."""
-        if not (stamp_s > self.latest_s and math.isfinite(yaw_rate_rad_s)):
+        if not (self.latest_s < stamp_s < math.inf and math.isfinite(yaw_rate_rad_s)):
             return False
         if self._stamps_s:
             steps = step_integrals(

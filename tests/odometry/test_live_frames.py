@@ -112,3 +112,18 @@ def test_a_silent_gyroscope_is_not_waited_for_longer_than_half_a_second():
         given += [(0.1 * k, frame) for frame in frames.ready()]
     assert [round(now_s - frame.stamp_s, 9) for now_s, frame in given[1:]] == [0.5] * 14
     assert all(np.isnan(frame.yaw_rate_rad_s) for _, frame in given[2:])
+
+
+@pytest.mark.parametrize("stamp_s", [np.nan, np.inf, -np.inf])
+def test_a_stamp_that_is_no_number_is_dropped_and_harms_nothing(stamp_s):
+    frames = LiveFrames(wait_s=0.0)
+    frames.treads(1.0, 0.5, 0.5)
+    for add in (frames.treads, frames.pose):
+        add(stamp_s, 0.5, 0.5)
+    frames.gyroscope(stamp_s, 0.1)
+    frames.gyroscope(1.0, np.nan)
+    assert frames.too_late == 4
+    assert frames.ready() == []  # the gyroscope has told nothing yet
+    frames.gyroscope(1.1, 0.1)
+    frames.treads(1.1, 0.5, 0.5)
+    assert [frame.stamp_s for frame in frames.ready()] == [1.0, 1.1]
