@@ -7,6 +7,7 @@ of the packages give the same bytes.
 
 import argparse
 import os
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -24,8 +25,8 @@ from odometry.report.palette import terrain_colours
 from terrain.calibration.look_ahead import look_ahead
 from terrain.camera_files.read import read_calibration
 from terrain.camera_files.transforms import mount_in, read_transforms
+from terrain.demo import WITH, WITHOUT
 from terrain.images import read_image
-from terrain.shipped import shipped_data
 from terrain.switch_delay import true_stretches
 
 Point = tuple[float, float]
@@ -38,14 +39,8 @@ HALO = [withStroke(linewidth=4.0, foreground="black")]
 HUSKY = odometry.Robot(track_width=0.55, length=0.99, width=0.67)
 
 
-def first_page(file: Path, frames: Path) -> None:
-    """Region ahead on the frame of a real robot; path and ICRs of the shipped run."""
-    data = shipped_data()
-    run = odometry.Run.read(data / "runs/demo")
-    classifier = terrain.train(data / "patches").classifier
-    sets = run.folder / "parameters.toml"
-    seen = terrain.run_odometry(run, model=classifier, parameters=sets)
-    blind = terrain.run_odometry(run, parameters=sets)
+def first_page(file: Path, frames: Path, seen: terrain.RunResult, blind: terrain.RunResult) -> None:
+    """Region ahead on the frame of a real robot; path and ICRs of the demo."""
 
     def draw(figure: Figure) -> None:
         draw_frame(figure.add_axes((0.0, 0.485, 1.0, 0.515)), frames)
@@ -187,7 +182,10 @@ def main() -> None:
     if data is None:
         print("TERRAIN_ODOMETRY_DATA is not set: first_page.jpg needs its folder camera-frames")
         return
-    first_page(out / "first_page.jpg", Path(data) / "camera-frames/husky")
+    with tempfile.TemporaryDirectory() as folder:
+        results, _ = terrain.run_demo(folder)
+    frames = Path(data) / "camera-frames/husky"
+    first_page(out / "first_page.jpg", frames, results[WITH], results[WITHOUT])
 
 
 if __name__ == "__main__":

@@ -6,11 +6,13 @@ import subprocess
 import sys
 import tomllib
 from pathlib import Path
+from runpy import run_path
 
 import pytest
 import yaml
 
 from terrain.demo import WITH, WITHOUT, run_demo
+from terrain.run_result import RunResult
 
 ROOT = Path(__file__).parents[1]
 PICTURES = ROOT / "notebooks/pictures"
@@ -46,9 +48,13 @@ DEMO = {
 }
 
 
-def test_the_figures_of_the_demo(tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, RunResult]:
+    return run_demo(tmp_path_factory.mktemp("demo"))[0]
+
+
+def test_the_figures_of_the_demo(results: dict[str, RunResult]) -> None:
     """Those of the first page are those that the demo gives."""
-    results, _ = run_demo(tmp_path)
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| (.+?) \| ([\d.]+) \| ([\d.]+) \|$", text, flags=re.MULTILINE)
     assert [name for name, *_ in rows] == list(DEMO)
@@ -59,10 +65,8 @@ def test_the_figures_of_the_demo(tmp_path: Path) -> None:
         assert float(degrees) == pytest.approx(score.mean_rotation_deg_per_m, rel=0.02, abs=5e-3)
 
 
-def draw(out: Path, data: str | None) -> str:
+def draw_without_data(out: Path) -> str:
     environment = {name: value for name, value in os.environ.items() if "_DATA" not in name}
-    if data is not None:
-        environment["TERRAIN_ODOMETRY_DATA"] = data
     command = [sys.executable, str(ROOT / "notebooks/pictures.py"), "--out", str(out)]
     return subprocess.run(
         command, env=environment, cwd=ROOT, check=True, capture_output=True, text=True
@@ -71,17 +75,20 @@ def draw(out: Path, data: str | None) -> str:
 
 def test_the_command_without_reference_data(tmp_path: Path) -> None:
     """It makes what it can, says what is missing, and gives the same bytes again."""
-    assert "first_page.jpg needs" in draw(tmp_path, None)
+    assert "first_page.jpg needs" in draw_without_data(tmp_path)
     first = (tmp_path / "frame.png").read_bytes()
-    draw(tmp_path, None)
+    draw_without_data(tmp_path)
     assert (tmp_path / "frame.png").read_bytes() == first
     assert [file.name for file in tmp_path.iterdir()] == ["frame.png"]
 
 
 @pytest.mark.skipif("TERRAIN_ODOMETRY_DATA" not in os.environ, reason="needs the reference data")
-def test_the_command_with_reference_data(tmp_path: Path) -> None:
-    draw(tmp_path, os.environ["TERRAIN_ODOMETRY_DATA"])
-    assert (tmp_path / "first_page.jpg").stat().st_size > 100_000
+def test_the_picture_of_the_first_page(tmp_path: Path, results: dict[str, RunResult]) -> None:
+    first_page = run_path(str(ROOT / "notebooks/pictures.py"))["first_page"]
+    frames = Path(os.environ["TERRAIN_ODOMETRY_DATA"]) / "camera-frames/husky"
+    first_page(tmp_path / "a.jpg", frames, results[WITH], results[WITHOUT])
+    size = (tmp_path / "a.jpg").stat().st_size
+    assert size == pytest.approx((PICTURES / "first_page.jpg").stat().st_size, rel=0.05)
 
 
 def test_the_citation_is_of_this_version() -> None:
