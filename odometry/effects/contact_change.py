@@ -71,6 +71,11 @@ class ContactChange(MotionEffect):
             np.array([0.2, height / 2, half_length / 4, half_length / 5, 0.03]),
         )
 
+    def is_meant(self, values: FloatArray) -> bool:
+        """Not at an end of what was searched, but for smooth contacts and a mass at the terrain."""
+        lows, highs = np.array([(p.low, p.high) for p in self.parameters]).T
+        return bool((values < highs).all() and (values > lows)[[0, 2, 3]].all())
+
     def balance_values(self, values: FloatArray, base: Base, scale: float = 1.0) -> FloatArray:
         """Parameters of `Contact`; `scale` is that of the speeds."""
         mu, height, half_length, x_cm, slip_scale = values

@@ -17,7 +17,7 @@ from odometry.gap.evenness import unevenness
 from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitted, Fitter
 from odometry.gap.search import Search
-from odometry.gap.verdict import is_even, is_special
+from odometry.gap.verdict import is_even, is_meant, is_special
 
 PROMISING = 2  # smooth functions that are fitted in full
 
@@ -35,7 +35,7 @@ def of_their_form(search: Search, found: Explanation, smooth: Sequence[Residual]
         place = names.index(effect)
         instead = smooth_in_place(search.fitter, alone, place, smooth, search.config)
         of = unevenness(search.fitter, found.fitted, found.effects.index(effect))
-        reason = is_special(instead) or is_even(of, search.config)
+        reason = is_special(instead) or is_even(of, search.config) or is_meant(alone.effects[place])
         if not reason:
             continue
         search.refuse(effect, reason)

@@ -39,11 +39,18 @@ class Refusal:
 def is_the_effect(fit: Fitted, config: GapConfig) -> str:
     """Whether the last effect of a fit is what its name says, and is known to be there."""
     added = fit.effects[-1]
-    if not added.effect.is_meant(added.values):
-        return f"its values ({_words(added)}) are not what the name says"
+    if reason := is_meant(added):
+        return reason
     if not is_there(fit, config):
         return f"{added.effect.name} cannot be told from none"
     return within_bounds(fit, config)
+
+
+def is_meant(added: Added) -> str:
+    """Whether the values of an effect are what its name says, beside all others too."""
+    if added.effect.is_meant(added.values):
+        return ""
+    return f"its values ({_words(added)}) are not what the name says"
 
 
 def is_there(fit: Fitted, config: GapConfig) -> bool:

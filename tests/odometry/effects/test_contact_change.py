@@ -81,3 +81,15 @@ def test_what_it_remembers_is_what_it_computes(bench, effect):
             np.testing.assert_array_equal(
                 change(bench, used, inputs), change(bench, effect(), inputs)
             )
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "meant"),
+    [(0, 2.0, False), (0, 0.1, False), (1, 0.0, True), (2, 2.0, False), (3, -0.3, False)],
+)
+def test_values_at_an_end_of_the_search_are_no_robot(place, value, meant):
+    """But a mass at the height of the terrain, and contacts without slip scale, are near some."""
+    assert SlopeByContact().is_meant(VALUES)
+    changed = np.where(np.arange(5) == place, value, VALUES)
+    assert SlopeByContact().is_meant(changed) == meant
+    assert SlopeByContact().is_meant(np.array([0.5, 0.2, 0.3, 0.02, 1e-3]))
