@@ -27,8 +27,8 @@ MOST_BURSTS = 2  # effects: each tread may have its own
 def in_bursts(search: Search, found: Explanation) -> Explanation:
     """Effects in bursts alone, added in turn while they earn a name.
 
-    No steps where none does, or where they leave what is not noise: as many events as it takes
-    close much of anything.
+    No steps where none does, or where they leave what is not noise and do not close nearly all: as
+    many events as it takes close much of anything.
     """
     nothing = found = replace(found, steps=())
     while len(found.steps) < MOST_BURSTS and search.has_excess(found.fitted):
@@ -44,7 +44,7 @@ def in_bursts(search: Search, found: Explanation) -> Explanation:
     excess = max(nothing.fitted.cost - search.fitter.measured.expected, 1.0)
     closed = (nothing.fitted.cost - found.fitted.cost) / excess
     spread = search.fitter.spread(found.fitted)
-    reason = leaves_noise(spread, closed, search.config.left_over, float("inf"))
+    reason = leaves_noise(spread, closed, search.config.left_over, search.config.bursts_closed)
     for effect in found.effects if reason else ():
         search.refuse(effect, reason)
     return nothing if reason else found

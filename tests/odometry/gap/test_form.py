@@ -6,12 +6,16 @@ import numpy as np
 import pytest
 
 from odometry.effects.corrected import Added
+from odometry.effects.in_course import in_course
 from odometry.effects.slope_contact import SlopeByContact
+from odometry.effects.time_course import InBursts
+from odometry.effects.traction_loss import TractionLoss
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import Judged
 from odometry.gap.evenness import Unevenness
 from odometry.gap.explanation import Explanation
 from odometry.gap.form import of_their_form
+from odometry.gap.unnamed import in_bursts
 
 
 @pytest.mark.parametrize(("mu", "stands"), [(0.6, True), (2.0, False)])
@@ -26,4 +30,26 @@ def test_what_other_effects_have_bent_is_asked_again(monkeypatch, mu, stands):
         fitter=None, config=GapConfig(), refuse=lambda *reason: refused.append(reason)
     )
     assert bool(of_their_form(search, found, ()).steps) == stands
+    assert bool(refused) != stands
+
+
+@pytest.mark.parametrize(("cost", "stands"), [(1500.0, True), (2500.0, False)])
+def test_events_that_leave_more_than_noise_must_close_nearly_all(monkeypatch, cost, stands):
+    """Of an excess of 10 000, 95 or 85 %."""
+    effect = in_course(TractionLoss(), InBursts((((1.0, 2.0),),)))
+    start = SimpleNamespace(cost=11_000.0, effects=())
+    fitted = SimpleNamespace(cost=cost, effects=(Added(effect, np.array([0.5, 0.5])),))
+    step = Judged(effect, fitted, 9000.0, 8000.0, 7000.0, 0.1)
+    monkeypatch.setattr("odometry.gap.unnamed.burst_effects", lambda *_: (effect,))
+    monkeypatch.setattr("odometry.gap.unnamed.judge", lambda *args: [step for _ in args[2]])
+    refused = []
+    search = SimpleNamespace(
+        config=GapConfig(),
+        fitter=SimpleNamespace(measured=SimpleNamespace(expected=1000.0), spread=lambda _: 5.0),
+        has_excess=lambda _: True,
+        best_earner=lambda judged, _: next(iter(judged), None),
+        progress=None,
+        refuse=lambda *reason: refused.append(reason),
+    )
+    assert bool(in_bursts(search, Explanation(start, (), ())).steps) == stands
     assert bool(refused) != stands
