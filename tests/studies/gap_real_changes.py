@@ -13,6 +13,7 @@ SCALE = 1.05
 TURNED_RAD = 0.06
 LAG_S = 0.3
 TWICE = 2.0  # the noise floor: a smaller gap need not be named
+ALIKE = 1.5  # times the floor: halves that differ by more without any change hide it
 
 
 def changed(runs: Mapping[str, Run]) -> list[Case]:
@@ -77,14 +78,25 @@ CHANGES: Mapping[str, tuple[str, Callable[[Run], Run]]] = {
 
 
 def count_of_changes(rows: Sequence[dict[str, str]]) -> list[str]:
-    """How often each is named, where the gap is twice the floor and of all."""
+    """How often each is named, where the gap is twice the floor and of all.
+
+    And over all changes at twice the floor, of recordings whose halves are alike without a change.
+    """
     judged = [r for r in rows if r["kind"] == "changed" and r["verdict"] != "not judged"]
     lines = []
     for expected in dict.fromkeys(row["expected"] for row in judged):
         own = [row for row in judged if row["expected"] == expected]
         wide = [row for row in own if float(row["ratio"]) >= TWICE]
         lines.append(f"{expected}: {_scores(wide)} at {TWICE:g} times the floor; {_scores(own)}")
-    return lines
+    own = {r["case"].removesuffix(" forward"): r["ratio"] for r in rows if r["kind"] == "control"}
+    alike = {name for name, ratio in own.items() if ratio and float(ratio) < ALIKE}
+    wide = [r for r in judged if float(r["ratio"]) >= TWICE]
+    told = [r for r in wide if r["case"].split()[-1] in alike]
+    return [
+        *lines,
+        f"all: {_scores(wide)} at {TWICE:g} times the floor; {_scores(told)} of recordings whose "
+        f"halves differ by less than {ALIKE:g} times the floor without a change",
+    ]
 
 
 def score_of(row: Mapping[str, str]) -> str:
