@@ -21,11 +21,14 @@ class Manifest:
         By resolved path.
     metres_per_pixel : float or None
         The scale of all photographs, where a column `metres_per_pixel` states it.
+    runs : tuple of str
+        Recordings that patches were cut from, where a column `run` names them.
     """
 
     file: Path
     photo_ids: Mapping[Path, str]
     metres_per_pixel: float | None
+    runs: tuple[str, ...] = ()
 
 
 def read_manifest(root: Path) -> Manifest | None:
@@ -40,7 +43,8 @@ def read_manifest(root: Path) -> Manifest | None:
     for file in (root / "manifest.csv", root.parent / "manifest.csv"):
         if file.exists() and (table := _columns(file)):
             columns, lines = table
-            return Manifest(file, _photo_ids(file, columns, lines), _scale(file, columns))
+            runs = tuple(sorted({*columns.get("run", ())} - {""}))
+            return Manifest(file, _photo_ids(file, columns, lines), _scale(file, columns), runs)
     return None
 
 

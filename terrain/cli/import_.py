@@ -161,11 +161,13 @@ def _value(name: str, said: Any) -> Any:
 
 
 def _list(bags: tuple[Path, ...]) -> None:
+    from odometry.bags.errors import BagError
     from odometry.bags.guess import best
     from odometry.bags.message_kinds import NO_WHEELS
     from odometry.bags.message_types import MessageTypes
-    from odometry.bags.plan import NO_SPEEDS
+    from odometry.bags.plan import NO_SPEEDS, make_plan
     from odometry.bags.topic_list import topic_lines
+    from odometry.bags.wishes import Wishes
 
     found = _surveyed(bags, MessageTypes())
     for line in topic_lines(found):
@@ -175,6 +177,10 @@ def _list(bags: tuple[Path, ...]) -> None:
     if all(topic.message_type in NO_WHEELS for topic in found.topics.values()):
         click.echo(f"Note: {NO_SPEEDS}")
         return
+    try:
+        make_plan(found, Wishes())
+    except BagError as problem:
+        click.echo(f"Note: {problem}")
     named = " ".join(map(str, bags))
     wheels = "" if best(found.topics, "wheels") else " --wheels TOPIC"
     click.echo(f"Next: terrain-odometry import {named} --out {_run_name(bags[0])}{wheels}")

@@ -76,6 +76,7 @@ def train(
     Example:
       terrain-odometry train my_photos --out terrain.model --metres-per-pixel 0.002
     """
+    from terrain.classification.manifest import read_manifest
     from terrain.classification.persistence import is_model
     from terrain.classification.training import train as train_classifier
     from terrain.cli.outputs import claim_file
@@ -105,6 +106,13 @@ def train(
     if colour and not classifier.colour_:
         click.echo(
             "Colour is left out: patches are grey, or most of a class are, or the preset is.",
+            err=True,
+        )
+    if (manifest := read_manifest(patches)) is not None and manifest.runs:
+        click.echo(
+            f"Note: the patches are of {', '.join(manifest.runs)}: what is held out are other "
+            "places of the same recordings. The same terrain looks different elsewhere: label "
+            "recordings of several sites, and judge the model on one that is left out (classify)",
             err=True,
         )
     classifier.save(out, made.to_table())

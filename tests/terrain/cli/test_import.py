@@ -47,12 +47,15 @@ def test_a_bag_becomes_a_run_that_is_checked(bag, tmp_path):
 def test_topics_are_listed_with_what_is_guessed(bag):
     answer = call(bag, "--list")
     assert answer.exit_code == 0
-    lines = {line.split("/", 1)[1].split()[0]: line for line in answer.stdout.splitlines()[:-1]}
+    *listed, note, _ = answer.stdout.splitlines()
+    lines = {line.split("/", 1)[1].split()[0]: line for line in listed}
     assert lines["joint_states"].startswith("*")
     assert "20 Hz" in lines["joint_states"]
     assert "600" in lines["joint_states"]
     assert "reference: poses" in lines["mocap/pose"]
     assert not lines["odom"].startswith("*")
+    assert note.startswith("Note: ")
+    assert "add --wheel-radius METRES. To measure it" in note
     assert answer.stdout.splitlines()[-1].startswith("Next: terrain-odometry import ")
 
 

@@ -82,6 +82,10 @@ def test_train_reads_the_folder_by_place(across_run, elsewhere, tmp_path):
     assert len(photo_ids) == len({photo_id for _, photo_id in photo_ids})
     answer = CliRunner().invoke(train, [str(folder), "--out", str(tmp_path / "a.model")])
     assert answer.exit_code == 0, answer.output
+    assert (
+        f"Note: the patches are of {', '.join(sorted(run.name for run in runs))}: what is held"
+        in (answer.output)
+    )
     model = TerrainClassifier.load(tmp_path / "a.model")
     assert model.classes_.tolist() == ["boards", "gravel"]
     rows = rows_of(folder)
