@@ -1,7 +1,7 @@
 """Where the commands write: claimed before any work, with what made it."""
 
 import shlex
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,11 +11,13 @@ from click.core import ParameterSource
 from terrain.cli.recordings import checks_made
 
 if TYPE_CHECKING:
+    from odometry.outputs.asked import Asked
     from odometry.outputs.inputs import Input
     from odometry.outputs.made import Made
     from odometry.outputs.output_folder import OutputFolder
 
 OUTPUTS = ("out", "picture", "ros")  # options that name what a command writes
+NO_MATTER = (*OUTPUTS, "processes", "scheduler")  # where it is written, and who computes it
 
 
 def claim_folder(out: Path, *, reads_images: bool = False) -> "OutputFolder":
@@ -27,10 +29,17 @@ def claim_folder(out: Path, *, reads_images: bool = False) -> "OutputFolder":
         If `--out` is or holds an input, or holds what another program or command made, or an
         input is unfinished.
     """
-    from odometry.errors import OutputError
     from odometry.outputs.output_folder import claim_folder as claim
 
     inputs = _inputs(click.get_current_context())
+    require_apart(out, inputs)
+    return claim(out, made_by(inputs, reads_images=reads_images))
+
+
+def require_apart(out: Path, inputs: "Iterable[Input]") -> None:
+    """Raise OutputError if `--out` is or holds an input."""
+    from odometry.errors import OutputError
+
     place = out.resolve()
     for one in inputs:
         folders = {file.parent.resolve() for file in (*one.files, *one.images, one.path)}
@@ -39,7 +48,6 @@ def claim_folder(out: Path, *, reads_images: bool = False) -> "OutputFolder":
             raise OutputError(
                 f"--out {out} is or holds the input {one.path}; choose another folder"
             )
-    return claim(out, made_by(inputs, reads_images=reads_images))
 
 
 def claim_file(out: Path, is_own: Callable[[Path], bool]) -> "Made":
@@ -90,8 +98,9 @@ def about(made: "Made", folder: Path | None = None) -> dict[str, Any]:
     folder : Path, optional
         The one run of the result; else it is of all that were read.
     """
-    checks = [one.to_table() for one in checks_made() if folder in (None, one.folder)]
-    return {"made": made.to_table(), "check": checks}
+    from odometry.outputs.about import about_result
+
+    return about_result(made, [one for one in checks_made() if folder in (None, one.folder)])
 
 
 def comment(made: "Made") -> str:
@@ -110,14 +119,27 @@ def made_by(inputs: "list[Input]", *, reads_images: bool = False) -> "Made":
     """Verb, command and settings of the command that runs, and the sums of its inputs."""
     from odometry.outputs.made import Made, installed_packages
 
-    context = click.get_current_context()
-    settings = {
-        parameter.name: [value for value in _values(context, parameter) if _path(value) is None]
-        for parameter in context.command.params
-        if parameter.name is not None and parameter.name not in OUTPUTS
-    }
+    said = asked(click.get_current_context())
     sums = [(i.role, str(i.path), i.sha256(with_images=reads_images)) for i in inputs]
-    return Made(_verb(context), _command(context), settings, tuple(sums), installed_packages())
+    return Made(said.verb, said.command, said.settings, tuple(sums), installed_packages())
+
+
+def asked(context: click.Context) -> "Asked":
+    """Verb, command, settings and named inputs of a command."""
+    from odometry.outputs.asked import Asked
+
+    parameters = [p for p in context.command.params if p.name not in NO_MATTER]
+    settings = {
+        str(parameter.name): [v for v in _values(context, parameter) if _path(v) is None]
+        for parameter in parameters
+    }
+    inputs = [
+        (_role(parameter), path)
+        for parameter in parameters
+        for path in map(_path, _values(context, parameter))
+        if path is not None
+    ]
+    return Asked(_verb(context), _command(context), settings, tuple(inputs), Path.cwd())
 
 
 def _verb(context: click.Context) -> str:
@@ -129,16 +151,10 @@ def _inputs(context: click.Context) -> "list[Input]":
     from odometry.outputs.inputs import Input
     from odometry.outputs.manifest import check_finished
 
-    inputs = []
-    for parameter in context.command.params:
-        if parameter.name in OUTPUTS:
-            continue
-        for value in _values(context, parameter):
-            path = _path(value)
-            if path is not None:
-                check_finished(path)
-                inputs.append(Input.of(_role(parameter), path))
-    return inputs
+    named = asked(context).inputs
+    for _, path in named:
+        check_finished(path)
+    return [Input.of(role, path) for role, path in named]
 
 
 def _path(value: object) -> Path | None:
@@ -168,7 +184,7 @@ def _command(context: click.Context) -> str:
     words = ["terrain-odometry", _verb(context)]
     for parameter in context.command.params:
         given = context.get_parameter_source(str(parameter.name)) == ParameterSource.COMMANDLINE
-        if given and parameter.name not in OUTPUTS:
+        if given and parameter.name not in NO_MATTER:
             words += _words(parameter, _values(context, parameter))
     return shlex.join(words)
 

@@ -71,17 +71,9 @@ def read_run(folder: Path, span: "Span", *, images: bool = False) -> "Run":
         Whether the camera and its images are checked as well.
     """
     from odometry.checks.finding import Level
-    from odometry.checks.recording import check_recording
-    from odometry.errors import RunFolderError
-    from odometry.run import Run
-    from odometry.run_span import cut_run
-    from terrain.checks.recording import check_run
+    from terrain.checks.checked_run import checked_run
 
-    run = cut_run(Run.read(folder), span)
-    report = check_run(run) if images else check_recording(run)
-    refused = report.at(Level.REFUSED)
-    if refused:
-        raise RunFolderError(f"{folder}: {refused[0].line.removeprefix('refused: ')}")
+    run, report = checked_run(folder, span, images=images)
     for finding in report.findings:
         said = "Warning" if finding.level is Level.WARNING else "Note"
         click.echo(f"{said}: {folder}: {finding.line.partition(': ')[2]}", err=True)

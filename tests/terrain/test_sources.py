@@ -10,7 +10,7 @@ import pytest
 
 from odometry.errors import ConfigError, RunFolderError
 from odometry.pipeline import ConstantTerrain
-from terrain.cli import run as cli_run
+from terrain.cli import run_options
 from terrain.main_job import run_odometry
 from terrain.report.page import write_report
 from terrain.results import write_results
@@ -153,4 +153,4 @@ def test_the_default_source():
 
 
 def test_the_command_offers_every_source():
-    assert cli_run.SOURCES == SOURCES
+    assert run_options.SOURCES == SOURCES

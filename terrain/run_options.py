@@ -1,0 +1,85 @@
+"""What is asked of a replay, beside the run itself."""
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from odometry.run import Run
+from odometry.run_span import Span
+from terrain.config import Config
+from terrain.main_job import run_odometry
+from terrain.run_result import RunResult
+from terrain.sources import source_name
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """The options of `run`, for one run or for many.
+
+    Attributes
+    ----------
+    config : Config
+    model, parameters, modes : Path or None
+        Files, see `run_odometry`.
+    vision : bool
+    terrain : str or None
+    source : str or None
+    preset : str or None
+    span : Span
+        What of each run is replayed.
+    """
+
+    config: Config
+    model: Path | None = None
+    parameters: Path | None = None
+    modes: Path | None = None
+    vision: bool = True
+    terrain: str | None = None
+    source: str | None = None
+    preset: str | None = None
+    span: Span = field(default_factory=Span)
+
+    @property
+    def told_by(self) -> str:
+        """What tells the terrain."""
+        return source_name(self.source, vision=self.vision, has_model=self.model is not None)
+
+    @property
+    def reads_images(self) -> bool:
+        """Whether images of the runs are opened."""
+        return self.told_by == "camera"
+
+    @property
+    def wants_images(self) -> bool:
+        """Whether they are opened, or would be if there were a model."""
+        return self.reads_images or (self.source is None and self.vision)
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """What has to be there beside the runs."""
+        return tuple(file for file in (self.model, self.parameters, self.modes) if file)
+
+    def absolute(self) -> "RunOptions":
+        """The same for a process that works in another folder."""
+        files = {name: getattr(self, name) for name in ("model", "parameters", "modes")}
+        return replace(self, **{name: file and file.absolute() for name, file in files.items()})
+
+    def replay(self, run: Run, *, show_progress: bool = False) -> RunResult:
+        """Replay a run with these options.
+
+        Raises
+        ------
+        OdometryError
+            As `run_odometry`.
+        """
+        return run_odometry(
+            run,
+            model=self.model,
+            parameters=self.parameters,
+            vision=self.vision,
+            terrain=self.terrain,
+            config=self.config,
+            source=self.told_by,
+            modes=self.modes,
+            preset=self.preset,
+            show_progress=show_progress,
+        )
