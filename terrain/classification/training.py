@@ -45,6 +45,7 @@ def train(
     colour: bool = False,
     k: int | None = None,
     rejected_share: float = 0.05,
+    processes: int = 1,
     show_progress: bool = False,
 ) -> Training:
     """Cut the photographs of a folder to patches of one size and fit a classifier.
@@ -65,6 +66,8 @@ def train(
         Neighbours that vote; by default chosen in cross-validation.
     rejected_share : float
         Share of known patches that may be called unknown.
+    processes : int
+        That share the patches; -1 takes all cores. What is learned is the same.
     show_progress : bool
 
     Raises
@@ -98,5 +101,6 @@ def train(
         patches.groups,
         progress=show_progress,
         trained_on=patches.trained_on,
+        processes=processes,
     )
     return Training(classifier, patches)

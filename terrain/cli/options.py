@@ -20,6 +20,16 @@ MODEL_NAMES = (
 OUTPUT = click.Path(path_type=Path)
 
 
+def processes_option(command: Callable[..., None]) -> Callable[..., None]:
+    """Add --processes, on which no result depends."""
+    return click.option(
+        "--processes",
+        type=click.IntRange(min=1),
+        metavar="N",
+        help="How many at a time.  [default: one for each core]",
+    )(command)
+
+
 class RunFolder(click.Path):
     """A run folder; a bag is told how to become one."""
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import OUTPUT, Positive
+from terrain.cli.options import OUTPUT, Positive, processes_option
 
 if TYPE_CHECKING:
     from terrain.classification.classifier import TerrainClassifier
@@ -55,6 +55,7 @@ if TYPE_CHECKING:
     "a name.",
 )
 @click.option("--colour", is_flag=True, help="Use colour: for one camera in training and in use.")
+@processes_option
 def train(
     *,
     patches: Path,
@@ -65,6 +66,7 @@ def train(
     colour: bool,
     k: int | None,
     reject: float,
+    processes: int | None,
 ) -> None:
     """Train a terrain classifier on PATCHES/<terrain>/*.jpg or *.png.
 
@@ -90,6 +92,7 @@ def train(
         colour=colour,
         k=k,
         rejected_share=reject,
+        processes=processes or -1,
         show_progress=True,
     )
     classifier, loaded = training.classifier, training.patches

@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from joblib.externals.loky import get_reusable_executor
 
 from terrain.classification.classifier import TerrainClassifier
 from terrain.cli.classify import classify
@@ -33,10 +34,20 @@ def photos(tmp_path_factory, training_patches):
 @pytest.fixture(scope="module")
 def trained(photos, tmp_path_factory):
     model = tmp_path_factory.mktemp("models") / "ground.model"
-    options = ["--patch-size", "32", "--metres-per-pixel", "0.006"]
-    answer = CliRunner().invoke(train, [str(photos), "--out", str(model), *options])
+    answer = trained_by(photos, model, 1)
     assert answer.exit_code == 0, answer.output
     return model, answer
+
+
+def trained_by(photos, model, processes):
+    options = ["--patch-size", "32", "--metres-per-pixel", "0.006", "--processes", str(processes)]
+    return CliRunner().invoke(train, [str(photos), "--out", str(model), *options])
+
+
+def test_two_processes_train_the_same_file(trained, photos, tmp_path):
+    assert trained_by(photos, tmp_path / "ground.model", 2).exit_code == 0
+    get_reusable_executor().shutdown(wait=True)
+    assert (tmp_path / "ground.model").read_bytes() == trained[0].read_bytes()
 
 
 def test_train_prints_confusion_k_and_threshold_and_what_comes_next(trained, photos):
