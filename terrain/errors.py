@@ -39,3 +39,7 @@ class SynthesisError(TerrainError):
 
 class ResultError(TerrainError):
     """A folder does not hold the result of a finished run."""
+
+
+class BatchError(TerrainError):
+    """Many runs cannot be replayed together, or not where they were sent."""

@@ -37,6 +37,16 @@ def remove_stages(folder: Path) -> None:
         shutil.rmtree(stage, ignore_errors=True)
 
 
+def remove_foreign_stages(folder: Path) -> None:
+    """Remove every temporary folder: for an owner who knows that no process writes there.
+
+    A process number says nothing of a process of another machine.
+    """
+    for stage in folder.glob(f".{STAGE}.*.part"):
+        if stage.is_dir() and not stage.is_symlink():
+            shutil.rmtree(stage, ignore_errors=True)
+
+
 def remove_temporaries(folder: Path, is_own: Callable[[str], bool]) -> None:
     """Remove temporary files in a folder, of processes that are gone and files that are ours.
 

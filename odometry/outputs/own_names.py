@@ -39,6 +39,7 @@ NAMES: dict[str, tuple[str, ...]] = {
         *(f"figures/{name}_*.png" for name in ("errors", "speed_plane", "horizons", "rotation")),
         "figures/training_horizons_*.png",
     ),
+    "batch": ("batch.csv", "learned.toml", "report.html", "times.csv"),
     "modes": (*MODES_NAMES, "runs.csv", *(f"*/{name}" for name in MODES_NAMES)),
     "export": (
         *("ros.yaml", "results.mcap", "terrain.geojson", "terrain_cells.csv", "*.parquet"),

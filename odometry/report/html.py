@@ -1,8 +1,8 @@
 """One self-contained page: titled sections of text, tables and figures."""
 
 import base64
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
 
@@ -73,16 +73,20 @@ class Listing:
 
 @dataclass(frozen=True)
 class Grid:
-    """A table of plain text; the first column names its row."""
+    """A table of plain text; the first column names its row.
+
+    `links` are addresses of pages by what stands in the first column.
+    """
 
     header: Sequence[str]
     rows: Sequence[Sequence[str]]
     caption: str = ""
+    links: Mapping[str, str] = field(default_factory=dict)
 
     def html(self) -> str:
         """The element."""
         head = "".join(f'<th scope="col">{escape(name)}</th>' for name in self.header)
-        body = "".join(_row(row) for row in self.rows)
+        body = "".join(_row(row, self.links) for row in self.rows)
         caption = f"<caption>{escape(self.caption)}</caption>" if self.caption else ""
         wide = ' class="wide"' if len(self.header) > MANY_COLUMNS else ""
         return (
@@ -168,10 +172,13 @@ def write_page(file: Path, title: str, lead: str, sections: Sequence[Section]) -
     return file
 
 
-def _row(row: Sequence[str]) -> str:
+def _row(row: Sequence[str], links: Mapping[str, str]) -> str:
     first, *others = row
+    name = escape(first)
+    if first in links:
+        name = f'<a href="{escape(links[first])}">{name}</a>'
     cells = "".join(f"<td>{escape(cell)}</td>" for cell in others)
-    return f'<tr><th scope="row">{escape(first)}</th>{cells}</tr>'
+    return f'<tr><th scope="row">{name}</th>{cells}</tr>'
 
 
 def _width_px(png: bytes) -> int:

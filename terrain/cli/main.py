@@ -19,6 +19,7 @@ VERBS = {
     "train": "Train a terrain classifier on labelled patches.",
     "classify": "Name the terrain of images.",
     "run": "Replay a run: the main job.",
+    "batch": "Replay many runs, on the cores of one machine or of many.",
     "evaluate": "Show the errors of finished runs side by side.",
     "synthesise": "Make a run folder with images, its patches and parameters.",
     "simulate": "Make a run folder from a simulated skid-steer robot.",

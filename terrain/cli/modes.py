@@ -121,12 +121,13 @@ def _several(
     from odometry.modes.files import write_modes, write_runs
     from odometry.modes.words import sentences
     from odometry.report.modes_page import write_modes_report
+    from terrain.batch.names import folder_names
     from terrain.cli.outputs import about
 
     rows: dict[str, Followed | str] = {}
     out = output.out
     with output.writing() as part:
-        for name, folder in zip(_names(folders), folders, strict=True):
+        for name, folder in zip(folder_names(folders), folders, strict=True):
             try:
                 result = _followed(folder, mode_set, config, seen=None, span=span)
             except OdometryError as error:
@@ -165,14 +166,3 @@ def _followed(
     if seen is not None and not grounds:
         raise RunFolderError(f"{seen}: vision named no terrain that {folder} gets to")
     return followed(run, mode_set, config, grounds, show_progress=True)
-
-
-def _names(folders: tuple[Path, ...]) -> list[str]:
-    """Names of the folders for their results; one that comes again gets a number."""
-    names: list[str] = []
-    for folder in folders:
-        name, count = folder.resolve().name, 1
-        while (name if count == 1 else f"{name}_{count}") in names:
-            count += 1
-        names.append(name if count == 1 else f"{name}_{count}")
-    return names

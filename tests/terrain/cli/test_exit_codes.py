@@ -17,6 +17,7 @@ NEEDED = {
     "camera": ("RUN",),
     "train": ("PATCHES",),
     "run": ("RUN",),
+    "batch": ("RUN",),
     "synthesise": ("--vehicle", "VEHICLE"),
     "simulate": ("--vehicle", "VEHICLE"),
     "identify": ("RUN", "--model", "icr"),

@@ -11,8 +11,8 @@ from click.testing import CliRunner
 
 from terrain.cli.main import cli, main
 
-VERBS = ("import", "check", "camera", "label", "train", "classify", "run", "evaluate", "synthesise")
-VERBS += ("simulate", "identify", "compare", "gap")
+VERBS = ("import", "check", "camera", "label", "train", "classify", "run", "batch", "evaluate")
+VERBS += ("synthesise", "simulate", "identify", "compare", "gap")
 VERBS += ("identify-modes", "modes", "export", "demo")
 SLOW = ("numpy", "scipy", "sklearn", "skimage", "cv2", "matplotlib", "filterpy", "pandas")
 

@@ -17,7 +17,7 @@ from terrain.cli.outputs import comment
 from terrain.cli.recordings import CHECKS, read_runs
 from terrain.cli.run import run
 
-VERBS = ("run", "identify", "compare", "gap", "identify_modes", "modes")
+VERBS = ("run", "batch", "identify", "compare", "gap", "identify_modes", "modes")
 
 
 @pytest.mark.parametrize("name", VERBS)

@@ -1,0 +1,147 @@
+"""Many runs replayed into one folder: a folder each, one table and one page over all of them."""
+
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from tqdm import tqdm
+
+from odometry.outputs.asked import Asked
+from odometry.outputs.leftovers import stage_name
+from odometry.outputs.made import Made, installed_packages
+from odometry.outputs.manifest import FINISHED, UNFINISHED, Manifest
+from odometry.outputs.output_folder import claim_folder
+from odometry.parameters import ParameterSet
+from terrain.batch.cluster import cluster_outcomes
+from terrain.batch.job import FAILED, KEPT, Job, Outcome
+from terrain.batch.learned import LEARNED, Learned, merge, write_learned
+from terrain.batch.local import local_outcomes
+from terrain.batch.page import write_batch_page
+from terrain.batch.row import Row, row_of, write_rows
+
+TABLE, PAGE, TIMES = "batch.csv", "report.html", "times.csv"
+FILES = (TABLE, LEARNED, PAGE, TIMES)
+
+
+@dataclass(frozen=True)
+class Batch:
+    """What came of many runs.
+
+    Attributes
+    ----------
+    rows : tuple of Row
+        In the order in which the runs were given.
+    outcomes : tuple of Outcome
+        In the same order.
+    learned : Learned
+    wall_s : float
+        What the jobs took together, all processes at once.
+    """
+
+    rows: tuple[Row, ...]
+    outcomes: tuple[Outcome, ...]
+    learned: Learned
+    wall_s: float
+
+
+def run_batch(
+    jobs: Sequence[Job],
+    asked: Asked,
+    out: Path,
+    before: ParameterSet,
+    *,
+    processes: int,
+    scheduler: str | None = None,
+    show_progress: bool = False,
+) -> Batch:
+    """Replay many runs, and write batch.csv, report.html, learned.toml and times.csv beside them.
+
+    A run whose folder holds the same already is not replayed again: a batch that was stopped goes
+    on where it was. All files but times.csv are the same whoever computes them.
+
+    Parameters
+    ----------
+    jobs : sequence of Job
+        Their `out` are folders in `out`.
+    asked : Asked
+        The command that asks for all of them.
+    out : Path
+    before : ParameterSet
+        With which every run begins.
+    processes : int
+        Of this machine, where there is no scheduler.
+    scheduler : str, optional
+        Address of a Dask scheduler, whose workers do the jobs.
+    show_progress : bool
+
+    Raises
+    ------
+    OutputError
+        If `out` cannot be written to, or holds what another command made.
+    BatchError
+        If the cluster cannot do the jobs.
+    """
+    claim_folder(out, Made(asked.verb, "", {}, (), {}))
+    with _held(out) as found:
+        began_s = time.monotonic()
+        outcomes = (
+            local_outcomes(jobs, processes)
+            if scheduler is None
+            else cluster_outcomes(jobs, scheduler)
+        )
+        bar = tqdm(total=len(jobs), unit="run", disable=None if show_progress else True)
+        with bar, (out / TIMES).open("a", encoding="utf-8") as times:
+            if not times.tell():
+                times.write("run,state,wall_s,cpu_s\n")
+            for outcome in outcomes:
+                found[outcome.job.name] = outcome
+                if outcome.state != KEPT:
+                    times.write(_times_line(outcome))
+                    times.flush()
+                bar.update()
+        wall_s = time.monotonic() - began_s
+        ordered = [found[job.name] for job in jobs]
+        rows = [row_of(outcome) for outcome in ordered]
+        learned = merge(out, rows, before)
+        made = _made(asked, ordered)
+        write_rows(rows, out / TABLE)
+        has_learned = write_learned(learned, out / LEARNED, made.to_comment())
+        write_batch_page(rows, learned, out / PAGE)
+        files = tuple(name for name in FILES if name != LEARNED or has_learned)
+        Manifest(asked.verb, FINISHED, files, made.to_table()).write(out)
+    return Batch(tuple(rows), tuple(ordered), learned, wall_s)
+
+
+@contextmanager
+def _held(out: Path) -> Iterator[dict[str, Outcome]]:
+    """Mark a folder as unfinished and as ours while the runs are replayed; gives a place for them.
+
+    What is left by a failure says so, and the runs that are whole stay.
+    """
+    stage = out / stage_name()
+    stage.mkdir(parents=True)
+    found: dict[str, Outcome] = {}
+    try:
+        Manifest("batch", UNFINISHED, FILES).write(out)
+        yield found
+    except BaseException as error:
+        whole = sum(outcome.state != FAILED for outcome in found.values())
+        error.add_note(f"{whole} runs are whole in {out}; the same command does the others")
+        raise
+    finally:
+        stage.rmdir()
+
+
+def _made(asked: Asked, outcomes: Sequence[Outcome]) -> Made:
+    """What made the batch; the sums are those that the jobs found."""
+    sums = {(role, path): sha256 for of in outcomes for role, path, sha256 in of.sums}
+    inputs = tuple(
+        (role, str(path), sums.get((role, str(path)), "")) for role, path in asked.inputs
+    )
+    return Made(asked.verb, asked.command, asked.settings, inputs, installed_packages())
+
+
+def _times_line(of: Outcome) -> str:
+    return f"{of.job.name},{of.state},{of.wall_s:.3f},{of.cpu_s:.3f}\n"

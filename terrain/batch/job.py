@@ -1,0 +1,116 @@
+"""One run of many: replayed into its own folder, or kept where that holds the same already."""
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from odometry.errors import OdometryError
+from odometry.outputs.asked import Asked
+from odometry.outputs.made import Made
+from odometry.outputs.manifest import FINISHED, Manifest, check_finished, read_manifest
+from odometry.outputs.output_folder import claim_folder
+from terrain.checks.checked_run import checked_run
+from terrain.one_thread import one_thread
+from terrain.run_options import RunOptions
+from terrain.run_output import write_run
+
+VERB = "run"
+REPLAYED, KEPT, FAILED = "replayed", "kept", "failed"
+
+
+@dataclass(frozen=True)
+class Job:
+    """What a process needs to know to replay one run as `run` would.
+
+    Attributes
+    ----------
+    name : str
+        Of the result's folder; no other job of the batch has it.
+    folder, out : Path
+        The run and its results, as every process sees them.
+    asked : Asked
+        The command `run` that gives the same.
+    options : RunOptions
+        Its files as every process sees them.
+    """
+
+    name: str
+    folder: Path
+    out: Path
+    asked: Asked
+    options: RunOptions
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a job.
+
+    Attributes
+    ----------
+    job : Job
+    state : str
+        `replayed`, `kept` (it was done already, and the same), or `failed`.
+    said : str
+        Why it failed, or why an earlier result was replaced.
+    sums : tuple of (role, path, sha256)
+        Of its inputs, as in `Made`.
+    wall_s, cpu_s : float
+        What it took.
+    """
+
+    job: Job
+    state: str
+    said: str = ""
+    sums: tuple[tuple[str, str, str], ...] = ()
+    wall_s: float = 0.0
+    cpu_s: float = 0.0
+
+
+def run_job(job: Job) -> Outcome:
+    """Replay one run; whatever goes wrong is its outcome."""
+    wall_s, cpu_s = time.monotonic(), time.process_time()
+    made, state, said = None, REPLAYED, ""
+    try:
+        for _, path in job.asked.inputs:
+            check_finished(job.asked.where / path)
+        made = job.asked.made(with_images=job.options.reads_images)
+        earlier = read_manifest(job.out)
+        if earlier is not None and earlier.verb == VERB and _is_whole(earlier, job.out):
+            if earlier.made.get("identity") == made.identity:
+                return Outcome(job, KEPT, "", made.inputs)
+            said = what_differs(earlier.made, made)
+        with one_thread():
+            _replay(job, made)
+    except (OdometryError, OSError, MemoryError) as error:
+        state, said = FAILED, str(error) or type(error).__name__
+    except Exception as error:  # one run that finds a fault of ours must not end the others
+        state, said = FAILED, f"{type(error).__name__}: {error}"
+    took = time.monotonic() - wall_s, time.process_time() - cpu_s
+    return Outcome(job, state, " ".join(said.split()), made.inputs if made else (), *took)
+
+
+def _replay(job: Job, made: Made) -> None:
+    output = claim_folder(job.out, made)
+    run, report = checked_run(job.folder, job.options.span, images=job.options.reads_images)
+    write_run(job.options.replay(run), output, [report])
+
+
+def _is_whole(manifest: Manifest, folder: Path) -> bool:
+    """Whether a result was finished, and all of it is still there."""
+    return manifest.state == FINISHED and all((folder / name).is_file() for name in manifest.files)
+
+
+def what_differs(earlier: Mapping[str, Any], made: Made) -> str:
+    """Why an earlier result is not the one that is asked for, in a few words."""
+    sums = {one["role"]: one["sha256"] for one in earlier["inputs"]}
+    changed = [role for role, _, sha256 in made.inputs if sums.get(role, sha256) != sha256]
+    packages = [
+        f"{name} {earlier['packages'].get(name, 'absent')}, now {version}"
+        for name, version in made.packages.items()
+        if earlier["packages"].get(name) != version
+    ]
+    words = [f"another {', '.join(changed)}"] if changed else []
+    words += [f"made with {', '.join(packages)}"] if packages else []
+    return "; ".join(words) or f"made by other settings: {earlier['command']}"

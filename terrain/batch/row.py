@@ -1,0 +1,126 @@
+"""One run in the table over all runs."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from odometry.checks.finding import Level
+from odometry.io.csv_table import write_csv_table
+from odometry.io.structured import read_json
+from terrain.batch.job import FAILED, Outcome
+from terrain.errors import ResultError
+from terrain.filter_summary import HARMLESS
+
+JUDGED = ("odometer", "estimate", "gyroscope", "differential_drive")
+ERRORS = {
+    f"{name}_{unit}": (name, quantity)
+    for name in JUDGED
+    for unit, quantity in (
+        ("m_per_m", "translation_m_per_m"),
+        ("deg_per_m", "rotation_deg_per_m"),
+    )
+}
+COUNTS = ("switches", "missed_changes")
+
+
+@dataclass(frozen=True)
+class Row:
+    """What the table says of one run.
+
+    Attributes
+    ----------
+    name : str
+        Of the result's folder.
+    folder : str
+        The run, as given.
+    error : str
+        Why there is no result; empty where there is one.
+    reference : str
+        What judges: `truth`, `pose`, or empty. The estimate is judged by withheld poses of `pose`.
+    numbers : Mapping
+        `duration_s`, `wheel_travel_m`, mean errors by `ERRORS`; None where nothing judges.
+    counts : Mapping
+        `switches` of the terrain in force, `missed_changes`.
+    robot : tuple of (str, float)
+        Name and track width [m].
+    flags : tuple of str
+        Names of what misleads: warnings of the check, events of the filter.
+    notes : tuple of str
+        The same in sentences, and remarks on the errors.
+    """
+
+    name: str
+    folder: str
+    error: str = ""
+    reference: str = ""
+    numbers: Mapping[str, float | None] = field(default_factory=dict)
+    counts: Mapping[str, int] = field(default_factory=dict)
+    robot: tuple[str, float] = ("", 0.0)
+    flags: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+def row_of(outcome: Outcome) -> Row:
+    """Read what a job left in its folder.
+
+    Raises
+    ------
+    ResultError
+        If that is no result of `run`.
+    """
+    job = outcome.job
+    folder = str(dict(job.asked.inputs)["RUN"])
+    if outcome.state == FAILED:
+        return Row(job.name, folder, outcome.said)
+    file = job.out / "result.json"
+    try:
+        return _row(job.name, folder, read_json(file, ResultError))
+    except (KeyError, TypeError) as error:
+        raise ResultError(f"{file}: it is not a result of `run`") from error
+
+
+def _row(name: str, folder: str, result: Mapping[str, Any]) -> Row:
+    means = {
+        column: result["errors"].get(trajectory, {}).get(quantity, {}).get("mean")
+        for column, (trajectory, quantity) in ERRORS.items()
+    }
+    findings = [
+        finding
+        for check in result["check"]
+        for finding in check["findings"]
+        if finding["level"] != Level.NOTE
+    ]
+    events = [event for event in result["filter"]["events"] if event["kind"] not in HARMLESS]
+    flags = [one["name"] for one in findings] + [event["kind"] for event in events]
+    notes = [one["seen"] for one in findings] + [event["text"] for event in events]
+    return Row(
+        name,
+        folder,
+        reference=result["reference"] or "",
+        numbers={key: result[key] for key in ("duration_s", "wheel_travel_m")} | means,
+        counts={key: len(result[key]) for key in COUNTS},
+        robot=(result["robot"]["name"], result["robot"]["track_width"]),
+        flags=tuple(dict.fromkeys(flags)),
+        notes=(*notes, *result["remarks"]),
+    )
+
+
+def write_rows(rows: Sequence[Row], file: Path) -> None:
+    """Write the table, a row for each run in the order in which they were given."""
+    columns: dict[str, list[Any]] = {
+        "run": [row.name for row in rows],
+        "folder": [row.folder for row in rows],
+        "error": [row.error for row in rows],
+        "reference": [row.reference for row in rows],
+    }
+    for name in ("duration_s", "wheel_travel_m", *ERRORS):
+        values = [row.numbers.get(name) for row in rows]
+        columns[name] = [np.nan if value is None else float(value) for value in values]
+    for name in COUNTS:
+        columns[name] = [str(row.counts.get(name, "")) for row in rows]
+    columns["flags"] = [" ".join(row.flags) for row in rows]
+    columns["notes"] = [" ".join(" ".join(row.notes).split()) for row in rows]
+    write_csv_table(file, {name: np.array(column) for name, column in columns.items()})

@@ -1,0 +1,122 @@
+"""A Dask cluster of real processes on this machine."""
+
+import os
+import subprocess
+import sys
+from contextlib import ExitStack, contextmanager
+
+import pytest
+
+pytest.importorskip("distributed", reason="the extra dask is not installed")
+
+from terrain.batch.cluster import cluster_outcomes
+from terrain.batch.job import FAILED, KEPT, REPLAYED, run_job
+from terrain.errors import BatchError
+
+SCHEDULER = ("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--no-show")
+WITHOUT_PAGE = "import terrain.report.page as page; page.write_report = lambda *_: None"
+WORKER = ("worker", "--nthreads", "1", "--no-nanny", "--no-dashboard", "--host", "127.0.0.1")
+
+
+def dask(*words, before=""):
+    program = f"{before}\nimport sys\nfrom dask.__main__ import main\nsys.exit(main())"
+    return subprocess.Popen(
+        [sys.executable, "-c", program, *words], stderr=subprocess.PIPE, text=True, cwd="/"
+    )
+
+
+def said(process, text):
+    """The first line of a process with a text."""
+    for line in process.stderr:
+        if text in line:
+            return line
+    raise AssertionError(f"it never said {text!r}")
+
+
+@contextmanager
+def running(process):
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.communicate()
+
+
+@pytest.fixture(scope="module")
+def scheduler():
+    with running(dask(*SCHEDULER)) as process:
+        yield said(process, "Scheduler at:").split()[-1]
+
+
+@contextmanager
+def workers(scheduler, count, before=""):
+    with ExitStack() as stack:
+        started = [dask(*WORKER, scheduler, before=before) for _ in range(count)]
+        for process in started:
+            stack.enter_context(running(process))
+        for process in started:
+            said(process, "Registered to:")
+        yield started
+
+
+def contents(folder):
+    return {p.relative_to(folder): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+
+
+def test_all_results_arrive_though_a_worker_is_killed(
+    scheduler, four_runs, job_of, tmp_path, monkeypatch
+):
+    jobs = [job_of(folder) for folder in sorted(four_runs.iterdir())]
+    jobs.append(job_of(four_runs / "absent"))
+    monkeypatch.setattr("terrain.report.page.write_report", lambda *_: None)
+    states = {}
+    with workers(scheduler, 2, WITHOUT_PAGE) as (first, _):
+        for outcome in cluster_outcomes(jobs, scheduler):
+            states[outcome.job.name] = outcome.state
+            first.kill()  # with the first outcome that comes: there is more to do
+        assert states.pop("absent") == FAILED
+        assert set(states) == set("abcd")  # what its worker did not tell any more is found done
+        assert set(states.values()) <= {REPLAYED, KEPT}
+        again = list(cluster_outcomes(jobs[:2], scheduler))
+    assert [outcome.state for outcome in again] == [KEPT, KEPT]
+    here = [job_of(folder, out=tmp_path / "here") for folder in sorted(four_runs.iterdir())]
+    assert {run_job(job).state for job in here} == {REPLAYED}
+    assert contents(tmp_path / "out") == contents(tmp_path / "here")
+
+
+def refused(jobs, address):
+    with pytest.raises(BatchError) as caught:
+        list(cluster_outcomes(jobs, address))
+    message = str(caught.value)
+    assert "\n" not in message
+    return message
+
+
+def test_a_worker_that_cannot_do_the_jobs_is_told_in_one_line(
+    scheduler, curvy_run, job_of, tmp_path, monkeypatch
+):
+    job = job_of(curvy_run)
+    monkeypatch.setattr("terrain.batch.workers.WAITS_S", 0.3)
+    assert "has no workers; start some with: dask worker" in refused([job], scheduler)
+    older = "import odometry.outputs.made as made; made.version = lambda name: '0.1'"
+    with workers(scheduler, 1, before=older):
+        message = refused([job], scheduler)
+    assert "terrain-odometry 0.1 (here " in message
+    with workers(scheduler, 1):
+        opened = os.open(tmp_path, os.O_RDONLY)
+        mine = job_of(curvy_run, out=type(tmp_path)(f"/proc/self/fd/{opened}/out"))
+        message = refused([mine], scheduler)
+        assert f"does not see /proc/self/fd/{opened}/out" in message
+        seen = job_of(type(tmp_path)(f"/proc/self/fd/{opened}/out"))
+        assert f"does not see {seen.folder}" in refused([seen], scheduler)
+        os.close(opened)
+
+
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "host:1:2", "nonsense"])
+def test_a_scheduler_that_does_not_answer_is_told_in_one_line(
+    job_of, curvy_run, address, monkeypatch
+):
+    monkeypatch.setattr("terrain.batch.cluster.CONNECTS_S", 0.5)
+    message = refused([job_of(curvy_run)], address)
+    assert message.startswith(f"--scheduler {address}: no scheduler answers there")
+    assert "dask scheduler" in message
