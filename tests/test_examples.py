@@ -1,4 +1,4 @@
-"""What the docstrings and the notebooks show does run."""
+"""What the docstrings show does run."""
 
 import doctest
 import importlib
@@ -6,9 +6,7 @@ import re
 from pathlib import Path
 from types import ModuleType
 
-import nbformat
 import pytest
-from nbclient import NotebookClient
 
 import odometry
 import terrain
@@ -54,18 +52,3 @@ def test_only_the_long_demonstration_is_shown_and_not_run() -> None:
     """The verb `demo` runs it."""
     skipped = {name for name in WITH_EXAMPLES if "+SKIP" in SOURCES[name]}
     assert skipped == {"terrain.demo"}
-
-
-@pytest.mark.parametrize("notebook", sorted(ROOT.glob("notebooks/*.ipynb")), ids=lambda p: p.stem)
-def test_notebooks_run(notebook: Path, tmp_path: Path) -> None:
-    book = nbformat.read(notebook, as_version=4)
-    NotebookClient(
-        book, timeout=300, kernel_name="python3", resources={"metadata": {"path": tmp_path}}
-    ).execute()
-    errors = [
-        output
-        for cell in book.cells
-        for output in cell.get("outputs", [])
-        if output.output_type == "error"
-    ]
-    assert not errors

@@ -1,0 +1,80 @@
+"""Run the notebooks and keep what they show, small and without traces of the run.
+
+    python -m tests.refresh_notebooks [NOTEBOOK...]
+
+Needs the extra `test`.
+"""
+
+import base64
+import io
+import sys
+import tempfile
+from pathlib import Path
+
+import nbformat
+from nbclient import NotebookClient
+from nbformat import NotebookNode
+from PIL import Image
+
+NOTEBOOKS = Path(__file__).parents[1] / "notebooks"
+WIDEST_PX, COLOURS = 760, 32
+
+
+def executed(notebook: Path) -> NotebookNode:
+    """The notebook with what it shows when it is run in an empty folder."""
+    book = nbformat.read(notebook, as_version=4)
+    with tempfile.TemporaryDirectory() as folder:
+        NotebookClient(
+            book,
+            timeout=600,
+            kernel_name="python3",
+            record_timing=False,
+            resources={"metadata": {"path": folder}},
+        ).execute()
+    for cell in book.cells:
+        cell.metadata = NotebookNode()
+        if cell.cell_type == "code":
+            cell.execution_count = None
+            cell.outputs = [tidied(output) for output in joined(cell.outputs)]
+    book.metadata = NotebookNode(
+        kernelspec={"display_name": "Python 3", "language": "python", "name": "python3"},
+        language_info={"name": "python"},
+    )
+    return book
+
+
+def joined(outputs: list[NotebookNode]) -> list[NotebookNode]:
+    """Neighbouring pieces of one stream as one: how a run cuts them is chance."""
+    whole: list[NotebookNode] = []
+    for output in outputs:
+        if whole and output.output_type == "stream" and output.get("name") == whole[-1].get("name"):
+            whole[-1].text += output.text
+        else:
+            whole.append(output)
+    return whole
+
+
+def tidied(output: NotebookNode) -> NotebookNode:
+    """Without the count of executions, and with a small picture."""
+    if "execution_count" in output:
+        output.execution_count = None
+    if "image/png" in output.get("data", {}):
+        output.data["image/png"] = small(output.data["image/png"])
+    return output
+
+
+def small(encoded: str) -> str:
+    """A picture with few colours, no wider than a page."""
+    picture = Image.open(io.BytesIO(base64.b64decode(encoded))).convert("RGB")
+    if picture.width > WIDEST_PX:
+        height = round(picture.height * WIDEST_PX / picture.width)
+        picture = picture.resize((WIDEST_PX, height), Image.Resampling.LANCZOS)
+    file = io.BytesIO()
+    few = picture.quantize(COLOURS, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+    few.save(file, "PNG", optimize=True)
+    return base64.b64encode(file.getvalue()).decode() + "\n"
+
+
+if __name__ == "__main__":
+    for notebook in map(Path, sys.argv[1:] or sorted(NOTEBOOKS.glob("*.ipynb"))):
+        nbformat.write(executed(notebook), notebook)
