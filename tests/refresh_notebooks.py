@@ -17,7 +17,9 @@ from nbformat import NotebookNode
 from PIL import Image
 
 NOTEBOOKS = Path(__file__).parents[1] / "notebooks"
-WIDEST_PX, COLOURS = 760, 32
+WIDEST_PX = 760
+COLOURS = (256, 64, 32)  # as many as leave a picture small
+PICTURE_BYTES = 25_000
 
 
 def executed(notebook: Path) -> NotebookNode:
@@ -69,9 +71,12 @@ def small(encoded: str) -> str:
     if picture.width > WIDEST_PX:
         height = round(picture.height * WIDEST_PX / picture.width)
         picture = picture.resize((WIDEST_PX, height), Image.Resampling.LANCZOS)
-    file = io.BytesIO()
-    few = picture.quantize(COLOURS, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
-    few.save(file, "PNG", optimize=True)
+    for colours in COLOURS:
+        file = io.BytesIO()
+        few = picture.quantize(colours, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+        few.save(file, "PNG", optimize=True)
+        if file.tell() <= PICTURE_BYTES:
+            break
     return base64.b64encode(file.getvalue()).decode() + "\n"
 
 
