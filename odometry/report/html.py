@@ -4,10 +4,12 @@ import base64
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
+from itertools import zip_longest
 from pathlib import Path
 
 from odometry.io.files import atomic_write
 
+LONGEST_NUMBER = 40  # letters of a cell; longer ones are sentences
 MANY_COLUMNS = 8  # more of them are printed in smaller letters
 _CSS = """
 :root { color-scheme: light dark; }
@@ -26,6 +28,7 @@ caption { text-align: left; font-size: .9rem; opacity: .85; padding-bottom: .3re
 th, td { padding: .25rem .7rem; border-bottom: 1px solid #8884; text-align: right; }
 th:first-child, td:first-child { text-align: left; padding-left: 0; }
 thead th { vertical-align: bottom; }
+th.words, td.words { text-align: left; }
 tbody th { min-width: 7.5rem; }
 @media screen and (max-width: 45rem) {
   figure img { max-width: none; width: calc(var(--width) / 2); }
@@ -85,8 +88,10 @@ class Grid:
 
     def html(self) -> str:
         """The element."""
-        head = "".join(f'<th scope="col">{escape(name)}</th>' for name in self.header)
-        body = "".join(_row(row, self.links) for row in self.rows)
+        marks = [_mark(column) for column in zip_longest(*self.rows, fillvalue="")]
+        columns = zip_longest(self.header, marks, fillvalue="")
+        head = "".join(f'<th scope="col"{mark}>{escape(name)}</th>' for name, mark in columns)
+        body = "".join(_row(row, self.links, marks) for row in self.rows)
         caption = f"<caption>{escape(self.caption)}</caption>" if self.caption else ""
         wide = ' class="wide"' if len(self.header) > MANY_COLUMNS else ""
         return (
@@ -172,13 +177,20 @@ def write_page(file: Path, title: str, lead: str, sections: Sequence[Section]) -
     return file
 
 
-def _row(row: Sequence[str], links: Mapping[str, str]) -> str:
+def _row(row: Sequence[str], links: Mapping[str, str], marks: Sequence[str]) -> str:
     first, *others = row
     name = escape(first)
     if first in links:
         name = f'<a href="{escape(links[first])}">{name}</a>'
-    cells = "".join(f"<td>{escape(cell)}</td>" for cell in others)
+    cells = "".join(
+        f"<td{mark}>{escape(cell)}</td>" for cell, mark in zip(others, marks[1:], strict=False)
+    )
     return f'<tr><th scope="row">{name}</th>{cells}</tr>'
+
+
+def _mark(cells: Sequence[str]) -> str:
+    """The class of a column: sentences begin on one line, numbers end on one."""
+    return ' class="words"' if max(map(len, cells)) > LONGEST_NUMBER else ""
 
 
 def _width_px(png: bytes) -> int:

@@ -116,6 +116,15 @@ def test_tables_of_many_columns_are_printed_small():
         assert table == attributes
 
 
+def test_sentences_begin_on_one_line_and_numbers_end_on_one():
+    sentence = "The gyroscope with mean wheel speed is better here."
+    grid = Grid(("run", "error", "note"), [("a", "0.01", "-"), ("b", "0.02", sentence)])
+    read = Reader(render_page("", "", [Section("", [grid])]))
+    words = {"class": "words"}
+    assert read.named("td") == [{}, words, {}, words]
+    assert [cell.get("class") for cell in read.named("th")][:3] == [None, None, "words"]
+
+
 def test_the_same_content_gives_the_same_bytes(tmp_path, picture):
     sections = [Section("one", (picture,))]
     files = [write_page(tmp_path / name, "a", "b", sections) for name in ("1.html", "2.html")]
