@@ -95,7 +95,7 @@ def _terrain_grid(name: str, of: MergedTerrain) -> Grid:
     sigmas = dict(zip(table.covariance_order, np.sqrt(np.diag(table.covariance)), strict=True))
     rows = [
         (
-            f"{key}{UNITS.get(key, '')}",
+            f"{key} [m]" if key in UNITS else key,
             f"{value:.3f}",
             number(sigmas.get(key), 3),
             number(of.spread.get(key), 3),
