@@ -8,7 +8,9 @@ import numpy as np
 from odometry.effects.history import History
 from odometry.effects.residual import Residual
 from odometry.effects.residual_of_each_run import ResidualOfEachRun
-from odometry.gap.bursts import burst_effects
+from odometry.effects.time_course import InBursts
+from odometry.gap.burst_variable import variable_of_events
+from odometry.gap.bursts import InCourse, burst_effects
 from odometry.gap.contest import Judged, judge, penalty
 from odometry.gap.course import best_course
 from odometry.gap.explanation import Explanation
@@ -17,7 +19,7 @@ from odometry.gap.general import general_candidates, single_candidates
 from odometry.gap.measured import at_fewer_poses
 from odometry.gap.own_values import with_values_of_each_run
 from odometry.gap.search import Search
-from odometry.gap.verdict import leaves_noise
+from odometry.gap.verdict import come_by_themselves, leaves_noise
 
 POSES = 10  # of a window, where smooth functions are chosen
 PROMISING = 2  # of them that are fitted in full at most
@@ -45,9 +47,22 @@ def in_bursts(search: Search, found: Explanation) -> Explanation:
     closed = (nothing.fitted.cost - found.fitted.cost) / excess
     spread = search.fitter.spread(found.fitted)
     reason = leaves_noise(spread, closed, search.config.left_over, search.config.bursts_closed)
+    reason = reason or _follow_a_variable(search, found)
     for effect in found.effects if reason else ():
         search.refuse(effect, reason)
     return nothing if reason else found
+
+
+def _follow_a_variable(search: Search, found: Explanation) -> str:
+    """Why events are none that come by themselves, of the first effect of which it is so."""
+    scenes, base = search.fitter.measured.scenes, search.fitter.calibration.base
+    for effect in found.effects:
+        if isinstance(effect, InCourse) and isinstance(effect.in_time, InBursts):
+            told = variable_of_events(effect.in_time, scenes, base)
+            reason = come_by_themselves(*told, search.config)
+            if reason:
+                return reason
+    return ""
 
 
 def grown(search: Search, found: Explanation) -> Explanation:

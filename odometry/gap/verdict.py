@@ -165,6 +165,16 @@ def leaves_noise(spread: float, closed: float, left_over: float, most: float) ->
     )
 
 
+def come_by_themselves(variable: str, area: float, config: GapConfig) -> str:
+    """Whether no recorded variable tells when events are."""
+    if area <= config.events_told:
+        return ""
+    return (
+        f"{noun_of(variable)} says when its events are (area {area:.2f} under the receiver "
+        "operating characteristic): it depends on that, and does not come in bursts"
+    )
+
+
 def leaves_no_structure(share_closed: float, predictors: Sequence[Predictor]) -> str:
     """Whether nothing predicts what names leave that close no more than a share of the gap."""
     found = [one.name for one in predictors if one.discovered]

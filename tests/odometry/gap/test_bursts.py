@@ -10,6 +10,7 @@ from odometry.effects.corrected import Added
 from odometry.effects.in_course import in_course
 from odometry.effects.time_course import InBursts
 from odometry.effects.tread_slip import SlipOfLeftTread
+from odometry.gap.burst_variable import variable_of_events
 from odometry.gap.bursts import burst_effects, states
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import judge
@@ -17,6 +18,7 @@ from odometry.gap.fit import Fitter
 from odometry.gap.measured import measured_of
 from odometry.gap.own_moments import with_own_moments
 from odometry.gap.statistic import gap_of
+from odometry.gap.verdict import come_by_themselves
 from odometry.models.inputs import Inputs
 
 CONFIG = GapConfig()
@@ -109,3 +111,38 @@ def test_a_parameter_set_holds_the_events():
     assert again.effect.in_time == effect.in_time
     assert again.effect.key == effect.key
     np.testing.assert_array_equal(again.values, [0.7])
+
+
+@pytest.fixture(scope="module")
+def limited(make_scene):
+    """A run whose left tread does not reach more than part of its highest speed."""
+
+    def planted(columns, twist):
+        speed = columns["v_left"]
+        lost = speed - np.clip(speed, -0.3, 0.3)
+        change = np.column_stack([-lost * 0.42 / WIDTH, -0.02 * lost / WIDTH, lost / WIDTH])
+        return twist + change
+
+    return make_scene(44, planted, duration_s=120.0).numbered(0)
+
+
+def test_a_limit_of_one_tread_is_told_by_its_speed(limited, known):
+    fitter = Fitter(known, measured_of((limited,), known, CONFIG))
+    found = burst_effects(fitter, fitter.fit([]))
+    courses = [one.in_time for one in found if isinstance(one.inner, SlipOfLeftTread)]
+    name, area = variable_of_events(courses[0], (limited,), known.base)
+    assert name in {"tread_speed", "other_tread_speed"}
+    assert come_by_themselves(name, area, CONFIG)
+
+
+def test_nothing_recorded_tells_when_true_bursts_are(scenes, known):
+    course = InBursts(tuple(EVENTS[number] for number in range(2)))
+    assert not come_by_themselves(*variable_of_events(course, scenes, known.base), CONFIG)
+
+
+def test_events_after_a_moment_are_told_by_run_time(scenes, known):
+    end_s = float(scenes[0].inputs.time_s[-1])
+    course = InBursts((((60.0, end_s),), ()))
+    name, area = variable_of_events(course, scenes[:1], known.base)
+    assert area == pytest.approx(1.0)
+    assert name == "time"
