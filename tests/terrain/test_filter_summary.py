@@ -61,5 +61,5 @@ def test_a_drift_misleads_only_where_it_was_not_followed(noticed, kind, misleads
 
 
 def test_an_event_is_one_line_with_its_time():
-    assert event_line(YAW) == "0.0 to 6.5 s: initial yaw 12.0 degrees"
-    assert event_line(ANEW) == "8.0 s: it started anew"
+    assert event_line(YAW, 0.0) == "0.0 to 6.5 s: initial yaw 12.0 degrees"
+    assert event_line(ANEW, 5.0) == "3.0 s: it started anew"

@@ -33,19 +33,27 @@ def test_what_other_effects_have_bent_is_asked_again(monkeypatch, mu, stands):
     assert bool(refused) != stands
 
 
-@pytest.mark.parametrize(("cost", "stands"), [(1500.0, True), (2500.0, False)])
-def test_events_that_leave_more_than_noise_must_close_nearly_all(monkeypatch, cost, stands):
-    """Of an excess of 10 000, 95 or 85 %."""
+@pytest.mark.parametrize(
+    ("cost", "area", "stands"), [(1500.0, 0.6, True), (2500.0, 0.6, False), (1500.0, 0.97, False)]
+)
+def test_events_must_close_nearly_all_and_come_by_themselves(monkeypatch, cost, area, stands):
+    """Of an excess of 10 000, 95 or 85 % close; a variable says when events are, or none does."""
     effect = in_course(TractionLoss(), InBursts((((1.0, 2.0),),)))
     start = SimpleNamespace(cost=11_000.0, effects=())
     fitted = SimpleNamespace(cost=cost, effects=(Added(effect, np.array([0.5, 0.5])),))
     step = Judged(effect, fitted, 9000.0, 8000.0, 7000.0, 0.1)
     monkeypatch.setattr("odometry.gap.unnamed.burst_effects", lambda *_: (effect,))
     monkeypatch.setattr("odometry.gap.unnamed.judge", lambda *args: [step for _ in args[2]])
+    monkeypatch.setattr("odometry.gap.unnamed.variable_of_events", lambda *_: ("speed", area))
     refused = []
+    fitter = SimpleNamespace(
+        measured=SimpleNamespace(expected=1000.0, scenes=()),
+        calibration=SimpleNamespace(base=None),
+        spread=lambda _: 5.0,
+    )
     search = SimpleNamespace(
         config=GapConfig(),
-        fitter=SimpleNamespace(measured=SimpleNamespace(expected=1000.0), spread=lambda _: 5.0),
+        fitter=fitter,
         has_excess=lambda _: True,
         best_earner=lambda judged, _: next(iter(judged), None),
         progress=None,
