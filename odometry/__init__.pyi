@@ -38,6 +38,7 @@ from .pipeline import ConstantTerrain, replay
 from .run import Robot, Run
 from .run_inputs import inputs_of
 from .run_span import Span, cut_run
+from .shipped import shipped_data
 from .simulation.contact.drive import simulate_contact
 from .spatial_trajectory import SpatialTrajectory
 from .trajectory import Trajectory
@@ -104,6 +105,7 @@ __all__ = [
     "relative_errors",
     "replay",
     "score",
+    "shipped_data",
     "simulate_contact",
     "steepest_slope",
     "stretches",

@@ -25,8 +25,7 @@ class Replay:
     Examples
     --------
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> gravel = odometry.ConstantTerrain("gravel")
     >>> filtered = odometry.replay(run, odometry.IcrEkf(track_width=0.4), gravel)
     >>> filtered.means.shape, len(filtered.trajectory())

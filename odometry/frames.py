@@ -42,8 +42,7 @@ class Frame:
     Examples
     --------
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> first = next(run.frames())
     >>> first.stamp_s, first.image.name, first.pose.shape
     (0.0, '000000.jpg', (3,))

@@ -94,8 +94,7 @@ def read_parameters(file: str | Path) -> ParameterSet:
     Examples
     --------
     >>> import odometry
-    >>> import terrain
-    >>> sets = terrain.shipped_data() / "parameters"
+    >>> sets = odometry.shipped_data() / "parameters"
     >>> warthog = odometry.read_parameters(sets / "warthog_icr.toml")
     >>> list(warthog.terrains)
     ['concrete', 'snow']

@@ -53,8 +53,7 @@ class ConstantTerrain:
     Examples
     --------
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> gravel = odometry.ConstantTerrain("gravel")
     >>> filtered = odometry.replay(run, odometry.IcrEkf(track_width=0.4), gravel)
     >>> set(filtered.terrains)
@@ -102,8 +101,7 @@ def replay(
     Examples
     --------
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> gravel = odometry.ConstantTerrain("gravel")
     >>> filtered = odometry.replay(run, odometry.IcrEkf(track_width=0.4), gravel)
     >>> len(filtered.estimates)

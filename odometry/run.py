@@ -58,8 +58,7 @@ class Run:
     Examples
     --------
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> run.robot.track_width, len(run.odometry), run.velocity is None
     (0.4, 1085, True)
     >>> f"{run.wheel_travel_m[-1]:.1f} m of wheel travel"

@@ -20,8 +20,7 @@ def inputs_of(run: Run) -> Inputs:
     Examples
     --------
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> odometry.inputs_of(run).tread_speeds_m_s.shape
     (1085, 2)
     """

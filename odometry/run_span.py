@@ -57,8 +57,7 @@ def cut_run(run: Run, span: Span) -> Run:
     Examples
     --------
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> part = odometry.cut_run(run, odometry.Span(10.0, 20.0))
     >>> part.odometry.stamps_s[[0, -1]].tolist()
     [10.0, 20.0]

@@ -19,7 +19,6 @@ from .rectangle import Rectangle
 from .report.page import write_report
 from .results import read_errors, write_results
 from .run_result import RunResult
-from .shipped import shipped_data
 from .switch_delay import switch_delays, true_stretches
 from .synthetic import SynthesisConfig, synthesise
 from .texture import SFTA, sfta
@@ -51,7 +50,6 @@ __all__ = [
     "run_demo",
     "run_odometry",
     "sfta",
-    "shipped_data",
     "switch_delays",
     "synthesise",
     "to_grey",

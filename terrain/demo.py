@@ -5,12 +5,12 @@ from pathlib import Path
 from typing import Any
 
 from odometry.run import Run
+from odometry.shipped import shipped_data
 from terrain.classification.training import train
 from terrain.main_job import run_odometry
 from terrain.report.page import write_report
 from terrain.results import write_results
 from terrain.run_result import RunResult
-from terrain.shipped import shipped_data
 
 WITH, WITHOUT = "with terrain classification", "without terrain classification"
 

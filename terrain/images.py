@@ -34,8 +34,9 @@ def read_image(path: Path | str) -> ByteImage:
 
     Examples
     --------
+    >>> import odometry
     >>> import terrain
-    >>> images = terrain.shipped_data() / "runs" / "demo" / "images"
+    >>> images = odometry.shipped_data() / "runs" / "demo" / "images"
     >>> terrain.read_image(images / "000000.jpg").shape
     (480, 640)
     """
@@ -65,8 +66,9 @@ def decode_image(encoded: bytes, where: str = "image") -> ByteImage:
 
     Examples
     --------
+    >>> import odometry
     >>> import terrain
-    >>> image = terrain.shipped_data() / "runs" / "demo" / "images" / "000000.jpg"
+    >>> image = odometry.shipped_data() / "runs" / "demo" / "images" / "000000.jpg"
     >>> terrain.decode_image(image.read_bytes()).shape
     (480, 640)
     """

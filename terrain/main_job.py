@@ -81,7 +81,7 @@ def run_odometry(
     --------
     >>> import odometry
     >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> result = terrain.run_odometry(run, vision=False)
     >>> off_m = result.off_at_the_end_m
     >>> f"{off_m['differential_drive']:.0f} m, {off_m['odometer']:.0f} m"

@@ -56,7 +56,7 @@ def write_results(
     >>> from tempfile import TemporaryDirectory
     >>> import odometry
     >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> result = terrain.run_odometry(run, vision=False)
     >>> with TemporaryDirectory() as folder:
     ...     print([file.name for file in terrain.write_results(result, folder)][:2])
@@ -120,7 +120,7 @@ def read_errors(folder: str | Path) -> dict[str, Any]:
     >>> from tempfile import TemporaryDirectory
     >>> import odometry
     >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> result = terrain.run_odometry(run, vision=False)
     >>> with TemporaryDirectory() as folder:
     ...     written = terrain.write_results(result, folder)

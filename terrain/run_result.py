@@ -53,7 +53,7 @@ class RunResult:
     --------
     >>> import odometry
     >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> result = terrain.run_odometry(run, vision=False)
     >>> result.reference_name, sorted(result.scores)[:3]
     ('truth', ['differential_drive', 'estimate', 'gyroscope'])

@@ -57,7 +57,7 @@ def switch_delays(result: RunResult) -> list[SwitchDelay]:
     --------
     >>> import odometry
     >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> result = terrain.run_odometry(run, vision=False)
     >>> terrain.switch_delays(result)  # no source told the terrain
     []
@@ -88,7 +88,7 @@ def true_stretches(result: RunResult) -> tuple[Stretch, ...]:
     --------
     >>> import odometry
     >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> result = terrain.run_odometry(run, vision=False)
     >>> [stretch.terrain for stretch in terrain.true_stretches(result)]
     ['gravel', 'grass', 'gravel']

@@ -34,7 +34,7 @@ def ground_view(
     --------
     >>> import odometry
     >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> camera = terrain.Camera.from_table(run.settings["camera"])
     >>> image = terrain.read_image(run.folder / "images" / "000000.jpg")
     >>> ahead = terrain.Rectangle(x_min=0.8, x_max=1.4, y_min=-0.3, y_max=0.3)

@@ -26,6 +26,15 @@ FILES = {
 }
 
 
+def examples(file):
+    """The lines of Python in docstrings of a file."""
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
+            for line in (ast.get_docstring(node) or "").splitlines():
+                if line.lstrip().startswith((">>> ", "... ")):
+                    yield line.lstrip()[4:].lstrip()
+
+
 def imported(file):
     """Modules of ours that a file imports anywhere in it, functions included."""
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
@@ -115,3 +124,9 @@ def test_importing_the_packages_imports_nothing_heavy():
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT
     )
     assert finished.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize("name", [name for name in FILES if name.startswith("odometry")])
+def test_examples_of_odometry_need_nothing_of_terrain(name):
+    lines = examples(FILES[name])
+    assert not [line for line in lines if line.startswith(("import terrain", "from terrain"))]

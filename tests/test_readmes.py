@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 
 import click
+import numpy as np
 import pytest
 
 import odometry
@@ -178,6 +179,12 @@ def test_the_making_of_the_shipped_data(tmp_path: Path, monkeypatch: pytest.Monk
     monkeypatch.chdir(tmp_path)
     run_blocks(ROOT / "data/README.md")
     assert (tmp_path / "demo/run.toml").is_file()
+    made, shipped = (
+        odometry.read_mode_set(file)
+        for file in (tmp_path / "demo.toml", ROOT / "data/modes/demo.toml")
+    )
+    assert made.names == shipped.names
+    np.testing.assert_allclose(made.modes.A, shipped.modes.A, rtol=1e-6)
 
 
 def as_bag(run: odometry.Run, path: Path) -> None:

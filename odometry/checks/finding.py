@@ -42,8 +42,7 @@ class Finding:
     >>> from dataclasses import replace
     >>> import numpy as np
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> pose = replace(run.pose, columns={**run.pose.columns, "yaw": np.rad2deg(run.pose["yaw"])})
     >>> (finding,) = odometry.check_recording(replace(run, pose=pose)).findings
     >>> finding.name, finding.cause
@@ -90,8 +89,7 @@ class CheckReport:
     Examples
     --------
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> report = odometry.check_recording(run)
     >>> report.name, report.misleads
     ('demo', False)

@@ -78,8 +78,7 @@ def check_recording(run: Run | str | Path) -> CheckReport:
     Examples
     --------
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> [finding.name for finding in odometry.check_recording(run).findings]
     []
     """

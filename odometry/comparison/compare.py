@@ -65,8 +65,7 @@ def compare(
     Examples
     --------
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> compared = odometry.compare([run], ["differential_drive", "icr"], terrain="yard")
     >>> compared.models
     ('differential_drive', 'icr')

@@ -73,8 +73,7 @@ def fitness(
     --------
     >>> import numpy as np
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> treads = odometry.inputs_of(run).tread_speeds_m_s
     >>> forward, turning = treads.mean(axis=1), np.diff(treads)[:, 0] / 0.4
     >>> twists = np.column_stack([forward, np.zeros(len(treads)), turning])  # ideal drive

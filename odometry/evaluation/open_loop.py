@@ -21,8 +21,7 @@ def measured_poses(run: Run) -> tuple[FloatArray, FloatArray]:
     Examples
     --------
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> stamps_s, poses = odometry.measured_poses(run)
     >>> poses.shape == (len(stamps_s), 4)
     True
@@ -65,8 +64,7 @@ def open_loop(run: Run, twists: FloatArray) -> SpatialTrajectory:
     --------
     >>> import numpy as np
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> twists = np.tile([0.5, 0.0, 0.0], (len(run.odometry), 1))
     >>> path = odometry.open_loop(run, twists)
     >>> f"{path.poses[-1, 0, 3]:.1f} m straight ahead in {path.stamps_s[-1]:.0f} s"

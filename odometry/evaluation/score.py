@@ -75,8 +75,7 @@ def reference_of(run: Run) -> tuple[str, Trajectory] | None:
     Examples
     --------
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> name, reference = odometry.reference_of(run)
     >>> name, len(reference)
     ('truth', 1085)
@@ -121,8 +120,7 @@ def score(
     Examples
     --------
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> gravel = odometry.ConstantTerrain("gravel")
     >>> filtered = odometry.replay(run, odometry.IcrEkf(track_width=0.4), gravel)
     >>> _, reference = odometry.reference_of(run)

@@ -79,8 +79,7 @@ def find_gap(
     Examples
     --------
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> try:
     ...     odometry.find_gap([run], calibration=[run])
     ... except odometry.OdometryError as error:

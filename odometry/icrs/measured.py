@@ -87,8 +87,7 @@ def measured_icrs(
     Examples
     --------
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> measured = odometry.measured_icrs([run])
     >>> measured.icrs.shape[1], bool((measured.icrs[:, 0] > measured.icrs[:, 1]).all())
     (3, True)

@@ -47,8 +47,7 @@ def icr_medians(measured: MeasuredIcrs, *, seed: int = 0) -> tuple[IcrMedian, ..
     Examples
     --------
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> left, right = odometry.icr_medians(odometry.measured_icrs([run]))
     >>> left.side, left.icrs.shape
     ('left', (3,))

@@ -9,8 +9,7 @@ class IdentificationError(OdometryError):
     Examples
     --------
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> still = odometry.cut_run(run, odometry.Span(0.0, 3.0))
     >>> try:
     ...     odometry.identify([still], "icr", terrain="yard").require_determined()

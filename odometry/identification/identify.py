@@ -72,8 +72,7 @@ def identify(
     Examples
     --------
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> identified = odometry.identify([run], "icr", terrain="yard")
     >>> fit = identified.grounds["yard"].fit
     >>> f"y_left - y_right = {fit.values['y_left'] - fit.values['y_right']:.1f} m"

@@ -199,16 +199,12 @@ def followed(
 
     Examples
     --------
-    >>> from dataclasses import replace
-    >>> import numpy as np
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
-    >>> on_gravel = replace(run, settings={**run.settings, "run": {"terrain": "gravel"}})
-    >>> modes = odometry.identify_velocity_modes([on_gravel])
-    >>> found = odometry.followed(run, odometry.ModeSet(modes, dwell_s=np.array([20.0])))
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
+    >>> modes = odometry.read_mode_set(odometry.shipped_data() / "modes" / "demo.toml")
+    >>> found = odometry.followed(run, modes)
     >>> sorted(set(found.answers(found.motion).tolist()))
-    ['gravel', 'undetermined']
+    ['grass', 'gravel', 'undetermined']
     """
     config = config or ModesConfig()
     signals = judged_signals(run, mode_set)

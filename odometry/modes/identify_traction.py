@@ -52,8 +52,7 @@ def identify_traction_modes(
     --------
     >>> from dataclasses import replace
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> on_gravel = replace(run, settings={**run.settings, "run": {"terrain": "gravel"}})
     >>> modes = odometry.identify_traction_modes([on_gravel], paper=True)
     >>> modes.names, modes.gains.shape

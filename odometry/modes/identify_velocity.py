@@ -55,8 +55,7 @@ def identify_velocity_modes(
     --------
     >>> from dataclasses import replace
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> on_gravel = replace(run, settings={**run.settings, "run": {"terrain": "gravel"}})
     >>> modes = odometry.identify_velocity_modes([on_gravel])
     >>> modes.names, modes.A.shape

@@ -82,15 +82,10 @@ class ModeSet:
 
     Examples
     --------
-    >>> from dataclasses import replace
-    >>> import numpy as np
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
-    >>> on_gravel = replace(run, settings={**run.settings, "run": {"terrain": "gravel"}})
-    >>> modes = odometry.identify_velocity_modes([on_gravel])
-    >>> odometry.ModeSet(modes, dwell_s=np.array([20.0])).names
-    ('gravel',)
+    >>> modes = odometry.read_mode_set(odometry.shipped_data() / "modes" / "demo.toml")
+    >>> modes.names, modes.dwell_s.tolist()
+    (('grass', 'gravel'), [20.0, 20.0])
     """
 
     modes: VelocityModes | TractionModes
@@ -118,18 +113,13 @@ def write_mode_set(file: Path, mode_set: ModeSet, comment: str = "") -> None:
 
     Examples
     --------
-    >>> from dataclasses import replace
     >>> from tempfile import TemporaryDirectory
     >>> from pathlib import Path
-    >>> import numpy as np
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
-    >>> on_gravel = replace(run, settings={**run.settings, "run": {"terrain": "gravel"}})
-    >>> modes = odometry.identify_velocity_modes([on_gravel])
+    >>> modes = odometry.read_mode_set(odometry.shipped_data() / "modes" / "demo.toml")
     >>> with TemporaryDirectory() as folder:
     ...     file = Path(folder) / "modes.toml"
-    ...     odometry.write_mode_set(file, odometry.ModeSet(modes, dwell_s=np.array([20.0])))
+    ...     odometry.write_mode_set(file, modes)
     ...     print(file.read_text().splitlines()[0])
     # terrain-odometry mode set, format 1
     """
@@ -157,20 +147,9 @@ def read_mode_set(file: Path) -> ModeSet:
 
     Examples
     --------
-    >>> from dataclasses import replace
-    >>> from tempfile import TemporaryDirectory
-    >>> from pathlib import Path
-    >>> import numpy as np
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
-    >>> on_gravel = replace(run, settings={**run.settings, "run": {"terrain": "gravel"}})
-    >>> modes = odometry.identify_velocity_modes([on_gravel])
-    >>> with TemporaryDirectory() as folder:
-    ...     file = Path(folder) / "modes.toml"
-    ...     odometry.write_mode_set(file, odometry.ModeSet(modes, dwell_s=np.array([20.0])))
-    ...     print(odometry.read_mode_set(file).names)
-    ('gravel',)
+    >>> odometry.read_mode_set(odometry.shipped_data() / "modes" / "demo.toml").names
+    ('grass', 'gravel')
     """
     check_first_line(Path(file), FORMAT, ParameterError)
     content = read_toml(Path(file), ParameterError)

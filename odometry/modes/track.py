@@ -80,16 +80,12 @@ class ModeTrack:
 
     Examples
     --------
-    >>> from dataclasses import replace
-    >>> import numpy as np
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
-    >>> on_gravel = replace(run, settings={**run.settings, "run": {"terrain": "gravel"}})
-    >>> modes = odometry.identify_velocity_modes([on_gravel])
-    >>> track = odometry.follow_modes(run, odometry.ModeSet(modes, dwell_s=np.array([20.0])))
-    >>> track.names, track.probabilities.shape == (len(track.stamps_s), 1)
-    (('gravel',), True)
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
+    >>> modes = odometry.read_mode_set(odometry.shipped_data() / "modes" / "demo.toml")
+    >>> track = odometry.follow_modes(run, modes)
+    >>> track.names, track.probabilities.shape == (len(track.stamps_s), 2)
+    (('grass', 'gravel'), True)
     """
 
     names: tuple[str, ...]
@@ -130,14 +126,10 @@ def follow_modes(
 
     Examples
     --------
-    >>> from dataclasses import replace
-    >>> import numpy as np
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
-    >>> on_gravel = replace(run, settings={**run.settings, "run": {"terrain": "gravel"}})
-    >>> modes = odometry.identify_velocity_modes([on_gravel])
-    >>> track = odometry.follow_modes(run, odometry.ModeSet(modes, dwell_s=np.array([20.0])))
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
+    >>> modes = odometry.read_mode_set(odometry.shipped_data() / "modes" / "demo.toml")
+    >>> track = odometry.follow_modes(run, modes)
     >>> len(track.stamps_s)
     1085
     """

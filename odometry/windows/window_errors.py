@@ -48,8 +48,7 @@ def window_errors(model: KinematicModel, values: FloatArray, windows: Windows) -
     Examples
     --------
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> windows = odometry.windows_of([run], odometry.WindowConfig())
     >>> ideal = odometry.model_named("differential_drive")
     >>> errors = odometry.window_errors(ideal, ideal.pack({"track_width": 0.4}), windows)

@@ -103,8 +103,7 @@ def windows_of(runs: Sequence[Run], config: WindowConfig) -> Windows:
     Examples
     --------
     >>> import odometry
-    >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> len(odometry.windows_of([run], odometry.WindowConfig(horizon_m=5.0)))
     7
     """

@@ -44,8 +44,9 @@ def check_run(
 
     Examples
     --------
+    >>> import odometry
     >>> import terrain
-    >>> terrain.check_run(terrain.shipped_data() / "runs" / "demo").misleads
+    >>> terrain.check_run(odometry.shipped_data() / "runs" / "demo").misleads
     False
     """
     classifier = TerrainClassifier.load(Path(model)) if isinstance(model, str | Path) else model

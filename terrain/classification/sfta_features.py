@@ -1,20 +1,16 @@
 """The features of the terrain classifier as a scikit-learn transformer."""
 
 from collections.abc import Iterable
-from typing import Any, Self
-
-import numpy as np
-from sklearn.base import BaseEstimator, TransformerMixin
 
 from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import ConfigError
 from terrain.classification.features import FeatureSettings, feature_matrix, feature_names
 from terrain.classification.presets import PRESETS
 from terrain.images import to_bytes
-from terrain.texture.transformer import listed_images, told_where
+from terrain.texture.image_transformer import ImageTransformer, listed_images, naming_image
 
 
-class SftaFeatures(TransformerMixin, BaseEstimator):  # type: ignore[misc]
+class SftaFeatures(ImageTransformer):
     """What `TerrainClassifier` computes of an image, as a step of a pipeline.
 
     It learns nothing: `fit` only checks its input and may be left out. An image is one row,
@@ -46,27 +42,6 @@ class SftaFeatures(TransformerMixin, BaseEstimator):  # type: ignore[misc]
         self.colour = colour
         self.n_jobs = n_jobs
 
-    def fit(self, X: Iterable[AnyArray], y: object = None) -> Self:  # noqa: ARG002
-        """Check that there are images to transform; learn nothing.
-
-        Parameters
-        ----------
-        X : list or array of images
-            As in `transform`.
-        y : object
-            Ignored.
-
-        Raises
-        ------
-        ImageError, ConfigError
-            As in `transform`.
-        """
-        self._settings()
-        for place, image in enumerate(listed_images(X)):
-            with told_where(place):
-                to_bytes(image)
-        return self
-
     def transform(self, X: Iterable[AnyArray]) -> FloatArray:
         """Give the features of each image.
 
@@ -88,34 +63,15 @@ class SftaFeatures(TransformerMixin, BaseEstimator):  # type: ignore[misc]
         """
         settings, images = self._settings(), []
         for place, image in enumerate(listed_images(X)):
-            with told_where(place):
+            with naming_image(place):
                 images.append(to_bytes(image))
         return feature_matrix(images, settings, processes=self.n_jobs)
 
-    def get_feature_names_out(self, input_features: object = None) -> AnyArray:  # noqa: ARG002
-        """Name the features: grey_D1, grey_C1, grey_G1, grey_D2, ...
-
-        Parameters
-        ----------
-        input_features : object
-            Ignored: images have no named features.
-
-        Returns
-        -------
-        (n_features,) array of str objects
-        """
-        return np.array(feature_names(self._settings()), dtype=object)
+    def _names(self) -> list[str]:
+        return feature_names(self._settings())
 
     def _settings(self) -> FeatureSettings:
         if self.preset not in PRESETS:
             raise ConfigError(f"preset '{self.preset}' is not one of {', '.join(sorted(PRESETS))}")
         preset = PRESETS[self.preset]
         return preset.colour_features if self.colour else preset.features
-
-    def __sklearn_tags__(self) -> Any:
-        """Tell scikit-learn that the input is images, and that fitting is not needed."""
-        tags = super().__sklearn_tags__()
-        tags.requires_fit = False
-        tags.input_tags.two_d_array = False
-        tags.input_tags.three_d_array = True
-        return tags

@@ -26,8 +26,9 @@ class Training:
 
     Examples
     --------
+    >>> import odometry
     >>> import terrain
-    >>> training = terrain.train(terrain.shipped_data() / "patches", preset="chen2023")
+    >>> training = terrain.train(odometry.shipped_data() / "patches", preset="chen2023")
     >>> len(training.patches.images), training.classifier.classes_.tolist()
     (96, ['brick', 'grass', 'gravel'])
     """
@@ -79,8 +80,9 @@ def train(
 
     Examples
     --------
+    >>> import odometry
     >>> import terrain
-    >>> training = terrain.train(terrain.shipped_data() / "patches", preset="chen2023")
+    >>> training = terrain.train(odometry.shipped_data() / "patches", preset="chen2023")
     >>> training.classifier.classes_.tolist()
     ['brick', 'grass', 'gravel']
     """

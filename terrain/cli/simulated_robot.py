@@ -49,8 +49,8 @@ def traction_named(robot: "ContactVehicle", text: str) -> "Traction":
 
 def _vehicle_file(name: str) -> Path:
     """The shipped file of that name, else `name` itself as a path."""
+    from odometry.shipped import shipped_data
     from odometry.simulation.errors import SimulationError
-    from terrain.shipped import shipped_data
 
     if name in VEHICLES:
         return shipped_data() / "vehicles" / f"{name}.toml"

@@ -98,7 +98,7 @@ def label_runs(
     --------
     >>> import odometry
     >>> import terrain
-    >>> whole = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> whole = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> run = odometry.cut_run(whole, odometry.Span(0.0, 6.0))
     >>> labelled = terrain.label_runs([run], [terrain.told_terrain(run)])
     >>> sorted({square.label for square in labelled.chosen})

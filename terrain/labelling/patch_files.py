@@ -54,7 +54,7 @@ def write_labelled_patches(
     >>> from pathlib import Path
     >>> import odometry
     >>> import terrain
-    >>> whole = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> whole = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> run = odometry.cut_run(whole, odometry.Span(0.0, 6.0))
     >>> labelled = terrain.label_runs([run], [terrain.told_terrain(run)])
     >>> with TemporaryDirectory() as folder:

@@ -94,7 +94,7 @@ def told_by_spans(run: Run, spans: Sequence[TerrainSpan], start_s: float) -> Tol
     --------
     >>> import odometry
     >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> span = terrain.TerrainSpan(5.0, 12.5, "grass")
     >>> told = terrain.told_by_spans(run, [span], start_s=0.0)
     >>> told.between(6.0, 7.0), told.between(0.0, 1.0)
@@ -135,7 +135,7 @@ def told_terrain(run: Run, source: str | None = None) -> ToldTerrain:
     --------
     >>> import odometry
     >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> told = terrain.told_terrain(run)
     >>> told.source, told.names[0]
     ('truth.csv', 'gravel')

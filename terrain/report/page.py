@@ -73,7 +73,7 @@ def write_report(
     >>> from tempfile import TemporaryDirectory
     >>> import odometry
     >>> import terrain
-    >>> run = odometry.Run.read(terrain.shipped_data() / "runs" / "demo")
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> result = terrain.run_odometry(run, vision=False)
     >>> with TemporaryDirectory() as folder:
     ...     print(terrain.write_report(result, folder)[-1].name)

@@ -1,20 +1,16 @@
 """SFTA as a scikit-learn transformer."""
 
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
-from typing import Any, Self
+from collections.abc import Iterable
 
 import numpy as np
-from sklearn.base import BaseEstimator, TransformerMixin
 
 from odometry.arrays import AnyArray, FloatArray
-from terrain.errors import ImageError
-from terrain.images import to_bytes
+from terrain.texture.image_transformer import ImageTransformer, listed_images, naming_image
 from terrain.texture.sfta import feature_names, sfta
 from terrain.texture.variants import VariantName
 
 
-class SFTA(TransformerMixin, BaseEstimator):  # type: ignore[misc]
+class SFTA(ImageTransformer):
     """SFTA features of many images, as a step of a pipeline.
 
     It learns nothing: `fit` only checks its input and may be left out.
@@ -39,32 +35,6 @@ class SFTA(TransformerMixin, BaseEstimator):  # type: ignore[misc]
         self.n_thresholds = n_thresholds
         self.variant = variant
 
-    def fit(self, X: Iterable[AnyArray], y: object = None) -> Self:  # noqa: ARG002
-        """Check that there are images to transform; learn nothing.
-
-        Parameters
-        ----------
-        X : list or array of images
-            As in `transform`.
-        y : object
-            Ignored.
-
-        Returns
-        -------
-        SFTA
-            This object.
-
-        Raises
-        ------
-        ImageError, ConfigError
-            As in `transform`.
-        """
-        feature_names(self.n_thresholds, self.variant)
-        for place, image in enumerate(listed_images(X)):
-            with told_where(place):
-                to_bytes(image)
-        return self
-
     def transform(self, X: Iterable[AnyArray]) -> FloatArray:
         """Give the features of each image.
 
@@ -86,47 +56,9 @@ class SFTA(TransformerMixin, BaseEstimator):  # type: ignore[misc]
         """
         rows = []
         for place, image in enumerate(listed_images(X)):
-            with told_where(place):
+            with naming_image(place):
                 rows.append(sfta(image, self.n_thresholds, self.variant))
         return np.stack(rows)
 
-    def get_feature_names_out(self, input_features: object = None) -> AnyArray:  # noqa: ARG002
-        """Name the features: D1, C1, G1, D2, ...
-
-        Parameters
-        ----------
-        input_features : object
-            Ignored: images have no named features.
-
-        Returns
-        -------
-        (n_features,) array of str objects
-        """
-        return np.array(feature_names(self.n_thresholds, self.variant), dtype=object)
-
-    def __sklearn_tags__(self) -> Any:
-        """Tell scikit-learn that the input is images, and that fitting is not needed."""
-        tags = super().__sklearn_tags__()
-        tags.requires_fit = False
-        tags.input_tags.two_d_array = False
-        tags.input_tags.three_d_array = True
-        return tags
-
-
-def listed_images(X: Iterable[AnyArray]) -> list[AnyArray]:
-    """List the images of X; one image alone is not a list of images."""
-    if isinstance(X, np.ndarray) and X.ndim not in {3, 4}:
-        raise ImageError(f"a list of images or an array (N, H, W[, 3]), not an array {X.shape}")
-    images = list(X)
-    if not images:
-        raise ImageError("there is no image to transform")
-    return images
-
-
-@contextmanager
-def told_where(place: int) -> Iterator[None]:
-    """Add the place of the image to errors about it."""
-    try:
-        yield
-    except ImageError as error:
-        raise ImageError(f"image {place}: {error}") from error
+    def _names(self) -> list[str]:
+        return feature_names(self.n_thresholds, self.variant)

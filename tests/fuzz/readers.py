@@ -15,6 +15,7 @@ from odometry.modes.track import follow_modes
 from odometry.parameters import read_parameters
 from odometry.run import Run
 from odometry.run_inputs import inputs_of
+from odometry.shipped import shipped_data
 from odometry.simulation.contact.vehicle import read_contact_vehicle
 from odometry.windows.config import WindowConfig
 from odometry.windows.windows import windows_of
@@ -26,7 +27,6 @@ from terrain.config import Config
 from terrain.images import read_image
 from terrain.main_job import run_odometry
 from terrain.results import read_errors
-from terrain.shipped import shipped_data
 from terrain.synthesis.config import SynthesisConfig
 from terrain.synthesis.files import read_camera, read_robot
 from tests.fuzz.camera_readers import camera_readers

@@ -22,10 +22,10 @@ from odometry.evaluation.pose_pairs import (
 from odometry.evaluation.relative import EvaluationConfig, position_errors, relative_errors
 from odometry.io.trajectory_files import write_trajectory
 from odometry.io.tum import write_spatial_tum, write_tum
+from odometry.shipped import shipped_data
 from odometry.spatial_trajectory import SpatialTrajectory
 from terrain.main_job import run_odometry
 from terrain.results import write_results
-from terrain.shipped import shipped_data
 
 STEP_S, SPEED, STEPS = 0.25, 1.0, 160  # binary fractions: wheel travel has no rounding
 STAMPS_S = STEP_S * np.arange(STEPS + 1)

@@ -110,9 +110,8 @@ def simulate_contact(
     --------
     >>> import numpy as np
     >>> import odometry
-    >>> import terrain
     >>> from odometry.simulation import read_contact_vehicle
-    >>> husky = read_contact_vehicle(terrain.shipped_data() / "vehicles" / "husky_like.toml")
+    >>> husky = read_contact_vehicle(odometry.shipped_data() / "vehicles" / "husky_like.toml")
     >>> ahead_m_s = np.full((20, 2), 0.5)
     >>> drive = odometry.simulate_contact(husky, ahead_m_s, step_s=0.1)
     >>> f"{drive.twists_body[-1, 0]:.2f} m/s"

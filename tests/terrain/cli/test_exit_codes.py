@@ -4,8 +4,8 @@ import pytest
 from click.testing import CliRunner
 
 from odometry.errors import OdometryError
+from odometry.shipped import shipped_data
 from terrain.cli.main import VERBS, cli
-from terrain.shipped import shipped_data
 
 OUTPUTS = {"out", "picture"}
 READ = {"RUN", "PATCHES", "VEHICLE", "SET.toml", "drive.bag"}

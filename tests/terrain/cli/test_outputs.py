@@ -11,11 +11,11 @@ from click.testing import CliRunner
 from odometry.errors import OdometryError
 from odometry.outputs.manifest import Manifest, read_manifest
 from odometry.parameters import read_parameters
+from odometry.shipped import shipped_data
 from terrain.cli.evaluate import evaluate
 from terrain.cli.identify import identify
 from terrain.cli.run import run
 from terrain.cli.train import train
-from terrain.shipped import shipped_data
 
 
 def invoke(verb, *arguments):

@@ -6,10 +6,10 @@ from click.testing import CliRunner
 
 from odometry.errors import OdometryError
 from odometry.run import Run
+from odometry.shipped import shipped_data
 from odometry.simulation.courses import COURSE_NAMES
 from terrain.cli.simulate import simulate
 from terrain.cli.simulated_robot import VEHICLES
-from terrain.shipped import shipped_data
 
 PIONEER = shipped_data() / "vehicles" / "pioneer_like.toml"
 
