@@ -158,6 +158,11 @@ class Camera:
             return table | {"ground_to_image": self.ground_to_image.tolist()}
         return table | {"mount": self.mount.tolist()}
 
+    @cached_property
+    def ground_to_ray(self) -> FloatArray:
+        """Matrix (3, 3) from ground (x, y, 1) to rays in the optical frame, z the depth."""
+        return np.asarray(np.linalg.solve(self.matrix, self.ground_to_image))
+
     def ground_to_pixels(self, points: ArrayLike) -> FloatArray:
         """Where ground points appear in the raw (distorted) image.
 
@@ -173,7 +178,8 @@ class Camera:
             the camera, or so far off its axis that the lens model no longer holds.
         """
         ground = np.asarray(points, dtype=np.float64)
-        rays = _homogeneous(ground) @ np.linalg.solve(self.matrix, self.ground_to_image).T
+        matrix = self.ground_to_ray
+        rays = ground.reshape(-1, 2) @ matrix[:, :2].T + matrix[:, 2]
         depth = np.where(rays[:, 2] > 0, rays[:, 2], np.nan)
         raw = distort(rays[:, :2] / depth[:, None], self.distortion)
         return _apply(self.matrix, raw).reshape(ground.shape)
@@ -195,8 +201,7 @@ class Camera:
         raw = np.asarray(pixels, dtype=np.float64)
         normalised = _apply(np.asarray(np.linalg.inv(self.matrix)), raw.reshape(-1, 2))
         rays = undistort(normalised, self.distortion)
-        ground_from_ray = np.linalg.inv(np.linalg.solve(self.matrix, self.ground_to_image))
-        ground = _homogeneous(rays) @ ground_from_ray.T
+        ground = _homogeneous(rays) @ np.linalg.inv(self.ground_to_ray).T
         weight = np.where(ground[:, 2] > 0, ground[:, 2], np.nan)
         return np.asarray(ground[:, :2] / weight[:, None]).reshape(raw.shape)
 

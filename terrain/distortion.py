@@ -15,6 +15,9 @@ COEFFICIENT_COUNTS = (0, 4, 5, 8, 12, 14)
 
 _NEWTON_STEPS = 20
 _TOLERANCE = 1e-9
+_WIDEST = 4.0  # tangent of 76 degrees
+_RADII, _ANGLES = 257, 64
+_FAR_FROM_A_FOLD = 0.05
 
 
 def radius_limit(distortion: FloatArray) -> float:
@@ -66,8 +69,32 @@ def distort(points: FloatArray, distortion: FloatArray) -> FloatArray:
     (N, 2) array
         Distorted coordinates, NaN beyond `radius_limit` and where the input is NaN.
     """
-    image, jacobian = _distort(points, distortion, radius_limit(distortion))
-    return _without_folds(image, jacobian)
+    points = np.asarray(points, dtype=np.float64)
+    radius = np.hypot(points[:, 0], points[:, 1])
+    within = np.where((radius <= radius_limit(distortion))[:, None], points, np.nan)
+    coefficients = _padded(distortion)
+    image = _tilt(_lens(within, coefficients[:12]), coefficients[12:])
+    doubtful = radius > _unfolded_radius(*coefficients.tolist())
+    if doubtful.any():
+        jacobian = _derivatives(within[doubtful], coefficients)
+        image[doubtful] = _without_folds(image[doubtful], jacobian)
+    return image
+
+
+@lru_cache(maxsize=64)
+def _unfolded_radius(*coefficients: float) -> float:
+    """Radius up to which the lens is far from any fold, so that no derivative need be looked at.
+
+    Between the places that are tried the determinant changes by much less than what is asked of
+    it; it is 1 on the axis.
+    """
+    lens = np.array(coefficients)
+    radii = np.linspace(0.0, min(radius_limit(lens), _WIDEST), _RADII)
+    angles = np.linspace(0.0, 2 * np.pi, _ANGLES, endpoint=False)
+    places = radii[:, None, None] * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+    determinants = _determinants(_derivatives(places.reshape(-1, 2), lens))
+    folded = ~(determinants.reshape(_RADII, _ANGLES) > _FAR_FROM_A_FOLD).all(axis=1)
+    return float(radii[max(int(folded.argmax()) - 1, 0)] if folded.any() else radii[-1])
 
 
 def undistort(points: FloatArray, distortion: FloatArray) -> FloatArray:
@@ -107,18 +134,38 @@ def _distort(
     """Distorted points and their 2x2 derivatives by the undistorted ones."""
     points = np.asarray(points, dtype=np.float64)
     radius = np.hypot(points[:, 0], points[:, 1])
-    valid = radius <= limit  # False for NaN
-    image = np.full_like(points, np.nan)
-    jacobian = np.full((len(points), 2, 2), np.nan)
-    coefficients = np.pad(distortion, (0, 14 - len(distortion)))
-    lens, lens_jacobian = _lens(points[valid], coefficients[:12])
-    image[valid], jacobian[valid] = _tilt(lens, lens_jacobian, coefficients[12:])
-    return image, jacobian
+    within = np.where((radius <= limit)[:, None], points, np.nan)  # NaN beyond, and for NaN
+    coefficients = _padded(distortion)
+    image = _tilt(_lens(within, coefficients[:12]), coefficients[12:])
+    return image, _derivatives(within, coefficients)
 
 
-def _lens(points: FloatArray, coefficients: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Apply the radial, tangential and thin prism terms, with their derivatives (N, 2, 2)."""
+def _padded(distortion: FloatArray) -> FloatArray:
+    """All 14 coefficients."""
+    coefficients = np.zeros(14)
+    coefficients[: len(distortion)] = distortion
+    return coefficients
+
+
+def _lens(points: FloatArray, coefficients: FloatArray) -> FloatArray:
+    """Apply the radial, tangential and thin prism terms."""
     k1, k2, p1, p2, k3, k4, k5, k6, s1, s2, s3, s4 = coefficients
+    x, y = points.T
+    square = x * x + y * y
+    numerator = 1 + square * (k1 + square * (k2 + square * k3))
+    denominator = 1 + square * (k4 + square * (k5 + square * k6))
+    radial = numerator / denominator
+    return np.column_stack(
+        [
+            x * radial + 2 * p1 * x * y + p2 * (square + 2 * x * x) + square * (s1 + s2 * square),
+            y * radial + p1 * (square + 2 * y * y) + 2 * p2 * x * y + square * (s3 + s4 * square),
+        ]
+    )
+
+
+def _derivatives(points: FloatArray, coefficients: FloatArray) -> FloatArray:
+    """Derivatives (N, 2, 2) of the distorted points by the undistorted ones."""
+    k1, k2, p1, p2, k3, k4, k5, k6, s1, s2, s3, s4, _, _ = coefficients
     x, y = points.T
     square = x * x + y * y
     numerator = 1 + square * (k1 + square * (k2 + square * k3))
@@ -126,12 +173,6 @@ def _lens(points: FloatArray, coefficients: FloatArray) -> tuple[FloatArray, Flo
     radial = numerator / denominator
     slope = k1 + square * (2 * k2 + 3 * square * k3)
     slope = (slope - radial * (k4 + square * (2 * k5 + 3 * square * k6))) / denominator
-    image = np.column_stack(
-        [
-            x * radial + 2 * p1 * x * y + p2 * (square + 2 * x * x) + square * (s1 + s2 * square),
-            y * radial + p1 * (square + 2 * y * y) + 2 * p2 * x * y + square * (s3 + s4 * square),
-        ]
-    )
     prism_x, prism_y = 2 * (s1 + 2 * s2 * square), 2 * (s3 + 2 * s4 * square)
     mixed = 2 * (x * y * slope + p1 * x + p2 * y)
     jacobian = np.empty((len(points), 2, 2))
@@ -139,26 +180,32 @@ def _lens(points: FloatArray, coefficients: FloatArray) -> tuple[FloatArray, Flo
     jacobian[:, 0, 1] = mixed + prism_x * y
     jacobian[:, 1, 0] = mixed + prism_y * x
     jacobian[:, 1, 1] = radial + 2 * y * y * slope + 6 * p1 * y + 2 * p2 * x + prism_y * y
-    return image, jacobian
+    if not coefficients[12:].any():
+        return jacobian
+    matrix = _tilt_matrix(coefficients[12:])
+    projected = _lens(points, coefficients[:12]) @ matrix[:, :2].T + matrix[:, 2]
+    image = projected[:, :2] / projected[:, 2:]
+    by_point = (matrix[:2, :2] - image[:, :, None] * matrix[2, :2]) / projected[:, 2:, None]
+    return np.asarray(by_point @ jacobian)
 
 
-def _tilt(
-    points: FloatArray, jacobian: FloatArray, angles: FloatArray
-) -> tuple[FloatArray, FloatArray]:
+def _tilt(points: FloatArray, angles: FloatArray) -> FloatArray:
     """Project on a sensor that is tilted by (tau_x, tau_y), as OpenCV defines it."""
     if not angles.any():
-        return points, jacobian
+        return points
+    matrix = _tilt_matrix(angles)
+    projected = points @ matrix[:, :2].T + matrix[:, 2]
+    return np.asarray(projected[:, :2] / projected[:, 2:])
+
+
+def _tilt_matrix(angles: FloatArray) -> FloatArray:
     (cos_x, cos_y), (sin_x, sin_y) = np.cos(angles), np.sin(angles)
     about_x = np.array([[1, 0, 0], [0, cos_x, sin_x], [0, -sin_x, cos_x]])
     about_y = np.array([[cos_y, 0, -sin_y], [0, 1, 0], [sin_y, 0, cos_y]])
     rotation = about_y @ about_x
     corner = rotation[2, 2]
     projection = np.array([[corner, 0, -rotation[0, 2]], [0, corner, -rotation[1, 2]], [0, 0, 1]])
-    matrix = projection @ rotation
-    projected = points @ matrix[:, :2].T + matrix[:, 2]
-    image = projected[:, :2] / projected[:, 2:]
-    by_point = (matrix[:2, :2] - image[:, :, None] * matrix[2, :2]) / projected[:, 2:, None]
-    return image, by_point @ jacobian
+    return np.asarray(projection @ rotation)
 
 
 def _without_folds(points: FloatArray, jacobian: FloatArray) -> FloatArray:

@@ -18,6 +18,7 @@ __all__ = ["Rectangle", "Region", "RegionConfig", "predict_region"]
 
 STEPS = 200  # places tried along the predicted motion
 POINTS = 7  # along each side of the footprint; odd, so that its middle is one of them
+FEW = [0, POINTS - 1, POINTS**2 // 2, POINTS**2 - POINTS, POINTS**2 - 1]  # corners and middle
 GRADES = 4  # of the share in sight, from all of the footprint to the least share
 TRIES = 10  # places of a grade that are tried for one that can be classified
 COARSE = "the image is too coarse there"
@@ -156,9 +157,8 @@ def predict_region(
     ahead_s = _times_ahead_s(robot, wheel_speed_m_s, config)
     poses = se2.exp(twist * ahead_s[:, None])
     parts = _parts(robot, config)
-    shares = _shares(camera, poses, parts, coarsest_m)
     reasons = []
-    for place in _places(shares, config.least_share):
+    for place in _places(camera, poses, parts, coarsest_m, config.least_share):
         rectangles = [
             largest_shown(camera, part.bounds(poses[place]), coarsest_m) for part in parts
         ]
@@ -204,8 +204,36 @@ def _shares(
     return shares
 
 
-def _places(shares: FloatArray, least_share: float) -> Iterator[int]:
-    """Places to try: the first ones where all is in sight, then where less is, to the least."""
+def _places(
+    camera: Camera,
+    poses: FloatArray,
+    parts: tuple[_Part, ...],
+    coarsest_m: float,
+    least_share: float,
+) -> Iterator[int]:
+    """Places to try: the first ones where all is in sight, then where less is, to the least.
+
+    Mostly the first will do, and no more is looked for until it will not.
+    """
+    first = _first_whole(camera, poses, parts, coarsest_m)
+    if first is not None:
+        yield first
+    shares = _shares(camera, poses, parts, coarsest_m)
+    tried = first is not None
     for share in np.linspace(1.0, least_share, GRADES):
         places = np.flatnonzero(shares >= share - 1e-9)
-        yield from places[:: max(1, -(-len(places) // TRIES))]
+        yield from places[:: max(1, -(-len(places) // TRIES))][tried:]
+        tried = False
+
+
+def _first_whole(
+    camera: Camera, poses: FloatArray, parts: tuple[_Part, ...], coarsest_m: float
+) -> int | None:
+    """The first of poses (N, 3) at which all points of all parts are in sight."""
+    points = np.concatenate([part.points() for part in parts])
+    few = np.concatenate([part.points()[FEW] for part in parts])
+    maybe = is_shown(camera, se2.transform(poses[:, None], few), coarsest_m).all(axis=1)
+    for place in np.flatnonzero(maybe):
+        if is_shown(camera, se2.transform(poses[place], points), coarsest_m).all():
+            return int(place)
+    return None

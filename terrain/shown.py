@@ -32,9 +32,8 @@ def is_shown(camera: Camera, points: FloatArray, coarsest_m: float = inf) -> Boo
     if coarsest_m == inf:
         return shown
     seen, at = np.asarray(points)[shown], pixels[shown]
-    by_x, by_y = (
-        (camera.ground_to_pixels(seen + STEP_M * axis) - at) / STEP_M for axis in np.eye(2)
-    )
+    aside = camera.ground_to_pixels(seen + STEP_M * np.eye(2)[:, None])
+    by_x, by_y = (aside - at) / STEP_M
     fine = shown.copy()
     fine[shown] = _smallest_stretch(by_x, by_y) * coarsest_m >= 1
     return fine
@@ -61,6 +60,8 @@ def largest_shown(camera: Camera, rectangle: Rectangle, coarsest_m: float = inf)
     y = np.linspace(rectangle.y_min, rectangle.y_max, CELLS + 1)
     points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
     corners = is_shown(camera, points, coarsest_m)
+    if corners.all():
+        return rectangle
     cells = corners[1:, 1:] & corners[1:, :-1] & corners[:-1, 1:] & corners[:-1, :-1]
     first_x, end_x, first_y, end_y = _largest_block(cells)
     return Rectangle(float(x[first_x]), float(x[end_x]), float(y[first_y]), float(y[end_y]))

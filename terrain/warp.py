@@ -1,11 +1,12 @@
 """Ground seen from above: a rectangle of the ground as an image of known scale."""
 
 import math
+from functools import lru_cache
 
 import cv2
 import numpy as np
 
-from odometry.arrays import ByteImage
+from odometry.arrays import AnyArray, ByteImage
 from terrain.camera import Camera
 from terrain.region import Rectangle
 
@@ -44,12 +45,28 @@ def ground_view(
     rows, columns = view_shape(rectangle, metres_per_pixel)
     fineness = max(1, math.ceil(metres_per_pixel / ground_sampling_m(camera, rectangle)[0]))
     step = metres_per_pixel / fineness
-    x = rectangle.x_max - step * (np.arange(rows * fineness) + 0.5)
-    y = rectangle.y_max - step * (np.arange(columns * fineness) + 0.5)
-    points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
-    pixels = camera.ground_to_pixels(points).astype(np.float32)
-    view = cv2.remap(image, pixels[..., 0], pixels[..., 1], cv2.INTER_LINEAR)
+    u, v = _pixels(camera, rectangle, step, (rows * fineness, columns * fineness))
+    view = cv2.remap(image, u, v, cv2.INTER_LINEAR)
     return np.asarray(cv2.resize(view, (columns, rows), interpolation=cv2.INTER_AREA))
+
+
+def _pixels(
+    camera: Camera, rectangle: Rectangle, step_m: float, shape: tuple[int, int]
+) -> tuple[AnyArray, AnyArray]:
+    """Where the middles of the view's cells appear, u and v (rows, columns) as float32.
+
+    `Camera.ground_to_pixels` by OpenCV, without a look at where the lens model ends. Depth is
+    linear on the ground, and in front of the camera the tangent of the angle off the axis is
+    quasi-convex: what holds at the corners of a rectangle holds within.
+    """
+    x, y = rectangle.x_max - step_m / 2, rectangle.y_max - step_m / 2
+    ground_of_cell = np.array([[0.0, -step_m, x], [-step_m, 0.0, y], [0.0, 0.0, 1.0]])
+    cell_of_ray = np.linalg.inv(camera.ground_to_ray @ ground_of_cell)
+    lens = camera.distortion if camera.distortion.size else np.zeros(4)
+    u, v = cv2.initUndistortRectifyMap(
+        camera.matrix, lens, cell_of_ray, np.eye(3), shape[::-1], cv2.CV_32FC1
+    )
+    return u, v
 
 
 def pixel_view(image: ByteImage, camera: Camera, rectangle: Rectangle) -> ByteImage:
@@ -70,6 +87,7 @@ def view_shape(rectangle: Rectangle, metres_per_pixel: float) -> tuple[int, int]
     return rows, columns
 
 
+@lru_cache(maxsize=16)  # asked for by whoever chooses a region, and again for its view
 def ground_sampling_m(camera: Camera, rectangle: Rectangle) -> tuple[float, float]:
     """Finest and coarsest size of a pixel on the ground over a rectangle [m].
 
@@ -79,7 +97,9 @@ def ground_sampling_m(camera: Camera, rectangle: Rectangle) -> tuple[float, floa
     step = 1e-3
     corners = rectangle.corners
     inwards = step * np.sign(corners.mean(axis=0) - corners)
-    here = camera.ground_to_pixels(corners)
-    moved = [camera.ground_to_pixels(corners + inwards * axis) - here for axis in np.eye(2)]
-    pixels_per_metre = np.linalg.svd(np.stack(moved, axis=-1) / step, compute_uv=False)
+    here, *moved = camera.ground_to_pixels(
+        np.stack([corners, *(corners + inwards * axis for axis in np.eye(2))])
+    )
+    derivatives = np.stack([there - here for there in moved], axis=-1) / step
+    pixels_per_metre = np.linalg.svd(derivatives, compute_uv=False)
     return float(1 / pixels_per_metre.max()), float(1 / pixels_per_metre.min())

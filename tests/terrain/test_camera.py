@@ -7,6 +7,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from terrain.camera import Camera
+from terrain.distortion import distort, radius_limit
 from terrain.errors import CameraError
 
 MATRIX = [[410.0, 0.0, 322.0], [0.0, 400.0, 236.0], [0.0, 0.0, 1.0]]
@@ -247,3 +248,25 @@ def test_missing_keys(key):
 def test_singular_homography():
     with pytest.raises(CameraError, match="singular"):
         Camera.from_homography((640, 480), MATRIX, [], [[1, 2, 3], [2, 4, 6], [0, 0, 1]])
+
+
+@pytest.mark.parametrize(("p1", "p2"), [(0.0, 0.0), (0.05, -0.02), (-0.1, 0.15), (0.4, 0.3)])
+def test_a_lens_holds_where_it_neither_turns_back_nor_folds(p1, p2):
+    """Against the sign of the determinant of OpenCV's own derivatives by differences."""
+    lens = np.array([-0.2, 0.03, p1, p2, 0.0])
+    share = np.linspace(-1.6, 1.6, 81)
+    points = np.stack(np.meshgrid(share, share), axis=-1).reshape(-1, 2)
+
+    def by_opencv(at):
+        rays = np.column_stack([at, np.ones(len(at))])
+        return cv2.projectPoints(rays, np.zeros(3), np.zeros(3), np.eye(3), lens)[0][:, 0]
+
+    by_x, by_y = (
+        (by_opencv(points + aside) - by_opencv(points - aside)) / 2e-6 for aside in 1e-6 * np.eye(2)
+    )
+    determinant = by_x[:, 0] * by_y[:, 1] - by_x[:, 1] * by_y[:, 0]
+    clear = np.abs(determinant) > 1e-4
+    holds = (determinant > 0) & (np.hypot(*points.T) <= radius_limit(lens))
+    found = distort(points, lens)
+    np.testing.assert_array_equal(np.isfinite(found).all(axis=1)[clear], holds[clear])
+    np.testing.assert_allclose(found[holds & clear], by_opencv(points)[holds & clear], atol=1e-9)

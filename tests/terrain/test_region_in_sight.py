@@ -5,6 +5,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+import terrain.region as region_file
+from odometry.geometry import se2
 from terrain.camera import Camera
 from terrain.region import Region, RegionConfig, predict_region
 from tests.terrain.regions import (
@@ -138,3 +140,29 @@ def test_the_whole_region_lies_in_the_image_of_a_curved_lens(
     region = predict_region(ROBOT, camera, np.array([1.0, 0.0, omega]), 1.0, RegionConfig())
     assume(isinstance(region, Region))
     assert pixels_outside(camera, region.rectangle) < 0.5  # the area of a pixel reaches that far
+
+
+@settings(max_examples=25)
+@given(
+    omega=st.floats(-1.5, 1.5),
+    camera_yaw=st.floats(-0.4, 0.4),
+    per_tread=st.booleans(),
+    least_share=st.sampled_from([0.4, 1.0]),
+    coarsest_m=st.sampled_from([0.004, 0.01, np.inf]),
+)
+def test_places_are_tried_in_the_order_of_the_shares_of_all(
+    omega, camera_yaw, per_tread, least_share, coarsest_m
+):
+    """The first is found without looking at the others: the order is that of looking at all."""
+    config = RegionConfig(per_tread=per_tread, least_share=least_share)
+    mount = [*MOUNT[:5], camera_yaw]
+    camera = Camera.from_mount((640, 480), MATRIX, [-0.1, 0.02, 0.001, 0.0], mount)
+    poses = se2.exp(np.array([0.8, 0.0, omega]) * np.linspace(0.0, 5.0, 60)[:, None])
+    parts = region_file._parts(ROBOT, config)
+    shares = region_file._shares(camera, poses, parts, coarsest_m)
+    expected = []
+    for share in np.linspace(1.0, least_share, region_file.GRADES):
+        places = np.flatnonzero(shares >= share - 1e-9)
+        expected.extend(places[:: max(1, -(-len(places) // region_file.TRIES))])
+    found = region_file._places(camera, poses, parts, coarsest_m, least_share)
+    assert list(found) == expected

@@ -158,3 +158,33 @@ def test_sampling_is_known_where_the_image_of_the_ground_ends():
     assert np.isnan(camera.ground_to_pixels([side + 1e-3, side])).all()
     sampling = ground_sampling_m(camera, Rectangle(-side, side, -side, side))
     assert np.isfinite(sampling).all()
+
+
+LENSES = {
+    "none": [],
+    "barrel": [-0.3, 0.1, 0.0, 0.0],
+    "tangential": [-0.12, 0.05, 0.02, -0.03, 0.0],
+    "rational": [0.2, -0.1, 0.001, 0.002, 0.01, 0.3, -0.05, 0.01],
+    "prism and tilt": [-0.1, 0.02, 0.001, 0.0, 0, 0, 0, 0, 0.01, -0.02, 0.005, 0.01, 0.05, -0.08],
+}
+
+
+@pytest.mark.parametrize("lens", LENSES.values(), ids=LENSES)
+@pytest.mark.parametrize("x_min", [0.4, 0.8], ids=["all in sight", "partly in sight"])
+def test_each_cell_shows_what_lies_at_the_pixel_of_its_ground(lens, x_min):
+    """The view of an image whose grey is u, then v, against `ground_to_pixels` of each cell."""
+    matrix = [[300.0, 0.0, 127.0], [0.0, 310.0, 90.0], [0.0, 0.0, 1.0]]
+    camera = Camera.from_mount((255, 200), matrix, lens, [0.1, 0.02, 0.6, 0.03, 0.8, -0.05])
+    rectangle, scale = Rectangle(x_min, x_min + 0.5, -0.2, 0.2), 0.01
+    fineness = int(np.ceil(scale / ground_sampling_m(camera, rectangle)[0]))
+    cells = cell_centres(rectangle, scale / fineness, 50 * fineness, 40 * fineness)
+    pixels = camera.ground_to_pixels(np.stack(cells, axis=-1))
+    pixels = pixels.reshape(50, fineness, 40, fineness, 2)
+    inside = camera.in_image(pixels).all(axis=(1, 3))
+    expected = pixels.mean(axis=(1, 3))
+    assert inside.any()
+    greys = np.stack(np.meshgrid(np.arange(255), np.arange(200)), axis=-1).astype(np.uint8)
+    for axis in (0, 1):
+        view = ground_view(np.ascontiguousarray(greys[..., axis]), camera, rectangle, scale)
+        off = np.abs(view[inside] - expected[inside][:, axis])
+        assert off.max() < 1.1, lens  # each rounded to whole greys, twice
