@@ -42,4 +42,4 @@ class ResultError(TerrainError):
 
 
 class BatchError(TerrainError):
-    """Many runs cannot be replayed together, or not where they were sent."""
+    """Many jobs cannot be done together, or not where they were sent."""

@@ -13,7 +13,8 @@ from odometry.arrays import AnyArray, BoolArray, ByteImage, FloatArray
 from odometry.errors import ConfigError
 from odometry.run import UNKNOWN
 from terrain.classification.answer import Classification, Classifier
-from terrain.classification.features import feature_matrix
+from terrain.classification.feature_jobs import shared_feature_matrix
+from terrain.classification.features import FeatureSettings, feature_matrix
 from terrain.classification.model_file import ModelFile
 from terrain.classification.neighbours import vote
 from terrain.classification.patches import cut_patches
@@ -116,6 +117,7 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
         progress: bool = False,
         trained_on: TrainedOn | None = None,
         processes: int = 1,
+        scheduler: str | None = None,
     ) -> Self:
         """Learn from labelled patches.
 
@@ -134,6 +136,8 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
             The photographs that the patches are of; kept in the model.
         processes : int
             That share the images; -1 takes all cores. What is learned is the same.
+        scheduler : str, optional
+            Address of a Dask scheduler, whose workers share the images instead.
 
         Raises
         ------
@@ -143,11 +147,19 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
             If the patches differ in size, or there are fewer than two classes, or a class has
             patches of fewer than two groups or fewer than `n_neighbors` in training, or nothing
             varies within the classes.
+        BatchError
+            If the cluster cannot do it.
         """
         self._check_parameters()
         if holds_images(X):
             labels, photos = _labels_and_groups(len(X), y, groups)
-            features = self._features_of(X, labels, progress, processes)
+            features = shared_feature_matrix(
+                X,
+                self._settings_for(X, labels),
+                processes=processes,
+                scheduler=scheduler,
+                show_progress=progress,
+            )
             self.n_features_in_ = features.shape[1]
         else:
             self._features, self.colour_ = None, False
@@ -196,20 +208,14 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
         if self.n_neighbors is not None and self.n_neighbors < 1:
             raise ConfigError(f"n_neighbors is {self.n_neighbors}, expected 1 or more")
 
-    def _features_of(
-        self,
-        images: Sequence[ByteImage],
-        labels: AnyArray,
-        progress: bool,
-        processes: int,
-    ) -> FloatArray:
-        """Features of square patches, which become those that the classifier asks for."""
+    def _settings_for(self, images: Sequence[ByteImage], labels: AnyArray) -> FeatureSettings:
+        """What is computed of square patches, which become those that the classifier asks for."""
         self.patch_size_px = common_size(images)
         preset = PRESETS[self.preset]
         wanted = self.colour and len(labels) == len(images) and has_colour(images, labels)
         settings = preset.colour_features if wanted else preset.features
         self._features, self.colour_ = settings, bool(settings.colour_copies)
-        return feature_matrix(images, settings, progress, processes)
+        return settings
 
     def _learn(self, features: FloatArray, codes: AnyArray, groups: AnyArray) -> None:
         preset = PRESETS[self.preset]

@@ -5,8 +5,6 @@ from dataclasses import dataclass
 from typing import Any, Self
 
 import numpy as np
-from joblib import Parallel, cpu_count, delayed
-from tqdm import tqdm
 
 from odometry.arrays import ByteImage, FloatArray
 from terrain.classification.filters import (
@@ -45,7 +43,6 @@ GREY_COPIES: dict[str, Filter] = {
     "band_2": band_pass(2.0),
     "band_4": band_pass(4.0),
 }
-WORTH_A_PROCESS = 100  # patches; their features take as long as a process takes to start
 COLOUR_COPIES: dict[str, Filter] = {"red_green": red_green, "yellow_blue": yellow_blue}
 
 
@@ -97,22 +94,6 @@ def feature_names(settings: FeatureSettings) -> list[str]:
     return [f"{copy}_{name}" for copy in copies for name in names_of_sfta(settings.n_thresholds)]
 
 
-def feature_matrix(
-    images: Sequence[ByteImage],
-    settings: FeatureSettings,
-    progress: bool = False,
-    processes: int = 1,
-) -> FloatArray:
-    """Return the features of each patch as a row, shape (patches, features).
-
-    They do not depend on the number of `processes` that share the patches; -1 takes all cores.
-    No more are started than is worth the while.
-    """
-    wanted = cpu_count() if processes < 0 else processes
-    used = max(1, min(wanted, len(images) // WORTH_A_PROCESS))
-    tasks = (delayed(patch_features)(image, settings) for image in images)
-    rows = Parallel(n_jobs=used, return_as="generator")(tasks)
-    bar = tqdm(
-        rows, desc="features", unit="patch", total=len(images), disable=None if progress else True
-    )
-    return np.array(list(bar))
+def feature_matrix(images: Sequence[ByteImage], settings: FeatureSettings) -> FloatArray:
+    """Return the features of each patch as a row, shape (patches, features)."""
+    return np.array([patch_features(image, settings) for image in images])

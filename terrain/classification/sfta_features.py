@@ -4,7 +4,8 @@ from collections.abc import Iterable
 
 from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import ConfigError
-from terrain.classification.features import FeatureSettings, feature_matrix, feature_names
+from terrain.classification.feature_jobs import shared_feature_matrix
+from terrain.classification.features import FeatureSettings, feature_names
 from terrain.classification.presets import PRESETS
 from terrain.images import to_bytes
 from terrain.texture.image_transformer import ImageTransformer, listed_images, naming_image
@@ -65,7 +66,7 @@ class SftaFeatures(ImageTransformer):
         for place, image in enumerate(listed_images(X)):
             with naming_image(place):
                 images.append(to_bytes(image))
-        return feature_matrix(images, settings, processes=self.n_jobs)
+        return shared_feature_matrix(images, settings, processes=self.n_jobs)
 
     def _names(self) -> list[str]:
         return feature_names(self._settings())

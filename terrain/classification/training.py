@@ -47,6 +47,7 @@ def train(
     k: int | None = None,
     rejected_share: float = 0.05,
     processes: int = 1,
+    scheduler: str | None = None,
     show_progress: bool = False,
 ) -> Training:
     """Cut the photographs of a folder to patches of one size and fit a classifier.
@@ -69,6 +70,9 @@ def train(
         Share of known patches that may be called unknown.
     processes : int
         That share the patches; -1 takes all cores. What is learned is the same.
+    scheduler : str, optional
+        Address of a Dask scheduler, such as tcp://host:8786, whose workers share them instead; the
+        photographs are read here and sent to them.
     show_progress : bool
 
     Raises
@@ -77,6 +81,8 @@ def train(
         If the folder is not as the format says, or has too few photographs of a class.
     ImageError
         If a photograph cannot be read.
+    ExtraError, BatchError
+        If there is a scheduler and Dask is not installed, or the cluster cannot do it.
 
     Examples
     --------
@@ -104,5 +110,6 @@ def train(
         progress=show_progress,
         trained_on=patches.trained_on,
         processes=processes,
+        scheduler=scheduler,
     )
     return Training(classifier, patches)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import OUTPUT, RunFolder, processes_option
+from terrain.cli.options import OUTPUT, RunFolder, processes_option, scheduler_option
 from terrain.cli.run_options import run_options
 
 if TYPE_CHECKING:
@@ -20,11 +20,7 @@ if TYPE_CHECKING:
 @click.option("--out", required=True, metavar="DIR", type=OUTPUT, help="Folder for the results.")
 @run_options
 @processes_option
-@click.option(
-    "--scheduler",
-    metavar="ADDRESS",
-    help="Dask scheduler whose workers replay the runs, such as tcp://host:8786.",
-)
+@scheduler_option
 def batch(
     folders: tuple[Path, ...],
     *,

@@ -30,6 +30,15 @@ def processes_option(command: Callable[..., None]) -> Callable[..., None]:
     )(command)
 
 
+def scheduler_option(command: Callable[..., None]) -> Callable[..., None]:
+    """Add --scheduler, on which no result depends."""
+    return click.option(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="Dask scheduler whose workers do it instead, such as tcp://host:8786.",
+    )(command)
+
+
 class RunFolder(click.Path):
     """A run folder; a bag is told how to become one."""
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import OUTPUT, Positive, processes_option
+from terrain.cli.options import OUTPUT, Positive, processes_option, scheduler_option
 
 if TYPE_CHECKING:
     from terrain.classification.classifier import TerrainClassifier
@@ -56,6 +56,7 @@ if TYPE_CHECKING:
 )
 @click.option("--colour", is_flag=True, help="Use colour: for one camera in training and in use.")
 @processes_option
+@scheduler_option
 def train(
     *,
     patches: Path,
@@ -67,6 +68,7 @@ def train(
     k: int | None,
     reject: float,
     processes: int | None,
+    scheduler: str | None,
 ) -> None:
     """Train a terrain classifier on PATCHES/<terrain>/*.jpg or *.png.
 
@@ -77,6 +79,7 @@ def train(
     \b
     Example:
       terrain-odometry train my_photos --out terrain.model --metres-per-pixel 0.002
+      terrain-odometry train my_photos --out terrain.model --scheduler tcp://host:8786
     """
     from terrain.classification.manifest import read_manifest
     from terrain.classification.persistence import is_model
@@ -93,6 +96,7 @@ def train(
         k=k,
         rejected_share=reject,
         processes=processes or -1,
+        scheduler=scheduler,
         show_progress=True,
     )
     classifier, loaded = training.classifier, training.patches

@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
 from terrain.classification.evaluation import balanced_accuracy
-from terrain.classification.features import feature_matrix
+from terrain.classification.feature_jobs import shared_feature_matrix
 from terrain.classification.neighbours import Neighbours, vote
 from terrain.classification.patches import find_photos, load_patches
 from terrain.classification.presets import PRESETS, Preset
@@ -43,8 +43,9 @@ def read_grounds(folder: Path, size_px: int, store: Path) -> Grounds:
     file = store / f"{folder.name}_{size_px}.npz"
     if not file.exists():
         patches = load_patches(find_photos(folder), size_px)
-        plain = feature_matrix(patches.images, PRESETS["chen2023"].features, progress=True)
-        bank = feature_matrix(patches.images, PRESETS["default"].colour_features, progress=True)
+        shared = {"processes": 1, "show_progress": True}
+        plain = shared_feature_matrix(patches.images, PRESETS["chen2023"].features, **shared)
+        bank = shared_feature_matrix(patches.images, PRESETS["default"].colour_features, **shared)
         names = [str(photo) for photo in patches.photos]
         np.savez(file, plain, bank, patches.labels, patches.groups, names)
         print(f"{folder.name}: {len(patches.too_small)} photographs smaller than {size_px} px")

@@ -1,9 +1,6 @@
-"""A Dask cluster of real processes on this machine."""
+"""Runs replayed by a Dask cluster."""
 
 import os
-import subprocess
-import sys
-from contextlib import ExitStack, contextmanager
 
 import pytest
 
@@ -12,51 +9,15 @@ pytest.importorskip("distributed", reason="the extra dask is not installed")
 from terrain.batch.cluster import cluster_outcomes
 from terrain.batch.job import FAILED, KEPT, REPLAYED, run_job
 from terrain.errors import BatchError
+from tests.terrain.dask_processes import started_scheduler, started_workers
 
-SCHEDULER = ("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--no-show")
 WITHOUT_PAGE = "import terrain.report.page as page; page.write_report = lambda *_: None"
-WORKER = ("worker", "--nthreads", "1", "--no-nanny", "--no-dashboard", "--host", "127.0.0.1")
-
-
-def dask(*words, before=""):
-    program = f"{before}\nimport sys\nfrom dask.__main__ import main\nsys.exit(main())"
-    return subprocess.Popen(
-        [sys.executable, "-c", program, *words], stderr=subprocess.PIPE, text=True, cwd="/"
-    )
-
-
-def said(process, text):
-    """The first line of a process with a text."""
-    for line in process.stderr:
-        if text in line:
-            return line
-    raise AssertionError(f"it never said {text!r}")
-
-
-@contextmanager
-def running(process):
-    try:
-        yield process
-    finally:
-        process.kill()
-        process.communicate()
 
 
 @pytest.fixture(scope="module")
 def scheduler():
-    with running(dask(*SCHEDULER)) as process:
-        yield said(process, "Scheduler at:").split()[-1]
-
-
-@contextmanager
-def workers(scheduler, count, before=""):
-    with ExitStack() as stack:
-        started = [dask(*WORKER, scheduler, before=before) for _ in range(count)]
-        for process in started:
-            stack.enter_context(running(process))
-        for process in started:
-            said(process, "Registered to:")
-        yield started
+    with started_scheduler() as address:
+        yield address
 
 
 def contents(folder):
@@ -70,7 +31,7 @@ def test_all_results_arrive_though_a_worker_is_killed(
     jobs.append(job_of(four_runs / "absent"))
     monkeypatch.setattr("terrain.report.page.write_report", lambda *_: None)
     states = {}
-    with workers(scheduler, 2, WITHOUT_PAGE) as (first, _):
+    with started_workers(scheduler, 2, WITHOUT_PAGE) as (first, _):
         for outcome in cluster_outcomes(jobs, scheduler):
             states[outcome.job.name] = outcome.state
             first.kill()  # with the first outcome that comes: there is more to do
@@ -96,13 +57,13 @@ def test_a_worker_that_cannot_do_the_jobs_is_told_in_one_line(
     scheduler, curvy_run, job_of, tmp_path, monkeypatch
 ):
     job = job_of(curvy_run)
-    monkeypatch.setattr("terrain.batch.workers.WAITS_S", 0.3)
+    monkeypatch.setattr("terrain.batch.connection.WAITS_S", 0.3)
     assert "has no workers; start some with: dask worker" in refused([job], scheduler)
     older = "import odometry.outputs.made as made; made.version = lambda name: '0.1'"
-    with workers(scheduler, 1, before=older):
+    with started_workers(scheduler, 1, before=older):
         message = refused([job], scheduler)
     assert "terrain-odometry 0.1 (here " in message
-    with workers(scheduler, 1):
+    with started_workers(scheduler, 1):
         opened = os.open(tmp_path, os.O_RDONLY)
         mine = job_of(curvy_run, out=type(tmp_path)(f"/proc/self/fd/{opened}/out"))
         message = refused([mine], scheduler)
@@ -116,7 +77,7 @@ def test_a_worker_that_cannot_do_the_jobs_is_told_in_one_line(
 def test_a_scheduler_that_does_not_answer_is_told_in_one_line(
     job_of, curvy_run, address, monkeypatch
 ):
-    monkeypatch.setattr("terrain.batch.cluster.CONNECTS_S", 0.5)
+    monkeypatch.setattr("terrain.batch.connection.CONNECTS_S", 0.5)
     message = refused([job_of(curvy_run)], address)
     assert message.startswith(f"--scheduler {address}: no scheduler answers there")
     assert "dask scheduler" in message

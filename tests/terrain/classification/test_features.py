@@ -3,9 +3,7 @@ from dataclasses import asdict
 
 import numpy as np
 import pytest
-from joblib.externals.loky import get_reusable_executor
 
-from terrain.classification import features
 from terrain.classification.features import (
     COLOUR_COPIES,
     GREY_COPIES,
@@ -64,18 +62,3 @@ def test_settings_come_back_from_json_and_unknown_copies_are_refused():
     assert FeatureSettings.from_table(table) == BANK
     with pytest.raises(ValueError, match=r"does not know: .*wavelets"):
         FeatureSettings.from_table(table | {"grey_copies": ["grey", "wavelets"]})
-
-
-def test_processes_share_the_patches_and_give_the_same_bytes(rng, monkeypatch):
-    monkeypatch.setattr(features, "WORTH_A_PROCESS", 4)
-    images = rng.integers(0, 256, (9, 24, 24), dtype=np.uint8)
-    alone = feature_matrix(images, GREY)
-    seen = []
-    parallel = features.Parallel
-    monkeypatch.setattr(
-        features, "Parallel", lambda n_jobs, **of: seen.append(n_jobs) or parallel(n_jobs, **of)
-    )
-    shared = [feature_matrix(images, GREY, processes=processes) for processes in (2, 100)]
-    get_reusable_executor().shutdown(wait=True)
-    assert seen == [2, 2]  # no more than are worth the while
-    assert {one.tobytes() for one in shared} == {alone.tobytes()}

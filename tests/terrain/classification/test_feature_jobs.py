@@ -1,0 +1,97 @@
+"""Features shared by processes and by the workers of a cluster."""
+
+import cv2
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from joblib.externals.loky import get_reusable_executor
+from threadpoolctl import threadpool_info
+
+from odometry.shipped import shipped_data
+from terrain.classification import feature_jobs
+from terrain.classification.feature_jobs import shared_feature_matrix
+from terrain.classification.features import feature_matrix
+from terrain.classification.presets import PRESETS
+from terrain.cli.train import train
+from terrain.errors import BatchError
+from tests.terrain.dask_processes import started_scheduler, started_workers
+
+GREY = PRESETS["default"].features
+
+
+@pytest.fixture
+def images(rng, monkeypatch):
+    """More than one process and five jobs are worth."""
+    monkeypatch.setattr(feature_jobs, "WORTH_A_PROCESS", 4)
+    monkeypatch.setattr(feature_jobs, "PATCHES_A_JOB", 2)
+    return rng.integers(0, 256, (9, 24, 24), dtype=np.uint8)
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    """Address of a scheduler, and its two workers."""
+    pytest.importorskip("distributed", reason="the extra dask is not installed")
+    with started_scheduler() as scheduler, started_workers(scheduler, 2) as workers:
+        yield scheduler, workers
+
+
+def test_processes_share_the_patches_and_give_the_same_bytes(images, monkeypatch):
+    seen = []
+    parallel = feature_jobs.Parallel
+    monkeypatch.setattr(
+        feature_jobs,
+        "Parallel",
+        lambda n_jobs, **of: seen.append(n_jobs) or parallel(n_jobs, **of),
+    )
+    shared = [shared_feature_matrix(images, GREY, processes=count) for count in (1, 2, 100)]
+    get_reusable_executor().shutdown(wait=True)
+    assert seen == [1, 2, 2]  # no more than are worth the while
+    assert {one.tobytes() for one in shared} == {feature_matrix(images, GREY).tobytes()}
+
+
+def test_libraries_compute_with_one_thread_each(images, monkeypatch):
+    threads = []
+
+    def watched(some, settings):
+        threads.append(cv2.getNumThreads())
+        threads.extend(library["num_threads"] for library in threadpool_info())
+        return feature_matrix(some, settings)
+
+    before = cv2.getNumThreads()
+    cv2.setNumThreads(2)
+    monkeypatch.setattr(feature_jobs, "feature_matrix", watched)
+    shared_feature_matrix(images, GREY, processes=1)
+    assert cv2.getNumThreads() == 2
+    cv2.setNumThreads(before)
+    assert set(threads) == {1}
+
+
+def test_workers_share_the_patches_though_one_is_killed(cluster, images, monkeypatch):
+    scheduler, (first, _) = cluster
+    monkeypatch.setattr(feature_jobs, "AHEAD", 1)  # a second job waits for an answer
+    answers = feature_jobs.answers
+
+    def and_a_kill(*of):
+        for answer in answers(*of):
+            first.kill()
+            yield answer
+
+    monkeypatch.setattr(feature_jobs, "answers", and_a_kill)
+    far = shared_feature_matrix(images, GREY, processes=1, scheduler=scheduler)
+    assert first.wait() < 0
+    assert far.tobytes() == feature_matrix(images, GREY).tobytes()
+    with pytest.raises(BatchError, match=r"^--scheduler tcp://\S+: \w*Error: "):
+        shared_feature_matrix(["no image"] * 3, GREY, processes=1, scheduler=scheduler)
+
+
+def test_a_model_has_the_same_bytes_whoever_computed_it(cluster, tmp_path, monkeypatch):
+    monkeypatch.setattr(feature_jobs, "WORTH_A_PROCESS", 40)
+    models = []
+    for options in (("--processes", "1"), ("--processes", "2"), ("--scheduler", cluster[0])):
+        out = tmp_path / f"{len(models)}.model"
+        words = [str(shipped_data() / "patches"), "--preset", "chen2023", "--out", str(out)]
+        answer = CliRunner().invoke(train, [*words, *options], catch_exceptions=False)
+        assert answer.exit_code == 0, answer.output
+        models.append(out.read_bytes())
+    get_reusable_executor().shutdown(wait=True)
+    assert len(set(models)) == 1
