@@ -3,12 +3,15 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 from matplotlib import style
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
 
 from odometry.io.files import atomic_write
 
+_MARGIN_IN = 0.03  # white beside a text at an edge
 _STYLE = {
     "font.size": 10.0,
     "axes.titlesize": 10.5,
@@ -36,7 +39,7 @@ def save_figure(
     file : Path
         Ends in .png.
     size_in : (float, float)
-        Width and height in inches.
+        Width and height in inches; it grows where a text would be cut at an edge.
     draw : callable
         Called once with the empty figure. Settings of the user's own matplotlib do not reach it.
     dpi : int
@@ -53,5 +56,13 @@ def save_figure(
         FigureCanvasAgg(figure)
         draw(figure)
         with atomic_write(file) as part:
-            figure.savefig(part, dpi=dpi, metadata={"Software": None, "Source": source})
+            metadata = {"Software": None, "Source": source}
+            figure.savefig(part, dpi=dpi, metadata=metadata, bbox_inches=_whole(figure))
     return file
+
+
+def _whole(figure: Figure) -> Bbox | None:
+    """Edges in inches that cut no text; None where those of the figure do not."""
+    drawn, page = figure.get_tightbbox().padded(_MARGIN_IN), figure.bbox_inches
+    whole = Bbox.union([drawn, page])
+    return None if np.array_equal(whole.extents, page.extents) else whole

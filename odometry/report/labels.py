@@ -62,8 +62,11 @@ def label_points(
         With its final limits and place in the figure.
     points : Mapping of name to (x, y)
         In data units; where they crowd, labels are moved up or down and a thin line leads there.
+        Points to the left or right of the axes have no label.
     styles : Mapping of name to LineStyle
     """
+    left, right = sorted(axes.get_xlim())
+    points = {name: point for name, point in points.items() if left <= point[0] <= right}
     if not points:
         return
     axes.apply_aspect()

@@ -156,7 +156,7 @@ def plot_error_distribution(
         axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axes.xaxis.set_minor_locator(LogLocator(subs=range(2, 10)))
         axes.xaxis.set_minor_formatter(NullFormatter())
-        unit += ", logarithmic"
+        unit += "\n(logarithmic)"
     else:
         axes.set_xlim(left=0.0)
     axes.set_xlabel(unit)

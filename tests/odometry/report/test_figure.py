@@ -2,10 +2,16 @@
 
 import subprocess
 import sys
+from functools import partial
 
 import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib.image import imread
 
 from odometry.report.figure import save_figure
+from odometry.report.labels import label_points
+from odometry.report.palette import line_styles
 
 
 def draw(figure):
@@ -41,3 +47,29 @@ def test_pyplot_is_not_needed():
     """It would choose a window system and keep every figure."""
     code = "import sys, odometry.report.figure; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_a_text_beyond_an_edge_makes_the_picture_larger(tmp_path):
+    def draw(figure, x=0.5):
+        figure.text(x, 0.5, "a long name of a terrain")
+
+    whole, beyond = (
+        imread(save_figure(tmp_path / f"{x}.png", (4.0, 1.0), partial(draw, x=x), 100))
+        for x in (0.3, 0.9)
+    )
+    assert whole.shape[:2] == (100, 400)
+    assert beyond.shape[0] == 100
+    assert beyond.shape[1] > 450
+    assert (beyond[:, -1] == 1.0).all()
+    assert (beyond[:, 0] == 1.0).all()
+    assert np.isclose((whole < 0.9).sum(), (beyond < 0.9).sum(), rtol=0.05)
+
+
+@pytest.mark.parametrize("x", [-7.0, 900.0])
+def test_a_line_beyond_the_axes_has_no_label(tmp_path, x):
+    def draw(figure):
+        axes = figure.add_axes((0.1, 0.2, 0.6, 0.7))
+        axes.set_xlim(0.0, 1.0)
+        label_points(axes, {"a": (1.0, 0.5), "b": (x, 0.5)}, line_styles("ab"))
+
+    assert imread(save_figure(tmp_path / "a.png", (4.0, 1.0), draw, 100)).shape[1] == 400

@@ -92,7 +92,7 @@ def test_boxes_that_differ_much_have_a_logarithmic_axis(axes):
     few, many = np.linspace(0.0, 2.0, 21), np.linspace(5.0, 60.0, 21)
     plot_error_distribution(axes, {"a": few, "$b^$": many}, STYLES, "cm")
     assert axes.get_xscale() == "log"
-    assert axes.get_xlabel() == "cm, logarithmic"
+    assert axes.get_xlabel() == "cm\n(logarithmic)"
     assert 0 < axes.get_xlim()[0] <= np.quantile(few, 0.05)
     axes.figure.canvas.draw()
     assert {"1", "10"} <= {label.get_text() for label in axes.get_xticklabels()}
