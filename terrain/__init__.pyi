@@ -2,6 +2,7 @@ from .camera import Camera
 from .checks.recording import check_run
 from .classification.answer import Classification
 from .classification.classifier import TerrainClassifier
+from .classification.network_features import NetworkFeatures
 from .classification.patches import cut_patches
 from .classification.sfta_features import SftaFeatures
 from .classification.training import Training, train
@@ -32,6 +33,7 @@ __all__ = [
     "LabelConfig",
     "LiveOdometry",
     "LiveStep",
+    "NetworkFeatures",
     "Rectangle",
     "RunResult",
     "SftaFeatures",

@@ -33,6 +33,10 @@ class ModelFileError(TerrainError):
     """A model file is damaged, foreign, or newer than this program."""
 
 
+class NetworkError(TerrainError):
+    """A file is no image network that OpenCV can run, or has no such layer."""
+
+
 class SynthesisError(TerrainError):
     """A synthetic run cannot be made from what was given."""
 

@@ -1,11 +1,11 @@
-"""The terrain classifier: SFTA features, a scaler and k nearest neighbours, with rejection."""
+"""The terrain classifier: features, a scaler and k nearest neighbours, with rejection."""
 
 import math
 from collections.abc import Sequence
 from typing import Any, Self
 
 import numpy as np
-from sklearn.base import BaseEstimator, ClassifierMixin
+from sklearn.base import BaseEstimator, ClassifierMixin, clone
 from sklearn.utils.multiclass import check_classification_targets
 from sklearn.utils.validation import check_is_fitted, validate_data
 
@@ -14,7 +14,8 @@ from odometry.errors import ConfigError
 from odometry.run import UNKNOWN
 from terrain.classification.answer import Classification, Classifier
 from terrain.classification.feature_jobs import shared_feature_matrix
-from terrain.classification.features import FeatureSettings, feature_matrix
+from terrain.classification.features import FeatureSettings
+from terrain.classification.features_of import Transformed, Transformer, features_of
 from terrain.classification.model_file import ModelFile
 from terrain.classification.neighbours import vote
 from terrain.classification.patches import cut_patches
@@ -28,6 +29,7 @@ from terrain.classification.training_set import (
 )
 from terrain.classification.validation import CrossValidation, cross_validate
 from terrain.errors import ImageError, PatchError
+from terrain.images import to_grey
 
 __all__ = ["Classification", "Classifier", "TerrainClassifier"]
 
@@ -54,6 +56,12 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
     n_neighbors : int, optional
         The number k of neighbours that vote; by default the one of the preset's that is best in
         cross-validation.
+    features : transformer, optional
+        Makes the features of patches in place of SFTA (``default`` only): any transformer of
+        scikit-learn whose input is a list of images, such as `NetworkFeatures`. It sees grey
+        patches (S, S), or RGB (S, S, 3) with `colour`. A clone of it is fitted once on all
+        patches, without their terrain; one that learns from labels belongs ahead of the
+        classifier in a pipeline.
 
     Attributes
     ----------
@@ -101,12 +109,14 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
         metres_per_pixel: float | None = None,
         rejected_share: float = 0.05,
         n_neighbors: int | None = None,
+        features: Transformer | None = None,
     ) -> None:
         self.preset = preset
         self.colour = colour
         self.metres_per_pixel = metres_per_pixel
         self.rejected_share = rejected_share
         self.n_neighbors = n_neighbors
+        self.features = features
 
     def fit(
         self,
@@ -155,7 +165,7 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
             labels, photos = _labels_and_groups(len(X), y, groups)
             features = shared_feature_matrix(
                 X,
-                self._settings_for(X, labels),
+                self._made_by(X, labels),
                 processes=processes,
                 scheduler=scheduler,
                 show_progress=progress,
@@ -200,6 +210,8 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
     def _check_parameters(self) -> None:
         if self.preset not in PRESETS:
             raise ConfigError(f"preset '{self.preset}' is not one of {', '.join(sorted(PRESETS))}")
+        if self.features is not None and self.preset != "default":
+            raise ConfigError(f"the preset '{self.preset}' has features of its own; leave one out")
         if not 0 < self.rejected_share < 1:
             raise ConfigError(f"rejected_share is {self.rejected_share}, expected between 0 and 1")
         scale = self.metres_per_pixel
@@ -208,14 +220,21 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
         if self.n_neighbors is not None and self.n_neighbors < 1:
             raise ConfigError(f"n_neighbors is {self.n_neighbors}, expected 1 or more")
 
-    def _settings_for(self, images: Sequence[ByteImage], labels: AnyArray) -> FeatureSettings:
-        """What is computed of square patches, which become those that the classifier asks for."""
+    def _made_by(
+        self, images: Sequence[ByteImage], labels: AnyArray
+    ) -> FeatureSettings | Transformed:
+        """What makes features of square patches, the size that the classifier then asks for."""
         self.patch_size_px = common_size(images)
         preset = PRESETS[self.preset]
         wanted = self.colour and len(labels) == len(images) and has_colour(images, labels)
         settings = preset.colour_features if wanted else preset.features
-        self._features, self.colour_ = settings, bool(settings.colour_copies)
-        return settings
+        if self.features is None:
+            self._features, self.colour_ = settings, bool(settings.colour_copies)
+        else:
+            shown = images if wanted else [to_grey(image) for image in images]
+            fitted = clone(self.features).fit(shown)
+            self._features, self.colour_ = Transformed(fitted, wanted), wanted
+        return self._features
 
     def _learn(self, features: FloatArray, codes: AnyArray, groups: AnyArray) -> None:
         preset = PRESETS[self.preset]
@@ -266,7 +285,7 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
             )
         if self.colour_ and image.ndim != 3:
             raise ImageError("the image is grey, the classifier was trained with colour")
-        votes, distances = self._of_features(feature_matrix(patches, self._features))
+        votes, distances = self._of_features(features_of(patches, self._features))
         return votes.mean(axis=0), float(np.median(distances))
 
     def _classification(self, probabilities: FloatArray, distance: float) -> Classification:

@@ -9,7 +9,8 @@ from tqdm import tqdm
 
 from odometry.arrays import ByteImage, FloatArray
 from terrain.batch.connection import ONE_AT_A_TIME, answers, connected, failure
-from terrain.classification.features import FeatureSettings, feature_matrix
+from terrain.classification.features import FeatureSettings
+from terrain.classification.features_of import Transformed, features_of
 from terrain.errors import BatchError
 from terrain.one_thread import one_thread
 
@@ -20,7 +21,7 @@ AHEAD = 4  # jobs for each thread of the workers that are sent before they can b
 
 def shared_feature_matrix(
     images: Sequence[ByteImage],
-    settings: FeatureSettings,
+    made_by: FeatureSettings | Transformed,
     *,
     processes: int,
     scheduler: str | None = None,
@@ -31,7 +32,7 @@ def shared_feature_matrix(
     Parameters
     ----------
     images : sequence of ByteImage
-    settings : FeatureSettings
+    made_by : FeatureSettings or Transformed
     processes : int
         Of this machine, where there is no scheduler; -1 takes all cores. No more are started than
         is worth the while.
@@ -53,9 +54,9 @@ def shared_feature_matrix(
     firsts = range(0, len(images), PATCHES_A_JOB)
     parts = {first: images[first : first + PATCHES_A_JOB] for first in firsts}
     found = (
-        _local(parts, settings, processes)
+        _local(parts, made_by, processes)
         if scheduler is None
-        else _on_cluster(parts, settings, scheduler)
+        else _on_cluster(parts, made_by, scheduler)
     )
     rows: dict[int, FloatArray] = {}
     silent = None if show_progress else True
@@ -67,30 +68,30 @@ def shared_feature_matrix(
 
 
 def features_of_part(
-    part: tuple[int, Sequence[ByteImage]], settings: FeatureSettings
+    part: tuple[int, Sequence[ByteImage]], made_by: FeatureSettings | Transformed
 ) -> tuple[int, FloatArray]:
     """The features of some patches, computed by one thread; the number of the first goes along."""
     first, images = part
     with ONE_AT_A_TIME, one_thread():
-        return first, feature_matrix(images, settings)
+        return first, features_of(images, made_by)
 
 
 def _local(
-    parts: dict[int, Sequence[ByteImage]], settings: FeatureSettings, processes: int
+    parts: dict[int, Sequence[ByteImage]], made_by: FeatureSettings | Transformed, processes: int
 ) -> Iterator[tuple[int, FloatArray]]:
     patches = sum(map(len, parts.values()))
     wanted = cpu_count() if processes < 0 else processes
     used = max(1, min(wanted, patches // WORTH_A_PROCESS))
-    jobs = (delayed(features_of_part)(part, settings) for part in parts.items())
+    jobs = (delayed(features_of_part)(part, made_by) for part in parts.items())
     yield from Parallel(n_jobs=used, return_as="generator_unordered")(jobs)
 
 
 def _on_cluster(
-    parts: dict[int, Sequence[ByteImage]], settings: FeatureSettings, address: str
+    parts: dict[int, Sequence[ByteImage]], made_by: FeatureSettings | Transformed, address: str
 ) -> Iterator[tuple[int, FloatArray]]:
     with connected(address) as client:
         ahead = AHEAD * sum(client.nthreads().values())
-        work = partial(features_of_part, settings=settings)
+        work = partial(features_of_part, made_by=made_by)
         for _, future in answers(client, address, work, parts.items(), ahead):
             if future.status == "error":
                 raise BatchError(f"--scheduler {address}: {failure(future)}")

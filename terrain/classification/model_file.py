@@ -8,14 +8,17 @@ import numpy as np
 
 from odometry.arrays import AnyArray
 from odometry.errors import ConfigError
-from terrain.classification.features import FeatureSettings, feature_matrix
+from terrain.classification.features import FeatureSettings
+from terrain.classification.features_of import Transformed, Transformer, features_of
 from terrain.classification.model_settings import ModelSettings
 from terrain.classification.neighbours import Neighbours
+from terrain.classification.network_features import NetworkFeatures
+from terrain.classification.network_settings import NetworkSettings
 from terrain.classification.persistence import read_model, write_model
 from terrain.classification.presets import PRESETS
 from terrain.classification.trained_on import TrainedOn
 from terrain.classification.training_set import check_codes
-from terrain.errors import ModelFileError
+from terrain.errors import ImageError, ModelFileError, NetworkError
 
 
 class ModelFile:
@@ -32,7 +35,8 @@ class ModelFile:
     n_neighbors_: int
     rejection_distance_: float
     trained_on_: TrainedOn | None
-    _features: FeatureSettings | None
+    features: Transformer | None
+    _features: FeatureSettings | Transformed | None
     _neighbours: Neighbours
 
     def save(self, path: str | Path, made: Mapping[str, Any] | None = None) -> None:
@@ -43,10 +47,23 @@ class ModelFile:
         Raises
         ------
         ModelFileError
-            If it was fitted on features: such a model can look at no image.
+            If it was fitted on features: such a model can look at no image. If a transformer
+            makes its features that is no `NetworkFeatures`: a file would have to hold a program.
         """
         if self._features is None:
             raise ModelFileError(f"{path}: the classifier was fitted on features, not on images")
+        features: FeatureSettings | NetworkSettings
+        arrays = self._neighbours.arrays()
+        if isinstance(self._features, FeatureSettings):
+            features = self._features
+        elif isinstance(made_by := self._features.transformer, NetworkFeatures):
+            features, network = NetworkSettings.taken_from(made_by)
+            arrays |= network
+        else:
+            raise ModelFileError(
+                f"{path}: a model file holds SFTA or an image network (NetworkFeatures), not a "
+                f"{type(made_by).__name__}; pickle or joblib keep such a classifier"
+            )
         settings = ModelSettings(
             self.preset,
             self.colour_,
@@ -56,10 +73,10 @@ class ModelFile:
             tuple(map(str, self.classes_)),
             self.n_neighbors_,
             self.rejection_distance_,
-            self._features,
+            features,
             self.trained_on_,
         )
-        write_model(Path(path), settings.to_table(), self._neighbours.arrays(), made)
+        write_model(Path(path), settings.to_table(), arrays, made)
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
@@ -74,7 +91,7 @@ class ModelFile:
         table, arrays = read_model(Path(path))
         try:
             return cls._from_file(ModelSettings.from_table(table), arrays)
-        except (KeyError, TypeError, ValueError, ConfigError) as error:
+        except (KeyError, TypeError, ValueError, ConfigError, NetworkError, ImageError) as error:
             raise ModelFileError(f"{path}: its settings or arrays do not fit: {error!r}") from error
 
     @classmethod
@@ -88,17 +105,22 @@ class ModelFile:
         model.classes_ = np.array(settings.classes)
         model.n_neighbors_ = settings.n_neighbors
         model.rejection_distance_ = settings.rejection_distance
-        model._features = settings.features
+        features = settings.features
+        if isinstance(features, NetworkSettings):
+            model.features = features.restored(arrays)
+            model._features = Transformed(model.features, model.colour_)
+        else:
+            model._features = features
         model.trained_on_ = settings.trained_on
         check_codes(arrays["codes"], len(settings.classes))
         model._neighbours = PRESETS[model.preset].neighbours.from_arrays(arrays)
-        model._check_that_parts_fit(settings.features)
+        model._check_that_parts_fit(model._features)
         return model
 
-    def _check_that_parts_fit(self, settings: FeatureSettings) -> None:
+    def _check_that_parts_fit(self, made_by: FeatureSettings | Transformed) -> None:
         """Ask about one blank patch: ValueError if the parts of a file contradict each other."""
         blank = np.zeros((self.patch_size_px, self.patch_size_px, 3), np.uint8)
-        features = feature_matrix([blank], settings)
+        features = features_of([blank], made_by)
         self.n_features_in_ = features.shape[1]
         self._neighbours.labels(features, self.n_neighbors_)
         self._neighbours.distances(features)

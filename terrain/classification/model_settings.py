@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 from typing import Any, Self
 
 from terrain.classification.features import FeatureSettings
+from terrain.classification.network_settings import NetworkSettings, read_features
 from terrain.classification.trained_on import TrainedOn
 
 
@@ -21,7 +22,7 @@ class ModelSettings:
     classes: tuple[str, ...]
     n_neighbors: int
     rejection_distance: float
-    features: FeatureSettings
+    features: FeatureSettings | NetworkSettings
     trained_on: TrainedOn | None = None
 
     def to_table(self) -> dict[str, Any]:
@@ -65,7 +66,7 @@ class ModelSettings:
             raise ValueError(f"metres_per_pixel = {table['metres_per_pixel']}, expected above 0")
         values = {name: table[name] for name in kinds}
         values["classes"] = tuple(map(str, table["classes"]))
-        values["features"] = FeatureSettings.from_table(table["features"])
+        values["features"] = read_features(table["features"])
         if table.get("trained_on") is not None:  # files of version 0.4 do not say
             values["trained_on"] = TrainedOn.from_table(table["trained_on"])
         return cls(**values)

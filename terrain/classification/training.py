@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.features_of import Transformer
 from terrain.classification.patches import (
     LabelledPatches,
     find_photos,
@@ -44,6 +45,7 @@ def train(
     patch_size_px: int | None = None,
     metres_per_pixel: float | None = None,
     colour: bool = False,
+    features: Transformer | None = None,
     k: int | None = None,
     rejected_share: float = 0.05,
     processes: int = 1,
@@ -64,6 +66,8 @@ def train(
         Without either, a run's images are cropped, not warped.
     colour : bool
         Whether colour is used beside grey.
+    features : transformer, optional
+        Makes the features in place of SFTA, as in `TerrainClassifier`.
     k : int, optional
         Neighbours that vote; by default chosen in cross-validation.
     rejected_share : float
@@ -102,6 +106,7 @@ def train(
         metres_per_pixel=scale,
         rejected_share=rejected_share,
         n_neighbors=k,
+        features=features,
     )
     classifier.fit(
         patches.images,

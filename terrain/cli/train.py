@@ -5,10 +5,12 @@ from typing import TYPE_CHECKING
 
 import click
 
+from terrain.cli.network_options import network_options
 from terrain.cli.options import OUTPUT, Positive, processes_option, scheduler_option
 
 if TYPE_CHECKING:
     from terrain.classification.classifier import TerrainClassifier
+    from terrain.classification.network_features import NetworkFeatures
     from terrain.classification.patches import LabelledPatches
 
 
@@ -55,6 +57,7 @@ if TYPE_CHECKING:
     "a name.",
 )
 @click.option("--colour", is_flag=True, help="Use colour: for one camera in training and in use.")
+@network_options
 @processes_option
 @scheduler_option
 def train(
@@ -65,6 +68,7 @@ def train(
     patch_size: int | None,
     metres_per_pixel: float | None,
     colour: bool,
+    features: "NetworkFeatures | None",
     k: int | None,
     reject: float,
     processes: int | None,
@@ -79,6 +83,7 @@ def train(
     \b
     Example:
       terrain-odometry train my_photos --out terrain.model --metres-per-pixel 0.002
+      terrain-odometry train my_photos --out terrain.model --features network.onnx
       terrain-odometry train my_photos --out terrain.model --scheduler tcp://host:8786
     """
     from terrain.classification.manifest import read_manifest
@@ -93,6 +98,7 @@ def train(
         patch_size_px=patch_size,
         metres_per_pixel=metres_per_pixel,
         colour=colour,
+        features=features,
         k=k,
         rejected_share=reject,
         processes=processes or -1,
@@ -121,6 +127,10 @@ def train(
             "places of the same recordings. The same terrain looks different elsewhere: label "
             "recordings of several sites, and judge the model on one that is left out (classify)",
             err=True,
+        )
+    if features is not None:
+        click.echo(
+            f"Features: {features.described}. The model holds this part of the network.", err=True
         )
     classifier.save(out, made.to_table())
     click.echo(_summary(classifier, loaded))

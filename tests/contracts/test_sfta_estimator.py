@@ -1,4 +1,4 @@
-"""scikit-learn's shared checks on the transformers of images: SFTA and SftaFeatures.
+"""scikit-learn's shared checks on the transformers of images: SFTA and those of patches.
 
 The checks feed tables, so a row is shown to the transformer as an image of one row of pixels.
 Nothing else is changed: construction, fitting, names, cloning and errors are their own.
@@ -9,10 +9,13 @@ from contextlib import contextmanager
 import numpy as np
 from sklearn.utils.estimator_checks import parametrize_with_checks
 
+from terrain.classification.network_features import Network, NetworkFeatures
 from terrain.classification.sfta_features import SftaFeatures
 from terrain.errors import ImageError
 from terrain.texture import SFTA
+from tests.terrain.classification.onnx_bytes import tiny_network
 
+TINY = Network("tiny.onnx", tiny_network())
 SIZES_DIFFER = "images may differ in size: there is no number of columns to remember"
 OTHER_WORDS = "refused with an ImageError about images, not in the words for tables"
 EXPECTED_FAILURES = {
@@ -26,6 +29,7 @@ EXPECTED_FAILURES = {
     "check_estimators_empty_data_messages": OTHER_WORDS,
     "check_fit2d_predict1d": OTHER_WORDS,
 }
+NO_DEFAULT = {"check_parameters_default_constructible": "no network is the usual one"}
 
 
 class RowsAsImages:
@@ -54,6 +58,13 @@ class FeaturesOfRows(RowsAsImages, SftaFeatures):
     """The features of the terrain classifier."""
 
 
+class NetworkOfRows(RowsAsImages, NetworkFeatures):
+    """The features of an image network."""
+
+    def __init__(self, network=TINY):
+        super().__init__(network, layers=("r1",))
+
+
 def as_images(table):
     rows = np.asarray(table)
     if rows.ndim != 2 or rows.dtype.kind not in "iuf":
@@ -72,8 +83,10 @@ def value_error():
 
 
 @parametrize_with_checks(
-    [SftaOfRows(), FeaturesOfRows("chen2023")],
-    expected_failed_checks=lambda _: EXPECTED_FAILURES,
+    [SftaOfRows(), FeaturesOfRows("chen2023"), NetworkOfRows()],
+    expected_failed_checks=lambda of: (
+        EXPECTED_FAILURES | (NO_DEFAULT if isinstance(of, NetworkFeatures) else {})
+    ),
 )
 def test_scikit_learn_checks(estimator, check):
     check(estimator)

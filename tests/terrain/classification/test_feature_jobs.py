@@ -59,7 +59,7 @@ def test_libraries_compute_with_one_thread_each(images, monkeypatch):
 
     before = cv2.getNumThreads()
     cv2.setNumThreads(2)
-    monkeypatch.setattr(feature_jobs, "feature_matrix", watched)
+    monkeypatch.setattr(feature_jobs, "features_of", watched)
     shared_feature_matrix(images, GREY, processes=1)
     assert cv2.getNumThreads() == 2
     cv2.setNumThreads(before)

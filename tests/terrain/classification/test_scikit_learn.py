@@ -114,6 +114,7 @@ def test_a_clone_has_the_parameters_and_nothing_learned(classifier, whole):
         "metres_per_pixel",
         "rejected_share",
         "n_neighbors",
+        "features",
     }
     with pytest.raises(NotFittedError):
         copy.predict(whole[0])
