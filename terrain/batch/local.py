@@ -1,17 +1,12 @@
-"""Jobs on the cores of this machine."""
+"""Runs replayed on the cores of this machine."""
 
-import os
-import signal
-import threading
-import time
 from collections.abc import Iterator, Sequence
+from concurrent.futures import as_completed
 from concurrent.futures.process import BrokenProcessPool
 
-from joblib import Parallel, delayed, parallel_config
-
 from terrain.batch.job import FAILED, Job, Outcome, run_job
+from terrain.batch.processes import pool
 
-LOOKS_EVERY_S = 0.2
 KILLED = "the process that replayed it was killed; was there too little memory?"
 
 
@@ -32,31 +27,12 @@ def local_outcomes(jobs: Sequence[Job], processes: int) -> Iterator[Outcome]:
     except BrokenProcessPool:
         for job in waiting.values():
             try:
-                yield from _pooled([job], processes)
+                yield from _pooled([job], 1)
             except BrokenProcessPool:
                 yield Outcome(job, FAILED, KILLED)
 
 
 def _pooled(jobs: Sequence[Job], processes: int) -> Iterator[Outcome]:
-    with parallel_config(backend="loky", n_jobs=processes, inner_max_num_threads=1):
-        pool = Parallel(return_as="generator_unordered", batch_size=1)
-    yield from pool(delayed(_in_pool)(job, os.getpid()) for job in jobs)
-
-
-def _in_pool(job: Job, parent: int) -> Outcome:
-    _end_with(parent)
-    return run_job(job)
-
-
-def _end_with(parent: int) -> None:
-    """Let this process end soon after its parent, which alone hears of Ctrl-C."""
-    if any(thread.name == _end_with.__name__ for thread in threading.enumerate()):
-        return
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_watch, args=(parent,), name=_end_with.__name__, daemon=True).start()
-
-
-def _watch(parent: int) -> None:
-    while os.getppid() == parent:
-        time.sleep(LOOKS_EVERY_S)
-    os._exit(1)
+    with pool(processes) as executor:
+        for future in as_completed([executor.submit(run_job, job) for job in jobs]):
+            yield future.result()

@@ -1,8 +1,10 @@
 """`terrain-odometry batch`: many runs, on the cores of one machine or of many."""
 
 import sys
+from collections.abc import Callable
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -15,9 +17,24 @@ if TYPE_CHECKING:
     from terrain.run_options import RunOptions
 
 
+def _prepared(command: Callable[..., None]) -> Callable[..., None]:
+    """Let a process import what replays need before this one does, which takes them both long."""
+
+    @wraps(command)
+    def early(*, folders: tuple[Path, ...], processes: int | None, **others: Any) -> None:
+        from terrain.batch.processes import prepare
+
+        if len(folders) > 1 and processes != 1 and others["scheduler"] is None:
+            prepare()
+        command(folders=folders, processes=processes, **others)
+
+    return early
+
+
 @click.command()
 @click.argument("folders", metavar="RUN...", nargs=-1, required=True, type=RunFolder())
 @click.option("--out", required=True, metavar="DIR", type=OUTPUT, help="Folder for the results.")
+@_prepared
 @run_options
 @processes_option
 @scheduler_option

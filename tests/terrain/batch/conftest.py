@@ -1,5 +1,4 @@
 import pytest
-from joblib.externals.loky import get_reusable_executor
 
 from odometry.outputs.asked import Asked
 from terrain.batch.job import Job
@@ -7,13 +6,6 @@ from terrain.config import Config
 from terrain.run_options import RunOptions
 
 RUNS = ("a", "b", "c", "d")
-
-
-@pytest.fixture
-def no_process_left():
-    """End the processes of the pool, which otherwise wait for more."""
-    yield
-    get_reusable_executor().shutdown(wait=True, kill_workers=True)
 
 
 @pytest.fixture
