@@ -1,6 +1,6 @@
 """Many runs: two processes against one, kills, a run that fails, a cluster that loses a worker.
 
-    python tests/studies/batches.py [--runs 40] [--seconds 60] [--seed 1]
+    python tests/studies/batches.py [--runs 40] [--seconds 60] [--seed 1] [--only speeds kills]
 
 Simulates the runs, replays them as a user does, and prints what it took. One and two processes
 take turns on halves of the runs (one, two, two, one), so that what else the machine does falls on
@@ -25,6 +25,7 @@ import numpy as np
 
 PROGRAM = [sys.executable, "-c", "from terrain.cli.main import main; main()"]
 DASK = [sys.executable, "-m", "dask"]
+PARTS = ("speeds", "kills", "cluster")
 Contents = dict[str, bytes]
 
 
@@ -34,6 +35,7 @@ def main() -> None:
     parser.add_argument("--runs", type=int, default=40)
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", nargs="+", choices=PARTS, default=PARTS)
     arguments = parser.parse_args()
     rng = np.random.default_rng(arguments.seed)
     with tempfile.TemporaryDirectory() as scratch:
@@ -45,14 +47,19 @@ def main() -> None:
         print(f"{len(names)} runs of {arguments.seconds:g} s simulated", flush=True)
         Path("broken").mkdir()
         Path("broken/run.toml").write_text("[robot]\n")
-        speeds(names)
+        if "speeds" in arguments.only:
+            speeds(names)
+        if {"kills", "cluster"}.isdisjoint(arguments.only):
+            return
         words = (*names, "broken", "--out")
         finish("batch", *words, "whole", "--processes", "2", code=1)
         whole = contents("whole")
         (failed,) = (row for row in table("whole/batch.csv") if row["error"])
         print(f"a run that fails is a row: {failed['run']}: {failed['error']}", flush=True)
-        kills(words, whole, rng)
-        cluster(words, whole)
+        if "kills" in arguments.only:
+            kills(words, whole, rng)
+        if "cluster" in arguments.only:
+            cluster(words, whole)
 
 
 def speeds(names: list[str]) -> None:
@@ -118,7 +125,12 @@ def cluster(words: tuple[str, ...], whole: Contents) -> None:
     for one in (*workers, scheduler):
         one.kill()
         one.communicate()
-    print(f"cluster, one of two workers killed half way: same bytes: {contents('far') == whole}")
+    replayed = Counter(row["run"] for row in table("far/times.csv"))
+    print(
+        f"cluster, one of two workers killed half way: {len(replayed)} jobs, each told of "
+        f"{max(replayed.values())} time; same bytes: {contents('far') == whole}",
+        flush=True,
+    )
 
 
 def started(*words: str) -> "subprocess.Popen[str]":
