@@ -20,6 +20,7 @@ from terrain.cli.main import cli
 from terrain.config import Config
 from tests.odometry.bags.made_bags import Bag
 from tests.public_names import private_imports
+from tests.stubs import needs_new_stubs
 
 ROOT = Path(__file__).parents[1]
 README_FILES = [
@@ -218,6 +219,7 @@ def test_the_python_imports_public_names(readme: Path) -> None:
     assert private_imports("\n".join(blocks(readme, "python"))) == set()
 
 
+@needs_new_stubs
 def test_the_python_of_the_guides_is_typed(tmp_path: Path) -> None:
     """One program for each README, judged by mypy as strictly as the packages."""
     for readme in README_FILES:

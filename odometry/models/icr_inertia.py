@@ -60,7 +60,7 @@ class IcrInertia(InertiaModel, InvertibleModel):
         for x2_sign in (-1.0, 1.0):
             supposed = _tread_speeds(values, v_x, omega, x2_sign)
             x2 = supposed[..., 0] + values[..., Column.H] * supposed[..., 1]  # eq. 15
-            agrees = (np.sign(x2) == x2_sign) | (omega == 0)
+            agrees = (np.sign(x2) != -x2_sign) | (omega == 0)
             speeds = np.where(agrees[..., None], supposed, speeds)
         return speeds
 

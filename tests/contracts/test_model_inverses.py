@@ -44,6 +44,14 @@ def test_wanted_motions_broadcast(model, rng):
     np.testing.assert_allclose(stacked, looped, rtol=1e-12, atol=1e-13)
 
 
+def test_the_smallest_tread_speeds_give_the_motion_wanted():
+    """V_l + H V_r is rounded to 0 there, and has no sign."""
+    model = MODELS["icr_inertia"]
+    values = model.pack(ordinary(model))
+    smallest = np.nextafter(0.0, 1.0)
+    assert np.isfinite(model.tread_speeds(values, np.array(0.0), np.array(-2 * smallest))).all()
+
+
 @pytest.mark.parametrize(
     ("name", "factor"),
     [("icr_symmetric", "alpha"), ("icr", "alpha_left"), ("traction_mode", "k")],

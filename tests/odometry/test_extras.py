@@ -34,7 +34,9 @@ def test_a_table_as_pandas_is_what_pandas_reads(tmp_path):
         "label": np.array(["grass", "", "unknown"]),
     }
     write_csv_table(file, columns)
-    ours = read_csv_table(file, ["t"]).to_pandas()
-    pandas.testing.assert_frame_equal(ours, pandas.read_csv(file), check_dtype=False)
+    ours, theirs = read_csv_table(file, ["t"]).to_pandas(), pandas.read_csv(file)
+    pandas.testing.assert_frame_equal(ours.isna(), theirs.isna())
+    named, named_too = (table.fillna({"label": "missing"}) for table in (ours, theirs))
+    pandas.testing.assert_frame_equal(named, named_too, check_dtype=False)
     assert ours["label"].isna().tolist() == [False, True, False]
     assert ours.dtypes["x"] == np.float64
