@@ -64,18 +64,25 @@ def named_modes(track: ModeTrack, sure: float) -> AnyArray:
     """The answer (N,): a mode, "none of these", or "undetermined".
 
     A mode is named whose probability among the modes is `sure` or more, and against "none of
-    these" as well; and which the rolling test takes for the one that fits, too.
+    these" as well; which the rolling test takes for the one that fits, too; and whose bias of the
+    gyroscope is one that is expected. A gyroscope whose scale is off tells no mode.
     """
     most = track.probabilities.argmax(axis=1)
-    names = np.array(track.names, dtype=object)[most]
-    named = np.where(track.probabilities.max(axis=1) >= sure, names, UNDETERMINED)
-    if track.fit is None:
-        return named
-    of_most = (np.arange(len(most)), most)
-    fits = track.fit.against_none[of_most] >= sure
-    fits &= np.exp(track.fit.log_probabilities[of_most]) >= AGREED
-    fits &= ~track.fit.lasts
-    return np.where(track.fit.none >= sure, NONE_OF_THESE, np.where(fits, named, UNDETERMINED))
+    named = track.probabilities.max(axis=1) >= sure
+    none = np.zeros(len(most), dtype=np.bool_)
+    if track.fit is not None:
+        of_most = (np.arange(len(most)), most)
+        named &= track.fit.against_none[of_most] >= sure
+        named &= np.exp(track.fit.log_probabilities[of_most]) >= AGREED
+        named &= ~track.fit.lasts
+        none = track.fit.none >= sure
+    if track.gyroscope is not None:
+        named &= ~track.gyroscope.bias_is_open
+        none = none | np.isfinite(track.gyroscope.scale)
+    if track.alike is not None:
+        named &= ~track.alike.any(axis=1)
+    answers = np.where(named, np.array(track.names, dtype=object)[most], UNDETERMINED)
+    return np.where(none, NONE_OF_THESE, answers)
 
 
 def candidates(track: ModeTrack, sure: float) -> BoolArray:
@@ -164,11 +171,11 @@ def confusion(track: ModeTrack, sure: float, names: Sequence[str]) -> FloatArray
 
 
 def misfits(track: ModeTrack, sure: float) -> tuple[Misfit, ...]:
-    """The stretches whose answer is "none of these"."""
+    """The stretches in which the rolling test says "none of these"."""
     if track.fit is None:
         return ()
     none, best = track.fit.none, track.fit.best
-    rows = np.flatnonzero(named_modes(track, sure) == NONE_OF_THESE)
+    rows = np.flatnonzero(none >= sure)
     fitted = np.flatnonzero(none < 1 - sure)
     quiet = np.flatnonzero(~(np.abs(best) > BOUND).any(axis=1))
     found: list[Misfit] = []

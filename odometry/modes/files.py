@@ -12,6 +12,7 @@ from odometry.arrays import AnyArray
 from odometry.io.csv_table import write_csv_table
 from odometry.io.files import atomic_write
 from odometry.modes.answers import Detection, confusion
+from odometry.modes.doubts import doubts
 from odometry.modes.followed import Followed
 from odometry.modes.innovation_test import ModeFit
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE
@@ -127,6 +128,10 @@ def content_of(followed: Followed) -> dict[str, Any]:
                 "sigmas": one.sigmas,
             }
             for one in followed.misfits
+        ],
+        "not_named": [
+            {"reason": one.reason, "remedy": one.remedy, "share": one.share}
+            for one in doubts(followed)
         ],
         "motion": _track(followed, followed.motion),
         "sight": None if sighted is None else _track(followed, sighted),

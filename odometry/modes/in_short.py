@@ -4,12 +4,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from odometry.modes.doubts import LEAST_DOUBT, Doubt, doubts
 from odometry.modes.followed import Followed
 from odometry.modes.mode_set import UNDETERMINED
 from odometry.modes.words import FEW, LEAST_SHARE, SCALE, percent, scale_word, signal_of
 
 MOSTLY = 0.5  # of the time
-LEAST_DOUBT = 0.1  # of the time: less is not said
 SLIGHTLY, _ = SCALE[0]  # standard deviations below which identification may be what is off
 CHECKS = {
     "forward speed": "the measured speed (its unit and stamps) and the treads (a wheel scaled)",
@@ -51,6 +51,9 @@ def _shares_said(shares: Mapping[str, float]) -> str:
 
 def _how_sure(followed: Followed) -> str:
     named = f"a mode is named from a probability of {percent(followed.config.sure)} on"
+    doubt = _first_doubt(followed)
+    if doubt is not None:
+        return f"{named}; {doubt.reason}: there no mode is named."
     if not followed.misfits:
         doubtful = followed.doubtful(followed.last_track)
         if doubtful >= LEAST_DOUBT:
@@ -69,6 +72,9 @@ def _how_sure(followed: Followed) -> str:
 
 
 def _to_do(followed: Followed) -> str:
+    doubt = _first_doubt(followed)
+    if doubt is not None:
+        return f"{doubt.remedy}."
     worst = max(followed.misfits, key=lambda one: one.to_s - one.from_s, default=None)
     if worst is not None and worst.sigmas >= SLIGHTLY:
         return (
@@ -84,3 +90,11 @@ def _to_do(followed: Followed) -> str:
     if followed.shares(followed.last_track).get(UNDETERMINED, 0.0) > MOSTLY:
         return "drive turns of several radii to both sides: on straights modes are alike."
     return "nothing; where the answer is undetermined, take the one before it."
+
+
+def _first_doubt(followed: Followed) -> Doubt | None:
+    """The doubt that holds longest, where it holds for longer than no mode fits."""
+    track = followed.motion
+    whole_s = max(float(np.ptp(track.stamps_s)), 1e-12)
+    misfit = sum(one.to_s - one.from_s for one in followed.misfits) / whole_s
+    return next((one for one in doubts(followed) if one.share > misfit), None)

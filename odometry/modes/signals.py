@@ -6,6 +6,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import RunFolderError
+from odometry.modes.heading_check import HeadingCheck, heading_check
 from odometry.row_terrains import row_terrains
 from odometry.run import Run
 from odometry.windows.gaps import odometry_gaps
@@ -33,6 +34,8 @@ class Signals:
         Ground or mode that the run names, for identification and scoring.
     gaps_s : (G, 2)
         Between which stamps the speeds in force are not known.
+    heading_check : HeadingCheck or None
+        What measured headings say of the gyroscope, where they are no measurement of the filters.
     """
 
     stamps_s: FloatArray
@@ -40,6 +43,7 @@ class Signals:
     measured: FloatArray
     labels: AnyArray
     gaps_s: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
+    heading_check: HeadingCheck | None = None
 
     def __len__(self) -> int:
         return len(self.stamps_s)
@@ -53,6 +57,7 @@ class Signals:
             self.measured[later],
             self.labels[later],
             self.gaps_s[self.gaps_s[:, 0] >= self.stamps_s[row]],
+            self.heading_check,
         )
 
     @property
@@ -86,7 +91,8 @@ def velocity_signals(run: Run) -> Signals:
         speed = _nearest(run.velocity.stamps_s, run.velocity["vx"], stamps_s)
     measured = np.column_stack([speed, omega])
     speeds = run.odometry.stack("v_left", "v_right")
-    return Signals(stamps_s, speeds, measured, row_terrains(run), odometry_gaps(run).spans_s)
+    gaps_s = odometry_gaps(run).spans_s
+    return Signals(stamps_s, speeds, measured, row_terrains(run), gaps_s, heading_check(run))
 
 
 def pose_signals(run: Run) -> Signals:

@@ -7,18 +7,22 @@ from functools import lru_cache
 import numpy as np
 from tqdm import tqdm
 
-from odometry.arrays import AnyArray, FloatArray, IntArray
+from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.config import require, require_positive
 from odometry.estimation.ekf_bank import EkfBank
 from odometry.estimation.imm import Imm
 from odometry.estimation.mode_belief import ModeBelief
+from odometry.modes.alike import alike_modes
+from odometry.modes.bias_reading import bias_readings, with_reading
+from odometry.modes.gyroscope_trust import GyroscopeTrust, gyroscope_trust
 from odometry.modes.innovation_test import Innovations, ModeFit, mode_fit
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.own_filters import OwnFilters, with_bias, with_lead, with_shared_bias
 from odometry.modes.sight import SeenGround, mode_chains
 from odometry.modes.signals import Signals
-from odometry.modes.standing_bias import after_standing, moving, standing_biases
+from odometry.modes.standing_bias import moving
 from odometry.modes.tempered_bank import TemperedBank
+from odometry.modes.velocity import VelocityModes
 from odometry.run import Run
 from odometry.windows.spans import touched
 
@@ -77,6 +81,10 @@ class ModeTrack:
         What the run names; "unknown" where it names nothing.
     fit : ModeFit or None
         Whether a mode fits at all; without it one is taken to.
+    gyroscope : GyroscopeTrust or None
+        Whether the gyroscope can be trusted; without it it is.
+    alike : (N, M) or None
+        Modes that what was driven cannot tell from the most probable one; without it none are.
 
     Examples
     --------
@@ -96,6 +104,8 @@ class ModeTrack:
     normalised_squared: FloatArray
     labels: AnyArray
     fit: ModeFit | None = None
+    gyroscope: GyroscopeTrust | None = None
+    alike: BoolArray | None = None
 
 
 def follow_modes(
@@ -176,7 +186,7 @@ def follow_signals(
 
     roughness = modes.roughness(signals)
     gap_ends = np.searchsorted(signals.stamps_s, signals.gaps_s[:, 1])
-    measured, stands = _judged(signals, gap_ends), standing_biases(signals)
+    measured, readings = _judged(signals, gap_ends), bias_readings(signals)
     first = chains[in_force[0]].transition(SETTLED_S).mean(axis=0)
     merged = modes.start(signals, independent)
     belief = alone = ModeBelief.alike(*merged, first)
@@ -195,8 +205,8 @@ def follow_signals(
             own = OwnFilters(imm.bank, filters(rough))
             alone, innovations[row] = own.step(alone, u, measured[row], step_s)
             merged = imm.merged(belief)
-            if row in stands:
-                merged = after_standing(*merged, stands[row], independent)
+            if row in readings:
+                merged = with_reading(*merged, readings[row], independent)
                 belief = with_bias(belief, *merged)
             led = with_lead(alone, belief, int(probabilities[row - 1].argmax()))
             alone = with_bias(led, *merged)
@@ -222,6 +232,8 @@ def follow_signals(
         squared,
         signals.labels,
         mode_fit(left, mode_set.dwell_s, config.misfit_share),
+        gyroscope_trust(signals, means[:, -1], sigmas[:, -1], readings),
+        alike_modes(signals, modes, leading) if isinstance(modes, VelocityModes) else None,
     )
 
 

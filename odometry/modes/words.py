@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from odometry.modes.answers import Detection, Misfit
+from odometry.modes.doubts import doubts
 from odometry.modes.followed import SIGHTED, Followed, Score
 from odometry.modes.mode_set import NO_MODES
 from odometry.modes.track import ModeTrack
@@ -62,6 +63,8 @@ def disagreement_words(one: tuple[float, float, str, str]) -> str:
 
 def _more(followed: Followed) -> Iterator[str]:
     yield from _open_words(followed)
+    for one in doubts(followed):
+        yield f"No mode is named where {one.reason}."
     if followed.sighted is not None:
         yield f"With sight: {answer_words(followed, followed.sighted)}"
     for name, track in followed.tracks.items():

@@ -14,6 +14,7 @@ import argparse
 import csv
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -43,6 +44,7 @@ def main() -> None:
     parser.add_argument("--worlds", nargs="*", default=list(worlds()))
     parser.add_argument("--faults", nargs="*", default=["clean", *NAMED, *OWN])
     parser.add_argument("--name", default="answers")
+    parser.add_argument("--without-poses", action="store_true", help="runs have no pose.csv")
     arguments = parser.parse_args()
     rows: list[dict[str, object]] = []
     arguments.folder.mkdir(parents=True, exist_ok=True)
@@ -58,7 +60,10 @@ def main() -> None:
                         continue
                     case = make_case(world, fault, seed, arguments.folder / key / str(seed))
                     from_s = -np.inf if fault == "clean" else case.onset_s
-                    shares = judged(Run.read(case.folder), mode_set, from_s)
+                    run = Run.read(case.folder)
+                    if arguments.without_poses:
+                        run = replace(run, pose=None)
+                    shares = judged(run, mode_set, from_s)
                     rows.append({"world": key, "fault": fault, "seed": seed} | shares)
                     sheet.writerow(rows[-1])
                     stream.flush()
@@ -96,6 +101,8 @@ def print_tables(
     print(" ".join(f"{key[:10]:>10}" for key in keys))
     for fault in faults:
         of = [row for row in rows if row["fault"] == fault]
+        if not of:
+            continue
         means = [np.mean([float(str(row[name])) for row in of]) for name in SHARES]
         worst = max(float(str(row["wrong"])) for row in of)
         print(f"{fault:18}" + "".join(f"{100 * v:12.1f}%" for v in (*means, worst)), end="  | ")
@@ -111,7 +118,7 @@ def print_tables(
         each = [
             np.mean([float(str(row["wrong"])) for row in rows if row["fault"] == fault])
             for fault in group
-            if fault in faults
+            if any(row["fault"] == fault for row in rows)
         ]
         if each:
             print(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.modes.signals import BIAS_SIGMA_RAD_S, Signals
-from odometry.modes.standing_bias import SETTLES_S, StandingBias, after_standing, standing_biases
+from odometry.modes.standing_bias import SETTLES_S, standing_biases
 from odometry.modes.track import follow_signals
 from tests.odometry.modes.mode_examples import velocity_set
 
@@ -29,8 +29,9 @@ def test_a_stand_is_the_mean_of_what_is_read_once_it_settled():
     assert list(found) == [100, 700]
     settled = round(SETTLES_S / STEP_S)
     readings = signals.measured[401 + settled : 701, 1]
-    assert found[700].bias_rad_s == pytest.approx(readings.mean())
-    assert found[700].variance == pytest.approx(NOISE_RAD_S**2 / len(readings), rel=0.2)
+    bias_rad_s, variance = found[700]
+    assert bias_rad_s == pytest.approx(readings.mean())
+    assert variance == pytest.approx(NOISE_RAD_S**2 / len(readings), rel=0.2)
 
 
 @pytest.mark.parametrize(
@@ -44,23 +45,6 @@ def test_a_stand_is_the_mean_of_what_is_read_once_it_settled():
 )
 def test_what_is_no_bias_is_not_taken(stands, bias_rad_s, noise_rad_s):
     assert not standing_biases(signals_of(stands, bias_rad_s, noise_rad_s))
-
-
-def test_what_is_read_is_weighed_with_what_is_believed():
-    """Two Gaussians of one quantity; the filter holds the variance by its share of news."""
-    mean, covariance = np.array([1.0, 2.0, 0.004]), np.diag([1.0, 1.0, 0.5 * 0.002**2])
-    told, left = after_standing(mean, covariance, StandingBias(0.002, 0.001**2), independent=0.5)
-    weights = np.array([1 / 0.002**2, 1 / 0.001**2])
-    assert told[2] == pytest.approx(weights @ [0.004, 0.002] / weights.sum())
-    assert left[2, 2] == pytest.approx(0.5 / weights.sum())
-    np.testing.assert_array_equal(told[:2], mean[:2])
-
-
-def test_a_bias_that_is_another_one_replaces_what_was_believed():
-    mean, covariance = np.zeros(3), np.diag([1.0, 1.0, 0.001**2])
-    told, left = after_standing(mean, covariance, StandingBias(0.06, 0.001**2), independent=1.0)
-    assert told[2] == pytest.approx(0.06)
-    assert left[2, 2] == pytest.approx(0.001**2)
 
 
 def test_who_stood_knows_the_bias_from_then_on():

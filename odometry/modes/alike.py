@@ -1,0 +1,47 @@
+"""Modes that the way driven cannot tell apart, because they answer alike within their own errors.
+
+Errors of a model that last as long as a turn do not average out: two modes whose yaw rates differ
+by less than that would be told apart by these errors, surer with every second.
+"""
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.modes.mode_set import DWELL_S
+from odometry.modes.response import BLOCK_S
+from odometry.modes.signals import Signals
+from odometry.modes.velocity import VelocityModes
+
+APART_SIGMAS = 2.0  # of what lasts of the errors of a mode
+
+
+def alike_modes(signals: Signals, modes: VelocityModes, leading: IntArray) -> BoolArray:
+    """Modes (N, M) that nothing driven in the last DWELL_S tells from the leading one (N,)."""
+    asked = signals.tread_speeds_m_s @ modes.steady_gains()[:, 1].T
+    means, lasts_s = _means(asked, signals.stamps_s)
+    # the deviation of what lasts of errors in a mean over so long
+    share = np.minimum(modes.errors_last_s / lasts_s, 1.0)[:, None]
+    lasting = np.sqrt(modes.measurement_variance[:, 1] * share)
+    rows, count = np.arange(len(means)), means.shape[1]
+    alike = np.empty((len(means), count), dtype=np.bool_)
+    for place in range(count):
+        least = APART_SIGMAS * np.maximum(lasting, lasting[:, [place]])
+        apart = np.abs(means - means[:, [place]]) > least
+        last = np.maximum.accumulate(np.where(apart, rows[:, None], -1), axis=0)
+        since_s = signals.stamps_s[:, None] - signals.stamps_s[last]
+        recent = (last >= 0) & (since_s <= DWELL_S)
+        alike[leading == place] = ~recent[leading == place]
+    alike[rows, leading] = False
+    return alike
+
+
+def _means(values: FloatArray, stamps_s: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Means of values (N, M), in force from each stamp to the next, and over how long (N,).
+
+    Over BLOCK_S before each stamp, or all there is.
+    """
+    steps_s = np.diff(stamps_s)[:, None]
+    summed = np.cumsum(np.vstack([np.zeros(values.shape[1]), values[:-1] * steps_s]), axis=0)
+    first = np.searchsorted(stamps_s, stamps_s - BLOCK_S)
+    lasts_s = np.maximum(stamps_s - stamps_s[first], 1e-9)
+    return (summed - summed[first]) / lasts_s[:, None], lasts_s

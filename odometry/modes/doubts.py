@@ -1,0 +1,79 @@
+"""Why no mode is named although one is probable: the gyroscope, or modes that are alike."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import BoolArray
+from odometry.modes.followed import Followed
+from odometry.modes.mode_set import UNDETERMINED
+
+LEAST_DOUBT = 0.1  # of the time: less is not said
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """What keeps modes from being named.
+
+    Attributes
+    ----------
+    reason, remedy : str
+        A sentence without its full stop, and what to do.
+    share : float
+        Of the time.
+    """
+
+    reason: str
+    remedy: str
+    share: float
+
+
+def doubts(followed: Followed) -> tuple[Doubt, ...]:
+    """Those that hold for a tenth of the time or longer, the longest first."""
+    track = followed.last_track
+    undetermined = followed.answers(track) == UNDETERMINED
+    found = []
+    if track.gyroscope is not None:
+        scale, open_ = track.gyroscope.scale, track.gyroscope.bias_is_open & undetermined
+        off = np.isfinite(scale)
+        if off.any():
+            found.append(
+                Doubt(
+                    f"the gyroscope reads {np.median(scale[off]):.2f} times what the measured "
+                    f"headings turn {_when(followed, off)}",
+                    "check the gyroscope (unit, scale, axes) and the stamps of the headings",
+                    _share(followed, off),
+                )
+            )
+        if open_.any():
+            found.append(
+                Doubt(
+                    f"a mode would ask for a gyroscope bias of {track.means[open_, -1][-1]:.3f} "
+                    f"rad/s {_when(followed, open_)}, which nothing else confirms",
+                    "let the robot stand for a second: that tells the bias",
+                    _share(followed, open_),
+                )
+            )
+    if track.alike is not None:
+        sure = track.probabilities.max(axis=1) >= followed.config.sure
+        alike = track.alike.any(axis=1) & sure & undetermined
+        found.append(
+            Doubt(
+                f"the most probable mode and another answer alike for {_share(followed, alike):.0%}"
+                " of the time",
+                "drive turns of several radii to both sides: there modes differ most",
+                _share(followed, alike),
+            )
+        )
+    said = [one for one in found if one.share >= LEAST_DOUBT]
+    return tuple(sorted(said, key=lambda one: -one.share))
+
+
+def _share(followed: Followed, rows: BoolArray) -> float:
+    lasts_s = np.append(np.diff(followed.last_track.stamps_s), 0.0)
+    return float(lasts_s @ rows) / max(float(lasts_s.sum()), 1e-12)
+
+
+def _when(followed: Followed, rows: BoolArray) -> str:
+    begin_s, end_s = followed.last_track.stamps_s[np.flatnonzero(rows)[[0, -1]]]
+    return f"between {begin_s:.1f} s and {end_s:.1f} s"

@@ -1,0 +1,61 @@
+"""Whether the gyroscope can be trusted so far that its yaw rates tell the modes apart."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray
+from odometry.modes.bias_reading import JUMP_SIGMAS, BiasReading, bias_is_open
+from odometry.modes.heading_check import WINDOW_S, HeadingCheck
+from odometry.modes.signals import Signals
+
+HOLDS_S = 2 * WINDOW_S  # what a window says of the scale where later ones say nothing
+
+
+@dataclass(frozen=True)
+class GyroscopeTrust:
+    """At the N stamps of a track.
+
+    Attributes
+    ----------
+    bias_is_open : (N,)
+        Whether the bias lies beyond what is expected of it, and nothing but a mode says so; or
+        measured headings contradict it.
+    scale : (N,)
+        The gyroscope reads so many times what measured headings turn; NaN where they do not say
+        that it is off.
+    """
+
+    bias_is_open: BoolArray
+    scale: FloatArray
+
+
+def gyroscope_trust(
+    signals: Signals,
+    biases_rad_s: FloatArray,
+    sigmas_rad_s: FloatArray,
+    readings: Mapping[int, BiasReading],
+) -> GyroscopeTrust:
+    """Of the biases (N,) that filters believe with deviations (N,), and what was read of them."""
+    open_, stamps_s = bias_is_open(biases_rad_s, readings), signals.stamps_s
+    check = signals.heading_check
+    if check is None:
+        return GyroscopeTrust(open_, np.full(len(stamps_s), np.nan))
+    last = np.searchsorted(check.stamps_s, stamps_s, side="right") - 1
+    known = (last >= 0) & (stamps_s - check.stamps_s[last] <= WINDOW_S)
+    off = np.abs(biases_rad_s - check.bias_rad_s[last])
+    contradicted = off > JUMP_SIGMAS * np.hypot(sigmas_rad_s, check.bias_sigma_rad_s[last])
+    scale = np.where(last >= 0, scale_in_force(check)[last], np.nan)
+    return GyroscopeTrust(open_ | (known & contradicted), scale)
+
+
+def scale_in_force(check: HeadingCheck) -> FloatArray:
+    """The scale (K,) of the last window that said it is off.
+
+    NaN once a later one said not, or none said so for HOLDS_S.
+    """
+    says = check.scale_is_off | check.scale_is_right
+    last = np.maximum.accumulate(np.where(says, np.arange(len(says)), 0))
+    holds = check.scale_is_off[last] & (check.stamps_s - check.stamps_s[last] <= HOLDS_S)
+    return np.where(holds, check.scale[last], np.nan)
