@@ -28,6 +28,7 @@ from odometry.modes.mode_set import DWELL_S, NONE_OF_THESE, UNDETERMINED, ModeSe
 from odometry.modes.track import ModesConfig, follow_modes
 from odometry.run import Run
 from tests.blind.modes.faults import NAMED, OWN, make_case, possible
+from tests.blind.modes.more_faults import MORE
 from tests.blind.modes.worlds import World, calibration_runs, worlds
 
 IDENTIFY = {"velocity": identify_velocity_modes, "traction": identify_traction_modes}
@@ -42,7 +43,7 @@ def main() -> None:
     parser.add_argument("--folder", type=Path, required=True)
     parser.add_argument("--seeds", type=int, nargs="*", default=[10, 11])
     parser.add_argument("--worlds", nargs="*", default=list(worlds()))
-    parser.add_argument("--faults", nargs="*", default=["clean", *NAMED, *OWN])
+    parser.add_argument("--faults", nargs="*", default=["clean", *NAMED, *OWN, *MORE])
     parser.add_argument("--name", default="answers")
     parser.add_argument("--without-poses", action="store_true", help="runs have no pose.csv")
     arguments = parser.parse_args()
@@ -114,7 +115,7 @@ def print_tables(
             ]
             print(f"{np.mean(here) if here else np.nan:10.1f}", end=" ")
         print()
-    for title, group in (("named", NAMED), ("own", OWN)):
+    for title, group in (("named", NAMED), ("own", OWN), ("more", tuple(MORE))):
         each = [
             np.mean([float(str(row["wrong"])) for row in rows if row["fault"] == fault])
             for fault in group

@@ -11,6 +11,7 @@ from tests.blind.commands import RATE_HZ
 from tests.blind.faults.catalogue import FAULTS
 from tests.blind.faults.recordings import read_recording, write_recording
 from tests.blind.modes import worlds
+from tests.blind.modes.more_faults import MORE
 
 
 @dataclass(frozen=True, eq=False)
@@ -228,7 +229,7 @@ OF_RECORD = {
     "own_stuck_tread": stuck_tread,
     "own_tread_offset": _whole("tread_offset"),
     "own_treads_late": treads_delayed,
-}
+} | MORE
 NAMED = (
     "gyro_bias",
     "gyro_scale",
