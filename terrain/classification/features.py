@@ -8,7 +8,9 @@ import numpy as np
 
 from odometry.arrays import ByteImage, FloatArray
 from terrain.classification.filters import (
+    ColourFilter,
     Filter,
+    Scales,
     band_pass,
     coherence,
     gradient_magnitude,
@@ -20,7 +22,8 @@ from terrain.classification.filters import (
 )
 from terrain.images import to_grey
 from terrain.texture import feature_names as names_of_sfta
-from terrain.texture import sfta
+from terrain.texture.stack import stack_features
+from terrain.texture.variants import chosen_variant
 
 GREY_COPIES: dict[str, Filter] = {
     "grey": reduced(1),
@@ -43,7 +46,8 @@ GREY_COPIES: dict[str, Filter] = {
     "band_2": band_pass(2.0),
     "band_4": band_pass(4.0),
 }
-COLOUR_COPIES: dict[str, Filter] = {"red_green": red_green, "yellow_blue": yellow_blue}
+TOGETHER = 8  # patches; what is made of them stays in the cache
+COLOUR_COPIES: dict[str, ColourFilter] = {"red_green": red_green, "yellow_blue": yellow_blue}
 
 
 @dataclass(frozen=True)
@@ -65,27 +69,45 @@ class FeatureSettings:
         return cls(grey, colour, int(table["n_thresholds"]), bool(table["counts_per_area"]))
 
 
-def patch_features(image: ByteImage, settings: FeatureSettings) -> FloatArray:
-    """Return the features of one patch: per copy D, C and G of ``2 * n_thresholds`` binary images.
+def patch_features(images: Sequence[ByteImage], settings: FeatureSettings) -> FloatArray:
+    """Features of patches as rows: per copy D, C and G of ``2 * n_thresholds`` binary images.
 
     Parameters
     ----------
-    image : ByteImage, shape (rows, columns) or (rows, columns, 3)
+    images : sequence of ByteImage, shape (rows, columns) or (rows, columns, 3)
         Colour copies need RGB.
     settings : FeatureSettings
 
     Returns
     -------
-    FloatArray, shape (6 * n_thresholds * copies,)
+    FloatArray, shape (patches, 6 * n_thresholds * copies)
         C is divided by the area of the copy if `settings.counts_per_area`.
     """
-    grey = to_grey(image).astype(np.float32)
-    copies = [GREY_COPIES[name](grey) for name in settings.grey_copies]
-    copies += [COLOUR_COPIES[name](image) for name in settings.colour_copies]
-    features = np.array([sfta(copy, n_thresholds=settings.n_thresholds) for copy in copies])
-    if settings.counts_per_area:
-        features[:, 1::3] /= np.array([[copy.size] for copy in copies])
-    return features.ravel()
+    copies = [copy for image in images for copy in _copies(image, settings)]
+    definition = chosen_variant("chen2023", settings.n_thresholds)
+    features = np.empty((len(copies), 2 * settings.n_thresholds, 3))
+    for of in _alike(copies):
+        greys = np.stack([copies[i] for i in of])
+        rows = stack_features(greys, settings.n_thresholds, definition)
+        features[of] = rows.reshape(len(of), -1, 3)
+        if settings.counts_per_area:
+            features[of, :, 1] /= greys[0].size
+    return features.reshape(len(images), -1)
+
+
+def _copies(image: ByteImage, settings: FeatureSettings) -> list[ByteImage]:
+    """The copies of one patch, in their order."""
+    scales = Scales(to_grey(image))
+    copies = [GREY_COPIES[name](scales) for name in settings.grey_copies]
+    return copies + [COLOUR_COPIES[name](image) for name in settings.colour_copies]
+
+
+def _alike(copies: Sequence[ByteImage]) -> list[list[int]]:
+    """Places of copies of one size."""
+    places: dict[tuple[int, ...], list[int]] = {}
+    for place, copy in enumerate(copies):
+        places.setdefault(copy.shape, []).append(place)
+    return list(places.values())
 
 
 def feature_names(settings: FeatureSettings) -> list[str]:
@@ -96,4 +118,5 @@ def feature_names(settings: FeatureSettings) -> list[str]:
 
 def feature_matrix(images: Sequence[ByteImage], settings: FeatureSettings) -> FloatArray:
     """Return the features of each patch as a row, shape (patches, features)."""
-    return np.array([patch_features(image, settings) for image in images])
+    starts = range(0, len(images), TOGETHER)
+    return np.concatenate([patch_features(images[i : i + TOGETHER], settings) for i in starts])

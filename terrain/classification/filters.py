@@ -1,6 +1,6 @@
 """Filtered copies of a grey patch: what each shows is a texture of its own for SFTA.
 
-Every filter takes the grey patch as float32 (rows, columns) and returns an 8-bit image.
+Every filter takes the `Scales` of a grey patch, or its RGB image, and returns an 8-bit image.
 Gains are fixed where the contrast of the ground is told by them, and relative to the patch
 where it is not.
 """
@@ -12,13 +12,48 @@ import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage
 
-Filter = Callable[[AnyArray], ByteImage]
+HALF_TURN = np.float32(np.pi)
+
+
+class Scales:
+    """A grey patch and what several filters ask of it, computed once.
+
+    Parameters
+    ----------
+    grey : (rows, columns) array
+        Taken as float32.
+    """
+
+    def __init__(self, grey: AnyArray) -> None:
+        self.grey: AnyArray = grey.astype(np.float32)
+        self._blurred: dict[float, AnyArray] = {}
+        self._gradients: dict[float, tuple[AnyArray, AnyArray]] = {}
+
+    def blurred(self, sigma_px: float) -> AnyArray:
+        """The patch under a Gaussian of `sigma_px`."""
+        if sigma_px not in self._blurred:
+            self._blurred[sigma_px] = _blur(self.grey, sigma_px)
+        return self._blurred[sigma_px]
+
+    def gradient(self, sigma_px: float) -> tuple[AnyArray, AnyArray]:
+        """Its derivatives across and down, greys a pixel."""
+        if sigma_px not in self._gradients:
+            smooth = self.blurred(sigma_px)
+            across = cv2.Sobel(smooth, cv2.CV_32F, 1, 0, scale=0.125)
+            down = cv2.Sobel(smooth, cv2.CV_32F, 0, 1, scale=0.125)
+            self._gradients[sigma_px] = np.asarray(across), np.asarray(down)
+        return self._gradients[sigma_px]
+
+
+Filter = Callable[[Scales], ByteImage]
+ColourFilter = Callable[[ByteImage], ByteImage]
 
 
 def reduced(factor: int) -> Filter:
     """Average over squares of `factor` x `factor` pixels: a coarser scale of the grey image."""
 
-    def apply(grey: AnyArray) -> ByteImage:
+    def apply(scales: Scales) -> ByteImage:
+        grey = scales.grey
         size = (max(grey.shape[1] // factor, 1), max(grey.shape[0] // factor, 1))
         return _to_bytes(cv2.resize(grey, size, interpolation=cv2.INTER_AREA))
 
@@ -27,14 +62,16 @@ def reduced(factor: int) -> Filter:
 
 def band_pass(sigma_px: float) -> Filter:
     """Difference of Gaussians of `sigma_px` and its double, 8 grey levels a level."""
-    return lambda grey: _to_bytes(128 + 8 * (_blur(grey, sigma_px) - _blur(grey, 2 * sigma_px)))
+    return lambda scales: _to_bytes(
+        128 + 8 * (scales.blurred(sigma_px) - scales.blurred(2 * sigma_px))
+    )
 
 
 def gradient_magnitude(sigma_px: float) -> Filter:
     """Logarithm of the gradient at `sigma_px`: the strength of edges, over decades."""
 
-    def apply(grey: AnyArray) -> ByteImage:
-        across, down = _gradient(grey, sigma_px)
+    def apply(scales: Scales) -> ByteImage:
+        across, down = scales.gradient(sigma_px)
         return _to_bytes(90 + 40 * np.log(np.hypot(across, down) + 0.2))
 
     return apply
@@ -43,9 +80,12 @@ def gradient_magnitude(sigma_px: float) -> Filter:
 def gradient_orientation(sigma_px: float) -> Filter:
     """Direction of the gradient at `sigma_px`, modulo half a turn: indifferent to contrast."""
 
-    def apply(grey: AnyArray) -> ByteImage:
-        across, down = _gradient(grey, sigma_px)
-        return _to_bytes((np.arctan2(down, across) % np.pi) * (255 / np.pi))
+    def apply(scales: Scales) -> ByteImage:
+        across, down = scales.gradient(sigma_px)
+        angle: AnyArray = np.arctan2(down, across)
+        angle[angle == HALF_TURN] = 0.0
+        angle += HALF_TURN * (angle < 0)  # modulo half a turn
+        return _to_bytes(angle * (255 / np.pi))
 
     return apply
 
@@ -53,8 +93,8 @@ def gradient_orientation(sigma_px: float) -> Filter:
 def local_contrast(sigma_px: float) -> Filter:
     """Local contrast normalisation: grey less its local mean, in local standard deviations."""
 
-    def apply(grey: AnyArray) -> ByteImage:
-        mean = _blur(grey, sigma_px)
+    def apply(scales: Scales) -> ByteImage:
+        grey, mean = scales.grey, scales.blurred(sigma_px)
         variance = np.maximum(_blur(grey * grey, sigma_px) - mean * mean, 0)
         return _to_bytes(128 + 50 * (grey - mean) / (np.sqrt(variance) + 1.5))
 
@@ -64,8 +104,8 @@ def local_contrast(sigma_px: float) -> Filter:
 def coherence(sigma_px: float) -> Filter:
     """Coherence of the structure tensor at `sigma_px`: 255 for lines, 0 for grains."""
 
-    def apply(grey: AnyArray) -> ByteImage:
-        across, down = _gradient(grey, sigma_px)
+    def apply(scales: Scales) -> ByteImage:
+        across, down = scales.gradient(sigma_px)
         xx, yy, xy = (_blur(p, 2 * sigma_px) for p in (across * across, down * down, across * down))
         return _to_bytes(255 * np.hypot(xx - yy, 2 * xy) / (xx + yy + 1e-3))
 
@@ -82,13 +122,6 @@ def yellow_blue(image: ByteImage) -> ByteImage:
     """Mean of red and green less blue of an RGB image, 2 grey levels a level."""
     red, green, blue = cv2.split(image.astype(np.float32))
     return _to_bytes(128 + 2 * ((red + green) / 2 - blue))
-
-
-def _gradient(grey: AnyArray, sigma_px: float) -> tuple[AnyArray, AnyArray]:
-    smooth = _blur(grey, sigma_px)
-    across = cv2.Sobel(smooth, cv2.CV_32F, 1, 0, scale=0.125)
-    down = cv2.Sobel(smooth, cv2.CV_32F, 0, 1, scale=0.125)
-    return np.asarray(across), np.asarray(down)
 
 
 def _blur(image: AnyArray, sigma_px: float) -> AnyArray:

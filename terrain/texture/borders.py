@@ -1,8 +1,11 @@
-"""Borders of the regions of up to eight binary images at once."""
+"""Borders of the regions of up to eight binary images at once, of many planes at once."""
 
-import cv2
+import numpy as np
 
-from odometry.arrays import AnyArray, ByteImage
+from odometry.arrays import ByteImage
+from terrain.texture.kept import kept
+
+INSIDE = 255  # all eight bits
 
 
 def region_borders(bits: ByteImage) -> ByteImage:
@@ -10,12 +13,12 @@ def region_borders(bits: ByteImage) -> ByteImage:
 
     Parameters
     ----------
-    bits : (H, W) array of uint8
+    bits : (H, W) or (N, H, W) array of uint8
         One binary image in each bit.
 
     Returns
     -------
-    (H, W) array of uint8
+    array of uint8 of the same shape
         One border image in each bit. What lies outside the image counts as one, so the edge of
         the image is not a border.
 
@@ -23,10 +26,33 @@ def region_borders(bits: ByteImage) -> ByteImage:
     ----------
     Chen et al. 2023, eq. 21.
     """
-    padded: AnyArray = cv2.copyMakeBorder(bits, 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=255)
-    across: AnyArray = padded[:, :-2] & padded[:, 1:-1]
-    across &= padded[:, 2:]
-    inside: AnyArray = across[:-2] & across[1:-1]
-    inside &= across[2:]
-    inside ^= bits  # inside is a part of bits: what is left is its border
-    return inside
+    planes = bits.reshape(-1, *bits.shape[-2:])
+    padded = framed(len(planes), *bits.shape[-2:])
+    padded[:, 1:-1, 1:-1] = planes
+    return framed_borders(padded).copy().reshape(bits.shape)
+
+
+def framed(planes: int, rows: int, columns: int) -> ByteImage:
+    """Planes with a frame of ones round a middle (N, H, W) that is to be filled; kept."""
+    padded = kept("framed", (planes, rows + 2, columns + 2))
+    padded[:, 0] = padded[:, -1] = INSIDE
+    padded[:, :, 0] = padded[:, :, -1] = INSIDE
+    return padded
+
+
+def framed_borders(padded: ByteImage) -> ByteImage:
+    """Borders (N, H, W) of the middle of planes (N, H + 2, W + 2); a view of what is kept.
+
+    The planes are one long row whose neighbours are found by shifting it: what then mixes two
+    rows or planes lies in the frame.
+    """
+    flat, width = padded.ravel(), padded.shape[2]
+    across = kept("across", (flat.size - 2,))
+    np.bitwise_and(flat[:-2], flat[1:-1], out=across)
+    across &= flat[2:]
+    borders = kept("borders", padded.shape)
+    inside = borders.reshape(-1)[: flat.size - 2 * width - 2]
+    np.bitwise_and(across[: -2 * width], across[width:-width], out=inside)
+    inside &= across[2 * width :]
+    inside ^= flat[width + 1 : -width - 1]  # inside is a part of bits: what is left is its border
+    return borders[:, :-2, :-2]

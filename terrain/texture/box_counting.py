@@ -4,6 +4,7 @@ import cv2
 import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray
+from terrain.texture.kept import kept
 
 BITS_OF_BYTE: FloatArray = np.unpackbits(
     np.arange(256, dtype=np.uint8)[:, None], axis=1, bitorder="little"
@@ -32,33 +33,47 @@ def box_counts(bits: ByteImage) -> FloatArray:
 
     Parameters
     ----------
-    bits : (H, W) array of uint8
+    bits : (H, W) or (N, H, W) array of uint8
         One binary image in each bit.
 
     Returns
     -------
-    (n_sizes, 8) array
+    (n_sizes, 8) or (N, n_sizes, 8) array
         A row for each side, from 1 to the power of two that covers the longer side of the
         image, a column for each bit. Boxes start at the top left pixel; beyond the image is zero.
     """
-    n_sizes = (max(bits.shape) - 1).bit_length() + 1
-    histograms = np.empty((n_sizes, 256))
-    histograms[0] = byte_histogram(bits)
+    planes = bits.reshape(-1, *bits.shape[-2:])
+    n_sizes = (max(bits.shape[-2:]) - 1).bit_length() + 1
+    histograms = np.zeros((n_sizes, len(planes), 256), np.float32)
+    count_bytes(planes, histograms[0])
     for size in range(1, n_sizes):
-        bits = _or_of_2x2(bits)
-        histograms[size] = byte_histogram(bits)
-    return histograms @ BITS_OF_BYTE
+        planes = or_of_2x2(planes, f"halved {size % 2}")
+        count_bytes(planes, histograms[size])
+    counts = np.moveaxis(histograms @ BITS_OF_BYTE, 0, 1)
+    return counts.reshape(*bits.shape[:-2], n_sizes, 8)
 
 
-def _or_of_2x2(bits: ByteImage) -> ByteImage:
-    """Halve the image: each pixel is the OR of a 2 x 2 block, zeros beyond the edge."""
-    odd = (bits.shape[0] % 2, bits.shape[1] % 2)
+def count_bytes(planes: ByteImage, histograms: AnyArray) -> None:
+    """Add the number of pixels of each value of planes (N, H, W) to float32 (N, 256)."""
+    for plane, histogram in zip(planes, histograms, strict=True):
+        cv2.calcHist([plane], [0], None, [256], [0, 256], histogram, accumulate=True)
+
+
+def or_of_2x2(bits: ByteImage, use: str) -> ByteImage:
+    """Halve planes (N, H, W): each pixel is the OR of a 2 x 2 block, zeros beyond the edge.
+
+    The answer is kept for `use`, see `kept`.
+    """
+    planes, rows, columns = bits.shape
     even: AnyArray = bits
-    if any(odd):
-        even = cv2.copyMakeBorder(bits, 0, odd[0], 0, odd[1], cv2.BORDER_CONSTANT, value=0)
-    pairs = (even[0::2] | even[1::2]).view(np.uint16)  # two neighbours of a row
-    pairs |= pairs >> np.uint16(8)
-    return pairs.astype(np.uint8)
+    if rows % 2 or columns % 2:
+        even = np.zeros((planes, rows + rows % 2, columns + columns % 2), np.uint8)
+        even[:, :rows, :columns] = bits
+    pairs = kept("pairs", (planes, even.shape[1] // 2, even.shape[2]))
+    np.bitwise_or(even[:, 0::2], even[:, 1::2], out=pairs)
+    halved = kept(use, (planes, even.shape[1] // 2, even.shape[2] // 2))
+    np.bitwise_or(pairs[:, :, 0::2], pairs[:, :, 1::2], out=halved)
+    return halved
 
 
 def fractal_dimension(counts: FloatArray) -> FloatArray:
@@ -66,15 +81,15 @@ def fractal_dimension(counts: FloatArray) -> FloatArray:
 
     Parameters
     ----------
-    counts : (n_sizes, n) array
+    counts : (..., n_sizes, n) array
         Box counts for sides 1, 2, 4, ..., as `box_counts` gives them.
 
     Returns
     -------
-    (n,) array
+    (..., n) array
         0 for an image without set pixels, and where there is only one size.
     """
-    n_sizes = counts.shape[0]
+    n_sizes = counts.shape[-2]
     log_sides = np.log(2.0) * (np.arange(n_sizes) - (n_sizes - 1) / 2.0)
     weights = -log_sides / max(float(log_sides @ log_sides), 1.0e-300)
     slopes: FloatArray = weights @ np.log(np.maximum(counts, 1.0))

@@ -1,14 +1,11 @@
 """Segmentation-based fractal texture analysis: the features of one image."""
 
-import cv2
 import numpy as np
 
-from odometry.arrays import AnyArray, ByteImage, FloatArray
+from odometry.arrays import AnyArray, FloatArray
 from terrain.images import to_grey
-from terrain.texture.borders import region_borders
-from terrain.texture.box_counting import box_counts, byte_histogram, fractal_dimension
-from terrain.texture.ttbd import GREYS, packed_tables
-from terrain.texture.variants import EightImages, Variant, VariantName, chosen_variant
+from terrain.texture.stack import stack_features
+from terrain.texture.variants import VariantName, chosen_variant
 
 
 def sfta(image: AnyArray, n_thresholds: int = 4, variant: VariantName = "chen2023") -> FloatArray:
@@ -64,13 +61,7 @@ def sfta(image: AnyArray, n_thresholds: int = 4, variant: VariantName = "chen202
     array([  1.,  32., 200.,   1.,  32., 200.])
     """
     definition = chosen_variant(variant, n_thresholds)
-    grey = to_grey(image)
-    histogram = byte_histogram(grey)
-    members = definition.members(definition.thresholds(histogram, n_thresholds))
-    features = [
-        _features_of_eight(grey, histogram, table, definition) for table in packed_tables(members)
-    ]
-    return np.concatenate(features, axis=1)[:, : len(members)].T.ravel()
+    return np.asarray(stack_features(to_grey(image)[None], n_thresholds, definition)[0])
 
 
 def feature_names(n_thresholds: int = 4, variant: VariantName = "chen2023") -> list[str]:
@@ -92,15 +83,3 @@ def feature_names(n_thresholds: int = 4, variant: VariantName = "chen2023") -> l
     """
     n_images = len(chosen_variant(variant, n_thresholds).members(np.zeros(n_thresholds)))
     return [f"{letter}{image}" for image in range(1, n_images + 1) for letter in "DCG"]
-
-
-def _features_of_eight(
-    grey: ByteImage, grey_histogram: FloatArray, table: ByteImage, definition: Variant
-) -> FloatArray:
-    """(3, 8): D, C and G of the binary images in the bits of a table."""
-    bits: AnyArray = cv2.LUT(grey, table)
-    borders = region_borders(bits)
-    dimensions = fractal_dimension(box_counts(borders))
-    pixels = definition.pixels(EightImages(grey, grey_histogram, table, borders))
-    counts = pixels.sum(axis=0)
-    return np.stack((dimensions, counts, GREYS @ pixels / np.maximum(counts, 1.0)))

@@ -9,14 +9,18 @@ from terrain.classification.features import (
     GREY_COPIES,
     FeatureSettings,
     feature_matrix,
+    patch_features,
 )
-from terrain.classification.features import patch_features as features_of
-from terrain.classification.filters import gradient_magnitude, red_green, yellow_blue
+from terrain.classification.filters import Scales, gradient_magnitude, red_green, yellow_blue
 from terrain.classification.presets import PRESETS
 from terrain.texture import sfta
 
 GREY = PRESETS["default"].features
 BANK = PRESETS["default"].colour_features
+
+
+def features_of(image, settings):
+    return patch_features([image], settings)[0]
 
 
 def test_chen2023_is_sfta_of_the_grey_image_and_nothing_else(rng):
@@ -31,7 +35,7 @@ def test_each_copy_gives_its_sfta_with_counts_by_area(rng):
     grey = ((image @ np.array([30, 59, 11]) + 50) // 100).astype(np.float32)
     names = [*GREY_COPIES, *COLOUR_COPIES]
     for name, copy in (
-        ("magnitude_1.4", gradient_magnitude(1.4)(grey)),
+        ("magnitude_1.4", gradient_magnitude(1.4)(Scales(grey))),
         ("red_green", red_green(image)),
         ("yellow_blue", yellow_blue(image)),
     ):
