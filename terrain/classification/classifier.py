@@ -13,13 +13,15 @@ from odometry.arrays import AnyArray, BoolArray, ByteImage, FloatArray
 from odometry.errors import ConfigError
 from odometry.run import UNKNOWN
 from terrain.classification.answer import Classification, Classifier
+from terrain.classification.calibration import tempered
 from terrain.classification.feature_jobs import shared_feature_matrix
 from terrain.classification.features import FeatureSettings
 from terrain.classification.features_of import Transformed, Transformer, features_of
 from terrain.classification.model_file import ModelFile
 from terrain.classification.neighbours import vote
-from terrain.classification.patches import cut_patches
+from terrain.classification.patches import LabelledPatches, cut_patches
 from terrain.classification.presets import PRESETS
+from terrain.classification.rejection import as_of_one_patch, rejection_distances
 from terrain.classification.trained_on import TrainedOn
 from terrain.classification.training_set import (
     check_labels,
@@ -27,7 +29,7 @@ from terrain.classification.training_set import (
     has_colour,
     holds_images,
 )
-from terrain.classification.validation import CrossValidation, cross_validate
+from terrain.classification.validation import CrossValidation, Samples, cross_validate
 from terrain.errors import ImageError, PatchError
 from terrain.images import to_grey
 
@@ -42,7 +44,8 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
     preset : {"default", "chen2023"}
         ``chen2023`` is the paper: SFTA of the grey image (n_t = 4), unscaled, Euclidean nearest
         neighbours. ``default`` takes SFTA of 19 filtered copies of the grey image, counts by
-        area, scaled and projected on shrunk linear discriminants before the neighbours vote.
+        area, scaled, with random Fourier features, and projected on shrunk discriminants before
+        the neighbours vote; probabilities are calibrated in cross-validation.
     colour : bool
         Add SFTA of two colour differences (``default`` only). Off by default: colour depends on
         camera, white balance and light, and where each class came from a camera of its own it
@@ -52,7 +55,8 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
         The scale of the patches on the ground; kept for those who cut patches for it.
     rejected_share : float
         The share of known terrain that may be called unknown: the rejection distance is this
-        upper quantile of out-of-fold distances.
+        upper quantile of out-of-fold distances. In the ``default`` preset the median of several
+        patches has a quantile of its own.
     n_neighbors : int, optional
         The number k of neighbours that vote; by default the one of the preset's that is best in
         cross-validation.
@@ -73,6 +77,12 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
     colour_ : bool
     n_neighbors_ : int
     rejection_distance_ : float
+        Of one patch.
+    rejection_distances_ : tuple of float
+        Of the median of 1, 2, 4, 8, 16 patches; a distance that `classify` gives is on the scale
+        of one patch.
+    temperature_ : float or None
+        Of the votes; None leaves them as they are.
     cross_validation_ : CrossValidation
         Of the last `fit`; a loaded classifier has none.
     trained_on_ : TrainedOn or None
@@ -124,6 +134,7 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
         y: Sequence[str] | AnyArray,
         groups: Sequence[str] | AnyArray | None = None,
         *,
+        copies: LabelledPatches | None = None,
         progress: bool = False,
         trained_on: TrainedOn | None = None,
         processes: int = 1,
@@ -140,6 +151,9 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
         groups : sequence of str, optional
             The photograph (or part of one) that each patch is of; by default each is of its own.
             k and the rejection distance are chosen by cross-validation that keeps groups whole.
+        copies : LabelledPatches, optional
+            Altered patches of the same photographs, see `augmentation`, where X is images: they
+            are learned from, and never judged. With ``chen2023`` there are none.
         progress : bool
             Show a progress bar.
         trained_on : TrainedOn, optional
@@ -161,11 +175,15 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
             If the cluster cannot do it.
         """
         self._check_parameters()
+        if copies is not None and (PRESETS[self.preset].as_published or not holds_images(X)):
+            raise ConfigError(f"altered copies are for images and not for '{self.preset}'")
+        altered = copies or LabelledPatches([], [], [], [], [], [])
         if holds_images(X):
             labels, photos = _labels_and_groups(len(X), y, groups)
+            images = [*X, *altered.images]
             features = shared_feature_matrix(
-                X,
-                self._made_by(X, labels),
+                images,
+                self._made_by(images, labels),
                 processes=processes,
                 scheduler=scheduler,
                 show_progress=progress,
@@ -178,7 +196,14 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
             labels, photos = _labels_and_groups(len(features), labels, groups)
         self.classes_, codes = np.unique(labels, return_inverse=True)
         self.trained_on_ = trained_on
-        self._learn(features, codes, photos)
+        self._learn(
+            Samples(features[: len(labels)], codes, photos),
+            Samples(
+                features[len(labels) :],
+                np.searchsorted(self.classes_, altered.labels),
+                np.asarray(altered.groups) if altered.groups else photos[:0],
+            ),
+        )
         return self
 
     def predict(self, X: Sequence[ByteImage] | AnyArray) -> AnyArray:
@@ -198,7 +223,7 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
         """Classify images of at least the patch size.
 
         A larger image is cut into patches side by side; their probabilities are averaged, and
-        the median of their distances decides whether it is unknown.
+        the median of their distances, on the scale of one patch, decides whether it is unknown.
 
         Raises
         ------
@@ -223,10 +248,13 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
     def _made_by(
         self, images: Sequence[ByteImage], labels: AnyArray
     ) -> FeatureSettings | Transformed:
-        """What makes features of square patches, the size that the classifier then asks for."""
+        """What makes features of square patches, the size that the classifier then asks for.
+
+        The first of `images` have the labels (n,); altered copies follow them.
+        """
         self.patch_size_px = common_size(images)
         preset = PRESETS[self.preset]
-        wanted = self.colour and len(labels) == len(images) and has_colour(images, labels)
+        wanted = self.colour and has_colour(images[: len(labels)], labels)
         settings = preset.colour_features if wanted else preset.features
         if self.features is None:
             self._features, self.colour_ = settings, bool(settings.colour_copies)
@@ -236,18 +264,19 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
             self._features, self.colour_ = Transformed(fitted, wanted), wanted
         return self._features
 
-    def _learn(self, features: FloatArray, codes: AnyArray, groups: AnyArray) -> None:
+    def _learn(self, samples: Samples, copies: Samples) -> None:
         preset = PRESETS[self.preset]
         counts = (self.n_neighbors,) if self.n_neighbors else preset.neighbour_counts
         try:
             self.cross_validation_: CrossValidation = cross_validate(
-                preset.neighbours, counts, features, codes, groups
+                preset.neighbours, counts, samples, copies, calibrates=not preset.as_published
             )
-            self._neighbours = preset.neighbours().fit(features, codes)
+            everything = samples.with_copies(np.arange(len(samples.codes)), copies)
+            self._neighbours = preset.neighbours().fit(*everything)
         except np.linalg.LinAlgError as error:
             raise PatchError(
-                f"{len(features)} patches of {len(self.classes_)} classes are too few, or too much "
-                "alike, to tell how patches of one class differ"
+                f"{len(samples.codes)} patches of {len(self.classes_)} classes are too few, or too "
+                "much alike, to tell how patches of one class differ"
             ) from error
         self.n_neighbors_ = self.cross_validation_.n_neighbors
         if self.n_neighbors_ not in counts and self.n_neighbors:
@@ -255,9 +284,13 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
                 f"k = {self.n_neighbors}, but with a part held back a class has fewer patches in "
                 "training; choose a smaller k"
             )
-        self.rejection_distance_ = float(
-            np.quantile(self.cross_validation_.distances, 1 - self.rejected_share)
+        found = self.cross_validation_
+        self.temperature_ = found.temperature
+        limits = rejection_distances(
+            found.distances, samples.groups[found.rows], self.rejected_share
         )
+        self.rejection_distances_ = limits[:1] if preset.as_published else limits
+        self.rejection_distance_ = limits[0]
 
     def _votes_and_distances(
         self, X: Sequence[ByteImage] | AnyArray
@@ -271,10 +304,11 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
     def _of_features(self, features: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Probabilities (n, classes) and distances to the nearest class (n,)."""
         labels = self._neighbours.labels(features, self.n_neighbors_)
-        return vote(labels, self._neighbours.class_weights_), self._neighbours.distances(features)
+        votes = vote(labels, self._neighbours.class_weights_)
+        return tempered(votes, self.temperature_), self._neighbours.distances(features)
 
     def _of_image(self, image: ByteImage) -> tuple[FloatArray, float]:
-        """Mean probabilities (classes,) of the patches of an image, and their median distance."""
+        """Mean probabilities (classes,) of the patches of an image, and its distance."""
         if self._features is None:
             raise ImageError("the classifier was fitted on features; expected such, not images")
         patches = cut_patches(image, self.patch_size_px)
@@ -286,7 +320,8 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
         if self.colour_ and image.ndim != 3:
             raise ImageError("the image is grey, the classifier was trained with colour")
         votes, distances = self._of_features(features_of(patches, self._features))
-        return votes.mean(axis=0), float(np.median(distances))
+        median = float(np.median(distances))
+        return votes.mean(axis=0), as_of_one_patch(median, len(patches), self.rejection_distances_)
 
     def _classification(self, probabilities: FloatArray, distance: float) -> Classification:
         best, names = int(probabilities.argmax()), self.classes_.tolist()  # eq. 26

@@ -34,6 +34,8 @@ class ModelFile:
     colour_: bool
     n_neighbors_: int
     rejection_distance_: float
+    rejection_distances_: tuple[float, ...]
+    temperature_: float | None
     trained_on_: TrainedOn | None
     features: Transformer | None
     _features: FeatureSettings | Transformed | None
@@ -75,6 +77,8 @@ class ModelFile:
             self.rejection_distance_,
             features,
             self.trained_on_,
+            self.rejection_distances_,
+            self.temperature_,
         )
         write_model(Path(path), settings.to_table(), arrays, made)
 
@@ -111,6 +115,8 @@ class ModelFile:
             model._features = Transformed(model.features, model.colour_)
         else:
             model._features = features
+        model.rejection_distances_ = settings.rejection_distances
+        model.temperature_ = settings.temperature
         model.trained_on_ = settings.trained_on
         check_codes(arrays["codes"], len(settings.classes))
         model._neighbours = PRESETS[model.preset].neighbours.from_arrays(arrays)

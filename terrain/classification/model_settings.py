@@ -5,8 +5,10 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, Self
 
+from terrain.classification.calibration import TEMPERATURES
 from terrain.classification.features import FeatureSettings
 from terrain.classification.network_settings import NetworkSettings, read_features
+from terrain.classification.rejection import PATCHES
 from terrain.classification.trained_on import TrainedOn
 
 
@@ -24,6 +26,8 @@ class ModelSettings:
     rejection_distance: float
     features: FeatureSettings | NetworkSettings
     trained_on: TrainedOn | None = None
+    rejection_distances: tuple[float, ...] = ()
+    temperature: float | None = None
 
     def to_table(self) -> dict[str, Any]:
         """Turn into values that JSON can hold."""
@@ -69,4 +73,17 @@ class ModelSettings:
         values["features"] = read_features(table["features"])
         if table.get("trained_on") is not None:  # files of version 0.4 do not say
             values["trained_on"] = TrainedOn.from_table(table["trained_on"])
+        # files of version 0.9 do not say
+        limits = table.get("rejection_distances", [table["rejection_distance"]])
+        values["rejection_distances"] = tuple(_within(limit, 0.0, 1e12) for limit in limits)
+        if len(limits) not in {1, len(PATCHES)} or limits[0] != table["rejection_distance"]:
+            raise ValueError(f"rejection_distances = {limits}")
+        if table.get("temperature") is not None:
+            values["temperature"] = _within(table["temperature"], *TEMPERATURES)
         return cls(**values)
+
+
+def _within(value: object, low: float, high: float) -> float:
+    if not isinstance(value, float) or not low <= value <= high:
+        raise ValueError(f"{value!r}, expected a number from {low:g} to {high:g}")
+    return value

@@ -12,6 +12,7 @@ from sklearn.neighbors import KNeighborsClassifier
 from sklearn.pipeline import Pipeline, make_pipeline
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
+from terrain.classification.fourier import FourierFeatures
 from terrain.classification.metric import AppearanceMetric, ClippedScaler, DiscriminantMetric
 from terrain.classification.novelty import NEIGHBOURS, LocalSparsity
 
@@ -91,7 +92,9 @@ class PlainNeighbours:
 
 
 class DiscriminantNeighbours:
-    """Neighbours among shrunk linear discriminants; rare classes weigh as much as common ones.
+    """Neighbours among shrunk discriminants; rare classes weigh as much as common ones.
+
+    The discriminants are linear in scaled features and random Fourier features of these.
 
     A distance is the mean distance to the nearest samples among the discriminants, times the
     local sparsity among whitened principal components. The first factor asks whether a patch is
@@ -102,7 +105,9 @@ class DiscriminantNeighbours:
 
     def fit(self, features: FloatArray, codes: IntArray) -> Self:
         """Learn scale, discriminants, components and spacings from (n, F) and (n,)."""
-        self.pipeline_ = make_pipeline(ClippedScaler(), DiscriminantMetric(), _knn())
+        self.pipeline_ = make_pipeline(
+            ClippedScaler(), FourierFeatures(), DiscriminantMetric(), _knn()
+        )
         self.pipeline_.fit(features, codes)
         self.class_weights_ = 1.0 / np.bincount(codes)
         scaled = self.pipeline_[0].transform(features)
@@ -121,10 +126,12 @@ class DiscriminantNeighbours:
 
     def arrays(self) -> dict[str, AnyArray]:
         """Return everything learned."""
-        scaler, metric, knn = (step for _, step in self.pipeline_.steps)
+        scaler, fourier, metric, knn = (step for _, step in self.pipeline_.steps)
         return {
             "scaler_mean": scaler.mean_,
             "scaler_scale": scaler.scale_,
+            "frequencies": fourier.frequencies_,
+            "phases": fourier.phases_,
             "discriminants": metric.projection_,
             "points": knn._fit_X,
             "codes": knn._y,
@@ -136,13 +143,15 @@ class DiscriminantNeighbours:
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, AnyArray]) -> Self:
-        """Rebuild without learning again."""
+        """Rebuild without learning again; files of version 0.9 have no Fourier features."""
         model = cls()
-        scaler, metric = ClippedScaler(), DiscriminantMetric()
+        scaler, fourier, metric = ClippedScaler(), FourierFeatures(), DiscriminantMetric()
         scaler.mean_, scaler.scale_ = arrays["scaler_mean"], arrays["scaler_scale"]
+        fourier.frequencies_ = arrays.get("frequencies", np.empty((len(scaler.mean_), 0)))
+        fourier.phases_ = arrays.get("phases", np.empty(0))
         metric.projection_ = arrays["discriminants"]
         knn = _knn().fit(arrays["points"], arrays["codes"])
-        model.pipeline_ = make_pipeline(scaler, metric, knn)
+        model.pipeline_ = make_pipeline(scaler, fourier, metric, knn)
         model.class_weights_ = 1.0 / np.bincount(arrays["codes"])
         model.appearance_ = AppearanceMetric()
         model.appearance_.offset_ = arrays["appearance_offset"]

@@ -18,12 +18,16 @@ class Preset:
         One of the classes of `terrain.classification.neighbours`.
     neighbour_counts : tuple of int
         The numbers k of neighbours among which cross-validation chooses.
+    as_published : bool
+        Votes are the probabilities, nothing but the photographs is learned from, and one distance
+        rejects whatever the number of patches.
     """
 
     features: FeatureSettings
     colour_features: FeatureSettings
     neighbours: type[Neighbours]
     neighbour_counts: tuple[int, ...]
+    as_published: bool = False
 
 
 _CHEN2023 = FeatureSettings(("grey",), (), n_thresholds=4, counts_per_area=False)
@@ -37,5 +41,5 @@ PRESETS = {
         DiscriminantNeighbours,
         (5, 9, 15, 25, 45),
     ),
-    "chen2023": Preset(_CHEN2023, _CHEN2023, PlainNeighbours, (1, 3, 5, 9, 15)),
+    "chen2023": Preset(_CHEN2023, _CHEN2023, PlainNeighbours, (1, 3, 5, 9, 15), as_published=True),
 }

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+from terrain.classification.augmentation import Augmentation, load_copies
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.features_of import Transformer
 from terrain.classification.patches import (
@@ -12,6 +13,7 @@ from terrain.classification.patches import (
     load_patches,
     stated_metres_per_pixel,
 )
+from terrain.classification.presets import PRESETS
 
 LARGEST_PATCH_PX = 128
 
@@ -48,6 +50,7 @@ def train(
     features: Transformer | None = None,
     k: int | None = None,
     rejected_share: float = 0.05,
+    augment: bool = True,
     processes: int = 1,
     scheduler: str | None = None,
     show_progress: bool = False,
@@ -72,6 +75,10 @@ def train(
         Neighbours that vote; by default chosen in cross-validation.
     rejected_share : float
         Share of known patches that may be called unknown.
+    augment : bool
+        Whether altered copies of the photographs are learned from as well (``default`` only):
+        scaled, where their scale is not known, blurred, relit, noisy and compressed, as another
+        camera may show the terrain.
     processes : int
         That share the patches; -1 takes all cores. What is learned is the same.
     scheduler : str, optional
@@ -98,7 +105,8 @@ def train(
     """
     root = Path(root)
     photos = find_photos(root)
-    patches = load_patches(photos, patch_size_px or min(LARGEST_PATCH_PX, fitting_side_px(photos)))
+    size_px = patch_size_px or min(LARGEST_PATCH_PX, fitting_side_px(photos))
+    patches = load_patches(photos, size_px)
     scale = metres_per_pixel or stated_metres_per_pixel(root)
     classifier = TerrainClassifier(
         preset,
@@ -108,10 +116,15 @@ def train(
         n_neighbors=k,
         features=features,
     )
+    copies = None
+    if augment and preset in PRESETS and not PRESETS[preset].as_published:
+        settings = Augmentation() if scale is None else Augmentation(largest_crop=1.0)
+        copies = load_copies(photos, size_px, settings)
     classifier.fit(
         patches.images,
         patches.labels,
         patches.groups,
+        copies=copies,
         progress=show_progress,
         trained_on=patches.trained_on,
         processes=processes,

@@ -8,6 +8,7 @@ from sklearn.metrics import balanced_accuracy_score
 from sklearn.model_selection import StratifiedGroupKFold
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
+from terrain.classification.calibration import fitted_temperature, tempered
 from terrain.classification.neighbours import Neighbours, vote
 from terrain.errors import PatchError
 
@@ -29,6 +30,9 @@ class CrossValidation:
     probabilities : FloatArray, shape (n, classes)
         For each fold with the k that was best on the other folds, if there are others.
     distances : FloatArray, shape (n,)
+    temperature : float or None
+        Of the votes, as `calibration.tempered` takes it; for each fold the probabilities are those
+        at the temperature of the other folds. None where votes are left as they are.
     """
 
     n_neighbors: int
@@ -36,6 +40,24 @@ class CrossValidation:
     codes: IntArray
     probabilities: FloatArray
     distances: FloatArray
+    temperature: float | None = None
+
+
+@dataclass(frozen=True)
+class Samples:
+    """What is learned from: features (n, F), class codes (n,) and groups (n,)."""
+
+    features: FloatArray
+    codes: IntArray
+    groups: AnyArray
+
+    def with_copies(self, rows: IntArray, copies: "Samples | None") -> tuple[FloatArray, IntArray]:
+        """Features and codes of some rows, and of the copies of their groups."""
+        if copies is None:
+            return self.features[rows], self.codes[rows]
+        follow = np.isin(copies.groups, self.groups[rows])
+        features = np.concatenate([self.features[rows], copies.features[follow]])
+        return features, np.concatenate([self.codes[rows], copies.codes[follow]])
 
 
 def grouped_folds(codes: IntArray, groups: AnyArray) -> list[tuple[IntArray, IntArray]]:
@@ -63,9 +85,10 @@ def grouped_folds(codes: IntArray, groups: AnyArray) -> list[tuple[IntArray, Int
 def cross_validate(
     neighbours: Callable[[], Neighbours],
     neighbour_counts: tuple[int, ...],
-    features: FloatArray,
-    codes: IntArray,
-    groups: AnyArray,
+    samples: Samples,
+    copies: Samples | None = None,
+    *,
+    calibrates: bool = False,
 ) -> CrossValidation:
     """Judge every patch out of fold and choose k.
 
@@ -75,19 +98,22 @@ def cross_validate(
         Makes an unfitted `Neighbours`.
     neighbour_counts : tuple of int
         Candidates for k. Those above the samples of a class in a training fold are left out.
-    features : FloatArray, shape (n, F)
-    codes : IntArray, shape (n,)
-    groups : array, shape (n,)
-        At least two per class.
+    samples : Samples
+        At least two groups per class.
+    copies : Samples, optional
+        Altered copies: they are learned from where their group is, and never judged.
+    calibrates : bool
+        Whether a temperature is fitted to the votes.
     """
-    folds = grouped_folds(codes, groups)
+    features, codes = samples.features, samples.codes
+    folds = grouped_folds(codes, samples.groups)
     fewest = min(int(np.bincount(codes[train]).min()) for train, _ in folds)
     counts = [k for k in sorted(neighbour_counts) if k <= fewest] or [1]
     n_classes = int(codes.max()) + 1
     probabilities = np.full((len(counts), len(codes), n_classes), np.nan)
     distances = np.full(len(codes), np.nan)
     for train, test in folds:
-        model = neighbours().fit(features[train], codes[train])
+        model = neighbours().fit(*samples.with_copies(train, copies))
         labels = model.labels(features[test], counts[-1])
         distances[test] = model.distances(features[test])
         for i, k in enumerate(counts):
@@ -99,7 +125,23 @@ def cross_validate(
         rows = others if len(others) else kept
         nested[test] = probabilities[_best(probabilities, codes, rows), test]
     best = _best(probabilities, codes, kept)
-    return CrossValidation(counts[best], kept, codes[kept], nested[kept], distances[kept])
+    temperature = fitted_temperature(codes[kept], nested[kept]) if calibrates else None
+    if calibrates:
+        nested = _tempered_by_others(nested, codes, [test for _, test in folds])
+    return CrossValidation(
+        counts[best], kept, codes[kept], nested[kept], distances[kept], temperature
+    )
+
+
+def _tempered_by_others(votes: FloatArray, codes: IntArray, tests: list[IntArray]) -> FloatArray:
+    """The votes of each fold at the temperature that suits the other folds, if there are others."""
+    kept = np.concatenate(tests)
+    given = votes.copy()
+    for test in tests:
+        others = np.setdiff1d(kept, test)
+        rows = others if len(others) else kept
+        given[test] = tempered(votes[test], fitted_temperature(codes[rows], votes[rows]))
+    return given
 
 
 def _best(probabilities: FloatArray, codes: IntArray, rows: IntArray) -> int:

@@ -58,6 +58,13 @@ if TYPE_CHECKING:
 )
 @click.option("--colour", is_flag=True, help="Use colour: for one camera in training and in use.")
 @network_options
+@click.option(
+    "--augment/--no-augment",
+    default=True,
+    show_default=True,
+    help="Learn from altered copies of the photographs as well, as another camera or light would "
+    "show them; the default preset alone.",
+)
 @processes_option
 @scheduler_option
 def train(
@@ -71,6 +78,7 @@ def train(
     features: "NetworkFeatures | None",
     k: int | None,
     reject: float,
+    augment: bool,
     processes: int | None,
     scheduler: str | None,
 ) -> None:
@@ -101,6 +109,7 @@ def train(
         features=features,
         k=k,
         rejected_share=reject,
+        augment=augment,
         processes=processes or -1,
         scheduler=scheduler,
         show_progress=True,
@@ -154,6 +163,7 @@ def _origin(patches: "LabelledPatches") -> str:
 def _summary(classifier: "TerrainClassifier", patches: "LabelledPatches") -> str:
     import numpy as np
 
+    from terrain.classification.calibration import reliability
     from terrain.classification.evaluation import (
         balanced_accuracy,
         confusion,
@@ -172,7 +182,9 @@ def _summary(classifier: "TerrainClassifier", patches: "LabelledPatches") -> str
         "(true terrain down, answer across, %):\n\n"
         f"{confusion_text(table, classifier.classes_.tolist())}\n\n"
         f"balanced accuracy by patch {balanced_accuracy(found.codes, answers):.3f}, by vote of a "
-        f"photograph's patches {balanced_accuracy(photo_codes, photo_answers):.3f}\n"
+        f"photograph's patches {balanced_accuracy(photo_codes, photo_answers):.3f}; probabilities "
+        f"are off by {reliability(found.codes, found.probabilities).expected_error:.3f} in the "
+        "mean (expected calibration error)\n"
         f"{chosen} k {classifier.n_neighbors_}, rejection threshold "
         f"{classifier.rejection_distance_:.4g} ({100 * classifier.rejected_share:g} % of known "
         "terrain lies beyond)"

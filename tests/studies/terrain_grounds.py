@@ -11,7 +11,7 @@ from terrain.classification.feature_jobs import shared_feature_matrix
 from terrain.classification.neighbours import Neighbours, vote
 from terrain.classification.patches import find_photos, load_patches
 from terrain.classification.presets import PRESETS, Preset
-from terrain.classification.validation import cross_validate
+from terrain.classification.validation import Samples, cross_validate
 
 REJECTED_SHARE = 0.05
 COPIES = {"grey": 1, "scales": 3, "bank": 19, "bank and colour": 21}
@@ -83,9 +83,7 @@ def choose(
         found = cross_validate(
             preset.neighbours,
             preset.neighbour_counts,
-            features[:, columns],
-            train.codes,
-            train.groups,
+            Samples(features[:, columns], train.codes, train.groups),
         )
         score = balanced_accuracy(found.codes, found.probabilities.argmax(axis=1))
         if score > best_score:

@@ -6,7 +6,9 @@ from sklearn.neighbors import KNeighborsClassifier
 
 from odometry.errors import ConfigError
 from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.features import patch_features
 from terrain.classification.persistence import read_model, write_model
+from terrain.classification.presets import PRESETS
 from terrain.errors import ImageError, ModelFileError, PatchError
 from terrain.images import to_grey
 from terrain.texture import sfta
@@ -27,6 +29,10 @@ def stripes(rng, size=SIZE):
 
 def blobs(rng, size=SIZE):
     return np.kron(grains(rng, size // 8), np.ones((8, 8), np.uint8))
+
+
+def features_of(image):
+    return patch_features(image, PRESETS["default"].features)[None]
 
 
 def patches(rng, textures, photos=6, each=2):
@@ -83,7 +89,9 @@ def test_a_large_image_is_the_vote_of_its_patches(trained, rng):
     whole, *pieces = trained.classify([np.pad(image, ((3, 4), (5, 5))), *parts])
     for name, probability in whole.probabilities.items():
         assert probability == pytest.approx(np.mean([p.probabilities[name] for p in pieces]))
-    assert whole.distance == pytest.approx(np.median([p.distance for p in pieces]))
+    median = np.median([p.distance for p in pieces])
+    limits = trained.rejection_distances_  # of the median of 1, 2, 4, ... patches
+    assert whole.distance == pytest.approx(median * limits[0] / limits[2 % len(limits)])
 
 
 def test_too_small_an_image_is_an_error(trained):
@@ -263,3 +271,26 @@ def test_settings_beyond_all_measure_are_refused(tmp_path, key, value):
 def test_a_scale_must_be_a_number_above_zero(rng, scale):
     with pytest.raises(ConfigError, match="metres_per_pixel"):
         TerrainClassifier(metres_per_pixel=scale).fit(*patches(rng, (grains, stripes)))
+
+
+def test_a_file_of_version_0_9_gives_its_own_answers(tmp_path, rng):
+    """It has neither Fourier features nor limits by number of patches nor a temperature."""
+    classifier = TerrainClassifier().fit(*patches(rng, (grains, stripes)))
+    classifier.save(tmp_path / "new.model")
+    settings, arrays = read_model(tmp_path / "new.model")
+    linear = arrays["discriminants"][: len(arrays["scaler_mean"])]
+    scaled = ((features_of(grains(rng)) - arrays["scaler_mean"]) / arrays["scaler_scale"]).clip(
+        -3, 3
+    )
+    older = {n: a for n, a in arrays.items() if n not in ("frequencies", "phases")}
+    older["discriminants"] = linear
+    for name in ("rejection_distances", "temperature"):
+        del settings[name]
+    write_model(tmp_path / "old.model", settings, older)
+    loaded = TerrainClassifier.load(tmp_path / "old.model")
+    assert loaded.temperature_ is None
+    assert loaded.rejection_distances_ == (classifier.rejection_distance_,)
+    space = loaded._neighbours.pipeline_[:-1].transform(
+        arrays["scaler_mean"] + scaled * arrays["scaler_scale"]
+    )
+    np.testing.assert_allclose(space, scaled @ linear, rtol=1e-9)

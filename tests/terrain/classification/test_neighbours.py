@@ -44,7 +44,10 @@ def test_distance_is_discriminant_distance_times_sparsity(samples, rng):
     queries = rng.normal(size=(30, 8))
     scaled = ((queries - samples[0].mean(axis=0)) / samples[0].std(axis=0)).clip(-3, 3)
     points = model.arrays()["points"]
-    gaps = np.linalg.norm((scaled @ model.pipeline_[1].projection_)[:, None] - points, axis=2)
+    arrays = model.arrays()
+    cosines = np.sqrt(2) * np.cos(scaled @ arrays["frequencies"] + arrays["phases"])
+    projected = np.hstack([scaled, cosines]) @ arrays["discriminants"]
+    gaps = np.linalg.norm(projected[:, None] - points, axis=2)
     near = np.sort(gaps, axis=1)[:, :5].mean(axis=1)
     sparsity = model.sparsity_.sparsity(model.appearance_.transform(scaled))
     np.testing.assert_allclose(model.distances(queries), near * sparsity, rtol=1e-6)

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from terrain.classification.neighbours import PlainNeighbours
-from terrain.classification.validation import cross_validate, grouped_folds
+from terrain.classification.validation import Samples, cross_validate, grouped_folds
 from terrain.errors import PatchError
 
 
@@ -45,24 +45,28 @@ def test_photographs_do_not_vouch_for_themselves(rng):
     """Labels by photograph at random: leaking folds would recognise each photograph."""
     features, _, groups = ground(rng, photos=40, photo_spread=1.0)
     codes = rng.permutation(np.repeat([0, 1], 40))[groups]
-    found = cross_validate(PlainNeighbours, (1, 3), features, codes, groups)
+    found = cross_validate(PlainNeighbours, (1, 3), Samples(features, codes, groups))
     assert np.mean(found.probabilities.argmax(axis=1) == found.codes) < 0.75
 
 
 def test_k_is_the_best_and_the_largest_of_equals(rng):
     features, codes, groups = ground(rng, photo_spread=0.05)
-    found = cross_validate(PlainNeighbours, (1, 3, 5, 100), features, codes, groups)
+    found = cross_validate(PlainNeighbours, (1, 3, 5, 100), Samples(features, codes, groups))
     assert found.n_neighbors == 5
     codes_of_photos = np.repeat([0, 1], 30)
     noisy = rng.normal(codes_of_photos[:, None], 1.2, (60, 1))
-    chosen = cross_validate(PlainNeighbours, (1, 15), noisy, codes_of_photos, np.arange(60))
+    chosen = cross_validate(
+        PlainNeighbours, (1, 15), Samples(noisy, codes_of_photos, np.arange(60))
+    )
     assert chosen.n_neighbors == 15
 
 
 def test_answers_line_up_with_their_patches(rng):
     features, codes, groups = ground(rng, photo_spread=0.05)
     order = rng.permutation(len(codes))
-    found = cross_validate(PlainNeighbours, (1, 3), features[order], codes[order], groups[order])
+    found = cross_validate(
+        PlainNeighbours, (1, 3), Samples(features[order], codes[order], groups[order])
+    )
     np.testing.assert_array_equal(found.codes, codes[order][found.rows])
     np.testing.assert_array_equal(found.probabilities.argmax(axis=1), found.codes)
     np.testing.assert_allclose(found.probabilities.sum(axis=1), 1)
@@ -73,7 +77,7 @@ def test_k_is_small_where_classes_interlace():
     """Islands of four photographs: their neighbours beyond are of the other class."""
     islands = np.repeat(np.arange(30), 4)
     features = islands[:, None] + np.tile([0.0, 0.01, 0.02, 0.03], 30)[:, None]
-    found = cross_validate(PlainNeighbours, (1, 15), features, islands % 2, np.arange(120))
+    found = cross_validate(PlainNeighbours, (1, 15), Samples(features, islands % 2, np.arange(120)))
     assert found.n_neighbors == 1
     np.testing.assert_array_equal(found.probabilities.argmax(axis=1), found.codes)
 
@@ -86,7 +90,7 @@ def test_patches_of_a_fold_that_cannot_train_are_left_out():
     codes, groups = (np.repeat([key[i] for key in patches], list(patches.values())) for i in (0, 1))
     ((_, judged),) = grouped_folds(codes, groups)
     features = codes[:, None] + np.linspace(0, 0.1, len(codes))[:, None]
-    found = cross_validate(PlainNeighbours, (1,), features, codes, groups)
+    found = cross_validate(PlainNeighbours, (1,), Samples(features, codes, groups))
     np.testing.assert_array_equal(found.rows, np.sort(judged))
     np.testing.assert_array_equal(found.codes, codes[found.rows])
     assert np.isfinite(found.probabilities).all()

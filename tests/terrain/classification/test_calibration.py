@@ -1,0 +1,48 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from terrain.classification.calibration import (
+    FLOOR,
+    fitted_temperature,
+    reliability,
+    tempered,
+)
+
+
+@given(st.lists(st.floats(0.001, 1), min_size=2, max_size=6), st.floats(0.1, 10))
+def test_a_temperature_keeps_the_order_and_the_sum(raw, temperature):
+    votes = np.array([raw]) / np.sum(raw)
+    given_ = tempered(votes, temperature)
+    assert given_.sum() == pytest.approx(1)
+    order = np.argsort(votes[0])
+    assert np.all(np.diff(given_[0, order]) >= 0)
+
+
+def test_no_temperature_leaves_votes_as_they_are(rng):
+    votes = rng.dirichlet(np.ones(3), 5)
+    assert tempered(votes, None) is votes
+
+
+def test_the_temperature_of_votes_that_are_too_sure_is_found(rng):
+    """Codes drawn from probabilities; votes are their square: the temperature is 2."""
+    votes = rng.dirichlet(np.ones(4), 20_000)
+    true = tempered(votes, 2.0)
+    codes = (rng.random(len(true))[:, None] > true.cumsum(axis=1)).sum(axis=1)
+    assert fitted_temperature(codes, votes) == pytest.approx(2.0, rel=0.05)
+    found = reliability(codes, tempered(votes, 2.0)).expected_error
+    assert found < 0.02 < reliability(codes, votes).expected_error
+
+
+def test_expected_error_in_closed_form():
+    probabilities = np.array([[0.95, 0.05]] * 4 + [[0.35, 0.65]] * 2)
+    found = reliability(np.array([0, 0, 0, 1, 1, 0]), probabilities)
+    assert found.counts.tolist() == [0, 0, 0, 0, 0, 0, 2, 0, 0, 4]
+    assert found.accuracies[[6, 9]].tolist() == [0.5, 0.75]
+    assert found.expected_error == pytest.approx((2 * 0.15 + 4 * 0.20) / 6)
+
+
+def test_a_class_without_a_neighbour_stays_possible():
+    given_ = tempered(np.array([[1.0, 0.0]]), 1.0)
+    assert given_[0, 1] == pytest.approx(FLOOR / (1 + 2 * FLOOR))
