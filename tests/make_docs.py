@@ -8,6 +8,7 @@ A warning, or a reference in a docstring that points to nothing, is an error.
 import importlib
 import inspect
 import re
+import shutil
 import sys
 import tempfile
 import typing
@@ -26,8 +27,10 @@ from numpy.typing import ArrayLike
 from odometry import arrays
 from terrain.cli.main import VERBS, cli
 from tests.public_names import PUBLIC
+from tests.site_first_page import PICTURE, first_page
 
 ROOT = Path(__file__).parents[1]
+TEMPLATES = ROOT / "tests" / "page_templates"
 PACKAGES = ("odometry", "terrain")
 COLUMNS = 88  # of the help of a verb
 spelled_out = inspect.formatannotation
@@ -153,7 +156,8 @@ def exists(name: str) -> bool:
 def make_docs(folder: Path) -> None:
     """Write the site; an error names what points to nothing."""
     modules = pages()
-    pdoc.render.configure(docformat="numpy", show_source=False)
+    pdoc.render.configure(docformat="numpy", show_source=False, template_directory=TEMPLATES)
+    pdoc.render.env.globals["first_page"] = first_page()
     with ExitStack() as stack:
         scratch = stack.enter_context(tempfile.TemporaryDirectory())
         stack.enter_context(warnings.catch_warnings())
@@ -163,6 +167,7 @@ def make_docs(folder: Path) -> None:
         reference = Path(scratch) / "command_line.py"
         reference.write_text(f"{command_line()!r}\n", encoding="utf-8")
         pdoc.pdoc(*modules, str(reference), output_directory=folder)
+    shutil.copy(ROOT / PICTURE, folder)
     broken = broken_references(folder.resolve())
     if broken:
         raise ValueError("references to nothing:\n" + "\n".join(sorted(broken)))

@@ -10,6 +10,7 @@ import pytest
 from terrain.cli.main import VERBS, cli
 from tests.make_docs import broken_references, helps, make_docs
 from tests.public_names import PUBLIC
+from tests.site_first_page import PICTURE
 
 ROOT = Path(__file__).parents[1]
 
@@ -32,6 +33,16 @@ def test_every_verb_has_its_help_on_the_page(site: Path) -> None:
     for verb in VERBS:
         assert f"Usage: terrain-odometry {verb} " in page
     assert {"run", "gap", "import"} <= {verb for verb, _ in helps()}
+
+
+def test_the_first_page_says_what_it_is_and_leads_to_all_others(site: Path) -> None:
+    page = (site / "index.html").read_text(encoding="utf-8")
+    assert "A skid-steer robot turns by dragging its treads" in page
+    assert "BSD-3-Clause" in page  # of the picture
+    assert (site / Path(PICTURE).name).is_file()
+    pages = {f"{module.replace('.', '/')}.html" for module in PUBLIC}
+    wanted = {*pages, *(f"command_line.html#{verb}" for verb in VERBS)}
+    assert {link for link in wanted if page.count(f'href="{link}"') == 0} == set()
 
 
 @pytest.mark.parametrize("verb", VERBS)
