@@ -32,7 +32,7 @@ def blobs(rng, size=SIZE):
 
 
 def features_of(image):
-    return patch_features(image, PRESETS["default"].features)[None]
+    return patch_features([image], PRESETS["default"].features)
 
 
 def patches(rng, textures, photos=6, each=2):
