@@ -30,6 +30,8 @@ CATALOGUE: dict[str, str] = {
     "treads_unequal": "one side has another scale",
     "tread_offset": "one tread reads a constant besides its speed",
     "treads_are_twist": "the columns hold speed and turn rate",
+    "treads_equal": "both columns hold one speed",
+    "tread_scale_changed": "the scale of the treads changes while recording",
     "treads_are_counters": "the columns hold positions of wheels",
     "treads_unrelated": "treads of another recording",
     "treads_not_proportional": "the columns hold a duty cycle, throttle or voltage",

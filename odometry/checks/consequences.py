@@ -31,6 +31,12 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     | {"pose_mirrored", "gyroscope_reversed", "treads_or_gyroscope_reversed"}
     | {"treads_unequal", "tread_left_reversed", "treads_swapped", "treads_both_reversed"}
     | {"far_sensor", "tread_right_reversed", "treads_unrelated", "yaw_backwards"},
+    "treads_equal": TREADS
+    | POSES
+    | {"treads_unrelated", "far_sensor", "treads_are_twist", "treads_unequal", "stuck_encoder"},
+    "tread_scale_changed": TREADS
+    | POSES
+    | {"treads_not_proportional", "far_sensor", "treads_unequal", "slip_episodes"},
     "treads_unequal": frozenset({"pose_jumps"}),
     "treads_are_counters": TREADS
     | POSES
@@ -83,6 +89,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
 # No curve of the speeds is looked for where these are.
 NOT_CURVES = frozenset(
     {"stuck_encoder", "treads_frozen", "treads_are_twist", "treads_unrelated", "poses_unrelated"}
+    | {"treads_equal"}
 )
 
 

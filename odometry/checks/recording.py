@@ -13,6 +13,7 @@ from odometry.checks.confirmed import alone, confirmed
 from odometry.checks.consequences import without_consequences
 from odometry.checks.course import course
 from odometry.checks.disagreement import sensors_disagree
+from odometry.checks.equal_treads import equal_treads
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import CheckReport, Finding, Level, in_order
 from odometry.checks.gaps import gaps
@@ -22,6 +23,7 @@ from odometry.checks.pose_outages import pose_outages
 from odometry.checks.pose_values import pose_values
 from odometry.checks.poses import poses
 from odometry.checks.proportion import proportion
+from odometry.checks.scale_change import scale_change
 from odometry.checks.settings import settings
 from odometry.checks.sides import sides
 from odometry.checks.stamps import stamps, unreadable_stamps
@@ -44,6 +46,8 @@ CHECKS: tuple[Check, ...] = (
     yaw_against_course,
     turning,
     course,
+    equal_treads,
+    scale_change,
     units,
     bent,
     sides,

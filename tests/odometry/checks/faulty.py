@@ -5,6 +5,11 @@ from dataclasses import replace
 import numpy as np
 
 
+def doubled_later(values):
+    """Twice the values in the last 60 %."""
+    return values * np.where(np.arange(len(values)) > 0.4 * len(values), 2.0, 1.0)
+
+
 def put(run, table, **columns):
     of = getattr(run, table)
     return replace(run, **{table: replace(of, columns={**of.columns, **columns})})
@@ -106,6 +111,10 @@ FAULTS = {
     "treads_unequal": lambda run: treads(run, lambda left, right: (1.3 * left, right)),
     "treads_are_twist": lambda run: treads(
         run, lambda left, right: ((left + right) / 2, (right - left) / 1.8)
+    ),
+    "treads_equal": lambda run: treads(run, lambda left, _: (left, left)),
+    "tread_scale_changed": lambda run: treads(
+        run, lambda left, right: (doubled_later(left), doubled_later(right))
     ),
     "gyroscope_unit": lambda run: gyroscope(run, np.degrees),
     "gyroscope_reversed": lambda run: gyroscope(run, np.negative),

@@ -1,0 +1,39 @@
+"""A scale of the treads that changes, against what only looks like it."""
+
+import numpy as np
+import pytest
+
+from odometry.checks.evidence import Evidence
+from odometry.checks.mending import changed, in_turn
+from odometry.checks.scale_change import scale_change
+from tests.odometry.checks.test_other_robots import winding, without_gyroscope
+
+
+def later(run, v_left, v_right):
+    """Tread speeds times factors from 40 % of the recording on."""
+    t = run.odometry.stamps_s
+    after = t > t[0] + 0.4 * np.ptp(t)
+    return in_turn(
+        changed("odometry", "v_left", lambda v: np.where(after, v_left * v, v)),
+        changed("odometry", "v_right", lambda v: np.where(after, v_right * v, v)),
+    )(run)
+
+
+@pytest.mark.parametrize("factor", [0.5, 1.6, 3.6])
+@pytest.mark.parametrize("gyroscope", [True, False])
+def test_the_moment_and_the_mend_are_those_of_the_change(factor, gyroscope):
+    run = winding()
+    if not gyroscope:
+        run = without_gyroscope(run)
+    wrong = later(run, factor, factor)
+    (finding,) = scale_change(Evidence(wrong))
+    t = run.odometry.stamps_s
+    assert finding.spans_s[0][0] == pytest.approx(0.4 * np.ptp(t), abs=2.0)
+    mended = finding.mend(wrong)
+    ratio = mended.odometry["v_left"][-20:] / run.odometry["v_left"][-20:]
+    np.testing.assert_allclose(ratio, 1.0, rtol=0.1)
+
+
+@pytest.mark.parametrize("factors", [(1.0, 1.0), (1.2, 1.2), (1.0, 1.8)])
+def test_little_changes_and_those_of_one_tread_are_no_scale(factors):
+    assert not list(scale_change(Evidence(later(winding(), *factors))))
