@@ -303,9 +303,9 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
 
     def _of_features(self, features: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Probabilities (n, classes) and distances to the nearest class (n,)."""
-        labels = self._neighbours.labels(features, self.n_neighbors_)
+        labels, distances = self._neighbours.labels_and_distances(features, self.n_neighbors_)
         votes = vote(labels, self._neighbours.class_weights_)
-        return tempered(votes, self.temperature_), self._neighbours.distances(features)
+        return tempered(votes, self.temperature_), distances
 
     def _of_image(self, image: ByteImage) -> tuple[FloatArray, float]:
         """Mean probabilities (classes,) of the patches of an image, and its distance."""

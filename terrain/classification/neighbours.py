@@ -9,11 +9,12 @@ from typing import Protocol, Self
 
 import numpy as np
 from sklearn.neighbors import KNeighborsClassifier
-from sklearn.pipeline import Pipeline, make_pipeline
+from sklearn.pipeline import make_pipeline
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
 from terrain.classification.fourier import FourierFeatures
 from terrain.classification.metric import AppearanceMetric, ClippedScaler, DiscriminantMetric
+from terrain.classification.nearest import nearest
 from terrain.classification.novelty import NEIGHBOURS, LocalSparsity
 
 
@@ -30,6 +31,9 @@ class Neighbours(Protocol):
 
     def distances(self, features: FloatArray) -> FloatArray:
         """Return the distances to the nearest class, (n,)."""
+
+    def labels_and_distances(self, features: FloatArray, k: int) -> tuple[IntArray, FloatArray]:
+        """Return both, with nothing computed twice."""
 
     def arrays(self) -> dict[str, AnyArray]:
         """Return everything learned, by name."""
@@ -75,11 +79,15 @@ class PlainNeighbours:
 
     def labels(self, features: FloatArray, k: int) -> IntArray:
         """Return the class codes of the k nearest, (n, k)."""
-        return _labels(self.pipeline_, features, k)
+        return self.labels_and_distances(features, k)[0]
 
     def distances(self, features: FloatArray) -> FloatArray:
         """Return the mean Euclidean distances to the nearest samples, (n,)."""
-        return _mean_distances(self.pipeline_, features)  # eq. 24
+        return self.labels_and_distances(features, 1)[1]
+
+    def labels_and_distances(self, features: FloatArray, k: int) -> tuple[IntArray, FloatArray]:
+        """Return both."""
+        return _labels_and_distances(self.pipeline_[-1], features, k)  # eq. 24
 
     def arrays(self) -> dict[str, AnyArray]:
         """Return the training samples."""
@@ -117,12 +125,20 @@ class DiscriminantNeighbours:
 
     def labels(self, features: FloatArray, k: int) -> IntArray:
         """Return the class codes of the k nearest, (n, k)."""
-        return _labels(self.pipeline_, features, k)
+        return self.labels_and_distances(features, k)[0]
 
     def distances(self, features: FloatArray) -> FloatArray:
         """Return discriminant distance times local sparsity, (n,)."""
-        appearance = self.appearance_.transform(self.pipeline_[0].transform(features))
-        return _mean_distances(self.pipeline_, features) * self.sparsity_.sparsity(appearance)
+        return self.labels_and_distances(features, 1)[1]
+
+    def labels_and_distances(self, features: FloatArray, k: int) -> tuple[IntArray, FloatArray]:
+        """Return both."""
+        scaler, *others, knn = (step for _, step in self.pipeline_.steps)
+        scaled = place = scaler.transform(features)
+        for step in others:
+            place = step.transform(place)
+        labels, distances = _labels_and_distances(knn, place, k)
+        return labels, distances * self.sparsity_.sparsity(self.appearance_.transform(scaled))
 
     def arrays(self) -> dict[str, AnyArray]:
         """Return everything learned."""
@@ -166,19 +182,10 @@ def _knn() -> KNeighborsClassifier:
     return KNeighborsClassifier(n_neighbors=1, algorithm="brute")
 
 
-def _labels(pipeline: Pipeline, features: FloatArray, k: int) -> IntArray:
-    knn = pipeline[-1]
-    indices = knn.kneighbors(_to_space(pipeline, features), k, return_distance=False)
-    return np.asarray(knn._y[indices], dtype=np.int64)
-
-
-def _mean_distances(pipeline: Pipeline, features: FloatArray) -> FloatArray:
-    knn = pipeline[-1]
-    k = min(NEIGHBOURS, knn.n_samples_fit_)
-    return np.asarray(knn.kneighbors(_to_space(pipeline, features), k)[0].mean(axis=1))
-
-
-def _to_space(pipeline: Pipeline, features: FloatArray) -> FloatArray:
-    for _, step in pipeline.steps[:-1]:
-        features = step.transform(features)
-    return features
+def _labels_and_distances(
+    knn: KNeighborsClassifier, places: FloatArray, k: int
+) -> tuple[IntArray, FloatArray]:
+    """Class codes (n, k) of the k nearest samples, and the mean distance (n,) of the nearest."""
+    few = min(NEIGHBOURS, knn.n_samples_fit_)
+    distances, rows = nearest(knn._fit_X, places, max(k, few))
+    return np.asarray(knn._y[rows[:, :k]], dtype=np.int64), distances[:, :few].mean(axis=1)

@@ -6,6 +6,7 @@ import numpy as np
 from sklearn.neighbors import NearestNeighbors
 
 from odometry.arrays import FloatArray
+from terrain.classification.nearest import nearest
 
 NEIGHBOURS = 5
 SMALLEST_SHARE_OF_MEAN = 0.01
@@ -40,11 +41,10 @@ class LocalSparsity:
     def restore(self, points: FloatArray, spacings: FloatArray) -> Self:
         """Take over points and spacings that were learned before."""
         self.points_, self.spacings_ = points, spacings
-        k = min(NEIGHBOURS, len(points) - 1)
-        self.neighbours_ = NearestNeighbors(n_neighbors=k, algorithm="brute").fit(points)
         return self
 
     def sparsity(self, points: FloatArray) -> FloatArray:
         """Return the ratio for each of `points` (n, d), shape (n,)."""
-        distances, indices = self.neighbours_.kneighbors(points)
+        k = min(NEIGHBOURS, len(self.points_) - 1)
+        distances, indices = nearest(self.points_, points, k)
         return np.asarray(distances.mean(axis=1) / self.spacings_[indices].mean(axis=1))

@@ -1,0 +1,34 @@
+"""The nearest of a set of points, by one matrix product for all that is asked."""
+
+import numpy as np
+
+from odometry.arrays import FloatArray, IntArray
+
+
+def nearest(points: FloatArray, asked: FloatArray, k: int) -> tuple[FloatArray, IntArray]:
+    """The k nearest points of each row that is asked, nearest first.
+
+    Parameters
+    ----------
+    points : (n, d) array
+    asked : (m, d) array
+    k : int
+        At most n.
+
+    Returns
+    -------
+    (m, k) array, (m, k) array
+        Euclidean distances and rows of `points`. Of points equally far the earlier comes first.
+    """
+    # |p|^2 - 2 p.q orders points as the distance does, to rounding; distances are then exact
+    order = (points**2).sum(axis=1) - 2.0 * (asked @ points.T)
+    found = np.argpartition(order, k - 1, axis=1)[:, :k] if k < len(points) else _all(order)
+    apart = (asked[:, None] - points[found]).transpose(2, 0, 1)
+    distances = np.sqrt((apart * apart).sum(axis=0))
+    by_distance = np.lexsort((found, distances))
+    rows = np.arange(len(asked))[:, None]
+    return distances[rows, by_distance], found[rows, by_distance]
+
+
+def _all(order: FloatArray) -> IntArray:
+    return np.tile(np.arange(order.shape[1]), (len(order), 1))
