@@ -9,6 +9,11 @@ from odometry.effects.held_commands import held_spans, late_speeds
 from odometry.effects.time_offset import BY_GYROSCOPE
 from odometry.models.inputs import Inputs
 
+SLIP_BY_FORCE = (
+    "measured wheel speeds: a late tread turns late, and one that slips in proportion to its force "
+    "turns in time"
+)
+
 
 class CommandDelay(CommandEffect):
     """The treads do at t what was recorded for t - delay."""
@@ -29,6 +34,10 @@ class CommandDelay(CommandEffect):
     def parameters(self) -> tuple[EffectParameter, ...]:
         """See `Effect.parameters`."""
         return (EffectParameter("delay", "s", 0.0, 1.0, 0.05, 0.02),)
+
+    def same_as(self, values: FloatArray) -> Mapping[str, str]:  # noqa: ARG002 - of the interface
+        """See `Effect.same_as`: v(t - delay) is v - delay dv/dt to first order."""
+        return {"tread_slip": SLIP_BY_FORCE}
 
     def tread_speeds(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `CommandEffect.tread_speeds`; the mean over each sample, exact for held commands.

@@ -19,7 +19,7 @@ SHIFTED = (
     *(("y_left", "m"), ("y_right", "m"), ("x_icr", "m")),
     *(("alpha_left", ""), ("alpha_right", "")),
 )
-LARGEST = {"m": 3.0, "": 0.9}
+BOUNDS = {"m": (-3.0, 3.0), "": (-0.9, 0.3)}  # no terrain carries a robot much beyond its treads
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class Terrain(MotionEffect):
     def parameters(self) -> tuple[EffectParameter, ...]:
         """See `Effect.parameters`."""
         return tuple(
-            EffectParameter(f"{name}_{label}", unit, -LARGEST[unit], LARGEST[unit], 0.0, 0.01)
+            EffectParameter(f"{name}_{label}", unit, *BOUNDS[unit], 0.0, 0.01)
             for label in self.labels
             for name, unit in SHIFTED
         )
@@ -114,8 +114,7 @@ class NewIcrs(MotionEffect):
     def parameters(self) -> tuple[EffectParameter, ...]:
         """See `Effect.parameters`."""
         return tuple(
-            EffectParameter(name, unit, -LARGEST[unit], LARGEST[unit], 0.0, 0.01)
-            for name, unit in SHIFTED
+            EffectParameter(name, unit, *BOUNDS[unit], 0.0, 0.01) for name, unit in SHIFTED
         )
 
     def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the interface

@@ -12,7 +12,7 @@ from odometry.gap.errors import GapError
 from odometry.gap.pieces import numbered_pieces, pieces
 from odometry.gap.simulate import all_residuals, whitened_residuals
 from odometry.gap.solve import Solved, least_squares, with_jacobian
-from odometry.gap.uncertain import Uncertain
+from odometry.gap.uncertain_base import Uncertain
 from odometry.models.base import KinematicModel
 from odometry.run import Robot
 from odometry.windows.dense import DenseWindows

@@ -60,6 +60,13 @@ class GapConfig:
         for which no equation here is exact, need to close less; events, whose begin and end are
         known to a quarter of a second, more: on development seeds right ones close 0.96,
         wrong ones 0.88 at most.
+    least_held_out : float
+        Share of the excess on held-out data that names must close. On development seeds right
+        names close 0.22 at least, a loss of traction in the place of slippery patches 0.05.
+    least_of_all : float
+        Share of what names and smooth functions close together that names must close alone.
+    most_beaten : float
+        Share of what a name closes by which a candidate that is refused may close more.
     events_told : float
         Area under the receiver operating characteristic with which a recorded variable may say
         when events are. True bursts have 0.72 at most, a drive that is limited on one side 0.97.
@@ -114,6 +121,9 @@ class GapConfig:
     mostly_closed: float = 0.8
     contact_closed: float = 0.4
     bursts_closed: float = 0.93
+    least_held_out: float = 0.1
+    least_of_all: float = 0.7
+    most_beaten: float = 0.1
     events_told: float = 0.85
     uneven: float = 0.3
     uneven_probability: float = 0.001
@@ -146,7 +156,7 @@ class GapConfig:
             "first_share",
             "mostly_closed",
             "bursts_closed",
-            "events_told",
+            *("events_told", "least_held_out", "least_of_all", "most_beaten"),
             "least_better",
             "least_beside",
             "base_probability",

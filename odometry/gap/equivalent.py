@@ -1,5 +1,6 @@
 """Effects that the data cannot separate from those named."""
 
+from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.explanation import Explanation
@@ -16,8 +17,7 @@ def equivalents(found: Explanation, config: GapConfig) -> tuple[Equivalent, ...]
     """
     alike: dict[str, Equivalent] = {}
     for added in found.fitted.effects:
-        for name, told_apart_by in added.effect.same_as(added.values).items():
-            alike[name] = Equivalent(name, added.effect.name, told_apart_by)
+        _add_same(alike, added)
     for step in found.steps:
         if isinstance(step.effect, Residual):
             continue
@@ -32,4 +32,11 @@ def equivalents(found: Explanation, config: GapConfig) -> tuple[Equivalent, ...]
                 reasons = {**best.effect.alike, **best.effect.includes}
                 reason = reasons.get(rival.effect.name, TELL_APART)
                 alike[rival.effect.name] = Equivalent(rival.effect.name, best.effect.name, reason)
+                _add_same(alike, rival.fitted.effects[-1])
     return tuple(one for name, one in alike.items() if name not in found.names)
+
+
+def _add_same(alike: dict[str, Equivalent], added: Added) -> None:
+    """What does the same as an effect named, or as an equivalent of one."""
+    for name, told_apart_by in added.effect.same_as(added.values).items():
+        alike.setdefault(name, Equivalent(name, added.effect.name, told_apart_by))

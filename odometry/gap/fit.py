@@ -5,22 +5,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray
+from odometry.arrays import FloatArray
 from odometry.effects.base import Effect
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual
 from odometry.gap.calibration import Calibration
+from odometry.gap.cross_validation import held_out, left_out_loss
 from odometry.gap.hypothesis import Hypothesis, own_values
-from odometry.gap.left_out import held_out, left_out_loss
+from odometry.gap.least_cost import derived, least_cost
 from odometry.gap.measured import Measured
 from odometry.gap.responses import columns_of
-from odometry.gap.solve import Found, Solved, least_squares, with_jacobian
-
-ITERATIONS = 12
-SEARCHED = 2  # of several starts: the best ones
-JUMPS = (-4.0, -2.0, -1.0, -0.5, 0.5, 1.0, 2.0, 4.0)  # tried, in scales of a parameter
-MOST_JUMPS = 4
+from odometry.gap.solve import Found, Solved
 
 
 @dataclass(frozen=True)
@@ -88,8 +84,8 @@ class Fitter:
         of_base = np.zeros(hypothesis.of_base, dtype=np.bool_)
         held = hypothesis.held(np.concatenate([of_base, *pinned]))
         starts = hypothesis.distinct(self._starts(effects, known_starts))
-        found = self._best(hypothesis, starts, held)
-        return _finished(hypothesis, _derived(hypothesis, found, held))
+        found = least_cost(hypothesis, starts, held)
+        return _finished(hypothesis, derived(hypothesis, found, held))
 
     def spread(self, fit: Fitted) -> float:
         """Chi-squared a degree of freedom."""
@@ -112,7 +108,7 @@ class Fitter:
         effects = tuple(added.effect for added in fit.effects)
         hypothesis = Hypothesis(self.calibration, self.measured, effects)
         nothing = np.zeros(len(values), dtype=np.bool_)
-        return _derived(hypothesis, Found(values, hypothesis.rows(values)), nothing)
+        return derived(hypothesis, Found(values, hypothesis.rows(values)), nothing)
 
     def linear_losses(self, fit: Fitted, candidates: Sequence[Residual]) -> FloatArray:
         """Chi-squared (C,) that each candidate leaves on windows not fitted, to first order.
@@ -143,50 +139,6 @@ class Fitter:
             for i in range(count)
         ]
         return [np.concatenate([self.calibration.uncertain.values, *one]) for one in chosen]
-
-    def _best(self, hypothesis: Hypothesis, starts: list[FloatArray], held: BoolArray) -> Found:
-        if len(starts) > 1:
-            base_held = held | (np.arange(len(held)) < hypothesis.of_base)
-            tried = [_search(hypothesis, start, 1, base_held) for start in starts]
-            order = np.argsort([one.cost for one in tried], kind="stable")[:SEARCHED]
-            starts = [tried[i].values for i in order]
-        found = [_search(hypothesis, start, ITERATIONS, held) for start in starts]
-        return _after_jumps(hypothesis, min(found, key=lambda one: one.cost), held)
-
-
-def _search(hypothesis: Hypothesis, start: FloatArray, iterations: int, held: BoolArray) -> Found:
-    if not len(start):
-        return Found(start, hypothesis.rows(start))
-    bounds = _pinned(hypothesis.bounds, start, held)
-    return least_squares(hypothesis.rows, start, hypothesis.scales, bounds, iterations)
-
-
-def _after_jumps(hypothesis: Hypothesis, found: Found, held: BoolArray) -> Found:
-    """Search on from jumps of the values that derivatives say little of."""
-    places = np.flatnonzero(hypothesis.jumps & ~held)
-    unit = np.diag(hypothesis.scales)
-    steps = [jump * unit[place] for place in places for jump in JUMPS]
-    for _ in range(MOST_JUMPS if steps else 0):
-        tried = [np.clip(found.values + step, *hypothesis.bounds) for step in steps]
-        costs = np.nan_to_num([np.sum(hypothesis.rows(v) ** 2) for v in tried], nan=np.inf)
-        if costs.min() > found.cost - 1:
-            break
-        found = _search(hypothesis, tried[int(np.argmin(costs))], ITERATIONS, held)
-    return found
-
-
-def _derived(hypothesis: Hypothesis, found: Found, held: BoolArray) -> Solved:
-    if not len(found.values):
-        return Solved(found.values, found.rows, np.empty((len(found.rows), 0)))
-    bounds = _pinned(hypothesis.bounds, found.values, held)
-    return with_jacobian(hypothesis.rows, found, hypothesis.scales, bounds)
-
-
-def _pinned(
-    bounds: tuple[FloatArray, FloatArray], values: FloatArray, held: BoolArray
-) -> tuple[FloatArray, FloatArray]:
-    low, high = bounds
-    return np.where(held, values, low), np.where(held, values, high)
 
 
 def _finished(hypothesis: Hypothesis, solved: Solved) -> Fitted:

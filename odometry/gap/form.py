@@ -13,11 +13,12 @@ from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import cost_of, margin_of
+from odometry.gap.effect_values import is_meant
 from odometry.gap.evenness import unevenness
 from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitted, Fitter
 from odometry.gap.search import Search
-from odometry.gap.verdict import is_even, is_meant, is_special
+from odometry.gap.verdict import is_even, is_special
 
 PROMISING = 2  # smooth functions that are fitted in full
 

@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 
 from odometry.effects.residual import Residual
-from odometry.gap.closed import Share, held_out_share
 from odometry.gap.quantities import metres, percent, with_interval
 from odometry.gap.region_words import noun_of_residual
 from odometry.gap.result import GapResult
+from odometry.gap.share_closed import Share, held_out_share
 from odometry.gap.verdict import Refusal
 
 REFUSED = 2  # that are said

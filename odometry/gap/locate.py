@@ -9,7 +9,7 @@ from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.gap.calibration import Calibration
 from odometry.gap.config import GapConfig
-from odometry.gap.ends import ends_of
+from odometry.gap.end_residuals import ends_of
 from odometry.gap.predictors import Predictor, groups_of, predictors
 from odometry.gap.regions import Region, regions
 from odometry.gap.variables import Variable, window_variables

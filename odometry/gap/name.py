@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.effects.base import Effect
 from odometry.effects.history import History
 from odometry.effects.residual import Residual
 from odometry.gap.candidates import quick_effects
@@ -13,20 +12,11 @@ from odometry.gap.config import GapConfig
 from odometry.gap.contest import cost_of, margin_of
 from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitter
-from odometry.gap.form import names_alone, of_their_form
 from odometry.gap.general import general_candidates
-from odometry.gap.own_moments import with_own_moments
 from odometry.gap.search import Search
-from odometry.gap.statistic import Gap, gap_of
-from odometry.gap.structure import structure_left
-from odometry.gap.unnamed import grown, in_bursts, last_of_each_run, with_course
-from odometry.gap.verdict import (
-    closes_held_out,
-    leaves_no_structure,
-    leaves_noise,
-    raises_measured,
-    within_noise,
-)
+from odometry.gap.simpler import by_fewer, by_parts, simplest, without_idle
+from odometry.gap.standing import Standing
+from odometry.gap.statistic import Gap
 from odometry.windows.dense import DenseWindows
 
 BESIDE = 3  # names that are tried beside a smooth function: those of most evidence without it
@@ -47,172 +37,33 @@ def explained(
     than a margin. At last each is judged on held-out data. `floors` are those of the measured
     and of the held-out windows.
     """
-    search = _Naming(fitter, fitter.fit([]), tuple(held_out), *floors, config, progress)
+    search = Standing(fitter, fitter.fit([]), tuple(held_out), *floors, config, progress)
     scenes = fitter.measured.scenes
     quick = quick_effects(scenes, fitter.calibration)
-    found = search.simplest(search.by_fewer(search.stepwise(quick), quick), quick)
+    found = by_parts(search, by_fewer(search, search.stepwise(quick), quick), quick)
+    found = simplest(search, found, quick)
     smooth = (*general_candidates(scenes, fitter.calibration.base, config), History())
     best = search.best_smooth(search.start, smooth, found.fitted.cost if found.steps else np.inf)
     rest = search.best_smooth(found.fitted, smooth) if found.steps else None
-    options = [] if rest is None else [search.without_idle(found.with_step(rest))]
+    options = [] if rest is None else [without_idle(search, found.with_step(rest))]
     if best is not None:
         names = [one.effect for one in found.first if one.evidence > config.least_evidence]
         alone = search.stepwise(names[:BESIDE], replace(found, steps=(best,)))
-        options.append(search.without_idle(alone))
+        options.append(without_idle(search, alone))
     if options:
-        found = search.better(found, options)
-    return search.that_stand(search.names_first(found), smooth)
+        found = _better(search, found, options)
+    return search.that_stand(_names_first(search, found), smooth)
 
 
-class _Naming(Search):
-    """Keeps what stands of the effects found."""
-
-    def better(self, names: Explanation, others: Sequence[Explanation]) -> Explanation:
-        """The explanation of least cost; names where they lose by less than the margin."""
-        best = min(others, key=lambda one: one.cost)
-        margin = margin_of(self.config, self._spread(best), cost_of(self.start) - names.cost)
-        return names if names.steps and names.cost - best.cost < margin else best
-
-    def names_first(self, found: Explanation) -> Explanation:
-        """Smooth functions last: whether the names stand without them is judged next."""
-        effects = sorted(found.effects, key=lambda effect: isinstance(effect, Residual))
-        return found if tuple(effects) == found.effects else self.in_order(found, effects)
-
-    def that_stand(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
-        """The effects that close the gap where they were not fitted, and leave noise alone.
-
-        Where no name does, one in bursts may; else smooth functions do as far as they can, and
-        what they leave may follow a course in time that each run has of its own.
-        """
-        found = self._less_doubtful(self._of_their_form(found, smooth))
-        if not _named(found):
-            bursts, smooth_ones = in_bursts(self, found), grown(self, found)
-            found = bursts if bursts.steps and bursts.cost < smooth_ones.cost else smooth_ones
-        found = self._without_structure(self._standing(found, smooth), smooth)
-        if not _named(found) and (found.steps or self.unexplained() or self.is_above):
-            found = self._standing(with_course(self, found), smooth)
-        refused = tuple(one for name, one in self.refusals.items() if name not in found.names)
-        unexplained = not found.steps and self.unexplained()
-        return replace(
-            found,
-            refusals=refused,
-            unexplained=unexplained,
-            base_closes=not found.steps and self.base_closes,
-        )
-
-    def _standing(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
-        """Without the last effects as long as they do not stand on held-out data.
-
-        A smooth function that does not may have other coefficients in each run.
-        """
-        while found.steps:
-            reason = self._fails(found)
-            if not reason:
-                break
-            last = found.effects[-1]
-            self.refuse(last, reason)
-            if len(found.steps) == 1 and not isinstance(last, Residual):
-                found = grown(self, found)
-            else:
-                own = last_of_each_run(self, found)
-                found = own or self._of_their_form(found.less_last(), smooth)
-        return found
-
-    def _without_structure(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
-        """Without any name where what all effects leave has structure of its own."""
-        share = self._held_out_share(found) if _named(found) else 1.0
-        if share >= self._most(found.effects):
-            return found
-        left = structure_left(self.fitter, found.fitted, self.config)
-        reason = leaves_no_structure(share, left)
-        if not reason:
-            return found
-        for effect in found.effects:
-            if not isinstance(effect, Residual):
-                self.refuse(effect, reason)
-        return self._standing(grown(self, found), smooth)
-
-    def _held_out_share(self, found: Explanation) -> float:
-        """Of the gap above its noise floor that is closed on held-out data; 1 within the floor."""
-        fit, part_s = found.fitted, self.config.part_s
-        believed, scenes = self.fitter.calibration, self.fitter.measured.scenes
-        effects, held_out = with_own_moments(fit.base, fit.effects, self.held_out, scenes, believed)
-        after_m = gap_of(fit.base, effects, held_out, part_s).value
-        before_m = gap_of(believed.base, (), held_out, part_s).value
-        if after_m <= self.held_floor.high:
-            return 1.0
-        return (before_m - after_m) / (before_m - self.held_floor.value)
-
-    def _most(self, names: Sequence[Effect]) -> float:
-        """Share of an excess that these need to close where they leave what is not noise."""
-        by_contact = any(effect.slow for effect in names)
-        return self.config.contact_closed if by_contact else self.config.mostly_closed
-
-    def _believed_gap(self) -> float:
-        """On the measured windows, of the base as it was calibrated."""
-        return self._gap(replace(self.start, base=self.fitter.calibration.base))
-
-    def _of_their_form(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
-        """Without names that do not have the form of what they stand for."""
-        left = of_their_form(self, found, smooth)
-        return left if left.steps or not found.steps else grown(self, found)
-
-    def _less_doubtful(self, found: Explanation) -> Explanation:
-        """Without any name where all names together leave what is not noise."""
-        alone = names_alone(self.fitter, found)
-        names = [added.effect for added in alone.effects]
-        if not names:
-            return found
-        noise = self.fitter.measured.expected
-        excess = max(self.start.cost - noise, self.config.least_excess * noise)
-        closed = (self.start.cost - alone.cost) / excess
-        reason = leaves_noise(
-            self.fitter.spread(alone), closed, self.config.left_over, self._most(names)
-        )
-        if not reason:
-            return found
-        for name in names:
-            self.refuse(name, reason)
-        return grown(self, found)
-
-    def unexplained(self) -> bool:
-        """Whether the base leaves a gap, and even moved more chi-squared than noise explains."""
-        over = self._believed_gap() > self.floor.high
-        return over and self.fitter.spread(self.start) > self.config.unexplained
-
-    def _fails(self, found: Explanation) -> str:
-        """Why the last effect does not stand on held-out data, beyond what the others close.
-
-        What a base beside the others closes by leaving its calibration is the effect's, if that
-        brings the base back; a latency that is not as calibrated is an effect by itself.
-        """
-        fit, before = found.fitted, (found.steps[-2].fitted if found.steps[1:] else self.start)
-        hidden = self.explains_move(fit, before) or (
-            found.steps[1:] and self._left(before) and self._brings_back(fit, before)
-        )
-        believed = self.fitter.calibration.base
-        less_base = replace(fit.base if hidden else before.base, latency_s=believed.latency_s)
-        pairs = [(less_base, before.effects), (believed, ())]
-        effects, held_out = with_own_moments(
-            fit.base,
-            fit.effects,
-            self.held_out,
-            self.fitter.measured.scenes,
-            self.fitter.calibration,
-        )
-        within = within_noise(gap_of(*pairs[1], held_out, self.config.part_s), self.held_floor)
-        reasons = [
-            within,
-            raises_measured(self._believed_gap(), self._gap(fit)),
-            *(
-                closes_held_out(
-                    (base, effects[: len(less)]), (fit.base, effects), held_out, self.config
-                )
-                for base, less in pairs
-            ),
-        ]
-        return next((reason for reason in reasons if reason), "")
+def _better(search: Search, names: Explanation, others: Sequence[Explanation]) -> Explanation:
+    """The explanation of least cost; names where they lose by less than the margin."""
+    best = min(others, key=lambda one: one.cost)
+    closed = cost_of(search.start) - names.cost
+    margin = margin_of(search.config, search.spread_of(best), closed)
+    return names if names.steps and names.cost - best.cost < margin else best
 
 
-def _named(found: Explanation) -> bool:
-    return any(not isinstance(effect, Residual) for effect in found.effects)
+def _names_first(search: Search, found: Explanation) -> Explanation:
+    """Smooth functions last: whether the names stand without them is judged next."""
+    effects = sorted(found.effects, key=lambda effect: isinstance(effect, Residual))
+    return found if tuple(effects) == found.effects else search.in_order(found, effects)

@@ -17,7 +17,7 @@ import numpy as np
 from scipy.stats import false_discovery_control, rankdata
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.gap.ends import Ends
+from odometry.gap.end_residuals import Ends
 from odometry.gap.variables import ANGLE, LABEL, Variable
 
 FALSE_DISCOVERIES = 0.05

@@ -2,7 +2,7 @@
 
 import math
 
-from odometry.gap.closed import Share
+from odometry.gap.share_closed import Share
 from odometry.gap.statistic import MANY, Gap
 
 WORDS = ((10.0, "very strong"), (6.0, "strong"), (2.0, "weak"), (0.0, "hardly any"))

@@ -8,7 +8,7 @@ from sklearn.tree import DecisionTreeRegressor
 from sklearn.tree._tree import Tree
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.gap.ends import Ends
+from odometry.gap.end_residuals import Ends
 from odometry.gap.region_words import words_of
 from odometry.gap.variables import LABEL, Variable
 

@@ -10,7 +10,8 @@ from odometry.effects.base import Effect
 from odometry.effects.residual import Residual
 from odometry.gap.candidates import contact_effects
 from odometry.gap.config import GapConfig
-from odometry.gap.contest import Judged, cost_of, judge, ranked
+from odometry.gap.contest import Judged, judge, ranked
+from odometry.gap.effect_values import is_the_effect
 from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitted, Fitter
 from odometry.gap.sparse import sparse_residual
@@ -19,11 +20,10 @@ from odometry.gap.verdict import (
     Refusal,
     base_left_calibration,
     closes_held_out,
-    is_the_effect,
+    is_unbeaten,
 )
 from odometry.windows.dense import DenseWindows
 
-MANY = 5  # parameters of an effect that two others may share
 PROMISING = 2  # smooth functions that are fitted in full
 
 
@@ -59,33 +59,6 @@ class Search:
             found = replace(found, steps=(*found.steps, step), contests=contests)
         return found
 
-    def by_fewer(self, found: Explanation, candidates: Sequence[Effect]) -> Explanation:
-        """The same without a first effect of many parameters, which may stand for several of few.
-
-        Of both the one of less cost.
-        """
-        if not found.steps or found.effects[0].slow or len(found.effects[0].parameters) < MANY:
-            return found
-        first = found.effects[0].key
-        others = self.stepwise([one for one in candidates if one.key != first])
-        others = replace(others, first=found.first)
-        return others if others.steps and others.cost < found.cost else found
-
-    def simplest(self, found: Explanation, candidates: Sequence[Effect]) -> Explanation:
-        """Effects exchanged for those that do the same with less freedom, where that is better.
-
-        What the first of two effects did not need for itself it may have lent to the second.
-        """
-        for place, added in enumerate(found.fitted.effects):
-            alike = added.effect.same_as(added.values)
-            for other in candidates:
-                simpler = len(other.parameters) < len(added.values)
-                if simpler and other.name in alike and other.name not in found.names:
-                    effects = [*found.effects[:place], other, *found.effects[place + 1 :]]
-                    exchanged = self.in_order(found, effects)
-                    found = exchanged if exchanged.cost < found.cost else found
-        return found
-
     def in_order(self, found: Explanation, effects: Sequence[Effect]) -> Explanation:
         """These effects, judged as they are added one by one."""
         steps: tuple[Judged, ...] = ()
@@ -112,24 +85,6 @@ class Search:
         again = judge(self.fitter, before, sparse, self.config, self.progress)
         return self.best_earner(again, before) or self.best_earner(judged, before)
 
-    def without_idle(self, found: Explanation) -> Explanation:
-        """Less what does not pay beside the others, the least of all first."""
-        while len(found.steps) > 1:
-            costs = self._costs_without_each(found)
-            least = min(costs, key=lambda effect: costs[effect])
-            if costs[least] - found.cost > self.config.least_evidence * self._spread(found):
-                break
-            found = self.in_order(found, [e for e in found.effects if e is not least])
-        return found
-
-    def _costs_without_each(self, found: Explanation) -> dict[Effect, float]:
-        """Cost of the other effects, by the one that is left out."""
-        costs = {}
-        for effect in found.effects:
-            others = [e for e in found.effects if e is not effect]
-            costs[effect] = cost_of(self.fitter.fit(others, found.fitted.effects))
-        return costs
-
     def refuse(self, effect: Effect, reason: str) -> None:
         """Remember the first reason for which a name does not stand."""
         self.refusals.setdefault(effect.name, Refusal(effect.name, effect.form, reason))
@@ -155,7 +110,8 @@ class Search:
         fit = self.fitter.fit(effects, one.fitted.effects)
         return replace(ranked(self.fitter, before, [fit], self.config)[0], evidence=one.evidence)
 
-    def _spread(self, found: Explanation) -> float:
+    def spread_of(self, found: Explanation) -> float:
+        """Chi-squared a degree of freedom that an explanation leaves, at least 1."""
         return max(1.0, self.fitter.spread(found.fitted))
 
     def has_excess(self, before: Fitted) -> bool:
@@ -200,15 +156,25 @@ class Search:
         return gap_of(fit.base, fit.effects, scenes, self.config.part_s).value
 
     def best_earner(self, judged: Sequence[Judged], before: Fitted) -> Judged | None:
-        """Of most evidence among those that earn a name."""
+        """Of most evidence among those that earn a name, if none that is refused beats it."""
+        refused: Judged | None = None
         for one in judged:
             if not self.pays(one, before):
                 continue
             reason = is_the_effect(one.fitted, self.config)
-            if not reason:
+            beaten = "" if reason or refused is None else self._beaten(one, refused)
+            if not reason and not beaten:
                 return one
-            self.refuse(one.effect, reason)
+            self.refuse(one.effect, reason or beaten)
+            if beaten:
+                break
+            refused = refused or one
         return None
+
+    def _beaten(self, one: Judged, refused: Judged) -> str:
+        margin = self.config.general_margin * max(1.0, self.fitter.spread(one.fitted))
+        margin = max(margin, self.config.most_beaten * one.gain)
+        return is_unbeaten(one.gain, refused.effect.name, refused.gain, margin)
 
     def pays(self, one: Judged, before: Fitted) -> bool:
         """Enough evidence, in more than one moment, and enough of the excess closed.

@@ -9,7 +9,7 @@ from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.gap.calibration import Calibration
-from odometry.gap.ends import mean_variance_m2
+from odometry.gap.end_residuals import mean_variance_m2
 from odometry.gap.pieces import numbered_pieces
 from odometry.gap.simulate import residuals
 from odometry.windows.dense import DenseWindows

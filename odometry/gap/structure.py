@@ -1,7 +1,7 @@
 """Which variables predict what a fit leaves on the runs that it was fitted to."""
 
 from odometry.gap.config import GapConfig
-from odometry.gap.ends import ends_of
+from odometry.gap.end_residuals import ends_of
 from odometry.gap.fit import Fitted, Fitter
 from odometry.gap.predictors import Predictor, predictors
 from odometry.gap.variables import window_variables

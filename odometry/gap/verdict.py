@@ -10,7 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
-from odometry.effects.base import EffectParameter
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual
@@ -24,8 +23,6 @@ from odometry.gap.region_words import noun_of
 from odometry.gap.statistic import SEED, Gap, drawn_gaps, squared_errors
 from odometry.windows.dense import DenseWindows
 
-WITHIN_95 = 1.96  # standard deviations
-
 
 @dataclass(frozen=True)
 class Refusal:
@@ -34,72 +31,6 @@ class Refusal:
     name: str
     form: str
     reason: str
-
-
-def is_the_effect(fit: Fitted, config: GapConfig) -> str:
-    """Whether the last effect of a fit is what its name says, and is known to be there."""
-    added = fit.effects[-1]
-    if reason := is_meant(added):
-        return reason
-    if not is_there(fit, config):
-        return f"{added.effect.name} cannot be told from none"
-    return within_bounds(fit, config)
-
-
-def is_meant(added: Added) -> str:
-    """Whether the values of an effect are what its name says, beside all others too."""
-    if added.effect.is_meant(added.values):
-        return ""
-    return f"its values ({_words(added)}) are not what the name says"
-
-
-def is_there(fit: Fitted, config: GapConfig) -> bool:
-    """Whether the last effect of a fit is more than an effect that does nothing.
-
-    Its parameters are tested together (Wald), those that shape it held: each alone may be
-    uncertain where only a product of them is known.
-    """
-    added = fit.effects[-1]
-    absent = [parameter.absent for parameter in added.effect.parameters]
-    known = np.array([value is not None for value in absent])
-    if not known.any():
-        return True
-    away = np.array([a - b for a, b in zip(added.values, absent, strict=True) if b is not None])
-    count = len(absent)
-    scales = np.array([parameter.scale for parameter in added.effect.parameters])
-    covariance = fit.covariance[-count:, -count:] / np.outer(scales, scales)
-    information = np.linalg.pinv(covariance, hermitian=True)[np.ix_(known, known)]
-    away = away / scales[known]
-    return bool(away @ information @ away > config.sure**2 * known.sum())
-
-
-def within_bounds(fit: Fitted, config: GapConfig) -> str:
-    """No parameter that says how strong the effect is may end at a bound, nor span the bounds.
-
-    Where an effect does nothing at a bound, to end there is an answer; those that shape an effect
-    may be open as long as its strength is known.
-    """
-    added = fit.effects[-1]
-    if isinstance(added.effect, Residual):
-        return ""
-    sigmas = np.sqrt(np.maximum(np.diag(fit.covariance)[-len(added.values) :], 0.0))
-    spans = []
-    for parameter, value, sigma in zip(added.effect.parameters, added.values, sigmas, strict=True):
-        if parameter.absent is None:
-            continue
-        if _is_at_bound(parameter, value, config):
-            return f"{parameter.name} = {value:.4g} is at the end of what was searched"
-        reach = WITHIN_95 * sigma
-        spans.append(value - reach <= parameter.low and value + reach >= parameter.high)
-    return "its parameters may be anything" if spans and all(spans) else ""
-
-
-def _is_at_bound(parameter: EffectParameter, value: float, config: GapConfig) -> bool:
-    near = config.near_bound * parameter.scale
-    for bound in (parameter.low, parameter.high):
-        if abs(value - bound) <= near and bound != parameter.absent:
-            return True
-    return False
 
 
 def within_noise(held_out: Gap, floor: Gap) -> str:
@@ -186,6 +117,36 @@ def leaves_no_structure(share_closed: float, predictors: Sequence[Predictor]) ->
     )
 
 
+def closes_a_part(share_closed: float, config: GapConfig) -> str:
+    """Whether names close more than a small share of the excess on held-out data."""
+    if share_closed >= config.least_held_out:
+        return ""
+    return (
+        f"it closes {100 * max(share_closed, 0.0):.0f} % of the gap on held-out data: what it "
+        "stands for is small, or something else"
+    )
+
+
+def is_unbeaten(gain: float, refused: str, of_refused: float, margin: float) -> str:
+    """Whether no candidate that is refused explains more, by more than a margin of chi-squared.
+
+    What a refused candidate does there is no effect of its name, and still no other name's.
+    """
+    if of_refused - gain <= margin:
+        return ""
+    return f"{refused}, which is refused itself, explains more"
+
+
+def is_the_main_part(of_names: float, of_all: float, config: GapConfig) -> str:
+    """Whether names alone close most of what they close with smooth functions beside them."""
+    if of_names >= config.least_of_all * of_all:
+        return ""
+    return (
+        f"it closes {100 * of_names / of_all:.0f} % of what it closes with a smooth function "
+        "beside it: not the cause, or not the only one"
+    )
+
+
 def is_special(instead: Residual | None) -> str:
     """Whether no smooth function does better in the place of a name."""
     if instead is None:
@@ -201,7 +162,3 @@ def is_even(of: Unevenness, config: GapConfig) -> str:
         f"its strength differs by {100 * of.share:.0f} % from one stretch of the runs to the next: "
         "something else comes and goes"
     )
-
-
-def _words(added: Added) -> str:
-    return ", ".join(f"{name} = {value:.4g}" for name, value in added.by_name.items())

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from odometry.gap.closed import Share, held_out_share
 from odometry.gap.result import GapResult
+from odometry.gap.share_closed import Share, held_out_share
 from odometry.gap.words import sentences
 from odometry.report.gap_events import event_grids
 from odometry.report.gap_figures import closing_picture, evidence_picture, time_picture

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from odometry.arrays import FloatArray
 from odometry.effects.history import BOTH, History
 from odometry.effects.residual import COMPONENTS, TREADS, WORLD, Residual, basis_of, variables_of
-from odometry.gap.gap import WITHIN_95
+from odometry.gap.answer import WITHIN_95
 from odometry.gap.region_words import noun_of, shown_unit
 from odometry.gap.result import GapResult, NamedEffect
 from odometry.report.figure import save_figure

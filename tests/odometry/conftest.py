@@ -15,7 +15,7 @@ from odometry.gap.config import GapConfig
 from odometry.gap.locate import locate
 from odometry.gap.result import Closing, Equivalent, GapResult, NamedEffect, Rival
 from odometry.gap.statistic import floor_of, gap_of
-from odometry.gap.uncertain import Uncertain
+from odometry.gap.uncertain_base import Uncertain
 from odometry.models.icr import Icr
 from odometry.run import Robot, Run
 from odometry.table import Table

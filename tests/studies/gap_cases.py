@@ -112,7 +112,7 @@ def judged(case: Case, found: dict[str, Any]) -> dict[str, str]:
     share = held["share_closed"]
     return {
         "gyroscope": f"{int(case.gyroscope)}",
-        "score": score(verdict, course, case.parts, case.honest),
+        "score": score(verdict, course, case.parts, case.honest, [name for name, _ in others]),
         "verdict": verdict,
         "form": "; ".join(one["form"] for one in found["effects"]),
         "effects": "+".join(name for name, _ in named),

@@ -45,12 +45,22 @@ def course_of(form: str) -> str:
     return FORMS_WITH_A_COURSE.get(form, ending)
 
 
-def score(verdict: str, course: str, parts: Sequence[Sequence[str]], honest: Sequence[str]) -> str:
-    """Score of a first name: right, honest, unknown, none, or wrong."""
+def score(
+    verdict: str,
+    course: str,
+    parts: Sequence[Sequence[str]],
+    honest: Sequence[str],
+    equivalent: Sequence[str] = (),
+) -> str:
+    """Score of a first name: right, honest, unknown, none, or wrong.
+
+    Honest is also the name of an effect beside which the answer says that it may as well be a true
+    one.
+    """
     true = [family for part in parts for family in part] or ["none"]
     if meant(verdict, course, true):
         return "right"
-    if meant(verdict, course, honest):
+    if meant(verdict, course, honest) or any(meant(name, "", true) for name in equivalent):
         return "honest"
     return verdict if verdict in ("unknown", "none") else "wrong"
 

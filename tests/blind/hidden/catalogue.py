@@ -8,6 +8,7 @@ from tests.blind.hidden.references import REFERENCES
 from tests.blind.hidden.seen import SEEN
 from tests.blind.hidden.slips import SLIPS
 from tests.blind.hidden.surroundings import SURROUNDINGS
+from tests.blind.hidden.unusual import UNUSUAL
 
 
 def nothing(rng, scene):  # noqa: ARG001
@@ -22,6 +23,7 @@ GROUPS = {
     "surroundings": SURROUNDINGS,
     "references": REFERENCES,
     "instruments": INSTRUMENTS,
+    "unusual": UNUSUAL,
     "mixed": MIXED,
     "nothing": {
         "nothing": Kind(nothing, ()),

@@ -27,6 +27,12 @@ def test_the_score_of_an_answer(verdict, course, kind, expected):
     assert score(verdict, course, HIDDEN[kind].true, HIDDEN[kind].honest) == expected
 
 
+def test_a_name_that_may_as_well_be_the_true_one_is_honest():
+    parts = (("late commands",),)
+    assert score("time_offset", "", parts, (), ["command_delay"]) == "honest"
+    assert score("time_offset", "", parts, (), ["inertia"]) == "wrong"
+
+
 def test_every_family_has_a_meaning_and_every_kind_is_listed_once():
     for kind in HIDDEN.values():
         families = [*(one for part in kind.true for one in part), *kind.honest]

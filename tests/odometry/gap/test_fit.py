@@ -15,7 +15,7 @@ from odometry.gap.contest import judge, penalty
 from odometry.gap.fit import Fitter
 from odometry.gap.measured import Measured, measured_of
 from odometry.gap.statistic import gap_of
-from odometry.gap.uncertain import Uncertain
+from odometry.gap.uncertain_base import Uncertain
 
 CONFIG = GapConfig()
 FACTORS = np.array([0.9, 1.05])

@@ -10,8 +10,8 @@ from odometry.effects.time_offset import TimeOffset
 from odometry.gap.calibration import calibrated
 from odometry.gap.config import GapConfig
 from odometry.gap.fit import Fitter
-from odometry.gap.gap import alike
 from odometry.gap.measured import measured_of
+from odometry.gap.scenes import alike
 from odometry.gap.simulate import all_residuals
 from odometry.models.icr import Icr
 from odometry.windows.averaged import averaged_windows

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import kruskal
 
-from odometry.gap.ends import Ends, ends_of
+from odometry.gap.end_residuals import Ends, ends_of
 from odometry.gap.predictors import groups_of, predictors
 from odometry.gap.variables import Variable, window_variables
 

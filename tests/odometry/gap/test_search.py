@@ -4,6 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
+from odometry.effects.traction_loss import TractionLoss
+from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
 from odometry.gap.search import Search
 
@@ -33,3 +35,22 @@ def test_a_move_is_explained_by_what_brings_the_base_back(
     search = Search(fitter, moved(before), (), None, None, GapConfig(), lambda: None)
     search.__dict__.update(is_above=is_above, base_closes=closes)
     assert search.explains_move(moved(after), moved(before)) == explained
+
+
+def candidate(effect, gain, reason):
+    return SimpleNamespace(effect=effect, gain=gain, fitted=reason)
+
+
+@pytest.mark.parametrize(("of_refused", "expected"), [(120.0, None), (104.0, "wheel_scale")])
+def test_a_name_does_not_stand_where_a_refused_candidate_gains_much_more(
+    monkeypatch, of_refused, expected
+):
+    """A loss of traction that is a gain explains more: something began then, and no wheel is it."""
+    monkeypatch.setattr("odometry.gap.search.is_the_effect", lambda reason, _: reason)
+    fitter = SimpleNamespace(spread=lambda _: 1.0)
+    search = Search(fitter, None, (), None, None, GapConfig(), lambda: None)
+    monkeypatch.setattr(search, "pays", lambda *_: True)
+    judged = [candidate(TractionLoss(), of_refused, "a gain"), candidate(WheelScale(), 100.0, "")]
+    best = search.best_earner(judged, None)
+    assert (best and best.effect.name) == expected
+    assert "traction_loss" in search.refusals

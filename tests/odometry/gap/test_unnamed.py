@@ -11,7 +11,7 @@ from odometry.gap.contest import ranked
 from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitter
 from odometry.gap.measured import measured_of
-from odometry.gap.name import _Naming
+from odometry.gap.standing import Standing
 from odometry.gap.statistic import floor_of
 from odometry.gap.unnamed import last_of_each_run
 
@@ -28,6 +28,6 @@ def test_weights_of_earlier_speeds_are_those_of_all_runs(make_scene, known):
     history = History()
     fit = replace(start, effects=(Added(history, np.full(len(history.terms), 0.01)),))
     floor = floor_of(known.held_back, CONFIG.part_s)
-    search = _Naming(fitter, start, (scene,), floor, floor, CONFIG, lambda: None)
+    search = Standing(fitter, start, (scene,), floor, floor, CONFIG, lambda: None)
     found = Explanation(start, tuple(ranked(fitter, start, [fit], CONFIG)), ())
     assert last_of_each_run(search, found) is None

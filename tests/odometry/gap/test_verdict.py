@@ -14,18 +14,19 @@ from odometry.effects.traction_loss import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import sure_sum
+from odometry.gap.effect_values import is_the_effect, is_there, within_bounds
 from odometry.gap.fit import Fitted
 from odometry.gap.predictors import Predictor
 from odometry.gap.statistic import Gap
 from odometry.gap.verdict import (
     base_left_calibration,
+    closes_a_part,
     closes_held_out,
-    is_the_effect,
-    is_there,
+    is_the_main_part,
+    is_unbeaten,
     leaves_no_structure,
     leaves_noise,
     raises_measured,
-    within_bounds,
     within_noise,
 )
 from odometry.models.catalogue import MODELS
@@ -143,3 +144,18 @@ def test_a_gap_within_the_floor_has_no_name():
     floor = Gap(0.03, 0.02, 0.04)
     assert within_noise(Gap(0.05, 0.04, 0.06), floor) == ""
     assert "within noise" in within_noise(Gap(0.029, 0.02, 0.04), floor)
+
+
+@pytest.mark.parametrize(("share", "stands"), [(0.05, False), (0.22, True), (1.0, True)])
+def test_a_name_closes_more_than_a_small_part(share, stands):
+    assert (closes_a_part(share, CONFIG) == "") == stands
+
+
+@pytest.mark.parametrize(("of_refused", "stands"), [(115.0, False), (105.0, True), (90.0, True)])
+def test_a_refused_candidate_that_explains_more_refuses_the_next(of_refused, stands):
+    assert (is_unbeaten(100.0, "traction_loss", of_refused, 10.0) == "") == stands
+
+
+@pytest.mark.parametrize(("of_names", "stands"), [(63.0, False), (77.0, True), (100.0, True)])
+def test_a_name_is_the_main_part_beside_a_smooth_function(of_names, stands):
+    assert (is_the_main_part(of_names, 100.0, CONFIG) == "") == stands

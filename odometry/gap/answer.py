@@ -1,0 +1,90 @@
+"""The answer: the verdict, effects with their intervals, and what would tell rivals apart."""
+
+from collections.abc import Collection, Sequence
+
+import numpy as np
+
+from odometry.effects.corrected import Added
+from odometry.effects.residual import Residual
+from odometry.gap.config import GapConfig
+from odometry.gap.explanation import Explanation
+from odometry.gap.fit import Fitter
+from odometry.gap.next_drives import NextDrive, next_drives
+from odometry.gap.outliers import Outliers
+from odometry.gap.own_moments import SPACING_S
+from odometry.gap.result import Closing, NamedEffect, Rival
+
+WITHIN_95 = 1.96  # standard deviations
+MOMENT_KNOWN_S = SPACING_S  # the moment of a run held out is known as well as it was searched
+
+
+def verdict_of(found: Explanation, held_out: Closing) -> str:
+    """The first name; else "none" where noise explains what the base leaves, also held out."""
+    if found.names:
+        return found.names[0]
+    above = held_out.before.low > held_out.noise_floor.high
+    return "unknown" if found.unexplained or above else "none"
+
+
+def named_effects(
+    found: Explanation, effects: Sequence[Added], before_m: float
+) -> tuple[NamedEffect, ...]:
+    """Effects with intervals of 95 %, and the gap [m] on the measured runs before and after each.
+
+    `effects` are as on runs held out, which may have moments of their own behind the values.
+    """
+    fit = found.fitted
+    sigmas = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
+    named, place, gap_m = [], 0, before_m
+    for step, own, added in zip(found.steps, fit.effects, effects, strict=True):
+        spread = WITHIN_95 * sigmas[place : place + len(own.values)]
+        more = len(added.values) - len(own.values)
+        likely = spread if isinstance(own.effect, Residual) else [MOMENT_KNOWN_S]
+        spread = np.append(spread, np.resize(likely, more))
+        place += len(own.values)
+        lows, highs = np.array([(p.low, p.high) for p in added.effect.parameters]).T
+        named.append(
+            NamedEffect(
+                added,
+                np.maximum(added.values - spread, lows),
+                np.minimum(added.values + spread, highs),
+                gap_m,
+                step.gap_after,
+                step.evidence,
+            )
+        )
+        gap_m = step.gap_after
+    return tuple(named)
+
+
+def named_outliers(outliers: Outliers, before_m: float, after_m: float) -> NamedEffect:
+    """Poses that were left out, with the gap [m] on the measured runs before and after."""
+    return NamedEffect(
+        outliers.named, outliers.low, outliers.high, before_m, after_m, outliers.evidence
+    )
+
+
+def drives_apart(
+    found: Explanation, equivalent: Collection[str], fitter: Fitter, config: GapConfig
+) -> tuple[NextDrive, ...]:
+    """What would tell the first effect from what came as near in its place."""
+    fits = {one.effect.name: one.fitted for one in reversed(found.first)}
+    rivals = {name: fits[name] for name in equivalent if name in fits}
+    if not rivals or found.names[0] not in fits:
+        return ()
+    first = {found.names[0]: fits[found.names[0]]}
+    return next_drives({**first, **rivals}, fitter.measured.scenes, fitter.calibration, config)
+
+
+def rivals_of(found: Explanation) -> tuple[Rival, ...]:
+    """All candidates for the first effect, most evidence first."""
+    return tuple(
+        Rival(
+            one.effect.name,
+            one.effect.form,
+            one.evidence,
+            one.gap_after,
+            one.effect.course,
+        )
+        for one in found.first
+    )

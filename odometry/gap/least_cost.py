@@ -1,0 +1,59 @@
+"""The values of a hypothesis that cost least: from several starts, and on from jumps."""
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray
+from odometry.gap.hypothesis import Hypothesis
+from odometry.gap.solve import Found, Solved, least_squares, with_jacobian
+
+ITERATIONS = 12
+SEARCHED = 2  # of several starts: the best ones
+JUMPS = (-4.0, -2.0, -1.0, -0.5, 0.5, 1.0, 2.0, 4.0)  # tried, in scales of a parameter
+MOST_JUMPS = 4
+
+
+def least_cost(hypothesis: Hypothesis, starts: list[FloatArray], held: BoolArray) -> Found:
+    """Values of least cost from several starts, the held ones as they are."""
+    if len(starts) > 1:
+        base_held = held | (np.arange(len(held)) < hypothesis.of_base)
+        tried = [_search(hypothesis, start, 1, base_held) for start in starts]
+        order = np.argsort([one.cost for one in tried], kind="stable")[:SEARCHED]
+        starts = [tried[i].values for i in order]
+    found = [_search(hypothesis, start, ITERATIONS, held) for start in starts]
+    return _after_jumps(hypothesis, min(found, key=lambda one: one.cost), held)
+
+
+def _search(hypothesis: Hypothesis, start: FloatArray, iterations: int, held: BoolArray) -> Found:
+    if not len(start):
+        return Found(start, hypothesis.rows(start))
+    bounds = _pinned(hypothesis.bounds, start, held)
+    return least_squares(hypothesis.rows, start, hypothesis.scales, bounds, iterations)
+
+
+def _after_jumps(hypothesis: Hypothesis, found: Found, held: BoolArray) -> Found:
+    """Search on from jumps of the values that derivatives say little of."""
+    places = np.flatnonzero(hypothesis.jumps & ~held)
+    unit = np.diag(hypothesis.scales)
+    steps = [jump * unit[place] for place in places for jump in JUMPS]
+    for _ in range(MOST_JUMPS if steps else 0):
+        tried = [np.clip(found.values + step, *hypothesis.bounds) for step in steps]
+        costs = np.nan_to_num([np.sum(hypothesis.rows(v) ** 2) for v in tried], nan=np.inf)
+        if costs.min() > found.cost - 1:
+            break
+        found = _search(hypothesis, tried[int(np.argmin(costs))], ITERATIONS, held)
+    return found
+
+
+def derived(hypothesis: Hypothesis, found: Found, held: BoolArray) -> Solved:
+    """Rows at the values found, and their Jacobian; zero for what is held."""
+    if not len(found.values):
+        return Solved(found.values, found.rows, np.empty((len(found.rows), 0)))
+    bounds = _pinned(hypothesis.bounds, found.values, held)
+    return with_jacobian(hypothesis.rows, found, hypothesis.scales, bounds)
+
+
+def _pinned(
+    bounds: tuple[FloatArray, FloatArray], values: FloatArray, held: BoolArray
+) -> tuple[FloatArray, FloatArray]:
+    low, high = bounds
+    return np.where(held, values, low), np.where(held, values, high)

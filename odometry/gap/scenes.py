@@ -1,0 +1,73 @@
+"""Windows of the runs: to fit effects to, to judge them by, and without poses that are far off."""
+
+from collections.abc import Sequence
+
+from odometry.gap.calibration import Calibration
+from odometry.gap.config import GapConfig
+from odometry.gap.errors import GapError
+from odometry.gap.outliers import Outliers, cleaned_runs, closes, outliers_of
+from odometry.gap.pieces import held_back
+from odometry.run import Run
+from odometry.windows.averaged import averaged_windows
+from odometry.windows.dense import DenseWindows, dense_windows_of, thinned
+
+
+def dealt(
+    runs: Sequence[Run], measured: int, calibration: int
+) -> tuple[Sequence[Run], Sequence[Run], Sequence[Run]]:
+    """Measured, calibration and held-out runs of all, in this order."""
+    known = measured + calibration
+    return runs[:measured], runs[measured:known], runs[known:]
+
+
+def scene_of(run: Run, config: GapConfig) -> DenseWindows:
+    """Windows of a run."""
+    return averaged_windows(dense_windows_of(run, config.horizon_s))
+
+
+def scenes_of(
+    measured: Sequence[Run], holdout: Sequence[Run], config: GapConfig
+) -> tuple[list[DenseWindows], list[DenseWindows]]:
+    """Scenes to fit and scenes to judge by."""
+    scenes = [scene_of(run, config).numbered(number) for number, run in enumerate(measured)]
+    if holdout:
+        held = [
+            scene_of(run, config).numbered(number)
+            for number, run in enumerate(holdout, start=len(measured))
+        ]
+    else:
+        outs = [held_back(scene, config.part_s, config.held_back) for scene in scenes]
+        held = [s.where(out) for s, out in zip(scenes, outs, strict=True) if out.any()]
+        scenes = [s.where(~out) for s, out in zip(scenes, outs, strict=True) if not out.all()]
+        if not held or not scenes:
+            raise GapError(
+                "the measured runs are too short to hold stretches of them back: expected "
+                f"{config.held_back * config.part_s:g} s or more with moving treads, or --holdout"
+            )
+    return [thinned(scene, config.most_windows) for scene in scenes], held
+
+
+def alike(*groups: Sequence[DenseWindows]) -> tuple[list[DenseWindows], ...]:
+    """The same scenes without the gyroscope where one of them has none."""
+    if all(scene.reported_turns is not None for scenes in groups for scene in scenes):
+        return tuple(list(scenes) for scenes in groups)
+    return tuple([scene.without_gyroscope() for scene in scenes] for scenes in groups)
+
+
+def without_outliers(
+    runs: tuple[Sequence[Run], Sequence[Run]],
+    scenes: tuple[list[DenseWindows], list[DenseWindows]],
+    known_scenes: Sequence[DenseWindows],
+    known: Calibration,
+    config: GapConfig,
+) -> tuple[list[DenseWindows], list[DenseWindows], Outliers | None]:
+    """Measured and held-out scenes without poses that are far off, where that closes some gap."""
+    held_out = scenes[1] if runs[1] else ()
+    outliers = outliers_of(scenes[0], held_out, known_scenes, known, config)
+    if outliers is None:
+        return *scenes, None
+    cut = scenes_of(*cleaned_runs(*runs, outliers), config)
+    _, fitted_scenes, held_scenes = alike(known_scenes, *cut)
+    if not closes(scenes[1], held_scenes, known.base, config):
+        return *scenes, None
+    return fitted_scenes, held_scenes, outliers

@@ -1,0 +1,54 @@
+"""An effect of many parameters gives way to simpler ones that it includes, where they cost less."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from odometry.effects.lateral_skid import LateralSkid
+from odometry.effects.lever_arm import LeverArm
+from odometry.effects.terrain import NewIcrs
+from odometry.effects.time_offset import TimeOffset
+from odometry.effects.wheel_scale import WheelScale
+from odometry.gap.simpler import by_parts
+
+CANDIDATES = (WheelScale(), LateralSkid(), LeverArm(), NewIcrs(), TimeOffset())
+
+
+def explanation(effects, cost):
+    names = [effect.name for effect in effects]
+    return SimpleNamespace(effects=tuple(effects), names=tuple(names), cost=cost)
+
+
+@pytest.fixture(autouse=True)
+def nothing_is_idle(monkeypatch):
+    monkeypatch.setattr("odometry.gap.simpler.without_idle", lambda _, found: found)
+
+
+def exchanged(effects, cost, cost_of_pair):
+    """Names of what is left where every other explanation costs so much, by its effects."""
+
+    def in_order(_, others):
+        return explanation(others, cost_of_pair(*(effect.name for effect in others)))
+
+    search = SimpleNamespace(in_order=in_order)
+    return by_parts(search, explanation(effects, cost), CANDIDATES).names
+
+
+@pytest.mark.parametrize(
+    ("of_pair", "expected"),
+    [(90.0, ("wheel_scale", "lateral_skid")), (110.0, ("terrain",))],
+)
+def test_wheels_and_a_skid_stand_for_new_icrs_where_they_cost_less(of_pair, expected):
+    def cost_of(*names):
+        return of_pair if "lateral_skid" in names else 200.0
+
+    assert exchanged([NewIcrs()], 100.0, cost_of) == expected
+
+
+def test_other_effects_stay_beside_the_parts():
+    names = exchanged([TimeOffset(), NewIcrs()], 100.0, lambda *_: 90.0)
+    assert names == ("time_offset", "wheel_scale", "lateral_skid")
+
+
+def test_what_includes_nothing_stays():
+    assert exchanged([WheelScale()], 100.0, lambda *_: 0.0) == ("wheel_scale",)
