@@ -59,7 +59,8 @@ def run_odometry(
         False keeps images closed: without another `source` one terrain is in force throughout.
     terrain : str, optional
         In force until the first switch; by default the run's own where `parameters` has it, else
-        the first of `parameters`, else the run's own.
+        the first of `parameters`, else the run's own. By modes it is `unknown` where neither names
+        it.
     config : Config, optional
     source : {"camera", "labels", "modes", "none"} or TerrainSource, optional
         What tells the terrain: the images, read by `model`; the run's own column `terrain`; the

@@ -81,7 +81,9 @@ def terrain_source(
         one terrain for the whole run.
     config : Config
     initial : str
-        In force until the first switch; of labels only where `terrain` says so too.
+        In force until the first switch; of labels only where `terrain` says so too, and of modes
+        where `terrain` or the run does: else a wrong start would mislead the gyroscope's bias, and
+        the terrain is `unknown` until the motion tells it.
     terrain : str, optional
         What the user named.
     model : Classifier, optional
@@ -103,7 +105,10 @@ def terrain_source(
         if modes is None:
             raise ConfigError("the terrain source 'modes' needs a set of modes (`identify-modes`)")
         mode_set = modes if isinstance(modes, ModeSet) else read_mode_set(Path(modes))
-        return felt_terrain(run, mode_set, initial, show_progress=show_progress)
+        named = terrain is not None or run.terrain == initial
+        return felt_terrain(
+            run, mode_set, initial if named else UNKNOWN, show_progress=show_progress
+        )
     return ConstantTerrain(initial)
 
 

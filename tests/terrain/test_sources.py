@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from odometry.errors import ConfigError, RunFolderError
+from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.pipeline import ConstantTerrain
+from odometry.run import UNKNOWN
 from terrain.cli import run_options
 from terrain.main_job import run_odometry
 from terrain.report.page import write_report
@@ -101,6 +103,30 @@ def test_by_the_motion_the_terrain_follows_the_change():
     assert (ice, tar) == NAMES
     assert first_s < 10.0
     assert 15.0 < second_s < 20.0
+
+
+def test_by_the_motion_a_start_that_nobody_named_is_unknown():
+    """The first table of the set is the wrong one; its widths are far apart and stated sharply."""
+    labels = ["ice"] * 750
+    by_name = dict(zip(NAMES, A, strict=True)), dict(zip(NAMES, B, strict=True))
+    run = velocity_run(np.random.default_rng(4), *by_name, labels)
+    columns = {**run.velocity.columns, "vy": np.full(len(labels), np.nan)}
+    run = replace(run, velocity=replace(run.velocity, columns=columns))
+    parameters = ParameterSet({name: table_of(turn) for name, turn in (("tar", 1.2), ("ice", 0.8))})
+    result = run_odometry(run, source="modes", modes=SET, parameters=parameters)
+    assert result.initial_terrain == UNKNOWN
+    assert switches(result)[0][1] == "ice"
+    named = run_odometry(run, source="modes", modes=SET, parameters=parameters, terrain="tar")
+    assert named.initial_terrain == "tar"
+    of_run = replace(run, settings={**run.settings, "run": {"terrain": "ice"}})
+    stated = run_odometry(of_run, source="modes", modes=SET, parameters=parameters)
+    assert stated.initial_terrain == "ice"
+
+
+def table_of(turn):
+    """ICRs of a robot that turns by so much per difference of treads."""
+    values = {"y_left": 0.5 / turn, "y_right": -0.5 / turn, "x_icr": 0.0}
+    return TerrainParameters("icr", values, tuple(values), 1e-4 * np.eye(3))
 
 
 def test_none_keeps_one_terrain(labelled_run, model_file):
