@@ -8,6 +8,7 @@ from odometry.config import block_from_table, read_toml
 from odometry.errors import ConfigError
 from odometry.estimation.config import IcrEkfConfig
 from odometry.evaluation.relative import EvaluationConfig
+from terrain.classifier_config import ClassifierConfig
 from terrain.region import RegionConfig
 from terrain.switch import SwitchConfig
 
@@ -21,6 +22,7 @@ class Config:
     filter : IcrEkfConfig
     region : RegionConfig
     switch : SwitchConfig
+    classifier : ClassifierConfig
     evaluation : EvaluationConfig
 
     Examples
@@ -33,11 +35,12 @@ class Config:
     filter: IcrEkfConfig = field(default_factory=IcrEkfConfig)
     region: RegionConfig = field(default_factory=RegionConfig)
     switch: SwitchConfig = field(default_factory=SwitchConfig)
+    classifier: ClassifierConfig = field(default_factory=ClassifierConfig)
     evaluation: EvaluationConfig = field(default_factory=EvaluationConfig)
 
     @classmethod
     def read(cls, file: str | Path, base: "Config | None" = None) -> "Config":
-        """Read `[filter]`, `[region]`, `[switch]` and `[evaluation]` of a TOML file.
+        """Read `[filter]`, `[region]`, `[switch]`, `[classifier]`, `[evaluation]` of a TOML file.
 
         Parameters
         ----------

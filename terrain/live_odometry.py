@@ -16,6 +16,7 @@ from odometry.running_odometer import RunningOdometer
 from odometry.windows.gaps_so_far import GapsSoFar
 from terrain.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.own_statistics import used_as
 from terrain.config import Config
 from terrain.sighting import Sighting
 from terrain.sources import initial_terrain
@@ -179,5 +180,11 @@ def _source(
     if isinstance(model, str | Path):
         model = TerrainClassifier.load(model)
     return TerrainWatcher(
-        robot, camera, model, initial, region=config.region, switch=config.switch, keep=KEPT
+        robot,
+        camera,
+        used_as(model, config.classifier),
+        initial,
+        region=config.region,
+        switch=config.switch,
+        keep=KEPT,
     )

@@ -51,6 +51,7 @@ RUN_PRESETS = {
             "filter": PAPER | {"gate_probability": 1.0, "detect_jumps": False},
             "region": {"footprint_scale": 1.2, "per_tread": False},  # 3.2.2, eq. 22
             "switch": {"labels_in_row": 2, "on_arrival": False, "by_shares": False},  # 3.2.3
+            "classifier": {"own_statistics": False},
         },
         "chen2023",  # eq. 18-26
     )

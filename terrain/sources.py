@@ -11,6 +11,7 @@ from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
 from odometry.terrain_sources import labelled_terrain
 from terrain.camera import Camera
 from terrain.classification.classifier import Classifier
+from terrain.classification.own_statistics import used_as
 from terrain.config import Config
 from terrain.watcher import TerrainWatcher
 
@@ -123,7 +124,7 @@ def _watcher(run: Run, model: Classifier, initial: str, config: Config) -> Terra
     return TerrainWatcher(
         run.robot,
         camera,
-        model,
+        used_as(model, config.classifier),
         initial,
         region=config.region,
         switch=config.switch,

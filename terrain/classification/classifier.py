@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from copy import copy
 from typing import Any, Self
 
 import numpy as np
@@ -18,7 +19,7 @@ from terrain.classification.feature_jobs import shared_feature_matrix
 from terrain.classification.features import FeatureSettings
 from terrain.classification.features_of import Transformed, Transformer, features_of
 from terrain.classification.model_file import ModelFile
-from terrain.classification.neighbours import vote
+from terrain.classification.neighbours import Neighbours, vote
 from terrain.classification.patches import LabelledPatches, cut_patches
 from terrain.classification.presets import PRESETS
 from terrain.classification.rejection import as_of_one_patch, rejection_distances
@@ -230,7 +231,49 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
         ImageError
             If an image is smaller than a patch, or grey where the classifier needs colour.
         """
-        return [self._classification(*self._of_image(image)) for image in images]
+        return [self.classify_features(self.patch_features(image)) for image in images]
+
+    def patch_features(self, image: ByteImage) -> FloatArray:
+        """Features (patches, F) of the patches that an image is cut into.
+
+        Raises
+        ------
+        ImageError
+            As `classify`.
+        """
+        if self._features is None:
+            raise ImageError("the classifier was fitted on features; expected such, not images")
+        patches = cut_patches(image, self.patch_size_px)
+        if not patches:
+            raise ImageError(
+                f"image of {image.shape[1]} x {image.shape[0]} pixels is smaller than the "
+                f"classifier's patches of {self.patch_size_px} x {self.patch_size_px}"
+            )
+        if self.colour_ and image.ndim != 3:
+            raise ImageError("the image is grey, the classifier was trained with colour")
+        return features_of(patches, self._features)
+
+    def classify_features(self, features: FloatArray) -> Classification:
+        """Classify one image by the features (patches, F) of its patches."""
+        probabilities, distance = self._of_patches(features)
+        best, names = int(probabilities.argmax()), self.classes_.tolist()  # eq. 26
+        return Classification(
+            names[best] if distance <= self.rejection_distance_ else UNKNOWN,
+            float(probabilities[best]),
+            distance,
+            dict(zip(names, probabilities.tolist(), strict=True)),
+        )
+
+    @property
+    def neighbours(self) -> Neighbours:
+        """What it learned."""
+        return self._neighbours
+
+    def with_neighbours(self, neighbours: Neighbours) -> Self:
+        """The same classifier with other neighbours in the same space of features."""
+        other = copy(self)
+        other._neighbours = neighbours
+        return other
 
     def _check_parameters(self) -> None:
         if self.preset not in PRESETS:
@@ -297,7 +340,8 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
     ) -> tuple[FloatArray, FloatArray]:
         check_is_fitted(self)
         if holds_images(X):
-            votes, distances = zip(*map(self._of_image, X), strict=True)
+            answers = (self._of_patches(self.patch_features(image)) for image in X)
+            votes, distances = zip(*answers, strict=True)
             return np.stack(votes), np.array(distances)
         return self._of_features(validate_data(self, X, reset=False))
 
@@ -307,30 +351,11 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
         votes = vote(labels, self._neighbours.class_weights_)
         return tempered(votes, self.temperature_), distances
 
-    def _of_image(self, image: ByteImage) -> tuple[FloatArray, float]:
+    def _of_patches(self, features: FloatArray) -> tuple[FloatArray, float]:
         """Mean probabilities (classes,) of the patches of an image, and its distance."""
-        if self._features is None:
-            raise ImageError("the classifier was fitted on features; expected such, not images")
-        patches = cut_patches(image, self.patch_size_px)
-        if not patches:
-            raise ImageError(
-                f"image of {image.shape[1]} x {image.shape[0]} pixels is smaller than the "
-                f"classifier's patches of {self.patch_size_px} x {self.patch_size_px}"
-            )
-        if self.colour_ and image.ndim != 3:
-            raise ImageError("the image is grey, the classifier was trained with colour")
-        votes, distances = self._of_features(features_of(patches, self._features))
-        median = float(np.median(distances))
-        return votes.mean(axis=0), as_of_one_patch(median, len(patches), self.rejection_distances_)
-
-    def _classification(self, probabilities: FloatArray, distance: float) -> Classification:
-        best, names = int(probabilities.argmax()), self.classes_.tolist()  # eq. 26
-        return Classification(
-            names[best] if distance <= self.rejection_distance_ else UNKNOWN,
-            float(probabilities[best]),
-            distance,
-            dict(zip(names, probabilities.tolist(), strict=True)),
-        )
+        votes, distances = self._of_features(features)
+        median, limits = float(np.median(distances)), self.rejection_distances_
+        return votes.mean(axis=0), as_of_one_patch(median, len(features), limits)
 
     def __sklearn_tags__(self) -> Any:
         """Tell scikit-learn that the input is images or features."""

@@ -5,6 +5,7 @@ Two final classes behind one interface, `Neighbours`: `PlainNeighbours` is the p
 """
 
 from collections.abc import Mapping
+from copy import copy
 from typing import Protocol, Self
 
 import numpy as np
@@ -23,8 +24,8 @@ class Neighbours(Protocol):
 
     class_weights_: FloatArray
 
-    def fit(self, features: FloatArray, codes: IntArray) -> Self:
-        """Learn from training features (n, F) and class codes (n,)."""
+    def fit(self, features: FloatArray, codes: IntArray, copies: int = 0) -> Self:
+        """Learn from training features (n, F) and class codes (n,); the last are altered copies."""
 
     def labels(self, features: FloatArray, k: int) -> IntArray:
         """Return the class codes of the k nearest training samples, nearest first, (n, k)."""
@@ -71,8 +72,8 @@ class PlainNeighbours:
 
     class_weights_: FloatArray
 
-    def fit(self, features: FloatArray, codes: IntArray) -> Self:
-        """Remember features (n, F) and class codes (n,)."""
+    def fit(self, features: FloatArray, codes: IntArray, copies: int = 0) -> Self:  # noqa: ARG002
+        """Remember features (n, F) and class codes (n,), copies or not."""
         self.pipeline_ = make_pipeline(_knn()).fit(features, codes)
         self.class_weights_ = np.ones(int(codes.max()) + 1)
         return self
@@ -87,7 +88,8 @@ class PlainNeighbours:
 
     def labels_and_distances(self, features: FloatArray, k: int) -> tuple[IntArray, FloatArray]:
         """Return both."""
-        return _labels_and_distances(self.pipeline_[-1], features, k)  # eq. 24
+        knn = self.pipeline_[-1]
+        return _labels_and_distances(knn, features, k, knn.n_samples_fit_)  # eq. 24
 
     def arrays(self) -> dict[str, AnyArray]:
         """Return the training samples."""
@@ -107,18 +109,19 @@ class DiscriminantNeighbours:
     A distance is the mean distance to the nearest samples among the discriminants, times the
     local sparsity among whitened principal components. The first factor asks whether a patch is
     like any class in what tells classes apart, the second whether it looks like anything seen.
+    Altered copies vote, but only what was really seen makes a patch familiar.
     """
 
     class_weights_: FloatArray
 
-    def fit(self, features: FloatArray, codes: IntArray) -> Self:
+    def fit(self, features: FloatArray, codes: IntArray, copies: int = 0) -> Self:
         """Learn scale, discriminants, components and spacings from (n, F) and (n,)."""
         self.pipeline_ = make_pipeline(
             ClippedScaler(), FourierFeatures(), DiscriminantMetric(), _knn()
         )
         self.pipeline_.fit(features, codes)
         self.class_weights_ = 1.0 / np.bincount(codes)
-        scaled = self.pipeline_[0].transform(features)
+        scaled = self.pipeline_[0].transform(features[: len(features) - copies])
         self.appearance_ = AppearanceMetric().fit(scaled)
         self.sparsity_ = LocalSparsity().fit(self.appearance_.transform(scaled))
         return self
@@ -137,8 +140,28 @@ class DiscriminantNeighbours:
         scaled = place = scaler.transform(features)
         for step in others:
             place = step.transform(place)
-        labels, distances = _labels_and_distances(knn, place, k)
+        labels, distances = _labels_and_distances(knn, place, k, len(self.sparsity_.points_))
         return labels, distances * self.sparsity_.sparsity(self.appearance_.transform(scaled))
+
+    @property
+    def scaler(self) -> ClippedScaler:
+        """Means and deviations of the features in training."""
+        scaler: ClippedScaler = self.pipeline_[0]
+        return scaler
+
+    def rescaled(self, scaler: ClippedScaler) -> Self:
+        """The same neighbours for features that `scaler` standardises."""
+        other = copy(self)
+        other.pipeline_ = make_pipeline(scaler, *(step for _, step in self.pipeline_.steps[1:]))
+        return other
+
+    def discriminants(self, features: FloatArray) -> FloatArray:
+        """Map features (n, F) to the space of the neighbours (n, classes - 1)."""
+        return np.asarray(self.pipeline_[:-1].transform(features))
+
+    def samples(self) -> tuple[FloatArray, IntArray]:
+        """Discriminants (m, classes - 1) and class codes (m,) of what was learned from."""
+        return self.pipeline_[-1]._fit_X, self.pipeline_[-1]._y
 
     def arrays(self) -> dict[str, AnyArray]:
         """Return everything learned."""
@@ -183,9 +206,14 @@ def _knn() -> KNeighborsClassifier:
 
 
 def _labels_and_distances(
-    knn: KNeighborsClassifier, places: FloatArray, k: int
+    knn: KNeighborsClassifier, places: FloatArray, k: int, seen: int
 ) -> tuple[IntArray, FloatArray]:
-    """Class codes (n, k) of the k nearest samples, and the mean distance (n,) of the nearest."""
-    few = min(NEIGHBOURS, knn.n_samples_fit_)
+    """Class codes (n, k) of the k nearest samples, and the mean distance (n,) of the nearest.
+
+    The first `seen` samples are no altered copies: the distance is to these.
+    """
+    few = min(NEIGHBOURS, seen)
     distances, rows = nearest(knn._fit_X, places, max(k, few))
+    if seen < knn.n_samples_fit_:
+        distances, _ = nearest(knn._fit_X[:seen], places, few)
     return np.asarray(knn._y[rows[:, :k]], dtype=np.int64), distances[:, :few].mean(axis=1)

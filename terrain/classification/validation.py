@@ -51,13 +51,16 @@ class Samples:
     codes: IntArray
     groups: AnyArray
 
-    def with_copies(self, rows: IntArray, copies: "Samples | None") -> tuple[FloatArray, IntArray]:
-        """Features and codes of some rows, and of the copies of their groups."""
+    def with_copies(
+        self, rows: IntArray, copies: "Samples | None"
+    ) -> tuple[FloatArray, IntArray, int]:
+        """Features and codes of some rows, then of the copies of their groups, and how many."""
         if copies is None:
-            return self.features[rows], self.codes[rows]
+            return self.features[rows], self.codes[rows], 0
         follow = np.isin(copies.groups, self.groups[rows])
         features = np.concatenate([self.features[rows], copies.features[follow]])
-        return features, np.concatenate([self.codes[rows], copies.codes[follow]])
+        codes = np.concatenate([self.codes[rows], copies.codes[follow]])
+        return features, codes, int(follow.sum())
 
 
 def grouped_folds(codes: IntArray, groups: AnyArray) -> list[tuple[IntArray, IntArray]]:

@@ -2,6 +2,7 @@
 
 import json
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +16,13 @@ if TYPE_CHECKING:
 @click.argument("model", type=click.Path(path_type=Path))
 @click.argument("images", type=click.Path(path_type=Path), nargs=-1, required=True)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, with probabilities.")
-def classify(model: Path, images: tuple[Path, ...], as_json: bool) -> None:
+@click.option(
+    "--own-statistics",
+    is_flag=True,
+    help="Standardise features by all IMAGES: for a camera unlike that of training, and images of "
+    "several terrains.",
+)
+def classify(model: Path, images: tuple[Path, ...], *, as_json: bool, own_statistics: bool) -> None:
     """Name the terrain of each of IMAGES with MODEL, a file that `train` wrote.
 
     Prints label, confidence, and the distance to the nearest class; a label is unknown where the
@@ -37,6 +44,8 @@ def classify(model: Path, images: tuple[Path, ...], as_json: bool) -> None:
     folders = [path for path in images if path.is_dir()]
     if folders and len(images) > 1:
         raise click.UsageError(f"{folders[0]} is a folder: give one folder alone, or images")
+    if own_statistics:
+        classifier = _standardised(classifier, folders[0] if folders else None, images)
     if folders:
         all_used = print_held_out(classifier, model, folders[0], as_json=as_json)
     else:
@@ -45,6 +54,23 @@ def classify(model: Path, images: tuple[Path, ...], as_json: bool) -> None:
         all_used = not any("error" in row for row in rows)
     if not all_used:
         sys.exit(1)
+
+
+def _standardised(
+    classifier: "TerrainClassifier", folder: Path | None, images: tuple[Path, ...]
+) -> "TerrainClassifier":
+    """The classifier with the statistics of all images that can be used."""
+    from terrain.classification.own_statistics import OwnStatisticsClassifier
+    from terrain.classification.patches import find_photos
+    from terrain.errors import ImageError
+    from terrain.images import read_image
+
+    own = OwnStatisticsClassifier(classifier)
+    for path in images if folder is None else [photo.path for photo in find_photos(folder)]:
+        with suppress(ImageError):  # said where it is classified
+            own.see(read_image(path))
+    click.echo(f"Note: {own.described}", err=True)
+    return own.standardised()
 
 
 def _row(classifier: "TerrainClassifier", path: Path) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 from odometry.estimation.filter_event import FilterEvent
 from odometry.run import UNKNOWN
+from terrain.classification.own_statistics import OwnStatisticsClassifier
 from terrain.filter_summary import event_line
 from terrain.run_result import RunResult
 from terrain.sighting import Sighting
@@ -39,6 +40,8 @@ def hints(result: RunResult, *, vision: bool, named: str | None = None) -> list[
             for name in sorted(set(result.watcher.classifier.classes_) - set(known))
         ]
     if result.watcher is not None:
+        if isinstance(result.watcher.classifier, OwnStatisticsClassifier):
+            found.append(result.watcher.classifier.described)
         found += _blind(result.watcher.sightings)
         if named is None and len(known) > 1:
             found += _start(result.initial_terrain, result.run.terrain, result.watcher.sightings)

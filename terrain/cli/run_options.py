@@ -40,6 +40,12 @@ def run_options(command: Callable[..., None]) -> Callable[..., None]:
     @click.option("--terrain", metavar="NAME", help="In force until the first switch.")
     @click.option("--config", type=FILE, help="Settings (TOML): [filter] [region] [switch] ...")
     @click.option("--per-tread", is_flag=True, help="Classify the terrain under each tread apart.")
+    @click.option(
+        "--own-statistics",
+        is_flag=True,
+        help="Standardise features by the images of the run as they arrive: for a camera unlike "
+        "that of training which sees several terrains.",
+    )
     @span_options
     @click.option(
         "--detect-jumps", is_flag=True, help="Watch the innovations for jumps of the ICRs."
@@ -56,12 +62,14 @@ def run_options(command: Callable[..., None]) -> Callable[..., None]:
         terrain: str | None,
         config: Path | None,
         per_tread: bool,
+        own_statistics: bool,
         detect_jumps: bool,
         span: "Span",
         **others: Any,
     ) -> None:
         from dataclasses import replace
 
+        from terrain.classifier_config import ClassifierConfig
         from terrain.config import Config
         from terrain.run_options import RunOptions
         from terrain.run_presets import run_preset
@@ -71,6 +79,8 @@ def run_options(command: Callable[..., None]) -> Callable[..., None]:
             settings = Config.read(config, settings)
         if per_tread:
             settings = replace(settings, region=replace(settings.region, per_tread=True))
+        if own_statistics:
+            settings = replace(settings, classifier=ClassifierConfig(own_statistics=True))
         if detect_jumps:
             settings = replace(settings, filter=replace(settings.filter, detect_jumps=True))
         options = RunOptions(

@@ -6,11 +6,14 @@ from pathlib import Path
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
+from terrain.classification.augmentation import Augmentation, load_copies
+from terrain.classification.calibration import tempered
 from terrain.classification.evaluation import balanced_accuracy
 from terrain.classification.feature_jobs import shared_feature_matrix
 from terrain.classification.neighbours import Neighbours, vote
 from terrain.classification.patches import find_photos, load_patches
 from terrain.classification.presets import PRESETS, Preset
+from terrain.classification.rejection import as_of_one_patch, rejection_distances
 from terrain.classification.validation import Samples, cross_validate
 
 REJECTED_SHARE = 0.05
@@ -53,6 +56,20 @@ def read_grounds(folder: Path, size_px: int, store: Path) -> Grounds:
         return Grounds(*(arrays[f"arr_{i}"] for i in range(5)))
 
 
+def read_copies(folder: Path, size_px: int, store: Path) -> Grounds:
+    """Compute the features of altered copies of photographs, or read them from `store`."""
+    file = store / f"{folder.name}_{size_px}_copies.npz"
+    if not file.exists():
+        copies = load_copies(find_photos(folder), size_px, Augmentation())
+        settings = PRESETS["default"].colour_features
+        bank = shared_feature_matrix(copies.images, settings, processes=1, show_progress=True)
+        names = [str(photo) for photo in copies.photos]
+        np.savez(file, bank, copies.labels, copies.groups, names)
+    with np.load(file) as arrays:
+        bank, labels, groups, names = (arrays[f"arr_{i}"] for i in range(4))
+        return Grounds(bank[:, :PER_COPY], bank, labels, groups, names)
+
+
 @dataclass(frozen=True)
 class Chosen:
     """A classifier whose every choice was made on training photographs."""
@@ -61,37 +78,71 @@ class Chosen:
     columns: slice
     model: Neighbours
     k: int
-    rejection_distance: float
+    rejection_distances: tuple[float, ...]
+    temperature: float | None
 
     def probabilities(self, features: FloatArray) -> FloatArray:
         """Of each class, (n, classes)."""
         labels = self.model.labels(features[:, self.columns], self.k)
-        return vote(labels, self.model.class_weights_)
+        return tempered(vote(labels, self.model.class_weights_), self.temperature)
 
     def distances(self, features: FloatArray) -> FloatArray:
         """To the nearest class, (n,)."""
         return self.model.distances(features[:, self.columns])
 
+    def photo_distances(self, distances: FloatArray, photos: AnyArray) -> FloatArray:
+        """Median distance of the patches of each photograph, on the scale of one patch."""
+        return np.array(
+            [
+                as_of_one_patch(float(np.median(of)), len(of), self.rejection_distances)
+                for of in (distances[photos == photo] for photo in np.unique(photos))
+            ]
+        )
+
 
 def choose(
-    preset: Preset, structures: tuple[str, ...], features: FloatArray, train: Grounds
+    preset: Preset,
+    structures: tuple[str, ...],
+    features: FloatArray,
+    train: Grounds,
+    copies: Grounds | None = None,
 ) -> Chosen:
-    """Choose structure, k and rejection distance inside `train`, then learn from all of it."""
+    """Choose structure, k, temperature and rejection distances inside `train`, then learn from it.
+
+    Of the altered copies only those of photographs in `train` are learned from.
+    """
     best, best_score = None, -1.0
     for name in structures:
         columns = slice(0, COPIES[name] * PER_COPY)
+        samples = Samples(features[:, columns], train.codes, train.groups)
+        altered = copies and _samples_of(copies, train, columns)
         found = cross_validate(
             preset.neighbours,
             preset.neighbour_counts,
-            Samples(features[:, columns], train.codes, train.groups),
+            samples,
+            altered,
+            calibrates=not preset.as_published,
         )
         score = balanced_accuracy(found.codes, found.probabilities.argmax(axis=1))
         if score > best_score:
-            best, best_score = (name, columns, found), score
-    name, columns, found = best
-    model = preset.neighbours().fit(features[:, columns], train.codes)
-    limit = float(np.quantile(found.distances, 1 - REJECTED_SHARE))
-    return Chosen(name, columns, model, found.n_neighbors, limit)
+            best, best_score = (name, columns, found, samples, altered), score
+    name, columns, found, samples, altered = best
+    everything = samples.with_copies(np.arange(len(samples.codes)), altered)
+    limits = rejection_distances(found.distances, samples.groups[found.rows], REJECTED_SHARE)
+    return Chosen(
+        name,
+        columns,
+        preset.neighbours().fit(*everything),
+        found.n_neighbors,
+        limits[:1] if preset.as_published else limits,
+        found.temperature,
+    )
+
+
+def _samples_of(copies: Grounds, train: Grounds, columns: slice) -> Samples:
+    known = copies.only(np.isin(copies.labels, train.labels))
+    codes = np.searchsorted(np.unique(train.labels), known.labels)
+    return Samples(known.bank[:, columns], codes, known.groups)
 
 
 @dataclass(frozen=True)

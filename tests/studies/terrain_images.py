@@ -110,8 +110,8 @@ def unknown_terrain(grounds: Grounds, way: Way) -> None:
                 (
                     rejection_roc_area(near, far),
                     rejection_roc_area(by_photo(near, held), by_photo(far, unknown)),
-                    np.mean(far > model.rejection_distance),
-                    np.mean(near > model.rejection_distance),
+                    np.mean(far > model.rejection_distances[0]),
+                    np.mean(near > model.rejection_distances[0]),
                 )
             )
         table.append(np.mean(rows, axis=0))

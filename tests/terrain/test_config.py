@@ -56,7 +56,7 @@ def test_the_table_is_plain_and_holds_every_setting(read):
     assert json.loads(json.dumps(table, allow_nan=False)) == table
     assert table["region"]["ahead_s"] == 2.0
     assert (table["switch"]["labels_in_row"], table["switch"]["on_arrival"]) == (3, False)
-    assert set(table) == {"filter", "region", "switch", "evaluation"}
+    assert set(table) == {"filter", "region", "switch", "classifier", "evaluation"}
 
 
 @pytest.mark.parametrize(

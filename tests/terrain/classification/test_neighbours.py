@@ -39,6 +39,19 @@ def test_rare_classes_weigh_as_much_as_common_ones(samples):
     np.testing.assert_allclose(everything, 1 / 3)
 
 
+def test_altered_copies_vote_and_make_nothing_familiar(samples, rng):
+    features, codes = samples
+    altered = features + rng.normal(0, 3, features.shape)
+    everything = np.concatenate([features, altered]), np.concatenate([codes, codes])
+    model = DiscriminantNeighbours().fit(*everything, len(codes))
+    assert model.distances(altered).mean() > 2 * model.distances(features).mean()
+    alike = DiscriminantNeighbours().fit(*everything)
+    assert model.distances(altered).mean() > 2 * alike.distances(altered).mean()
+    np.testing.assert_array_equal(model.labels(altered, 5), alike.labels(altered, 5))
+    again = DiscriminantNeighbours.from_arrays(model.arrays())
+    np.testing.assert_array_equal(again.distances(altered), model.distances(altered))
+
+
 def test_distance_is_discriminant_distance_times_sparsity(samples, rng):
     model = DiscriminantNeighbours().fit(*samples)
     queries = rng.normal(size=(30, 8))

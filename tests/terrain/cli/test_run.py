@@ -84,6 +84,7 @@ def test_settings_come_from_the_file_and_the_options(astride_run, model_file, tm
     config.write_text("[region]\nmost_ahead_lengths = 5.0\n[switch]\nlabels_in_row = 4\n")
     out = tmp_path / "out"
     arguments = ["--config", config, "--per-tread", "--detect-jumps", "--model", model_file]
+    arguments.append("--own-statistics")
     answer = invoke(astride_run, "--out", out, *arguments)
     assert answer.exit_code == 0, answer.output
     settings = content_of(out)["config"]
@@ -91,6 +92,8 @@ def test_settings_come_from_the_file_and_the_options(astride_run, model_file, tm
     assert settings["region"]["per_tread"] is True
     assert settings["switch"]["labels_in_row"] == 4
     assert settings["filter"]["detect_jumps"] is True
+    assert settings["classifier"]["own_statistics"] is True
+    assert "standardised by the images' own statistics" in answer.output
     with (out / "terrain.csv").open() as stream:
         assert {"left", "right"} <= set(next(csv.reader(stream)))
 
@@ -149,6 +152,7 @@ def test_after_a_jump_of_the_poses_what_was_learned_is_not_recommended(world, tm
     [
         (["--per-tread"], "per_tread = False, seen True"),
         (["--detect-jumps"], "detect_jumps = False, seen True"),
+        (["--own-statistics"], "own_statistics = False, seen True"),
         (["--source", "none"], "by the camera"),
     ],
 )

@@ -1,0 +1,17 @@
+"""How a run uses its classifier."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class ClassifierConfig:
+    """Settings of the classifier in a run.
+
+    Attributes
+    ----------
+    own_statistics : bool
+        Features are standardised by the images of the run as they arrive, see
+        `OwnStatisticsClassifier`: for a camera unlike that of training.
+    """
+
+    own_statistics: bool = False
