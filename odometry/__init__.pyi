@@ -13,6 +13,11 @@ from .evaluation.open_loop import measured_poses, open_loop
 from .evaluation.relative import EvaluationConfig, position_errors, relative_errors
 from .evaluation.score import reference_of, score
 from .evaluation.stretches import stretches
+from .feel.follow import follow_feel
+from .feel.identify_feel import identify_feel
+from .feel.model import FeelModel
+from .feel.model_file import read_feel_model, write_feel_model
+from .feel.windows import feel_windows
 from .frames import Frame
 from .gap.gap import find_gap
 from .geometry.steepest_slope import steepest_slope
@@ -53,6 +58,7 @@ __all__ = [
     "ConstantTerrain",
     "Estimate",
     "EvaluationConfig",
+    "FeelModel",
     "Finding",
     "Frame",
     "IcrEkf",
@@ -79,8 +85,10 @@ __all__ = [
     "cut_run",
     "dead_reckon",
     "dead_reckon_in_space",
+    "feel_windows",
     "find_gap",
     "fitness",
+    "follow_feel",
     "follow_modes",
     "followed",
     "icr_covariances",
@@ -88,6 +96,7 @@ __all__ = [
     "icr_medians",
     "icrs_of_twist",
     "identify",
+    "identify_feel",
     "identify_traction_modes",
     "identify_velocity_modes",
     "inputs_of",
@@ -96,6 +105,7 @@ __all__ = [
     "model_named",
     "open_loop",
     "position_errors",
+    "read_feel_model",
     "read_mode_set",
     "read_parameters",
     "read_spatial_tum",
@@ -112,6 +122,7 @@ __all__ = [
     "turn_is_told",
     "window_errors",
     "windows_of",
+    "write_feel_model",
     "write_mode_set",
     "write_parameters",
     "write_run_folder",

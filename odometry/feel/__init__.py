@@ -1,0 +1,8 @@
+"""Terrain by feel: what vibration, currents and yaw response say of the terrain underneath.
+
+Names are imported when they are first used.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

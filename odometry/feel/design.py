@@ -1,0 +1,124 @@
+"""The columns by which windows are told apart: bands of several widths, and motion."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.errors import RunFolderError
+from odometry.feel.spectra import LOWEST_HZ, band_edges_hz, band_powers
+from odometry.feel.windows import FeelWindows
+
+LAYOUTS = (6, 7, 8, 9)  # bands of an axis; a discriminant of each is averaged
+LEAST_STEPS = 2  # of frequency in a band
+SLOWER_SHARE = 0.96  # of the highest frequency: a run that carries a little less will do
+GROUPS = ("gyro", "accel", "yaw", "currents")
+SPECTRAL = ("gyro", "accel")
+
+
+@dataclass(frozen=True)
+class Design:
+    """Which columns there are.
+
+    Attributes
+    ----------
+    window_s : float
+    axes : tuple of str
+        Of the IMU, whose bands are used.
+    motion : tuple of str
+        Of "yaw" and "currents".
+    top_hz : float
+        Upper edge of the highest band.
+    layouts : tuple of int
+        Numbers of bands; none where no axis has a band.
+    """
+
+    window_s: float
+    axes: tuple[str, ...]
+    motion: tuple[str, ...]
+    top_hz: float
+    layouts: tuple[int, ...]
+
+    @classmethod
+    def shared(cls, windows: Sequence[FeelWindows]) -> "Design":
+        """The columns that all runs have, up to the frequency that all carry."""
+        axes = tuple(a for a in windows[0].axes if all(a in one.axes for one in windows))
+        motion = tuple(m for m in windows[0].motion if all(m in one.motion for one in windows))
+        top_hz = min(one.top_hz for one in windows)
+        step_hz = max(one.step_hz for one in windows)
+        most = int((top_hz - LOWEST_HZ) / (LEAST_STEPS * step_hz))
+        layouts = tuple(dict.fromkeys(min(bands, most) for bands in LAYOUTS)) if most > 0 else ()
+        return cls(windows[0].window_s, axes if layouts else (), motion, top_hz, layouts or (0,))
+
+    @property
+    def groups(self) -> tuple[str, ...]:
+        """Groups of columns, of GROUPS."""
+        spectral = [kind for kind in SPECTRAL if any(a.startswith(kind) for a in self.axes)]
+        return (*spectral, *self.motion)
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The columns of imu.csv and odometry.csv that a run must have."""
+        yaw = ("gyro_z",) if "yaw" in self.motion and "gyro_z" not in self.axes else ()
+        currents = ("current_left", "current_right") if "currents" in self.motion else ()
+        return (*self.axes, *yaw, *currents)
+
+    def only(self, groups: Sequence[str]) -> "Design":
+        """The same with some of the groups."""
+        axes = tuple(axis for axis in self.axes if axis.partition("_")[0] in groups)
+        motion = tuple(one for one in self.motion if one in groups)
+        return Design(self.window_s, axes, motion, self.top_hz, self.layouts if axes else (0,))
+
+    def places(self, of: "Design", layout: int) -> list[int]:
+        """Where the columns of a smaller design stand among the columns of this one."""
+        bands, found = self.layouts[layout], list[int]()
+        for axis in of.axes:
+            at = self.axes.index(axis) * bands
+            found += range(at, at + bands)
+        at = len(self.axes) * bands
+        for one in self.motion:
+            width = WIDTHS[one]
+            found += range(at, at + width) if one in of.motion else []
+            at += width
+        return found
+
+    def names(self, layout: int) -> tuple[str, ...]:
+        """What each column is, in words."""
+        edges = band_edges_hz(self.layouts[layout], self.top_hz) if self.axes else np.empty(0)
+        pairs = list(pairwise(edges))
+        bands = [f"{axis} {a:.0f} to {b:.0f} Hz" for axis in self.axes for a, b in pairs]
+        return (*bands, *(word for one in self.motion for word in WORDS[one]))
+
+    def check(self, windows: FeelWindows, where: str) -> None:
+        """Raise RunFolderError unless a run has all columns, fast enough."""
+        axes = [axis for axis in self.axes if axis not in windows.axes]
+        lacks = axes + [one for one in self.motion if one not in windows.motion]
+        if lacks:
+            raise RunFolderError(
+                f"{where}: no {', '.join(lacks)} that holds numbers which change; the model needs "
+                f"the columns {', '.join(self.columns)}"
+            )
+        if self.axes and windows.top_hz < SLOWER_SHARE * self.top_hz:
+            raise RunFolderError(
+                f"{where}: recorded at {2 * windows.top_hz:.4g} Hz, which carries up to "
+                f"{windows.top_hz:.4g} Hz; the model needs up to {self.top_hz:.4g} Hz"
+            )
+
+    def matrix(self, windows: FeelWindows, layout: int) -> FloatArray:
+        """Columns (W, d) of the windows; a motor without current gives NaN."""
+        parts = [windows.motion[one] for one in self.motion]
+        if self.axes:
+            rows = [windows.axes.index(axis) for axis in self.axes]
+            edges = band_edges_hz(self.layouts[layout], self.top_hz)
+            powers = band_powers(windows.densities[:, rows], windows.step_hz, edges)
+            parts = [powers.reshape(len(windows), -1), *parts]
+        return np.concatenate(parts, axis=1)
+
+
+WORDS = {
+    "yaw": ("yaw gain", "yaw residual", "yaw ratio"),
+    "currents": ("current", "spread of the current"),
+}
+WIDTHS = {name: len(words) for name, words in WORDS.items()}

@@ -1,0 +1,86 @@
+"""Shrunk linear discriminants in which the effect of speed is taken out."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.feel.moments import Moments
+
+RIDGE = 1e-3  # of the covariates' own variances: one that does not vary has no effect
+
+
+@dataclass(frozen=True)
+class Discriminant:
+    """K classes in d columns with one covariance.
+
+    Attributes
+    ----------
+    slopes : (q, d)
+        What each covariate adds to a column within a class.
+    means : (K, d)
+        Of the columns without that.
+    whitening : (d, d)
+        Upper triangle that makes the covariance of a new run's windows the identity.
+    """
+
+    slopes: FloatArray
+    means: FloatArray
+    whitening: FloatArray
+
+    def left(self, table: FloatArray) -> FloatArray:
+        """What a window (W, d + q) leaves of each class, (W, K, d), in standard deviations."""
+        covariates = len(self.slopes)
+        columns = table[:, : table.shape[1] - covariates]
+        if covariates:
+            columns = columns - table[:, -covariates:] @ self.slopes
+        whitened, centres = columns @ self.whitening.T, self.means @ self.whitening.T
+        return np.asarray(whitened[:, None] - centres)
+
+
+def fitted_discriminant(
+    moments: Moments, names: tuple[str, ...], covariates: int, shrinkage: float
+) -> Discriminant:
+    """Fit a discriminant in which every run of a class, and every class, counts alike.
+
+    The covariance is that of a window of a run that was never seen: within runs, plus that of run
+    means B (1 + 1 / n), n runs of a class. Covariates are taken out by their slopes within
+    classes (analysis of covariance), and what they say of a class themselves is not used; then
+    correlations are shrunk towards none.
+
+    Parameters
+    ----------
+    moments : Moments
+        Of all classes.
+    names : tuple of str, length K
+    covariates : int
+        q: so many last columns.
+    shrinkage : float
+        0 to 1.
+
+    References
+    ----------
+    Friedman 1989, "Regularized discriminant analysis", eq. 18, with one covariance.
+    """
+    rows = [moments.labels == name for name in names]
+    means = np.stack([moments.means[of].mean(axis=0) for of in rows])
+    within = np.mean([moments.covariances[of].mean(axis=0) for of in rows], axis=0)
+    off = [moments.means[of] - mean for of, mean in zip(rows, means, strict=True)]
+    free = max(sum(len(of) - 1 for of in off), 1)
+    between = sum(of.T @ of for of in off) / free
+    new = float(np.mean([1 + 1 / len(of) for of in off]))
+    whole = within + new * between
+    size = whole.shape[0] - covariates
+    columns, cross, own = whole[:size, :size], whole[size:, :size], whole[size:, size:]
+    slopes = np.linalg.solve(own + RIDGE * _diagonal(own), cross)
+    residual = columns - cross.T @ slopes - slopes.T @ cross + slopes.T @ own @ slopes
+    scale = np.sqrt(np.maximum(np.diag(residual), 1e-12))
+    correlation = (1 - shrinkage) * residual / np.outer(scale, scale)
+    correlation[np.diag_indices(size)] = 1.0
+    lower = np.linalg.cholesky(correlation + 1e-9 * np.eye(size))
+    whitening = np.linalg.solve(lower, np.diag(1 / scale))
+    return Discriminant(slopes, means[:, :size] - means[:, size:] @ slopes, whitening)
+
+
+def _diagonal(matrix: FloatArray) -> FloatArray:
+    return np.diag(np.maximum(np.diag(matrix), 1e-9))

@@ -1,0 +1,98 @@
+"""What was felt of a run as files."""
+
+import json
+from collections.abc import Mapping
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from odometry.arrays import AnyArray
+from odometry.feel.follow import Felt
+from odometry.feel.scores import balanced_accuracy
+from odometry.feel.words import is_unlike, sentences, shares
+from odometry.io.csv_table import write_csv_table
+from odometry.io.files import atomic_write
+from odometry.run import UNKNOWN
+
+FORMAT = 1  # of result.json
+
+
+def write_feel(felt: Felt, out: Path, about: Mapping[str, Any] | None = None) -> list[Path]:
+    """Write feel.csv and result.json.
+
+    Parameters
+    ----------
+    felt : Felt
+    out : Path
+        Made if it is missing.
+    about : Mapping, optional
+        What made the result; its keys are added to result.json.
+
+    Returns
+    -------
+    list of Path
+        The files written.
+    """
+    written = [Path(out) / "feel.csv", Path(out) / "result.json"]
+    write_csv_table(written[0], columns_of(felt))
+    text = json.dumps(content_of(felt) | dict(about or {}), indent=2, allow_nan=False)
+    with atomic_write(written[1]) as part:
+        part.write_text(text + "\n", encoding="utf-8")
+    return written
+
+
+def columns_of(felt: Felt) -> dict[str, AnyArray]:
+    """The columns of feel.csv; `t` is the end of each window, when it is known."""
+    names = felt.model.names
+    return {
+        "t": felt.stamps_s,
+        "label": felt.lasting_answers,
+        **_named("probability", names, felt.lasting_probabilities),
+        "window_label": felt.answers,
+        **_named("window_probability", names, felt.probabilities),
+        "novelty": felt.novelty / felt.model.limits.window,
+        "speed": felt.windows.speeds_m_s,
+        "true_label": np.where(felt.windows.labels == UNKNOWN, "", felt.windows.labels),
+    }
+
+
+def content_of(felt: Felt) -> dict[str, Any]:
+    """What result.json holds."""
+    probabilities, novel = felt.of_run
+    return {
+        "format": FORMAT,
+        "program": f"terrain-odometry {version('terrain-odometry')}",
+        "run": felt.run.name,
+        "names": list(felt.model.names),
+        "settings": {
+            "window_s": felt.model.design.window_s,
+            "stretch_s": felt.config.stretch_s,
+            "sure": felt.config.sure,
+            "columns": list(felt.model.design.columns),
+            "source": felt.model.source,
+        },
+        "windows": len(felt.windows),
+        "shares_of_windows": shares(felt),
+        "run_probabilities": probabilities,
+        "run_is_unknown": novel or is_unlike(felt),
+        "balanced_accuracy": _accuracy(felt),
+        "notes": list(sentences(felt)[1:]),
+    }
+
+
+def _accuracy(felt: Felt) -> dict[str, float] | None:
+    """Where the run names terrains of the model: shares of windows in which the robot moves."""
+    labels = felt.windows.labels
+    judged = felt.windows.felt & np.isin(labels.astype(str), felt.model.names)
+    if not judged.any():
+        return None
+    return {
+        name: balanced_accuracy(labels[judged], answers[judged] == labels[judged])
+        for name, answers in (("window", felt.answers), ("stretch", felt.lasting_answers))
+    }
+
+
+def _named(word: str, names: tuple[str, ...], values: AnyArray) -> dict[str, AnyArray]:
+    return {f"{word}_{name}": column for name, column in zip(names, values.T, strict=True)}

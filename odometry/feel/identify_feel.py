@@ -1,0 +1,117 @@
+"""Identify how terrains feel from runs, and how well that is told on runs held out."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from odometry.config import require
+from odometry.feel.assessment import assessed
+from odometry.feel.design import Design
+from odometry.feel.folds import days_of, fold_groups
+from odometry.feel.members import fitted_members
+from odometry.feel.model import FeelModel, Limits
+from odometry.feel.notes import notes_of
+from odometry.feel.selection import main_labels, selected
+from odometry.feel.table import FeelTable
+from odometry.feel.windows import LONGEST_S, SHORTEST_S, FeelWindows, feel_windows
+from odometry.identification.errors import IdentificationError
+from odometry.identification.identify import robot_of
+from odometry.run import Run
+
+LEAST_RUNS = 2  # of a terrain: one to fit, one to judge
+LEAST_WINDOWS = 5  # of a terrain and run on the average
+
+
+def identify_feel(runs: Sequence[Run], *, window_s: float = 2.0, seed: int = 0) -> FeelModel:
+    """Identify how the terrains that runs name feel on one robot.
+
+    Log power of bands of the IMU's axes, yaw response and motor currents of windows, whichever all
+    runs have; the effect of speed is taken out; shrunk linear discriminants. Shrinkage, what
+    evidence is worth, and from where on nothing known fits are found on runs held out, and the
+    figures of `report` on runs that all of that never saw.
+
+    Parameters
+    ----------
+    runs : sequence of Run
+        Of one robot; two or more on each terrain.
+    window_s : float
+        1 to 5 s.
+    seed : int
+        Of the folds.
+
+    Raises
+    ------
+    IdentificationError
+        If fewer than two terrains are named, a terrain has fewer than two runs, or next to none of
+        the time was driven.
+    RunFolderError
+        If a run lacks what is felt; see `feel_signals`.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> import odometry
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
+    >>> parts = [odometry.cut_run(run, odometry.Span(9.0 * i, 9.0 * i + 9.0)) for i in range(6)]
+    >>> named = [
+    ...     replace(part, settings={**part.settings, "run": {"terrain": name}})
+    ...     for part, name in zip(parts, ["gravel", "grass"] * 3)
+    ... ]
+    >>> model = odometry.identify_feel(named)
+    >>> model.names, model.design.columns
+    (('grass', 'gravel'), ('gyro_z',))
+    """
+    require(
+        SHORTEST_S <= window_s <= LONGEST_S,
+        f"window_s = {window_s}, expected {SHORTEST_S:g} to {LONGEST_S:g}",
+    )
+    robot = robot_of(runs)
+    windows = [feel_windows(run, window_s) for run in runs]
+    design = Design.shared(windows)
+    if not design.groups:
+        raise IdentificationError("the runs have no column in common that terrain is felt by")
+    table = FeelTable.of(windows, design)
+    _check(table, windows)
+    labels = main_labels(table, len(runs))
+    groups = fold_groups(labels.tolist(), days_of(runs))
+    found = assessed(table, groups, seed)
+    everyone = np.ones(len(runs), dtype=bool)
+    best = selected(table, groups, everyone, np.random.default_rng(seed))
+    by_day = len(np.unique(groups)) < len(runs)
+    return FeelModel(
+        table.names,
+        design,
+        best.choice,
+        fitted_members(table, everyone, table.names, best.choice),
+        best.calibration,
+        Limits.of(best.windows, best.stretches, table.speeds_m_s),
+        robot.track_width,
+        robot.name,
+        ", ".join(dict.fromkeys(run.name for run in runs)),
+        {
+            **found.to_table(),
+            "held_out": "days" if by_day else "runs",
+            "notes": list(notes_of(table, windows, by_day=by_day)),
+        },
+    )
+
+
+def _check(table: FeelTable, windows: Sequence[FeelWindows]) -> None:
+    if len(table) == 0 or len(table.names) < 2:
+        driven = f"{len(table)} windows in which the robot moves on a terrain that a run names"
+        raise IdentificationError(
+            f"{driven}, of {', '.join(table.names) or 'no terrain'}; expected two terrains or more"
+        )
+    for name in table.names:
+        of = table.labels == name
+        count = len(np.unique(table.runs[of]))
+        if count < LEAST_RUNS:
+            raise IdentificationError(
+                f"{name}: {count} run of {len(windows)}, expected {LEAST_RUNS} or more: windows "
+                "of one run are no test of each other"
+            )
+        if of.sum() < LEAST_WINDOWS * count:
+            raise IdentificationError(
+                f"{name}: {of.sum()} windows in {count} runs, expected {LEAST_WINDOWS} a run or "
+                "more"
+            )

@@ -1,0 +1,84 @@
+"""How good answers are: balanced accuracy, its interval over runs, calibration, areas."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
+
+DRAWS = 1000  # of a bootstrap
+INTERVAL = (0.05, 0.95)
+BINS = 10  # of probability
+
+
+def class_weights(labels: AnyArray) -> FloatArray:
+    """Weights (N,) that add up to 1 and give every class alike."""
+    names, places, counts = np.unique(labels.astype(str), return_inverse=True, return_counts=True)
+    return np.asarray(1 / (len(names) * counts[places]))
+
+
+def balanced_accuracy(labels: AnyArray, right: BoolArray) -> float:
+    """Mean over classes of the share of right answers (N,); NaN without any."""
+    return float(class_weights(labels) @ right) if len(labels) else float("nan")
+
+
+def bootstrap_interval(
+    labels: AnyArray, right: BoolArray, runs: IntArray, seed: int = 0
+) -> tuple[float, float]:
+    """Balanced accuracy over runs drawn anew, within each class: 5 and 95 %.
+
+    Parameters
+    ----------
+    labels, right, runs : (N,)
+        Of each answer.
+    """
+    rng, drawn = np.random.default_rng(seed), []
+    for name in np.unique(labels.astype(str)):
+        of = labels.astype(str) == name
+        _, places = np.unique(runs[of], return_inverse=True)
+        counts = np.bincount(places).astype(float)
+        good = np.bincount(places, weights=right[of].astype(float))
+        rows = rng.integers(len(counts), size=(DRAWS, len(counts)))
+        drawn.append(good[rows].sum(axis=1) / counts[rows].sum(axis=1))
+    if not drawn:
+        return float("nan"), float("nan")
+    low, high = np.quantile(np.mean(drawn, axis=0), INTERVAL)
+    return float(low), float(high)
+
+
+def confusion(labels: AnyArray, told: AnyArray, columns: Sequence[str]) -> IntArray:
+    """Counts by true name and answer, (rows, columns); the rows are the first names."""
+    names = sorted(set(labels.astype(str).tolist()))
+    return np.array(
+        [[np.sum((labels == name) & (told == one)) for one in columns] for name in names]
+    )
+
+
+def calibration_error(labels: AnyArray, probabilities: FloatArray, names: Sequence[str]) -> float:
+    """Expected calibration error of the most probable answer, every class counting alike.
+
+    Mean over BINS of equal width of |share right - mean probability|.
+
+    References
+    ----------
+    Naeini, Cooper and Hauskrecht 2015, eq. 3.
+    """
+    if not len(labels):
+        return float("nan")
+    best = probabilities.argmax(axis=1)
+    sure = probabilities.max(axis=1)
+    right = np.array(names, dtype=object)[best] == labels
+    weights = class_weights(labels)
+    bins = np.minimum((sure * BINS).astype(np.int64), BINS - 1)
+    off = np.bincount(bins, weights=weights * (right - sure), minlength=BINS)
+    return float(np.abs(off).sum())
+
+
+def area(known: FloatArray, unknown: FloatArray) -> float:
+    """Share of pairs in which the unknown has the greater score; ties count half."""
+    if not len(known) or not len(unknown):
+        return float("nan")
+    ordered = np.sort(known)
+    below = np.searchsorted(ordered, unknown, side="left")
+    upto = np.searchsorted(ordered, unknown, side="right")
+    return float((below + upto).mean() / (2 * len(known)))

@@ -1,0 +1,63 @@
+import json
+import zipfile
+
+import numpy as np
+import pytest
+
+from odometry.feel.files import write_feel
+from odometry.feel.follow import FeelConfig, follow_feel
+from odometry.feel.model_file import (
+    FeelFileError,
+    is_feel_model,
+    read_feel_model,
+    write_feel_model,
+)
+from odometry.io.csv_table import read_csv_table
+from odometry.report.feel_page import write_feel_report
+from tests.odometry.feel.feel_drives import drive
+
+
+def test_a_model_comes_back_and_answers_alike(model, tmp_path):
+    write_feel_model(tmp_path / "a.feel", model)
+    again = read_feel_model(tmp_path / "a.feel")
+    run = drive("snow", 40)
+    np.testing.assert_array_equal(
+        follow_feel(run, model).lasting_probabilities, follow_feel(run, again).lasting_probabilities
+    )
+    assert again.report == json.loads(json.dumps(model.report))
+    write_feel_model(tmp_path / "b.feel", again)
+    assert (tmp_path / "a.feel").read_bytes() == (tmp_path / "b.feel").read_bytes()
+
+
+def test_damage_is_told(model, tmp_path):
+    write_feel_model(tmp_path / "a.feel", model)
+    data = bytearray((tmp_path / "a.feel").read_bytes())
+    data[len(data) // 2] ^= 1
+    (tmp_path / "b.feel").write_bytes(data)
+    assert is_feel_model(tmp_path / "a.feel")
+    assert not is_feel_model(tmp_path / "b.feel")
+    with zipfile.ZipFile(tmp_path / "c.feel", "w") as archive:
+        archive.writestr("x", "y")
+    for name, match in (("b", "checksum|cannot be read"), ("c", "not a model of feel")):
+        with pytest.raises(FeelFileError, match=match):
+            read_feel_model(tmp_path / f"{name}.feel")
+
+
+def test_what_was_felt_is_written_and_shown(model, tmp_path):
+    felt = follow_feel(drive("snow", 41), model, FeelConfig(stretch_s=5.0))
+    write_feel(felt, tmp_path)
+    write_feel_report(felt, tmp_path)
+    table = read_csv_table(tmp_path / "feel.csv", ("t", "label", "probability_snow"))
+    assert len(table) == len(felt.windows)
+    result = json.loads((tmp_path / "result.json").read_text())
+    assert result["run_probabilities"]["snow"] > 0.8
+    assert result["balanced_accuracy"]["stretch"] > 0.8
+    page = (tmp_path / "report.html").read_text()
+    assert "snow" in page
+    assert "<img" in page
+
+
+def test_probabilities_of_a_stretch_are_of_its_windows_alone(model):
+    run = drive("snow", 42)
+    felt = follow_feel(run, model, FeelConfig(stretch_s=2.0))
+    np.testing.assert_allclose(felt.lasting_probabilities, felt.probabilities, atol=1e-12)

@@ -1,0 +1,52 @@
+import numpy as np
+import pytest
+from scipy.signal import butter, sosfilt, welch
+
+from odometry.feel.spectra import band_edges_hz, band_powers, power_densities
+
+
+def test_the_density_adds_up_to_the_variance():
+    noise = np.random.default_rng(0).normal(0.0, 2.0, size=(400, 200))
+    densities = power_densities(noise, 100.0)
+    assert densities.shape == (400, 101)
+    assert densities.sum(axis=1).mean() * 0.5 == pytest.approx(4.0, rel=0.03)
+
+
+def test_it_agrees_with_an_independent_estimate():
+    sos = butter(2, [8, 20], "bandpass", fs=100, output="sos")
+    signal = sosfilt(sos, np.random.default_rng(1).normal(size=100_000))
+    own = power_densities(signal.reshape(-1, 200), 100.0).mean(axis=0)
+    _, other = welch(signal, 100.0, nperseg=200)
+    inside = slice(20, 36)
+    np.testing.assert_allclose(own[inside], other[inside], rtol=0.15)
+
+
+def test_level_and_slope_have_no_power():
+    line = 5.0 + 3.0 * np.linspace(0, 1, 200)[None]
+    assert power_densities(line, 100.0).max() < 1e-20
+
+
+def test_bands_in_hertz_are_the_same_at_another_rate():
+    rng, edges = np.random.default_rng(2), band_edges_hz(8, 50.0)
+    sos = butter(4, 40, fs=400, output="sos")
+    signal = sosfilt(sos, rng.normal(size=400 * 400))
+    bands = []
+    for every, rate_hz in ((4, 100.0), (2, 200.0), (1, 400.0)):
+        densities = power_densities(signal[::every].reshape(-1, round(2 * rate_hz)), rate_hz)
+        bands.append(band_powers(densities, 0.5, edges).mean(axis=0))
+    np.testing.assert_allclose(bands[0][:6], bands[1][:6], atol=0.1)
+    np.testing.assert_allclose(bands[1][:6], bands[2][:6], atol=0.1)
+
+
+def test_a_tone_is_in_its_band():
+    tone = np.sin(2 * np.pi * 23.0 * np.arange(200) / 100.0)[None]
+    bands = band_powers(power_densities(tone, 100.0), 0.5, band_edges_hz(7, 50.0))
+    assert bands[0].argmax() == 3  # 22 to 29 Hz
+    assert np.isfinite(bands).all()
+
+
+def test_the_highest_frequency_is_in_the_last_band():
+    densities = np.zeros((1, 101))
+    densities[0, 100] = 1.0
+    bands = band_powers(densities, 0.5, band_edges_hz(6, 50.0))
+    assert bands[0].argmax() == 5
