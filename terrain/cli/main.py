@@ -28,6 +28,8 @@ VERBS = {
     "gap": "Which effect a model lacks, and the gap closed.",
     "identify-modes": "Models of terrains or of slipping wheels, to be told apart in motion.",
     "modes": "Which terrain, or which slipping wheels, the motion speaks for.",
+    "identify-feel": "How terrains feel: vibration, currents and yaw response.",
+    "feel": "Which terrain a run feels like.",
     "export": "Results in the formats of other programs: ROS, MCAP, maps, trajectories.",
     "demo": "Train, run and report on the shipped data.",
 }

@@ -25,10 +25,13 @@ NEEDED = {
     "gap": ("RUN", "--calibration", "RUN"),
     "identify-modes": ("RUN",),
     "modes": ("RUN", "--models", "VEHICLE"),
+    "identify-feel": ("RUN",),
+    "feel": ("RUN", "--model", "VEHICLE"),
     "export": ("SET.toml", "--to", "ros"),
     "demo": (),
 }
-OF_FILE = {"train": ".model", "identify": ".toml", "identify-modes": ".toml"}  # of what they write
+OF_FILE = {"train": ".model", "identify": ".toml", "identify-modes": ".toml"}  # that they write
+OF_FILE |= {"identify-feel": ".feel"}
 FOLDERS = [verb for verb in NEEDED if verb not in {*OF_FILE, "check"}]
 
 
@@ -94,7 +97,8 @@ def test_a_file_that_is_not_the_verbs_own_is_refused(places, verb, out):
 @pytest.mark.parametrize("verb", [verb for verb in NEEDED if {"RUN", "VEHICLE"} & {*NEEDED[verb]}])
 def test_an_input_as_the_output_is_refused(places, verb):
     """A file that is read, or a folder of what is read."""
-    inside = {"identify": "RUN/odometry.toml", "identify-modes": "RUN/odometry.toml"}
+    makers = ("identify", "identify-modes", "identify-feel")
+    inside = dict.fromkeys(makers, "RUN/odometry.toml")
     (places / "RUN" / "odometry.toml").write_text("x = 1\n")
     option = "--picture" if verb == "check" else "--out"
     name = "notes.png" if verb == "check" else inside.get(verb, ".")

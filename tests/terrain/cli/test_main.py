@@ -13,7 +13,7 @@ from terrain.cli.main import cli, main
 
 VERBS = ("import", "check", "camera", "label", "train", "classify", "run", "batch", "evaluate")
 VERBS += ("synthesise", "simulate", "identify", "compare", "gap")
-VERBS += ("identify-modes", "modes", "export", "demo")
+VERBS += ("identify-modes", "modes", "identify-feel", "feel", "export", "demo")
 SLOW = ("numpy", "scipy", "sklearn", "skimage", "cv2", "matplotlib", "filterpy", "pandas")
 
 
@@ -103,7 +103,7 @@ def test_an_unknown_verb_is_a_usage_error():
         ("chek", "Did you mean 'check'?"),
         ("Identify", "Did you mean 'identify'?"),
         ("identify_modes", "Did you mean 'identify-modes'?"),
-        ("ident", "Did you mean 'identify' or 'identify-modes'?"),
+        ("ident", "Did you mean 'identify' or 'identify-modes' or 'identify-feel'?"),
         ("synthesize", "Did you mean 'synthesise'?"),
         ("fly", f"Verbs: {', '.join(VERBS)}"),
     ],

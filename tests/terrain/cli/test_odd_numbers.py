@@ -21,6 +21,7 @@ OPTIONS = [
     *((SYNTHESISE, o) for o in ("--zone-length", "--metres-per-pixel", "--image-rate")),
     (("train", "absent", "--out", "a.model"), "--metres-per-pixel"),
     (("identify-modes", "absent", "--out", "set.toml"), "--dwell"),
+    (("identify-feel", "absent", "--out", "my.feel"), "--window"),
 ]
 EITHER_SIGN = [
     (IDENTIFY, "--horizon-s", "1e-300"),

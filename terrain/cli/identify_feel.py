@@ -1,0 +1,81 @@
+"""`terrain-odometry identify-feel`: how terrains feel, from recorded runs."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from terrain.cli.options import OUTPUT, Positive, RunFolder
+from terrain.cli.recordings import span_options
+from terrain.cli.results import print_table
+
+if TYPE_CHECKING:
+    from odometry.feel.model import FeelModel
+    from odometry.run_span import Span
+
+
+@click.command(name="identify-feel")
+@click.argument("folders", metavar="RUN...", nargs=-1, required=True, type=RunFolder())
+@click.option("--out", required=True, metavar="FEEL", type=OUTPUT, help="Model to write.")
+@click.option(
+    "--window",
+    type=Positive(5.0),
+    default=2.0,
+    show_default=True,
+    help="Length of the windows, 1 to 5 s.",
+)
+@click.option(
+    "--seed", type=int, default=0, show_default=True, help="Of the folds in which runs are dealt."
+)
+@span_options
+def identify_feel(
+    folders: tuple[Path, ...], *, out: Path, window: float, seed: int, span: "Span"
+) -> None:
+    """Identify how the terrains that the run folders RUN name feel, for `feel` to tell them.
+
+    Uses what all runs have of imu.csv (vibration), the yaw rate and motor currents. Each terrain
+    needs two runs or more: whole runs are held out, and the printed figures are theirs.
+
+    \b
+    Example:
+      terrain-odometry identify-feel grass_* asphalt_* snow_* --out my_robot.feel
+    """
+    from odometry.feel.identify_feel import identify_feel as identify
+    from odometry.feel.model_file import is_feel_model, write_feel_model
+    from terrain.cli.outputs import claim_file
+    from terrain.cli.recordings import read_runs
+
+    made = claim_file(out, is_feel_model)
+    model = identify(read_runs(folders, span), window_s=window, seed=seed)
+    _print(model)
+    write_feel_model(out, model, made.to_table())
+    click.echo(f"Wrote {out}")
+    click.echo(f"Next: terrain-odometry feel RUN --model {out} --out felt")
+
+
+def _print(model: "FeelModel") -> None:
+    from odometry.report.feel_page import LENGTHS, figures
+
+    report = model.report
+    click.echo(
+        f"Whole {report['held_out']} held out, every terrain counting alike (interval of 5 to "
+        "95 % over runs drawn anew; calibration error of probabilities; share refused as unknown):"
+    )
+    header = ("", "answers", "right", "interval", "calibration", "refused")
+    rows = [
+        (word, str(report[name]["answers"]), *figures(report[name]))
+        for name, word in LENGTHS.items()
+    ]
+    print_table([header, *rows])
+    click.echo("Windows by answer:")
+    table = report["window"]["confusion"]
+    lines = [
+        (name, *(str(line.get(told, 0)) for told in model.names)) for name, line in table.items()
+    ]
+    print_table([("true terrain", *model.names), *lines])
+    click.echo("What each group of features brings (windows):")
+    groups = report["window_by_groups"]
+    print_table([("features", "right"), *((name, f"{of:.3f}") for name, of in groups.items())])
+    for note in report["notes"]:
+        click.echo(f"Note: {note}", err=True)
+    click.echo(f"Columns that `feel` needs: {', '.join(model.design.columns)}")

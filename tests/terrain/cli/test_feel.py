@@ -1,0 +1,74 @@
+"""`identify-feel` and `feel`: from run folders to a model, and to what a run feels like."""
+
+import json
+import shutil
+
+import pytest
+from click.testing import CliRunner
+
+from odometry.feel.model_file import read_feel_model
+from odometry.io.run_folder import write_run_folder
+from terrain.cli.feel import feel
+from terrain.cli.identify_feel import identify_feel
+from tests.odometry.feel.feel_drives import drive
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory):
+    """Two made terrains, three runs each."""
+    root = tmp_path_factory.mktemp("felt")
+    for name in ("gravel", "tiles"):
+        for seed in range(3):
+            run = drive(name, seed, seconds=20.0)
+            tables = {"odometry": run.odometry.columns, "imu": run.imu.columns}
+            write_run_folder(root / f"{name}_{seed}", run.settings, tables)
+    return root
+
+
+@pytest.fixture(scope="module")
+def model(folders):
+    runs = [str(path.parent) for path in sorted(folders.glob("*/run.toml"))]
+    answer = CliRunner().invoke(identify_feel, [*runs, "--out", str(folders / "my.feel")])
+    assert answer.exit_code == 0, answer.output
+    return answer, folders / "my.feel"
+
+
+def invoke(*arguments):
+    return CliRunner().invoke(feel, list(map(str, arguments)))
+
+
+def test_what_was_found_with_runs_held_out_is_printed(model):
+    answer, file = model
+    (row,) = [line for line in answer.stdout.splitlines() if line.startswith("  stretch of 10 s")]
+    found = read_feel_model(file)
+    assert f"{found.report['stretch']['balanced_accuracy']:.3f}" in row
+    assert "speed alone" in answer.stdout
+    assert "Columns that `feel` needs: gyro_x" in answer.stdout
+    assert "held out one by one" in answer.stderr
+
+
+def test_a_run_is_told_and_written(model, folders, tmp_path):
+    answer = invoke(folders / "gravel_1", "--model", model[1], "--out", tmp_path / "felt")
+    assert answer.exit_code == 0, answer.output
+    assert "gravel" in answer.stdout.splitlines()[0]
+    result = json.loads((tmp_path / "felt" / "result.json").read_text())
+    assert max(result["run_probabilities"], key=result["run_probabilities"].get) == "gravel"
+    for name in ("feel.csv", "report.html", "figures/feel.png"):
+        assert (tmp_path / "felt" / name).is_file()
+
+
+def test_no_output_is_left_where_a_run_cannot_be_felt(model, folders, tmp_path):
+    shutil.copytree(folders / "gravel_1", tmp_path / "run")
+    (tmp_path / "run" / "imu.csv").unlink()
+    answer = invoke(tmp_path / "run", "--model", model[1], "--out", tmp_path / "felt")
+    assert answer.exit_code == 1
+    assert "needs one" in str(answer.exception)
+    assert not (tmp_path / "felt").exists()
+
+
+def test_another_file_is_not_replaced(folders, tmp_path):
+    (tmp_path / "thesis.feel").write_text("mine")
+    runs = [str(path.parent) for path in folders.glob("*/run.toml")]
+    answer = CliRunner().invoke(identify_feel, [*runs, "--out", str(tmp_path / "thesis.feel")])
+    assert answer.exit_code == 1
+    assert (tmp_path / "thesis.feel").read_text() == "mine"
