@@ -15,7 +15,7 @@ CHANGED = 1.4  # ratio of what a metre moves before and after; of 23 real record
 ALIKE = 0.35  # share of that change, as a logarithm, by which the change in turns may differ
 HELD = 0.9  # correlation in each part: on terrain that slips a factor is not constant
 CERTAIN = 8.0  # standard deviations
-LEAST_SHARE = 0.1  # of the squared travel on each side of the moment
+LEAST_SHARE = 0.1  # of the way on each side of the moment
 LEAST_WINDOWS = 15
 
 
@@ -61,7 +61,8 @@ def _moment_s(start_s: FloatArray, forward_m: FloatArray, travel_m: FloatArray) 
         return None
     stamps_s, forward_m, travel_m = start_s[known], forward_m[known], travel_m[known]
     products, squares = np.cumsum(forward_m * travel_m), np.cumsum(travel_m**2)
-    share = squares / max(squares[-1], 1e-300)
+    way = np.cumsum(np.abs(forward_m))
+    share = way / max(way[-1], 1e-300)
     rows = np.flatnonzero((share > LEAST_SHARE) & (share < 1 - LEAST_SHARE))
     if not len(rows):
         return None

@@ -16,8 +16,12 @@ APART_SIGMAS = 2.0  # of what lasts of the errors of a mode
 
 
 def alike_modes(signals: Signals, modes: VelocityModes, leading: IntArray) -> BoolArray:
-    """Modes (N, M) that nothing driven in the last DWELL_S tells from the leading one (N,)."""
+    """Modes (N, M) that nothing driven in the last DWELL_S tells from the leading one (N,).
+
+    What is not measured, or tells nothing of the modes, is not in the signals.
+    """
     asked = signals.tread_speeds_m_s @ modes.steady_gains()[:, 1].T
+    asked[:-1] *= np.any(np.isfinite(signals.measured[1:]), axis=1, keepdims=True)
     means, lasts_s = _means(asked, signals.stamps_s)
     # the deviation of what lasts of errors in a mean over so long
     share = np.minimum(modes.errors_last_s / lasts_s, 1.0)[:, None]

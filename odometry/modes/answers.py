@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
-from odometry.modes.track import ModeTrack
+from odometry.modes.mode_track import ModeTrack
 from odometry.run import UNKNOWN
 
 AGREED = 0.5  # probability from which on the rolling test takes a mode for the one that fits

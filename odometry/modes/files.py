@@ -16,7 +16,7 @@ from odometry.modes.doubts import doubts
 from odometry.modes.followed import Followed
 from odometry.modes.innovation_test import ModeFit
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE
-from odometry.modes.track import ModeTrack
+from odometry.modes.mode_track import ModeTrack
 from odometry.modes.words import answer_words
 from odometry.run import UNKNOWN
 

@@ -18,9 +18,10 @@ from odometry.modes.answers import (
     named_modes,
 )
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED, ModeSet
+from odometry.modes.mode_track import ModesConfig, ModeTrack
 from odometry.modes.sight import SeenGround, seen_labels
 from odometry.modes.signals import Signals
-from odometry.modes.track import ModesConfig, ModeTrack, follow_signals, judged_signals
+from odometry.modes.track import follow_signals, judged_signals
 from odometry.run import UNKNOWN, Run
 
 MOTION, SIGHTED = "motion alone", "motion and sight"

@@ -86,8 +86,9 @@ def identify_velocity_modes(
         measurement[:] = np.median(measurement, axis=0)
     process = measurement * np.median([record.step_s for record in pooled]) / CORRECTED_S**2
     errors_last_s = float(np.median(lasting_s))
+    fastest_m_s = max(float(np.abs(record.table[:, 2:]).max()) for record in pooled)
     return VelocityModes(
-        names, blocks[..., :2], blocks[..., 2:], process, measurement, errors_last_s
+        names, blocks[..., :2], blocks[..., 2:], process, measurement, errors_last_s, fastest_m_s
     )
 
 

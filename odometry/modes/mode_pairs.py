@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.modes.mode_track import ModesConfig
 from odometry.modes.signals import STANDING_M_S
-from odometry.modes.track import ModesConfig
 from odometry.modes.traction import TractionModes, twists_of
 from odometry.modes.velocity import VelocityModes
 from odometry.run import Run

@@ -48,6 +48,7 @@ HEAD = {
         Key("variance_growth", (), "0 or more"),
     ),
 }
+OPTIONAL = {"velocity": (Key("fastest_m_s", (), "above 0"),), "traction": ()}
 MODE = {
     "velocity": (
         Key("A", (2, 2)),
@@ -126,6 +127,11 @@ def write_mode_set(file: Path, mode_set: ModeSet, comment: str = "") -> None:
     modes = mode_set.modes
     head: dict[str, Any] = {"kind": modes.kind, "source": mode_set.source}
     head |= {one.name: _plain(getattr(modes, one.name)) for one in HEAD[modes.kind]}
+    head |= {
+        one.name: _plain(getattr(modes, one.name))
+        for one in OPTIONAL[modes.kind]
+        if np.isfinite(getattr(modes, one.name))
+    }
     tables = {
         name: {one.name: _plain(getattr(modes, one.name)[row]) for one in MODE[modes.kind]}
         | {"dwell_s": float(mode_set.dwell_s[row])}
@@ -162,8 +168,9 @@ def read_mode_set(file: Path) -> ModeSet:
     if not isinstance(tables, dict) or not tables:
         raise ParameterError(f"{file}: expected a table [mode.NAME] for each mode")
     kind, where = head["kind"], f"{file}: [modes]"
-    _only(head, {"kind", "source", *(one.name for one in HEAD[kind])}, where)
-    values: dict[str, Any] = {one.name: _array(head, one, where) for one in HEAD[kind]}
+    _only(head, {"kind", "source", *(o.name for o in (*HEAD[kind], *OPTIONAL[kind]))}, where)
+    given = (*HEAD[kind], *(one for one in OPTIONAL[kind] if one.name in head))
+    values: dict[str, Any] = {one.name: _array(head, one, where) for one in given}
     dwell = Key("dwell_s", (), "above 0")
     for name, table in tables.items():
         _only(table, {one.name for one in (*MODE[kind], dwell)}, f"{file}: [mode.{name}]")

@@ -1,22 +1,22 @@
 """Follow the modes of a run."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 from tqdm import tqdm
 
-from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
-from odometry.config import require, require_positive
+from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.estimation.ekf_bank import EkfBank
 from odometry.estimation.imm import Imm
 from odometry.estimation.mode_belief import ModeBelief
 from odometry.modes.alike import alike_modes
 from odometry.modes.bias_reading import bias_readings, with_reading
 from odometry.modes.gyroscope_trust import GyroscopeTrust, gyroscope_trust
-from odometry.modes.innovation_test import Innovations, ModeFit, mode_fit
+from odometry.modes.innovation_test import Innovations, mode_fit
 from odometry.modes.mode_set import ModeSet
+from odometry.modes.mode_track import ModesConfig, ModeTrack
 from odometry.modes.own_filters import OwnFilters, with_bias, with_lead, with_shared_bias
 from odometry.modes.sight import SeenGround, mode_chains
 from odometry.modes.signals import Signals
@@ -26,86 +26,10 @@ from odometry.modes.velocity import VelocityModes
 from odometry.run import Run
 from odometry.windows.spans import touched
 
+__all__ = ["ModeTrack", "ModesConfig", "follow_modes", "follow_signals", "judged_signals"]
+
 SETTLED_S = 1e4  # after which a chain has forgotten where it began
-
-
-@dataclass(frozen=True)
-class ModesConfig:
-    """Settings of the estimator and of its answers.
-
-    Attributes
-    ----------
-    floor : float
-        Least probability of a mode.
-    sure : float
-        The probability from which a mode is named; below it the answer is "undetermined".
-    lasting_s : float
-        A disagreement of sight and feel that lasts so long is reported.
-    misfit_share : float
-        Share of the time in which no mode of the set fits, before anything was measured.
-    """
-
-    floor: float = 1e-6
-    sure: float = 0.9
-    lasting_s: float = 2.0
-    misfit_share: float = 0.05
-
-    def __post_init__(self) -> None:
-        require(0 <= self.floor < 0.5, f"floor = {self.floor}, expected 0 to below 0.5")
-        require(0.5 < self.sure < 1, f"sure = {self.sure}, expected above 0.5 and below 1")
-        require_positive(self, "lasting_s")
-        require(
-            0 < self.misfit_share < 0.5,
-            f"misfit_share = {self.misfit_share}, expected above 0 and below 0.5",
-        )
-
-
-@dataclass(frozen=True)
-class ModeTrack:
-    """Beliefs at the N stamps of a run.
-
-    Attributes
-    ----------
-    names : tuple of str
-        Of the M modes.
-    stamps_s : (N,)
-    probabilities : (N, M)
-        Of each mode, from what was measured up to the stamp.
-    means, sigmas : (N, n)
-        State over all modes, and its standard deviations. Errors of models that last are in
-        these: what filters take for noise of each measurement would average out.
-    normalised_squared : (N,)
-        Squared normalised innovation of the most probable mode, divided by how many entries were
-        measured: 1 on average; NaN where nothing was.
-    labels : (N,) of str
-        What the run names; "unknown" where it names nothing.
-    fit : ModeFit or None
-        Whether a mode fits at all; without it one is taken to.
-    gyroscope : GyroscopeTrust or None
-        Whether the gyroscope can be trusted; without it it is.
-    alike : (N, M) or None
-        Modes that what was driven cannot tell from the most probable one; without it none are.
-
-    Examples
-    --------
-    >>> import odometry
-    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
-    >>> modes = odometry.read_mode_set(odometry.shipped_data() / "modes" / "demo.toml")
-    >>> track = odometry.follow_modes(run, modes)
-    >>> track.names, track.probabilities.shape == (len(track.stamps_s), 2)
-    (('grass', 'gravel'), True)
-    """
-
-    names: tuple[str, ...]
-    stamps_s: FloatArray
-    probabilities: FloatArray
-    means: FloatArray
-    sigmas: FloatArray
-    normalised_squared: FloatArray
-    labels: AnyArray
-    fit: ModeFit | None = None
-    gyroscope: GyroscopeTrust | None = None
-    alike: BoolArray | None = None
+MOST_FASTER = 1.2  # times the fastest run of identification: beyond, models say nothing
 
 
 def follow_modes(
@@ -186,7 +110,7 @@ def follow_signals(
 
     roughness = modes.roughness(signals)
     gap_ends = np.searchsorted(signals.stamps_s, signals.gaps_s[:, 1])
-    measured, readings = _judged(signals, gap_ends), bias_readings(signals)
+    measured, readings = _judged(signals, gap_ends, modes.fastest_m_s), bias_readings(signals)
     first = chains[in_force[0]].transition(SETTLED_S).mean(axis=0)
     merged = modes.start(signals, independent)
     belief = alone = ModeBelief.alike(*merged, first)
@@ -232,9 +156,24 @@ def follow_signals(
         squared,
         signals.labels,
         mode_fit(left, mode_set.dwell_s, config.misfit_share),
-        gyroscope_trust(signals, means[:, -1], sigmas[:, -1], readings),
-        alike_modes(signals, modes, leading) if isinstance(modes, VelocityModes) else None,
+        _trust(signals, mode_set, means[:, -1], sigmas[:, -1]),
+        _alike(replace(signals, measured=measured), mode_set, leading),
     )
+
+
+def _trust(
+    signals: Signals, mode_set: ModeSet, biases_rad_s: FloatArray, sigmas_rad_s: FloatArray
+) -> GyroscopeTrust | None:
+    """None where the filters measure headings, which confirm a bias."""
+    if mode_set.modes.state_angles:
+        return None
+    return gyroscope_trust(signals, biases_rad_s, sigmas_rad_s, bias_readings(signals))
+
+
+def _alike(signals: Signals, mode_set: ModeSet, leading: IntArray) -> BoolArray | None:
+    if isinstance(mode_set.modes, VelocityModes):
+        return alike_modes(signals, mode_set.modes, leading)
+    return None
 
 
 def _normalised_squared(belief: ModeBelief, measured: FloatArray) -> float:
@@ -245,9 +184,14 @@ def _normalised_squared(belief: ModeBelief, measured: FloatArray) -> float:
     return float(of_mode / np.isfinite(measured).sum())
 
 
-def _judged(signals: Signals, gap_ends: IntArray) -> FloatArray:
-    """What is measured (N, m) where it tells of the modes: not while standing, nor in a gap."""
-    tells = moving(signals) & ~touched(signals.gaps_s, signals.stamps_s, signals.stamps_s)
+def _judged(signals: Signals, gap_ends: IntArray, fastest_m_s: float) -> FloatArray:
+    """What is measured (N, m) where it tells of the modes.
+
+    Not while standing, nor in a gap, nor far above the speeds that the modes were identified at.
+    """
+    faster = np.abs(signals.tread_speeds_m_s).max(axis=1) > MOST_FASTER * fastest_m_s
+    tells = moving(signals) & ~np.append(False, faster[:-1])
+    tells &= ~touched(signals.gaps_s, signals.stamps_s, signals.stamps_s)
     tells[gap_ends] = False
     return np.where(tells[:, None], signals.measured, np.nan)
 

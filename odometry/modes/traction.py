@@ -68,6 +68,7 @@ class TractionModes:
 
     kind = "traction"
     errors_last_s = 0.0
+    fastest_m_s = np.inf
     state_angles: tuple[int, ...] = (2,)
 
     @property

@@ -40,6 +40,9 @@ class VelocityModes:
     errors_last_s : float
         For how long errors of a model are alike: of what is measured within that time, all
         together counts once.
+    fastest_m_s : float
+        Largest speed of a tread in the runs identified from: the models say nothing of speeds far
+        above it.
     """
 
     names: tuple[str, ...]
@@ -48,6 +51,7 @@ class VelocityModes:
     process_variance: FloatArray
     measurement_variance: FloatArray
     errors_last_s: float = 0.0
+    fastest_m_s: float = np.inf
 
     kind = "velocity"
     state_angles: tuple[int, ...] = ()

@@ -8,7 +8,7 @@ from odometry.modes.answers import Detection, Misfit
 from odometry.modes.doubts import doubts
 from odometry.modes.followed import SIGHTED, Followed, Score
 from odometry.modes.mode_set import NO_MODES
-from odometry.modes.track import ModeTrack
+from odometry.modes.mode_track import ModeTrack
 
 FEW = 4  # stretches, or answers, that are said one by one
 LEAST_SHARE = 0.005  # less is not said

@@ -28,7 +28,7 @@ def drive(differences, omega=None):
     """Half a metre a second ahead with differences (N,) of tread speeds."""
     size = len(differences)
     treads = 0.5 + np.outer(differences, [-0.5, 0.5])
-    omega = np.full(size, np.nan) if omega is None else omega
+    omega = np.zeros(size) if omega is None else omega
     measured = np.column_stack([np.full(size, np.nan), omega])
     labels = np.full(size, "unknown", dtype=object)
     return Signals(STEP_S * np.arange(size), treads, measured, labels)
@@ -71,3 +71,11 @@ def test_modes_within_an_error_of_each_other_are_not_named_however_long_one_fits
     )
     assert set(named_modes(near, 0.9)) == {UNDETERMINED}
     assert named_modes(far, 0.9)[-1] == "a"
+
+
+def test_turns_that_are_not_measured_tell_nothing():
+    signals = drive(np.ones(500))
+    signals.measured[:250] = np.nan
+    alike = alike_modes(signals, modes(1.0, 2.0), np.zeros(500, dtype=int))[:, 1]
+    assert alike[:250].all()
+    assert not alike[400:].any()

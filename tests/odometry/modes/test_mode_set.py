@@ -7,7 +7,15 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from odometry.errors import ParameterError
-from odometry.modes.mode_set import HEAD, KINDS, MODE, ModeSet, read_mode_set, write_mode_set
+from odometry.modes.mode_set import (
+    HEAD,
+    KINDS,
+    MODE,
+    OPTIONAL,
+    ModeSet,
+    read_mode_set,
+    write_mode_set,
+)
 from tests.odometry.modes.mode_examples import traction_set, velocity_set
 
 finite = st.floats(-1e6, 1e6)
@@ -24,7 +32,8 @@ def mode_sets(draw):
         shape = (*many, *one.shape)
         return draw(arrays(np.float64, shape, elements=positive if one.sign else finite))
 
-    values = {one.name: drawn(one) for one in HEAD[kind]}
+    given_too = [one for one in OPTIONAL[kind] if draw(st.booleans())]
+    values = {one.name: drawn(one) for one in (*HEAD[kind], *given_too)}
     values = {name: of if of.shape else float(of) for name, of in values.items()}
     values |= {one.name: drawn(one, len(names)) for one in MODE[kind]}
     if kind == "velocity":

@@ -8,7 +8,7 @@ from odometry.modes import velocity
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.sight import SeenGround
 from odometry.modes.signals import BIAS_SIGMA_RAD_S, BIAS_WALK_RAD2_S3, Signals
-from odometry.modes.track import ModesConfig, follow_modes, follow_signals
+from odometry.modes.track import ModesConfig, follow_modes, follow_signals, judged_signals
 from odometry.modes.traction import TractionModes
 from odometry.modes.velocity import VelocityModes
 from tests.odometry.modes.mode_drives import (
@@ -135,6 +135,21 @@ def test_a_rough_stretch_says_less():
         most.append(track.probabilities[50, 0])
     assert most[0] > 0.99
     assert most[1] < 0.6
+
+
+def test_who_drives_far_faster_than_identified_learns_nothing(run):
+    """Beyond 1.2 times the fastest run, as if it were not measured."""
+    fastest_m_s = float(np.abs(run.odometry.stack("v_left", "v_right")).max())
+    slower, equal = (
+        follow_modes(run, replace(SET, modes=replace(SET.modes, fastest_m_s=of)))
+        for of in (fastest_m_s / 10, fastest_m_s)
+    )
+    signals = judged_signals(run, SET)
+    faster = np.abs(signals.tread_speeds_m_s).max(axis=1) > 1.2 * fastest_m_s / 10
+    assert np.isnan(slower.normalised_squared[1:][faster[:-1]]).all()
+    assert faster.mean() > 0.5
+    np.testing.assert_array_equal(equal.probabilities, follow_modes(run, SET).probabilities)
+    assert slower.probabilities.max() < equal.probabilities.max()
 
 
 def test_the_same_input_gives_the_same_bits(run):

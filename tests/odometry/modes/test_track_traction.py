@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.modes.mode_set import ModeSet
+from odometry.modes.signals import BIAS_SIGMA_RAD_S
 from odometry.modes.track import follow_modes
 from odometry.modes.traction import TractionModes
 from tests.odometry.modes.mode_drives import (
@@ -55,3 +56,17 @@ def test_poses_that_begin_late_do_not_mislead(losing_traction, late_s):
     assert np.nanmax(track.normalised_squared[:CHANGE]) < 8.0
     assert track.probabilities[:CHANGE, 1].max() < 0.9
     assert np.hypot(*(track.means[-1, :2] - last)) < 0.03
+
+
+def test_a_bias_that_poses_confirm_is_no_reason_to_name_nothing(losing_traction):
+    """Poses are measured by the filters: a gyroscope that is off by six prior deviations is."""
+    run, mode_set, _ = losing_traction
+    truth = run.pose["yaw"]
+    rates = np.gradient(np.unwrap(truth), run.pose.stamps_s)
+    heard = np.interp(run.odometry.stamps_s, run.pose.stamps_s, rates) + 6 * BIAS_SIGMA_RAD_S
+    odometry = table({**run.odometry.columns, "gyro_z": heard})
+    noise = mode_set.modes.measurement_variance * [1.0, 1.0, 1.0, 0.05**2]
+    modes = replace(mode_set.modes, measurement_variance=noise)
+    track = follow_modes(replace(run, odometry=odometry), replace(mode_set, modes=modes))
+    assert track.means[-1, -1] > 3 * BIAS_SIGMA_RAD_S
+    assert track.gyroscope is None
