@@ -18,9 +18,11 @@ APART_SIGMAS = 2.0  # of what lasts of the errors of a mode
 def alike_modes(signals: Signals, modes: VelocityModes, leading: IntArray) -> BoolArray:
     """Modes (N, M) that nothing driven in the last DWELL_S tells from the leading one (N,).
 
-    What is not measured, or tells nothing of the modes, is not in the signals.
+    What is not measured, or tells nothing of the modes, is not in the signals. Modes of one model
+    are told apart by their noise.
     """
-    asked = signals.tread_speeds_m_s @ modes.steady_gains()[:, 1].T
+    gains = modes.steady_gains()[:, 1]
+    asked = signals.tread_speeds_m_s @ gains.T
     asked[:-1] *= np.any(np.isfinite(signals.measured[1:]), axis=1, keepdims=True)
     means, lasts_s = _means(asked, signals.stamps_s)
     # the deviation of what lasts of errors in a mean over so long
@@ -34,8 +36,8 @@ def alike_modes(signals: Signals, modes: VelocityModes, leading: IntArray) -> Bo
         last = np.maximum.accumulate(np.where(apart, rows[:, None], -1), axis=0)
         since_s = signals.stamps_s[:, None] - signals.stamps_s[last]
         recent = (last >= 0) & (since_s <= DWELL_S)
-        alike[leading == place] = ~recent[leading == place]
-    alike[rows, leading] = False
+        one_model = (gains == gains[place]).all(axis=1)
+        alike[leading == place] = ~(recent | one_model)[leading == place]
     return alike
 
 

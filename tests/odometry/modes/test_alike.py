@@ -79,3 +79,8 @@ def test_turns_that_are_not_measured_tell_nothing():
     alike = alike_modes(signals, modes(1.0, 2.0), np.zeros(500, dtype=int))[:, 1]
     assert alike[:250].all()
     assert not alike[400:].any()
+
+
+def test_modes_of_one_model_are_told_apart_by_their_noise():
+    alike = alike_modes(drive(np.ones(500)), modes(1.0, 1.0, 1.01), np.zeros(500, dtype=int))
+    np.testing.assert_array_equal(alike[-1], [False, False, True])
