@@ -16,6 +16,7 @@ from odometry.running_odometer import RunningOdometer
 from odometry.windows.gaps_so_far import GapsSoFar
 from terrain.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.likeness import Likeness
 from terrain.classification.own_statistics import used_as
 from terrain.config import Config
 from terrain.sighting import Sighting
@@ -164,6 +165,14 @@ class LiveOdometry:
             return LiveStep(self._estimate, pose, self._estimate.terrain)
         seen = self._watcher.sightings[-1] if frame.image is not None else None
         return LiveStep(self._estimate, pose, self._estimate.terrain, seen, self._watcher.event)
+
+    @property
+    def likeness(self) -> Likeness | None:
+        """Whether the latest images look like the model's training photographs.
+
+        None where nothing reads images, or the model cannot tell; `Likeness.note` is what to say.
+        """
+        return None if self._watcher is None else self._watcher.seen.likeness
 
 
 def _source(

@@ -49,6 +49,7 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "sightings": sighting_counts(result),
         "other_odometry": sorted(of.stem for of in result.run.folder.glob("other_odometry/*.csv")),
         "label_confusion": label_confusion_table(result),
+        "like_training": _like_training(result),
         "filter": filter_table(result.replay),
         "learned": {name: dict(of.values) for name, of in result.learned.terrains.items()},
         "config": result.config.to_table(),
@@ -83,6 +84,14 @@ def sighting_counts(result: RunResult) -> dict[str, int]:
         word = sighting.label or f"no label: {sighting.reason}"
         counts[word] = counts.get(word, 0) + 1
     return dict(sorted(counts.items()))
+
+
+def _like_training(result: RunResult) -> dict[str, Any] | None:
+    """Whether the images look like the training photographs; None where nothing can tell."""
+    likeness = None if result.watcher is None else result.watcher.seen.likeness
+    if likeness is None or not likeness.images:
+        return None
+    return asdict(likeness) | {"unlike": likeness.is_unlike}
 
 
 def _withheld(result: RunResult) -> dict[str, Any] | None:

@@ -1,6 +1,7 @@
 """The watcher: frame and estimate in, the name of the terrain in force out."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,6 +20,7 @@ from terrain.errors import CameraError, ImageError
 from terrain.images import read_image
 from terrain.places import Footprint, Sight
 from terrain.region import Rectangle, Region, RegionConfig, predict_region
+from terrain.seen_so_far import SeenSoFar
 from terrain.sighting import Sighting, answered
 from terrain.suited import coarsest_m, unsuited
 from terrain.switch import Switch, SwitchConfig, SwitchEvent
@@ -51,6 +53,8 @@ class TerrainWatcher:
     in_force : list of str
         The terrain in force after each sighting.
     events : list of SwitchEvent
+    seen : SeenSoFar
+        Whether the images look like the training photographs; labels count less where not.
     """
 
     def __init__(
@@ -72,6 +76,7 @@ class TerrainWatcher:
         self._robot = robot
         self._camera = camera
         self.classifier = classifier
+        self.seen = SeenSoFar(classifier)
         self._region = region
         self._folder = folder
         self._keep = keep
@@ -94,7 +99,8 @@ class TerrainWatcher:
             sighting = self.look(frame, estimate)
             self.sightings.append(sighting)
             if sighting.label and sighting.region is not None:
-                sight = _sight(sighting, sighting.region, pose, travel_m)
+                given = self.seen.weighed(sighting.label, sighting.probabilities)
+                sight = _sight(sighting, sighting.region, given, pose, travel_m)
                 self._switch = self._switch.see(sight)
         self._switch = self._switch.at(frame.stamp_s, pose, travel_m)
         if self._switch.event is not None:
@@ -166,7 +172,9 @@ class TerrainWatcher:
         if self.classifier.colour_ and image.ndim != 3:
             reason = "the image is grey, the model was trained with colour"
             return Sighting(frame.stamp_s, name, region=region, reason=reason)
-        answers = self.classifier.classify([self._view(image, r) for r in region.rectangles])
+        views = [self._view(image, r) for r in region.rectangles]
+        answers = self.classifier.classify(views)
+        self.seen.add(views)
         self._has_answered = True
         return answered(frame.stamp_s, name, region, answers)
 
@@ -212,12 +220,18 @@ def _carried(
     return state[:3]
 
 
-def _sight(sighting: Sighting, region: Region, pose: FloatArray, travel_m: float) -> Sight:
+def _sight(
+    sighting: Sighting,
+    region: Region,
+    given: Mapping[str, float],
+    pose: FloatArray,
+    travel_m: float,
+) -> Sight:
     return Sight(
         sighting.label,
         sighting.stamp_s,
         travel_m,
         se2.transform(pose, region.place),
         region.distance_ahead_m,
-        sighting.probabilities,
+        given,
     )

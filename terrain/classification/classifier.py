@@ -1,7 +1,7 @@
 """The terrain classifier: features, a scaler and k nearest neighbours, with rejection."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from copy import copy
 from typing import Any, Self
 
@@ -18,6 +18,7 @@ from terrain.classification.calibration import tempered
 from terrain.classification.feature_jobs import shared_feature_matrix
 from terrain.classification.features import FeatureSettings
 from terrain.classification.features_of import Transformed, Transformer, features_of
+from terrain.classification.likeness import Likeness, TrainingLook, look_of, middle_of
 from terrain.classification.model_file import ModelFile
 from terrain.classification.neighbours import Neighbours, vote
 from terrain.classification.patches import LabelledPatches, cut_patches
@@ -88,6 +89,8 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
         Of the last `fit`; a loaded classifier has none.
     trained_on_ : TrainedOn or None
         None where nobody said.
+    training_look_ : TrainingLook or None
+        What `likeness` compares images with; None of features and of files of version 0.9.
 
     Notes
     -----
@@ -197,6 +200,7 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
             labels, photos = _labels_and_groups(len(features), labels, groups)
         self.classes_, codes = np.unique(labels, return_inverse=True)
         self.trained_on_ = trained_on
+        self.training_look_ = TrainingLook.of(X, codes, photos) if holds_images(X) else None
         self._learn(
             Samples(features[: len(labels)], codes, photos),
             Samples(
@@ -274,6 +278,17 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
         other = copy(self)
         other._neighbours = neighbours
         return other
+
+    def likeness(self, images: Iterable[ByteImage]) -> Likeness | None:
+        """Whether images, as a whole, look like the training photographs; None if it cannot tell.
+
+        Sharpness, scale of texture, contrast and exposure of the middle of each image are compared
+        with those of the training patches. It says nothing of the terrain.
+        """
+        if self.training_look_ is None:
+            return None
+        looks = [look_of(middle_of(image, self.patch_size_px)) for image in images]
+        return self.training_look_.compared(np.array(looks))
 
     def _check_parameters(self) -> None:
         if self.preset not in PRESETS:

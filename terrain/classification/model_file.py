@@ -10,6 +10,7 @@ from odometry.arrays import AnyArray
 from odometry.errors import ConfigError
 from terrain.classification.features import FeatureSettings
 from terrain.classification.features_of import Transformed, Transformer, features_of
+from terrain.classification.likeness import TrainingLook
 from terrain.classification.model_settings import ModelSettings
 from terrain.classification.neighbours import Neighbours
 from terrain.classification.network_features import NetworkFeatures
@@ -37,6 +38,7 @@ class ModelFile:
     rejection_distances_: tuple[float, ...]
     temperature_: float | None
     trained_on_: TrainedOn | None
+    training_look_: TrainingLook | None
     features: Transformer | None
     _features: FeatureSettings | Transformed | None
     _neighbours: Neighbours
@@ -56,6 +58,8 @@ class ModelFile:
             raise ModelFileError(f"{path}: the classifier was fitted on features, not on images")
         features: FeatureSettings | NetworkSettings
         arrays = self._neighbours.arrays()
+        if self.training_look_ is not None:
+            arrays |= self.training_look_.arrays()
         if isinstance(self._features, FeatureSettings):
             features = self._features
         elif isinstance(made_by := self._features.transformer, NetworkFeatures):
@@ -118,6 +122,7 @@ class ModelFile:
         model.rejection_distances_ = settings.rejection_distances
         model.temperature_ = settings.temperature
         model.trained_on_ = settings.trained_on
+        model.training_look_ = TrainingLook.from_arrays(arrays, len(settings.classes))
         check_codes(arrays["codes"], len(settings.classes))
         model._neighbours = PRESETS[model.preset].neighbours.from_arrays(arrays)
         model._check_that_parts_fit(model._features)

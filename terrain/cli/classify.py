@@ -39,6 +39,7 @@ def classify(model: Path, images: tuple[Path, ...], *, as_json: bool, own_statis
     """
     from terrain.classification.classifier import TerrainClassifier
     from terrain.cli.labelled_images import print_held_out
+    from terrain.cli.likeness import print_likeness
 
     classifier = TerrainClassifier.load(model)
     folders = [path for path in images if path.is_dir()]
@@ -50,6 +51,7 @@ def classify(model: Path, images: tuple[Path, ...], *, as_json: bool, own_statis
         all_used = print_held_out(classifier, model, folders[0], as_json=as_json)
     else:
         rows = [_row(classifier, path) for path in images]
+        print_likeness(classifier, images)
         click.echo(json.dumps(rows, indent=2) if as_json else _table(classifier, rows))
         all_used = not any("error" in row for row in rows)
     if not all_used:

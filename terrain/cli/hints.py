@@ -42,6 +42,9 @@ def hints(result: RunResult, *, vision: bool, named: str | None = None) -> list[
     if result.watcher is not None:
         if isinstance(result.watcher.classifier, OwnStatisticsClassifier):
             found.append(result.watcher.classifier.described)
+        likeness = result.watcher.seen.likeness
+        if likeness is not None and likeness.note is not None:
+            found.append(f"{likeness.note}. Here they count less")
         found += _blind(result.watcher.sightings)
         if named is None and len(known) > 1:
             found += _start(result.initial_terrain, result.run.terrain, result.watcher.sightings)

@@ -31,6 +31,7 @@ def print_held_out(
     """
     from terrain.classification.held_out import answer_photos, held_out_score
     from terrain.classification.patches import find_photos
+    from terrain.cli.likeness import print_likeness
     from terrain.errors import PatchError
 
     answers, unusable = answer_photos(classifier, find_photos(folder))
@@ -43,6 +44,7 @@ def print_held_out(
         raise PatchError(f"{folder}: nothing is held out: {', '.join(causes)}")
     for note in (*_notes(classifier, model, answers), *_of_scale(classifier, folder)):
         click.echo(f"Note: {note}", err=True)
+    print_likeness(classifier, [each.photo.path for each in held_out])
     score = held_out_score(classifier.classes_.tolist(), held_out)
     click.echo(
         json.dumps(_json(score, answers), indent=2) if as_json else _text(score, len(held_out))

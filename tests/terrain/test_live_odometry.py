@@ -63,6 +63,7 @@ def with_steps(result, steps):
         sightings=sightings,
         in_force=[step.terrain for step in seen],
         events=[step.switch for step in steps if step.switch is not None],
+        seen=result.watcher.seen if result.watcher else SimpleNamespace(likeness=None),
     )
     estimates = tuple(step.estimate for step in steps)
     return replace(result, replay=Replay(estimates), watcher=watcher)

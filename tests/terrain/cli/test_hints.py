@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 
 from odometry.estimation.filter_event import FilterEvent
+from terrain.classification.likeness import Likeness
 from terrain.cli.hints import hints
 
 
@@ -12,7 +13,11 @@ def result(
     watcher = (
         None
         if classes is None
-        else SimpleNamespace(classifier=SimpleNamespace(classes_=classes), sightings=[])
+        else SimpleNamespace(
+            classifier=SimpleNamespace(classes_=classes),
+            sightings=[],
+            seen=SimpleNamespace(likeness=None),
+        )
     )
     return SimpleNamespace(
         initial_terrain=initial,
@@ -33,6 +38,16 @@ def test_nothing_to_say():
     assert hints(result(classes=["gravel"]), vision=True) == []
     assert hints(result(), vision=False) == []
     assert hints(result(initial="ground", tables=(), images=False), vision=True) == []
+
+
+def test_images_that_are_unlike_the_training_photographs_come_before_their_labels():
+    of = starting(["grass"])
+    of.watcher.seen.likeness = Likeness(40, 0.93, 0.9, ("darker", "more blurred"))
+    (hint, *_) = hints(of, vision=True)
+    assert "unlike the training photographs of the model (darker, more blurred)" in hint
+    assert "93 % of held-out training patches" in hint
+    of.watcher.seen.likeness = Likeness(40, 0.6, 0.5, ())
+    assert not any("unlike" in one for one in hints(of, vision=True))
 
 
 def test_a_terrain_without_a_table_is_named():

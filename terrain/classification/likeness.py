@@ -1,0 +1,200 @@
+"""Whether images look like the training photographs: sharpness, scale of texture, exposure."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import Self
+
+import cv2
+import numpy as np
+from scipy.spatial.distance import cdist
+
+from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
+from terrain.images import to_grey
+
+NUMBERS = 6  # of a look
+# what it is to be low or high in them
+WORDS = (
+    ("darker", "brighter"),
+    ("of less contrast", "of more contrast"),
+    ("more blurred", "sharper or noisier"),
+    ("coarser", "finer"),  # of all octaves
+)
+SIGMAS_PX = (0.7, 1.4, 2.8, 5.6, 11.2)  # between two of them lies an octave of texture
+PATCHES_PER_PHOTO = 12
+MOST_PATCHES = 2000
+NEAREST = 3
+FEWEST_IMAGES = 5
+# chosen on the photographs of ground/, altered and not; ranks are 0.5 in the mean where all is well
+UNLIKE_RANK, UNLIKE_RANK_IN_CLASS = 0.75, 0.7
+MOST_WORDS = 3
+WORTH_NAMING = 0.5  # deviations within a terrain
+
+
+@dataclass(frozen=True)
+class Likeness:
+    """Whether the images of a run, or a folder, look like the training photographs.
+
+    Attributes
+    ----------
+    images : int
+    rank, rank_in_class : float
+        Mean share of held-out training patches that are nearer to the other photographs than an
+        image is; among all, and among those of the terrain that it is nearest to. 0.5 where the
+        images are like the photographs, 1 where none is. NaN without images.
+    how : tuple of str
+        In what the images differ most.
+    """
+
+    images: int
+    rank: float
+    rank_in_class: float
+    how: tuple[str, ...]
+
+    @property
+    def is_unlike(self) -> bool | None:
+        """None where there are too few images to tell."""
+        if self.images < FEWEST_IMAGES:
+            return None
+        return self.rank > UNLIKE_RANK and self.rank_in_class > UNLIKE_RANK_IN_CLASS
+
+    @property
+    def note(self) -> str | None:
+        """What to say before any label is trusted; None where there is nothing to say."""
+        if not self.is_unlike:
+            return None
+        how = f" ({', '.join(self.how)})" if self.how else ""
+        return (
+            f"the images are unlike the training photographs of the model{how}: another camera, "
+            f"distance or light. {100 * self.rank:.0f} % of held-out training patches are nearer "
+            "to the others than these images are. Many labels may be wrong; label images of this "
+            "camera and train with them"
+        )
+
+
+@dataclass(frozen=True)
+class TrainingLook:
+    """How the training patches look.
+
+    Attributes
+    ----------
+    looks : FloatArray, shape (n, 6)
+    codes : IntArray, shape (n,)
+        Terrains.
+    distances : FloatArray, shape (n,)
+        Of each patch to the nearest of other photographs.
+    """
+
+    looks: FloatArray
+    codes: IntArray
+    distances: FloatArray
+
+    @classmethod
+    def of(cls, patches: Sequence[ByteImage], codes: IntArray, groups: AnyArray) -> Self:
+        """Learn from square patches, terrains (n,) and photographs (n,), at least two of each."""
+        rows = _spread_rows(groups)
+        looks, codes, groups = (
+            np.array([look_of(patches[i]) for i in rows]),
+            codes[rows],
+            groups[rows],
+        )
+        unknown = cls(looks, codes, np.zeros(len(looks)))
+        own = groups[:, None] == groups
+        return cls(looks, codes, unknown._nearest(looks, own)[0])
+
+    @cached_property
+    def spread(self) -> FloatArray:
+        """Deviation of each number (6,) within a terrain, not quite zero."""
+        means = np.array([self.looks[self.codes == c].mean(axis=0) for c in self.codes])
+        return np.asarray(np.maximum((self.looks - means).std(axis=0), 1e-3))
+
+    def compared(self, looks: FloatArray) -> Likeness:
+        """Compare the looks (m, 6) of images."""
+        if not len(looks):
+            return Likeness(0, float("nan"), float("nan"), ())
+        distances, nearest = self._nearest(looks)
+        among_all = (self.distances < distances[:, None]).mean(axis=1)
+        in_class = [
+            float((self.distances[self.codes == self.codes[i]] < distance).mean())
+            for i, distance in zip(nearest, distances, strict=True)
+        ]
+        return Likeness(
+            len(looks), float(among_all.mean()), float(np.mean(in_class)), self._how(looks)
+        )
+
+    def _how(self, looks: FloatArray) -> tuple[str, ...]:
+        apart = (np.median(looks, axis=0) - np.median(self.looks, axis=0)) / self.spread
+        words: dict[int, str] = {}
+        for i in np.argsort(-np.abs(apart)):
+            kind = min(int(i), len(WORDS) - 1)
+            if abs(apart[i]) > WORTH_NAMING:
+                words.setdefault(kind, WORDS[kind][int(apart[i] > 0)])
+        return tuple(words.values())[:MOST_WORDS]
+
+    def _nearest(
+        self, looks: FloatArray, left_out: AnyArray | None = None
+    ) -> tuple[FloatArray, IntArray]:
+        """Mean distance of looks (m, 6) to the nearest patches, and the nearest of them."""
+        apart = cdist(looks / self.spread, self.looks / self.spread)
+        if left_out is not None:
+            apart[left_out] = np.inf
+        order = np.argsort(apart, axis=1, kind="stable")[:, :NEAREST]
+        mean = np.take_along_axis(apart, order, axis=1).mean(axis=1)
+        return np.where(np.isfinite(mean), mean, 1e9), order[:, 0]
+
+    def arrays(self) -> dict[str, AnyArray]:
+        """Everything learned, by name."""
+        return {
+            "look_points": self.looks,
+            "look_codes": self.codes,
+            "look_distances": self.distances,
+        }
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, AnyArray], classes: int) -> Self | None:
+        """Rebuild from what `arrays` gave; None of files of version 0.9, which have none.
+
+        Raises
+        ------
+        KeyError, ValueError
+            If the arrays do not fit.
+        """
+        if "look_points" not in arrays:
+            return None
+        looks, codes, own = (arrays[f"look_{of}"] for of in ("points", "codes", "distances"))
+        fits = looks.ndim == 2 and looks.shape[1] == NUMBERS and len(looks) > 0
+        if not fits or codes.shape != own.shape or codes.shape != looks.shape[:1]:
+            raise ValueError(f"looks of shapes {looks.shape}, {codes.shape}, {own.shape}")
+        if codes.dtype.kind != "i" or not 0 <= codes.min() <= codes.max() < classes:
+            raise ValueError(f"codes of looks do not name {classes} classes")
+        return cls(looks, codes, own)
+
+
+def look_of(patch: ByteImage) -> FloatArray:
+    """Six numbers (6,) of a patch: mean grey, contrast, and how octaves of texture compare.
+
+    The mean is in units of white, the others are natural logarithms: of the deviation of grey, and
+    of the variance of an octave over that of the next coarser one, finest first.
+    """
+    grey = to_grey(patch).astype(np.float32)
+    levels = [grey, *(cv2.GaussianBlur(grey, (0, 0), sigma) for sigma in SIGMAS_PX)]
+    octaves = np.log([float(np.var(a - b)) + 0.05 for a, b in pairwise(levels)])
+    return np.array([grey.mean() / 255, np.log(grey.std() + 1), *(octaves[:-1] - octaves[1:])])
+
+
+def middle_of(image: ByteImage, size_px: int) -> ByteImage:
+    """The square in the middle of an image; smaller where the image is."""
+    top, left = (max(0, (length - size_px) // 2) for length in image.shape[:2])
+    return image[top : top + size_px, left : left + size_px]
+
+
+def _spread_rows(groups: AnyArray) -> IntArray:
+    """Rows of at most 12 patches of each photograph, spread evenly, and 2000 in all."""
+    rows: list[int] = []
+    for group in dict.fromkeys(groups.tolist()):
+        of = np.flatnonzero(groups == group)
+        count = min(len(of), PATCHES_PER_PHOTO)
+        rows += of[np.linspace(0, len(of) - 1, count).astype(int)].tolist()
+    kept = np.linspace(0, len(rows) - 1, min(len(rows), MOST_PATCHES)).astype(int)
+    return np.asarray(np.array(rows, dtype=np.intp)[kept])

@@ -1,0 +1,53 @@
+"""Whether the images of a run look like the training photographs, and what labels are worth."""
+
+from collections import deque
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from odometry.arrays import ByteImage, FloatArray
+from odometry.run import UNKNOWN
+from terrain.classification.answer import Classifier
+from terrain.classification.likeness import Likeness, TrainingLook, look_of, middle_of
+
+KEPT = 200  # looks of the latest images
+# ground/ to pavements/, standardised: 0.47 right of four terrains is 0.3 of the way from chance
+WORTH_OF_UNLIKE = 0.3
+
+
+class SeenSoFar:
+    """The looks of what a classifier was shown in a run.
+
+    Parameters
+    ----------
+    classifier : Classifier
+        One that knows no look of its training photographs can tell nothing.
+    """
+
+    def __init__(self, classifier: Classifier) -> None:
+        self._training: TrainingLook | None = getattr(classifier, "training_look_", None)
+        self._size_px = classifier.patch_size_px
+        self._names = list(map(str, classifier.classes_))
+        self._looks: deque[FloatArray] = deque(maxlen=KEPT)
+
+    def add(self, views: Sequence[ByteImage]) -> None:
+        """Take in what was shown of one image."""
+        if self._training is not None:
+            looks = [look_of(middle_of(view, self._size_px)) for view in views]
+            self._looks.append(np.mean(looks, axis=0))
+
+    @property
+    def likeness(self) -> Likeness | None:
+        """Of the images so far; None where the classifier cannot tell."""
+        if self._training is None:
+            return None
+        return self._training.compared(np.array(self._looks))
+
+    def weighed(self, label: str, probabilities: Mapping[str, float]) -> Mapping[str, float]:
+        """What a label gives to each terrain: less than it says where the images are unlike."""
+        likeness = self.likeness
+        given = probabilities or ({} if label == UNKNOWN else {label: 1.0})
+        if likeness is None or not likeness.is_unlike or not given:
+            return probabilities
+        chance = (1 - WORTH_OF_UNLIKE) / len(self._names)
+        return {name: WORTH_OF_UNLIKE * given.get(name, 0.0) + chance for name in self._names}

@@ -1,0 +1,149 @@
+"""Whether images look like the training photographs, whatever terrain they show."""
+
+import cv2
+import numpy as np
+import pytest
+
+from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.likeness import FEWEST_IMAGES, TrainingLook, look_of
+from terrain.classification.persistence import read_model, write_model
+from terrain.errors import ModelFileError
+from terrain.seen_so_far import WORTH_OF_UNLIKE, SeenSoFar
+
+
+def texture(rng, grain_px, size=64, spread=35):
+    grey = cv2.GaussianBlur(rng.normal(0, 1, (size, size)), (0, 0), grain_px)
+    return np.clip(120 + spread * grey / grey.std(), 0, 255).astype(np.uint8)
+
+
+def photographs(seed, photos=20, each=3):
+    """Two textures; the photographs of each differ in grain, light and contrast."""
+    rng = np.random.default_rng(seed)
+    images, codes, groups = [], [], []
+    for code, grain_px in enumerate((0.8, 2.0)):
+        for photo in range(photos):
+            grain, spread = grain_px * rng.uniform(0.9, 1.1), rng.uniform(25, 40)
+            bright = int(rng.integers(-20, 20))
+            for _ in range(each):
+                image = texture(rng, grain, spread=spread).astype(int) + bright
+                images.append(np.clip(image, 0, 255).astype(np.uint8))
+                codes.append(code)
+                groups.append(f"{code} {photo}")
+    return images, np.array(codes), np.array(groups)
+
+
+@pytest.fixture(scope="module")
+def training():
+    return TrainingLook.of(*photographs(1))
+
+
+def compared(training, images):
+    return training.compared(np.array([look_of(image) for image in images]))
+
+
+ALTERED = {
+    "more blurred": lambda image: cv2.GaussianBlur(image, (0, 0), 2.5),
+    "sharper or noisier": lambda image: np.clip(
+        image + np.random.default_rng(0).normal(0, 15, image.shape), 0, 255
+    ).astype(np.uint8),
+    "darker": lambda image: image // 2,
+    "brighter": lambda image: 255 - (255 - image) // 2,
+    "finer": lambda image: cv2.resize(
+        np.tile(image, (4, 4)), image.shape, interpolation=cv2.INTER_AREA
+    ),
+}
+
+
+def test_unseen_photographs_of_the_same_camera_are_like_the_training(training):
+    images, codes, _ = photographs(2)
+    for some in (images, [i for i, c in zip(images, codes, strict=True) if c == 1]):
+        likeness = compared(training, some)
+        assert likeness.is_unlike is False
+        assert likeness.note is None
+        assert 0.3 < likeness.rank < 0.7
+
+
+@pytest.mark.parametrize("how", ALTERED)
+def test_altered_photographs_are_not_and_it_says_how(training, how):
+    likeness = compared(training, [ALTERED[how](image) for image in photographs(2)[0]])
+    assert likeness.is_unlike
+    assert likeness.rank > 0.8
+    assert how in likeness.how
+    assert how in likeness.note
+
+
+def test_a_few_images_cannot_tell(training):
+    blurred = [ALTERED["more blurred"](image) for image in photographs(2)[0]]
+    assert compared(training, blurred[: FEWEST_IMAGES - 1]).is_unlike is None
+    assert compared(training, blurred[:FEWEST_IMAGES]).is_unlike is True
+    assert compared(training, []).is_unlike is None
+
+
+def test_held_out_distances_have_an_even_rank_among_themselves():
+    """Each patch against those of other photographs: what ranks of images are compared with."""
+    images, codes, groups = photographs(1)
+    looks = np.array([look_of(image) for image in images])
+    ranks = []
+    for group in np.unique(groups):
+        rest = groups != group
+        without = TrainingLook.of(
+            [images[i] for i in np.flatnonzero(rest)], codes[rest], groups[rest]
+        )
+        ranks.append(without.compared(looks[~rest]).rank)
+    assert np.mean(ranks) == pytest.approx(0.5, abs=0.06)
+
+
+def test_a_look_follows_light_contrast_and_grain(rng):
+    image = texture(rng, 1.5, size=128, spread=20)
+    look = look_of(image)
+    assert look[0] == pytest.approx(image.mean() / 255)
+    assert look[1] == pytest.approx(np.log(image.std() + 1))
+    np.testing.assert_allclose(look_of(image + np.uint8(40))[1:], look[1:], atol=1e-6)
+    np.testing.assert_allclose(look_of(np.stack([image] * 3, axis=-1)), look, atol=1e-6)
+    twice = look_of(cv2.resize(image, None, fx=2, fy=2, interpolation=cv2.INTER_CUBIC))
+    np.testing.assert_allclose(twice[4:], look[3:5], atol=0.1)  # an octave up
+    assert np.isfinite(look_of(np.zeros((3, 2), np.uint8))).all()
+
+
+def test_a_large_training_set_keeps_a_spread_of_its_patches():
+    looks = np.random.default_rng(0).integers(0, 255, (240, 8, 8), dtype=np.uint8)
+    groups = np.repeat(np.arange(4), 60)
+    kept = TrainingLook.of(list(looks), groups % 2, groups)
+    assert len(kept.looks) == 48
+    assert np.bincount(kept.codes).tolist() == [24, 24]
+
+
+def test_a_model_file_keeps_the_look_and_older_ones_say_nothing(classifier, tmp_path):
+    classifier.save(tmp_path / "a.model")
+    loaded = TerrainClassifier.load(tmp_path / "a.model")
+    images = photographs(2, photos=3)[0]
+    assert loaded.likeness(images) == classifier.likeness(images)
+    settings, arrays = read_model(tmp_path / "a.model")
+    old = {name: array for name, array in arrays.items() if not name.startswith("look_")}
+    write_model(tmp_path / "old.model", settings, old)
+    assert TerrainClassifier.load(tmp_path / "old.model").likeness(images) is None
+    write_model(tmp_path / "bad.model", settings, arrays | {"look_codes": np.array([0])})
+    with pytest.raises(ModelFileError, match="looks"):
+        TerrainClassifier.load(tmp_path / "bad.model")
+
+
+def test_a_classifier_of_features_says_nothing():
+    features = np.random.default_rng(0).normal(size=(40, 5)) + np.repeat([0, 3], 20)[:, None]
+    model = TerrainClassifier().fit(features, np.repeat(["mud", "snow"], 20))
+    assert model.likeness([np.zeros((64, 64), np.uint8)]) is None
+
+
+def test_labels_of_unlike_images_count_less(classifier, training_patches):
+    given = {"boards": 0.9, "gravel": 0.1}
+    like, unlike = SeenSoFar(classifier), SeenSoFar(classifier)
+    for image in training_patches[0][::7]:
+        like.add([image])
+        unlike.add([image // 3])
+    assert like.likeness.is_unlike is False
+    assert like.weighed("boards", given) == given
+    assert unlike.likeness.is_unlike
+    less = unlike.weighed("boards", given)
+    assert sum(less.values()) == pytest.approx(1)
+    assert less["boards"] == pytest.approx(WORTH_OF_UNLIKE * 0.9 + (1 - WORTH_OF_UNLIKE) / 2)
+    assert unlike.weighed("unknown", {}) == {}
+    assert unlike.weighed("boards", {})["boards"] == pytest.approx(0.65)
