@@ -26,14 +26,13 @@ class SeenSoFar:
 
     def __init__(self, classifier: Classifier) -> None:
         self._training: TrainingLook | None = getattr(classifier, "training_look_", None)
-        self._size_px = classifier.patch_size_px
-        self._names = list(map(str, classifier.classes_))
+        self._classifier = classifier
         self._looks: deque[FloatArray] = deque(maxlen=KEPT)
 
     def add(self, views: Sequence[ByteImage]) -> None:
         """Take in what was shown of one image."""
         if self._training is not None:
-            looks = [look_of(middle_of(view, self._size_px)) for view in views]
+            looks = [look_of(middle_of(view, self._classifier.patch_size_px)) for view in views]
             self._looks.append(np.mean(looks, axis=0))
 
     @property
@@ -49,5 +48,6 @@ class SeenSoFar:
         given = probabilities or ({} if label == UNKNOWN else {label: 1.0})
         if likeness is None or not likeness.is_unlike or not given:
             return probabilities
-        chance = (1 - WORTH_OF_UNLIKE) / len(self._names)
-        return {name: WORTH_OF_UNLIKE * given.get(name, 0.0) + chance for name in self._names}
+        names = list(map(str, self._classifier.classes_))
+        chance = (1 - WORTH_OF_UNLIKE) / len(names)
+        return {name: WORTH_OF_UNLIKE * given.get(name, 0.0) + chance for name in names}
