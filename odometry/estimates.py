@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.dead_reckoning import dead_reckon
-from odometry.estimation.estimate import Estimate
+from odometry.estimation.estimate import ALPHAS, ICRS, Estimate
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.transition import GYRO_BIAS
 from odometry.models.icr import icr_twist
@@ -112,7 +112,7 @@ class Replay:
 
     def odometer_twists(self) -> FloatArray:
         """Body twists (N, 3) of the odometer, each to the next stamp; the last by its treads."""
-        twists = np.stack([estimate.twist for estimate in self.estimates])
+        twists = self._turned_by_treads()
         by_gyroscope = self._turned_by_gyroscope()
         told = np.isfinite(by_gyroscope).all(axis=1)
         twists[:-1][told] = by_gyroscope[told]
@@ -120,7 +120,7 @@ class Replay:
 
     def odometer_without_gyroscope(self) -> Trajectory:
         """The same, the robot turned by its treads throughout."""
-        return self._reckon(np.stack([estimate.twist for estimate in self.estimates]))
+        return self._reckon(self._turned_by_treads())
 
     def gyroscope(self, track_width: float) -> Trajectory:
         """Mean wheel speed along the heading of the gyroscope as recorded: nothing is fitted.
@@ -137,6 +137,17 @@ class Replay:
         return self._reckon(
             icr_twist(ideal_icrs(track_width), np.nan_to_num(self.tread_speeds_m_s))
         )
+
+    def _turned_by_treads(self) -> FloatArray:
+        """`Estimate.twist` (N, 3) of all estimates."""
+        means = self.means
+        speeds = self.tread_speeds_m_s
+        added_speeds = np.stack([estimate.added_speeds_m_s for estimate in self.estimates])
+        added_twists = np.stack([estimate.added_twist for estimate in self.estimates])
+        effective = means[:, ALPHAS] * (speeds + added_speeds)
+        twists = icr_twist(means[:, ICRS], effective) + added_twists
+        twists[~np.isfinite(speeds).all(axis=1)] = 0.0
+        return np.asarray(twists)
 
     def _turned_by_gyroscope(self) -> FloatArray:
         """Twists (N - 1, 3) whose omega is measured; NaN where it or the treads are not known."""

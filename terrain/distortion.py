@@ -34,7 +34,7 @@ def radius_limit(distortion: FloatArray) -> float:
         The limit in normalised image coordinates (tangent of the angle off the axis);
         infinite if the model never turns back.
     """
-    return _radius_limit(*np.pad(distortion, (0, 14 - len(distortion)))[:8])
+    return _radius_limit(*_padded(distortion)[:8].tolist())
 
 
 @lru_cache(maxsize=64)  # asked for at each projection, of the lens of one camera

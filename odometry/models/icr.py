@@ -30,8 +30,9 @@ def icr_twist(icrs: FloatArray, tread_speeds: FloatArray) -> FloatArray:
     (..., 3)
         v_x, v_y [m/s], omega [rad/s].
     """
-    y_left, y_right, x_icr = np.moveaxis(np.asarray(icrs), -1, 0)
-    left, right = np.moveaxis(np.asarray(tread_speeds), -1, 0)
+    icrs, tread_speeds = np.asarray(icrs), np.asarray(tread_speeds)
+    y_left, y_right, x_icr = icrs[..., 0], icrs[..., 1], icrs[..., 2]
+    left, right = tread_speeds[..., 0], tread_speeds[..., 1]
     width = y_left - y_right
     omega = (right - left) / width  # Chen 2023 eq. 3, third row
     v_x = (right * y_left - left * y_right) / width  # Chen 2023 eq. 3, first row

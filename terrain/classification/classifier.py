@@ -43,14 +43,15 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
 
     Parameters
     ----------
-    preset : {"default", "chen2023"}
+    preset : {"default", "fast", "chen2023"}
         ``chen2023`` is the paper: SFTA of the grey image (n_t = 4), unscaled, Euclidean nearest
         neighbours. ``default`` takes SFTA of 19 filtered copies of the grey image, counts by
         area, scaled, with random Fourier features, and projected on shrunk discriminants before
-        the neighbours vote; probabilities are calibrated in cross-validation.
+        the neighbours vote; probabilities are calibrated in cross-validation. ``fast`` does so
+        with eight of the copies, for small computers.
     colour : bool
-        Add SFTA of two colour differences (``default`` only). Off by default: colour depends on
-        camera, white balance and light, and where each class came from a camera of its own it
+        Add SFTA of two colour differences (not with ``chen2023``). Off by default: colour tells
+        of camera, white balance and light, and where each class came from a camera of its own it
         recognises the camera. Use it where training and use share one camera. It stays off if
         the training patches are grey; see `colour_`.
     metres_per_pixel : float, optional

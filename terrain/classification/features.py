@@ -22,11 +22,13 @@ from terrain.classification.filters import (
 )
 from terrain.images import to_grey
 from terrain.texture import feature_names as names_of_sfta
-from terrain.texture.stack import stack_features
+from terrain.texture.stack import ALL_GREYS, stack_features
 from terrain.texture.variants import chosen_variant
 
+ITSELF = "grey"  # the copy that is the grey image
+FEWER_GREYS = 64
 GREY_COPIES: dict[str, Filter] = {
-    "grey": reduced(1),
+    ITSELF: reduced(1),
     "grey_2": reduced(2),
     "grey_4": reduced(4),
     "magnitude_0.7": gradient_magnitude(0.7),
@@ -52,12 +54,26 @@ COLOUR_COPIES: dict[str, ColourFilter] = {"red_green": red_green, "yellow_blue":
 
 @dataclass(frozen=True)
 class FeatureSettings:
-    """What is computed of a patch: copies by name, thresholds per copy, the unit of counts."""
+    """What is computed of a patch.
+
+    Attributes
+    ----------
+    grey_copies, colour_copies : tuple of str
+        By name.
+    n_thresholds : int
+        For each copy.
+    counts_per_area : bool
+        The unit of counts: shares of the copy, or pixels.
+    filtered_greys : int
+        Bins of the histogram in which the thresholds of filtered copies are found; those of the
+        grey image itself are exact.
+    """
 
     grey_copies: tuple[str, ...]
     colour_copies: tuple[str, ...]
     n_thresholds: int
     counts_per_area: bool
+    filtered_greys: int = ALL_GREYS
 
     @classmethod
     def from_table(cls, table: Mapping[str, Any]) -> Self:
@@ -66,7 +82,11 @@ class FeatureSettings:
         unknown = (set(grey) - set(GREY_COPIES)) | (set(colour) - set(COLOUR_COPIES))
         if unknown:
             raise ValueError(f"copies that this program does not know: {sorted(unknown)}")
-        return cls(grey, colour, int(table["n_thresholds"]), bool(table["counts_per_area"]))
+        greys = int(table.get("filtered_greys", ALL_GREYS))  # files of version 0.9 do not say
+        if greys not in {ALL_GREYS, FEWER_GREYS}:
+            raise ValueError(f"filtered_greys = {greys}, expected {ALL_GREYS} or {FEWER_GREYS}")
+        n_thresholds, per_area = int(table["n_thresholds"]), bool(table["counts_per_area"])
+        return cls(grey, colour, n_thresholds, per_area, greys)
 
 
 def patch_features(images: Sequence[ByteImage], settings: FeatureSettings) -> FloatArray:
@@ -83,12 +103,14 @@ def patch_features(images: Sequence[ByteImage], settings: FeatureSettings) -> Fl
     FloatArray, shape (patches, 6 * n_thresholds * copies)
         C is divided by the area of the copy if `settings.counts_per_area`.
     """
+    names = (*settings.grey_copies, *settings.colour_copies)
     copies = [copy for image in images for copy in _copies(image, settings)]
+    bins = [ALL_GREYS if name == ITSELF else settings.filtered_greys for name in names]
     definition = chosen_variant("chen2023", settings.n_thresholds)
     features = np.empty((len(copies), 2 * settings.n_thresholds, 3))
-    for of in _alike(copies):
+    for (_, n_greys), of in _alike(copies, bins * len(images)).items():
         greys = np.stack([copies[i] for i in of])
-        rows = stack_features(greys, settings.n_thresholds, definition)
+        rows = stack_features(greys, settings.n_thresholds, definition, n_greys)
         features[of] = rows.reshape(len(of), -1, 3)
         if settings.counts_per_area:
             features[of, :, 1] /= greys[0].size
@@ -102,12 +124,14 @@ def _copies(image: ByteImage, settings: FeatureSettings) -> list[ByteImage]:
     return copies + [COLOUR_COPIES[name](image) for name in settings.colour_copies]
 
 
-def _alike(copies: Sequence[ByteImage]) -> list[list[int]]:
-    """Places of copies of one size."""
-    places: dict[tuple[int, ...], list[int]] = {}
-    for place, copy in enumerate(copies):
-        places.setdefault(copy.shape, []).append(place)
-    return list(places.values())
+def _alike(
+    copies: Sequence[ByteImage], bins: Sequence[int]
+) -> dict[tuple[tuple[int, ...], int], list[int]]:
+    """Places of copies by their size and their bins of greys."""
+    places: dict[tuple[tuple[int, ...], int], list[int]] = {}
+    for place, (copy, n_greys) in enumerate(zip(copies, bins, strict=True)):
+        places.setdefault((copy.shape, n_greys), []).append(place)
+    return places
 
 
 def feature_names(settings: FeatureSettings) -> list[str]:

@@ -2,7 +2,12 @@
 
 from dataclasses import dataclass
 
-from terrain.classification.features import COLOUR_COPIES, GREY_COPIES, FeatureSettings
+from terrain.classification.features import (
+    COLOUR_COPIES,
+    FEWER_GREYS,
+    GREY_COPIES,
+    FeatureSettings,
+)
 from terrain.classification.neighbours import DiscriminantNeighbours, Neighbours, PlainNeighbours
 
 
@@ -33,13 +38,25 @@ class Preset:
 _CHEN2023 = FeatureSettings(("grey",), (), n_thresholds=4, counts_per_area=False)
 _ALL_GREY = tuple(GREY_COPIES)
 _ALL_COLOUR = tuple(COLOUR_COPIES)
+_FEW_GREY = (
+    "grey",
+    "grey_2",
+    "grey_4",
+    "magnitude_0.7",
+    "orientation_0.7",
+    "coherence_0.7",
+    "contrast_5.6",
+    "band_2",
+)
+_DISCRIMINANT = (DiscriminantNeighbours, (5, 9, 15, 25, 45))
+
+
+def _of(grey_copies: tuple[str, ...], colour_copies: tuple[str, ...] = ()) -> FeatureSettings:
+    return FeatureSettings(grey_copies, colour_copies, 4, True, filtered_greys=FEWER_GREYS)
+
 
 PRESETS = {
-    "default": Preset(
-        FeatureSettings(_ALL_GREY, (), n_thresholds=4, counts_per_area=True),
-        FeatureSettings(_ALL_GREY, _ALL_COLOUR, n_thresholds=4, counts_per_area=True),
-        DiscriminantNeighbours,
-        (5, 9, 15, 25, 45),
-    ),
+    "default": Preset(_of(_ALL_GREY), _of(_ALL_GREY, _ALL_COLOUR), *_DISCRIMINANT),
+    "fast": Preset(_of(_FEW_GREY), _of(_FEW_GREY, _ALL_COLOUR), *_DISCRIMINANT),
     "chen2023": Preset(_CHEN2023, _CHEN2023, PlainNeighbours, (1, 3, 5, 9, 15), as_published=True),
 }

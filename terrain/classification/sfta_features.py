@@ -19,10 +19,10 @@ class SftaFeatures(ImageTransformer):
 
     Parameters
     ----------
-    preset : {"default", "chen2023"}
+    preset : {"default", "fast", "chen2023"}
         As in `TerrainClassifier`.
     colour : bool
-        Add the features of two colour differences (``default`` only); images are RGB then.
+        Add the features of two colour differences (not with ``chen2023``); images are RGB then.
     n_jobs : int
         Processes that share the images; -1 takes all cores. The features are the same.
 

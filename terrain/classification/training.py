@@ -61,7 +61,7 @@ def train(
     ----------
     root : path
         `root/<class>/*.jpg|png`, see CONVENTIONS, "Labelled patches".
-    preset : {"default", "chen2023"}
+    preset : {"default", "fast", "chen2023"}
     patch_size_px : int, optional
         Side of a patch; by default 128, or less where that fits into nine of ten photographs.
     metres_per_pixel : float, optional

@@ -11,6 +11,10 @@ BITS_OF_BYTE: FloatArray = np.unpackbits(
 ).astype(np.float64)
 """(256, 8): which bits are set in each value of a byte."""
 
+BYTES_OF_BITS = BITS_OF_BYTE.astype(np.uint8).view(np.uint64).ravel()
+"""(256,): a byte for each bit, 0 or 1; up to 255 of them add up without a carry."""
+MANY = 4  # small planes that are better counted together than one by one
+
 
 def byte_histogram(values: ByteImage) -> FloatArray:
     """Count how often each value of a byte occurs.
@@ -44,13 +48,22 @@ def box_counts(bits: ByteImage) -> FloatArray:
     """
     planes = bits.reshape(-1, *bits.shape[-2:])
     n_sizes = (max(bits.shape[-2:]) - 1).bit_length() + 1
-    histograms = np.zeros((n_sizes, len(planes), 256), np.float32)
-    count_bytes(planes, histograms[0])
+    counts = np.empty((n_sizes, len(planes), 8))
+    counts[0] = bit_counts(planes)
     for size in range(1, n_sizes):
         planes = or_of_2x2(planes, f"halved {size % 2}")
-        count_bytes(planes, histograms[size])
-    counts = np.moveaxis(histograms @ BITS_OF_BYTE, 0, 1)
-    return counts.reshape(*bits.shape[:-2], n_sizes, 8)
+        counts[size] = bit_counts(planes)
+    return np.moveaxis(counts, 0, 1).reshape(*bits.shape[:-2], n_sizes, 8)
+
+
+def bit_counts(planes: ByteImage) -> FloatArray:
+    """Count how often each bit is set in planes (N, H, W), as (N, 8)."""
+    if len(planes) >= MANY and planes[0].size < 256:
+        sums = BYTES_OF_BITS[planes].reshape(len(planes), -1).sum(axis=1)
+        return np.asarray(sums.view(np.uint8).reshape(-1, 8), np.float64)
+    histograms = np.zeros((len(planes), 256), np.float32)
+    count_bytes(planes, histograms)
+    return np.asarray(histograms @ BITS_OF_BYTE)
 
 
 def count_bytes(planes: ByteImage, histograms: AnyArray) -> None:

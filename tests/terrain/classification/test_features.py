@@ -1,5 +1,5 @@
 import json
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -31,7 +31,8 @@ def test_chen2023_is_sfta_of_the_grey_image_and_nothing_else(rng):
 
 def test_each_copy_gives_its_sfta_with_counts_by_area(rng):
     image = rng.integers(0, 256, (40, 40, 3), dtype=np.uint8)
-    blocks = features_of(image, BANK).reshape(len(GREY_COPIES) + len(COLOUR_COPIES), 8, 3)
+    exact = features_of(image, replace(BANK, filtered_greys=256))
+    blocks = exact.reshape(len(GREY_COPIES) + len(COLOUR_COPIES), 8, 3)
     grey = ((image @ np.array([30, 59, 11]) + 50) // 100).astype(np.float32)
     names = [*GREY_COPIES, *COLOUR_COPIES]
     for name, copy in (
@@ -59,6 +60,26 @@ def test_a_matrix_has_a_row_per_patch(rng):
     assert matrix.shape == (3, 24 * 19)
     np.testing.assert_array_equal(matrix[2], features_of(images[2], GREY))
     assert np.isfinite(feature_matrix([np.zeros((24, 24), np.uint8)], GREY)).all()
+
+
+def test_thresholds_of_filtered_copies_end_bins_of_four_greys_and_those_of_the_image_none(rng):
+    image = rng.integers(0, 256, (40, 40), dtype=np.uint8)
+    binned = features_of(image, GREY).reshape(len(GREY_COPIES), 8, 3)
+    exact = features_of(image, replace(GREY, filtered_greys=256)).reshape(binned.shape)
+    names = list(GREY_COPIES)
+    np.testing.assert_array_equal(binned[names.index("grey")], exact[names.index("grey")])
+    assert (binned != exact).any(axis=(1, 2)).sum() > 15
+    copy = gradient_magnitude(1.4)(Scales(image))
+    shares = {np.mean(copy > last) for last in range(3, 256, 4)}
+    assert set(binned[names.index("magnitude_1.4"), :4, 1]) <= shares
+
+
+def test_settings_of_version_0_9_ask_for_all_greys():
+    table = asdict(GREY)
+    del table["filtered_greys"]
+    assert FeatureSettings.from_table(table) == replace(GREY, filtered_greys=256)
+    with pytest.raises(ValueError, match="filtered_greys = 7"):
+        FeatureSettings.from_table(table | {"filtered_greys": 7})
 
 
 def test_settings_come_back_from_json_and_unknown_copies_are_refused():

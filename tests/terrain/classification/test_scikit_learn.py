@@ -57,7 +57,7 @@ def test_without_groups_each_patch_is_of_its_own(whole):
     assert models[0].n_neighbors_ == models[1].n_neighbors_
 
 
-@pytest.mark.parametrize("preset", ["default", "chen2023"])
+@pytest.mark.parametrize("preset", ["default", "fast", "chen2023"])
 def test_features_made_before_give_what_images_give(whole, preset):
     images, labels, groups = whole
     of_images = TerrainClassifier(preset).fit(images, labels, groups)

@@ -63,3 +63,12 @@ def test_histogram_counts_every_value(values):
     np.testing.assert_array_equal(
         byte_histogram(values), np.bincount(values.ravel(), minlength=256)
     )
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (15, 17), (16, 16), (40, 23)])
+def test_planes_are_counted_as_each_alone(shape, rng):
+    """Few and many, small and large; all bits of all pixels set is the largest sum."""
+    planes = rng.integers(0, 256, (7, *shape), dtype=np.uint8)
+    planes[3] = 255
+    alone = np.stack([box_counts(plane) for plane in planes])
+    np.testing.assert_array_equal(box_counts(planes), alone)
