@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from odometry.arrays import FloatArray, IntArray
+from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.bags.errors import BagError
 from odometry.bags.message_kinds import POSES
 from odometry.geometry import se3
@@ -105,7 +105,7 @@ class LocalMetres:
         return stamps_ns, np.column_stack([east, north, np.full(len(rows), np.nan), up])
 
 
-def rotations_of(quaternions_wxyz: FloatArray) -> tuple[FloatArray, FloatArray]:
+def rotations_of(quaternions_wxyz: FloatArray) -> tuple[FloatArray, BoolArray]:
     """Rotations (N, 3, 3), and whether each quaternion (N, 4) is one."""
     lengths = np.linalg.norm(quaternions_wxyz, axis=1)
     told = np.abs(lengths - 1) < 0.1
