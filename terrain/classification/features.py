@@ -6,7 +6,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from odometry.arrays import ByteImage, FloatArray
+from odometry.arrays import BoolArray, ByteImage, FloatArray
 from terrain.classification.filters import (
     ColourFilter,
     Filter,
@@ -22,11 +22,14 @@ from terrain.classification.filters import (
 )
 from terrain.images import to_grey
 from terrain.texture import feature_names as names_of_sfta
-from terrain.texture.stack import ALL_GREYS, stack_features
-from terrain.texture.variants import chosen_variant
+from terrain.texture.box_counting import byte_histogram
+from terrain.texture.coarse_otsu import coarse_otsu
+from terrain.texture.otsu import multilevel_otsu
+from terrain.texture.stack import features_between
+from terrain.texture.variants import VARIANTS
 
 ITSELF = "grey"  # the copy that is the grey image
-FEWER_GREYS = 64
+ALL_GREYS, FEWER_GREYS = 256, 64
 GREY_COPIES: dict[str, Filter] = {
     ITSELF: reduced(1),
     "grey_2": reduced(2),
@@ -105,16 +108,30 @@ def patch_features(images: Sequence[ByteImage], settings: FeatureSettings) -> Fl
     """
     names = (*settings.grey_copies, *settings.colour_copies)
     copies = [copy for image in images for copy in _copies(image, settings)]
-    bins = [ALL_GREYS if name == ITSELF else settings.filtered_greys for name in names]
-    definition = chosen_variant("chen2023", settings.n_thresholds)
+    histograms = np.stack([byte_histogram(copy) for copy in copies])
+    is_itself = np.array([name == ITSELF for name in names] * len(images))
+    thresholds = _thresholds(histograms, is_itself, settings)
     features = np.empty((len(copies), 2 * settings.n_thresholds, 3))
-    for (_, n_greys), of in _alike(copies, bins * len(images)).items():
+    for of in _alike(copies):
         greys = np.stack([copies[i] for i in of])
-        rows = stack_features(greys, settings.n_thresholds, definition, n_greys)
+        rows = features_between(greys, histograms[of], thresholds[of], VARIANTS["chen2023"])
         features[of] = rows.reshape(len(of), -1, 3)
         if settings.counts_per_area:
             features[of, :, 1] /= greys[0].size
     return features.reshape(len(images), -1)
+
+
+def _thresholds(
+    histograms: FloatArray, is_itself: BoolArray, settings: FeatureSettings
+) -> FloatArray:
+    """Thresholds (N, n_t) of copies with histograms (N, 256); exact for the image itself."""
+    n_thresholds = settings.n_thresholds
+    exact = is_itself | (settings.filtered_greys == ALL_GREYS)
+    thresholds = np.empty((len(histograms), n_thresholds))
+    for row in np.flatnonzero(exact):
+        thresholds[row] = multilevel_otsu(histograms[row], n_thresholds)
+    thresholds[~exact] = coarse_otsu(histograms[~exact], n_thresholds, settings.filtered_greys)
+    return thresholds
 
 
 def _copies(image: ByteImage, settings: FeatureSettings) -> list[ByteImage]:
@@ -124,14 +141,12 @@ def _copies(image: ByteImage, settings: FeatureSettings) -> list[ByteImage]:
     return copies + [COLOUR_COPIES[name](image) for name in settings.colour_copies]
 
 
-def _alike(
-    copies: Sequence[ByteImage], bins: Sequence[int]
-) -> dict[tuple[tuple[int, ...], int], list[int]]:
-    """Places of copies by their size and their bins of greys."""
-    places: dict[tuple[tuple[int, ...], int], list[int]] = {}
-    for place, (copy, n_greys) in enumerate(zip(copies, bins, strict=True)):
-        places.setdefault((copy.shape, n_greys), []).append(place)
-    return places
+def _alike(copies: Sequence[ByteImage]) -> list[list[int]]:
+    """Places of copies of one size."""
+    places: dict[tuple[int, ...], list[int]] = {}
+    for place, copy in enumerate(copies):
+        places.setdefault(copy.shape, []).append(place)
+    return list(places.values())
 
 
 def feature_names(settings: FeatureSettings) -> list[str]:

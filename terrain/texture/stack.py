@@ -15,18 +15,14 @@ from terrain.texture.box_counting import (
     fractal_dimension,
     or_of_2x2,
 )
-from terrain.texture.coarse_otsu import coarse_otsu
 from terrain.texture.kept import kept
 from terrain.texture.ttbd import GREYS, packed_tables
 from terrain.texture.variants import Variant
 
 BAND = 2**16  # pixels that are looked at together: what is made of them stays in the cache
-ALL_GREYS = 256
 
 
-def stack_features(
-    greys: ByteImage, n_thresholds: int, definition: Variant, n_greys: int = ALL_GREYS
-) -> FloatArray:
+def stack_features(greys: ByteImage, n_thresholds: int, definition: Variant) -> FloatArray:
     """Give the SFTA features of each image of a stack, as `terrain.texture.sfta` does of one.
 
     Parameters
@@ -34,23 +30,23 @@ def stack_features(
     greys : (N, H, W) array of uint8
     n_thresholds : int
     definition : Variant
-    n_greys : int
-        Bins of the histogram in which thresholds are found: all 256 greys, or fewer, which is
-        faster; see `coarse_otsu`.
 
     Returns
     -------
     (N, 3 n_images) array
     """
     histograms = np.stack([byte_histogram(grey) for grey in greys])
-    if n_greys == ALL_GREYS:
-        found = [definition.thresholds(histogram, n_thresholds) for histogram in histograms]
-        thresholds = np.stack(found)
-    else:
-        thresholds = coarse_otsu(histograms, n_thresholds, n_greys)
+    thresholds = np.stack([definition.thresholds(of, n_thresholds) for of in histograms])
+    return features_between(greys, histograms, thresholds, definition)
+
+
+def features_between(
+    greys: ByteImage, histograms: FloatArray, thresholds: FloatArray, definition: Variant
+) -> FloatArray:
+    """The same with thresholds (N, n_t) that were found before, in histograms (N, 256)."""
     members = definition.members(thresholds)
     features = np.empty((*members.shape[:2], 3))
-    for j, tables in enumerate(np.moveaxis(packed_tables(members), 1, 0)):
+    for j, tables in enumerate(np.moveaxis(packed_tables(members), -2, 0)):
         eight = slice(8 * j, 8 * j + 8)
         boxes, of_borders = _boxes(greys, tables, of_borders=definition.of_borders)
         if of_borders is None:

@@ -81,12 +81,3 @@ def test_thresholds_in_bins_are_those_of_the_binned_histogram(histograms, n_thre
         ]
         some = histograms[histograms.any(axis=1)]
         np.testing.assert_array_equal(coarse_otsu(some, n_thresholds, n_bins), expected)
-
-
-def test_a_stack_in_fewer_bins_is_cut_at_the_ends_of_bins(rng):
-    """Counts are of pixels above a threshold, which ends a bin of four greys."""
-    stack = rng.integers(0, 256, (3, 40, 40), dtype=np.uint8)
-    features = stack_features(stack, 4, VARIANTS["chen2023"], n_greys=64).reshape(3, 8, 3)
-    for image, of in zip(stack, features, strict=True):
-        possible = [(image > 4 * bin_ + 3).sum() for bin_ in range(64)]
-        assert set(of[:4, 1]) <= set(possible)
