@@ -59,8 +59,8 @@ def doubts(followed: Followed) -> tuple[Doubt, ...]:
         alike = track.alike.any(axis=1) & sure & undetermined
         found.append(
             Doubt(
-                f"the most probable mode and another answer alike for {_share(followed, alike):.0%}"
-                " of the time",
+                "the most probable mode and another answer alike for "
+                f"{round(100 * _share(followed, alike))} % of the time",
                 "drive turns of several radii to both sides: there modes differ most",
                 _share(followed, alike),
             )

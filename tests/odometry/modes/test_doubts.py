@@ -1,0 +1,76 @@
+"""Why no mode is named, said of tracks whose gyroscope or whose modes are in doubt by hand."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.modes.doubts import doubts
+from odometry.modes.files import content_of
+from odometry.modes.followed import Followed
+from odometry.modes.gyroscope_trust import GyroscopeTrust
+from odometry.modes.in_short import in_short
+from odometry.modes.mode_set import NONE_OF_THESE, UNDETERMINED
+from odometry.modes.mode_track import ModesConfig
+from odometry.modes.words import sentences
+from tests.odometry.modes.mode_examples import run_of, track, velocity_set
+
+SIZE, FROM = 11, 6  # stamps, half a second apart
+
+
+def followed_with(**fields):
+    """Mode a probable all along, and something in doubt from row FROM on."""
+    known = replace(track(["a"] * SIZE, ["unknown"] * SIZE, names=("a", "b")), **fields)
+    mode_set = velocity_set(names=("a", "b"))
+    run = run_of(1.0, size=SIZE)
+    return Followed(run, mode_set, ModesConfig(), mode_set.modes.signals(run), known)
+
+
+def late(value, before):
+    values = np.full(SIZE, before)
+    values[FROM:] = value
+    return values
+
+
+def cases():
+    never, known = np.zeros(SIZE, dtype=bool), np.full(SIZE, np.nan)
+    open_ = GyroscopeTrust(late(True, before=False), known)
+    off = GyroscopeTrust(never, late(1.21, before=np.nan))
+    alike = np.column_stack([never, late(True, before=False)])
+    return [
+        ({"gyroscope": off}, NONE_OF_THESE, "the gyroscope reads 1.21 times", "check the gyro"),
+        ({"gyroscope": open_}, UNDETERMINED, "a gyroscope bias of 0.000 rad/s", "let the robot s"),
+        ({"alike": alike}, UNDETERMINED, "answer alike for 40 % of the time", "drive turns of"),
+    ]
+
+
+@pytest.mark.parametrize(("fields", "answer", "reason", "remedy"), cases())
+def test_a_doubt_is_an_answer_a_reason_and_a_remedy(fields, answer, reason, remedy):
+    found = followed_with(**fields)
+    answers = found.answers(found.motion)
+    assert (set(answers[:FROM]), set(answers[FROM:])) == ({"a"}, {answer})
+    (one,) = doubts(found)
+    assert one.share == pytest.approx(0.4)
+    assert reason in one.reason
+    _, how_sure, to_do = in_short(found)
+    assert reason in how_sure
+    assert to_do.startswith(remedy)
+    assert any(reason in sentence for sentence in sentences(found))
+    (said,) = content_of(found)["not_named"]
+    assert said["share"] == one.share
+
+
+def test_what_holds_for_a_moment_is_not_said():
+    scale = np.full(SIZE, np.nan)
+    scale[FROM] = 1.2
+    trust = GyroscopeTrust(np.zeros(SIZE, dtype=bool), scale)
+    assert doubts(followed_with(gyroscope=trust))  # half a second of five
+    scale = np.full(SIZE, np.nan)
+    scale[-1] = 1.2  # the last stamp lasts no time
+    assert not doubts(followed_with(gyroscope=GyroscopeTrust(np.zeros(SIZE, dtype=bool), scale)))
+
+
+def test_without_doubts_none_is_said():
+    found = followed_with()
+    assert doubts(found) == ()
+    assert content_of(found)["not_named"] == []
