@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import BoolArray, FloatArray
 
 # chosen with simulated labels, half of whose drives were kept for the figures
 UNNAMED = 0.03  # of the ways that end, so many end on a terrain that has no name
@@ -41,6 +41,7 @@ def smoothed(
     accuracy: float,
     change_m: float,
     alike_m: float,
+    felt: BoolArray | None = None,
 ) -> FloatArray:
     """Probability of each terrain at each place, given the labels of all places.
 
@@ -66,6 +67,9 @@ def smoothed(
         Mean distance between changes of terrain.
     alike_m : float
         Mean distance between new looks of one terrain: the correlation length of labels.
+    felt : (n,), optional
+        What was felt and not seen: probabilities of the terrain itself, whatever it looks like;
+        they speak neither for nor against one that is none of the k.
 
     Returns
     -------
@@ -79,20 +83,22 @@ def smoothed(
     """
     count = given.shape[1]
     wrong = (1 - accuracy) / 2
-    given = (1 - wrong) * given + wrong / count
+    seen = ((1 - wrong) * given + wrong / count)[:, None, :]
+    beneath = np.column_stack([given, given.mean(axis=1)])[:, :, None]
+    evidence = seen if felt is None else np.where(felt[:, None, None], beneath, seen)
     own = (1 - wrong) * np.eye(count) + wrong / count
     looks = np.vstack([own, np.full(count, 1 / count)])
     drawn = np.append(np.full(count, (1 - UNNAMED) / count), UNNAMED)[:, None]
     stays, alike = np.exp(-steps_m / change_m), np.exp(-steps_m / alike_m)
-    forward = np.empty((len(given), *looks.shape))
+    forward = np.empty((len(evidence), *looks.shape))
     state = prior[:, None] * looks
-    for place, label in enumerate(given):
-        state = label * _ahead(state, looks, drawn, stays[place], alike[place])  # eq. 20
+    for place, of in enumerate(evidence):
+        state = of * _ahead(state, looks, drawn, stays[place], alike[place])  # eq. 20
         state /= state.sum()
         forward[place] = state
     backward = np.ones_like(forward)
-    for place in range(len(given) - 1, 0, -1):
-        state = given[place] * backward[place]
+    for place in range(len(evidence) - 1, 0, -1):
+        state = evidence[place] * backward[place]
         state = _back(state, looks, drawn, stays[place], alike[place])  # eq. 25
         backward[place - 1] = state / state.sum()
     product = (forward * backward).sum(axis=2)  # eq. 27

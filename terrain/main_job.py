@@ -12,6 +12,7 @@ from odometry.estimation.means_kept import MeansKept
 from odometry.evaluation.odometer_uncertainty import odometer_uncertainty
 from odometry.evaluation.score import reference_of, score
 from odometry.evaluation.withheld import withhold
+from odometry.feel.model import FeelModel
 from odometry.learned import learned_parameters
 from odometry.modes.mode_set import ModeSet
 from odometry.parameters import ParameterSet, read_parameters
@@ -26,7 +27,7 @@ from terrain.images_outside import add_images_outside
 from terrain.judged import SecondReplay, judged_trajectories
 from terrain.run_presets import run_preset, with_preset
 from terrain.run_result import RunResult
-from terrain.sources import OWN_SOURCE, initial_terrain, source_name, terrain_source
+from terrain.sources import BOTH, OWN_SOURCE, initial_terrain, source_name, terrain_source
 from terrain.watcher import TerrainWatcher
 
 __all__ = ["RunResult", "run_odometry"]
@@ -42,6 +43,7 @@ def run_odometry(
     config: Config | None = None,
     source: str | TerrainSource | None = None,
     modes: ModeSet | str | Path | None = None,
+    feel: FeelModel | str | Path | None = None,
     preset: str | None = None,
     show_progress: bool = False,
 ) -> RunResult:
@@ -62,11 +64,14 @@ def run_odometry(
         the first of `parameters`, else the run's own. By modes it is `unknown` where neither names
         it.
     config : Config, optional
-    source : {"camera", "labels", "modes", "none"} or TerrainSource, optional
+    source : {"camera", "labels", "modes", "feel", "none"} or TerrainSource, optional
         What tells the terrain: the images, read by `model`; the run's own column `terrain`; the
-        motion, by `modes`; nothing. By default the camera where there is a model, else nothing.
+        motion, by `modes`; what the robot feels, by `feel`; nothing. By default the camera where
+        there is a model, else feel where there is one of that, else nothing.
     modes : ModeSet or path, optional
         Made by `identify-modes`, for that source.
+    feel : FeelModel or path, optional
+        Made by `identify-feel`, for that source, and as a further source beside the camera.
     preset : {"chen2023"}, optional
         A published system whole, see `terrain.run_presets`; `config` may set what it leaves open.
     show_progress : bool
@@ -100,7 +105,7 @@ def run_odometry(
         run = robot_run(run, effects)
     run, noticed = without_pose_delay(run, config.filter)
     lever_m = run.sensors.pose_m[:2] if run.sensors.pose_m else (0.0, 0.0)
-    name, trained = _trained(model, source, vision=vision)
+    name, trained = _trained(model, source, vision=vision, has_feel=feel is not None)
     reader: Classifier | None = trained
     if preset is not None:
         config, reader = with_preset(
@@ -117,6 +122,7 @@ def run_odometry(
             terrain=terrain,
             model=reader,
             modes=modes,
+            feel=feel,
             show_progress=show_progress,
         )
     watcher = source if isinstance(source, TerrainWatcher) else None
@@ -147,7 +153,7 @@ def run_odometry(
         learned_parameters(parameters, result, run.name, run.robot.track_width),
         odometer_uncertainty(run, result, reference if reference_name == "truth" else None),
         second,
-        name,
+        BOTH if name == "camera" and feel is not None else name,
     )
 
 
@@ -177,11 +183,12 @@ def _trained(
     source: str | TerrainSource | None,
     *,
     vision: bool,
+    has_feel: bool,
 ) -> tuple[str, TerrainClassifier | None]:
     """Which source is meant, and the classifier where that reads images."""
     if not isinstance(source, str | None):
         return OWN_SOURCE, None
-    name = source_name(source, vision=vision, has_model=model is not None)
+    name = source_name(source, vision=vision, has_model=model is not None, has_feel=has_feel)
     if name != "camera":
         return name, None
     return name, TerrainClassifier.load(Path(model)) if isinstance(model, str | Path) else model

@@ -31,6 +31,8 @@ class Sight:
         Wheel travel from the robot to the place when it was seen.
     probabilities : Mapping of str to float
         What the classifier gave to each terrain; empty where only the label is known.
+    is_felt : bool
+        Whether the robot felt the terrain itself, and did not see what it looks like.
     """
 
     label: str
@@ -39,6 +41,7 @@ class Sight:
     place: FloatArray
     distance_ahead_m: float
     probabilities: Mapping[str, float] = field(default_factory=dict)
+    is_felt: bool = False
 
 
 @dataclass(frozen=True)

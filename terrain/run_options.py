@@ -10,6 +10,8 @@ from terrain.main_job import run_odometry
 from terrain.run_result import RunResult
 from terrain.sources import source_name
 
+FILES = ("model", "parameters", "modes", "feel")
+
 
 @dataclass(frozen=True)
 class RunOptions:
@@ -18,7 +20,7 @@ class RunOptions:
     Attributes
     ----------
     config : Config
-    model, parameters, modes : Path or None
+    model, parameters, modes, feel : Path or None
         Files, see `run_odometry`.
     vision : bool
     terrain : str or None
@@ -32,6 +34,7 @@ class RunOptions:
     model: Path | None = None
     parameters: Path | None = None
     modes: Path | None = None
+    feel: Path | None = None
     vision: bool = True
     terrain: str | None = None
     source: str | None = None
@@ -41,7 +44,12 @@ class RunOptions:
     @property
     def told_by(self) -> str:
         """What tells the terrain."""
-        return source_name(self.source, vision=self.vision, has_model=self.model is not None)
+        return source_name(
+            self.source,
+            vision=self.vision,
+            has_model=self.model is not None,
+            has_feel=self.feel is not None,
+        )
 
     @property
     def reads_images(self) -> bool:
@@ -56,11 +64,11 @@ class RunOptions:
     @property
     def files(self) -> tuple[Path, ...]:
         """What has to be there beside the runs."""
-        return tuple(file for file in (self.model, self.parameters, self.modes) if file)
+        return tuple(file for file in (self.model, self.parameters, self.modes, self.feel) if file)
 
     def absolute(self) -> "RunOptions":
         """The same for a process that works in another folder."""
-        files = {name: getattr(self, name) for name in ("model", "parameters", "modes")}
+        files = {name: getattr(self, name) for name in FILES}
         return replace(self, **{name: file and file.absolute() for name, file in files.items()})
 
     def replay(self, run: Run, *, show_progress: bool = False) -> RunResult:
@@ -80,6 +88,7 @@ class RunOptions:
             config=self.config,
             source=self.told_by,
             modes=self.modes,
+            feel=self.feel,
             preset=self.preset,
             show_progress=show_progress,
         )

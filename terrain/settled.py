@@ -105,6 +105,7 @@ def by_evidence(
         accuracy=accuracy,
         change_m=change_m,
         alike_m=alike_m,
+        felt=np.array([sight.is_felt for sight in labelled]),
     )
     return Settled.of(labelled, names, beliefs)
 

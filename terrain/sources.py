@@ -1,32 +1,41 @@
-"""Sources of terrain, one interface: the camera, the run's own labels, the motion, or none."""
+"""Sources of terrain, one interface: camera, the run's own labels, motion, feel, or none."""
 
 from pathlib import Path
 
 from odometry.errors import ConfigError, ParameterError, RunFolderError
+from odometry.feel.follow import SILENT, Felt, follow_feel
+from odometry.feel.model import FeelModel
+from odometry.feel.model_file import read_feel_model
 from odometry.modes.felt_terrain import felt_terrain
 from odometry.modes.mode_set import ModeSet, read_mode_set
 from odometry.parameters import ParameterSet
 from odometry.pipeline import ConstantTerrain, TerrainSource
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
-from odometry.terrain_sources import labelled_terrain
+from odometry.terrain_sources import NamedTerrain, labelled_terrain
 from terrain.camera import Camera
 from terrain.classification.classifier import Classifier
 from terrain.classification.own_statistics import used_as
 from terrain.config import Config
+from terrain.felt_sights import FeltSights
 from terrain.watcher import TerrainWatcher
 
-SOURCES = ("camera", "labels", "modes", "none")
+SOURCES = ("camera", "labels", "modes", "feel", "none")
+BOTH = "camera and feel"
 OWN_SOURCE = "a source of your own"
 TOLD_BY = {
     "camera": "the camera",
     "labels": "the run's own labels (the column `terrain`)",
     "modes": "the motion (the set of modes)",
+    "feel": "what the robot feels (the model of `identify-feel`)",
+    BOTH: "the camera and what the robot feels",
     OWN_SOURCE: OWN_SOURCE,
 }
 
 
-def source_name(source: str | None, *, vision: bool, has_model: bool) -> str:
-    """Which source is meant: by default the camera where there is a model for it, else none.
+def source_name(
+    source: str | None, *, vision: bool, has_model: bool, has_feel: bool = False
+) -> str:
+    """Which source is meant: by default the camera where it has a model, else feel, else none.
 
     Raises
     ------
@@ -34,7 +43,8 @@ def source_name(source: str | None, *, vision: bool, has_model: bool) -> str:
         If there is no such source, or it contradicts `vision`.
     """
     if source is None:
-        return "camera" if vision and has_model else "none"
+        without = "feel" if has_feel else "none"
+        return "camera" if vision and has_model else without
     if source not in SOURCES:
         raise ConfigError(f"terrain source {source!r} is not one of {', '.join(SOURCES)}")
     if source == "camera" and not vision:
@@ -69,6 +79,7 @@ def terrain_source(
     terrain: str | None = None,
     model: Classifier | None = None,
     modes: ModeSet | str | Path | None = None,
+    feel: FeelModel | str | Path | None = None,
     show_progress: bool = False,
 ) -> TerrainSource:
     """Make a source of terrain for a run.
@@ -89,6 +100,8 @@ def terrain_source(
         What the user named.
     model : Classifier, optional
     modes : ModeSet or path, optional
+    feel : FeelModel or path, optional
+        The terrain by feel, for the source "feel", and beside the camera.
     show_progress : bool
 
     Raises
@@ -101,7 +114,12 @@ def terrain_source(
     if name == "camera":
         if model is None:
             raise ConfigError("the terrain source 'camera' needs a model (made by `train`)")
-        return _watcher(run, model, initial, config)
+        return _watcher(run, model, initial, config, feel)
+    if name == "feel":
+        if feel is None:
+            raise ConfigError("the terrain source 'feel' needs a model (`identify-feel`)")
+        felt = _felt(run, feel)
+        return NamedTerrain.told(initial, felt.stamps_s, felt.lasting_answers, (*SILENT, UNKNOWN))
     if name == "modes":
         if modes is None:
             raise ConfigError("the terrain source 'modes' needs a set of modes (`identify-modes`)")
@@ -113,14 +131,31 @@ def terrain_source(
     return ConstantTerrain(initial)
 
 
-def _watcher(run: Run, model: Classifier, initial: str, config: Config) -> TerrainWatcher:
+def _felt(run: Run, feel: FeelModel | str | Path) -> Felt:
+    return follow_feel(run, feel if isinstance(feel, FeelModel) else read_feel_model(feel))
+
+
+def _watcher(
+    run: Run,
+    model: Classifier,
+    initial: str,
+    config: Config,
+    feel: FeelModel | str | Path | None,
+) -> TerrainWatcher:
     if run.images is None or "camera" not in run.settings:
         raise RunFolderError(
             f"{run.folder}: a model was given, but the run has no "
             f"{'images.csv' if run.images is None else '[camera] in run.toml'}; "
             "a model (--model) reads images: leave it out, or turn vision off (--no-vision)"
         )
+    if feel is not None and config.switch.labels_in_row:
+        raise ConfigError(
+            f"[switch] labels_in_row = {config.switch.labels_in_row} counts labels of the camera; "
+            "feel is weighed by probabilities: expected 0"
+        )
     camera = Camera.from_table(run.settings["camera"], str(run.folder / "run.toml"))
+    names = tuple(map(str, model.classes_))
+    felt = None if feel is None else FeltSights.of(_felt(run, feel), names)
     return TerrainWatcher(
         run.robot,
         camera,
@@ -129,4 +164,5 @@ def _watcher(run: Run, model: Classifier, initial: str, config: Config) -> Terra
         region=config.region,
         switch=config.switch,
         folder=run.folder,
+        felt=felt,
     )

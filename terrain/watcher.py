@@ -17,6 +17,7 @@ from odometry.run import Robot
 from terrain.camera import Camera
 from terrain.classification.classifier import Classifier
 from terrain.errors import CameraError, ImageError
+from terrain.felt_sights import FeltSights
 from terrain.images import read_image
 from terrain.places import Footprint, Sight
 from terrain.region import Rectangle, Region, RegionConfig, predict_region
@@ -44,6 +45,8 @@ class TerrainWatcher:
         What names of image files are relative to.
     keep : int, optional
         How many of the latest sightings and events are kept; by default all.
+    felt : FeltSights, optional
+        What the robot feels, as one more source.
 
     Attributes
     ----------
@@ -68,6 +71,7 @@ class TerrainWatcher:
         switch: SwitchConfig,
         folder: Path | None = None,
         keep: int | None = None,
+        felt: FeltSights | None = None,
     ) -> None:
         self.initial = initial
         self.sightings: list[Sighting] = []
@@ -80,6 +84,8 @@ class TerrainWatcher:
         self._region = region
         self._folder = folder
         self._keep = keep
+        self._felt = felt
+        self._felt_upto_s = -math.inf
         footprint = Footprint.of(robot, region.footprint_scale)
         self._switch = Switch(initial, footprint, switch)
         self._pose = np.zeros(3)  # of the last estimate, in the odometry frame
@@ -101,7 +107,8 @@ class TerrainWatcher:
             if sighting.label and sighting.region is not None:
                 given = self.seen.weighed(sighting.label, sighting.probabilities)
                 sight = _sight(sighting, sighting.region, given, pose, travel_m)
-                self._switch = self._switch.see(sight)
+                self._switch = self._switch.see(self._beside(sight))
+        self._feel(frame, pose)
         self._switch = self._switch.at(frame.stamp_s, pose, travel_m)
         if self._switch.event is not None:
             self.events.append(self._switch.event)
@@ -111,6 +118,20 @@ class TerrainWatcher:
             for one in (self.sightings, self.in_force, self.events):
                 del one[: -self._keep]
         return self._switch.footing
+
+    def _beside(self, sight: Sight) -> Sight:
+        """A sight that says nothing of terrains which only feel knows."""
+        if self._felt is None:
+            return sight
+        return replace(sight, probabilities=self._felt.beside(sight.probabilities))
+
+    def _feel(self, frame: Frame, pose: FloatArray) -> None:
+        """Take in what was felt up to a frame."""
+        if self._felt is None:
+            return
+        after_s, self._felt_upto_s = self._felt_upto_s, frame.stamp_s
+        for sight in self._felt.between(after_s, frame.stamp_s, pose, self._travel_m):
+            self._switch = self._switch.see(sight)
 
     @property
     def event(self) -> SwitchEvent | None:

@@ -12,7 +12,7 @@ from terrain.cli.recordings import span_options
 if TYPE_CHECKING:
     from odometry.run_span import Span
 
-SOURCES = ("camera", "labels", "modes", "none")
+SOURCES = ("camera", "labels", "modes", "feel", "none")
 PRESETS = ("chen2023",)
 FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 
@@ -27,10 +27,17 @@ def run_options(command: Callable[..., None]) -> Callable[..., None]:
         "--source",
         type=click.Choice(SOURCES),
         help="What tells the terrain: the images (needs --model), the run's own column `terrain`, "
-        "the motion (needs --modes), or nothing.  [default: camera with --model, else none]",
+        "the motion (needs --modes), what the robot feels (needs --feel), or nothing.  [default: "
+        "camera with --model, else feel with --feel, else none]",
     )
     @click.option(
         "--modes", metavar="SET.toml", type=FILE, help="Set of modes made by `identify-modes`."
+    )
+    @click.option(
+        "--feel",
+        metavar="FEEL",
+        type=FILE,
+        help="Model made by `identify-feel`: a source of its own, or one more beside the camera.",
     )
     @click.option(
         "--preset",
@@ -58,6 +65,7 @@ def run_options(command: Callable[..., None]) -> Callable[..., None]:
         no_vision: bool,
         source: str | None,
         modes: Path | None,
+        feel: Path | None,
         preset: str | None,
         terrain: str | None,
         config: Path | None,
@@ -88,6 +96,7 @@ def run_options(command: Callable[..., None]) -> Callable[..., None]:
             model=model,
             parameters=parameters,
             modes=modes,
+            feel=feel,
             vision=not no_vision,
             terrain=terrain,
             source=source,

@@ -163,7 +163,7 @@ def test_a_source_may_be_ones_own(labelled_run):
     [
         ({"source": "camera"}, "'camera' needs a model"),
         ({"source": "modes"}, "'modes' needs a set of modes"),
-        ({"source": "radar"}, "'radar' is not one of camera, labels, modes, none"),
+        ({"source": "radar"}, "'radar' is not one of camera, labels, modes, feel, none"),
         ({"source": "camera", "vision": False}, "needs vision, which was turned off"),
     ],
 )

@@ -1,0 +1,84 @@
+"""What the robot feels beneath it, as sights of the place where it stands."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.feel.follow import Felt
+from odometry.feel.windows import STEPS
+from odometry.run import UNKNOWN
+from terrain.places import Sight
+
+
+@dataclass(frozen=True)
+class FeltSights:
+    """Windows that do not overlap and say something.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Of the terrains of the model of feel.
+    seen_names : tuple of str
+        Of the terrains that the camera tells.
+    ends_s : (N,)
+    probabilities : (N, K)
+        Of each terrain by one window, as often right as they say on runs held out.
+    """
+
+    names: tuple[str, ...]
+    seen_names: tuple[str, ...]
+    ends_s: FloatArray
+    probabilities: FloatArray
+
+    @classmethod
+    def of(cls, felt: Felt, seen_names: tuple[str, ...] = ()) -> "FeltSights":
+        """Windows that do not overlap; those that fit no terrain are none."""
+        windows = felt.windows
+        rows = np.arange(0, len(windows), STEPS)
+        rows = rows[windows.felt[rows] & (felt.answers[rows] != UNKNOWN)]
+        return cls(
+            felt.model.names,
+            seen_names,
+            felt.stamps_s[rows],
+            felt.probabilities[rows],
+        )
+
+    def between(
+        self, after_s: float, upto_s: float, pose: FloatArray, travel_m: float
+    ) -> Iterator[Sight]:
+        """Sights of the windows that ended after one stamp and up to another.
+
+        Parameters
+        ----------
+        after_s, upto_s : float
+        pose : (3,)
+            Of the robot in the odometry frame.
+        travel_m : float
+            Wheel travel of the run.
+        """
+        first, end = np.searchsorted(self.ends_s, [after_s, upto_s], side="right")
+        for row in range(int(first), int(end)):
+            given = dict(zip(self.names, self.probabilities[row].tolist(), strict=True))
+            yield Sight(
+                max(given, key=lambda name: given[name]),
+                float(self.ends_s[row]),
+                travel_m,
+                pose[:2],
+                0.0,
+                widened(given, self.seen_names),
+                is_felt=True,
+            )
+
+    def beside(self, seen: Mapping[str, float]) -> Mapping[str, float]:
+        """What a look gave to each terrain, those that only feel knows among them."""
+        return widened(seen, self.names) if seen else seen
+
+
+def widened(given: Mapping[str, float], names: tuple[str, ...]) -> dict[str, float]:
+    """Probabilities with further terrains, of which nothing was said: these get the mean."""
+    mean = sum(given.values()) / len(given)
+    wider = {**given, **{name: mean for name in names if name not in given}}
+    whole = sum(wider.values())
+    return {name: one / whole for name, one in wider.items()}
