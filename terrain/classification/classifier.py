@@ -31,7 +31,7 @@ from terrain.classification.training_set import (
     has_colour,
     holds_images,
 )
-from terrain.classification.validation import CrossValidation, Samples, cross_validate
+from terrain.classification.validation import CrossValidation, Samples, best_way
 from terrain.errors import ImageError, PatchError
 from terrain.images import to_grey
 
@@ -46,9 +46,10 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
     preset : {"default", "fast", "chen2023"}
         ``chen2023`` is the paper: SFTA of the grey image (n_t = 4), unscaled, Euclidean nearest
         neighbours. ``default`` takes SFTA of 19 filtered copies of the grey image, counts by
-        area, scaled, with random Fourier features, and projected on shrunk discriminants before
-        the neighbours vote; probabilities are calibrated in cross-validation. ``fast`` does so
-        with eight of the copies, for small computers.
+        area, scaled and projected on shrunk discriminants before the neighbours vote. Whether
+        discriminants may curve (random Fourier features) is chosen, and probabilities are
+        calibrated, in cross-validation. ``fast`` does so with eight of the copies, for small
+        computers.
     colour : bool
         Add SFTA of two colour differences (not with ``chen2023``). Off by default: colour tells
         of camera, white balance and light, and where each class came from a camera of its own it
@@ -327,23 +328,23 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
         preset = PRESETS[self.preset]
         counts = (self.n_neighbors,) if self.n_neighbors else preset.neighbour_counts
         try:
-            self.cross_validation_: CrossValidation = cross_validate(
-                preset.neighbours, counts, samples, copies, calibrates=not preset.as_published
+            way, found = best_way(
+                preset.ways, counts, samples, copies, calibrates=not preset.as_published
             )
             everything = samples.with_copies(np.arange(len(samples.codes)), copies)
-            self._neighbours = preset.neighbours().fit(*everything)
+            self._neighbours = way().fit(*everything)
         except np.linalg.LinAlgError as error:
             raise PatchError(
                 f"{len(samples.codes)} patches of {len(self.classes_)} classes are too few, or too "
                 "much alike, to tell how patches of one class differ"
             ) from error
-        self.n_neighbors_ = self.cross_validation_.n_neighbors
+        self.cross_validation_: CrossValidation = found
+        self.n_neighbors_ = found.n_neighbors
         if self.n_neighbors_ not in counts and self.n_neighbors:
             raise PatchError(
                 f"k = {self.n_neighbors}, but with a part held back a class has fewer patches in "
                 "training; choose a smaller k"
             )
-        found = self.cross_validation_
         self.temperature_ = found.temperature
         limits = rejection_distances(
             found.distances, samples.groups[found.rows], self.rejected_share

@@ -17,6 +17,11 @@ class FourierFeatures(TransformerMixin, BaseEstimator):  # type: ignore[misc]
     Their products approach the kernel ``exp(-WIDTH |x - y|^2 / F)``. There are 500 of them, or as
     many as samples; the same number of features and samples draws the same ones.
 
+    Parameters
+    ----------
+    most : int
+        Cosines at the most; with 0 the features stay as they are.
+
     Attributes
     ----------
     frequencies_ : FloatArray, shape (F, m)
@@ -30,12 +35,15 @@ class FourierFeatures(TransformerMixin, BaseEstimator):  # type: ignore[misc]
     frequencies_: FloatArray
     phases_: FloatArray
 
+    def __init__(self, most: int = MOST) -> None:
+        self.most = most
+
     def fit(self, X: FloatArray, y: AnyArray | None = None) -> Self:  # noqa: ARG002
         """Draw frequencies for features `X` (n, F)."""
         rng = np.random.default_rng(0)
         count, size = X.shape
         spread = np.sqrt(2 * WIDTH / size)
-        self.frequencies_ = rng.normal(0.0, spread, (size, min(MOST, count)))
+        self.frequencies_ = rng.normal(0.0, spread, (size, min(self.most, count)))
         self.phases_ = 2 * np.pi * rng.random((self.frequencies_.shape[1],))
         return self
 

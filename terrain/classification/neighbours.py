@@ -13,7 +13,7 @@ from sklearn.neighbors import KNeighborsClassifier
 from sklearn.pipeline import make_pipeline
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
-from terrain.classification.fourier import FourierFeatures
+from terrain.classification.fourier import MOST, FourierFeatures
 from terrain.classification.metric import AppearanceMetric, ClippedScaler, DiscriminantMetric
 from terrain.classification.nearest import nearest
 from terrain.classification.novelty import NEIGHBOURS, LocalSparsity
@@ -104,7 +104,8 @@ class PlainNeighbours:
 class DiscriminantNeighbours:
     """Neighbours among shrunk discriminants; rare classes weigh as much as common ones.
 
-    The discriminants are linear in scaled features and random Fourier features of these.
+    The discriminants are linear in scaled features and, where they may curve, in random Fourier
+    features of these.
 
     A distance is the mean distance to the nearest samples among the discriminants, times the
     local sparsity among whitened principal components. The first factor asks whether a patch is
@@ -114,10 +115,13 @@ class DiscriminantNeighbours:
 
     class_weights_: FloatArray
 
+    def __init__(self, cosines: int = MOST) -> None:
+        self._cosines = cosines
+
     def fit(self, features: FloatArray, codes: IntArray, copies: int = 0) -> Self:
         """Learn scale, discriminants, components and spacings from (n, F) and (n,)."""
         self.pipeline_ = make_pipeline(
-            ClippedScaler(), FourierFeatures(), DiscriminantMetric(), _knn()
+            ClippedScaler(), FourierFeatures(self._cosines), DiscriminantMetric(), _knn()
         )
         self.pipeline_.fit(features, codes)
         self.class_weights_ = 1.0 / np.bincount(codes)
@@ -199,6 +203,11 @@ class DiscriminantNeighbours:
             arrays["appearance_points"], arrays["appearance_spacings"]
         )
         return model
+
+
+def linear_neighbours() -> DiscriminantNeighbours:
+    """Neighbours among linear discriminants."""
+    return DiscriminantNeighbours(cosines=0)
 
 
 def _knn() -> KNeighborsClassifier:

@@ -1,5 +1,6 @@
 """The two ways to classify terrain, as a table."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from terrain.classification.features import (
@@ -8,7 +9,12 @@ from terrain.classification.features import (
     GREY_COPIES,
     FeatureSettings,
 )
-from terrain.classification.neighbours import DiscriminantNeighbours, Neighbours, PlainNeighbours
+from terrain.classification.neighbours import (
+    DiscriminantNeighbours,
+    Neighbours,
+    PlainNeighbours,
+    linear_neighbours,
+)
 
 
 @dataclass(frozen=True)
@@ -21,6 +27,8 @@ class Preset:
         Without and with colour.
     neighbours : type
         One of the classes of `terrain.classification.neighbours`.
+    ways : tuple of callable
+        What makes them: cross-validation chooses one.
     neighbour_counts : tuple of int
         The numbers k of neighbours among which cross-validation chooses.
     as_published : bool
@@ -31,6 +39,7 @@ class Preset:
     features: FeatureSettings
     colour_features: FeatureSettings
     neighbours: type[Neighbours]
+    ways: tuple[Callable[[], Neighbours], ...]
     neighbour_counts: tuple[int, ...]
     as_published: bool = False
 
@@ -48,7 +57,11 @@ _FEW_GREY = (
     "contrast_5.6",
     "band_2",
 )
-_DISCRIMINANT = (DiscriminantNeighbours, (5, 9, 15, 25, 45))
+_DISCRIMINANT = (
+    DiscriminantNeighbours,
+    (linear_neighbours, DiscriminantNeighbours),
+    (5, 9, 15, 25, 45),
+)
 
 
 def _of(grey_copies: tuple[str, ...], colour_copies: tuple[str, ...] = ()) -> FeatureSettings:
@@ -58,5 +71,12 @@ def _of(grey_copies: tuple[str, ...], colour_copies: tuple[str, ...] = ()) -> Fe
 PRESETS = {
     "default": Preset(_of(_ALL_GREY), _of(_ALL_GREY, _ALL_COLOUR), *_DISCRIMINANT),
     "fast": Preset(_of(_FEW_GREY), _of(_FEW_GREY, _ALL_COLOUR), *_DISCRIMINANT),
-    "chen2023": Preset(_CHEN2023, _CHEN2023, PlainNeighbours, (1, 3, 5, 9, 15), as_published=True),
+    "chen2023": Preset(
+        _CHEN2023,
+        _CHEN2023,
+        PlainNeighbours,
+        (PlainNeighbours,),
+        (1, 3, 5, 9, 15),
+        as_published=True,
+    ),
 }

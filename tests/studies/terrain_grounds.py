@@ -14,7 +14,7 @@ from terrain.classification.neighbours import Neighbours, vote
 from terrain.classification.patches import find_photos, load_patches
 from terrain.classification.presets import PRESETS, Preset
 from terrain.classification.rejection import as_of_one_patch, rejection_distances
-from terrain.classification.validation import Samples, cross_validate
+from terrain.classification.validation import Samples, best_way
 
 REJECTED_SHARE = 0.05
 COPIES = {"grey": 1, "scales": 3, "bank": 19, "bank and colour": 21}
@@ -116,8 +116,8 @@ def choose(
         columns = slice(0, COPIES[name] * PER_COPY)
         samples = Samples(features[:, columns], train.codes, train.groups)
         altered = copies and _samples_of(copies, train, columns)
-        found = cross_validate(
-            preset.neighbours,
+        way, found = best_way(
+            preset.ways,
             preset.neighbour_counts,
             samples,
             altered,
@@ -125,14 +125,14 @@ def choose(
         )
         score = balanced_accuracy(found.codes, found.probabilities.argmax(axis=1))
         if score > best_score:
-            best, best_score = (name, columns, found, samples, altered), score
-    name, columns, found, samples, altered = best
+            best, best_score = (name, columns, way, found, samples, altered), score
+    name, columns, way, found, samples, altered = best
     everything = samples.with_copies(np.arange(len(samples.codes)), altered)
     limits = rejection_distances(found.distances, samples.groups[found.rows], REJECTED_SHARE)
     return Chosen(
         name,
         columns,
-        preset.neighbours().fit(*everything),
+        way().fit(*everything),
         found.n_neighbors,
         limits[:1] if preset.as_published else limits,
         found.temperature,

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from terrain.classification.neighbours import PlainNeighbours
-from terrain.classification.validation import Samples, cross_validate, grouped_folds
+from terrain.classification.validation import Samples, best_way, cross_validate, grouped_folds
 from terrain.errors import PatchError
 
 
@@ -95,3 +95,18 @@ def test_patches_of_a_fold_that_cannot_train_are_left_out():
     np.testing.assert_array_equal(found.codes, codes[found.rows])
     assert np.isfinite(found.probabilities).all()
     assert len(found.distances) == len(judged) < len(codes)
+
+
+def test_the_better_way_is_chosen_and_of_equals_the_first(rng):
+    samples = Samples(*ground(rng))
+
+    class Blind(PlainNeighbours):
+        def fit(self, features, codes, copies=0):
+            return super().fit(np.zeros_like(features), codes, copies)
+
+    way, found = best_way((Blind, PlainNeighbours), (1, 3), samples)
+    assert way is PlainNeighbours
+    again = cross_validate(PlainNeighbours, (1, 3), samples)
+    np.testing.assert_array_equal(found.probabilities, again.probabilities)
+    first, second = (type("Same", (PlainNeighbours,), {}) for _ in range(2))
+    assert best_way((first, second), (1,), samples)[0] is first
