@@ -21,10 +21,13 @@ class BiasReading:
     ----------
     bias_rad_s, variance : float
         Mean and its variance.
+    tolerance_rad_s : float
+        A belief that is no farther off stays: models of modes turn by as much too far on straights.
     """
 
     bias_rad_s: float
     variance: float
+    tolerance_rad_s: float = 0.0
 
 
 def bias_readings(signals: Signals) -> dict[int, BiasReading]:
@@ -36,7 +39,9 @@ def bias_readings(signals: Signals) -> dict[int, BiasReading]:
         for place in check.bias_windows:
             if rows[place] < len(signals):
                 variance = float(check.bias_sigma_rad_s[place]) ** 2
-                found[int(rows[place])] = BiasReading(float(check.bias_rad_s[place]), variance)
+                found[int(rows[place])] = BiasReading(
+                    float(check.bias_rad_s[place]), variance, BIAS_SIGMA_RAD_S
+                )
     return found | {row: BiasReading(*of) for row, of in standing_biases(signals).items()}
 
 
@@ -52,6 +57,8 @@ def with_reading(
     mean, covariance = mean.copy(), covariance.copy()
     believed = covariance[-1, -1] / independent
     off = read.bias_rad_s - mean[-1]
+    if abs(off) <= read.tolerance_rad_s:
+        return mean, covariance
     gain = believed / (believed + read.variance)
     if off**2 > JUMP_SIGMAS**2 * (believed + read.variance):
         gain, believed = 1.0, np.inf

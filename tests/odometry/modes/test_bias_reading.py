@@ -35,6 +35,15 @@ def test_a_bias_that_is_another_one_replaces_what_was_believed():
     assert left[2, 2] == pytest.approx(0.001**2)
 
 
+@pytest.mark.parametrize(("tolerance_rad_s", "stays"), [(0.003, True), (0.001, False)])
+def test_a_belief_within_the_tolerance_of_a_reading_stays(tolerance_rad_s, stays):
+    mean, covariance = np.array([1.0, 2.0, 0.004]), np.diag([1.0, 1.0, 0.002**2])
+    read = BiasReading(0.002, 0.001**2, tolerance_rad_s)
+    told, left = with_reading(mean, covariance, read, independent=1.0)
+    assert (told[2] == mean[2]) == stays
+    assert (left[2, 2] == covariance[2, 2]) == stays
+
+
 def test_headings_and_stands_are_read_and_a_stand_comes_first():
     """Two windows of headings; the robot stands until the end of the second."""
     treads = np.full((SIZE, 2), 0.5)
@@ -48,7 +57,8 @@ def test_headings_and_stands_are_read_and_a_stand_comes_first():
     labels = np.full(SIZE, "ice", dtype=object)
     found = bias_readings(Signals(STAMPS_S, treads, measured, labels, heading_check=check))
     assert sorted(found) == [250, 750]
-    assert found[250] == BiasReading(0.03, 1e-6)
+    assert found[250] == BiasReading(0.03, 1e-6, BIAS_SIGMA_RAD_S)
+    assert found[750].tolerance_rad_s == 0.0
     assert found[750].bias_rad_s == pytest.approx(0.02, abs=0.003)
 
 
