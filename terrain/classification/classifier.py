@@ -18,9 +18,10 @@ from terrain.classification.calibration import tempered
 from terrain.classification.feature_jobs import shared_feature_matrix
 from terrain.classification.features import FeatureSettings
 from terrain.classification.features_of import Transformed, Transformer, features_of
-from terrain.classification.likeness import Likeness, TrainingLook, look_of, middle_of
+from terrain.classification.likeness import Likeness, TrainingLook, look_of, middle_of, spread_rows
 from terrain.classification.model_file import ModelFile
 from terrain.classification.neighbours import Neighbours, vote
+from terrain.classification.old_samples import OldSamples, SamplesBesideOld
 from terrain.classification.patches import LabelledPatches, cut_patches
 from terrain.classification.presets import PRESETS
 from terrain.classification.rejection import as_of_one_patch, rejection_distances
@@ -91,6 +92,9 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
         Of the last `fit`; a loaded classifier has none.
     trained_on_ : TrainedOn or None
         None where nobody said.
+    old_samples_ : OldSamples or None
+        What `adapt` mixes with photographs of another camera; None of features, with ``chen2023``
+        and of files of version 0.9.
     training_look_ : TrainingLook or None
         What `likeness` compares images with; None of features and of files of version 0.9.
 
@@ -141,6 +145,7 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
         groups: Sequence[str] | AnyArray | None = None,
         *,
         copies: LabelledPatches | None = None,
+        beside: OldSamples | None = None,
         progress: bool = False,
         trained_on: TrainedOn | None = None,
         processes: int = 1,
@@ -160,6 +165,9 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
         copies : LabelledPatches, optional
             Altered patches of the same photographs, see `augmentation`, where X is images: they
             are learned from, and never judged. With ``chen2023`` there are none.
+        beside : OldSamples, optional
+            Samples of a model for another camera: moved to the features of this one they are
+            learned from, and never judged. Of terrains in `y` alone.
         progress : bool
             Show a progress bar.
         trained_on : TrainedOn, optional
@@ -203,8 +211,17 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
         self.classes_, codes = np.unique(labels, return_inverse=True)
         self.trained_on_ = trained_on
         self.training_look_ = TrainingLook.of(X, codes, photos) if holds_images(X) else None
+        samples = Samples(features[: len(labels)], codes, photos)
+        self.old_samples_ = None
+        if self.training_look_ is not None and not PRESETS[self.preset].as_published:
+            rows = spread_rows(photos)
+            self.old_samples_ = OldSamples(samples.features[rows], labels[rows])
+        if beside is not None:
+            known = beside.of_terrains(self.classes_)
+            old_codes = np.searchsorted(self.classes_, known.labels)
+            samples = SamplesBesideOld(samples.features, codes, photos, known.features, old_codes)
         self._learn(
-            Samples(features[: len(labels)], codes, photos),
+            samples,
             Samples(
                 features[len(labels) :],
                 np.searchsorted(self.classes_, altered.labels),

@@ -93,7 +93,7 @@ class TrainingLook:
     @classmethod
     def of(cls, patches: Sequence[ByteImage], codes: IntArray, groups: AnyArray) -> Self:
         """Learn from square patches, terrains (n,) and photographs (n,), at least two of each."""
-        rows = _spread_rows(groups)
+        rows = spread_rows(groups)
         looks, codes, groups = (
             np.array([look_of(patches[i]) for i in rows]),
             codes[rows],
@@ -189,7 +189,7 @@ def middle_of(image: ByteImage, size_px: int) -> ByteImage:
     return image[top : top + size_px, left : left + size_px]
 
 
-def _spread_rows(groups: AnyArray) -> IntArray:
+def spread_rows(groups: AnyArray) -> IntArray:
     """Rows of at most 12 patches of each photograph, spread evenly, and 2000 in all."""
     rows: list[int] = []
     for group in dict.fromkeys(groups.tolist()):

@@ -15,6 +15,7 @@ from terrain.classification.model_settings import ModelSettings
 from terrain.classification.neighbours import Neighbours
 from terrain.classification.network_features import NetworkFeatures
 from terrain.classification.network_settings import NetworkSettings
+from terrain.classification.old_samples import OldSamples
 from terrain.classification.persistence import read_model, write_model
 from terrain.classification.presets import PRESETS
 from terrain.classification.trained_on import TrainedOn
@@ -39,6 +40,7 @@ class ModelFile:
     temperature_: float | None
     trained_on_: TrainedOn | None
     training_look_: TrainingLook | None
+    old_samples_: OldSamples | None
     features: Transformer | None
     _features: FeatureSettings | Transformed | None
     _neighbours: Neighbours
@@ -60,6 +62,8 @@ class ModelFile:
         arrays = self._neighbours.arrays()
         if self.training_look_ is not None:
             arrays |= self.training_look_.arrays()
+        if self.old_samples_ is not None:
+            arrays |= self.old_samples_.arrays(self.classes_)
         if isinstance(self._features, FeatureSettings):
             features = self._features
         elif isinstance(made_by := self._features.transformer, NetworkFeatures):
@@ -122,6 +126,7 @@ class ModelFile:
         model.rejection_distances_ = settings.rejection_distances
         model.temperature_ = settings.temperature
         model.trained_on_ = settings.trained_on
+        model.old_samples_ = OldSamples.from_arrays(arrays, model.classes_)
         model.training_look_ = TrainingLook.from_arrays(arrays, len(settings.classes))
         check_codes(arrays["codes"], len(settings.classes))
         model._neighbours = PRESETS[model.preset].neighbours.from_arrays(arrays)

@@ -1,10 +1,11 @@
 """The verb that trains a terrain classifier from labelled photographs."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from terrain.cli.adapted import adapted
 from terrain.cli.network_options import network_options
 from terrain.cli.options import OUTPUT, Positive, processes_option, scheduler_option
 
@@ -66,6 +67,14 @@ if TYPE_CHECKING:
     help="Learn from altered copies of the photographs as well, as another camera or light would "
     "show them; the default preset alone.",
 )
+@click.option(
+    "--adapt",
+    "old",
+    type=click.Path(path_type=Path),
+    metavar="MODEL",
+    help="PATCHES are a few photographs of a new camera: mix them with what MODEL learned from, "
+    "where cross-validation says that it helps.",
+)
 @processes_option
 @scheduler_option
 def train(
@@ -80,6 +89,7 @@ def train(
     k: int | None,
     reject: float,
     augment: bool,
+    old: Path | None,
     processes: int | None,
     scheduler: str | None,
 ) -> None:
@@ -94,6 +104,7 @@ def train(
       terrain-odometry train my_photos --out terrain.model --metres-per-pixel 0.002
       terrain-odometry train my_photos --out terrain.model --features network.onnx
       terrain-odometry train my_photos --out terrain.model --scheduler tcp://host:8786
+      terrain-odometry train new_camera --out new.model --adapt terrain.model
     """
     from terrain.classification.manifest import read_manifest
     from terrain.classification.persistence import is_model
@@ -101,20 +112,29 @@ def train(
     from terrain.cli.outputs import claim_file
 
     made = claim_file(out, is_model)
-    training = train_classifier(
-        patches,
-        preset=preset,
-        patch_size_px=patch_size,
-        metres_per_pixel=metres_per_pixel,
-        colour=colour,
-        features=features,
-        k=k,
-        rejected_share=reject,
-        augment=augment,
-        processes=processes or -1,
-        scheduler=scheduler,
-        show_progress=True,
-    )
+    shared: dict[str, Any] = {
+        "metres_per_pixel": metres_per_pixel,
+        "colour": colour,
+        "rejected_share": reject,
+        "processes": processes or -1,
+        "show_progress": True,
+    }
+    if old is None:
+        training = train_classifier(
+            patches,
+            preset=preset,
+            patch_size_px=patch_size,
+            features=features,
+            k=k,
+            augment=augment,
+            scheduler=scheduler,
+            **shared,
+        )
+    else:
+        fixed = {"--preset": preset != "default", "--patch-size": patch_size is not None}
+        fixed |= {"--features": features is not None, "--k": k is not None}
+        fixed |= {"--scheduler": scheduler is not None}
+        training = adapted(patches, old, fixed, **shared)
     classifier, loaded = training.classifier, training.patches
     size = classifier.patch_size_px
     for path in loaded.too_small:
@@ -143,7 +163,8 @@ def train(
             f"Features: {features.described}. The model holds this part of the network.", err=True
         )
     classifier.save(out, made.to_table())
-    click.echo(_summary(classifier, loaded))
+    if hasattr(classifier, "cross_validation_"):  # a model that was kept as it is has none
+        click.echo(_summary(classifier, loaded))
     click.echo(f"\nWrote {out}. Next: terrain-odometry classify {out} IMAGE...")
 
 

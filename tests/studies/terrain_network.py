@@ -1,7 +1,7 @@
 """Features by an image network against SFTA, on real photographs, with the same folds.
 
     TERRAIN_ODOMETRY_DATA=... python tests/studies/terrain_network.py NETWORK.onnx
-        [--layers NAME,...] [--input-range LOW:HIGH]
+        [--layers NAME,...] [--input-range LOW:HIGH] [--per-photo PATCHES]
 
 Five folds by photograph (photo_id), k chosen inside the training photographs; balanced accuracy by
 patch and by vote of a photograph's patches, with 95 % bootstrap intervals over photographs; grey,
@@ -27,7 +27,7 @@ from terrain.classification.neighbours import vote
 from terrain.classification.network_features import NetworkFeatures
 from terrain.classification.patches import LabelledPatches, find_photos, load_patches
 from terrain.classification.presets import PRESETS
-from terrain.classification.validation import cross_validate, grouped_folds
+from terrain.classification.validation import Samples, cross_validate, grouped_folds
 
 PRESET = PRESETS["default"]
 
@@ -36,10 +36,11 @@ def answers(features: FloatArray, codes: AnyArray, groups: AnyArray) -> FloatArr
     """Probabilities of each patch by a classifier that saw none of its photograph."""
     probabilities = np.zeros((len(codes), codes.max() + 1))
     for train, test in grouped_folds(codes, groups):
-        inside = (features[train], codes[train], groups[train])
-        k = cross_validate(PRESET.neighbours, PRESET.neighbour_counts, *inside).n_neighbors
-        model = PRESET.neighbours().fit(*inside[:2])
-        probabilities[test] = vote(model.labels(features[test], k), model.class_weights_)
+        inside = Samples(features[train], codes[train], groups[train])
+        k = cross_validate(PRESET.neighbours, PRESET.neighbour_counts, inside).n_neighbors
+        model = PRESET.neighbours().fit(inside.features, inside.codes)
+        labels, _ = model.labels_and_distances(features[test], k)
+        probabilities[test] = vote(labels, model.class_weights_)
     return probabilities
 
 
@@ -65,6 +66,7 @@ def main() -> None:
     parser.add_argument("network", type=Path)
     parser.add_argument("--layers", default="")
     parser.add_argument("--input-range", default="-1:1")
+    parser.add_argument("--per-photo", type=int, default=60)
     arguments = parser.parse_args()
     low, high = map(float, arguments.input_range.split(":"))
     layers = tuple(filter(None, arguments.layers.split(",")))
@@ -73,7 +75,7 @@ def main() -> None:
     images = Path(os.environ["TERRAIN_ODOMETRY_DATA"]) / "terrain-images"
     cv2.setNumThreads(1)
     for name, size_px, colours in (("ground", 128, (False,)), ("pavements", 96, (False, True))):
-        patches = load_patches(find_photos(images / name), size_px)
+        patches = load_patches(find_photos(images / name), size_px, arguments.per_photo)
         for colour in colours:
             start_s = time.perf_counter()
             features = features_of(patches.images, Transformed(network, colour))

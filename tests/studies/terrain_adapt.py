@@ -1,0 +1,122 @@
+"""A few labelled photographs of a new camera: alone, mixed with the old, or the old model as it is.
+
+    TERRAIN_ODOMETRY_DATA=... python tests/studies/terrain_adapt.py [--draws N] [--out FOLDER]
+
+From ground/ to pavements/ (four shared terrains, squares of 96 px): 1, 3 and 10 photographs a
+terrain of pavements/ are drawn, each draw with its own seed; balanced accuracy by patch on all
+others. `train --adapt` decides by cross-validation inside the drawn photographs which of the three
+to keep; the last column is what it kept, its score, and how often. In colour the old photographs
+are grey: only what is learned of the new ones alone has colour. Features are kept in --out.
+"""
+
+import argparse
+import os
+import tempfile
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+from terrain_grounds import COPIES, PER_COPY, Grounds
+
+from odometry.arrays import FloatArray, IntArray
+from terrain.classification.adaptation import ALONE, MIXED, OLD
+from terrain.classification.evaluation import balanced_accuracy
+from terrain.classification.feature_jobs import shared_feature_matrix
+from terrain.classification.neighbours import Neighbours, vote
+from terrain.classification.old_samples import SamplesBesideOld
+from terrain.classification.patches import find_photos, load_patches
+from terrain.classification.presets import PRESETS
+from terrain.classification.validation import Samples, cross_validate
+
+PRESET = PRESETS["default"]
+GREY = slice(0, COPIES["bank"] * PER_COPY)
+SIZE_PX, PER_OLD_PHOTO = 96, 12
+
+
+def read(folder: Path, per_photo: int, store: Path) -> Grounds:
+    """Features of a folder of photographs, computed or read from `store`."""
+    file = store / f"{folder.name}_{SIZE_PX}_{per_photo}.npz"
+    if not file.exists():
+        patches = load_patches(find_photos(folder), SIZE_PX, per_photo)
+        settings = PRESET.colour_features
+        bank = shared_feature_matrix(patches.images, settings, processes=1, show_progress=True)
+        names = [str(photo) for photo in patches.photos]
+        np.savez(file, bank[:, :0], bank, patches.labels, patches.groups, names)
+    with np.load(file) as arrays:
+        return Grounds(*(arrays[f"arr_{i}"] for i in range(5)))
+
+
+def learned(samples: Samples, *, judged: bool) -> tuple[Neighbours, int, float]:
+    """Neighbours, k and the balanced accuracy of held-out photographs, where one could be."""
+    score, k = float("nan"), PRESET.neighbour_counts[0]
+    if judged:
+        found = cross_validate(PRESET.neighbours, PRESET.neighbour_counts, samples, calibrates=True)
+        score = balanced_accuracy(found.codes, found.probabilities.argmax(axis=1))
+        k = found.n_neighbors
+    everything = samples.with_copies(np.arange(len(samples.codes)), None)
+    return PRESET.neighbours().fit(*everything), k, score
+
+
+def accuracy(model: Neighbours, k: int, features: FloatArray, codes: IntArray) -> float:
+    """Balanced accuracy by patch."""
+    labels, _ = model.labels_and_distances(features, k)
+    return balanced_accuracy(codes, vote(labels, model.class_weights_).argmax(axis=1))
+
+
+def one_draw(
+    old: Grounds, as_it_is: tuple[Neighbours, int], new: Grounds, photos: int, seed: int
+) -> tuple[dict[str, float], str, float]:
+    """Accuracy of each way on the photographs that were not drawn; what is kept, and colour's."""
+    rng = np.random.default_rng(seed)
+    drawn = [
+        rng.choice(np.unique(new.groups[new.codes == code]), photos, replace=False)
+        for code in np.unique(new.codes)
+    ]
+    shown = np.isin(new.groups, np.concatenate(drawn))
+    some, rest = new.only(shown), new.only(~shown)
+    codes, test = new.codes[shown], new.codes[~shown]
+    grey = some.bank[:, GREY]
+    ways: dict[str, tuple[Neighbours, int, float]] = {
+        ALONE: learned(Samples(grey, codes, some.groups), judged=photos > 1),
+        MIXED: learned(
+            SamplesBesideOld(grey, codes, some.groups, old.bank[:, GREY], old.codes),
+            judged=photos > 1,
+        ),
+    }
+    ways[OLD] = *as_it_is, accuracy(*as_it_is, grey, codes)
+    found = {name: accuracy(m, k, rest.bank[:, GREY], test) for name, (m, k, _) in ways.items()}
+    kept = max(ways, key=lambda name: ways[name][2]) if photos > 1 else MIXED
+    model, k, _ = learned(Samples(some.bank, codes, some.groups), judged=photos > 1)
+    return found, kept, accuracy(model, k, rest.bank, test)
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--draws", type=int, default=10)
+    parser.add_argument("--out", type=Path, default=None, help="keep the features here")
+    arguments = parser.parse_args()
+    images = Path(os.environ["TERRAIN_ODOMETRY_DATA"]) / "terrain-images"
+    with tempfile.TemporaryDirectory() as scratch:
+        store = arguments.out or Path(scratch)
+        old = read(images / "ground", PER_OLD_PHOTO, store)
+        new = read(images / "pavements", 60, store)
+    shared = np.intersect1d(old.labels, new.labels)
+    old, new = (grounds.only(np.isin(grounds.labels, shared)) for grounds in (old, new))
+    as_it_is = learned(Samples(old.bank[:, GREY], old.codes, old.groups), judged=True)[:2]
+    print(f"{', '.join(shared)}; mean [smallest, largest] of {arguments.draws} draws")
+    for photos in (1, 3, 10):
+        draws = [one_draw(old, as_it_is, new, photos, seed) for seed in range(arguments.draws)]
+        columns = {name: [found[name] for found, _, _ in draws] for name in (OLD, MIXED, ALONE)}
+        columns["kept"] = [found[kept] for found, kept, _ in draws]
+        columns["alone, colour"] = [colour for _, _, colour in draws]
+        text = "; ".join(
+            f"{name} {np.mean(of):.3f} [{min(of):.2f}, {max(of):.2f}]"
+            for name, of in columns.items()
+        )
+        print(f"{photos} photographs: {text}; {dict(Counter(kept for _, kept, _ in draws))}",
+              flush=True)  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()

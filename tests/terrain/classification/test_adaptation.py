@@ -1,0 +1,167 @@
+"""A few photographs of a new camera, beside a trained model."""
+
+import cv2
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from terrain.classification.adaptation import ALONE, MIXED, OLD, adapt
+from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.old_samples import SamplesBesideOld
+from terrain.classification.persistence import read_model, write_model
+from terrain.classification.validation import Samples
+from terrain.cli.train import train
+from terrain.errors import ModelFileError, PatchError
+
+
+def samples(seed, count, shift, scale, groups):
+    """Two classes apart along the first feature, as a camera of that shift and scale has them."""
+    rng = np.random.default_rng(seed)
+    codes = np.arange(count) % 2
+    features = rng.normal(size=(count, 4)) + np.outer(codes, [4.0, 0, 0, 0])
+    return Samples(shift + scale * features, codes, np.arange(count) % groups)
+
+
+def test_old_samples_are_moved_to_where_the_new_camera_sees_them():
+    new, old = samples(1, 4000, 7.0, 3.0, 8), samples(2, 4000, -2.0, 0.5, 8)
+    beside = SamplesBesideOld(new.features, new.codes, new.groups, old.features, old.codes)
+    features, codes, copies = beside.with_copies(np.arange(4000), None)
+    assert copies == 4000
+    np.testing.assert_array_equal(features[:4000], new.features)
+    np.testing.assert_array_equal(codes[4000:], old.codes)
+    expected = 7.0 + 3.0 * (old.features + 2.0) / 0.5
+    np.testing.assert_allclose(features[4000:], expected, atol=0.6)
+
+
+def test_the_share_of_terrains_moves_nothing():
+    new, old = samples(1, 4000, 0.0, 1.0, 8), samples(2, 4000, 0.0, 1.0, 8)
+    rare = (new.codes == 0) | (np.arange(4000) < 800)
+    part = SamplesBesideOld(
+        new.features[rare], new.codes[rare], new.groups[rare], old.features, old.codes
+    )
+    features, _, count = part.with_copies(np.arange(rare.sum()), None)
+    np.testing.assert_allclose(features[-count:], old.features, atol=0.3)
+
+
+def test_only_rows_that_are_learned_from_tell_where_to():
+    new, old = samples(1, 400, 0.0, 1.0, 2), samples(2, 400, 5.0, 2.0, 2)
+    beside = SamplesBesideOld(new.features, new.codes, new.groups, old.features, old.codes)
+    rows = np.arange(200)
+    changed = SamplesBesideOld(
+        np.concatenate([new.features[:200], np.full((200, 4), 1e6)]),
+        new.codes, new.groups, old.features, old.codes,
+    )  # fmt: skip
+    for one, other in zip(
+        beside.with_copies(rows, None), changed.with_copies(rows, None), strict=True
+    ):
+        np.testing.assert_array_equal(one, other)
+
+
+@pytest.fixture(scope="module")
+def camera(tmp_path_factory, training_patches):
+    """Writes photographs of a camera: so many of each terrain, changed."""
+
+    def written(count, change, first=0):
+        root = tmp_path_factory.mktemp("camera")
+        images, labels, groups = training_patches
+        for i in range(0, len(images), 4):
+            if first <= int(groups[i].split()[1]) < first + count:
+                (root / labels[i]).mkdir(exist_ok=True)
+                whole = np.block([images[i : i + 2], images[i + 2 : i + 4]])
+                cv2.imwrite(str(root / labels[i] / f"{i:03d}.png"), change(whole))
+        return root
+
+    return written
+
+
+def same(image):
+    return image
+
+
+def exchanged(image):
+    """A camera to which each terrain looks as the other did."""
+    blurred = cv2.GaussianBlur(image, (0, 0), 2)
+    return 255 - blurred
+
+
+def test_the_scores_decide_and_the_best_is_kept(classifier, camera):
+    for change in (same, exchanged):
+        found = adapt(camera(4, change), classifier)
+        assert set(found.scores) == {ALONE, MIXED, OLD}
+        assert found.scores[found.kept] == max(found.scores.values())
+        assert found.forgotten == ()
+        kept = found.training.classifier
+        assert (kept is classifier) == (found.kept == OLD)
+
+
+def test_a_score_is_of_photographs_that_were_held_out(classifier, camera):
+    found = adapt(camera(4, exchanged), classifier)
+    alone = TerrainClassifier(metres_per_pixel=0.006)
+    patches = found.training.patches
+    alone.fit(patches.images, patches.labels, patches.groups)
+    out_of_fold = alone.cross_validation_
+    right = out_of_fold.probabilities.argmax(axis=1) == out_of_fold.codes
+    by_class = [right[out_of_fold.codes == code].mean() for code in (0, 1)]
+    assert found.scores[ALONE] == pytest.approx(np.mean(by_class))
+    right = np.asarray(classifier.predict(patches.images)) == np.array(patches.labels)
+    labels = np.array(patches.labels)
+    assert found.scores[OLD] == pytest.approx(
+        np.mean([right[labels == name].mean() for name in ("boards", "gravel")])
+    )
+
+
+def test_one_photograph_of_a_terrain_is_mixed_as_nothing_can_be_held_out(classifier, camera):
+    found = adapt(camera(1, same), classifier)
+    assert (found.kept, found.scores) == (MIXED, {})
+    assert found.training.classifier.classify(found.training.patches.images[:1])
+    assert found.training.patches.groups[0].endswith(".png")
+
+
+def test_terrains_without_new_photographs_are_said_to_be_forgotten(training_patches, camera):
+    images, labels, groups = training_patches
+    sky = [np.full((32, 32), 200 + i, np.uint8) for i in range(8)]
+    old = TerrainClassifier().fit(
+        [*images, *sky], [*labels, *["sky"] * 8], [*groups, *map(str, range(8))]
+    )
+    found = adapt(camera(3, exchanged), old)
+    assert found.forgotten == (() if found.kept == OLD else ("sky",))
+
+
+def test_a_model_file_keeps_samples_and_older_ones_are_refused(classifier, camera, tmp_path):
+    classifier.save(tmp_path / "a.model")
+    loaded = TerrainClassifier.load(tmp_path / "a.model")
+    np.testing.assert_allclose(
+        loaded.old_samples_.features, classifier.old_samples_.features, rtol=1e-6
+    )
+    assert loaded.old_samples_.labels.tolist() == classifier.old_samples_.labels.tolist()
+    settings, arrays = read_model(tmp_path / "a.model")
+    old = {name: array for name, array in arrays.items() if not name.startswith("sample_")}
+    write_model(tmp_path / "old.model", settings, old)
+    with pytest.raises(PatchError, match="train it anew"):
+        adapt(camera(2, same), TerrainClassifier.load(tmp_path / "old.model"))
+    write_model(tmp_path / "bad.model", settings, arrays | {"sample_codes": np.array([9])})
+    with pytest.raises(ModelFileError, match="samples"):
+        TerrainClassifier.load(tmp_path / "bad.model")
+
+
+def test_train_adapts_and_says_what_was_kept(model_file, camera, tmp_path):
+    root = camera(4, exchanged)
+    options = ["--adapt", str(model_file), "--processes", "1"]
+    answer = CliRunner().invoke(train, [str(root), "--out", str(tmp_path / "new.model"), *options])
+    assert answer.exit_code == 0, answer.output
+    assert f"Adapted from {model_file}: balanced accuracy by patch" in answer.stderr
+    assert "Kept: " in answer.stderr
+    loaded = TerrainClassifier.load(tmp_path / "new.model")
+    assert (loaded.patch_size_px, loaded.metres_per_pixel) == (32, 0.006)
+    refused = CliRunner().invoke(train, [str(root), "--out", "x", *options, "--k", "3"])
+    assert refused.exit_code == 2
+    assert "--k follows from the model of --adapt" in refused.output
+
+
+def test_train_says_where_one_photograph_cannot_tell(model_file, camera, tmp_path):
+    root, out = camera(1, same), tmp_path / "new.model"
+    options = ["--adapt", str(model_file), "--processes", "1"]
+    answer = CliRunner().invoke(train, [str(root), "--out", str(out), *options])
+    assert answer.exit_code == 0, answer.output
+    assert "one photograph alone" in answer.stderr
+    assert "both are mixed" in answer.stderr
