@@ -58,7 +58,7 @@ def adapt(
 
     Whether they do is decided by cross-validation that holds whole new photographs out: nothing of
     an old photograph is judged. Where a terrain has one photograph alone that cannot be told, and
-    both are mixed.
+    the new photographs alone are learned from.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def adapt(
         )
     forgotten = tuple(sorted(set(map(str, old.classes_)) - set(patches.labels)))
     if single:
-        return Adaptation(Training(found[MIXED], patches), MIXED, {}, forgotten)
+        return Adaptation(Training(found[ALONE], patches), ALONE, {}, forgotten)
     scores = {name: _held_out(classifier) for name, classifier in found.items()}
     found[OLD], scores[OLD] = old, _as_it_is(old, patches)
     kept = max(scores, key=lambda name: scores[name])

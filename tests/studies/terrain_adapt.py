@@ -85,7 +85,7 @@ def one_draw(
     }
     ways[OLD] = *as_it_is, accuracy(*as_it_is, grey, codes)
     found = {name: accuracy(m, k, rest.bank[:, GREY], test) for name, (m, k, _) in ways.items()}
-    kept = max(ways, key=lambda name: ways[name][2]) if photos > 1 else MIXED
+    kept = max(ways, key=lambda name: ways[name][2]) if photos > 1 else ALONE
     model, k, _ = learned(Samples(some.bank, codes, some.groups), judged=photos > 1)
     return found, kept, accuracy(model, k, rest.bank, test)
 
