@@ -38,6 +38,12 @@ SOURCES = ("truth.csv", "odometry.csv", "images.csv", "run.toml")
     help="The file whose terrain counts.  [default: spans, else the first of these that names one]",
 )
 @click.option(
+    "--by-feel",
+    metavar="FEEL",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="Model made by `identify-feel`: what the robot felt labels what the camera saw before.",
+)
+@click.option(
     "--parameters",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
     help="Parameter set: ICRs by terrain, for runs without gyroscope and poses.",
@@ -75,6 +81,7 @@ def label(
     out: Path,
     spans: tuple[str, ...],
     source: str | None,
+    by_feel: Path | None,
     parameters: Path | None,
     patch_size: int | None,
     metres_per_pixel: float | None,
@@ -98,30 +105,36 @@ def label(
     """
     from dataclasses import replace
 
+    from odometry.feel.model_file import read_feel_model
     from odometry.parameters import read_parameters
     from terrain.cli.label_spans import spans_by_run
     from terrain.cli.label_text import summary
     from terrain.cli.outputs import claim_folder
     from terrain.cli.recordings import read_run
     from terrain.labelling.corrections import read_corrections
+    from terrain.labelling.felt_terrain import told_by_feel
     from terrain.labelling.label_runs import label_runs
     from terrain.labelling.patch_files import write_labelled_patches
     from terrain.labelling.scale import LabelConfig
     from terrain.labelling.told_terrain import told_by_spans, told_terrain
 
-    if spans and source:
-        raise click.UsageError("--span and --labels: give one of them")
+    if sum(map(bool, (spans, source, by_feel))) > 1:
+        raise click.UsageError("--span, --labels and --by-feel: give one of them")
     config = LabelConfig(patch_size, metres_per_pixel, per_place, place_m)
     by_run = spans_by_run(spans, runs)
     output = claim_folder(out, reads_images=True)
     corrections = read_corrections(out)
     read = [read_run(folder, span, images=True) for folder in runs]
-    told = [
-        told_by_spans(run, by_run[run.folder], run.odometry.stamps_s[0] - span.from_s)
-        if spans
-        else told_terrain(run, source)
-        for run in read
-    ]
+    if by_feel is not None:
+        model = read_feel_model(by_feel)
+        told = [told_by_feel(run, model) for run in read]
+    elif spans:
+        told = [
+            told_by_spans(run, by_run[run.folder], run.odometry.stamps_s[0] - span.from_s)
+            for run in read
+        ]
+    else:
+        told = [told_terrain(run, source) for run in read]
     ground = label_runs(
         read,
         told,

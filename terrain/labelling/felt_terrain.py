@@ -1,0 +1,44 @@
+"""Terrain that the robot felt, as labels of what its camera saw before."""
+
+import numpy as np
+
+from odometry.errors import RunFolderError
+from odometry.feel.follow import SILENT, FeelConfig, follow_feel
+from odometry.feel.model import FeelModel
+from odometry.run import UNKNOWN, Run
+from terrain.labelling.told_terrain import ToldTerrain
+
+SURE = 0.9  # probability from which a window labels: a wrong label misleads the classifier
+STRETCH_S = 4.0  # so long is put together, around the moment that is labelled
+
+
+def told_by_feel(run: Run, model: FeelModel) -> ToldTerrain:
+    """What the run feels like, where that is sure; nothing is told elsewhere.
+
+    Evidence of STRETCH_S is put together, half of it from before each moment and half from after.
+
+    Parameters
+    ----------
+    run : Run
+    model : FeelModel
+        Of the same robot.
+
+    Raises
+    ------
+    RunFolderError
+        If no moment feels like a terrain with a probability of SURE, or as `follow_feel`.
+    """
+    felt = follow_feel(run, model, FeelConfig(stretch_s=STRETCH_S, sure=SURE))
+    silent = np.isin(felt.lasting_answers.astype(str), [*SILENT, UNKNOWN])
+    if silent.all():
+        raise RunFolderError(
+            f"{run.folder}: no moment feels like one of {', '.join(model.names)} with a "
+            f"probability of {SURE:g} or more"
+        )
+    names = np.where(silent, "", felt.lasting_answers)
+    mean = felt.lasting_probabilities.max(axis=1)[~silent].mean()
+    return ToldTerrain(
+        f"feel (mean probability {mean:.2f})",
+        felt.stamps_s - STRETCH_S / 2,
+        tuple(names.tolist()),
+    )

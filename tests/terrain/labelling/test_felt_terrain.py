@@ -1,0 +1,30 @@
+"""Labels by what the robot feels: at the right time, and none where that is not sure."""
+
+import pytest
+
+from odometry.errors import RunFolderError
+from odometry.feel.identify_feel import identify_feel
+from terrain.labelling.felt_terrain import told_by_feel
+from tests.odometry.feel.feel_drives import drive, drives
+from tests.terrain.test_felt_sights import joined
+
+
+@pytest.fixture(scope="module")
+def model():
+    return identify_feel(drives(["tiles", "gravel", "snow"], count=3))
+
+
+def test_labels_are_of_the_moment(model):
+    run, begin_s = joined(drive("gravel", 70), drive("snow", 71))
+    told = told_by_feel(run, model)
+    assert told.between(2.0, begin_s - 2.0) - {""} == {"gravel"}
+    assert told.between(begin_s + 2.0, begin_s + 25.0) - {""} == {"snow"}
+    named = [one for one in told.names if one]
+    assert len(named) > 0.6 * len(told.names)
+    assert not told.of_images
+    assert "mean probability" in told.source
+
+
+def test_what_feels_like_no_terrain_labels_nothing(model):
+    with pytest.raises(RunFolderError, match="no moment feels like"):
+        told_by_feel(drive("grates", 72), model)
