@@ -48,7 +48,7 @@ def dead_reckon_in_space(
 ) -> SpatialTrajectory:
     """Integrate twists over ground whose tilt is measured (Martinez 2024 eq. 12).
 
-    The attitude is REP-103's; eq. 12 is printed for another order of the angles (CONVENTIONS).
+    The attitude is REP-103's; eq. 12 is printed for another order of the angles (data/README.md).
     Each twist stays in the plane on which its step starts, so that on one tilted plane both
     position and heading are exact. The attitude of the answer is the measured roll and pitch.
 

@@ -49,7 +49,8 @@ def write_results(
     list of Path
         odometer.csv and .tum, estimate.csv and .tum, result.json; learned.toml where there is
         anything to hand on; terrain.csv where images were seen or another source told the
-        terrain; reference.csv where there are poses to judge by.
+        terrain; reference.csv where there are poses to judge by, and reference.tum where they
+        have a yaw.
 
     Examples
     --------
@@ -85,7 +86,10 @@ def write_results(
         if columns:
             write_csv_table(out / name, columns)
             names.append(name)
-    for name in {"learned.toml", *tables} - set(names):
+    if result.reference is not None and np.isfinite(result.reference.poses).all():
+        write_tum(out / "reference.tum", result.reference)
+        names.append("reference.tum")
+    for name in {"learned.toml", *tables, "reference.tum"} - set(names):
         (out / name).unlink(missing_ok=True)  # of an earlier run
     text = json.dumps(result_table(result) | dict(about or {}), indent=2, allow_nan=False)
     with atomic_write(out / "result.json") as part:

@@ -68,7 +68,7 @@ def relative_errors(
     *,
     reference_yaw_rad: FloatArray | None = None,
 ) -> RelativeErrors:
-    """Compare motions over spatial horizons (CONVENTIONS, "Horizons and errors").
+    """Compare motions over spatial horizons (data/README.md, Symbols and frame).
 
     Where the reference has no yaw at the start of a window, its heading there is the one that its
     course tells over a horizon before and a horizon after, see `course.course_headings`; where

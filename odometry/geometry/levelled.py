@@ -1,6 +1,6 @@
 """Steps of a body on tilted ground, seen in the level frame that shares its yaw.
 
-The attitude is REP-103's Rz(yaw) Ry(pitch) Rx(roll) (CONVENTIONS; Martinez 2024 eq. 12 prints
+The attitude is REP-103's Rz(yaw) Ry(pitch) Rx(roll) (data/README.md; Martinez 2024 eq. 12 prints
 another order). A step (dx, dy, angle) lies in the body's own plane: the position part is exact,
 and so is the yaw where the ground is a plane. Steps and attitudes broadcast.
 """

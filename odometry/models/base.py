@@ -22,7 +22,7 @@ class Parameter:
     Attributes
     ----------
     name : str
-        As CONVENTIONS and the parameter sets spell it.
+        As data/README.md and the parameter sets spell it.
     unit : str
         "" where it has none.
     low, high : float

@@ -15,7 +15,7 @@ from odometry.outputs.formats import PROGRAM
 
 RUN_NAMES = (
     *("odometer.csv", "odometer.tum", "estimate.csv", "estimate.tum", "terrain.csv"),
-    *("learned.toml", "result.json", "report.html", "reference.csv"),
+    *("learned.toml", "result.json", "report.html", "reference.csv", "reference.tum"),
     *(f"figures/{name}.png" for name in ("path", "position_errors", "error_per_metre", "icrs")),
     *(f"figures/{name}.png" for name in ("labels", "confusion", "regions", "whole_image")),
 )

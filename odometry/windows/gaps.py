@@ -1,6 +1,6 @@
 """Gaps of odometry.csv: long holds of a speed that was not the true one.
 
-CONVENTIONS: a tread speed holds until the next stamp, however long; it is a gap only where other
+data/README.md: a tread speed holds until the next stamp, however long; it is a gap only where other
 files contradict the held speed, or where it lasts long, the treads turn, and nothing else speaks.
 """
 

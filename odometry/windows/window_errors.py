@@ -38,7 +38,7 @@ def errors_over(
 
 
 def window_errors(model: KinematicModel, values: FloatArray, windows: Windows) -> WindowErrors:
-    """Errors of a model with parameters (P,) over windows (CONVENTIONS, "Horizons and errors").
+    """Errors of a model with parameters (P,) over windows (data/README.md, Symbols and frame).
 
     Raises
     ------

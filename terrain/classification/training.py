@@ -60,7 +60,7 @@ def train(
     Parameters
     ----------
     root : path
-        `root/<class>/*.jpg|png`, see CONVENTIONS, "Labelled patches".
+        `root/<class>/*.jpg|png`, see data/README.md.
     preset : {"default", "fast", "chen2023"}
     patch_size_px : int, optional
         Side of a patch; by default 128, or less where that fits into nine of ten photographs.

@@ -1,4 +1,4 @@
-"""The papers' formulae in the frame of CONVENTIONS, written from the papers alone."""
+"""The papers' formulae in the frame of data/README.md, written from the papers alone."""
 
 import math
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 def icr_twist(left, right, y_left, y_right, x_icr):
-    """Twist (v_x, v_y, omega) of treads turning about their ICRs (CONVENTIONS)."""
+    """Twist (v_x, v_y, omega) of treads turning about their ICRs (data/README.md)."""
     width = y_left - y_right
     omega = (right - left) / width
     return (right * y_left - left * y_right) / width, -x_icr * omega, omega

@@ -33,7 +33,7 @@ class Body:
 
 @dataclass(frozen=True)
 class Icrs:
-    """Places of the tread ICRs [m] and factors of the tread speeds (CONVENTIONS)."""
+    """Places of the tread ICRs [m] and factors of the tread speeds (data/README.md)."""
 
     y_left: float
     y_right: float

@@ -86,7 +86,7 @@ def test_ideal_differential_drive_is_a_special_case(name, inputs):
 
 @each_model
 def test_a_left_turn_on_the_spot(model):
-    """CONVENTIONS: v_left < 0 < v_right, omega > 0."""
+    """data/README.md: v_left < 0 < v_right, omega > 0."""
     inputs = Inputs(np.array([-1.0, 1.0]), accelerations_m_s2=np.zeros(2))
     assert model.twist(model.pack(ordinary(model)), inputs)[2] > 0.1
 

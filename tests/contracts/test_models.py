@@ -11,7 +11,7 @@ from odometry.errors import ParameterError
 from odometry.models.catalogue import MODELS, PARAMETER_NAMES
 from odometry.run import Robot
 
-# Names as the table in CONVENTIONS spells them, units, and an ordinary value with a spread.
+# Names as the table in data/README.md spells them, units, and an ordinary value with a spread.
 ICR = {
     "y_left": ("m", 0.45, 0.2),
     "y_right": ("m", -0.35, 0.2),

@@ -47,7 +47,7 @@ def replayed(run, source=None):
 
 
 def reckoned(stamps_s, tables, start):
-    """Open loop by 500 midpoint steps between rows, straight from CONVENTIONS."""
+    """Open loop by 500 midpoint steps between rows, straight from data/README.md."""
     x, y, yaw = start
     places = [(x, y)]
     for (t, until), table in zip(pairwise(stamps_s), tables, strict=True):

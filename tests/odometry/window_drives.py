@@ -51,7 +51,7 @@ STATED = {"position_sigma_m": POSITION_SIGMA_M, "yaw_sigma_rad": YAW_SIGMA_RAD}
 
 
 def icr_twist(values):
-    """Twist of one sample by CONVENTIONS, "Frame and symbols"."""
+    """Twist of one sample by data/README.md."""
 
     def twist_of(v_left, v_right, *_):
         left, right = values["alpha_left"] * v_left, values["alpha_right"] * v_right

@@ -121,7 +121,7 @@ def auriga_pairs():
     ("sign", "mean"), [(1, (-0.441, 0.700, 0.048)), (-1, (-0.461, 0.639, 0.048))]
 )
 def test_the_mean_icrs_of_auriga(sign, mean):
-    """CONVENTIONS: eq. 26-27 as printed, and with the product of signs reversed.
+    """data/README.md: eq. 26-27 as printed, and with the product of signs reversed.
 
     The paper's own (below eq. 3) are -0.458, 0.630 and 0.048: the second is nearer.
     """

@@ -1,7 +1,7 @@
 """Every shipped parameter set against the numbers that its paper prints.
 
 The numbers are typed from the papers in the papers' own symbols; the conversions are those of the
-table in CONVENTIONS: with Y forward and X right, y_left = -x_ICR^l, y_right = -x_ICR^r,
+table in data/README.md: with Y forward and X right, y_left = -x_ICR^l, y_right = -x_ICR^r,
 x_icr = y_ICR, and (x_cm, y_cm) = (y_CM, -x_CM).
 """
 

@@ -184,7 +184,7 @@ def print_loop(name, run, *, icrs=None):
 
 
 def icrs_of(table):
-    """ICRs and slip factors of a table of `icr` or `icr_symmetric` (CONVENTIONS: alpha, b_hat)."""
+    """ICRs and slip factors of a table of `icr` or `icr_symmetric` (alpha, b_hat)."""
     values = dict(table.values)
     if table.model == "icr":
         return values

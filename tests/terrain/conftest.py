@@ -132,7 +132,7 @@ def drive_straight(folder, world, length_m, every_m=0.12, camera=CAMERA):
 
 
 def twist(v_left, v_right, y_left, y_right, x_icr):
-    """Body twist by CONVENTIONS, "Frame and symbols"."""
+    """Body twist by data/README.md."""
     width = y_left - y_right
     omega = (v_right - v_left) / width
     return (v_right * y_left - v_left * y_right) / width, -x_icr * omega, omega

@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from odometry.io.trajectory_files import read_trajectory
 from odometry.parameters import read_parameters
 from terrain.main_job import run_odometry
 from terrain.result_table import result_table
@@ -30,7 +31,7 @@ def curvy_out(curvy_result, tmp_path_factory):
 
 def test_every_promised_file_is_written_and_nothing_else(across_result, curvy_result, tmp_path):
     always = {"odometer.csv", "odometer.tum", "estimate.csv", "estimate.tum", "result.json"}
-    always |= {"reference.csv"}
+    always |= {"reference.csv", "reference.tum"}
     for name, result, expected in (
         ("across", across_result, always | {"terrain.csv"}),
         ("curvy", curvy_result, always | {"learned.toml"}),
@@ -210,3 +211,17 @@ def test_the_origin_that_run_toml_says_is_kept(curvy_result, source, origin):
     content = result_table(replace(curvy_result, run=run))
     assert content["origin"] == origin
     assert content["robot"]["track_width"] == run.robot.track_width
+
+
+def test_reference_tum_is_reference_csv_and_is_not_there_without_a_yaw(curvy_result, tmp_path):
+    write_results(curvy_result, tmp_path)
+    table = np.genfromtxt(tmp_path / "reference.csv", delimiter=",", names=True)
+    poses = read_trajectory(tmp_path / "reference.tum").poses
+    np.testing.assert_allclose(poses[:, 0, 3], table["x"], atol=1e-5)
+    yaw = np.arctan2(poses[:, 1, 0], poses[:, 0, 0])
+    np.testing.assert_allclose(np.sin(yaw - table["yaw"]), 0.0, atol=1e-5)
+    positions = curvy_result.reference.poses.copy()
+    positions[3, 2] = np.nan
+    without = replace(curvy_result, reference=replace(curvy_result.reference, poses=positions))
+    write_results(without, tmp_path)
+    assert not (tmp_path / "reference.tum").exists()

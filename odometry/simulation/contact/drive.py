@@ -38,7 +38,7 @@ class ContactDrive:
     twists_body : (..., N, 3) array
         v_x, v_y [m/s] of the origin and omega [rad/s] about the body's z.
     accelerations_m_s2 : (..., N, 2) array
-        accel_x, accel_y of an accelerometer at the origin, gravity included (CONVENTIONS): the
+        accel_x, accel_y of an accelerometer at the origin, gravity included (data/README.md): the
         mean from the stamp before; at the first stamp that of rest.
     traction : tuple of Traction
         What was in force, one after another; empty where it was the vehicle's own all along.

@@ -1,7 +1,7 @@
 """Ground that slopes: planes, planes joined by smooth creases, and a held attitude.
 
-REP-103 (CONVENTIONS): orientation Rz(yaw) Ry(pitch) Rx(roll), roll > 0 right side down, pitch > 0
-nose down.
+REP-103 (data/README.md): orientation Rz(yaw) Ry(pitch) Rx(roll), roll > 0 right side down,
+pitch > 0 nose down.
 """
 
 from dataclasses import dataclass

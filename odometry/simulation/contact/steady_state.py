@@ -38,7 +38,7 @@ def steady_state(
     tread_speeds_m_s : (B, 2) array
         Left and right.
     roll_rad, pitch_rad : (B,) arrays or numbers
-        REP-103, see CONVENTIONS.
+        REP-103, see data/README.md.
     longest_s : float
         When to give up.
 

@@ -134,7 +134,7 @@ def worlds():
 
 
 def _formula_world(key, kind, gyro_sigma_rad_s, gyro_bias_rad_s):
-    """Terrains by ICRs (CONVENTIONS), slopes by Martinez 2024."""
+    """Terrains by ICRs (data/README.md), slopes by Martinez 2024."""
     rng = np.random.default_rng([5, *key.encode()])
     body = draw_body(rng)
     icrs = draw_icrs(rng, body)

@@ -74,7 +74,7 @@ def test_twists_are_those_of_the_paper_with_a_consistent_force(rng):
 
 
 def test_icrs_are_those_of_the_twist(rng):
-    """y_left = (v_x - v_left) / omega and so on, CONVENTIONS."""
+    """y_left = (v_x - v_left) / omega and so on, data/README.md."""
     values, speeds = MODEL.pack(AURIGA), rng.uniform(-1, 1, (50, 2))
     v_x, v_y, omega = MODEL.twist(values, Inputs(speeds)).T
     expected = np.stack([v_x - speeds[:, 0], v_x - speeds[:, 1], -v_y], axis=-1) / omega[:, None]

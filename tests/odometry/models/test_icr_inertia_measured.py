@@ -26,7 +26,7 @@ G = 9.80665
 
 
 def at_rest(roll, pitch):
-    """CONVENTIONS: accel_x = -g sin(pitch), accel_y = g cos(pitch) sin(roll)."""
+    """data/README.md: accel_x = -g sin(pitch), accel_y = g cos(pitch) sin(roll)."""
     return G * np.stack([-np.sin(pitch), np.cos(pitch) * np.sin(roll)], axis=-1)
 
 

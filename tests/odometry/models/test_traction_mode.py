@@ -16,7 +16,7 @@ def test_by_hand():
 
 
 def test_it_is_the_symmetric_model_by_other_names(rng):
-    """CONVENTIONS: alpha_left = alpha_right = k and y_left - y_right = b k / m."""
+    """data/README.md: alpha_left = alpha_right = k and y_left - y_right = b k / m."""
     inputs = Inputs(rng.uniform(-2, 2, (20, 2)))
     for k, m, b in rng.uniform([0.5, 0.3, 0.3], [1.2, 1.2, 1.5], (10, 3)):
         twists = MODEL.twist(np.array([k, m, b]), inputs)

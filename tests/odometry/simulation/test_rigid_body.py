@@ -13,7 +13,7 @@ half_widths = st.floats(0.1, 1.0)
 
 @given(v_left=speeds, v_right=speeds, left=half_widths, right=half_widths, x_icr=speeds)
 def test_twist_is_that_of_the_closed_form(v_left, v_right, left, right, x_icr):
-    """CONVENTIONS: omega, v_x and v_y from y_left, y_right and x_icr."""
+    """data/README.md: omega, v_x and v_y from y_left, y_right and x_icr."""
     v_x, v_y, omega = body_twist(np.array([v_left, v_right]), np.array([left, -right, x_icr]))
     assert omega == pytest.approx((v_right - v_left) / (left + right), abs=1e-9)
     assert v_x == pytest.approx((v_right * left + v_left * right) / (left + right), abs=1e-9)

@@ -50,7 +50,7 @@ def test_poses_follow_the_twists(make_vehicle):
 
 
 def test_at_rest_the_accelerometer_feels_gravity(make_vehicle):
-    """CONVENTIONS: accel_x = -g sin(pitch), accel_y = +g cos(pitch) sin(roll)."""
+    """data/README.md: accel_x = -g sin(pitch), accel_y = +g cos(pitch) sin(roll)."""
     drive = simulate_contact(
         make_vehicle("shear"),
         np.zeros((200, 2)),

@@ -109,7 +109,7 @@ def test_straight_driving_on_a_side_slope(make_vehicle):
 
 
 def test_turning_downhill_slides_downhill(make_vehicle):
-    """CONVENTIONS: pitch > 0 has the nose down, so that gravity pushes forward."""
+    """data/README.md: pitch > 0 has the nose down, so that gravity pushes forward."""
     spin = np.array([[-0.3, 0.3]] * 5)
     roll, pitch = np.array([0, 0, 0, 0.1, -0.1]), np.array([0, 0.1, -0.1, 0, 0])
     twists, _ = steady_state(make_vehicle("shear"), spin, roll_rad=roll, pitch_rad=pitch)
