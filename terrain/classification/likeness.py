@@ -26,7 +26,7 @@ PATCHES_PER_PHOTO = 12
 MOST_PATCHES = 2000
 NEAREST = 3
 FEWEST_IMAGES = 5
-# chosen on the photographs of ground/, altered and not; ranks are 0.5 in the mean where all is well
+# chosen with ground/, pavements/ and frames of other cameras in sight, so no clean test of them;
 UNLIKE_RANK, UNLIKE_RANK_IN_CLASS = 0.75, 0.7
 MOST_WORDS = 3
 WORTH_NAMING = 0.5  # deviations within a terrain

@@ -13,7 +13,6 @@ from terrain.classification.patches import (
     load_patches,
     stated_metres_per_pixel,
 )
-from terrain.classification.presets import PRESETS
 
 LARGEST_PATCH_PX = 128
 
@@ -50,7 +49,7 @@ def train(
     features: Transformer | None = None,
     k: int | None = None,
     rejected_share: float = 0.05,
-    augment: bool = True,
+    augment: bool = False,
     processes: int = 1,
     scheduler: str | None = None,
     show_progress: bool = False,
@@ -76,7 +75,7 @@ def train(
     rejected_share : float
         Share of known patches that may be called unknown.
     augment : bool
-        Whether altered copies of the photographs are learned from as well (``default`` only):
+        Whether altered copies of the photographs are learned from as well (not ``chen2023``):
         scaled, where their scale is not known, blurred, relit, noisy and compressed, as another
         camera may show the terrain.
     processes : int
@@ -117,7 +116,7 @@ def train(
         features=features,
     )
     copies = None
-    if augment and preset in PRESETS and not PRESETS[preset].as_published:
+    if augment:
         settings = Augmentation() if scale is None else Augmentation(largest_crop=1.0)
         copies = load_copies(photos, size_px, settings)
     classifier.fit(
