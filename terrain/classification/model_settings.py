@@ -76,7 +76,7 @@ class ModelSettings:
         # files of version 0.9 do not say
         limits = table.get("rejection_distances", [table["rejection_distance"]])
         values["rejection_distances"] = tuple(_within(limit, 0.0, 1e12) for limit in limits)
-        if len(limits) not in {1, len(PATCHES)} or limits[0] != table["rejection_distance"]:
+        if len(limits) not in {1, len(PATCHES)}:
             raise ValueError(f"rejection_distances = {limits}")
         if table.get("temperature") is not None:
             values["temperature"] = _within(table["temperature"], *TEMPERATURES)
