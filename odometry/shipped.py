@@ -6,7 +6,7 @@ from odometry.errors import OdometryError
 
 
 def shipped_data() -> Path:
-    """The folder of examples: runs, patches, parameters, modes, vehicles, cameras and bags.
+    """The folder of examples: runs, patches, parameters, modes, feel, vehicles, cameras and bags.
 
     Raises
     ------
@@ -17,7 +17,7 @@ def shipped_data() -> Path:
     --------
     >>> import odometry
     >>> sorted(folder.name for folder in odometry.shipped_data().iterdir() if folder.is_dir())
-    ['bags', 'cameras', 'modes', 'parameters', 'patches', 'runs', 'vehicles']
+    ['bags', 'cameras', 'feel', 'modes', 'parameters', 'patches', 'runs', 'vehicles']
     """
     package = Path(__file__).resolve().parent
     for folder in (package / "data", package.parent / "data"):

@@ -186,6 +186,11 @@ def test_the_making_of_the_shipped_data(tmp_path: Path, monkeypatch: pytest.Monk
     )
     assert made.names == shipped.names
     np.testing.assert_allclose(made.modes.A, shipped.modes.A, rtol=1e-6)
+    felt, kept = (
+        odometry.read_feel_model(file)
+        for file in (tmp_path / "demo.feel", ROOT / "data/feel/demo.feel")
+    )
+    assert (felt.names, felt.design.columns) == (kept.names, kept.design.columns)
 
 
 def as_bag(run: odometry.Run, path: Path) -> None:

@@ -148,15 +148,9 @@ def follow_feel(run: Run, model: FeelModel, config: FeelConfig | None = None) ->
 
     Examples
     --------
-    >>> from dataclasses import replace
     >>> import odometry
     >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
-    >>> parts = [odometry.cut_run(run, odometry.Span(9.0 * i, 9.0 * i + 9.0)) for i in range(6)]
-    >>> named = [
-    ...     replace(part, settings={**part.settings, "run": {"terrain": name}})
-    ...     for part, name in zip(parts, ["gravel", "grass"] * 3)
-    ... ]
-    >>> model = odometry.identify_feel(named)
+    >>> model = odometry.read_feel_model(odometry.shipped_data() / "feel" / "demo.feel")
     >>> felt = odometry.follow_feel(run, model)
     >>> felt.probabilities.shape == (len(felt.windows), 2)
     True

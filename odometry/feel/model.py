@@ -69,15 +69,8 @@ class FeelModel:
 
     Examples
     --------
-    >>> from dataclasses import replace
     >>> import odometry
-    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
-    >>> parts = [odometry.cut_run(run, odometry.Span(9.0 * i, 9.0 * i + 9.0)) for i in range(6)]
-    >>> named = [
-    ...     replace(part, settings={**part.settings, "run": {"terrain": name}})
-    ...     for part, name in zip(parts, ["gravel", "grass"] * 3)
-    ... ]
-    >>> model = odometry.identify_feel(named)
+    >>> model = odometry.read_feel_model(odometry.shipped_data() / "feel" / "demo.feel")
     >>> model.names, model.design.window_s, model.design.top_hz
     (('grass', 'gravel'), 2.0, 10.0)
     """

@@ -33,15 +33,8 @@ def write_feel_model(
     --------
     >>> from pathlib import Path
     >>> from tempfile import TemporaryDirectory
-    >>> from dataclasses import replace
     >>> import odometry
-    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
-    >>> parts = [odometry.cut_run(run, odometry.Span(9.0 * i, 9.0 * i + 9.0)) for i in range(6)]
-    >>> named = [
-    ...     replace(part, settings={**part.settings, "run": {"terrain": name}})
-    ...     for part, name in zip(parts, ["gravel", "grass"] * 3)
-    ... ]
-    >>> model = odometry.identify_feel(named)
+    >>> model = odometry.read_feel_model(odometry.shipped_data() / "feel" / "demo.feel")
     >>> with TemporaryDirectory() as folder:
     ...     odometry.write_feel_model(Path(folder) / "my.feel", model)
     ...     odometry.read_feel_model(Path(folder) / "my.feel").names
