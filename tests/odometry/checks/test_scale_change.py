@@ -37,3 +37,15 @@ def test_the_moment_and_the_mend_are_those_of_the_change(factor, gyroscope):
 @pytest.mark.parametrize("factors", [(1.0, 1.0), (1.2, 1.2), (1.0, 1.8)])
 def test_little_changes_and_those_of_one_tread_are_no_scale(factors):
     assert not list(scale_change(Evidence(later(winding(), *factors))))
+
+
+@pytest.mark.parametrize("part", [slice(None, 600), slice(1200, None)])
+def test_treads_that_read_zero_on_one_side_have_no_other_scale(part):
+    run = winding()
+    zero = np.ones(len(run.odometry.stamps_s))
+    zero[part] = 0.0
+    frozen = in_turn(
+        changed("odometry", "v_left", lambda v: zero * v),
+        changed("odometry", "v_right", lambda v: zero * v),
+    )(run)
+    assert not list(scale_change(Evidence(frozen)))
