@@ -164,7 +164,7 @@ class Camera:
         return np.asarray(np.linalg.solve(self.matrix, self.ground_to_image))
 
     def ground_to_pixels(self, points: ArrayLike) -> FloatArray:
-        """Where ground points appear in the raw (distorted) image.
+        """Where ground points appear in the raw (distorted) image (Chen 2023 eq. 17).
 
         Parameters
         ----------

@@ -15,7 +15,7 @@ Measurement = Callable[[FloatArray], FloatArray]
 
 @dataclass(frozen=True)
 class EkfModel:
-    """Functions of the state x (n,), the input u and the step dt [s].
+    """Functions of the state x (n,), the input u and the step dt [s] (Salvi 2024 eq. 1).
 
     For a bank (`EkfBank`) the functions take states (M, n), one of each mode, and their results
     have the modes in front; a Jacobian or a covariance may leave them out where all modes share it.
@@ -89,7 +89,7 @@ class EkfModel:
 
 
 def log_density(normalised_squared: FloatArray | float, covariance: FloatArray) -> FloatArray:
-    """Logarithm of eq. 8 of Salvi 2024, from squared Mahalanobis lengths (...) of residuals.
+    """Logarithm of Salvi 2024 eq. 8, from squared Mahalanobis lengths (...) of residuals.
 
     Parameters
     ----------

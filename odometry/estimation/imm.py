@@ -74,7 +74,7 @@ class Imm:
         return self.updated(self.predicted(belief, u, step_s), z)
 
     def predicted(self, belief: ModeBelief, u: FloatArray, step_s: float) -> ModeBelief:
-        """Belief a step later, before a measurement: eq. 4-7, then each model; see `step`."""
+        """Belief a step later, before a measurement: Salvi 2024 eq. 4-7, then the models."""
         log_joint = self._log_transition(belief, step_s) + belief.log_probabilities[:, None]
         log_predicted = log_sum(log_joint)  # eq. 5
         weights = _mixing_weights(log_joint, log_predicted)
@@ -128,7 +128,7 @@ class Imm:
 
 
 def _mixing_weights(log_joint: FloatArray, log_predicted: FloatArray) -> FloatArray:
-    """Eq. 4: weights[j, i] of mode i in the start of filter j.
+    """Salvi 2024 eq. 4: weights[j, i] of mode i in the start of filter j.
 
     A mode that nothing leads to starts where it was.
     """

@@ -58,7 +58,7 @@ def predicted(covariance: FloatArray, jacobian: FloatArray, half_noise: FloatArr
 
 
 def updated(belief: Gaussian, measured: Measurement) -> Updated:
-    """The belief (9,), (9, 9) after a measurement: Chen 2023 eq. 14-15, Joseph's form of 16."""
+    """The belief (9,), (9, 9) after a measurement: Chen 2023 eq. 14-16, in Joseph's form."""
     mean, covariance = belief
     residual, by_state, noise = measured
     shared = covariance.dot(by_state.T)

@@ -81,7 +81,7 @@ def reference_point(mean: FloatArray, lever_m: Place) -> FloatArray:
 def pose_measurement(
     mean: FloatArray, pose: FloatArray, covariance: FloatArray, lever_m: Place
 ) -> Measurement:
-    """Of a measured pose, any part of which may be NaN.
+    """Of a measured pose, any part of which may be NaN (Chen 2023 eq. 12-13).
 
     Parameters
     ----------

@@ -47,7 +47,7 @@ class PoseUpdate:
 
     def __init__(self, config: IcrEkfConfig, track_width: float, lever_m: Place) -> None:
         self.config = config
-        self.covariance = np.diag(  # Chen 2023 eq. 14
+        self.covariance = np.diag(  # R of Chen 2023 eq. 14
             np.square([config.position_sigma_m, config.position_sigma_m, config.yaw_sigma_rad])
         )
         self.lever_m = lever_m

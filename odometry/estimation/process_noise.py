@@ -44,7 +44,7 @@ class ProcessNoise:
         in_gap: bool,
         bias_walk: float = 1.0,
     ) -> FloatArray:
-        """Covariance (9, 9) that half of a step adds.
+        """Covariance (9, 9) that half of a step adds: L Q L^T of Chen 2023 eq. 7 and 11.
 
         Parameters
         ----------

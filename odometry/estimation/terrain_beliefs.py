@@ -90,7 +90,7 @@ class TerrainBeliefs:
         return known
 
     def _reset(self, known: IcrBelief) -> FloatArray:
-        """Chen 2023, 3.2.1: P_B, or what is known where that is less certain."""
+        """Chen 2023, 3.2.3: P_B, or what is known where that is less certain."""
         reset = np.zeros((5, 5))
         sigmas = (self._reset_sigma_m, self._reset_sigma_alpha)
         for block, sigma in zip((slice(0, 3), slice(3, 5)), sigmas, strict=True):

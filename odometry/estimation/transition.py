@@ -41,8 +41,9 @@ def transition(
     Returns
     -------
     next_state : (9,)
-        Chen 2023 eq. 4, integrated exactly along the arc instead of by eq. 5's Euler step, so
-        that splitting a step changes nothing. All but the pose stay; yaw in (-pi, pi].
+        Chen 2023 eq. 1 and 4, integrated exactly along the arc instead of by the Euler step of
+        eq. 5 and 6, so that splitting a step changes nothing. All but the pose stay; yaw in
+        (-pi, pi].
     jacobian : (9, 9)
         Its derivative by `state`: I + dT df/dX of eq. 8 in the limit of small steps.
 
@@ -59,7 +60,7 @@ def transition(
     added_x, added_y, added_omega = added_twist.tolist()
     if math.isnan(yaw_rate_rad_s):
         width = y_left - y_right
-        omega = (alpha_right * right - alpha_left * left) / width  # eq. 3, third row
+        omega = (alpha_right * right - alpha_left * left) / width  # Chen 2023 eq. 3, third row
         by_bias = 0.0
         by_width, by_left, by_right = -omega / width, -left / width, right / width
     else:
@@ -86,7 +87,7 @@ def transition(
     half, across_step = step_s / 2, -omega * step_s
     jacobian = UNCHANGED.copy()
     jacobian[0, 2:] = (
-        -moved_y,  # eq. 9: d(Xdot)/d(theta) = -Ydot
+        -moved_y,  # Chen 2023 eq. 9: d(Xdot)/d(theta) = -Ydot
         by_omega_x * by_width + one * omega * half,
         -by_omega_x * by_width + one * omega * half,
         -two * across_step,
@@ -95,7 +96,7 @@ def transition(
         by_omega_x * by_right + one * right * half,
     )
     jacobian[1, 2:] = (
-        moved_x,  # eq. 9: d(Ydot)/d(theta) = +Xdot
+        moved_x,  # Chen 2023 eq. 9: d(Ydot)/d(theta) = +Xdot
         by_omega_y * by_width + two * omega * half,
         -by_omega_y * by_width + two * omega * half,
         one * across_step,

@@ -1,7 +1,8 @@
 """Quasi-static force balance of the ground contacts under both treads.
 
-None of the papers has it. Its parts are known: pressure on single points and centrifugal force
-as in Martinez 2017 (section II, eq. 4-10), Coulomb friction against the sliding of each contact.
+None of the papers has it. Its parts are known: pressure on single points (Martinez 2017,
+section II), centrifugal force (Martinez 2017 eq. 10), Coulomb friction against the sliding of each
+contact.
 """
 
 from collections.abc import Callable
@@ -55,7 +56,7 @@ class Contact(KinematicModel):
     """
 
     name = "contact"
-    source = "force balance of this project; contacts and inertia as Martinez 2017, section II"
+    source = "force balance of this project; contacts and inertia as Martinez 2017, II and III-A"
     parameters = (
         Parameter("mu", "", 1e-3, search=(0.05, 1.5)),
         Parameter("mass", "kg", 1e-3, known=True),

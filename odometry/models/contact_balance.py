@@ -119,7 +119,7 @@ def balance_at(stance: Stance, twist: FloatArray) -> Balance:
     slip = np.stack([v_x - omega * y - tread, v_y + omega * x])
     resistance = 1 / np.sqrt(slip[0] ** 2 + slip[1] ** 2 + stance.slip_scale_m_s**2)
     contact_wrenches = wrench(-stance.mu * resistance * slip, stance.places_m)
-    centre_speeds = np.stack([v_x - omega * y_cm, v_y + omega * x_cm])
+    centre_speeds = np.stack([v_x - omega * y_cm, v_y + omega * x_cm])  # Martinez 2017 eq. 9-10
     centrifugal = np.stack([omega * centre_speeds[1], -omega * centre_speeds[0]]) / G_M_S2
     pull = stance.gravity + centrifugal
     shift = stance.height_m * pull / (stance.normal * stance.base_m)

@@ -16,7 +16,7 @@ GUESSED_WIDTHS = 1.5  # distance between tread ICRs in track widths, where nothi
 
 
 def icr_twist(icrs: FloatArray, tread_speeds: FloatArray) -> FloatArray:
-    """Body twist from tread ICRs.
+    """Body twist from tread ICRs (Martinez 2024 eq. 4 in other axes).
 
     Parameters
     ----------

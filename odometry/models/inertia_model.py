@@ -158,7 +158,7 @@ class InertiaModel(KinematicModel):
 
 
 def _turn_under(values: FloatArray, inputs: Inputs, force_n: FloatArray) -> Turn:
-    """The motion (...) under a force (...)."""
+    """The motion (...) under a force (...), with the signs of eq. 14-15."""
     left, right = inputs.left, inputs.right
     x1_sign, x2_sign = np.sign(left - right), np.sign(left + values[..., Column.H] * right)
     found = indices_under(values[..., COEFFICIENTS], force_n, x1_sign, x2_sign)

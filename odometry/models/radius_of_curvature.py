@@ -93,8 +93,8 @@ def _twist(values: FloatArray, inputs: Inputs, factor: FloatArray) -> FloatArray
 def _width_factor(values: FloatArray, inputs: Inputs) -> tuple[FloatArray, ...]:
     """Track width over effective width, (...), and how it changes.
 
-    With p = sqrt(|right - left|) and q = sqrt(|right + left|), lambda = q^2 / p^2 and eq. 11
-    turns into factor = (p + beta_2 q) / ((1 + beta_1) p + beta_2 q).
+    With p = sqrt(|right - left|) and q = sqrt(|right + left|), lambda of eq. 10 is q^2 / p^2, and
+    eq. 11 turns into factor = (p + beta_2 q) / ((1 + beta_1) p + beta_2 q).
 
     Returns
     -------

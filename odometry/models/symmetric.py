@@ -103,6 +103,7 @@ def symmetric_icrs(width: float) -> FloatArray:
 
 
 def _symmetric_twist(alpha: FloatArray, width: FloatArray, inputs: Inputs) -> FloatArray:
+    """Baril 2020 eq. 3, with alpha eq. 8-9."""
     v_x = alpha * (inputs.left + inputs.right) / 2
     omega = alpha * (inputs.right - inputs.left) / width
     return vectors(v_x, np.zeros(()), omega)

@@ -106,7 +106,7 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
 
     References
     ----------
-    Chen et al. 2023, eq. 18-21 (features) and 23-26 (neighbours).
+    Chen et al. 2023, eq. 18-21 (features), eq. 23-26 (neighbours).
 
     Examples
     --------

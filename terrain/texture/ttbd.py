@@ -8,7 +8,7 @@ GREYS = np.arange(256.0)
 
 
 def chen2023_members(thresholds: FloatArray) -> BoolArray:
-    """Tell the greys of the 2 n_t binary images of the paper (eq. 19 and 20).
+    """Tell the greys of the 2 n_t binary images of Chen 2023, eq. 19 and 20.
 
     Parameters
     ----------

@@ -139,7 +139,7 @@ def test_a_turning_robot_drifts_downhill():
 
 
 def test_cornering_drifts_outwards():
-    """The centrifugal force of a left turn points to the right (Martinez 2017 eq. 4)."""
+    """The centrifugal force of a left turn points to the right (Martinez 2017 eq. 10)."""
     assert twist([0.8, 1.6])[1] < creeping([0.8, 1.6])[1] - 1e-3
 
 
