@@ -1,30 +1,26 @@
 """The terrain classifier: features, a scaler and k nearest neighbours, with rejection."""
 
 import math
-from collections.abc import Iterable, Sequence
-from copy import copy
+from collections.abc import Sequence
 from typing import Any, Self
 
 import numpy as np
 from sklearn.base import BaseEstimator, ClassifierMixin, clone
 from sklearn.utils.multiclass import check_classification_targets
-from sklearn.utils.validation import check_is_fitted, validate_data
+from sklearn.utils.validation import validate_data
 
-from odometry.arrays import AnyArray, BoolArray, ByteImage, FloatArray
+from odometry.arrays import AnyArray, ByteImage
 from odometry.errors import ConfigError
-from odometry.run import UNKNOWN
 from terrain.classification.answer import Classification, Classifier
-from terrain.classification.calibration import tempered
 from terrain.classification.feature_jobs import shared_feature_matrix
 from terrain.classification.features import FeatureSettings
-from terrain.classification.features_of import Transformed, Transformer, features_of
-from terrain.classification.likeness import Likeness, TrainingLook, look_of, middle_of, spread_rows
-from terrain.classification.model_file import ModelFile
-from terrain.classification.neighbours import Neighbours, vote
+from terrain.classification.features_of import Transformed, Transformer
+from terrain.classification.likeness import TrainingLook, spread_rows
 from terrain.classification.old_samples import OldSamples, SamplesBesideOld
-from terrain.classification.patches import LabelledPatches, cut_patches
+from terrain.classification.patches import LabelledPatches
 from terrain.classification.presets import PRESETS
-from terrain.classification.rejection import as_of_one_patch, rejection_distances
+from terrain.classification.rejection import rejection_distances
+from terrain.classification.trained import TrainedClassifier
 from terrain.classification.trained_on import TrainedOn
 from terrain.classification.training_set import (
     check_labels,
@@ -33,13 +29,13 @@ from terrain.classification.training_set import (
     holds_images,
 )
 from terrain.classification.validation import CrossValidation, Samples, best_way
-from terrain.errors import ImageError, PatchError
+from terrain.errors import PatchError
 from terrain.images import to_grey
 
 __all__ = ["Classification", "Classifier", "TerrainClassifier"]
 
 
-class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ignore[misc]
+class TerrainClassifier(TrainedClassifier, ClassifierMixin, BaseEstimator):  # type: ignore[misc]
     """Name the terrain of patches, or say that it is unknown; a classifier of scikit-learn.
 
     Parameters
@@ -230,85 +226,6 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
         )
         return self
 
-    def predict(self, X: Sequence[ByteImage] | AnyArray) -> AnyArray:
-        """The likeliest of `classes_` (n,) of each image or row of features, never `unknown`."""
-        likeliest = self.predict_proba(X).argmax(axis=1)  # eq. 26
-        return np.asarray(self.classes_[likeliest])
-
-    def predict_proba(self, X: Sequence[ByteImage] | AnyArray) -> FloatArray:
-        """Probabilities (n, classes) of images, whose patches are averaged, or of features."""
-        return self._votes_and_distances(X)[0]
-
-    def is_unknown(self, X: Sequence[ByteImage] | AnyArray) -> BoolArray:
-        """Whether each image or row of features (n,) lies beyond the rejection distance."""
-        return self._votes_and_distances(X)[1] > self.rejection_distance_
-
-    def classify(self, images: Sequence[ByteImage]) -> list[Classification]:
-        """Classify images of at least the patch size.
-
-        A larger image is cut into patches side by side; their probabilities are averaged, and
-        the median of their distances, on the scale of one patch, decides whether it is unknown.
-
-        Raises
-        ------
-        ImageError
-            If an image is smaller than a patch, or grey where the classifier needs colour.
-        """
-        return [self.classify_features(self.patch_features(image)) for image in images]
-
-    def patch_features(self, image: ByteImage) -> FloatArray:
-        """Features (patches, F) of the patches that an image is cut into.
-
-        Raises
-        ------
-        ImageError
-            As `classify`.
-        """
-        if self._features is None:
-            raise ImageError("the classifier was fitted on features; expected such, not images")
-        patches = cut_patches(image, self.patch_size_px)
-        if not patches:
-            raise ImageError(
-                f"image of {image.shape[1]} x {image.shape[0]} pixels is smaller than the "
-                f"classifier's patches of {self.patch_size_px} x {self.patch_size_px}"
-            )
-        if self.colour_ and image.ndim != 3:
-            raise ImageError("the image is grey, the classifier was trained with colour")
-        return features_of(patches, self._features)
-
-    def classify_features(self, features: FloatArray) -> Classification:
-        """Classify one image by the features (patches, F) of its patches."""
-        probabilities, distance = self._of_patches(features)
-        best, names = int(probabilities.argmax()), self.classes_.tolist()  # eq. 26
-        return Classification(
-            names[best] if distance <= self.rejection_distance_ else UNKNOWN,
-            float(probabilities[best]),
-            distance,
-            dict(zip(names, probabilities.tolist(), strict=True)),
-        )
-
-    @property
-    def neighbours(self) -> Neighbours:
-        """What it learned."""
-        return self._neighbours
-
-    def with_neighbours(self, neighbours: Neighbours) -> Self:
-        """The same classifier with other neighbours in the same space of features."""
-        other = copy(self)
-        other._neighbours = neighbours
-        return other
-
-    def likeness(self, images: Iterable[ByteImage]) -> Likeness | None:
-        """Whether images, as a whole, look like the training photographs; None if it cannot tell.
-
-        Sharpness, scale of texture, contrast and exposure of the middle of each image are compared
-        with those of the training patches. It says nothing of the terrain.
-        """
-        if self.training_look_ is None:
-            return None
-        looks = [look_of(middle_of(image, self.patch_size_px)) for image in images]
-        return self.training_look_.compared(np.array(looks))
-
     def _check_parameters(self) -> None:
         if self.preset not in PRESETS:
             raise ConfigError(f"preset '{self.preset}' is not one of {', '.join(sorted(PRESETS))}")
@@ -368,28 +285,6 @@ class TerrainClassifier(ModelFile, ClassifierMixin, BaseEstimator):  # type: ign
         )
         self.rejection_distances_ = limits[:1] if preset.as_published else limits
         self.rejection_distance_ = limits[0]
-
-    def _votes_and_distances(
-        self, X: Sequence[ByteImage] | AnyArray
-    ) -> tuple[FloatArray, FloatArray]:
-        check_is_fitted(self)
-        if holds_images(X):
-            answers = (self._of_patches(self.patch_features(image)) for image in X)
-            votes, distances = zip(*answers, strict=True)
-            return np.stack(votes), np.array(distances)
-        return self._of_features(validate_data(self, X, reset=False))
-
-    def _of_features(self, features: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Probabilities (n, classes) and distances to the nearest class (n,)."""
-        labels, distances = self._neighbours.labels_and_distances(features, self.n_neighbors_)
-        votes = vote(labels, self._neighbours.class_weights_)
-        return tempered(votes, self.temperature_), distances
-
-    def _of_patches(self, features: FloatArray) -> tuple[FloatArray, float]:
-        """Mean probabilities (classes,) of the patches of an image, and its distance."""
-        votes, distances = self._of_features(features)
-        median, limits = float(np.median(distances)), self.rejection_distances_
-        return votes.mean(axis=0), as_of_one_patch(median, len(features), limits)
 
     def __sklearn_tags__(self) -> Any:
         """Tell scikit-learn that the input is images or features."""

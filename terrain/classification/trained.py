@@ -1,0 +1,126 @@
+"""What a trained classifier says of images: the terrain, its probability, and `unknown`."""
+
+from collections.abc import Iterable, Sequence
+from copy import copy
+from typing import Self
+
+import numpy as np
+from sklearn.utils.validation import check_is_fitted, validate_data
+
+from odometry.arrays import AnyArray, BoolArray, ByteImage, FloatArray
+from odometry.run import UNKNOWN
+from terrain.classification.answer import Classification
+from terrain.classification.calibration import tempered
+from terrain.classification.features_of import features_of
+from terrain.classification.likeness import Likeness, look_of, middle_of
+from terrain.classification.model_file import ModelFile
+from terrain.classification.neighbours import Neighbours, vote
+from terrain.classification.patches import cut_patches
+from terrain.classification.rejection import as_of_one_patch
+from terrain.classification.training_set import holds_images
+from terrain.errors import ImageError
+
+
+class TrainedClassifier(ModelFile):
+    """What a `TerrainClassifier` answers once it is trained."""
+
+    def predict(self, X: Sequence[ByteImage] | AnyArray) -> AnyArray:
+        """The likeliest of `classes_` (n,) of each image or row of features, never `unknown`."""
+        likeliest = self.predict_proba(X).argmax(axis=1)  # eq. 26
+        return np.asarray(self.classes_[likeliest])
+
+    def predict_proba(self, X: Sequence[ByteImage] | AnyArray) -> FloatArray:
+        """Probabilities (n, classes) of images, whose patches are averaged, or of features."""
+        return self._votes_and_distances(X)[0]
+
+    def is_unknown(self, X: Sequence[ByteImage] | AnyArray) -> BoolArray:
+        """Whether each image or row of features (n,) lies beyond the rejection distance."""
+        return self._votes_and_distances(X)[1] > self.rejection_distance_
+
+    def classify(self, images: Sequence[ByteImage]) -> list[Classification]:
+        """Classify images of at least the patch size.
+
+        A larger image is cut into patches side by side; their probabilities are averaged, and
+        the median of their distances, on the scale of one patch, decides whether it is unknown.
+
+        Raises
+        ------
+        ImageError
+            If an image is smaller than a patch, or grey where the classifier needs colour.
+        """
+        return [self.classify_features(self.patch_features(image)) for image in images]
+
+    def patch_features(self, image: ByteImage) -> FloatArray:
+        """Features (patches, F) of the patches that an image is cut into.
+
+        Raises
+        ------
+        ImageError
+            As `classify`.
+        """
+        if self._features is None:
+            raise ImageError("the classifier was fitted on features; expected such, not images")
+        patches = cut_patches(image, self.patch_size_px)
+        if not patches:
+            raise ImageError(
+                f"image of {image.shape[1]} x {image.shape[0]} pixels is smaller than the "
+                f"classifier's patches of {self.patch_size_px} x {self.patch_size_px}"
+            )
+        if self.colour_ and image.ndim != 3:
+            raise ImageError("the image is grey, the classifier was trained with colour")
+        return features_of(patches, self._features)
+
+    def classify_features(self, features: FloatArray) -> Classification:
+        """Classify one image by the features (patches, F) of its patches."""
+        probabilities, distance = self._of_patches(features)
+        best, names = int(probabilities.argmax()), self.classes_.tolist()  # eq. 26
+        return Classification(
+            names[best] if distance <= self.rejection_distance_ else UNKNOWN,
+            float(probabilities[best]),
+            distance,
+            dict(zip(names, probabilities.tolist(), strict=True)),
+        )
+
+    @property
+    def neighbours(self) -> Neighbours:
+        """What it learned."""
+        return self._neighbours
+
+    def with_neighbours(self, neighbours: Neighbours) -> Self:
+        """The same classifier with other neighbours in the same space of features."""
+        other = copy(self)
+        other._neighbours = neighbours
+        return other
+
+    def likeness(self, images: Iterable[ByteImage]) -> Likeness | None:
+        """Whether images, as a whole, look like the training photographs; None if it cannot tell.
+
+        Sharpness, scale of texture, contrast and exposure of the middle of each image are compared
+        with those of the training patches. It says nothing of the terrain.
+        """
+        if self.training_look_ is None:
+            return None
+        looks = [look_of(middle_of(image, self.patch_size_px)) for image in images]
+        return self.training_look_.compared(np.array(looks))
+
+    def _votes_and_distances(
+        self, X: Sequence[ByteImage] | AnyArray
+    ) -> tuple[FloatArray, FloatArray]:
+        check_is_fitted(self)
+        if holds_images(X):
+            answers = (self._of_patches(self.patch_features(image)) for image in X)
+            votes, distances = zip(*answers, strict=True)
+            return np.stack(votes), np.array(distances)
+        return self._of_features(validate_data(self, X, reset=False))
+
+    def _of_features(self, features: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Probabilities (n, classes) and distances to the nearest class (n,)."""
+        labels, distances = self._neighbours.labels_and_distances(features, self.n_neighbors_)
+        votes = vote(labels, self._neighbours.class_weights_)
+        return tempered(votes, self.temperature_), distances
+
+    def _of_patches(self, features: FloatArray) -> tuple[FloatArray, float]:
+        """Mean probabilities (classes,) of the patches of an image, and its distance."""
+        votes, distances = self._of_features(features)
+        median, limits = float(np.median(distances)), self.rejection_distances_
+        return votes.mean(axis=0), as_of_one_patch(median, len(features), limits)
