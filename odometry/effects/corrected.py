@@ -90,11 +90,11 @@ def corrected_twist(base: Base, effects: Sequence[Added], inputs: Inputs) -> Flo
     twist = base.model.twist(base.values, inputs)
     for added in effects:
         if isinstance(added.effect, MotionEffect):
-            twist = _moved(added.effect, added.values, twist, inputs, base)
+            twist = moved_twist(added.effect, added.values, twist, inputs, base)
     return twist
 
 
-def _moved(
+def moved_twist(
     effect: MotionEffect, values: FloatArray, twist: FloatArray, inputs: Inputs, base: Base
 ) -> FloatArray:
     """Twist (N, 3) with the effect beside the base as it is on the terrain of each sample."""

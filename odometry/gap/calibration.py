@@ -8,10 +8,18 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
 from odometry.gap.config import GapConfig
+from odometry.gap.derivative import whitened_derivative
 from odometry.gap.errors import GapError
 from odometry.gap.pieces import numbered_pieces, pieces
 from odometry.gap.simulate import all_residuals, whitened_residuals
-from odometry.gap.solve import Solved, least_squares, with_jacobian
+from odometry.gap.solve import (
+    Bounds,
+    RowsAt,
+    Solved,
+    least_squares,
+    steps_within,
+    with_jacobian,
+)
 from odometry.gap.uncertain_base import Uncertain
 from odometry.models.base import KinematicModel
 from odometry.run import Robot
@@ -78,10 +86,11 @@ def calibrated(
     free = np.array([not parameter.known for parameter in model.parameters])
     gyroscope = all(scene.reported_turns is not None for scene in scenes)
     uncertain = Uncertain(Base(model, model.pack(model.guess(robot)), robot), free, True, gyroscope)
-    noise = STARTS_WITH
+    noise, known = STARTS_WITH, None
     for _ in range(ROUNDS):
         uncertain, _ = _fit(uncertain, scenes, noise)
-        noise = estimated_noise(scenes, [all_residuals(uncertain.base, (), s) for s in scenes])
+        left = [all_residuals(uncertain.base, (), s) for s in scenes]
+        noise = known = estimated_noise(scenes, left, known)
     noise, gyro_expected = _doubted(noise, config)
     uncertain, information = _fit(uncertain, scenes, noise)
     information = _with_drift(uncertain, information, config)
@@ -142,9 +151,19 @@ def _fit(
     def rows_at(values: FloatArray) -> FloatArray:
         return whitened_residuals(uncertain.at(values), (), scenes, whiteners)
 
+    def derivative(
+        _: RowsAt, values: FloatArray, __: FloatArray, scales: FloatArray, bounds: Bounds
+    ) -> FloatArray:
+        steps = steps_within(values, scales, bounds)
+        return whitened_derivative(
+            lambda of: (uncertain.at(of), ()), values, steps, scenes, whiteners
+        )
+
     bounds, scales = uncertain.bounds, uncertain.scales
-    ended = least_squares(rows_at, uncertain.values, scales, bounds, ITERATIONS)
-    solved = with_jacobian(rows_at, ended, scales, bounds)
+    ended = least_squares(
+        rows_at, uncertain.values, scales, bounds, ITERATIONS, derivative=derivative
+    )
+    solved = with_jacobian(rows_at, ended, scales, bounds, derivative=derivative)
     found = replace(uncertain, base=uncertain.at(solved.values))
     return found, _information(solved, scenes)
 

@@ -12,7 +12,7 @@ from odometry.gap.contest import Judged, sure_sum
 from odometry.gap.fit import Fitted, Fitter
 from odometry.gap.measured import Measured, at_fewer_poses
 from odometry.gap.own_values import PARITIES, by_turns, with_values_of_each_run
-from odometry.gap.responses import columns_of
+from odometry.gap.responses import Responses, columns_of, simulated_scenes
 from odometry.gap.statistic import gap_of
 from odometry.windows.dense import DenseWindows
 
@@ -36,11 +36,12 @@ def best_course(
     """
     coarse = at_fewer_poses(fitter.measured, fitter.calibration, POSES)
     rows = coarse.rows(before.base, before.effects)
+    simulated = simulated_scenes(before.base, before.effects, coarse.scenes)
     lasts_s = max(float(s.pose_s[-1]) for s in (*fitter.measured.scenes, *held_out))
     tried = [
         (loss, effect)
         for effects in _candidates(lasts_s, len(coarse.scenes))
-        for loss, effect in _losses(coarse, before, effects, rows)
+        for loss, effect in _losses(coarse, simulated, effects, rows)
     ]
     loss, effect = min(tried, key=lambda one: one[0])
     if loss >= float(rows @ rows):
@@ -66,9 +67,12 @@ def _candidates(lasts_s: float, runs: int) -> list[list[ResidualOfEachRun]]:
 
 
 def _losses(
-    measured: Measured, before: Fitted, effects: Sequence[ResidualOfEachRun], rows: FloatArray
+    measured: Measured,
+    simulated: Sequence[Responses],
+    effects: Sequence[ResidualOfEachRun],
+    rows: FloatArray,
 ) -> list[tuple[float, ResidualOfEachRun]]:
-    jacobian = columns_of(effects[0], before.base, before.effects, measured)
+    jacobian = columns_of(effects[0], simulated, measured.whiteners)
     turn = np.asarray(measured.window_of_row % PARITIES)
     left = [by_turns(jacobian, rows, effect.spread, turn) for effect in effects]
     return [(float(of @ of), effect) for of, effect in zip(left, effects, strict=True)]

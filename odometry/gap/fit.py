@@ -15,7 +15,7 @@ from odometry.gap.cross_validation import held_out, left_out_loss
 from odometry.gap.hypothesis import Hypothesis, own_values
 from odometry.gap.least_cost import derived, least_cost
 from odometry.gap.measured import Measured
-from odometry.gap.responses import columns_of
+from odometry.gap.responses import Responses, columns_of, simulated_scenes
 from odometry.gap.solve import Found, Solved
 
 
@@ -116,10 +116,13 @@ class Fitter:
         Of each fold by least squares on the others, beside the base and the effects of a fit.
         """
         design = self.design(fit)
-        return np.array([self._linear_loss(fit, design, candidate) for candidate in candidates])
+        simulated = simulated_scenes(fit.base, fit.effects, self.measured.scenes)
+        return np.array([self._linear_loss(simulated, design, one) for one in candidates])
 
-    def _linear_loss(self, fit: Fitted, design: Solved, candidate: Residual) -> float:
-        own = columns_of(candidate, fit.base, fit.effects, self.measured)
+    def _linear_loss(
+        self, simulated: Sequence[Responses], design: Solved, candidate: Residual
+    ) -> float:
+        own = columns_of(candidate, simulated, self.measured.whiteners)
         own = np.pad(own, ((0, len(design.rows) - len(own)), (0, 0)))
         return left_out_loss(np.hstack([design.jacobian, own]), design.rows, self.measured)
 

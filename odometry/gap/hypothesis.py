@@ -15,7 +15,9 @@ from odometry.effects.base import Effect, EffectParameter
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.gap.calibration import Calibration
+from odometry.gap.derivative import whitened_derivative
 from odometry.gap.measured import Measured
+from odometry.gap.solve import Bounds, RowsAt, steps_within
 
 RIDGE = 1e-9
 
@@ -99,6 +101,37 @@ class Hypothesis:
         own = zip(added, own_values(self.effects), strict=True)
         unusual = [_unusual(one, self.calibration.base) for one, is_own in own if is_own]
         return np.concatenate([self.measured.rows(base, added), self._prior @ moved, *unusual])
+
+    def derivative(
+        self,
+        rows_at: RowsAt,  # noqa: ARG002 - of the interface
+        values: FloatArray,
+        rows: FloatArray,
+        scales: FloatArray,
+        bounds: Bounds,
+    ) -> FloatArray:
+        """Derivative (R, V) of `rows` by the values; see `odometry.gap.solve.differences`."""
+        steps, measured = steps_within(values, scales, bounds), self.measured
+        of_windows = whitened_derivative(
+            self.split, values, steps, measured.scenes, measured.whiteners
+        )
+        jacobian = np.zeros((len(rows), len(values)))
+        jacobian[: len(of_windows)] = of_windows
+        jacobian[len(of_windows) :, steps != 0] = self._known[:, steps != 0]
+        return jacobian
+
+    @cached_property
+    def _known(self) -> FloatArray:
+        """Derivative of the rows that follow those of the windows, by all values."""
+        count = self.of_base
+        known = [np.pad(self._prior, ((0, 0), (0, len(self.parameters))))]
+        own = zip(self.effects, own_values(self.effects), self._ends, strict=True)
+        for effect, is_own, end in own:
+            if is_own:
+                _, spread = effect.usual(self.calibration.base)
+                places = np.arange(end - len(spread), end)
+                known.append(np.eye(count + len(self.parameters))[places] / spread[:, None])
+        return np.concatenate(known)
 
     @cached_property
     def _prior(self) -> FloatArray:

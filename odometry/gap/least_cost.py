@@ -27,7 +27,14 @@ def _search(hypothesis: Hypothesis, start: FloatArray, iterations: int, held: Bo
     if not len(start):
         return Found(start, hypothesis.rows(start))
     bounds = _pinned(hypothesis.bounds, start, held)
-    return least_squares(hypothesis.rows, start, hypothesis.scales, bounds, iterations)
+    return least_squares(
+        hypothesis.rows,
+        start,
+        hypothesis.scales,
+        bounds,
+        iterations,
+        derivative=hypothesis.derivative,
+    )
 
 
 def _after_jumps(hypothesis: Hypothesis, found: Found, held: BoolArray) -> Found:
@@ -49,7 +56,9 @@ def derived(hypothesis: Hypothesis, found: Found, held: BoolArray) -> Solved:
     if not len(found.values):
         return Solved(found.values, found.rows, np.empty((len(found.rows), 0)))
     bounds = _pinned(hypothesis.bounds, found.values, held)
-    return with_jacobian(hypothesis.rows, found, hypothesis.scales, bounds)
+    return with_jacobian(
+        hypothesis.rows, found, hypothesis.scales, bounds, derivative=hypothesis.derivative
+    )
 
 
 def _pinned(

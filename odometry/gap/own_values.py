@@ -7,12 +7,13 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.effects.base_model import Base
+from odometry.effects.chain import Chain
 from odometry.effects.corrected import Added
 from odometry.effects.residual_of_each_run import ResidualOfEachRun
 from odometry.gap.calibration import Calibration
 from odometry.gap.fit import Fitted, Fitter
 from odometry.gap.measured import with_fewer_poses
-from odometry.gap.responses import changes_by, columns_of, responses
+from odometry.gap.responses import Responses, columns_of, simulated_scenes
 from odometry.gap.simulate import whitened_residuals
 from odometry.windows.dense import DenseWindows
 from odometry.windows.dense_noise import whitening
@@ -34,7 +35,8 @@ def with_values_of_each_run(fitter: Fitter, before: Fitted, effect: ResidualOfEa
     What it leaves on windows not fitted is judged by turns: each window by a fit to its neighbours.
     """
     measured = fitter.measured
-    jacobian = columns_of(effect, before.base, before.effects, measured)
+    simulated = simulated_scenes(before.base, before.effects, measured.scenes)
+    jacobian = columns_of(effect, simulated, measured.whiteners)
     values = np.zeros(len(effect.parameters))
     for _ in range(ROUNDS):
         effects = (*before.effects, Added(effect, values))
@@ -102,8 +104,10 @@ def _solved(
     if not isinstance(effect, ResidualOfEachRun):
         return added
     own = slice(-len(effect.terms), None)
-    changes = changes_by(effect, base, effects[:place], scene)[own]
-    jacobian = responses(base, effects, scene, whiteners, changes)
+    before = Chain(base, effects[:place], scene.inputs)
+    changes = effect.columns(before.twist, before.inputs, base)[own]
+    jacobian = whiteners @ Responses(base, effects, scene).of(changes)
+    jacobian = jacobian.reshape(-1, len(changes))
     rows = whitened_residuals(base, effects, [scene], [whiteners])
     values = added.values.copy()
     values[own] = damped(jacobian, rows - jacobian @ values[own], effect.spread)

@@ -5,110 +5,159 @@ from collections.abc import Sequence
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.effects.base import MeasurementEffect
 from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added, corrected_twist, delay_s, with_true_speeds
+from odometry.effects.chain import Chain
+from odometry.effects.corrected import Added, delay_s, reported_yaw_rate, seen_poses
 from odometry.effects.residual import Residual
-from odometry.gap.measured import Measured
+from odometry.gap.simulate import path_of
 from odometry.geometry import se2
 from odometry.geometry.levelled import level_step_jacobian
 from odometry.windows.dense import DenseWindows
-from odometry.windows.motion import level_path
+from odometry.windows.dense_motion import poses_at
+
+STEP = 1e-6  # m, rad, rad/s: over which sensors are linearised
+
+
+class Responses:
+    """A simulation of one scene, and what small changes of its twist do to the residuals.
+
+    Attributes
+    ----------
+    chain : Chain
+        The twists of the simulation.
+    path : (N, 3)
+        The robot's poses before each sample.
+    """
+
+    def __init__(self, base: Base, effects: Sequence[Added], scene: DenseWindows) -> None:
+        self.chain = Chain(base, effects, scene.inputs)
+        self.path = path_of(self.chain.twist, scene)
+        self._scene = scene
+        self._by_twist = _by_twist(self.chain.twist, self.path, scene)
+        seen_s = scene.pose_s - base.latency_s - delay_s(effects, scene.pose_s)
+        self._seen = _Between(scene, seen_s)
+        poses = poses_at(self.path, scene, seen_s)
+        self._poses = seen_poses(effects, poses, scene.poses[:, 2]).T
+        self._by_pose = _by_pose(effects, poses, scene)
+        self._felt = _Between(scene, scene.pose_s - base.gyro_latency_s)
+        self._by_rate = _by_rate(effects, self.chain.twist[:, 2], scene)
+
+    def of(self, changes: FloatArray) -> FloatArray:
+        """Derivative (K, R, C) of residuals by the size of changes (C, N, 3) of the twist."""
+        v_x, v_y, omega = np.ascontiguousarray(np.moveaxis(changes, -1, 0))
+        x_by, y_by, yaw_by = self._by_twist[:3], self._by_twist[3:6], self._by_twist[6]
+        x, y, _ = self.path.T
+        turned = _summed(yaw_by * omega)
+        moved = np.stack(
+            [
+                _summed(x_by[0] * v_x + x_by[1] * v_y + x_by[2] * omega) - y * turned,
+                _summed(y_by[0] * v_x + y_by[1] * v_y + y_by[2] * omega) + x * turned,
+                turned,
+            ]
+        )
+        rows = self._off_first(self._seen.of(moved))
+        if self._scene.reported_turns is not None:
+            felt = self._felt.of(_summed(omega * (self._by_rate * self._scene.steps_s)))
+            rows = np.concatenate([rows, np.diff(felt, axis=-1)], axis=-1)
+        return np.asarray(-np.moveaxis(rows, 0, -1))
+
+    def _off_first(self, moved: FloatArray) -> FloatArray:
+        """Change (C, K, 3 n) of motion from the first pose, of changes (3, C, K, n + 1) of all."""
+        windows = self._scene.windows
+        if self._by_pose is not None:
+            moved = np.einsum("klij,jckl->ickl", self._by_pose[windows], moved)
+        poses = self._poses[:, windows]
+        yaw = poses[2, :, :1]
+        cosine, sine = np.cos(yaw), np.sin(yaw)
+        off_x, off_y = poses[:2, :, 1:] - poses[:2, :, :1]
+        along, across = cosine * off_x + sine * off_y, cosine * off_y - sine * off_x
+        by_x, by_y, by_yaw = moved[..., 1:] - moved[..., :1]
+        swung = moved[2][..., :1]
+        motion = np.empty((*by_x.shape, 3))
+        motion[..., 0] = cosine * by_x + sine * by_y + across * swung
+        motion[..., 1] = cosine * by_y - sine * by_x - along * swung
+        motion[..., 2] = by_yaw
+        return motion.reshape(*motion.shape[:2], -1)
+
+
+class _Between:
+    """Where run times of poses lie between samples, of the poses of each window."""
+
+    def __init__(self, scene: DenseWindows, times_s: FloatArray) -> None:
+        time_s = scene.time_s
+        before = np.searchsorted(time_s, times_s, side="right") - 1
+        before = np.clip(before, 0, len(time_s) - 2)
+        share = (times_s - time_s[before]) / (time_s[before + 1] - time_s[before])
+        self._before = before[scene.windows]
+        self._share = np.clip(share, 0.0, 1.0)[scene.windows]
+
+    def of(self, values: FloatArray) -> FloatArray:
+        """Values (..., N) there (..., K, n + 1), linear between samples, level beyond them."""
+        first = values[..., self._before]
+        first += (values[..., self._before + 1] - first) * self._share
+        return first
 
 
 def columns_of(
-    residual: Residual, base: Base, effects: Sequence[Added], measured: Measured
+    residual: Residual,
+    simulated: Sequence[Responses],
+    whiteners: Sequence[FloatArray],
 ) -> FloatArray:
     """Derivative (R, P) of the rows of measured windows by a smooth function's coefficients."""
     found = []
-    for scene, whiteners in zip(measured.scenes, measured.whiteners, strict=True):
-        changes = changes_by(residual, base, effects, scene)
-        found.append(responses(base, effects, scene, whiteners, changes))
+    for scene, white in zip(simulated, whiteners, strict=True):
+        chain = scene.chain
+        changes = residual.columns(chain.twist, chain.inputs, chain.base)
+        found.append((white @ scene.of(changes)).reshape(-1, len(changes)))
     return np.concatenate(found)
 
 
-def changes_by(
-    residual: Residual, base: Base, effects: Sequence[Added], scene: DenseWindows
-) -> FloatArray:
-    """What a smooth function adds to the twist (P, N, 3) after the effects."""
-    inputs = with_true_speeds(effects, scene.inputs)
-    return residual.columns(corrected_twist(base, effects, scene.inputs), inputs, base)
+def simulated_scenes(
+    base: Base, effects: Sequence[Added], scenes: Sequence[DenseWindows]
+) -> list[Responses]:
+    """Each scene, simulated."""
+    return [Responses(base, effects, scene) for scene in scenes]
 
 
-def responses(
-    base: Base,
-    effects: Sequence[Added],
-    scene: DenseWindows,
-    whiteners: FloatArray,
-    changes: FloatArray,
-) -> FloatArray:
-    """Derivative (R, C) of whitened residuals by the size of changes (C, N, 3) of the twist.
+def _by_twist(twist: FloatArray, path: FloatArray, scene: DenseWindows) -> FloatArray:
+    """What twists (N, 3) move: x (3), y (3) and yaw (by the turn alone) in rows (7, N).
 
-    Parameters
-    ----------
-    base, effects
-        The simulation; what effects on the measurement do to a change is neglected.
-    scene : DenseWindows
-        Of N samples.
-    whiteners : (K, R / K, R / K)
-    changes : (C, N, 3)
-        Twists that are added.
+    x and y are those of all later samples, turned about the origin.
     """
-    twist = corrected_twist(base, effects, scene.inputs)
-    seen_s = scene.pose_s - base.latency_s - delay_s(effects, scene.pose_s)
-    moved = _moved_path(twist, scene, changes)
-    path = level_path(twist, scene.steps_s, scene.inputs)
-    rows = _off_first(_at(path.T, scene, seen_s), _at(moved, scene, seen_s), scene)
-    if scene.reported_turns is not None:
-        turned = _summed(changes[..., 2] * scene.steps_s)
-        felt = _at(turned, scene, scene.pose_s - base.gyro_latency_s)
-        rows = np.concatenate([rows, np.diff(felt[:, scene.windows], axis=-1)], axis=-1)
-    return -(whiteners @ np.moveaxis(rows, 0, -1)).reshape(-1, len(changes))
-
-
-def _moved_path(twist: FloatArray, scene: DenseWindows, changes: FloatArray) -> FloatArray:
-    """Change (3, C, N) of the poses before each sample: of x, y and yaw."""
-    arcs, by_twist = se2.linearised_exp(twist * scene.steps_s[:, None])
+    arcs, by_arc = se2.linearised_exp(twist * scene.steps_s[:, None])
+    along, across, turn = np.moveaxis(by_arc, 0, -1)
+    swings = turn[2]
     if scene.inputs.tilt is not None:
-        by_twist = level_step_jacobian(arcs, scene.inputs.tilt) @ by_twist
-    along, across, turn = np.einsum(
-        "nij,cnj->icn", by_twist * scene.steps_s[:, None, None], changes, optimize=True
-    )
-    x, y, yaw = level_path(twist, scene.steps_s, scene.inputs).T
-    after_x, after_y = (np.append(place[1:], place[-1]) for place in (x, y))
+        level = np.moveaxis(level_step_jacobian(arcs, scene.inputs.tilt), 0, -1)
+        along, across = level[0, 0] * along + level[0, 1] * across, level[1, 1] * across
+        swings = level[2, 2]
+    x, y, yaw = path.T
     cosine, sine = np.cos(yaw), np.sin(yaw)
-    turned = _summed(turn)
-    moved_x = _summed(cosine * along - sine * across + after_y * turn) - y * turned
-    moved_y = _summed(sine * along + cosine * across - after_x * turn) + x * turned
-    return np.stack([moved_x, moved_y, turned])
+    by_x, by_y = cosine * along - sine * across, sine * along + cosine * across
+    by_x[2] += np.append(y[1:], y[-1]) * swings  # a turn swings what comes after its step
+    by_y[2] -= np.append(x[1:], x[-1]) * swings
+    return np.stack([*by_x, *by_y, swings]) * scene.steps_s
 
 
-def _off_first(poses: FloatArray, moved: FloatArray, scene: DenseWindows) -> FloatArray:
-    """Change (C, K, 3 n) of the motion from each window's first pose, of poses (3, M)."""
-    first, others = scene.windows[:, :1], scene.windows[:, 1:]
-    x, y, yaw = poses
-    cosine, sine = np.cos(yaw[first]), np.sin(yaw[first])
-    along = cosine * (x[others] - x[first]) + sine * (y[others] - y[first])
-    across = cosine * (y[others] - y[first]) - sine * (x[others] - x[first])
-    by_x, by_y, by_yaw = moved[..., others] - moved[..., first]
-    swung = moved[2][:, first]
-    motion = [
-        cosine * by_x + sine * by_y + across * swung,
-        cosine * by_y - sine * by_x - along * swung,
-        by_yaw,
-    ]
-    return np.stack(motion, axis=-1).reshape(moved.shape[1], len(first), -1)
+def _by_pose(effects: Sequence[Added], poses: FloatArray, scene: DenseWindows) -> FloatArray | None:
+    """Derivative (M, 3, 3) of what the reference reports by the robot's pose; None: the pose."""
+    if not any(isinstance(added.effect, MeasurementEffect) for added in effects):
+        return None
+    seen = seen_poses(effects, poses, scene.poses[:, 2])
+    stepped = [seen_poses(effects, poses + step, scene.poses[:, 2]) for step in STEP * np.eye(3)]
+    return np.stack([(one - seen) / STEP for one in stepped], axis=-1)
 
 
-def _at(values: FloatArray, scene: DenseWindows, times_s: FloatArray) -> FloatArray:
-    """Values (..., N) at run times (M,), linear between the samples, level beyond them."""
-    time_s = scene.time_s
-    before = np.clip(np.searchsorted(time_s, times_s, side="right") - 1, 0, len(time_s) - 2)
-    share = np.clip((times_s - time_s[before]) / (time_s[before + 1] - time_s[before]), 0.0, 1.0)
-    return np.asarray(values[..., before] * (1 - share) + values[..., before + 1] * share)
+def _by_rate(effects: Sequence[Added], rates: FloatArray, scene: DenseWindows) -> FloatArray:
+    """Derivative (N,) of what the gyroscope reports by the robot's yaw rate (N,)."""
+    stepped, at = (reported_yaw_rate(effects, of, scene.inputs) for of in (rates + STEP, rates))
+    return np.asarray((stepped - at) / STEP)
 
 
 def _summed(steps: FloatArray) -> FloatArray:
     """Sums (..., N) of the steps (..., N) before each one."""
-    sums = np.zeros_like(steps)
+    sums = np.empty_like(steps)
+    sums[..., 0] = 0.0
     np.cumsum(steps[..., :-1], axis=-1, out=sums[..., 1:])
     return sums

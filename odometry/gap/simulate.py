@@ -20,13 +20,20 @@ from odometry.windows.motion import level_path
 
 def simulated_poses(base: Base, effects: Sequence[Added], scene: DenseWindows) -> FloatArray:
     """Poses (M, 3) at the stamps of the measured ones, from the origin; yaw is not wrapped."""
-    return _poses_of(corrected_twist(base, effects, scene.inputs), base, effects, scene)
+    return poses_on(
+        path_of(corrected_twist(base, effects, scene.inputs), scene), base, effects, scene
+    )
 
 
-def _poses_of(
-    twists: FloatArray, base: Base, effects: Sequence[Added], scene: DenseWindows
+def path_of(twists: FloatArray, scene: DenseWindows) -> FloatArray:
+    """Poses (N, 3) of the robot before each sample of a scene, driven by twists (N, 3)."""
+    return level_path(twists, scene.steps_s, scene.inputs)
+
+
+def poses_on(
+    path: FloatArray, base: Base, effects: Sequence[Added], scene: DenseWindows
 ) -> FloatArray:
-    path = level_path(twists, scene.steps_s, scene.inputs)
+    """Poses (M, 3) that the reference reports of a robot on a path (N, 3)."""
     seen_s = scene.pose_s - base.latency_s - delay_s(effects, scene.pose_s)
     return seen_poses(effects, poses_at(path, scene, seen_s), scene.poses[:, 2])
 
@@ -39,7 +46,18 @@ def residuals(base: Base, effects: Sequence[Added], scene: DenseWindows) -> Floa
 def all_residuals(base: Base, effects: Sequence[Added], scene: DenseWindows) -> FloatArray:
     """Residuals (K, R): of all poses of each window, then of the gyroscope if there is one."""
     twists = corrected_twist(base, effects, scene.inputs)
-    motion = off_measured(_poses_of(twists, base, effects, scene), scene)
+    return residuals_on(twists, path_of(twists, scene), base, effects, scene)
+
+
+def residuals_on(
+    twists: FloatArray,
+    path: FloatArray,
+    base: Base,
+    effects: Sequence[Added],
+    scene: DenseWindows,
+) -> FloatArray:
+    """The same of a robot with twists (N, 3) on their path (N, 3)."""
+    motion = off_measured(poses_on(path, base, effects, scene), scene)
     of_poses = motion.reshape(len(scene), -1)
     if scene.reported_turns is None:
         return of_poses

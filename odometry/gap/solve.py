@@ -10,6 +10,9 @@ from odometry.arrays import FloatArray
 STEP = 0.02  # of a parameter's scale: what a derivative is taken over
 LEAST_GAIN = 0.1  # of chi-squared: less is the end
 LARGEST_DAMPING = 1e8
+RowsAt = Callable[[FloatArray], FloatArray]
+Bounds = tuple[FloatArray, FloatArray]
+Derivative = Callable[[RowsAt, FloatArray, FloatArray, FloatArray, Bounds], FloatArray]
 
 
 @dataclass(frozen=True)
@@ -39,31 +42,37 @@ class Solved(Found):
 
 
 def differences(
-    rows_at: Callable[[FloatArray], FloatArray],
+    rows_at: RowsAt,
     values: FloatArray,
     rows: FloatArray,
     scales: FloatArray,
-    bounds: tuple[FloatArray, FloatArray],
+    bounds: Bounds,
 ) -> FloatArray:
     """Jacobian (R, P) by forward differences, backward at an upper bound; zero where pinned."""
+    steps = steps_within(values, scales, bounds)
+    jacobian = np.zeros((len(rows), len(values)))
+    for place in np.flatnonzero(steps):
+        stepped = values.copy()
+        stepped[place] += steps[place]
+        jacobian[:, place] = (rows_at(stepped) - rows) / steps[place]
+    return jacobian
+
+
+def steps_within(values: FloatArray, scales: FloatArray, bounds: Bounds) -> FloatArray:
+    """Steps (P,) over which derivatives are taken: backward at an upper bound, 0 where pinned."""
     low, high = bounds
-    columns = []
-    for place, scale in enumerate(scales):
-        if low[place] == high[place]:
-            columns.append(np.zeros_like(rows))
-            continue
-        step = np.zeros_like(values)
-        step[place] = STEP * scale if values[place] + STEP * scale <= high[place] else -STEP * scale
-        columns.append((rows_at(values + step) - rows) / step[place])
-    return np.stack(columns, axis=-1)
+    steps = np.where(values + STEP * scales <= high, STEP * scales, -STEP * scales)
+    return np.where(low == high, 0.0, steps)
 
 
 def least_squares(
-    rows_at: Callable[[FloatArray], FloatArray],
+    rows_at: RowsAt,
     start: FloatArray,
     scales: FloatArray,
-    bounds: tuple[FloatArray, FloatArray],
+    bounds: Bounds,
     iterations: int,
+    *,
+    derivative: Derivative = differences,
 ) -> Found:
     """Levenberg and Marquardt's search, steps cut off at the bounds (low, high).
 
@@ -76,7 +85,7 @@ def least_squares(
     rows = rows_at(values)
     damping = 1e-4
     for _ in range(iterations):
-        scaled = differences(rows_at, values, rows, scales, bounds) * scales
+        scaled = derivative(rows_at, values, rows, scales, bounds) * scales
         gradient = scaled.T @ rows
         held = ((values <= low) & (gradient > 0)) | ((values >= high) & (gradient < 0))
         normal = scaled.T @ scaled
@@ -101,13 +110,15 @@ def least_squares(
 
 
 def with_jacobian(
-    rows_at: Callable[[FloatArray], FloatArray],
+    rows_at: RowsAt,
     found: Found,
     scales: FloatArray,
-    bounds: tuple[FloatArray, FloatArray],
+    bounds: Bounds,
+    *,
+    derivative: Derivative = differences,
 ) -> Solved:
     """The derivative where a search ended; zero for what is held at a bound."""
     low, high = bounds
     held = (found.values <= low) | (found.values >= high)
-    jacobian = differences(rows_at, found.values, found.rows, scales, bounds)
+    jacobian = derivative(rows_at, found.values, found.rows, scales, bounds)
     return Solved(found.values, found.rows, np.where(held, 0.0, jacobian))

@@ -17,6 +17,7 @@ from odometry.windows.dense import DenseWindows
 FIRST_GUESS = np.square([0.02, 0.01, 0.005, 0.005, 0.001])
 SMALLEST = np.square([1e-4, 1e-4, 1e-5, 1e-5, 1e-5])
 ROUNDS = 10
+CONVERGED = 1e-6  # share by which a variance may still change
 MOST_WINDOWS = 60  # from which variances are estimated
 
 
@@ -88,21 +89,40 @@ def covariance_parts(scene: DenseWindows) -> FloatArray:
 
 def end_variance(scene: DenseWindows, noise: Noise) -> FloatArray:
     """Variance (K, 3) of the residuals at the end of each window."""
-    of_poses = 3 * (scene.windows.shape[1] - 1)
-    last = covariance_parts(scene)[:, :, of_poses - 3 : of_poses, of_poses - 3 : of_poses]
-    return np.asarray(np.einsum("p,pkii->ki", noise.all_variances, last))
+    x, y, _ = np.moveaxis(scene.measured, -1, 0)
+    travel_m = scene.travel_m[np.searchsorted(scene.time_s, scene.pose_s[scene.windows])]
+    added_m = np.diff(travel_m, axis=1)
+    position, yaw, wander, turn, _ = noise.all_variances
+    ahead, aside = (  # from the poses before each step to the last
+        of[:, -1:] - np.pad(of[:, :-1], ((0, 0), (1, 0))) for of in (x, y)
+    )
+    swung = [(added_m * lever**2).sum(axis=1) for lever in (aside, ahead, np.ones_like(ahead))]
+    place = 2 * position + wander * added_m.sum(axis=1)
+    return np.stack(
+        [
+            place + yaw * y[:, -1] ** 2 + turn * swung[0],
+            place + yaw * x[:, -1] ** 2 + turn * swung[1],
+            2 * yaw + turn * swung[2],
+        ],
+        axis=-1,
+    )
 
 
 def whitening(scene: DenseWindows, noise: Noise) -> FloatArray:
     """Matrices (K, R, R) that make the residuals of each window white, of unit variance."""
-    covariance = np.einsum("p,pkij->kij", noise.all_variances, covariance_parts(scene))
+    covariance = np.tensordot(noise.all_variances, covariance_parts(scene), axes=1)
     factor = np.linalg.cholesky(covariance)
     identity = np.broadcast_to(np.eye(factor.shape[-1]), factor.shape)
     return np.asarray(np.linalg.solve(factor, identity))
 
 
-def estimated_noise(scenes: Sequence[DenseWindows], residuals: Sequence[FloatArray]) -> Noise:
-    """Most likely variances of the residuals (K, R) of each scene, by Fisher scoring."""
+def estimated_noise(
+    scenes: Sequence[DenseWindows], residuals: Sequence[FloatArray], start: Noise | None = None
+) -> Noise:
+    """Most likely variances of the residuals (K, R) of each scene, by Fisher scoring.
+
+    `start` is an answer to nearly the same residuals.
+    """
     parts, rows = [], []
     share = MOST_WINDOWS / max(1, sum(map(len, scenes)))
     for scene, of in zip(scenes, residuals, strict=True):
@@ -112,16 +132,28 @@ def estimated_noise(scenes: Sequence[DenseWindows], residuals: Sequence[FloatArr
         picked[chosen] = True
         parts.append(covariance_parts(scene.where(picked)))
         rows.append(of[picked].reshape(len(chosen), -1))
-    variances = FIRST_GUESS.copy()
+    variances = FIRST_GUESS.copy() if start is None else start.all_variances
     for _ in range(ROUNDS):
-        score, information = np.zeros(len(variances)), np.zeros((len(variances),) * 2)
-        for part, of in zip(parts, rows, strict=True):
-            inverse = np.linalg.inv(np.einsum("p,pkij->kij", variances, part))
-            weighted = np.einsum("kij,kj->ki", inverse, of)
-            products = inverse @ part
-            quadratic = np.einsum("ki,pkij,kj->p", weighted, part, weighted)
-            score += (quadratic - np.einsum("pkii->p", products)) / 2
-            information += np.einsum("pkij,qkji->pq", products, products) / 2
+        scores = [_score(variances, part, of) for part, of in zip(parts, rows, strict=True)]
+        score = np.sum([of for of, _ in scores], axis=0)
+        information = np.sum([of for _, of in scores], axis=0)
         step = np.linalg.lstsq(information, score, rcond=None)[0]
+        before = variances
         variances = np.clip(variances + step, np.maximum(SMALLEST, variances / 20), 20 * variances)
+        if np.all(np.abs(variances - before) <= CONVERGED * before):
+            break
     return Noise(*np.sqrt(variances).tolist())
+
+
+def _score(
+    variances: FloatArray, parts: FloatArray, rows: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Score (5,) and expected information (5, 5) of variances, of rows (K, R) and their parts."""
+    inverse = np.linalg.inv(np.tensordot(variances, parts, axes=1))
+    weighted = inverse @ rows[..., None]
+    products = inverse @ parts
+    quadratic = ((parts @ weighted) * weighted).sum(axis=(1, 2, 3))
+    flat = products.reshape(len(parts), -1)
+    turned = np.ascontiguousarray(products.swapaxes(-1, -2)).reshape(len(parts), -1)
+    score = (quadratic - np.trace(products, axis1=-2, axis2=-1).sum(axis=1)) / 2
+    return score, flat @ turned.T / 2

@@ -22,7 +22,7 @@ import scipy.optimize
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from odometry.gap import fit as gap_fit
+from odometry.gap import least_cost as gap_fit
 from odometry.gap.gap import find_gap
 from odometry.gap.solve import Found, differences, least_squares
 from odometry.run import Run
@@ -61,9 +61,11 @@ def main() -> None:
 def beside(fits: list[dict[str, tuple[int, float, float]]]) -> Callable[..., Found]:
     """Ours, which appends what each solver took and reached to `fits`."""
 
-    def search(rows_at, start, scales, bounds, iterations) -> Found:  # type: ignore[no-untyped-def]
+    def search(rows_at, start, scales, bounds, iterations, *, derivative) -> Found:  # type: ignore[no-untyped-def]
         if iterations < gap_fit.ITERATIONS or not (bounds[0] < bounds[1]).any():
-            return least_squares(rows_at, start, scales, bounds, iterations)
+            return least_squares(
+                rows_at, start, scales, bounds, iterations, derivative=derivative
+            )
         problem = rows_at, start, scales, bounds, iterations
         found, *row = timed(least_squares, *problem)
         results = {"ours": (*row, found.cost)}

@@ -6,26 +6,33 @@ import numpy as np
 import pytest
 
 from odometry.effects.corrected import Added
+from odometry.effects.gyroscope_error import GyroscopeError
+from odometry.effects.lever_arm import LeverArm
 from odometry.effects.residual import COMPONENTS, Residual
 from odometry.effects.wheel_scale import WheelScale
-from odometry.gap.responses import changes_by, responses
+from odometry.gap.responses import columns_of, simulated_scenes
 from odometry.gap.simulate import whitened_residuals
 from odometry.windows.averaged import averaged_windows
 from odometry.windows.dense_noise import whitening
 
 STEP = 1e-5
 TERMS = tuple((component, number) for component in COMPONENTS for number in (0, 3))
+SENSORS = (
+    Added(LeverArm(), np.array([0.4, -0.2])),
+    Added(GyroscopeError(), np.array([1.2, 0.001])),
+)
 
 
 @pytest.mark.parametrize("gyroscope", [False, True])
-def test_they_are_the_derivatives_of_whitened_residuals(make_scene, known, gyroscope):
-    """Over hills, late poses, beside another effect."""
+@pytest.mark.parametrize("sensors", [(), SENSORS], ids=["no sensor", "sensors"])
+def test_they_are_the_derivatives_of_whitened_residuals(make_scene, known, gyroscope, sensors):
+    """Over hills, late poses, beside another effect and what sensors do."""
     scene = averaged_windows(make_scene(11, lambda _, twist: twist, duration_s=40.0))
     if gyroscope:
         rates = np.sin(scene.time_s)
         scene = replace(scene, inputs=replace(scene.inputs, yaw_rate_rad_s=rates))
     base = replace(known.base, latency_s=0.07, gyro_latency_s=0.03)
-    effects = (Added(WheelScale(), np.array([0.9, 1.05])),)
+    effects = (Added(WheelScale(), np.array([0.9, 1.05])), *sensors)
     white, residual = whitening(scene, known.noise), Residual("heading", TERMS, "speed")
 
     def rows(values):
@@ -33,5 +40,5 @@ def test_they_are_the_derivatives_of_whitened_residuals(make_scene, known, gyros
 
     nothing = np.zeros(len(TERMS))
     expected = [(rows(STEP * axis) - rows(nothing)) / STEP for axis in np.eye(len(TERMS))]
-    found = responses(base, effects, scene, white, changes_by(residual, base, effects, scene))
+    found = columns_of(residual, simulated_scenes(base, effects, [scene]), [white])
     np.testing.assert_allclose(found.T, expected, atol=2e-4 * np.abs(expected).max())

@@ -1,0 +1,85 @@
+"""Twists of a base under effects, kept from effect to effect."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.effects.base import CommandEffect, MotionEffect
+from odometry.effects.base_model import Base
+from odometry.effects.corrected import Added, corrected_twist, moved_twist, with_true_speeds
+from odometry.effects.residual import Residual
+from odometry.models.icr_by_terrain import IcrByTerrain
+from odometry.models.inputs import Inputs
+
+
+class Chain:
+    """`corrected_twist` at values, and at others from the first effect that changes on.
+
+    Attributes
+    ----------
+    base : Base
+    effects : tuple of Added
+    recorded, inputs : Inputs
+        Of stack (N,), as recorded, and with true tread speeds.
+    """
+
+    def __init__(self, base: Base, effects: Sequence[Added], recorded: Inputs) -> None:
+        self.base = base
+        self.effects = tuple(effects)
+        self.recorded = recorded
+        self.inputs = with_true_speeds(effects, recorded)
+        self._twists = [base.model.twist(base.values, self.inputs)]
+        self._columns: dict[int, FloatArray] = {}
+        for added in effects:
+            self._twists.append(self._with(added, self._twists[-1]))
+
+    @property
+    def twist(self) -> FloatArray:
+        """Under all effects (N, 3)."""
+        return self._twists[-1]
+
+    def is_moved_by(self, base: Base, effects: Sequence[Added]) -> bool:
+        """Whether the twist may be another at other values, which are those of no sensor alone."""
+        same_base = np.array_equal(base.values, self.base.values)
+        return not same_base or self._first_changed(effects) < len(self.effects)
+
+    def at(self, base: Base, effects: Sequence[Added]) -> FloatArray:
+        """The twist (N, 3) at other values of the base and the same effects."""
+        first = self._first_changed(effects)
+        if not np.array_equal(base.values, self.base.values) or (
+            first < len(self.effects) and isinstance(effects[first].effect, CommandEffect)
+        ):
+            return corrected_twist(base, effects, self.recorded)
+        twist = self._twists[first]
+        for place, added in enumerate(effects[first:], first):
+            effect = added.effect
+            linear = place == first and not isinstance(base.model, IcrByTerrain)
+            if linear and isinstance(effect, Residual):
+                columns = self._columns_of(effect, place)
+                twist = twist + np.tensordot(added.values, columns, axes=1)
+            else:
+                twist = self._with(added, twist)
+        return twist
+
+    def _first_changed(self, effects: Sequence[Added]) -> int:
+        """Place of the first effect whose values are others; one on commands before all."""
+        changed = [
+            place
+            for place, (one, own) in enumerate(zip(effects, self.effects, strict=True))
+            if isinstance(one.effect, CommandEffect | MotionEffect)
+            and not np.array_equal(one.values, own.values)
+        ]
+        on_commands = [p for p in changed if isinstance(effects[p].effect, CommandEffect)]
+        return min(on_commands or changed, default=len(self.effects))
+
+    def _with(self, added: Added, twist: FloatArray) -> FloatArray:
+        if not isinstance(added.effect, MotionEffect):
+            return twist
+        return moved_twist(added.effect, added.values, twist, self.inputs, self.base)
+
+    def _columns_of(self, effect: Residual, place: int) -> FloatArray:
+        """What one of each term of a smooth function adds (P, N, 3)."""
+        if place not in self._columns:
+            self._columns[place] = effect.columns(self._twists[place], self.inputs, self.base)
+        return self._columns[place]

@@ -1,0 +1,74 @@
+"""The derivative of a hypothesis against differences of its rows."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.effects.actuator_lag import ActuatorLag
+from odometry.effects.curvature import Curvature
+from odometry.effects.gyroscope_error import GyroscopeError
+from odometry.effects.heading_offset import HeadingOffset
+from odometry.effects.inertia_contact import InertiaByContact
+from odometry.effects.lever_arm import LeverArm
+from odometry.effects.residual import COMPONENTS, Residual
+from odometry.effects.slope_contact import SlopeByContact
+from odometry.effects.time_offset import TimeOffset
+from odometry.effects.tread_slip import SlipBySpeed
+from odometry.effects.wheel_scale import WheelScale
+from odometry.gap.config import GapConfig
+from odometry.gap.hypothesis import Hypothesis
+from odometry.gap.measured import measured_of
+from odometry.gap.solve import differences
+from odometry.gap.uncertain_base import Uncertain
+
+SMALL = 1e-4  # of the steps of a search
+SMOOTH = Residual("time", tuple((c, k) for c in COMPONENTS for k in (0, 1)), "", (0.0, 10.0, 20.0))
+HYPOTHESES = {
+    "the base": (),
+    "commands": (ActuatorLag(), WheelScale()),
+    "motion": (Curvature(), SMOOTH),
+    "motion after a smooth function": (SMOOTH, SlipBySpeed()),
+    "sensors": (LeverArm(), HeadingOffset(), TimeOffset(), GyroscopeError()),
+    "all": (WheelScale(), Curvature(), LeverArm(), TimeOffset()),
+    "one physics": (SlopeByContact(0.3), InertiaByContact(0.3)),
+}
+
+
+@pytest.fixture(scope="module")
+def uncertain(known):
+    free = np.array([True, True, True, True, False])
+    base = replace(known.base, latency_s=0.03, gyro_latency_s=0.02, gyro_bias_rad_s=0.01)
+    base = Uncertain(base, free, latency_is_free=True, has_gyroscope=True)
+    count = len(base.values)
+    information = np.diag(np.linspace(10.0, 20.0, count))
+    return replace(known, uncertain=base, information=information)
+
+
+@pytest.fixture(scope="module")
+def measured(make_scene, uncertain):
+    scene = make_scene(31, duration_s=24.0)
+    rates = np.sin(scene.time_s)
+    scene = replace(scene, inputs=replace(scene.inputs, yaw_rate_rad_s=rates))
+    return measured_of((scene,), uncertain, GapConfig())
+
+
+@pytest.mark.parametrize("effects", HYPOTHESES.values(), ids=HYPOTHESES)
+def test_it_is_that_of_differences(uncertain, measured, effects):
+    """Also next to a bound, and zero where a value is held."""
+    hypothesis = Hypothesis(uncertain, measured, effects)
+    inputs, base = measured.scenes[0].inputs, uncertain.base
+    started = [effect.starts(inputs, base)[0] for effect in effects]
+    values = np.concatenate([uncertain.uncertain.values, *started])
+    values += 0.3 * hypothesis.scales
+    scales, rows = SMALL * hypothesis.scales, hypothesis.rows(values)
+    low, high = (bound.copy() for bound in hypothesis.bounds)
+    low[1] = high[1] = values[1]
+    high[2] = values[2]
+    elsewhere = hypothesis.held(np.zeros(len(values), dtype=np.bool_))
+    low, high = np.where(elsewhere, values, low), np.where(elsewhere, values, high)
+    expected = differences(hypothesis.rows, values, rows, scales, (low, high))
+    found = hypothesis.derivative(hypothesis.rows, values, rows, scales, (low, high))
+    assert (expected[:, 1] == 0).all()
+    size = np.abs(expected).max(axis=0)
+    np.testing.assert_array_less(np.abs(found - expected).max(axis=0), 1e-3 * size + 1e-9)
