@@ -63,9 +63,7 @@ def beside(fits: list[dict[str, tuple[int, float, float]]]) -> Callable[..., Fou
 
     def search(rows_at, start, scales, bounds, iterations, *, derivative) -> Found:  # type: ignore[no-untyped-def]
         if iterations < gap_fit.ITERATIONS or not (bounds[0] < bounds[1]).any():
-            return least_squares(
-                rows_at, start, scales, bounds, iterations, derivative=derivative
-            )
+            return least_squares(rows_at, start, scales, bounds, iterations, derivative=derivative)
         problem = rows_at, start, scales, bounds, iterations
         found, *row = timed(least_squares, *problem)
         results = {"ours": (*row, found.cost)}
