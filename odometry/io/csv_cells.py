@@ -1,4 +1,8 @@
-"""The cells of a CSV file, block by block: a long file needs no more memory than its numbers."""
+"""The cells of a CSV file, block by block: a long file needs no more memory than its numbers.
+
+A text that a spreadsheet would compute as a formula is written with an apostrophe before it, and
+read without it.
+"""
 
 import csv
 from collections.abc import Iterator
@@ -12,6 +16,17 @@ from odometry.io.input_file import opened_lines
 BLOCK_ROWS = 1000  # more do not stay in the cache and take three times as long
 Cells = list[tuple[str, ...]]  # of each column
 Block = tuple[list[int], Cells]  # and the line of the file on which each row ends, header = 1
+FORMULA = ("=", "+", "-", "@", "\t", "\r")  # with these a spreadsheet's formula begins
+
+
+def quoted_text(text: str) -> str:
+    """The text as a cell: with an apostrophe before it where it would be a formula, no number."""
+    return f"'{text}" if _begins_as_formula(text) and not _is_number(text) else text
+
+
+def unquoted_text(cell: str) -> str:
+    """The text of a cell, without the apostrophe of `quoted_text`."""
+    return cell[1:] if cell.startswith("'") and _begins_as_formula(cell) else cell
 
 
 @contextmanager
@@ -36,7 +51,7 @@ def opened_csv(
     with opened_lines(file, error) as lines:
         rows = _rows(lines, file, error)
         _, header = next(rows, (1, []))
-        header = [name.strip() for name in header]
+        header = [unquoted_text(name.strip()) for name in header]
         repeated = sorted({name for name in header if header.count(name) > 1})
         if repeated:
             raise error(f"{file}: row 1: the column {repeated[0]!r} stands there twice")
@@ -65,3 +80,16 @@ def _blocks(
                     f"{file}: row {line}: {len(row)} cells, but the header has {width} columns"
                 )
         yield [line for line, _ in block], list(zip(*(row for _, row in block), strict=True))
+
+
+def _begins_as_formula(text: str) -> bool:
+    """Behind apostrophes too, so that a text which has its own is read as it was."""
+    return text.lstrip("'").startswith(FORMULA)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

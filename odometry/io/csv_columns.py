@@ -8,6 +8,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import RunFolderError
+from odometry.io.csv_cells import unquoted_text
 
 NAME_COLUMNS = frozenset({"file", "terrain"})
 NUMBER_COLUMNS = frozenset(
@@ -79,7 +80,7 @@ def numbers(
 
 def names(cells: Sequence[str], file: Path, lines: Sequence[int], name: str) -> AnyArray:
     """Names (N,) of str, without spaces around them; RunFolderError where one is too long."""
-    stripped = [cell.strip() for cell in cells]
+    stripped = [unquoted_text(cell.strip()) for cell in cells]
     for cell, line in zip(stripped, lines, strict=True):
         if len(cell) > LONGEST_NAME:
             raise RunFolderError(

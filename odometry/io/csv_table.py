@@ -9,7 +9,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray
 from odometry.errors import RunFolderError
-from odometry.io.csv_cells import Cells, opened_csv
+from odometry.io.csv_cells import Cells, opened_csv, quoted_text
 from odometry.io.csv_columns import (
     NAME_COLUMNS,
     NUMBER_COLUMNS,
@@ -64,14 +64,14 @@ def read_csv_table(file: Path, required: Iterable[str], complete: Iterable[str] 
 
 
 def write_csv_table(file: Path, columns: Mapping[str, AnyArray], decimals: int = 9) -> None:
-    """Write columns of equal length as CSV; NaN becomes an empty cell."""
+    """Write columns of equal length as CSV; NaN becomes an empty cell, a formula a text."""
     formatted = [_format(np.asarray(column), decimals) for column in columns.values()]
     lengths = {name: len(cells) for name, cells in zip(columns, formatted, strict=True)}
     if len(set(lengths.values())) != 1:
         raise RunFolderError(f"{file}: the columns differ in length: {lengths}")
     with atomic_write(file) as part, part.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(columns)
+        writer.writerow(map(quoted_text, columns))
         writer.writerows(zip(*formatted, strict=True))
 
 
@@ -105,5 +105,5 @@ def _check_not_back(stamps_s: AnyArray, file: Path, lines: AnyArray) -> None:
 
 def _format(column: AnyArray, decimals: int) -> list[str]:
     if column.dtype.kind != "f":
-        return [str(value) for value in column]
+        return [quoted_text(str(value)) for value in column]
     return ["" if math.isnan(value) else f"{value:.{decimals}f}" for value in column]

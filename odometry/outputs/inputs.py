@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
+from odometry.io.csv_cells import unquoted_text
 from odometry.io.run_folder import FILES
 
 RUN_FILES = ("run.toml", *(f"{name}.csv" for name in FILES))
@@ -83,7 +84,7 @@ def _image_names(file: Path) -> list[str]:
         return []
     try:
         with file.open(newline="", encoding="utf-8-sig") as stream:
-            names = [row.get("file") or "" for row in csv.DictReader(stream)]
+            names = [unquoted_text(row.get("file") or "") for row in csv.DictReader(stream)]
     except (OSError, UnicodeDecodeError, csv.Error):
         return []
     return [name for name in names if name and "\0" not in name and not Path(name).is_absolute()]

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from odometry.io.csv_cells import opened_csv
+from odometry.io.csv_cells import opened_csv, unquoted_text
 from odometry.io.inside import leads_out
 from terrain.errors import PatchError
 
@@ -58,7 +58,7 @@ def _columns(file: Path) -> tuple[dict[str, list[str]], list[int]] | None:
         for block_lines, cells in blocks:
             lines.extend(block_lines)
             for name, column in zip(header, cells, strict=True):
-                columns[name].extend(cell.strip() for cell in column)
+                columns[name].extend(unquoted_text(cell.strip()) for cell in column)
     if not lines:
         raise PatchError(f"{file}: it is empty; expected the columns path and photo_id, and rows")
     return columns, lines

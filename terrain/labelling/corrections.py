@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from odometry.io.csv_cells import opened_csv
+from odometry.io.csv_cells import opened_csv, unquoted_text
 from odometry.outputs.manifest import FINISHED, read_manifest
 from terrain.errors import PatchError
 
@@ -69,7 +69,11 @@ def _rows(manifest: Path) -> list[tuple[str, str]]:
             return []
         cells = [cells for _, cells in blocks]
     path, told = (header.index(name) for name in ("path", "told"))
-    return [row for block in cells for row in zip(block[path], block[told], strict=True)]
+    return [
+        (unquoted_text(name), unquoted_text(terrain))
+        for block in cells
+        for name, terrain in zip(block[path], block[told], strict=True)
+    ]
 
 
 def _elsewhere(folder: Path, name: str) -> list[str]:

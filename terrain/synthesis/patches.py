@@ -1,6 +1,5 @@
 """Labelled patches, seen through the run's own camera but of ground that the run never shows."""
 
-import csv
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from odometry.arrays import ByteImage
+from odometry.io.csv_table import write_csv_table
 from odometry.io.files import atomic_write
 from odometry.simulation.ground import GroundMap
 from terrain.camera import Camera
@@ -78,13 +78,9 @@ def write_patches(folder: Path, patches: Iterator[Patch], config: SynthesisConfi
         with atomic_write(folder / name) as part:
             part.write_bytes(encode_jpeg(patch.image, PATCH_JPEG_QUALITY))
         rows.append((name, patch.terrain, patch.photo_id, f"{config.metres_per_pixel:g}"))
-    with (
-        atomic_write(folder / "manifest.csv") as part,
-        part.open("w", newline="", encoding="utf-8") as stream,
-    ):
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(["path", "class", "photo_id", "metres_per_pixel"])
-        writer.writerows(rows)
+    names = ("path", "class", "photo_id", "metres_per_pixel")
+    columns = zip(names, np.array(rows).T, strict=True)
+    write_csv_table(folder / "manifest.csv", dict(columns))
     return len(rows)
 
 

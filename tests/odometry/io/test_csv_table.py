@@ -147,6 +147,23 @@ def test_what_is_written_reads_back(tmp_path_factory, stamps_us, data):
     assert table["terrain"].tolist() == [str(cell) for cell in columns["terrain"]]
 
 
+@pytest.mark.parametrize("first", ["=", "+", "-", "@", "'=", "''@"])
+def test_a_name_that_a_spreadsheet_would_compute_is_written_as_text(tmp_path, first):
+    text = first + "HYPERLINK(1)"
+    file = tmp_path / "a.csv"
+    write_csv_table(file, {"t": np.array([-1.0]), text: np.array([text])}, decimals=0)
+    assert file.read_text() == f"t,'{text}\n-1,'{text}\n"
+    assert read_csv_table(file, ("t",))[text].tolist() == [text]
+
+
+@given(st.text("=+-@'1a", min_size=1))
+def test_texts_are_read_as_written_and_no_cell_is_a_formula(text):
+    cell = csv_cells.quoted_text(text)
+    assert csv_cells.unquoted_text(cell) == text
+    if cell.startswith(csv_cells.FORMULA):
+        assert float(cell) == float(text)
+
+
 def test_the_same_table_gives_the_same_bytes(tmp_path):
     columns = {"t": np.arange(3.0), "x": np.array([0.1, np.nan, -0.0])}
     for file in ("one.csv", "two.csv"):

@@ -33,6 +33,15 @@ def test_the_sum_of_a_run_folder_is_of_what_is_read(make_run):
     assert Input.of("RUN", folder).sha256(with_images=False) not in sums
 
 
+def test_an_image_whose_name_was_quoted_for_spreadsheets_is_found(make_run):
+    folder = make_run(images="t,file\n0,'-a.png\n")
+    sums = set()
+    for content in (b"grey", b"green"):
+        (folder / "-a.png").write_bytes(content)
+        sums.add(Input.of("RUN", folder).sha256(with_images=True))
+    assert len(sums) == 2
+
+
 def test_the_sum_of_photographs_is_of_names_and_bytes(tmp_path):
     (tmp_path / "p" / "mud").mkdir(parents=True)
     (tmp_path / "p" / "mud" / "1.jpg").write_bytes(b"mud")

@@ -4,6 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from odometry.io.csv_table import write_csv_table
 from terrain.classification.patches import (
     cut_patches,
     find_photos,
@@ -12,6 +13,7 @@ from terrain.classification.patches import (
     stated_metres_per_pixel,
 )
 from terrain.errors import ImageError, PatchError
+from terrain.labelling.corrections import Corrections, read_corrections
 
 
 def photo(path, size=(40, 50), seed=0):
@@ -49,6 +51,16 @@ def test_photo_ids_of_a_manifest_group_and_other_photos_stand_alone(tmp_path):
     groups = [p.group for p in photos]
     assert groups[:3] == ["look", "look", "other"]
     assert groups[3] not in groups[:3]
+
+
+@pytest.mark.parametrize(("told", "moved"), [("@dry", {"a.jpg": "=wet"}), ("=wet", {})])
+def test_names_that_were_quoted_for_spreadsheets_are_found(tmp_path, told, moved):
+    photo(tmp_path / "=wet" / "a.jpg")
+    cells = {"path": "=wet/a.jpg", "photo_id": "-look", "told": told}
+    columns = {name: np.array([cell]) for name, cell in cells.items()}
+    write_csv_table(tmp_path / "manifest.csv", columns)
+    assert [(p.label, p.group) for p in find_photos(tmp_path)] == [("=wet", "-look")]
+    assert read_corrections(tmp_path) == Corrections(moved)
 
 
 def test_the_folders_own_manifest_goes_before_its_parents(tmp_path):
