@@ -88,13 +88,14 @@ def calibrated(
     uncertain = Uncertain(Base(model, model.pack(model.guess(robot)), robot), free, True, gyroscope)
     noise, known = STARTS_WITH, None
     for _ in range(ROUNDS):
-        uncertain, _ = _fit(uncertain, scenes, noise)
+        uncertain, _ = _fit(uncertain, scenes, [whitening(scene, noise) for scene in scenes])
         left = [all_residuals(uncertain.base, (), s) for s in scenes]
         noise = known = estimated_noise(scenes, left, known)
     noise, gyro_expected = _doubted(noise, config)
-    uncertain, information = _fit(uncertain, scenes, noise)
+    whiteners = [whitening(scene, noise) for scene in scenes]
+    uncertain, information = _fit(uncertain, scenes, whiteners)
     information = _with_drift(uncertain, information, config)
-    held_back = _held_back(uncertain, scenes, noise, config)
+    held_back = _held_back(uncertain, scenes, whiteners, config)
     if given is None:
         return Calibration(uncertain, information, noise, held_back, gyro_expected)
     base = replace(uncertain.base, values=model.pack(given), latency_s=0.0)
@@ -129,24 +130,27 @@ def _with_drift(uncertain: Uncertain, information: FloatArray, config: GapConfig
 
 
 def _held_back(
-    uncertain: Uncertain, scenes: Sequence[DenseWindows], noise: Noise, config: GapConfig
+    uncertain: Uncertain,
+    scenes: Sequence[DenseWindows],
+    whiteners: Sequence[FloatArray],
+    config: GapConfig,
 ) -> tuple[tuple[Base, DenseWindows], ...]:
     """Every part of the runs with a base identified on the others."""
     numbers = [pieces(scene, config.part_s) % config.held_back for scene in scenes]
     held_back = []
     for part in range(config.held_back):
-        others = [s.where(n != part) for s, n in zip(scenes, numbers, strict=True)]
+        left = [s.where(n != part) for s, n in zip(scenes, numbers, strict=True)]
+        white = [w[n != part] for w, n in zip(whiteners, numbers, strict=True)]
         kept = [s.where(n == part) for s, n in zip(scenes, numbers, strict=True)]
-        without, _ = _fit(uncertain, [s for s in others if len(s)], noise)
+        without, _ = _fit(uncertain, [s for s in left if len(s)], [w for w in white if len(w)])
         held_back += [(without.base, s) for s in kept if len(s)]
     return tuple(held_back)
 
 
 def _fit(
-    uncertain: Uncertain, scenes: Sequence[DenseWindows], noise: Noise
+    uncertain: Uncertain, scenes: Sequence[DenseWindows], whiteners: Sequence[FloatArray]
 ) -> tuple[Uncertain, FloatArray]:
     """The free numbers that fit best, and their information (F, F)."""
-    whiteners = [whitening(scene, noise) for scene in scenes]
 
     def rows_at(values: FloatArray) -> FloatArray:
         return whitened_residuals(uncertain.at(values), (), scenes, whiteners)

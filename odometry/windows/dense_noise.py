@@ -7,17 +7,18 @@ gyroscope reports, which follows the robot where its motion wanders.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.windows.dense import DenseWindows
+from odometry.windows.noise_factors import Factors, added_travel_m, wandering_turns
 
 FIRST_GUESS = np.square([0.02, 0.01, 0.005, 0.005, 0.001])
 SMALLEST = np.square([1e-4, 1e-4, 1e-5, 1e-5, 1e-5])
 ROUNDS = 10
-CONVERGED = 1e-6  # share by which a variance may still change
+CONVERGED = 1e-4  # share by which a variance may still change
 MOST_WINDOWS = 60  # from which variances are estimated
 
 
@@ -52,9 +53,7 @@ def covariance_parts(scene: DenseWindows) -> FloatArray:
     """
     motion = scene.measured
     count, steps, _ = motion.shape
-    travel_m = scene.travel_m[np.searchsorted(scene.time_s, scene.pose_s[scene.windows])]
-    added_m = np.diff(travel_m, axis=1)
-    places = np.concatenate([np.zeros((count, 1, 2)), motion[..., :2]], axis=1)
+    added_m = added_travel_m(scene)
     level = np.zeros((count, steps, 3, steps, 3))
     j = np.arange(steps)
     shared = np.ones((steps, steps)) + np.eye(steps)
@@ -70,14 +69,8 @@ def covariance_parts(scene: DenseWindows) -> FloatArray:
     reached = np.minimum(j[:, None], j[None, :])
     for axis in (0, 1):
         wander[:, :, axis, :, axis] = summed[:, reached]
-    spread = places[:, None, 1:, :] - places[:, :-1, None, :]  # (K, i, j, 2) from i on
-    swing = np.stack([-spread[..., 1], spread[..., 0], np.ones(spread.shape[:-1])], axis=-1)
-    swing *= (j[None, :] >= j[:, None])[None, :, :, None]
-    swing *= np.sqrt(added_m)[:, :, None, None]
     of_poses = 3 * steps
-    turns = swing.reshape(count, steps, of_poses)
-    if scene.reported_turns is not None:
-        turns = np.concatenate([turns, np.sqrt(added_m)[:, :, None] * np.eye(steps)], axis=-1)
+    turns = wandering_turns(scene)
     parts = np.zeros((5, count, turns.shape[-1], turns.shape[-1]))
     for place, part in enumerate((position, yaw, wander)):
         parts[place, :, :of_poses, :of_poses] = part.reshape(count, of_poses, of_poses)
@@ -90,8 +83,7 @@ def covariance_parts(scene: DenseWindows) -> FloatArray:
 def end_variance(scene: DenseWindows, noise: Noise) -> FloatArray:
     """Variance (K, 3) of the residuals at the end of each window."""
     x, y, _ = np.moveaxis(scene.measured, -1, 0)
-    travel_m = scene.travel_m[np.searchsorted(scene.time_s, scene.pose_s[scene.windows])]
-    added_m = np.diff(travel_m, axis=1)
+    added_m = added_travel_m(scene)
     position, yaw, wander, turn, _ = noise.all_variances
     ahead, aside = (  # from the poses before each step to the last
         of[:, -1:] - np.pad(of[:, :-1], ((0, 0), (1, 0))) for of in (x, y)
@@ -123,37 +115,28 @@ def estimated_noise(
 
     `start` is an answer to nearly the same residuals.
     """
-    parts, rows = [], []
+    chosen, rows = [], []
     share = MOST_WINDOWS / max(1, sum(map(len, scenes)))
     for scene, of in zip(scenes, residuals, strict=True):
-        most = max(1, round(share * len(scene)))
-        chosen = np.unique(np.linspace(0, len(scene) - 1, min(most, len(scene))).astype(np.int64))
-        picked = np.zeros(len(scene), dtype=np.bool_)
-        picked[chosen] = True
-        parts.append(covariance_parts(scene.where(picked)))
-        rows.append(of[picked].reshape(len(chosen), -1))
+        most = min(max(1, round(share * len(scene))), len(scene))
+        picked = np.unique(np.linspace(0, len(scene) - 1, most).astype(np.int64))
+        chosen.append(replace(scene, windows=scene.windows[picked]))
+        rows.append(of[picked].reshape(len(picked), -1))
+    factors = [Factors(scene) for scene in chosen]
+    parts = [
+        covariance_parts(scene)[:, :, one.order[:, None], one.order]
+        for scene, one in zip(chosen, factors, strict=True)
+    ]
     variances = FIRST_GUESS.copy() if start is None else start.all_variances
     for _ in range(ROUNDS):
-        scores = [_score(variances, part, of) for part, of in zip(parts, rows, strict=True)]
-        score = np.sum([of for of, _ in scores], axis=0)
-        information = np.sum([of for _, of in scores], axis=0)
+        score, information = np.zeros(len(variances)), np.zeros((len(variances),) * 2)
+        for one, part, of in zip(factors, parts, rows, strict=True):
+            inverse = np.linalg.inv(np.tensordot(variances, part, axes=1))
+            scored = one.score(inverse, of[:, one.order])
+            score, information = score + scored[0], information + scored[1]
         step = np.linalg.lstsq(information, score, rcond=None)[0]
         before = variances
         variances = np.clip(variances + step, np.maximum(SMALLEST, variances / 20), 20 * variances)
         if np.all(np.abs(variances - before) <= CONVERGED * before):
             break
     return Noise(*np.sqrt(variances).tolist())
-
-
-def _score(
-    variances: FloatArray, parts: FloatArray, rows: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Score (5,) and expected information (5, 5) of variances, of rows (K, R) and their parts."""
-    inverse = np.linalg.inv(np.tensordot(variances, parts, axes=1))
-    weighted = inverse @ rows[..., None]
-    products = inverse @ parts
-    quadratic = ((parts @ weighted) * weighted).sum(axis=(1, 2, 3))
-    flat = products.reshape(len(parts), -1)
-    turned = np.ascontiguousarray(products.swapaxes(-1, -2)).reshape(len(parts), -1)
-    score = (quadratic - np.trace(products, axis1=-2, axis2=-1).sum(axis=1)) / 2
-    return score, flat @ turned.T / 2
