@@ -17,6 +17,7 @@ from odometry.gap.statistic import squared_errors
 from odometry.windows.dense import DenseWindows
 
 SPACING_S = 1.0  # of the moments that are tried
+TIED = 1e-9  # share: losses nearer than this are equal, so that rounding does not choose a moment
 InCourse = CommandsInCourse | MotionInCourse
 
 
@@ -89,5 +90,5 @@ def _with_moment(base: Base, effects: list[Added], place: int, scene: DenseWindo
         one = Added(effect, np.append(added.values, moment_s))
         return [*effects[:place], one, *effects[place + 1 :]]
 
-    losses = [float(squared_errors(base, at(m), scene).sum()) for m in tried]
-    return at(float(tried[int(np.argmin(losses))]))
+    losses = np.array([squared_errors(base, at(m), scene).sum() for m in tried])
+    return at(float(tried[int(np.argmax(losses <= (1.0 + TIED) * losses.min()))]))

@@ -8,6 +8,7 @@ from odometry.effects.in_course import in_course
 from odometry.effects.time_course import FromAMoment
 from odometry.effects.traction_loss import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
+from odometry.gap import own_moments
 from odometry.gap.own_moments import observed_s, with_own_moments
 from odometry.gap.statistic import gap_of
 
@@ -57,6 +58,22 @@ def test_a_run_without_it_never_begins(known, make_scene, scenes, loss):
     (found,), judged = with_own_moments(known.base, [loss], [other], scenes[:1], known)
     assert found.values[-1] > observed_s(judged[0])[1]
     assert gap_of(known.base, [found], judged, 10.0).value < 0.03
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_of_moments_that_close_as_much_the_first_is_taken(known, scenes, loss, monkeypatch, seed):
+    """As where the robot stands between them: rounding does not choose."""
+    rng = np.random.default_rng(seed)
+
+    def level_around(_base, effects, scene):
+        level = np.maximum(np.abs(effects[0].values[-1] - SECOND_S), 5.0)
+        return np.full(len(scene), level * (1.0 + 1e-13 * rng.normal()))
+
+    monkeypatch.setattr(own_moments, "squared_errors", level_around)
+    (found,), _ = with_own_moments(known.base, [loss], scenes[1:], scenes[:1], known)
+    first_s = observed_s(scenes[1].where(np.arange(len(scenes[1])) % 2 == 1))[0]
+    tried_s = first_s + np.arange(120.0)
+    assert found.values[-1] == tried_s[tried_s >= SECOND_S - 5.0][0]
 
 
 def test_pieces_of_the_measured_run_know_its_moment(known, scenes, loss):
