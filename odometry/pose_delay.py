@@ -7,7 +7,8 @@ judged are up to 0.2 s early against the gyroscope and at most 0.03 s late.
 from dataclasses import replace
 
 from odometry.checks.evidence import Evidence
-from odometry.checks.timing import CERTAIN, TOGETHER, lags_of, pose_period_s, timing
+from odometry.checks.lag import Lag
+from odometry.checks.timing import CERTAIN, TOGETHER, found_in, lags_of, pose_period_s, timing
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent
 from odometry.run import Run
@@ -52,9 +53,11 @@ def without_pose_delay(run: Run, config: IcrEkfConfig) -> Moved:
 def _certain_delay_s(run: Run) -> float | None:
     if run.pose is None or run.yaw_rate is None:
         return None
-    found = list(timing(Evidence(run)))
+    evidence = Evidence(run)
+    lags = lags_of(evidence)
+    found = list(found_in(evidence, lags))
     if not found:
-        return _short_delay_s(run)
+        return _short_delay_s(evidence, lags)
     late = [finding for finding in found if finding.name == FINDING]
     if not late or late[0].mend is None:
         return None
@@ -66,10 +69,8 @@ def _certain_delay_s(run: Run) -> float | None:
     return delay_s if delay_s > 0 and not remains else None
 
 
-def _short_delay_s(run: Run) -> float | None:
+def _short_delay_s(evidence: Evidence, lags: dict[tuple[str, str], Lag]) -> float | None:
     """A delay too short for `check`, which may come early as well as late, of late poses alone."""
-    evidence = Evidence(run)
-    lags = lags_of(evidence)
     lag, of_treads = lags.get(("pose", "gyroscope")), lags.get(("treads", "gyroscope"))
     if lag is None or lag.together < TOGETHER:
         return None

@@ -207,7 +207,8 @@ class Camera:
 
     def in_image(self, pixels: ArrayLike) -> BoolArray:
         """Whether pixels (..., 2) lie in the image, as (...) booleans; NaN does not."""
-        u, v = np.moveaxis(np.asarray(pixels, dtype=np.float64), -1, 0)
+        places = np.asarray(pixels, dtype=np.float64)
+        u, v = places[..., 0], places[..., 1]
         width, height = self.image_size
         return np.asarray((u >= 0) & (u <= width - 1) & (v >= 0) & (v <= height - 1))
 

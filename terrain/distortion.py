@@ -70,11 +70,11 @@ def distort(points: FloatArray, distortion: FloatArray) -> FloatArray:
         Distorted coordinates, NaN beyond `radius_limit` and where the input is NaN.
     """
     points = np.asarray(points, dtype=np.float64)
+    coefficients, limit, unfolded = _known(*distortion.tolist())
     radius = np.hypot(points[:, 0], points[:, 1])
-    within = np.where((radius <= radius_limit(distortion))[:, None], points, np.nan)
-    coefficients = _padded(distortion)
+    within = np.where((radius <= limit)[:, None], points, np.nan)
     image = _tilt(_lens(within, coefficients[:12]), coefficients[12:])
-    doubtful = radius > _unfolded_radius(*coefficients.tolist())
+    doubtful = radius > unfolded
     if doubtful.any():
         jacobian = _derivatives(within[doubtful], coefficients)
         image[doubtful] = _without_folds(image[doubtful], jacobian)
@@ -82,6 +82,12 @@ def distort(points: FloatArray, distortion: FloatArray) -> FloatArray:
 
 
 @lru_cache(maxsize=64)
+def _known(*distortion: float) -> tuple[FloatArray, float, float]:
+    """All 14 coefficients, `radius_limit` and `_unfolded_radius`."""
+    coefficients = _padded(np.array(distortion))
+    return coefficients, radius_limit(coefficients), _unfolded_radius(*coefficients.tolist())
+
+
 def _unfolded_radius(*coefficients: float) -> float:
     """Radius up to which the lens is far from any fold, so that no derivative need be looked at.
 
@@ -149,18 +155,20 @@ def _padded(distortion: FloatArray) -> FloatArray:
 
 def _lens(points: FloatArray, coefficients: FloatArray) -> FloatArray:
     """Apply the radial, tangential and thin prism terms."""
-    k1, k2, p1, p2, k3, k4, k5, k6, s1, s2, s3, s4 = coefficients
+    k1, k2, p1, p2, k3, k4, k5, k6, s1, s2, s3, s4 = coefficients.tolist()
     x, y = points.T
     square = x * x + y * y
     numerator = 1 + square * (k1 + square * (k2 + square * k3))
     denominator = 1 + square * (k4 + square * (k5 + square * k6))
     radial = numerator / denominator
-    return np.column_stack(
-        [
-            x * radial + 2 * p1 * x * y + p2 * (square + 2 * x * x) + square * (s1 + s2 * square),
-            y * radial + p1 * (square + 2 * y * y) + 2 * p2 * x * y + square * (s3 + s4 * square),
-        ]
+    seen = np.empty_like(points)
+    seen[:, 0] = (
+        x * radial + 2 * p1 * x * y + p2 * (square + 2 * x * x) + square * (s1 + s2 * square)
     )
+    seen[:, 1] = (
+        y * radial + p1 * (square + 2 * y * y) + 2 * p2 * x * y + square * (s3 + s4 * square)
+    )
+    return seen
 
 
 def _derivatives(points: FloatArray, coefficients: FloatArray) -> FloatArray:

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray
+from odometry.arrays import AnyArray, BoolArray, FloatArray
 
 # chosen with simulated labels, half of whose drives were kept for the figures
 UNNAMED = 0.03  # of the ways that end, so many end on a terrain that has no name
@@ -89,38 +89,54 @@ def smoothed(
     own = (1 - wrong) * np.eye(count) + wrong / count
     looks = np.vstack([own, np.full(count, 1 / count)])
     drawn = np.append(np.full(count, (1 - UNNAMED) / count), UNNAMED)[:, None]
-    stays, alike = np.exp(-steps_m / change_m), np.exp(-steps_m / alike_m)
-    forward = np.empty((len(evidence), *looks.shape))
-    state = prior[:, None] * looks
-    for place, of in enumerate(evidence):
-        state = of * _ahead(state, looks, drawn, stays[place], alike[place])  # eq. 20
-        state /= state.sum()
-        forward[place] = state
-    backward = np.ones_like(forward)
-    for place in range(len(evidence) - 1, 0, -1):
-        state = evidence[place] * backward[place]
-        state = _back(state, looks, drawn, stays[place], alike[place])  # eq. 25
-        backward[place - 1] = state / state.sum()
-    product = (forward * backward).sum(axis=2)  # eq. 27
+    ahead, after = _both_ways(
+        np.broadcast_to(evidence, (len(evidence), *looks.shape)),
+        prior[:, None] / drawn,
+        np.stack([np.exp(-steps_m / change_m), np.exp(-steps_m / alike_m)]),
+        looks,
+        drawn,
+    )
+    product = (looks * drawn * ahead * after).sum(axis=2)  # eq. 27
     return np.asarray(product / product.sum(axis=1, keepdims=True))
 
 
-def _ahead(
-    state: FloatArray, looks: FloatArray, drawn: FloatArray, stays: float, alike: float
-) -> FloatArray:
-    """Probabilities (k + 1, k) of terrain and look, a step on."""
-    terrain = state.sum(axis=1, keepdims=True)
-    same = alike * state + (1 - alike) * terrain * looks
-    return np.asarray(stays * same + (1 - stays) * terrain.sum() * drawn * looks)
+def _both_ways(
+    evidence: FloatArray,
+    first: FloatArray,
+    same: FloatArray,
+    looks: FloatArray,
+    drawn: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Forward and backward variables (n, k + 1, k), in one loop.
+
+    The chain is reversible: what comes before, in shares of what is drawn, obeys the same step
+    as the likelihood of what comes after. Backward variables hold the evidence of their place,
+    forward ones that of the places before alone. On the way to each place terrain and look stay
+    with the probabilities `same` (2, n).
+    """
+    ahead, after = np.empty_like(evidence), np.empty_like(evidence)
+    ahead[0] = _step(first, looks, drawn, *same[:, 0])
+    after[-1] = evidence[-1]
+    state = np.stack([evidence[0] * ahead[0], after[-1]])
+    there_and_back = np.stack([evidence, evidence[::-1]], axis=1)
+    both = np.stack([same, np.roll(same[:, ::-1], 1, axis=1)], axis=2)[..., None, None]
+    for place in range(1, len(evidence)):
+        state = _step(state, looks, drawn, *both[:, place])  # eq. 20 and 25
+        ahead[place] = state[0]
+        state *= there_and_back[place]
+        state /= np.add.reduce(state, axis=(1, 2), keepdims=True)
+        after[-1 - place] = state[1]
+    return ahead, after
 
 
-def _back(
-    state: FloatArray, looks: FloatArray, drawn: FloatArray, stays: float, alike: float
+def _step(
+    state: FloatArray, looks: FloatArray, drawn: FloatArray, stays: AnyArray, alike: AnyArray
 ) -> FloatArray:
-    """Likelihood (k + 1, k) of what comes, by terrain and look a step before."""
-    terrain = (looks * state).sum(axis=1, keepdims=True)
+    """Likelihood (..., k + 1, k) by terrain and look, a step on."""
+    terrain = np.add.reduce(looks * state, axis=-1, keepdims=True)
     same = alike * state + (1 - alike) * terrain
-    return np.asarray(stays * same + (1 - stays) * (drawn * terrain).sum())
+    anew = np.add.reduce(drawn * terrain, axis=-2, keepdims=True)
+    return np.asarray(stays * same + (1 - stays) * anew)
 
 
 def carried(belief: FloatArray, stay: FloatArray) -> FloatArray:

@@ -70,6 +70,11 @@ class Footprint:
         return self.scale * float(np.hypot(self.length_m, self.width_m)) / 2
 
     @cached_property
+    def middle_and_points(self) -> FloatArray:
+        """Points (76, 2): the middle, and 75 spread evenly over it, in the robot frame."""
+        return np.vstack([np.zeros(2), self.points])
+
+    @cached_property
     def points(self) -> FloatArray:
         """Points (75, 2) spread evenly over the footprint, in the robot frame."""
         along = (np.arange(15) - 7) / 15 * self.length_m
@@ -119,9 +124,11 @@ def along_way(places: FloatArray, same_m: float) -> IntArray:
         Indices of the places.
     """
     order: list[int] = []
-    for place, here in enumerate(places):
-        apart_m = np.linalg.norm(places[:place] - here, axis=1)
-        nearest_place = int(apart_m.argmin()) if place else 0
-        seen_before = place > 0 and apart_m[nearest_place] <= same_m
-        order.insert(order.index(nearest_place) + 1 if seen_before else place, place)
+    x, y = (places[:, None, axis] - places[:, axis] for axis in (0, 1))
+    apart_m = np.sqrt(x * x + y * y)
+    apart_m[np.triu_indices(len(places))] = np.inf
+    nearest_places = apart_m.argmin(axis=1)
+    seen_before = apart_m.min(axis=1) <= same_m
+    for place, nearest_place in enumerate(nearest_places.tolist()):
+        order.insert(order.index(nearest_place) + 1 if seen_before[place] else place, place)
     return np.array(order, dtype=np.intp)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from math import inf
 
 import numpy as np
@@ -113,6 +114,7 @@ class _Part:
         middle = se2.transform(pose, self.middle_m)
         return Rectangle.round(middle, np.array([along_x, along_y]) / 2)
 
+    @cached_property
     def points(self) -> FloatArray:
         """Points spread over it (POINTS**2, 2), corners included, in the robot frame."""
         share = np.linspace(-0.5, 0.5, POINTS)
@@ -184,7 +186,12 @@ def _parts(robot: Robot, config: RegionConfig) -> tuple[_Part, ...]:
     """The enlarged footprint, of length W_1 and width B_1, or its left and its right half."""
     length_m = config.footprint_scale * (robot.length or robot.track_width)
     width_m = config.footprint_scale * (robot.width or robot.track_width)
-    if not config.per_tread:
+    return _parts_of(length_m, width_m, config.per_tread)
+
+
+@lru_cache(maxsize=16)
+def _parts_of(length_m: float, width_m: float, per_tread: bool) -> tuple[_Part, ...]:
+    if not per_tread:
         return (_Part(np.zeros(2), length_m, width_m),)
     aside = np.array([0.0, width_m / 4])
     return _Part(aside, length_m, width_m / 2), _Part(-aside, length_m, width_m / 2)
@@ -199,7 +206,7 @@ def _shares(
     """
     shares = np.ones(len(poses))
     for part in parts:
-        shown = is_shown(camera, se2.transform(poses[:, None], part.points()), coarsest_m)
+        shown = is_shown(camera, se2.transform(poses[:, None], part.points), coarsest_m)
         shares = np.minimum(shares, shown[:, POINTS**2 // 2] * shown.mean(axis=1))
     return shares
 
@@ -230,8 +237,8 @@ def _first_whole(
     camera: Camera, poses: FloatArray, parts: tuple[_Part, ...], coarsest_m: float
 ) -> int | None:
     """The first of poses (N, 3) at which all points of all parts are in sight."""
-    points = np.concatenate([part.points() for part in parts])
-    few = np.concatenate([part.points()[FEW] for part in parts])
+    points = np.concatenate([part.points for part in parts])
+    few = np.concatenate([part.points[FEW] for part in parts])
     maybe = is_shown(camera, se2.transform(poses[:, None], few), coarsest_m).all(axis=1)
     for place in np.flatnonzero(maybe):
         if is_shown(camera, se2.transform(poses[place], points), coarsest_m).all():

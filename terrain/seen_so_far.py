@@ -28,25 +28,28 @@ class SeenSoFar:
         self._training: TrainingLook | None = getattr(classifier, "training_look_", None)
         self._classifier = classifier
         self._looks: deque[FloatArray] = deque(maxlen=KEPT)
+        self._ranks: deque[tuple[float, float]] = deque(maxlen=KEPT)
 
     def add(self, views: Sequence[ByteImage]) -> None:
         """Take in what was shown of one image."""
         if self._training is not None:
             looks = [look_of(middle_of(view, self._classifier.patch_size_px)) for view in views]
-            self._looks.append(np.mean(looks, axis=0))
+            look = np.mean(looks, axis=0)
+            self._looks.append(look)
+            self._ranks.append(self._training.ranks(look))
 
     @property
     def likeness(self) -> Likeness | None:
         """Of the images so far; None where the classifier cannot tell."""
         if self._training is None:
             return None
-        return self._training.compared(np.array(self._looks))
+        how = self._training.how(np.array(self._looks)) if self._looks else ()
+        return Likeness.of(self._ranks, how)
 
     def weighed(self, label: str, probabilities: Mapping[str, float]) -> Mapping[str, float]:
         """What a label gives to each terrain: less than it says where the images are unlike."""
-        likeness = self.likeness
         given = probabilities or ({} if label == UNKNOWN else {label: 1.0})
-        if likeness is None or not likeness.is_unlike or not given:
+        if not Likeness.of(self._ranks).is_unlike or not given:
             return probabilities
         names = list(map(str, self._classifier.classes_))
         chance = (1 - WORTH_OF_UNLIKE) / len(names)

@@ -10,6 +10,7 @@ from terrain.rectangle import Rectangle
 
 CELLS = 16  # along each side of a rectangle of which a part is shown
 STEP_M = 1e-3  # of the differences that say how finely ground is shown
+ASIDE = STEP_M * np.array([[[0.0, 0.0]], [[1.0, 0.0]], [[0.0, 1.0]]])
 
 
 def is_shown(camera: Camera, points: FloatArray, coarsest_m: float = inf) -> BoolArray:
@@ -27,16 +28,13 @@ def is_shown(camera: Camera, points: FloatArray, coarsest_m: float = inf) -> Boo
     -------
     (...) booleans
     """
-    pixels = camera.ground_to_pixels(points)
-    shown = camera.in_image(pixels)
     if coarsest_m == inf:
-        return shown
-    seen, at = np.asarray(points)[shown], pixels[shown]
-    aside = camera.ground_to_pixels(seen + STEP_M * np.eye(2)[:, None])
-    by_x, by_y = (aside - at) / STEP_M
-    fine = shown.copy()
-    fine[shown] = _smallest_stretch(by_x, by_y) * coarsest_m >= 1
-    return fine
+        return camera.in_image(camera.ground_to_pixels(points))
+    places = np.asarray(points).reshape(-1, 2)
+    at, *aside = camera.ground_to_pixels(places + ASIDE)
+    by_x, by_y = ((there - at) / STEP_M for there in aside)
+    fine = _smallest_stretch(by_x, by_y) * coarsest_m >= 1
+    return (camera.in_image(at) & fine).reshape(np.shape(points)[:-1])
 
 
 def largest_shown(camera: Camera, rectangle: Rectangle, coarsest_m: float = inf) -> Rectangle:
@@ -68,9 +66,10 @@ def largest_shown(camera: Camera, rectangle: Rectangle, coarsest_m: float = inf)
 
 
 def _smallest_stretch(by_x: FloatArray, by_y: FloatArray) -> FloatArray:
-    """The smaller singular value of the matrices whose columns are given (..., 2) [px/m]."""
-    squares = (by_x**2).sum(axis=-1) + (by_y**2).sum(axis=-1)
-    area = by_x[..., 0] * by_y[..., 1] - by_x[..., 1] * by_y[..., 0]
+    """The smaller singular value of the matrices whose columns are given (N, 2) [px/m]."""
+    (u_by_x, v_by_x), (u_by_y, v_by_y) = by_x.T, by_y.T
+    squares = u_by_x**2 + v_by_x**2 + (u_by_y**2 + v_by_y**2)
+    area = u_by_x * v_by_y - v_by_x * u_by_y
     spread = np.sqrt(np.maximum(squares**2 - 4 * area**2, 0.0))
     return np.asarray(np.sqrt(np.maximum(squares - spread, 0.0) / 2))
 

@@ -154,30 +154,30 @@ class Switch:
                 supported_m=travel_m,
                 event=None,
             )
-        points = se2.transform(pose, np.vstack([np.zeros(2), self.footprint.points]))
+        points = se2.transform(pose, self.footprint.middle_and_points)
         place, apart_m = self._under(self.settled, points, travel_m)
         beliefs = carried(
             self.settled.beliefs[place], np.exp(-apart_m / self.config.change_m)[:, None]
         )
         reached = apart_m <= self.footprint.radius_m
         shares = self._shares(self.settled, beliefs[1:], reached[1:])
-        now = replace(self, shares=shares, event=None)._supported(
-            self.settled, beliefs[0], travel_m
+        terrain, event = max(shares, key=lambda name: shares[name]), None
+        if reached[0] and terrain not in (self.in_force, UNKNOWN) and shares[terrain] > MAJORITY:
+            sight = self.settled.first_sight(int(place[0]), terrain)
+            event = SwitchEvent(
+                terrain, stamp_s, sight, stamp_s - sight.stamp_s, travel_m - sight.travel_m
+            )
+        in_force = terrain if event is not None else self.in_force
+        known = (self.settled.probability(beliefs[0], name) for name in (self.in_force, in_force))
+        supported_m = travel_m if max(known) >= KNOWN else self.supported_m
+        return replace(
+            self,
+            in_force=in_force,
+            shares=shares,
+            supported_m=supported_m,
+            unsupported_m=travel_m - supported_m,
+            event=event,
         )
-        terrain = max(shares, key=lambda name: shares[name])
-        if not reached[0] or terrain in (self.in_force, UNKNOWN) or shares[terrain] <= MAJORITY:
-            return now
-        sight = self.settled.first_sight(int(place[0]), terrain)
-        event = SwitchEvent(
-            terrain, stamp_s, sight, stamp_s - sight.stamp_s, travel_m - sight.travel_m
-        )
-        switched = replace(now, in_force=terrain, event=event)
-        return switched._supported(self.settled, beliefs[0], travel_m)
-
-    def _supported(self, settled: Settled, belief: FloatArray, travel_m: float) -> "Switch":
-        if settled.probability(belief, self.in_force) >= KNOWN:
-            return replace(self, supported_m=travel_m, unsupported_m=0.0)
-        return replace(self, unsupported_m=travel_m - self.supported_m)
 
     def _shares(
         self, settled: Settled, beliefs: FloatArray, reached: BoolArray
@@ -185,7 +185,7 @@ class Switch:
         """Of the terrains at points of beliefs (m, k + 1); the one in force where not reached."""
         counts = np.bincount(settled.probable(beliefs[reached]), minlength=len(settled.names))
         shares = dict(zip(settled.names, (counts / len(beliefs)).tolist(), strict=True))
-        rest = float(1 - reached.mean())
+        rest = 1 - np.count_nonzero(reached) / len(reached)
         shares[self.in_force] = shares.get(self.in_force, 0.0) + rest
         return {name: share for name, share in shares.items() if share > 0}
 

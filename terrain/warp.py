@@ -12,7 +12,11 @@ from terrain.region import Rectangle
 
 
 def ground_view(
-    image: ByteImage, camera: Camera, rectangle: Rectangle, metres_per_pixel: float
+    image: ByteImage,
+    camera: Camera,
+    rectangle: Rectangle,
+    metres_per_pixel: float,
+    middle: tuple[int, int] | None = None,
 ) -> ByteImage:
     """Warp a rectangle of the ground to a view from above.
 
@@ -25,6 +29,8 @@ def ground_view(
         In the image, see `predict_region`.
     metres_per_pixel : float
         Scale of the view. Where the image is finer, it is averaged, not skipped.
+    middle : (int, int), optional
+        Rows and columns in the middle of the view that are wanted; by default all.
 
     Returns
     -------
@@ -42,24 +48,27 @@ def ground_view(
     >>> terrain.ground_view(image, camera, ahead, metres_per_pixel=0.01).shape
     (60, 60)
     """
-    rows, columns = view_shape(rectangle, metres_per_pixel)
+    whole = view_shape(rectangle, metres_per_pixel)
+    rows, columns = middle or whole
+    top, left = (whole[0] - rows) // 2, (whole[1] - columns) // 2
     fineness = max(1, math.ceil(metres_per_pixel / ground_sampling_m(camera, rectangle)[0]))
     step = metres_per_pixel / fineness
-    u, v = _pixels(camera, rectangle, step, (rows * fineness, columns * fineness))
+    far_left = rectangle.x_max - top * metres_per_pixel, rectangle.y_max - left * metres_per_pixel
+    u, v = _pixels(camera, far_left, step, (rows * fineness, columns * fineness))
     view = cv2.remap(image, u, v, cv2.INTER_LINEAR)
     return np.asarray(cv2.resize(view, (columns, rows), interpolation=cv2.INTER_AREA))
 
 
 def _pixels(
-    camera: Camera, rectangle: Rectangle, step_m: float, shape: tuple[int, int]
+    camera: Camera, far_left: tuple[float, float], step_m: float, shape: tuple[int, int]
 ) -> tuple[AnyArray, AnyArray]:
-    """Where the middles of the view's cells appear, u and v (rows, columns) as float32.
+    """Where the middles of cells from a corner on appear, u and v (rows, columns) as float32.
 
     `Camera.ground_to_pixels` by OpenCV, without a look at where the lens model ends. Depth is
     linear on the ground, and in front of the camera the tangent of the angle off the axis is
     quasi-convex: what holds at the corners of a rectangle holds within.
     """
-    x, y = rectangle.x_max - step_m / 2, rectangle.y_max - step_m / 2
+    x, y = far_left[0] - step_m / 2, far_left[1] - step_m / 2
     ground_of_cell = np.array([[0.0, -step_m, x], [-step_m, 0.0, y], [0.0, 0.0, 1.0]])
     cell_of_ray = np.linalg.inv(camera.ground_to_ray @ ground_of_cell)
     lens = camera.distortion if camera.distortion.size else np.zeros(4)

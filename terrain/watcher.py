@@ -25,7 +25,7 @@ from terrain.seen_so_far import SeenSoFar
 from terrain.sighting import Sighting, answered
 from terrain.suited import coarsest_m, unsuited
 from terrain.switch import Switch, SwitchConfig, SwitchEvent
-from terrain.warp import ground_view, pixel_view
+from terrain.warp import ground_view, pixel_view, view_shape
 
 
 class TerrainWatcher:
@@ -221,7 +221,8 @@ class TerrainWatcher:
         scale = self.classifier.metres_per_pixel
         if scale is None:
             return pixel_view(image, self._camera, rectangle)
-        return ground_view(image, self._camera, rectangle, scale)
+        middle = self.classifier.middle_used(view_shape(rectangle, scale))
+        return ground_view(image, self._camera, rectangle, scale, middle)
 
 
 def _carried(

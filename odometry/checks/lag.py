@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from odometry.arrays import FloatArray
 
@@ -12,6 +13,8 @@ Signal = Callable[[FloatArray], FloatArray]
 GRID_S = 0.05
 LEAST_CORRELATION = 0.7
 RIVAL = 0.9  # a second peak as high as this share of the first: the motion is periodic
+LEAST_SIZE = 1e-9  # of the product of both; smaller ones stand still
+TOGETHER_ROWS = 32  # of shifts; what is made of them stays in the cache
 PIECES = 8
 LEAST_PIECE_S = 8.0
 TOGETHER_S, CUTOFF = 0.15, 4.0  # seconds, or standard deviations, from the line through the pieces
@@ -90,12 +93,8 @@ def _peak(
     known = np.isfinite(reference)
     if known.sum() < LEAST_PIECE_S / GRID_S / 2:
         return None
-    correlations = np.array(
-        [
-            _correlation(reference, other[2 * reach - k : 2 * reach - k + len(at_s)])
-            for k in range(2 * reach + 1)
-        ]
-    )
+    shifted = sliding_window_view(other, len(at_s))[2 * reach :: -1]
+    correlations = _correlations(reference, shifted)
     best = int(np.nanargmax(correlations)) if np.isfinite(correlations).any() else 0
     if not 0 < best < 2 * reach or correlations[best] < LEAST_CORRELATION:
         return None
@@ -119,13 +118,27 @@ def _rate(heading: Signal, at_s: FloatArray, width_s: float) -> FloatArray:
     return (heading(at_s + width_s / 2) - heading(at_s - width_s / 2)) / width_s
 
 
+def _correlations(one: FloatArray, others: FloatArray) -> FloatArray:
+    """`_correlation` of one signal (n,) with each of others (m, n)."""
+    if not (np.isfinite(one).all() and np.isfinite(others).all()):
+        return np.array([_correlation(one, other) for other in others])
+    a = one - one.mean()
+    correlations = np.full(len(others), np.nan)
+    for of in range(0, len(others), TOGETHER_ROWS):
+        b = others[of : of + TOGETHER_ROWS] - others[of : of + TOGETHER_ROWS].mean(axis=1)[:, None]
+        sizes = np.sqrt(np.sum(a**2) * np.sum(b**2, axis=1))
+        clear = sizes > LEAST_SIZE
+        correlations[of : of + TOGETHER_ROWS][clear] = (np.sum(a * b, axis=1)[clear]) / sizes[clear]
+    return correlations
+
+
 def _correlation(a: FloatArray, b: FloatArray) -> float:
     known = np.isfinite(a) & np.isfinite(b)
     if known.sum() < LEAST_PIECE_S / GRID_S / 2:
         return float("nan")
     a, b = a[known] - a[known].mean(), b[known] - b[known].mean()
     size = float(np.sqrt(np.sum(a**2) * np.sum(b**2)))
-    return float(np.sum(a * b) / size) if size > 1e-9 else float("nan")
+    return float(np.sum(a * b) / size) if size > LEAST_SIZE else float("nan")
 
 
 def _peak_sigma_s(correlation: float, lasts_s: float, width_s: float) -> float:

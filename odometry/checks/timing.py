@@ -27,7 +27,11 @@ OF_PERIOD = 0.25  # of the pose period, by which interpolated poses may seem lat
 
 def timing(evidence: Evidence) -> Iterator[Finding]:
     """Lags of pose, treads and gyroscope against each other, and how they grow."""
-    lags = lags_of(evidence)
+    return found_in(evidence, lags_of(evidence))
+
+
+def found_in(evidence: Evidence, lags: dict[tuple[str, str], Lag]) -> Iterator[Finding]:
+    """The findings of `timing` by `lags_of` the evidence."""
     drifting = _drifting(evidence, lags)
     if drifting:
         yield clocks_apart(evidence, drifting)

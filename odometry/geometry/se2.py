@@ -72,7 +72,10 @@ def transform(pose: FloatArray, points: FloatArray) -> FloatArray:
     """Points (..., 2) of the frame of `pose` (..., 3), in its parent frame."""
     pose, points = np.asarray(pose), np.asarray(points)
     x, y = _rotate(points[..., 0], points[..., 1], pose[..., 2])
-    return np.stack([pose[..., 0] + x, pose[..., 1] + y], axis=-1)
+    moved = np.empty((*np.shape(x), 2))
+    moved[..., 0] = pose[..., 0] + x
+    moved[..., 1] = pose[..., 1] + y
+    return moved
 
 
 def _rotate(x: FloatArray, y: FloatArray, yaw: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -47,3 +47,6 @@ class Classifier(Protocol):
 
     def classify(self, images: Sequence[ByteImage]) -> list[Classification]:
         """One answer for each image."""
+
+    def middle_used(self, shape: tuple[int, int]) -> tuple[int, int]:
+        """Rows and columns in the middle of an image of such a shape: all that is looked at."""

@@ -52,6 +52,14 @@ class Likeness:
     rank_in_class: float
     how: tuple[str, ...]
 
+    @classmethod
+    def of(cls, ranks: Sequence[tuple[float, float]], how: tuple[str, ...] = ()) -> Self:
+        """What the `TrainingLook.ranks` of images say together."""
+        if not ranks:
+            return cls(0, float("nan"), float("nan"), ())
+        among_all, in_class = zip(*ranks, strict=True)
+        return cls(len(ranks), float(np.mean(among_all)), float(np.mean(in_class)), how)
+
     @property
     def is_unlike(self) -> bool | None:
         """None where there are too few images to tell."""
@@ -109,22 +117,28 @@ class TrainingLook:
         means = np.array([self.looks[self.codes == c].mean(axis=0) for c in self.codes])
         return np.asarray(np.maximum((self.looks - means).std(axis=0), 1e-3))
 
+    @cached_property
+    def _middle(self) -> FloatArray:
+        return np.asarray(np.median(self.looks, axis=0))
+
+    @cached_property
+    def _scaled(self) -> FloatArray:
+        return self.looks / self.spread
+
     def compared(self, looks: FloatArray) -> Likeness:
         """Compare the looks (m, 6) of images."""
-        if not len(looks):
-            return Likeness(0, float("nan"), float("nan"), ())
-        distances, nearest = self._nearest(looks)
-        among_all = (self.distances < distances[:, None]).mean(axis=1)
-        in_class = [
-            float((self.distances[self.codes == self.codes[i]] < distance).mean())
-            for i, distance in zip(nearest, distances, strict=True)
-        ]
-        return Likeness(
-            len(looks), float(among_all.mean()), float(np.mean(in_class)), self._how(looks)
-        )
+        ranks = [self.ranks(look) for look in looks]
+        return Likeness.of(ranks, self.how(looks) if ranks else ())
 
-    def _how(self, looks: FloatArray) -> tuple[str, ...]:
-        apart = (np.median(looks, axis=0) - np.median(self.looks, axis=0)) / self.spread
+    def ranks(self, look: FloatArray) -> tuple[float, float]:
+        """Share of the training patches nearer than a look (6,): of all, and of its terrain."""
+        (distance,), (nearest,) = self._nearest(look[None])
+        nearer = self.distances < distance
+        return float(nearer.mean()), float(nearer[self.codes == self.codes[nearest]].mean())
+
+    def how(self, looks: FloatArray) -> tuple[str, ...]:
+        """In what looks (m, 6) of images differ from those in training, most of all first."""
+        apart = (np.median(looks, axis=0) - self._middle) / self.spread
         words: dict[int, str] = {}
         for i in np.argsort(-np.abs(apart)):
             kind = min(int(i), len(WORDS) - 1)
@@ -136,12 +150,12 @@ class TrainingLook:
         self, looks: FloatArray, left_out: AnyArray | None = None
     ) -> tuple[FloatArray, IntArray]:
         """Mean distance of looks (m, 6) to the nearest patches, and the nearest of them."""
-        apart = cdist(looks / self.spread, self.looks / self.spread)
+        apart = cdist(looks / self.spread, self._scaled)
         if left_out is not None:
             apart[left_out] = np.inf
-        order = np.argsort(apart, axis=1, kind="stable")[:, :NEAREST]
-        mean = np.take_along_axis(apart, order, axis=1).mean(axis=1)
-        return np.where(np.isfinite(mean), mean, 1e9), order[:, 0]
+        few = min(NEAREST, apart.shape[1])
+        mean = np.sort(np.partition(apart, few - 1, axis=1)[:, :few], axis=1).mean(axis=1)
+        return np.where(np.isfinite(mean), mean, 1e9), apart.argmin(axis=1)
 
     def arrays(self) -> dict[str, AnyArray]:
         """Everything learned, by name."""

@@ -34,6 +34,11 @@ class OnePatchClassifier:
         answers = self._classifier.classify([self._middle(image) for image in images])
         return [_named(answer) for answer in answers]
 
+    def middle_used(self, shape: tuple[int, int]) -> tuple[int, int]:
+        """Rows and columns in the middle of an image of such a shape: one patch."""
+        rows, columns = (min(length, self.patch_size_px) for length in shape)
+        return rows, columns
+
     def _middle(self, image: ByteImage) -> ByteImage:
         size = self.patch_size_px
         top, left = (max(0, (length - size) // 2) for length in image.shape[:2])

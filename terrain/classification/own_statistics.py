@@ -164,6 +164,10 @@ class OwnStatisticsClassifier:
         standardised = self.standardised()
         return [standardised.classify_features(of) for of in features]
 
+    def middle_used(self, shape: tuple[int, int]) -> tuple[int, int]:
+        """As `TerrainClassifier.middle_used`."""
+        return self._classifier.middle_used(shape)
+
     @property
     def described(self) -> str:
         """What was done."""

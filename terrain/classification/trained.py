@@ -50,6 +50,11 @@ class TrainedClassifier(ModelFile):
         """
         return [self.classify_features(self.patch_features(image)) for image in images]
 
+    def middle_used(self, shape: tuple[int, int]) -> tuple[int, int]:
+        """Rows and columns in the middle of an image of such a shape: whole patches."""
+        rows, columns = (length - length % self.patch_size_px for length in shape)
+        return rows, columns
+
     def patch_features(self, image: ByteImage) -> FloatArray:
         """Features (patches, F) of the patches that an image is cut into.
 

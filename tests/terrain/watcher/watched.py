@@ -16,6 +16,9 @@ class ByBrightness:
         self.colour_ = colour
         self.shown = []
 
+    def middle_used(self, shape):
+        return shape
+
     def classify(self, images):
         self.shown += images
         bright = [float(image.mean()) > 128 for image in images]
