@@ -7,6 +7,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base import CommandEffect, MotionEffect
 from odometry.effects.base_model import Base
+from odometry.effects.contact_change import ContactChange
 from odometry.effects.corrected import Added, corrected_twist, moved_twist, with_true_speeds
 from odometry.effects.residual import Residual
 from odometry.models.icr_by_terrain import IcrByTerrain
@@ -53,13 +54,12 @@ class Chain:
             return corrected_twist(base, effects, self.recorded)
         twist = self._twists[first]
         for place, added in enumerate(effects[first:], first):
-            effect = added.effect
-            linear = place == first and not isinstance(base.model, IcrByTerrain)
-            if linear and isinstance(effect, Residual):
-                columns = self._columns_of(effect, place)
-                twist = twist + np.tensordot(added.values, columns, axes=1)
-            else:
+            columns = self._columns_of(added, place, first)
+            if columns is None:
                 twist = self._with(added, twist)
+            else:
+                moved = np.tensordot(added.values - self.effects[place].values, columns, axes=1)
+                twist = twist + (self._twists[place + 1] - self._twists[place]) + moved
         return twist
 
     def _first_changed(self, effects: Sequence[Added]) -> int:
@@ -78,8 +78,19 @@ class Chain:
             return twist
         return moved_twist(added.effect, added.values, twist, self.inputs, self.base)
 
-    def _columns_of(self, effect: Residual, place: int) -> FloatArray:
-        """What one of each term of a smooth function adds (P, N, 3)."""
-        if place not in self._columns:
+    def _columns_of(self, added: Added, place: int, first: int) -> FloatArray | None:
+        """Derivative (P, N, 3) of what an effect adds, where it is known.
+
+        That is smooth functions on the first twist that changes, and the forces of contacts.
+        """
+        effect = added.effect
+        if isinstance(self.base.model, IcrByTerrain) or np.array_equal(
+            added.values, self.effects[place].values
+        ):
+            return None
+        if place not in self._columns and isinstance(effect, ContactChange):
+            values = self.effects[place].values
+            self._columns[place] = effect.added_by_values(values, self.inputs, self.base)
+        elif place not in self._columns and isinstance(effect, Residual) and place == first:
             self._columns[place] = effect.columns(self._twists[place], self.inputs, self.base)
-        return self._columns[place]
+        return self._columns.get(place)

@@ -21,6 +21,7 @@ from odometry.models.inputs import Inputs
 MODEL = Contact()
 MEAN_S = 0.2
 REMEMBERED = 64  # answers
+IN_BALANCE = [0, 4, 5, 2, 8]  # where the parameters are among those of `Contact`
 
 
 class ContactChange(MotionEffect):
@@ -91,19 +92,21 @@ class ContactChange(MotionEffect):
     def change(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
         """What it changes of the twist (K, 3) at few inputs (K,)."""
 
+    @abstractmethod
+    def change_by_values(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
+        """Derivative (P, K, 3) of `change`."""
+
     def twist(
         self, values: FloatArray, twist: FloatArray, inputs: Inputs, base: Base
     ) -> FloatArray:
         """See `MotionEffect.twist`."""
-        first = _first_of_means(inputs)
-        means = Inputs(
-            _mean(inputs.tread_speeds_m_s, first),
-            _mean(inputs.roll_rad, first),
-            _mean(inputs.pitch_rad, first),
-            time_s=None if inputs.time_s is None else inputs.time_s[first],
-        )
-        counts = np.diff([*first, len(inputs.roll_rad)])
+        means, counts = _means(inputs)
         return np.asarray(twist + np.repeat(self._remembered(values, means, base), counts, axis=0))
+
+    def added_by_values(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
+        """Derivative (P, N, 3) of what `twist` adds, whatever the twist is."""
+        means, counts = _means(inputs)
+        return np.repeat(self.change_by_values(values, means, base), counts, axis=1)
 
     def _remembered(self, values: FloatArray, means: Inputs, base: Base) -> FloatArray:
         known = np.array([self._half_width_m(base)])
@@ -116,6 +119,24 @@ class ContactChange(MotionEffect):
                 self._answers.pop(next(iter(self._answers)))
             self._answers[key] = self.change(values, means, base)
         return self._answers[key]
+
+
+def balance_by_values(balance: FloatArray, inputs: Inputs) -> FloatArray:
+    """Derivative (P, K, 3) of the balanced twist (K, 3) by the effect's parameters."""
+    jacobian = MODEL.linearised(balance, inputs).by_parameters
+    return np.moveaxis(jacobian[..., IN_BALANCE], -1, 0)
+
+
+def _means(inputs: Inputs) -> tuple[Inputs, IntArray]:
+    """Inputs averaged over fifths of a second, and how many samples each is of."""
+    first = _first_of_means(inputs)
+    means = Inputs(
+        _mean(inputs.tread_speeds_m_s, first),
+        _mean(inputs.roll_rad, first),
+        _mean(inputs.pitch_rad, first),
+        time_s=None if inputs.time_s is None else inputs.time_s[first],
+    )
+    return means, np.diff([*first, len(inputs.roll_rad)])
 
 
 def _first_of_means(inputs: Inputs) -> IntArray:

@@ -5,12 +5,13 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base import Effect
 from odometry.effects.base_model import Base
-from odometry.effects.contact_change import MODEL, ContactChange
+from odometry.effects.contact_change import IN_BALANCE, MODEL, ContactChange, balance_by_values
 from odometry.effects.contact_following import followed
 from odometry.effects.recorded import Recorded
 from odometry.models.inputs import Inputs
 
 LATERAL_M_S2 = 0.3  # less is nothing that contact forces are worth trying for
+STEP = 1e-5  # of a parameter, for a derivative
 SLOW = 0.02  # of the speeds: centrifugal force is 0.0004 of its own
 
 
@@ -40,3 +41,19 @@ class InertiaByContact(ContactChange):
             followed(balance, fast, MODEL.twist(balance, fast))
             - MODEL.twist(self.balance_values(values, base, SLOW), slow) / SLOW
         )
+
+    def change_by_values(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
+        """See `ContactChange.change_by_values`; of what follows by differences."""
+        fast = Inputs(inputs.tread_speeds_m_s, time_s=inputs.time_s)
+        slow = Inputs(SLOW * inputs.tread_speeds_m_s)
+        balance = self.balance_values(values, base)
+        balanced, by_values = MODEL.twist(balance, fast), balance_by_values(balance, fast)
+        at = followed(balance, fast, balanced)
+        changes = []
+        for place, column in zip(IN_BALANCE, by_values, strict=True):
+            stepped = balance.copy()
+            stepped[place] += STEP
+            changes.append((followed(stepped, fast, balanced + STEP * column) - at) / STEP)
+        of_slow = balance_by_values(self.balance_values(values, base, SLOW), slow) / SLOW
+        of_slow[-1] *= SLOW  # the slip scale is that of slow speeds
+        return np.asarray(changes) - of_slow

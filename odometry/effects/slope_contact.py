@@ -4,7 +4,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
-from odometry.effects.contact_change import MODEL, ContactChange
+from odometry.effects.contact_change import MODEL, ContactChange, balance_by_values
 from odometry.effects.slope_icr import lacks_tilt
 from odometry.models.inputs import Inputs
 
@@ -28,3 +28,9 @@ class SlopeByContact(ContactChange):
         balance = self.balance_values(values, base)
         level = Inputs(inputs.tread_speeds_m_s)
         return np.asarray(MODEL.twist(balance, inputs) - MODEL.twist(balance, level))
+
+    def change_by_values(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
+        """See `ContactChange.change_by_values`."""
+        balance = self.balance_values(values, base)
+        level = Inputs(inputs.tread_speeds_m_s)
+        return balance_by_values(balance, inputs) - balance_by_values(balance, level)
