@@ -34,26 +34,33 @@ class InertiaByContact(ContactChange):
 
     def change(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
         """See `ContactChange.change`."""
-        fast = Inputs(inputs.tread_speeds_m_s, time_s=inputs.time_s)
-        slow = Inputs(SLOW * inputs.tread_speeds_m_s)
-        balance = self.balance_values(values, base)
-        return np.asarray(
-            followed(balance, fast, MODEL.twist(balance, fast))
-            - MODEL.twist(self.balance_values(values, base, SLOW), slow) / SLOW
-        )
+        fast, both, balances = self._fast_and_slow(values, inputs, base)
+        balanced, of_slow = np.split(MODEL.twist(balances, both), 2)
+        return np.asarray(followed(balances[0], fast, balanced) - of_slow / SLOW)
 
     def change_by_values(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
         """See `ContactChange.change_by_values`; of what follows by differences."""
-        fast = Inputs(inputs.tread_speeds_m_s, time_s=inputs.time_s)
-        slow = Inputs(SLOW * inputs.tread_speeds_m_s)
-        balance = self.balance_values(values, base)
-        balanced, by_values = MODEL.twist(balance, fast), balance_by_values(balance, fast)
-        at = followed(balance, fast, balanced)
+        fast, both, balances = self._fast_and_slow(values, inputs, base)
+        balanced, _ = np.split(MODEL.twist(balances, both), 2)
+        by_values, of_slow = np.split(balance_by_values(balances, both), 2, axis=1)
+        at = followed(balances[0], fast, balanced)
         changes = []
         for place, column in zip(IN_BALANCE, by_values, strict=True):
-            stepped = balance.copy()
+            stepped = balances[0].copy()
             stepped[place] += STEP
             changes.append((followed(stepped, fast, balanced + STEP * column) - at) / STEP)
-        of_slow = balance_by_values(self.balance_values(values, base, SLOW), slow) / SLOW
+        of_slow = of_slow / SLOW
         of_slow[-1] *= SLOW  # the slip scale is that of slow speeds
         return np.asarray(changes) - of_slow
+
+    def _fast_and_slow(
+        self, values: FloatArray, inputs: Inputs, base: Base
+    ) -> tuple[Inputs, Inputs, FloatArray]:
+        """Level inputs (K,); the same and slow ones (2 K,), and parameters (2 K, 9) of `Contact`.
+
+        Balances of both are found at once.
+        """
+        fast = Inputs(inputs.tread_speeds_m_s, time_s=inputs.time_s)
+        both = Inputs(np.concatenate([fast.tread_speeds_m_s, SLOW * fast.tread_speeds_m_s]))
+        balances = [self.balance_values(values, base, scale) for scale in (1.0, SLOW)]
+        return fast, both, np.repeat(balances, len(fast.roll_rad), axis=0)

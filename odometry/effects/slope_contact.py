@@ -26,11 +26,22 @@ class SlopeByContact(ContactChange):
     def change(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
         """See `ContactChange.change`."""
         balance = self.balance_values(values, base)
-        level = Inputs(inputs.tread_speeds_m_s)
-        return np.asarray(MODEL.twist(balance, inputs) - MODEL.twist(balance, level))
+        tilted, level = np.split(MODEL.twist(balance, _and_level(inputs)), 2)
+        return np.asarray(tilted - level)
 
     def change_by_values(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
         """See `ContactChange.change_by_values`."""
         balance = self.balance_values(values, base)
-        level = Inputs(inputs.tread_speeds_m_s)
-        return balance_by_values(balance, inputs) - balance_by_values(balance, level)
+        both = balance_by_values(balance, _and_level(inputs))
+        tilted, level = np.split(both, 2, axis=1)
+        return np.asarray(tilted - level)
+
+
+def _and_level(inputs: Inputs) -> Inputs:
+    """Inputs (2 K,) as they are (K,), then the same on level terrain: balances found at once."""
+    level = np.zeros_like(inputs.roll_rad)
+    return Inputs(
+        np.concatenate([inputs.tread_speeds_m_s] * 2),
+        np.concatenate([inputs.roll_rad, level]),
+        np.concatenate([inputs.pitch_rad, level]),
+    )
