@@ -53,7 +53,9 @@ def _kept(
     root = np.linalg.cholesky(inertia).T
     unrooted = np.linalg.inv(root)
     kept = root @ np.linalg.inv(np.eye(3) - held_s[:, None, None] * rates) @ unrooted
-    kept /= np.maximum(1.0, np.linalg.norm(kept, ord=2, axis=(1, 2)))[:, None, None]
+    large = np.linalg.norm(kept, axis=(1, 2)) > 1.0  # by the sum of squares, which is no less
+    sizes = np.linalg.norm(kept[large], ord=2, axis=(1, 2))
+    kept[large] /= np.maximum(1.0, sizes)[:, None, None]
     return np.asarray(unrooted @ kept @ root)
 
 

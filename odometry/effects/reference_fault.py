@@ -10,6 +10,7 @@ from odometry.models.inputs import Inputs
 SECTORS, LEAST_SECTORS = 12, 6  # of the circle, and in how many of them the robot must look
 LEAST_SHARE = 0.01  # of the samples, in a sector
 ROUNDS = 50  # of the inverse: each shrinks its error by the size of the distortion
+SETTLED_RAD = 1e-14
 
 
 class Compass(MeasurementEffect):
@@ -59,5 +60,8 @@ def _true_yaw(values: FloatArray, measured_rad: FloatArray) -> FloatArray:
     """Yaw (M,) whose bent one is (M,), by fixed-point iteration: |a| + |b| < 1.2 of slope."""
     yaw_rad = measured_rad
     for _ in range(ROUNDS):
+        before = yaw_rad
         yaw_rad = measured_rad - values[0] * np.cos(yaw_rad) - values[1] * np.sin(yaw_rad)
+        if np.abs(yaw_rad - before).max(initial=0.0) < SETTLED_RAD:
+            break
     return np.asarray(yaw_rad)
