@@ -5,7 +5,9 @@ Twenty seeds of every kind, at three levels of noise: `tests/studies/gap_cases.p
 
 import pytest
 
+from odometry.gap.config import GapConfig
 from odometry.gap.gap import find_gap
+from odometry.gap.statistic import floor_of, floor_there
 from odometry.run import Run
 from tests.blind.cases import FORMULA, make_case
 
@@ -49,6 +51,18 @@ def test_the_held_out_excess_is_closed(studied, kind, least):
     _, result = studied(kind, 0)
     assert result.holdout.share_closed > least
     assert result.holdout.after.value < result.holdout.noise_floor.high * 1.2
+
+
+def test_the_floor_reported_is_that_of_the_runs_beside_which_it_stands(studied):
+    """Not that of the calibration, whose windows are other ones."""
+    _, result = studied("none", 0)
+    floor = floor_of(result.calibration.held_back, GapConfig().part_s)
+    for closing, scenes in (
+        (result.measured, result.measured_scenes),
+        (result.holdout, result.holdout_scenes),
+    ):
+        assert closing.noise_floor == floor_there(floor, result.calibration, scenes)
+        assert abs(closing.noise_floor.value / floor.value - 1) > 1e-3
 
 
 def test_both_of_a_pair_are_named_and_nothing_freer_in_place_of_one(studied):

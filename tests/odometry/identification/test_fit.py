@@ -136,6 +136,19 @@ def test_what_is_open_goes_by_the_residuals_where_these_are_larger_than_stated(
     np.testing.assert_allclose(*deviations, rtol=1e-3)
 
 
+def test_what_is_open_goes_by_the_stated_noise_where_the_residuals_are_smaller(
+    fitted, winding, synthetic
+):
+    """Poses that happen to agree tell no more than their sensor can."""
+    run = synthetic.noisy(winding, np.random.default_rng(1))
+    deviations = []
+    for share in (2, 8):
+        stated = {name: sigma * share for name, sigma in synthetic.stated.items()}
+        found = fitted(run=run, config=WindowConfig(**stated), loss="squares", undetermined=1e-6)
+        deviations.append(np.array([open_.deviation for open_ in found.undetermined]))
+    np.testing.assert_allclose(deviations[1], 4 * deviations[0], rtol=1e-3)
+
+
 def test_too_few_windows_tell_how_many_there_are(fitted):
     config = WindowConfig(horizon_m=100.0, shortest=0.5)
     with pytest.raises(IdentificationError, match="1 windows cannot tell 5 parameters of 'icr'"):
@@ -155,9 +168,10 @@ def test_a_best_fit_that_contradicts_itself_is_refused(fitted, synthetic, tmp_pa
         fitted(run=run, fixed={"y_right": 0.37}, config=config, starts=8)
 
 
-def test_what_ends_at_the_edge_of_its_range_is_named(fitted, synthetic, tmp_path):
+@pytest.mark.parametrize("alpha_left", [2.1, -0.1])
+def test_what_ends_at_the_edge_of_its_range_is_named(fitted, synthetic, tmp_path, alpha_left):
     odometry = synthetic.commands(np.random.default_rng(3), 400)
-    truth = synthetic.icrs | {"alpha_left": 2.1, "alpha_right": 1.7}
+    truth = synthetic.icrs | {"alpha_left": alpha_left, "alpha_right": 1.7}
     folder = synthetic.write(tmp_path, odometry, np.arange(0, 39, 0.1), synthetic.icr_twist(truth))
     found = fitted(run=Run.read(folder), config=WindowConfig(horizon_m=0.5))
     assert found.at_bound == ("alpha_left",)

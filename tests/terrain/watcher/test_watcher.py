@@ -71,6 +71,31 @@ def test_the_region_follows_the_speeds_commanded_from_the_image_on(watch):
     assert np.hypot(*region.pose_ahead[:2]) == pytest.approx(chord)
 
 
+def test_the_region_follows_the_slip_believed(watch):
+    """Equal tread speeds, of which the right one keeps less: the robot will turn right."""
+    watched = watch([DARK])
+    frame = next(f for f in watched.run.frames() if f.image is not None)
+    straight = estimate_at(frame)
+    slipping = dataclasses.replace(straight, mean=np.append(straight.mean[:7], [0.9, 0.87]))
+    region = watched.watcher.look(frame, slipping).region
+    assert region.pose_ahead[2] == pytest.approx(0.5 * (0.87 - 0.9) / 0.3 * region.ahead_s)
+    assert region.distance_ahead_m == pytest.approx(0.5 * region.ahead_s)  # of the wheels
+
+
+@pytest.mark.parametrize("scale", [1.0, 2.0])
+def test_a_place_is_reached_from_the_corners_of_its_region_on(watch, scale):
+    """A slow robot, so that its labels suffice long before it is there."""
+    watched = watch([BRIGHT] * 9, footprint_scale=scale)
+    speed_m_s = np.full(2, 0.1)
+    for frame in watched.run.frames():
+        slow = dataclasses.replace(frame, tread_speeds_m_s=speed_m_s)
+        watched.watcher.terrain(slow, estimate_at(frame, speeds=speed_m_s))
+    (event,) = watched.watcher.events
+    away_m = event.sight.place[0] - 0.1 * event.stamp_s
+    corner_m = scale * np.hypot(0.4, 0.34) / 2
+    assert 0.7 * corner_m < away_m < corner_m
+
+
 def test_the_region_follows_the_effects_of_the_terrain(watch):
     """Effects slow both treads to a half and turn the robot at 0.1 rad/s."""
     watched = watch([DARK])
