@@ -26,7 +26,7 @@ class TrainedClassifier(ModelFile):
 
     def predict(self, X: Sequence[ByteImage] | AnyArray) -> AnyArray:
         """The likeliest of `classes_` (n,) of each image or row of features, never `unknown`."""
-        likeliest = self.predict_proba(X).argmax(axis=1)  # eq. 26
+        likeliest = self.predict_proba(X).argmax(axis=1)  # Chen 2023 eq. 26
         return np.asarray(self.classes_[likeliest])
 
     def predict_proba(self, X: Sequence[ByteImage] | AnyArray) -> FloatArray:

@@ -181,15 +181,16 @@ def test_without_surplus_it_is_the_sandwich_of_the_poses_noise(problem, syntheti
     np.testing.assert_allclose(stated / units, expected / units, rtol=0, atol=1e-2)
 
 
-def test_windows_that_stand_there_three_times_say_no_more(driven, synthetic, stated, rng):
-    """The model's own errors are alike in all windows on the same way."""
+def test_windows_that_stand_there_twice_say_no_more(driven, synthetic, stated, rng):
+    """The model's own errors are alike on the same way; so few windows make no groups."""
     truth = Icr().pack(synthetic.icrs)
     windows = windows_of([driven], stated)
-    own = rng.standard_normal((len(windows), 3)) * np.sqrt(windows.travel_m)[:, None]
+    windows = windows.where(np.arange(len(windows)) < 14)
+    own = rng.standard_normal((14, 3)) * np.sqrt(windows.travel_m)[:, None]
     once = replace(windows, measured=windows.measured + 0.2 * own)
     covariances = []
-    for of in (once, repeated(once, 3)):
+    for of in (once, repeated(once, 2)):
         problem = Problem(Icr(), of, truth, np.ones(5, bool), pose_variances(stated))
         solution = Solution(truth, np.ones(len(of)), 0.0, 1)
         covariances.append(parameter_uncertainty(problem, solution, np.ones(5)).covariance)
-    np.testing.assert_allclose(np.diag(covariances[1]), np.diag(covariances[0]), rtol=0.1)
+    np.testing.assert_allclose(np.diag(covariances[1]), np.diag(covariances[0]), rtol=0.15)
