@@ -12,7 +12,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
-from odometry.gap.responses import Responses
+from odometry.gap.responses import Responses, whitened
 from odometry.gap.simulate import residuals_on
 from odometry.windows.dense import DenseWindows
 
@@ -32,10 +32,11 @@ def whitened_derivative(
     found = []
     for scene, white in zip(scenes, whiteners, strict=True):
         here = Responses(*at(values), scene)
-        columns = np.zeros((*white.shape[:2], len(values)))
-        columns[..., free] = _of_scene(here, stepped, steps[free], at(values), scene)
-        found.append((white @ columns).reshape(-1, len(values)))
-    return np.concatenate(found)
+        columns = _of_scene(here, stepped, steps[free], at(values), scene)
+        found.append(whitened(white, columns))
+    jacobian = np.zeros((sum(map(len, found)), len(values)))
+    jacobian[:, free] = np.concatenate(found)
+    return jacobian
 
 
 def _of_scene(
@@ -45,18 +46,18 @@ def _of_scene(
     at: tuple[Base, tuple[Added, ...]],
     scene: DenseWindows,
 ) -> FloatArray:
-    """Derivative (K, R, F) of the residuals of one scene."""
-    columns = np.empty((len(scene), scene.rows_per_window, len(steps)))
+    """Derivative (F, K, R) of the residuals of one scene."""
+    columns = np.empty((len(steps), len(scene), scene.rows_per_window))
     moving = np.array([here.chain.is_moved_by(*one) for one in stepped], dtype=np.bool_)
     if moving.any():
         changes = [
             (here.chain.at(*stepped[place]) - here.chain.twist) / steps[place]
             for place in np.flatnonzero(moving).tolist()
         ]
-        columns[..., moving] = here.of(np.stack(changes))
+        columns[moving] = here.of(np.stack(changes))
     if not moving.all():
         rows = residuals_on(here.chain.twist, here.path, *at, scene)
         for place in np.flatnonzero(~moving).tolist():
             other = residuals_on(here.chain.twist, here.path, *stepped[place], scene)
-            columns[..., place] = (other - rows) / steps[place]
+            columns[place] = (other - rows) / steps[place]
     return columns

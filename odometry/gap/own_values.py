@@ -13,7 +13,7 @@ from odometry.effects.residual_of_each_run import ResidualOfEachRun
 from odometry.gap.calibration import Calibration
 from odometry.gap.fit import Fitted, Fitter
 from odometry.gap.measured import with_fewer_poses
-from odometry.gap.responses import Responses, columns_of, simulated_scenes
+from odometry.gap.responses import Responses, columns_of, simulated_scenes, whitened
 from odometry.gap.simulate import whitened_residuals
 from odometry.windows.dense import DenseWindows
 from odometry.windows.dense_noise import whitening
@@ -106,8 +106,7 @@ def _solved(
     own = slice(-len(effect.terms), None)
     before = Chain(base, effects[:place], scene.inputs)
     changes = effect.columns(before.twist, before.inputs, base)[own]
-    jacobian = whiteners @ Responses(base, effects, scene).of(changes)
-    jacobian = jacobian.reshape(-1, len(changes))
+    jacobian = whitened(whiteners, Responses(base, effects, scene).of(changes))
     rows = whitened_residuals(base, effects, [scene], [whiteners])
     values = added.values.copy()
     values[own] = damped(jacobian, rows - jacobian @ values[own], effect.spread)

@@ -44,7 +44,7 @@ class Responses:
         self._by_rate = _by_rate(effects, self.chain.twist[:, 2], scene)
 
     def of(self, changes: FloatArray) -> FloatArray:
-        """Derivative (K, R, C) of residuals by the size of changes (C, N, 3) of the twist."""
+        """Derivative (C, K, R) of residuals by the size of changes (C, N, 3) of the twist."""
         v_x, v_y, omega = np.ascontiguousarray(np.moveaxis(changes, -1, 0))
         x_by, y_by, yaw_by = self._by_twist[:3], self._by_twist[3:6], self._by_twist[6]
         x, y, _ = self.path.T
@@ -59,11 +59,11 @@ class Responses:
         rows = self._off_first(self._seen.of(moved))
         if self._scene.reported_turns is not None:
             felt = self._felt.of(_summed(omega * (self._by_rate * self._scene.steps_s)))
-            rows = np.concatenate([rows, np.diff(felt, axis=-1)], axis=-1)
-        return np.asarray(-np.moveaxis(rows, 0, -1))
+            rows = np.concatenate([rows, felt[..., :-1] - felt[..., 1:]], axis=-1)
+        return rows
 
     def _off_first(self, moved: FloatArray) -> FloatArray:
-        """Change (C, K, 3 n) of motion from the first pose, of changes (3, C, K, n + 1) of all."""
+        """Change (C, K, 3 n) of residuals, of changes (3, C, K, n + 1) of all poses."""
         windows = self._scene.windows
         if self._by_pose is not None:
             moved = np.einsum("klij,jckl->ickl", self._by_pose[windows], moved)
@@ -75,9 +75,9 @@ class Responses:
         by_x, by_y, by_yaw = moved[..., 1:] - moved[..., :1]
         swung = moved[2][..., :1]
         motion = np.empty((*by_x.shape, 3))
-        motion[..., 0] = cosine * by_x + sine * by_y + across * swung
-        motion[..., 1] = cosine * by_y - sine * by_x - along * swung
-        motion[..., 2] = by_yaw
+        motion[..., 0] = -cosine * by_x - sine * by_y - across * swung
+        motion[..., 1] = sine * by_x - cosine * by_y + along * swung
+        motion[..., 2] = -by_yaw
         return motion.reshape(*motion.shape[:2], -1)
 
 
@@ -94,8 +94,11 @@ class _Between:
 
     def of(self, values: FloatArray) -> FloatArray:
         """Values (..., N) there (..., K, n + 1), linear between samples, level beyond them."""
-        first = values[..., self._before]
-        first += (values[..., self._before + 1] - first) * self._share
+        first = values.take(self._before, axis=-1)
+        after = values.take(self._before + 1, axis=-1)
+        after -= first
+        after *= self._share
+        first += after
         return first
 
 
@@ -109,8 +112,13 @@ def columns_of(
     for scene, white in zip(simulated, whiteners, strict=True):
         chain = scene.chain
         changes = residual.columns(chain.twist, chain.inputs, chain.base)
-        found.append((white @ scene.of(changes)).reshape(-1, len(changes)))
+        found.append(whitened(white, scene.of(changes)))
     return np.concatenate(found)
+
+
+def whitened(white: FloatArray, columns: FloatArray) -> FloatArray:
+    """Columns (C, K, R) as those (K R, C) of whitened residuals."""
+    return (white @ np.moveaxis(columns, 0, -1)).reshape(-1, len(columns))
 
 
 def simulated_scenes(
