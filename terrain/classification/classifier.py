@@ -31,6 +31,7 @@ from terrain.classification.training_set import (
 from terrain.classification.validation import CrossValidation, Samples, best_way
 from terrain.errors import PatchError
 from terrain.images import to_grey
+from terrain.one_thread import one_thread
 
 __all__ = ["Classification", "Classifier", "TerrainClassifier"]
 
@@ -258,6 +259,7 @@ class TerrainClassifier(TrainedClassifier, ClassifierMixin, BaseEstimator):  # t
             self._features, self.colour_ = Transformed(fitted, wanted), wanted
         return self._features
 
+    @one_thread()  # more add up in another order: the last bits of a model are those of the machine
     def _learn(self, samples: Samples, copies: Samples) -> None:
         preset = PRESETS[self.preset]
         counts = (self.n_neighbors,) if self.n_neighbors else preset.neighbour_counts
