@@ -33,7 +33,7 @@ class Chain:
         self._twists = [base.model.twist(base.values, self.inputs)]
         self._columns: dict[int, FloatArray] = {}
         for added in effects:
-            self._twists.append(self._with(added, self._twists[-1]))
+            self._twists.append(self._with(added, self._twists[-1], base))
 
     @property
     def twist(self) -> FloatArray:
@@ -48,15 +48,15 @@ class Chain:
     def at(self, base: Base, effects: Sequence[Added]) -> FloatArray:
         """The twist (N, 3) at other values of the base and the same effects."""
         first = self._first_changed(effects)
-        if not np.array_equal(base.values, self.base.values) or (
-            first < len(self.effects) and isinstance(effects[first].effect, CommandEffect)
-        ):
+        if first < len(self.effects) and isinstance(effects[first].effect, CommandEffect):
             return corrected_twist(base, effects, self.recorded)
+        if not np.array_equal(base.values, self.base.values):
+            return self._from_base(base, effects)
         twist = self._twists[first]
         for place, added in enumerate(effects[first:], first):
             columns = self._columns_of(added, place, first)
             if columns is None:
-                twist = self._with(added, twist)
+                twist = self._with(added, twist, self.base)
             else:
                 moved = np.tensordot(added.values - self.effects[place].values, columns, axes=1)
                 twist = twist + (self._twists[place + 1] - self._twists[place]) + moved
@@ -73,10 +73,17 @@ class Chain:
         on_commands = [p for p in changed if isinstance(effects[p].effect, CommandEffect)]
         return min(on_commands or changed, default=len(self.effects))
 
-    def _with(self, added: Added, twist: FloatArray) -> FloatArray:
+    def _from_base(self, base: Base, effects: Sequence[Added]) -> FloatArray:
+        """At other values of the base, and the same true speeds."""
+        twist = base.model.twist(base.values, self.inputs)
+        for added in effects:
+            twist = self._with(added, twist, base)
+        return twist
+
+    def _with(self, added: Added, twist: FloatArray, base: Base) -> FloatArray:
         if not isinstance(added.effect, MotionEffect):
             return twist
-        return moved_twist(added.effect, added.values, twist, self.inputs, self.base)
+        return moved_twist(added.effect, added.values, twist, self.inputs, base)
 
     def _columns_of(self, added: Added, place: int, first: int) -> FloatArray | None:
         """Derivative (P, N, 3) of what an effect adds, where it is known.

@@ -8,7 +8,6 @@ from functools import cached_property
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
-from odometry.geometry import se2
 from odometry.models.inputs import Inputs
 from odometry.row_terrains import row_terrains
 from odometry.run import Run
@@ -122,9 +121,13 @@ class DenseWindows:
 
 def motion_from_first(poses: FloatArray) -> FloatArray:
     """Motion (K, n, 3) of n + 1 poses (K, n + 1, 3) seen from the first; yaw is not wrapped."""
-    motion = se2.between(poses[:, :1], poses[:, 1:])
-    motion[..., 2] = poses[:, 1:, 2] - poses[:, :1, 2]
-    return np.asarray(motion)
+    x, y, yaw = np.moveaxis(poses[:, 1:] - poses[:, :1], -1, 0)
+    cosine, sine = np.cos(poses[:, :1, 2]), np.sin(poses[:, :1, 2])
+    motion = np.empty((*x.shape, 3))
+    motion[..., 0] = cosine * x + sine * y
+    motion[..., 1] = cosine * y - sine * x
+    motion[..., 2] = yaw
+    return motion
 
 
 def dense_windows_of(run: Run, horizon_s: float) -> DenseWindows:
