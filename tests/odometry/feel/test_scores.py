@@ -19,8 +19,8 @@ NAMES = ("a", "b", "c")
 def test_balanced_accuracy_and_area_are_those_of_scikit_learn(seed):
     rng = np.random.default_rng(seed)
     labels, told = (rng.choice(NAMES, size=60, p=[0.6, 0.3, 0.1]) for _ in range(2))
-    expected = balanced_accuracy_score(labels, told)
     if len(set(labels)) == len(NAMES):
+        expected = balanced_accuracy_score(labels, told)
         assert balanced_accuracy(labels, labels == told) == pytest.approx(expected)
         assert confusion(labels, told, NAMES).sum() == 60
     scores, unknown = rng.integers(0, 8, size=60).astype(float), np.arange(60) < 20
