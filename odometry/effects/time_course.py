@@ -176,10 +176,20 @@ class InBursts(Course):
         numbers = run_numbers(inputs)
         inside = np.zeros_like(time_s)
         for number, events in enumerate(self.events_s):
-            for begin_s, end_s in events:
-                within_s = np.minimum(time_s + steps_s, end_s) - np.maximum(time_s, begin_s)
-                inside += (numbers == number) * np.clip(within_s / steps_s, 0.0, 1.0)
+            own = numbers == number
+            inside[own] = _inside(time_s[own], time_s[own] + steps_s[own], events)
         return np.asarray(np.minimum(inside, 1.0))
+
+
+def _inside(from_s: FloatArray, to_s: FloatArray, events_s: Spans) -> FloatArray:
+    """How many events each span (N,) is in, by shares; spans are in the order of time."""
+    inside = np.zeros_like(from_s)
+    for begin_s, end_s in events_s:
+        first, last = np.searchsorted(to_s, [begin_s, end_s])
+        at = slice(first, last + 1)
+        within_s = np.minimum(to_s[at], end_s) - np.maximum(from_s[at], begin_s)
+        inside[at] += np.clip(within_s / (to_s[at] - from_s[at]), 0.0, 1.0)
+    return inside
 
 
 def _samples(inputs: Inputs) -> tuple[FloatArray, FloatArray]:

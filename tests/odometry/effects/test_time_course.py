@@ -7,7 +7,7 @@ import pytest
 
 from odometry.effects.corrected import Added, corrected_twist, with_true_speeds
 from odometry.effects.in_course import in_course
-from odometry.effects.time_course import SPACING_S, FromAMoment, Gradual
+from odometry.effects.time_course import SPACING_S, FromAMoment, Gradual, InBursts
 from odometry.effects.traction_loss import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.models.inputs import Inputs
@@ -78,3 +78,19 @@ def test_without_stamps_there_is_no_course(bench):
     assert effect.lacks(inputs, bench.base) == "stamps"
     twist = np.ones((3, 3))
     np.testing.assert_array_equal(effect.twist(np.array([0.1, 0.1, 0.0]), twist, inputs, None), 1)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_shares_of_bursts_are_those_of_every_event_and_sample(seed):
+    rng = np.random.default_rng(seed)
+    time_s = np.unique(np.round(np.cumsum(rng.uniform(0.0, 0.1, 300)), 1 + seed % 3))
+    events = np.unique(np.round(rng.uniform(-1.0, time_s[-1] + 1.0, 20), 1 + seed % 3))
+    events = events[: len(events) // 2 * 2].reshape(-1, 2)
+    course = InBursts((tuple((float(b), float(e)) for b, e in events),))
+    inputs = Inputs(np.zeros((len(time_s), 2)), time_s=time_s)
+    steps_s = np.diff(time_s)[:, None]
+    within_s = np.minimum(time_s[1:, None], events[:, 1]) - np.maximum(
+        time_s[:-1, None], events[:, 0]
+    )
+    expected = np.minimum((np.clip(within_s, 0.0, None) / steps_s).sum(axis=1), 1.0)
+    np.testing.assert_allclose(course.share(np.empty(0), inputs)[:-1], expected, atol=1e-9)
