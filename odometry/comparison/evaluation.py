@@ -11,6 +11,7 @@ from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.fitting import SplitModels
 from odometry.comparison.split import Part, windows_of_parts
 from odometry.effects.corrected import Added, delay_s, seen_poses
+from odometry.effects.reported import Reported
 from odometry.effects.tables import effects_of
 from odometry.errors import OdometryError
 from odometry.evaluation.open_loop import measured_poses
@@ -165,7 +166,8 @@ def predicted_motion(predictor: Predictor, run: Run, windows: Windows) -> FloatA
     if not effects:
         return window_motion(predictor.model, predictor.packed, windows)
     pose_s, poses = measured_poses(run)
-    seen = seen_poses(effects, _robot_poses(predictor, effects, run, pose_s), poses[:, 2])
+    reported = Reported(pose_s - run.odometry.stamps_s[0], poses)
+    seen = seen_poses(effects, _robot_poses(predictor, effects, run, pose_s), reported)
     first = np.searchsorted(pose_s, windows.start_s)
     last = first + windows.last_pose - windows.first_pose
     motion = se2.between(seen[first], seen[last])

@@ -10,6 +10,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
 from odometry.effects.recorded import Recorded
+from odometry.effects.reported import Reported
 from odometry.errors import ParameterError
 from odometry.models.inputs import Inputs
 from odometry.parameter_covariance import finite_number
@@ -192,12 +193,12 @@ class MeasurementEffect(Effect):
         self,
         values: FloatArray,  # noqa: ARG002 - of the interface
         poses: FloatArray,
-        measured_yaw_rad: FloatArray,  # noqa: ARG002
+        reported: Reported,  # noqa: ARG002
     ) -> FloatArray:
         """Poses (M, 3) as the sensor reports them, of those of the robot.
 
-        `measured_yaw_rad` (M,) is the yaw that it did report: `poses` may be those of a drive that
-        began at the origin, and an error may follow the true heading.
+        `reported` is what it did report: `poses` may be those of a drive that began at the
+        origin, and an error may follow the true heading, place or time.
         """
         return poses
 
@@ -210,6 +211,6 @@ class MeasurementEffect(Effect):
         """What the gyroscope reports (N,) of the yaw rate (N,) of the robot."""
         return yaw_rate_rad_s
 
-    def robot_poses(self, values: FloatArray, seen: FloatArray) -> FloatArray:  # noqa: ARG002
-        """The inverse of `seen`."""
-        return seen
+    def robot_poses(self, values: FloatArray, reported: Reported) -> FloatArray:  # noqa: ARG002
+        """The inverse of `seen`: poses (M, 3) of the robot."""
+        return reported.poses

@@ -20,8 +20,15 @@ from odometry.effects.inertia_contact import InertiaByContact
 from odometry.effects.inertia_icr import InertiaByIndices
 from odometry.effects.lateral_skid import LateralSkid
 from odometry.effects.lever_arm import LeverArm
+from odometry.effects.map_fault import DriftingMap, DriftingYaw, StretchedMap, TurningMap
 from odometry.effects.reference_fault import Compass
-from odometry.effects.reference_outliers import FrozenPoses, ReferenceOutliers
+from odometry.effects.reference_filter import (
+    FilteredPositions,
+    SlowYaw,
+    SmoothedPoses,
+    SwayingMast,
+)
+from odometry.effects.reference_outliers import FrozenPoses, JumpingPoses, ReferenceOutliers
 from odometry.effects.residual import Residual
 from odometry.effects.slope_contact import SlopeByContact
 from odometry.effects.slope_icr import SlopeByIcr
@@ -66,9 +73,18 @@ EFFECTS: tuple[type[Effect], ...] = (
     LeverArm,
     HeadingOffset,
     Compass,
+    StretchedMap,
+    TurningMap,
+    DriftingMap,
+    DriftingYaw,
+    SmoothedPoses,
+    FilteredPositions,
+    SlowYaw,
+    SwayingMast,
     GyroscopeError,
 )
-KNOWN: tuple[type[Effect], ...] = (*EFFECTS, ReferenceOutliers, FrozenPoses, Residual, History)
+OUTLIERS = (ReferenceOutliers, FrozenPoses, JumpingPoses)
+KNOWN: tuple[type[Effect], ...] = (*EFFECTS, *OUTLIERS, Residual, History)
 BY_FORM = {(effect.name, effect.form): effect for effect in KNOWN}
 
 

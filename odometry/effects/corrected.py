@@ -8,6 +8,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base import CommandEffect, Effect, MeasurementEffect, MotionEffect
 from odometry.effects.base_model import Base
+from odometry.effects.reported import Reported
 from odometry.models.base import KinematicModel, Linearised
 from odometry.models.icr_by_terrain import IcrByTerrain
 from odometry.models.inputs import Inputs
@@ -126,16 +127,14 @@ def delay_s(effects: Sequence[Added], stamps_s: FloatArray) -> FloatArray:
     return late_s
 
 
-def seen_poses(
-    effects: Sequence[Added], poses: FloatArray, measured_yaw_rad: FloatArray
-) -> FloatArray:
+def seen_poses(effects: Sequence[Added], poses: FloatArray, reported: Reported) -> FloatArray:
     """Poses (M, 3) as the reference sensor would report those of the robot.
 
-    `measured_yaw_rad` (M,) is what it did report, see `MeasurementEffect.seen`.
+    `reported` is what it did report, see `MeasurementEffect.seen`.
     """
     for added in effects:
         if isinstance(added.effect, MeasurementEffect):
-            poses = added.effect.seen(added.values, poses, measured_yaw_rad)
+            poses = added.effect.seen(added.values, poses, reported)
     return poses
 
 

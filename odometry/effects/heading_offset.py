@@ -4,6 +4,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.effects.base import EffectParameter, MeasurementEffect
+from odometry.effects.reported import Reported
 
 
 class HeadingOffset(MeasurementEffect):
@@ -27,11 +28,11 @@ class HeadingOffset(MeasurementEffect):
         self,
         values: FloatArray,
         poses: FloatArray,
-        measured_yaw_rad: FloatArray,  # noqa: ARG002
+        reported: Reported,  # noqa: ARG002
     ) -> FloatArray:
         """See `MeasurementEffect.seen`."""
         return np.asarray(poses + np.array([0.0, 0.0, values[0]]))
 
-    def robot_poses(self, values: FloatArray, seen: FloatArray) -> FloatArray:
+    def robot_poses(self, values: FloatArray, reported: Reported) -> FloatArray:
         """See `MeasurementEffect.robot_poses`."""
-        return np.asarray(seen - np.array([0.0, 0.0, values[0]]))
+        return np.asarray(reported.poses - np.array([0.0, 0.0, values[0]]))

@@ -8,6 +8,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base import EffectParameter, MeasurementEffect
 from odometry.effects.lateral_skid import TOLD_APART
+from odometry.effects.reported import Reported
 from odometry.geometry import se2
 
 
@@ -40,14 +41,14 @@ class LeverArm(MeasurementEffect):
         self,
         values: FloatArray,
         poses: FloatArray,
-        measured_yaw_rad: FloatArray,  # noqa: ARG002
+        reported: Reported,  # noqa: ARG002
     ) -> FloatArray:
         """See `MeasurementEffect.seen`."""
         return _moved(poses, values)
 
-    def robot_poses(self, values: FloatArray, seen: FloatArray) -> FloatArray:
+    def robot_poses(self, values: FloatArray, reported: Reported) -> FloatArray:
         """See `MeasurementEffect.robot_poses`."""
-        return _moved(seen, -values)
+        return _moved(reported.poses, -values)
 
 
 def _moved(poses: FloatArray, arm: FloatArray) -> FloatArray:

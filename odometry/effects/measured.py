@@ -9,6 +9,7 @@ from odometry.arrays import FloatArray
 from odometry.effects.base import MeasurementEffect
 from odometry.effects.corrected import Added, delay_s
 from odometry.effects.lever_arm import LeverArm
+from odometry.effects.reported import Reported
 from odometry.errors import ParameterError
 from odometry.geometry.angles import wrap
 from odometry.run import Run
@@ -39,12 +40,12 @@ def shared_measurement(groups: Sequence[Sequence[Added]]) -> tuple[Added, ...]:
     return first
 
 
-def robot_poses(effects: Sequence[Added], seen: FloatArray) -> FloatArray:
+def robot_poses(effects: Sequence[Added], reported: Reported) -> FloatArray:
     """Poses (M, 3) of the robot from those that the sensor reports: the inverse of `seen_poses`."""
     for added in reversed(effects):
         if isinstance(added.effect, MeasurementEffect):
-            seen = added.effect.robot_poses(added.values, seen)
-    return seen
+            reported = reported.of(added.effect.robot_poses(added.values, reported))
+    return reported.poses
 
 
 def robot_run(run: Run, effects: Sequence[Added]) -> Run:
@@ -57,14 +58,15 @@ def robot_run(run: Run, effects: Sequence[Added]) -> Run:
     stated = run.sensors.pose_m
     if run.pose is None or not (stated or on_measurement(effects)):
         return run
-    seen = run.pose.stack(*POSE_NAMES)
+    stamps_s = run.pose.stamps_s - run.odometry.stamps_s[0]
+    reported = Reported(stamps_s, run.pose.stack(*POSE_NAMES))
     if stated is not None:
-        seen = LeverArm().robot_poses(np.array(stated[:2]), seen)
-    poses = robot_poses(effects, seen)
+        reported = reported.of(LeverArm().robot_poses(np.array(stated[:2]), reported))
+    poses = robot_poses(effects, reported)
     poses[:, 2] = wrap(poses[:, 2])
     columns = {
         **run.pose.columns,
-        "t": run.pose.stamps_s - delay_s(effects, run.pose.stamps_s - run.odometry.stamps_s[0]),
+        "t": run.pose.stamps_s - delay_s(effects, stamps_s),
         **dict(zip(POSE_NAMES, np.ascontiguousarray(poses.T), strict=True)),
     }
     sensors = {

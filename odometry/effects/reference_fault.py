@@ -5,10 +5,10 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base import EffectParameter, MeasurementEffect
 from odometry.effects.base_model import Base
+from odometry.effects.headings import all_round
+from odometry.effects.reported import Reported
 from odometry.models.inputs import Inputs
 
-SECTORS, LEAST_SECTORS = 12, 6  # of the circle, and in how many of them the robot must look
-LEAST_SHARE = 0.01  # of the samples, in a sector
 ROUNDS = 50  # of the inverse: each shrinks its error by the size of the distortion
 SETTLED_RAD = 1e-14
 
@@ -28,12 +28,7 @@ class Compass(MeasurementEffect):
 
     def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the interface
         """See `Effect.lacks`."""
-        if inputs.heading_rad is None:
-            return "headings"
-        sector = np.floor(inputs.heading_rad / (2 * np.pi) * SECTORS) % SECTORS
-        shares = np.bincount(sector.astype(np.int64), minlength=SECTORS) / len(sector)
-        enough = np.count_nonzero(shares >= LEAST_SHARE) >= LEAST_SECTORS
-        return "" if enough else "headings over half a turn"
+        return all_round(inputs)
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
@@ -43,17 +38,16 @@ class Compass(MeasurementEffect):
             EffectParameter("b", "rad", -0.6, 0.6, 0.0, 0.01),
         )
 
-    def seen(
-        self, values: FloatArray, poses: FloatArray, measured_yaw_rad: FloatArray
-    ) -> FloatArray:
+    def seen(self, values: FloatArray, poses: FloatArray, reported: Reported) -> FloatArray:
         """See `MeasurementEffect.seen`: the error at the true heading, which follows from yaw."""
         bent = np.zeros_like(poses)
-        bent[:, 2] = measured_yaw_rad - _true_yaw(values, measured_yaw_rad)
+        bent[:, 2] = reported.yaw_rad - _true_yaw(values, reported.yaw_rad)
         return np.asarray(poses + bent)
 
-    def robot_poses(self, values: FloatArray, seen: FloatArray) -> FloatArray:
+    def robot_poses(self, values: FloatArray, reported: Reported) -> FloatArray:
         """See `MeasurementEffect.robot_poses`."""
-        return np.concatenate([seen[:, :2], _true_yaw(values, seen[:, 2])[:, None]], axis=1)
+        true_yaw = _true_yaw(values, reported.yaw_rad)
+        return np.concatenate([reported.poses[:, :2], true_yaw[:, None]], axis=1)
 
 
 def _true_yaw(values: FloatArray, measured_rad: FloatArray) -> FloatArray:

@@ -64,3 +64,21 @@ class FrozenPoses(ReferenceOutliers):
     source = "a tracker that lost its target and says nothing of it"
     looks_like = "a robot that stands while its treads run, and then jumps"
     remedy = "leave these poses out, or have the reference say when it has no new one"
+
+
+@dataclass(frozen=True)
+class JumpingPoses(ReferenceOutliers):
+    """Steps between poses that no robot makes; what follows one is as good as what went before.
+
+    Attributes
+    ----------
+    stamps_s : tuple of tuples of float
+        Run times of the poses that such a step leads to, run by run.
+    """
+
+    form = "jumps"
+    in_words = "jumps of the reference, farther than the treads went"
+    equation = "pose -> pose + jump, from a stamp on"
+    source = "loops that a map closes, and places where a receiver sees reflected signals"
+    looks_like = "a robot that is somewhere else at once, and drives on from there"
+    remedy = "use the motion between poses, but not across a jump: give what follows a new `window`"

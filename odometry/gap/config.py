@@ -93,6 +93,11 @@ class GapConfig:
         Standard deviations by which a single pose must be off its neighbours to be an outlier.
     least_outliers : int
         Of all measured runs, to be named.
+    most_jumping : float
+        Share of steps of a quarter of a second that may jump: more is another kind of noise.
+    jumping_times : float
+        As many jumps a step as in the calibration runs, at least: those with a fault show 4 and
+        more where the others show none.
     outlier_probability : float
         With which the calibration runs may have as many by chance.
     most_windows : int
@@ -138,6 +143,8 @@ class GapConfig:
     most_smooth: int = 4
     outlier_sigmas: float = 8.0
     least_outliers: int = 4
+    most_jumping: float = 0.1
+    jumping_times: float = 4.0
     outlier_probability: float = 0.001
     most_windows: int = 300
 

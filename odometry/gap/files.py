@@ -10,6 +10,7 @@ import numpy as np
 from odometry.effects.catalogue import effect_table
 from odometry.effects.corrected import Added
 from odometry.effects.in_course import lasting
+from odometry.effects.map_fault import OfEachRun
 from odometry.effects.reference_outliers import ReferenceOutliers
 from odometry.effects.residual_of_each_run import ResidualOfEachRun
 from odometry.effects.terrain import SHIFTED, Terrain
@@ -24,7 +25,8 @@ from odometry.parameters import ParameterSet, TerrainParameters, write_parameter
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN
 
 FORMAT = 1  # of gap.json
-OF_ONE_RUN = (Terrain, ResidualOfEachRun, ReferenceOutliers)  # no part of the model of another
+# No part of the model of another run.
+OF_ONE_RUN = (Terrain, ResidualOfEachRun, OfEachRun, ReferenceOutliers)
 LEAST_LATENCY_S = 5e-3  # less is nothing that a model must know
 
 

@@ -1,7 +1,7 @@
 """Poses of the reference that are no measurement, left out before anything is fitted."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.stats import binomtest, fisher_exact
@@ -9,15 +9,15 @@ from scipy.stats import binomtest, fisher_exact
 from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
-from odometry.effects.reference_outliers import FrozenPoses, ReferenceOutliers
+from odometry.effects.reference_outliers import FrozenPoses, JumpingPoses, ReferenceOutliers
 from odometry.gap.calibration import Calibration
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import sure_sum
 from odometry.gap.frozen import frozen
 from odometry.gap.isolated import Isolated, isolated
+from odometry.gap.jumps import Jumps, jumps
 from odometry.gap.pieces import pieces
 from odometry.gap.simulate import residuals
-from odometry.run import Run
 from odometry.windows.dense import DenseWindows
 
 PLACES = 2  # numbers that say where a pose is
@@ -41,7 +41,7 @@ class Outliers:
         95 % interval of the share (Wilson's); of the distance the least and the largest.
     evidence : float
         Chi-squared of these poses by the spread of the others, less the penalty for each.
-    measured, held_out : tuple of Isolated
+    measured, held_out : tuple of Isolated or Jumps
         Of each run.
     """
 
@@ -49,8 +49,8 @@ class Outliers:
     low: FloatArray
     high: FloatArray
     evidence: float
-    measured: tuple[Isolated, ...]
-    held_out: tuple[Isolated, ...]
+    measured: tuple[Isolated | Jumps, ...]
+    held_out: tuple[Isolated | Jumps, ...]
 
 
 def outliers_of(
@@ -62,7 +62,8 @@ def outliers_of(
 ) -> Outliers | None:
     """Outliers of the runs; None where the measured have no more of them than the calibration.
 
-    By Fisher's exact test; of poses that repeat the last one, else of single ones far off.
+    By Fisher's exact test; of poses that repeat the last one, else of single ones far off. Else
+    jumps that no robot makes.
     """
     for kind, find in KINDS:
         found, usual, others = (
@@ -72,7 +73,55 @@ def outliers_of(
         outliers = _more_than_usual(kind, found, usual, others, config)
         if outliers is not None:
             return outliers
-    return None
+    jumped = [_jumps(of, calibration, config) for of in (measured, known, held_out)]
+    return _jumping(jumped[0], jumped[1], jumped[2], config)
+
+
+def _jumps(
+    scenes: Sequence[DenseWindows], calibration: Calibration, config: GapConfig
+) -> tuple[Jumps, ...]:
+    return tuple(jumps(scene, calibration, config) for scene in scenes)
+
+
+def _jumping(
+    found: tuple[Jumps, ...],
+    usual: tuple[Jumps, ...],
+    others: tuple[Jumps, ...],
+    config: GapConfig,
+) -> Outliers | None:
+    """Jumps, where there are several times as many of them as in the calibration runs.
+
+    Runs that are held out count, too: a jump is one by itself.
+    """
+    distances_m = np.concatenate([one.distances_m for one in found])
+    count, steps = _counted(found)
+    of_all, all_steps = _counted((*found, *others))
+    known, known_steps = _counted(usual)
+    often = of_all / all_steps > config.jumping_times * (known + 0.5) / known_steps
+    if not count or of_all < config.least_outliers or not often:
+        return None
+    if of_all / all_steps > config.most_jumping:
+        return None
+    squares = np.concatenate([one.sigmas for one in found]) ** 2
+    share = binomtest(count, steps).proportion_ci(method="wilson")
+    stamps = tuple(tuple(one.stamps_s[one.off].tolist()) for one in found)
+    return Outliers(
+        Added(JumpingPoses(stamps), np.array([count / steps, _size_m(distances_m)])),
+        np.array([share.low, distances_m.min()]),
+        np.array([share.high, distances_m.max()]),
+        float(np.sum(squares - PLACES * np.log(steps))),
+        found,
+        others,
+    )
+
+
+def _counted(of: Sequence[Jumps]) -> tuple[int, int]:
+    """Jumps and steps of some runs."""
+    return sum(len(one.sigmas) for one in of), sum(one.steps for one in of)
+
+
+def _size_m(distances_m: FloatArray) -> float:
+    return float(np.sqrt(np.mean(distances_m**2)))
 
 
 def _more_than_usual(
@@ -92,34 +141,14 @@ def _more_than_usual(
     squares = np.concatenate([one.sigmas[one.off] for one in found]) ** 2
     share = binomtest(count, count + rest).proportion_ci(method="wilson")
     stamps = tuple(tuple(one.stamps_s[one.off].tolist()) for one in found)
-    size_m = float(np.sqrt(np.mean(distances_m**2)))
     return Outliers(
-        Added(kind(stamps), np.array([count / (count + rest), size_m])),
+        Added(kind(stamps), np.array([count / (count + rest), _size_m(distances_m)])),
         np.array([share.low, distances_m.min()]),
         np.array([share.high, distances_m.max()]),
         float(np.sum(squares - PLACES * np.log(count + rest))),
         found,
         others,
     )
-
-
-def cleaned_runs(
-    measured: Sequence[Run], held_out: Sequence[Run], outliers: Outliers
-) -> tuple[list[Run], list[Run]]:
-    """The runs without these poses."""
-    return (
-        [without(run, one) for run, one in zip(measured, outliers.measured, strict=True)],
-        [without(run, one) for run, one in zip(held_out, outliers.held_out, strict=True)],
-    )
-
-
-def without(run: Run, found: Isolated) -> Run:
-    """The run without these poses."""
-    if run.pose is None:
-        return run
-    stamps_s = run.pose.stamps_s - run.odometry.stamps_s[0]
-    kept = ~np.isin(np.round(stamps_s, 6), np.round(found.stamps_s[found.off], 6))
-    return replace(run, pose=run.pose.rows(np.flatnonzero(kept)))
 
 
 def closes(

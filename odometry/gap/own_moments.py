@@ -8,11 +8,10 @@ from odometry.arrays import BoolArray
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.effects.in_course import CommandsInCourse, MotionInCourse, in_course
-from odometry.effects.residual_of_each_run import ResidualOfEachRun
 from odometry.effects.time_course import FromAMoment
 from odometry.gap.bursts import is_in_bursts, with_events_of_run
 from odometry.gap.calibration import Calibration
-from odometry.gap.own_values import with_values_of_run
+from odometry.gap.own_values import OWN, with_values_of_run
 from odometry.gap.statistic import squared_errors
 from odometry.windows.dense import DenseWindows
 
@@ -45,7 +44,7 @@ def with_own_moments(
     known = {scene.run.folder for scene in fitted}
     others = [scene for scene in held_out if scene.run.folder not in known]
     begins = [place for place, one in enumerate(effects) if _begins(one)]
-    own = any(isinstance(one.effect, ResidualOfEachRun) for one in effects)
+    own = any(isinstance(one.effect, OWN) for one in effects)
     if not (begins or own) or not others:
         return tuple(effects), list(held_out)
     extended = list(effects)

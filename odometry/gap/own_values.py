@@ -9,6 +9,7 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.effects.base_model import Base
 from odometry.effects.chain import Chain
 from odometry.effects.corrected import Added
+from odometry.effects.map_fault import OfEachRun
 from odometry.effects.residual_of_each_run import ResidualOfEachRun
 from odometry.gap.calibration import Calibration
 from odometry.gap.fit import Fitted, Fitter
@@ -18,6 +19,7 @@ from odometry.gap.simulate import whitened_residuals
 from odometry.windows.dense import DenseWindows
 from odometry.windows.dense_noise import whitening
 
+OWN = (ResidualOfEachRun, OfEachRun)
 ROUNDS = 2  # of linearising the motion: what is added is small
 POSES = 10  # of a window of a run that is held out
 PARITIES = 2  # windows by turns: what a run shows by its own holds for its neighbours
@@ -82,13 +84,8 @@ def with_values_of_run(
     """Effects that know coefficients of one run more, the windows of which are given."""
     scene = with_fewer_poses(scene, POSES)
     whiteners = whitening(scene, calibration.noise)
-    extended = [
-        Added(one.effect.with_run(), np.append(one.values, np.zeros(len(one.effect.terms))))
-        if isinstance(one.effect, ResidualOfEachRun)
-        else one
-        for one in effects
-    ]
-    places = [i for i, one in enumerate(extended) if isinstance(one.effect, ResidualOfEachRun)]
+    extended = [_with_run(one) for one in effects]
+    places = [i for i, one in enumerate(extended) if isinstance(one.effect, OWN)]
     for _ in range(ROUNDS):
         for place in places:
             extended[place] = _solved(base, extended, place, scene, whiteners)
@@ -101,6 +98,8 @@ def _solved(
     """The effect at a place with the coefficients of its last run that fit a scene best."""
     added = effects[place]
     effect = added.effect
+    if isinstance(effect, OfEachRun):
+        return _solved_fault(base, effects, place, scene, whiteners)
     if not isinstance(effect, ResidualOfEachRun):
         return added
     own = slice(-len(effect.terms), None)
@@ -111,3 +110,39 @@ def _solved(
     values = added.values.copy()
     values[own] = damped(jacobian, rows - jacobian @ values[own], effect.spread)
     return Added(effect, values)
+
+
+def _with_run(added: Added) -> Added:
+    """An effect that knows one run more, which has none of it yet."""
+    if not isinstance(added.effect, OWN):
+        return added
+    effect = added.effect.with_run()
+    more = len(effect.parameters) - len(added.values)
+    return Added(effect, np.append(added.values, np.zeros(more)))
+
+
+def _solved_fault(
+    base: Base, effects: Sequence[Added], place: int, scene: DenseWindows, whiteners: FloatArray
+) -> Added:
+    """A fault of the reference with the values of its last run that fit a scene best.
+
+    Its error is linear in them: by differences, within their bounds.
+    """
+    added = effects[place]
+    effect = added.effect
+    if not isinstance(effect, OfEachRun):
+        return added
+    free = effect.own
+
+    def rows(values: FloatArray) -> FloatArray:
+        there = Added(effect, np.append(added.values[: -len(free)], values))
+        of_scene = [*effects[:place], there, *effects[place + 1 :]]
+        return whitened_residuals(base, of_scene, [scene], [whiteners])
+
+    at = added.values[-len(free) :]
+    here = rows(at)
+    scales = np.array([parameter.scale for parameter in free])
+    jacobian = np.stack([rows(at + step) - here for step in np.diag(scales)], axis=-1)
+    moved = at - scales * np.linalg.lstsq(jacobian, here, rcond=None)[0]
+    lows, highs = np.array([(parameter.low, parameter.high) for parameter in free]).T
+    return Added(effect, np.append(added.values[: -len(free)], np.clip(moved, lows, highs)))

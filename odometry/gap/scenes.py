@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 
 from odometry.gap.calibration import Calibration
+from odometry.gap.cleaned import cleaned_runs
 from odometry.gap.config import GapConfig
 from odometry.gap.errors import GapError
-from odometry.gap.outliers import Outliers, cleaned_runs, closes, outliers_of
+from odometry.gap.outliers import Outliers, closes, outliers_of
 from odometry.gap.pieces import held_back
 from odometry.run import Run
 from odometry.windows.averaged import averaged_windows

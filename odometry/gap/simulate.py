@@ -13,6 +13,8 @@ from odometry.effects.corrected import (
     reported_yaw_rate,
     seen_poses,
 )
+from odometry.effects.reported import Reported
+from odometry.effects.time_course import run_numbers
 from odometry.windows.dense import DenseWindows
 from odometry.windows.dense_motion import off_measured, poses_at
 from odometry.windows.motion import level_path
@@ -35,7 +37,12 @@ def poses_on(
 ) -> FloatArray:
     """Poses (M, 3) that the reference reports of a robot on a path (N, 3)."""
     seen_s = scene.pose_s - base.latency_s - delay_s(effects, scene.pose_s)
-    return seen_poses(effects, poses_at(path, scene, seen_s), scene.poses[:, 2])
+    return seen_poses(effects, poses_at(path, scene, seen_s), reported_of(scene))
+
+
+def reported_of(scene: DenseWindows) -> Reported:
+    """What the reference reported of a run."""
+    return Reported(scene.pose_s, scene.poses, int(run_numbers(scene.inputs)[0]))
 
 
 def residuals(base: Base, effects: Sequence[Added], scene: DenseWindows) -> FloatArray:

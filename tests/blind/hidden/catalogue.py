@@ -1,6 +1,7 @@
 """All kinds of hidden effects, by group."""
 
 from tests.blind.hidden.drives import DRIVES
+from tests.blind.hidden.everyday import EVERYDAY
 from tests.blind.hidden.instruments import INSTRUMENTS
 from tests.blind.hidden.kind import Hidden, Kind
 from tests.blind.hidden.mixed import MIXED
@@ -24,6 +25,7 @@ GROUPS = {
     "references": REFERENCES,
     "instruments": INSTRUMENTS,
     "unusual": UNUSUAL,
+    "everyday": EVERYDAY,
     "mixed": MIXED,
     "nothing": {
         "nothing": Kind(nothing, ()),

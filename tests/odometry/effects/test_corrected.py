@@ -21,6 +21,7 @@ from odometry.effects.terrain import Terrain
 from odometry.effects.time_offset import TimeOffset
 from odometry.effects.wheel_scale import WheelScale
 from odometry.models.catalogue import MODELS
+from tests.odometry.effects.reports import reported
 
 SCALE = Added(WheelScale(), np.array([0.8, 1.2]))
 LAG = Added(ActuatorLag(), np.array([0.1]))
@@ -113,7 +114,7 @@ def test_a_sensor_is_moved_then_turned():
     robot = np.array([[1.0, 2.0, np.pi / 2]])
     seen = [[0.9, 2.3, np.pi / 2 + 0.25]]
     np.testing.assert_allclose(
-        seen_poses([SCALE, ARM, TURNED, LATE], robot, robot[:, 2]), seen, atol=1e-15
+        seen_poses([SCALE, ARM, TURNED, LATE], robot, reported(robot)), seen, atol=1e-15
     )
     np.testing.assert_allclose(delay_s([LATE, ARM, LATE], np.zeros(2)), 0.3)
 

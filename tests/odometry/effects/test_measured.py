@@ -13,6 +13,7 @@ from odometry.effects.measured import on_measurement, robot_poses, robot_run, sh
 from odometry.effects.time_offset import TimeOffset
 from odometry.errors import ParameterError
 from odometry.run import Run
+from tests.odometry.effects.reports import reported
 
 ARM = Added(LeverArm(), np.array([0.3, -0.2]))
 TURNED = Added(HeadingOffset(), np.array([0.7]))
@@ -25,7 +26,9 @@ ORDERS = [[ARM], [TURNED, ARM], [ARM, TURNED, LATE], [LATE, SKID, TURNED, TURNED
 def test_robot_poses_are_the_inverse_of_seen_ones(rng, effects):
     poses = rng.uniform(-3, 3, (40, 3))
     np.testing.assert_allclose(
-        robot_poses(effects, seen_poses(effects, poses, poses[:, 2])), poses, atol=1e-12
+        robot_poses(effects, reported(seen_poses(effects, poses, reported(poses)))),
+        poses,
+        atol=1e-12,
     )
 
 
@@ -35,7 +38,7 @@ def test_a_run_as_seen_gives_the_run_of_the_robot_back(make_run, rng, effects):
     stamps_s = np.cumsum(rng.uniform(0.05, 0.2, 20))
     poses = rng.uniform(-3, 3, (20, 3))
     poses[4] = np.nan
-    seen = seen_poses(effects, poses, poses[:, 2])
+    seen = seen_poses(effects, poses, reported(poses))
     seen[:, 2] = np.angle(np.exp(1j * seen[:, 2]))
     late_s = 0.13 * sum(added is LATE for added in effects)
     rows = [

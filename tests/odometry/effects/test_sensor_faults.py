@@ -6,6 +6,7 @@ import pytest
 from odometry.effects.gyroscope_error import GyroscopeError
 from odometry.effects.reference_fault import Compass
 from odometry.models.inputs import Inputs
+from tests.odometry.effects.reports import reported
 
 
 def test_a_gyroscope_is_scaled_and_drifts():
@@ -23,8 +24,8 @@ def test_a_compass_is_bent_by_one_wave_a_turn_and_back(rng, bent):
     seen = poses.copy()
     seen[:, 2] += a * np.cos(poses[:, 2]) + b * np.sin(poses[:, 2])
     effect, values = Compass(), np.array(bent)
-    np.testing.assert_allclose(effect.seen(values, poses, seen[:, 2]), seen, atol=1e-3)
-    np.testing.assert_allclose(effect.robot_poses(values, seen), poses, atol=1e-3)
+    np.testing.assert_allclose(effect.seen(values, poses, reported(seen)), seen, atol=1e-3)
+    np.testing.assert_allclose(effect.robot_poses(values, reported(seen)), poses, atol=1e-3)
 
 
 def test_a_drive_that_began_at_the_origin_is_bent_by_its_true_heading():
@@ -32,7 +33,8 @@ def test_a_drive_that_began_at_the_origin_is_bent_by_its_true_heading():
     true_yaw = np.linspace(0, 6, 7)
     measured = true_yaw + 0.2 * np.sin(true_yaw)
     simulated = np.column_stack([np.zeros((7, 2)), true_yaw - 1.0])
-    found = Compass().seen(np.array([0.0, 0.2]), simulated, measured)
+    on_map = np.column_stack([np.zeros((7, 2)), measured])
+    found = Compass().seen(np.array([0.0, 0.2]), simulated, reported(on_map))
     np.testing.assert_allclose(found[:, 2] - simulated[:, 2], 0.2 * np.sin(true_yaw), atol=1e-9)
 
 

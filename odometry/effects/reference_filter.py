@@ -1,0 +1,153 @@
+"""References that smooth, lag or swing: their poses are filtered ones of the robot.
+
+Each filter acts on the course of the poses in time. None is what a robot can do: it cannot know
+what comes, nor turn at once and move later, nor overshoot its own place.
+"""
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import numpy as np
+from scipy.linalg import solve_banded
+from scipy.signal import bilinear, lfilter, lfilter_zi
+
+from odometry.arrays import FloatArray
+from odometry.effects.base import EffectParameter, MeasurementEffect
+from odometry.effects.reported import Reported
+
+GRID_S = 0.02  # of the oscillator
+NO_INVERSE = "use the unfiltered fixes: what a filter took away does not come back"
+
+
+class ReferenceFilter(MeasurementEffect):
+    """A reference that filters its poses; the poses of the robot do not follow from them."""
+
+    name = "reference_fault"
+    of_reference = True
+    remedy = NO_INVERSE
+
+
+class SmoothedPoses(ReferenceFilter):
+    """Each pose is the mean of those before and after it."""
+
+    form = "smoothed"
+    in_words = "poses of the reference that are smoothed over time"
+    equation = "pose(t) -> mean of pose over t - span / 2 to t + span / 2"
+    source = "moving average"
+    looks_like = "corners that are cut, and turns that begin before the treads do"
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`."""
+        return (EffectParameter("span", "s", 0.0, 6.0, 1.0, 0.05),)
+
+    def seen(self, values: FloatArray, poses: FloatArray, reported: Reported) -> FloatArray:
+        """See `MeasurementEffect.seen`; at the ends of a run the mean is of what there is."""
+        half_s, stamps_s = values[0] / 2, reported.stamps_s
+        if half_s <= 0:
+            return poses
+        mids = (poses[1:] + poses[:-1]) / 2 * np.diff(stamps_s)[:, None]
+        summed = np.concatenate([np.zeros((1, 3)), np.cumsum(mids, axis=0)])
+        begin_s = np.maximum(stamps_s - half_s, stamps_s[0])
+        end_s = np.minimum(stamps_s + half_s, stamps_s[-1])
+        sums = [_integral(summed, poses, stamps_s, at_s) for at_s in (end_s, begin_s)]
+        return np.asarray((sums[0] - sums[1]) / (end_s - begin_s)[:, None])
+
+
+class FilteredPositions(ReferenceFilter):
+    """Positions follow with a first-order lag, the yaw does not."""
+
+    form = "filtered_positions"
+    in_words = "positions of the reference that follow slowly, with a yaw that does not"
+    equation = "lag d(x, y)_seen/dt = (x, y) - (x, y)_seen"
+    source = "first-order lag"
+    looks_like = "a robot that is where it was a moment ago, but looks where it looks now"
+    alike: ClassVar[Mapping[str, str]] = {
+        "time_offset": "a course with quick changes of speed: a lag rounds them, late stamps do not"
+    }
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`."""
+        return (EffectParameter("lag", "s", 0.0, 3.0, 0.3, 0.02),)
+
+    def seen(self, values: FloatArray, poses: FloatArray, reported: Reported) -> FloatArray:
+        """See `MeasurementEffect.seen`."""
+        slow = _lagged(poses[:, :2], reported.stamps_s, float(values[0]))
+        return np.concatenate([slow, poses[:, 2:]], axis=1)
+
+
+class SlowYaw(ReferenceFilter):
+    """The yaw follows with a first-order lag, positions do not."""
+
+    form = "slow_yaw"
+    in_words = "a yaw of the reference that follows slowly, with positions that do not"
+    equation = "lag d(yaw)_seen/dt = yaw - yaw_seen"
+    source = "first-order lag"
+    looks_like = "a robot that goes sideways in turns, outward, the more the faster it turns"
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`."""
+        return (EffectParameter("lag", "s", 0.0, 3.0, 0.3, 0.02),)
+
+    def seen(self, values: FloatArray, poses: FloatArray, reported: Reported) -> FloatArray:
+        """See `MeasurementEffect.seen`."""
+        slow = _lagged(poses[:, 2:], reported.stamps_s, float(values[0]))
+        return np.concatenate([poses[:, :2], slow], axis=1)
+
+
+class SwayingMast(ReferenceFilter):
+    """An antenna on a mast that bends against the acceleration, and rings."""
+
+    form = "swaying_mast"
+    in_words = "an antenna on a mast that sways"
+    equation = "s'' + 2 damping f s' + f^2 s = -bend f^2 (x, y)'';  (x, y) -> (x, y) + s"
+    source = "oscillator of second order"
+    looks_like = "positions that swing after each change of speed, while yaw and treads do not"
+    remedy = "stiffen the mast, or measure with the antenna low"
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`; `bend` is the lean [m] per m/s^2 of acceleration."""
+        return (
+            EffectParameter("bend", "s2", 0.0, 1.0, 0.05, 0.005),
+            EffectParameter("frequency", "rad/s", 1.0, 15.0, 5.0, 0.2, None),
+            EffectParameter("damping", "", 0.01, 2.0, 0.2, 0.05, None),
+        )
+
+    def seen(self, values: FloatArray, poses: FloatArray, reported: Reported) -> FloatArray:
+        """See `MeasurementEffect.seen`; by the bilinear transform, at rest before the first."""
+        bend, frequency, damping = values
+        square, rate = frequency**2, 2 * damping * frequency
+        numbers = bilinear([1 - bend * square, rate, square], [1.0, rate, square], 1 / GRID_S)
+        stamps_s = reported.stamps_s
+        grid_s = np.arange(stamps_s[0], stamps_s[-1] + GRID_S, GRID_S)
+        rest = lfilter_zi(*numbers)
+        seen = poses.copy()
+        for column in range(2):
+            course = np.interp(grid_s, stamps_s, poses[:, column])
+            swung = lfilter(*numbers, course, zi=rest * course[0])[0]
+            seen[:, column] = np.interp(stamps_s, grid_s, swung)
+        return seen
+
+
+def _integral(
+    summed: FloatArray, poses: FloatArray, stamps_s: FloatArray, at_s: FloatArray
+) -> FloatArray:
+    """Integral (M, 3) of poses, linear between their stamps, from the first to each moment (M,)."""
+    row = np.clip(np.searchsorted(stamps_s, at_s, side="right") - 1, 0, len(stamps_s) - 2)
+    into_s = at_s - stamps_s[row]
+    slope = (poses[row + 1] - poses[row]) / (stamps_s[row + 1] - stamps_s[row])[:, None]
+    return np.asarray(summed[row] + (poses[row] + slope * into_s[:, None] / 2) * into_s[:, None])
+
+
+def _lagged(course: FloatArray, stamps_s: FloatArray, lag_s: float) -> FloatArray:
+    """First-order lag of a course (M, C) that is linear between its stamps, exact there."""
+    if lag_s <= 0 or len(course) < 2:
+        return course
+    spans = np.diff(stamps_s) / lag_s
+    decay, share = np.exp(-spans), -np.expm1(-spans) / spans
+    driven = (share - decay)[:, None] * course[:-1] + (1 - share)[:, None] * course[1:]
+    recursion = np.stack([np.ones(len(course)), np.append(-decay, 0.0)])
+    return np.asarray(solve_banded((1, 0), recursion, np.vstack([course[:1], driven])))

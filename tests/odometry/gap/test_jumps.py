@@ -1,0 +1,71 @@
+"""Steps of the reference that no robot makes, and those that a slipping robot may make."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.effects.reference_outliers import JumpingPoses
+from odometry.gap.cleaned import cleaned_runs
+from odometry.gap.config import GapConfig
+from odometry.gap.jumps import jumps
+from odometry.gap.outliers import closes, outliers_of
+from odometry.windows.dense import dense_windows_of
+
+CONFIG = GapConfig()
+AT = np.array([100, 250, 333, 520, 700])
+
+
+@pytest.fixture(scope="module")
+def plain(make_scene):
+    return make_scene(31, lambda _, twist: twist)
+
+
+@pytest.fixture(scope="module")
+def jumping(plain):
+    """Each time another 1.5 m to one side, for good."""
+    run = plain.run
+    moved = 1.5 * np.searchsorted(AT, np.arange(len(run.pose)), side="right")
+    pose = replace(run.pose, columns={**run.pose.columns, "y": run.pose["y"] + moved})
+    return dense_windows_of(replace(run, pose=pose), CONFIG.horizon_s)
+
+
+def test_jumps_that_stay_are_found_each(jumping, plain, known):
+    found = outliers_of([jumping], [], [plain], known, CONFIG)
+    assert isinstance(found.named.effect, JumpingPoses)
+    assert len(found.measured[0].sigmas) == len(AT)
+    assert found.measured[0].off[AT].all()
+    assert found.low[0] < found.named.values[0] < found.high[0]
+    assert found.named.values[1] == pytest.approx(1.5, rel=0.1)
+
+
+def test_windows_end_before_a_jump_and_begin_after_it(jumping, plain, known):
+    found = outliers_of([jumping], [jumping], [plain], known, CONFIG)
+    (measured,), (held,) = cleaned_runs([jumping.run], [jumping.run], found)
+    assert len(measured.pose) == len(jumping.run.pose)
+    cut = dense_windows_of(held, CONFIG.horizon_s)
+    first, last = cut.windows[:, 0], cut.windows[:, -1]
+    assert not ((first[:, None] < AT) & (last[:, None] >= AT)).any()
+    assert closes([jumping], [cut], known.base, CONFIG)
+
+
+def test_a_chain_that_there_was_stays_cut(jumping, plain, known):
+    pose = jumping.run.pose
+    half = (np.arange(len(pose)) > 400).astype(float)
+    run = replace(jumping.run, pose=replace(pose, columns={**pose.columns, "window": half}))
+    found = outliers_of([jumping], [jumping], [plain], known, CONFIG)
+    (measured,), _ = cleaned_runs([run], [run], found)
+    windows = measured.pose["window"]
+    assert windows[400] != windows[401]
+    assert (np.diff(windows) >= 0).all()
+
+
+def test_few_and_as_many_as_usual_are_no_finding(jumping, known):
+    assert outliers_of([jumping], [], [jumping], known, CONFIG) is None
+
+
+def test_a_robot_that_slips_stays_behind_and_does_not_jump(make_scene, known):
+    def stuck(inputs, twist):
+        return twist * (inputs["t"] % 7 > 2)[:, None]
+
+    assert not jumps(make_scene(32, stuck), known, CONFIG).off.any()
