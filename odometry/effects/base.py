@@ -181,9 +181,16 @@ class MotionEffect(Effect):
 
 
 class MeasurementEffect(Effect):
-    """Acts on what a sensor reports: the measured pose, or the gyroscope."""
+    """Acts on what a sensor reports: the measured pose, or the gyroscope.
+
+    Attributes
+    ----------
+    by_pose : bool
+        Whether each pose is reported by itself, whatever went before and comes after.
+    """
 
     acts_on = "measurement"
+    by_pose: ClassVar[bool] = True
 
     def delay_s(self, values: FloatArray, stamps_s: FloatArray) -> FloatArray:  # noqa: ARG002
         """By how much each of the stamps of poses (M,), in run time, is late (M,)."""

@@ -25,6 +25,7 @@ class MapFault(MeasurementEffect):
 
     name = "reference_fault"
     of_reference = True
+    by_pose = False
 
     @abstractmethod
     def error(self, values: FloatArray, true: Reported) -> FloatArray:
@@ -172,6 +173,10 @@ class DriftingMap(OfEachRun):
         EffectParameter("v_x", "m/s", -1.0, 1.0, 0.0, 0.005),
         EffectParameter("v_y", "m/s", -1.0, 1.0, 0.0, 0.005),
     )
+
+    def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the interface
+        """See `Effect.lacks`."""
+        return all_round(inputs)
 
     def error(self, values: FloatArray, true: Reported) -> FloatArray:
         """See `MapFault.error`."""

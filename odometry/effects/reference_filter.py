@@ -24,6 +24,7 @@ class ReferenceFilter(MeasurementEffect):
 
     name = "reference_fault"
     of_reference = True
+    by_pose = False
     remedy = NO_INVERSE
 
 

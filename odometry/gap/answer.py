@@ -67,12 +67,13 @@ def named_outliers(outliers: Outliers, before_m: float, after_m: float) -> Named
 def drives_apart(
     found: Explanation, equivalent: Collection[str], fitter: Fitter, config: GapConfig
 ) -> tuple[NextDrive, ...]:
-    """What would tell the first effect from what came as near in its place."""
+    """What would tell the first effect, in the form that was chosen, from what came as near."""
     fits = {one.effect.name: one.fitted for one in reversed(found.first)}
     rivals = {name: fits[name] for name in equivalent if name in fits}
     if not rivals or found.names[0] not in fits:
         return ()
-    first = {found.names[0]: fits[found.names[0]]}
+    of_form = {one.effect.key: one.fitted for one in found.first}
+    first = {found.names[0]: of_form.get(found.effects[0].key, found.steps[0].fitted)}
     return next_drives({**first, **rivals}, fitter.measured.scenes, fitter.calibration, config)
 
 

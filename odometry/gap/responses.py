@@ -10,7 +10,7 @@ from odometry.effects.base_model import Base
 from odometry.effects.chain import Chain
 from odometry.effects.corrected import Added, delay_s, reported_yaw_rate, seen_poses
 from odometry.effects.residual import Residual
-from odometry.gap.simulate import path_of
+from odometry.gap.simulate import path_of, reported_of
 from odometry.geometry import se2
 from odometry.geometry.levelled import level_step_jacobian
 from odometry.windows.dense import DenseWindows
@@ -38,7 +38,7 @@ class Responses:
         seen_s = scene.pose_s - base.latency_s - delay_s(effects, scene.pose_s)
         self._seen = _Between(scene, seen_s)
         poses = poses_at(self.path, scene, seen_s)
-        self._poses = seen_poses(effects, poses, scene.poses[:, 2]).T
+        self._poses = seen_poses(effects, poses, reported_of(scene)).T
         self._by_pose = _by_pose(effects, poses, scene)
         self._felt = _Between(scene, scene.pose_s - base.gyro_latency_s)
         self._by_rate = _by_rate(effects, self.chain.twist[:, 2], scene)
@@ -149,11 +149,18 @@ def _by_twist(twist: FloatArray, path: FloatArray, scene: DenseWindows) -> Float
 
 
 def _by_pose(effects: Sequence[Added], poses: FloatArray, scene: DenseWindows) -> FloatArray | None:
-    """Derivative (M, 3, 3) of what the reference reports by the robot's pose; None: the pose."""
-    if not any(isinstance(added.effect, MeasurementEffect) for added in effects):
+    """Derivative (M, 3, 3) of what the reference reports by the robot's pose; None: the pose.
+
+    Of effects pose by pose; what others do to a change of the course is neglected.
+    """
+    by_pose = [
+        one for one in effects if isinstance(one.effect, MeasurementEffect) and one.effect.by_pose
+    ]
+    if not by_pose:
         return None
-    seen = seen_poses(effects, poses, scene.poses[:, 2])
-    stepped = [seen_poses(effects, poses + step, scene.poses[:, 2]) for step in STEP * np.eye(3)]
+    reported = reported_of(scene)
+    seen = seen_poses(by_pose, poses, reported)
+    stepped = [seen_poses(by_pose, poses + step, reported) for step in STEP * np.eye(3)]
     return np.stack([(one - seen) / STEP for one in stepped], axis=-1)
 
 
