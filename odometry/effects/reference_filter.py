@@ -1,7 +1,8 @@
 """References that smooth, lag or swing: their poses are filtered ones of the robot.
 
-Each filter acts on the course of the poses in time. None is what a robot can do: it cannot know
-what comes, nor turn at once and move later, nor overshoot its own place.
+Each filter acts on the course of the poses in time. A robot does not know what comes, is not where
+its yaw will lead it, and does not ring; but it may turn at once and move later, as it would with
+positions that lag.
 """
 
 from collections.abc import Mapping
@@ -16,6 +17,8 @@ from odometry.effects.base import EffectParameter, MeasurementEffect
 from odometry.effects.reported import Reported
 
 GRID_S = 0.02  # of the oscillator
+MOST_DAMPED = 0.5  # more is no ringing: a robot that slides may answer so
+RAW_FIXES = "the fixes before the filter: of a robot that follows slowly they are late as well"
 NO_INVERSE = "use the unfiltered fixes: what a filter took away does not come back"
 
 
@@ -64,8 +67,13 @@ class FilteredPositions(ReferenceFilter):
     source = "first-order lag"
     looks_like = "a robot that is where it was a moment ago, but looks where it looks now"
     alike: ClassVar[Mapping[str, str]] = {
-        "time_offset": "a course with quick changes of speed: a lag rounds them, late stamps do not"
+        "time_offset": "quick changes of speed: a lag rounds them, late stamps do not",
+        "inertia": RAW_FIXES,
     }
+
+    def same_as(self, values: FloatArray) -> Mapping[str, str]:  # noqa: ARG002 - of the interface
+        """See `Effect.same_as`: to first order."""
+        return {"inertia": RAW_FIXES}
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
@@ -107,6 +115,10 @@ class SwayingMast(ReferenceFilter):
     source = "oscillator of second order"
     looks_like = "positions that swing after each change of speed, while yaw and treads do not"
     remedy = "stiffen the mast, or measure with the antenna low"
+
+    def is_meant(self, values: FloatArray) -> bool:
+        """See `Effect.is_meant`: a mast rings."""
+        return bool(values[2] <= MOST_DAMPED)
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:

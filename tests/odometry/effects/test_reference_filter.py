@@ -67,3 +67,12 @@ def test_where_the_drive_began_and_looked_does_not_matter(effect):
     here = seen(effect, values, poses)
     back = (here[:, 0] + 1j * here[:, 1]) * turn + 5 - 2j
     np.testing.assert_allclose(there[:, 0] + 1j * there[:, 1], back, atol=1e-9)
+
+
+def test_a_mast_that_does_not_ring_is_none():
+    assert SwayingMast().is_meant(np.array([0.1, 5.0, 0.2]))
+    assert not SwayingMast().is_meant(np.array([0.1, 5.0, 0.9]))
+
+
+def test_slow_positions_are_said_to_be_as_likely_a_robot_that_follows_slowly():
+    assert "inertia" in FilteredPositions().same_as(np.array([0.3]))

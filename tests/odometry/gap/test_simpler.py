@@ -14,9 +14,9 @@ from odometry.gap.simpler import by_parts
 CANDIDATES = (WheelScale(), LateralSkid(), LeverArm(), NewIcrs(), TimeOffset())
 
 
-def explanation(effects, cost):
+def explanation(effects, cost, first=()):
     names = [effect.name for effect in effects]
-    return SimpleNamespace(effects=tuple(effects), names=tuple(names), cost=cost)
+    return SimpleNamespace(effects=tuple(effects), names=tuple(names), cost=cost, first=first)
 
 
 @pytest.fixture(autouse=True)
@@ -24,14 +24,14 @@ def nothing_is_idle(monkeypatch):
     monkeypatch.setattr("odometry.gap.simpler.without_idle", lambda _, found: found)
 
 
-def exchanged(effects, cost, cost_of_pair):
+def exchanged(effects, cost, cost_of_pair, first=()):
     """Names of what is left where every other explanation costs so much, by its effects."""
 
     def in_order(_, others):
         return explanation(others, cost_of_pair(*(effect.name for effect in others)))
 
     search = SimpleNamespace(in_order=in_order)
-    return by_parts(search, explanation(effects, cost), CANDIDATES).names
+    return by_parts(search, explanation(effects, cost, first), CANDIDATES).names
 
 
 @pytest.mark.parametrize(
@@ -52,3 +52,16 @@ def test_other_effects_stay_beside_the_parts():
 
 def test_what_includes_nothing_stays():
     assert exchanged([WheelScale()], 100.0, lambda *_: 0.0) == ("wheel_scale",)
+
+
+def test_of_both_that_of_more_evidence_gives_the_name():
+    first = [
+        SimpleNamespace(effect=effect, evidence=evidence)
+        for effect, evidence in ((WheelScale(), 100.0), (LateralSkid(), 900.0))
+    ]
+
+    def cost_of_pair(*names):
+        return 90.0 if set(names) == {"wheel_scale", "lateral_skid"} else 120.0
+
+    names = exchanged([NewIcrs()], 100.0, cost_of_pair, first)
+    assert names == ("lateral_skid", "wheel_scale")
