@@ -72,7 +72,7 @@ def gradient_magnitude(sigma_px: float) -> Filter:
 
     def apply(scales: Scales) -> ByteImage:
         across, down = scales.gradient(sigma_px)
-        return _to_bytes(90 + 40 * np.log(np.hypot(across, down) + 0.2))
+        return _to_bytes(90 + 40 * np.log(_length(across, down) + 0.2))
 
     return apply
 
@@ -107,7 +107,7 @@ def coherence(sigma_px: float) -> Filter:
     def apply(scales: Scales) -> ByteImage:
         across, down = scales.gradient(sigma_px)
         xx, yy, xy = (_blur(p, 2 * sigma_px) for p in (across * across, down * down, across * down))
-        return _to_bytes(255 * np.hypot(xx - yy, 2 * xy) / (xx + yy + 1e-3))
+        return _to_bytes(255 * _length(xx - yy, 2 * xy) / (xx + yy + 1e-3))
 
     return apply
 
@@ -126,6 +126,13 @@ def yellow_blue(image: ByteImage) -> ByteImage:
 
 def _blur(image: AnyArray, sigma_px: float) -> AnyArray:
     return np.asarray(cv2.GaussianBlur(image, (0, 0), sigma_px))
+
+
+def _length(across: AnyArray, down: AnyArray) -> AnyArray:
+    """`np.hypot` of float32, in half the time: the squares are exact in float64."""
+    squares = np.square(across, dtype=np.float64)
+    squares += np.square(down, dtype=np.float64)
+    return np.sqrt(squares).astype(np.float32)
 
 
 def _to_bytes(image: AnyArray) -> ByteImage:

@@ -13,7 +13,7 @@ BITS_OF_BYTE: FloatArray = np.unpackbits(
 
 BYTES_OF_BITS = BITS_OF_BYTE.astype(np.uint8).view(np.uint64).ravel()
 """(256,): a byte for each bit, 0 or 1; up to 255 of them add up without a carry."""
-MANY = 4  # small planes that are better counted together than one by one
+SMALL = 15  # pixels of a side; smaller images are counted together, a byte for each bit
 
 
 def byte_histogram(values: ByteImage) -> FloatArray:
@@ -48,22 +48,27 @@ def box_counts(bits: ByteImage) -> FloatArray:
     """
     planes = bits.reshape(-1, *bits.shape[-2:])
     n_sizes = (max(bits.shape[-2:]) - 1).bit_length() + 1
-    counts = np.empty((n_sizes, len(planes), 8))
-    counts[0] = bit_counts(planes)
+    histograms = np.zeros((n_sizes, len(planes), 256), np.float32)
+    large = 0
+    while max(planes.shape[1:]) > SMALL:
+        count_bytes(planes, histograms[large])
+        planes = or_of_2x2(planes, f"halved {large % 2}")
+        large += 1
+    of_large = np.moveaxis(histograms[:large] @ BITS_OF_BYTE, 0, 1)
+    counts = np.concatenate((of_large, _small_box_counts(planes, n_sizes - large)), axis=1)
+    return counts.reshape(*bits.shape[:-2], n_sizes, 8)
+
+
+def _small_box_counts(planes: ByteImage, n_sizes: int) -> FloatArray:
+    """`box_counts` (N, n_sizes, 8) of planes of at most SMALL x SMALL pixels."""
+    sizes = [planes.reshape(len(planes), -1)]
     for size in range(1, n_sizes):
-        planes = or_of_2x2(planes, f"halved {size % 2}")
-        counts[size] = bit_counts(planes)
-    return np.moveaxis(counts, 0, 1).reshape(*bits.shape[:-2], n_sizes, 8)
-
-
-def bit_counts(planes: ByteImage) -> FloatArray:
-    """Count how often each bit is set in planes (N, H, W), as (N, 8)."""
-    if len(planes) >= MANY and planes[0].size < 256:
-        sums = BYTES_OF_BITS[planes].reshape(len(planes), -1).sum(axis=1)
-        return np.asarray(sums.view(np.uint8).reshape(-1, 8), np.float64)
-    histograms = np.zeros((len(planes), 256), np.float32)
-    count_bytes(planes, histograms)
-    return np.asarray(histograms @ BITS_OF_BYTE)
+        planes = or_of_2x2(planes, f"small {size}")
+        sizes.append(planes.reshape(len(planes), -1))
+    starts = np.cumsum([0, *(of.shape[1] for of in sizes[:-1])])
+    set_bits = BYTES_OF_BITS[np.concatenate(sizes, axis=1)]
+    sums = np.add.reduceat(set_bits, starts, axis=1).view(np.uint8)
+    return np.asarray(sums.reshape(-1, n_sizes, 8), np.float64)
 
 
 def count_bytes(planes: ByteImage, histograms: AnyArray) -> None:
@@ -78,14 +83,16 @@ def or_of_2x2(bits: ByteImage, use: str) -> ByteImage:
     The answer is kept for `use`, see `kept`.
     """
     planes, rows, columns = bits.shape
-    even: AnyArray = bits
-    if rows % 2 or columns % 2:
-        even = np.zeros((planes, rows + rows % 2, columns + columns % 2), np.uint8)
-        even[:, :rows, :columns] = bits
-    pairs = kept("pairs", (planes, even.shape[1] // 2, even.shape[2]))
-    np.bitwise_or(even[:, 0::2], even[:, 1::2], out=pairs)
-    halved = kept(use, (planes, even.shape[1] // 2, even.shape[2] // 2))
-    np.bitwise_or(pairs[:, :, 0::2], pairs[:, :, 1::2], out=halved)
+    pairs = kept("pairs", (planes, (rows + 1) // 2, columns + columns % 2))
+    np.bitwise_or(bits[:, : rows - 1 : 2], bits[:, 1::2], out=pairs[:, : rows // 2, :columns])
+    if rows % 2:
+        pairs[:, -1, :columns] = bits[:, -1]
+    if columns % 2:
+        pairs[:, :, -1] = 0
+    both = pairs.view(np.uint16)
+    both |= both >> np.uint16(8)
+    halved = kept(use, both.shape)
+    np.copyto(halved, both, casting="unsafe")  # the lower byte
     return halved
 
 

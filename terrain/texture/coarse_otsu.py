@@ -5,8 +5,9 @@ import numpy as np
 from odometry.arrays import FloatArray
 from terrain.texture.otsu import TIE, multilevel_otsu
 
-TOGETHER = 16  # histograms; their scores stay in the cache
-STRIP = 32
+TOGETHER = 80  # histograms; their scores stay in the cache
+STRIP = 6
+NOT_BEFORE = np.triu(np.ones((STRIP, STRIP), np.bool_))
 LEAST_PIXELS = 0.5  # of a class, so that an empty one adds nothing
 
 
@@ -45,33 +46,38 @@ def _of_stack(histograms: FloatArray, n_thresholds: int) -> FloatArray:
     occurs = histograms > 0
     ends = occurs.argmax(axis=1) + n_bins - 1 - occurs[:, ::-1].argmax(axis=1)
     centred = 2.0 * np.arange(n_bins) - ends[:, None]
-    pixels, sums = (
-        np.pad(np.cumsum(of, axis=1), ((0, 0), (1, 0))) for of in (histograms, histograms * centred)
-    )
+    pixels, sums = np.zeros((2, n_bins + 1, len(histograms)))
+    np.cumsum(histograms.T, axis=0, out=pixels[1:])
+    np.cumsum((histograms * centred).T, axis=0, out=sums[1:])
     best = _best_scores(pixels, sums, n_thresholds)
     thresholds = np.empty((len(histograms), n_thresholds))
-    rows, starts = np.arange(len(histograms)), np.arange(n_bins + 1)
+    each, starts = np.arange(len(histograms)), np.arange(n_bins + 1)[:, None]
     end = np.full(len(histograms), n_bins)
     for n_classes in range(n_thresholds, 0, -1):
-        in_class = np.maximum(pixels[rows, end, None] - pixels, LEAST_PIXELS)
-        totals = best[n_classes - 1] + (sums[rows, end, None] - sums) ** 2 / in_class
-        totals[starts >= end[:, None]] = -np.inf
-        end = (totals >= totals.max(axis=1, keepdims=True) * (1.0 - TIE)).argmax(axis=1)
+        in_class = np.maximum(pixels[end, each] - pixels, LEAST_PIXELS)
+        totals = best[n_classes - 1] + (sums[end, each] - sums) ** 2 / in_class
+        totals[starts >= end] = -np.inf
+        end = (totals >= np.maximum.reduce(totals, axis=0) * (1.0 - TIE)).argmax(axis=0)
         thresholds[:, n_classes - 1] = end - 1
     return thresholds
 
 
 def _best_scores(pixels: FloatArray, sums: FloatArray, n_classes: int) -> FloatArray:
-    """Largest sum of S^2 / W with the first v bins in c + 1 classes, at [c, :, v]."""
+    """Largest sum of S^2 / W with the first v bins in c + 1 classes, at [c, v, :].
+
+    The histograms lie side by side in the last axis of pixels and sums (k + 1, N).
+    """
     best = np.full((n_classes, *pixels.shape), -np.inf)
-    best[0, :, 1:] = sums[:, 1:] ** 2 / np.maximum(pixels[:, 1:], LEAST_PIXELS)
-    for start in range(1, pixels.shape[1], STRIP):
-        stop = min(start + STRIP, pixels.shape[1])
-        scores = (sums[:, start:stop, None] - sums[:, None, :stop]) ** 2
-        in_class = pixels[:, start:stop, None] - pixels[:, None, :stop]
-        scores /= np.maximum(in_class, LEAST_PIXELS)
-        not_a_class = np.triu(np.ones((stop - start, stop - start), np.bool_))
-        np.copyto(scores[:, :, start:], -np.inf, where=not_a_class)
+    best[0, 1:] = sums[1:] ** 2 / np.maximum(pixels[1:], LEAST_PIXELS)
+    for start in range(1, len(pixels), STRIP):
+        stop = min(start + STRIP, len(pixels))
+        in_class = pixels[start:stop, None] - pixels[:stop]
+        np.maximum(in_class, LEAST_PIXELS, out=in_class)
+        scores = sums[start:stop, None] - sums[:stop]
+        scores *= scores
+        scores /= in_class
+        scores[:, start:][NOT_BEFORE[: stop - start, : stop - start]] = -np.inf
         for c in range(1, n_classes):
-            best[c, :, start:stop] = (scores + best[c - 1, :, None, :stop]).max(axis=2)
+            totals = np.add(scores, best[c - 1, :stop], out=in_class)
+            np.maximum.reduce(totals, axis=1, out=best[c, start:stop])
     return best

@@ -5,8 +5,9 @@ import numpy as np
 from odometry.arrays import FloatArray
 
 TIE = 1e-12  # relative to the largest between-class sum: below this, two choices are equal
-STRIP = 64
-NOT_BEFORE = np.triu(np.ones((STRIP, STRIP), dtype=np.bool_))
+STRIP = 80
+ROWS = np.arange(STRIP)
+NO_CLASS = np.where(ROWS[:, None] <= ROWS, np.inf, 0.0)  # one that ends before it begins
 
 
 def multilevel_otsu(histogram: FloatArray, n_thresholds: int) -> FloatArray:
@@ -35,7 +36,8 @@ def multilevel_otsu(histogram: FloatArray, n_thresholds: int) -> FloatArray:
     References
     ----------
     Liao, Chen and Chung 2001, "A fast algorithm for multilevel thresholding": the sum over
-    classes of S^2 / W is maximised (their eq. 17), S the sum of greys and W the pixels.
+    classes of S^2 / W is maximised (their eq. 17), S the sum of greys and W the pixels. Yao 1980,
+    "Efficient dynamic programming using quadrangle inequalities".
     """
     greys = np.flatnonzero(histogram)
     if greys.size <= n_thresholds:
@@ -59,20 +61,27 @@ def multilevel_otsu(histogram: FloatArray, n_thresholds: int) -> FloatArray:
 def _best_scores(pixels: FloatArray, sums: FloatArray, n_classes: int) -> FloatArray:
     """Largest sum of S^2 / W with the first v greys in c + 1 classes, at [c, v].
 
-    A strip of v at a time: its scores stay in the cache while they serve every c.
+    A strip of v at a time: its scores stay in the cache while they serve every c. S^2 / W has the
+    inverse quadrangle inequality, so that the best last class of more greys begins no earlier
+    than that of fewer: nothing before the beginning at the end of one strip is tried in the next.
     """
     best = np.full((n_classes, pixels.size), -np.inf)
     best[0, 1:] = sums[1:] ** 2 / pixels[1:]
-    for start in range(1, pixels.size, STRIP):
-        stop = min(start + STRIP, pixels.size)
-        not_a_class = NOT_BEFORE[: stop - start, : stop - start]
-        weights = pixels[start:stop, None] - pixels[:stop]
-        weights[:, start:][not_a_class] = 1.0
-        scores = (sums[start:stop, None] - sums[:stop]) ** 2
+    begins = [0] * n_classes  # of the best last class, by c
+    for start in range(1, pixels.size if n_classes > 1 else 0, STRIP):
+        stop, first = min(start + STRIP, pixels.size), begins[1]
+        no_class = NO_CLASS[: stop - start, : stop - start]
+        weights = np.subtract.outer(pixels[start:stop], pixels[first:stop])
+        weights[:, start - first :] += no_class
+        scores = np.subtract.outer(sums[start:stop], sums[first:stop])
+        scores *= scores
         scores /= weights
-        scores[:, start:][not_a_class] = -np.inf
+        scores[:, start - first :] -= no_class
         for c in range(1, n_classes):
-            best[c, start:stop] = (scores + best[c - 1, :stop]).max(axis=1)
+            totals = scores[:, begins[c] - first :] + best[c - 1, begins[c] : stop]
+            at = totals.argmax(axis=1)
+            best[c, start:stop] = totals[ROWS[: stop - start], at]
+            begins[c] += int(at[-1])
     return best
 
 

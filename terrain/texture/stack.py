@@ -19,7 +19,8 @@ from terrain.texture.kept import kept
 from terrain.texture.ttbd import GREYS, packed_tables
 from terrain.texture.variants import Variant
 
-BAND = 2**16  # pixels that are looked at together: what is made of them stays in the cache
+BAND = 2**19  # pixels of one image that are looked at together, at the most
+TOGETHER = 2**16  # pixels of several small ones: what is made of them stays in the cache
 
 
 def stack_features(greys: ByteImage, n_thresholds: int, definition: Variant) -> FloatArray:
@@ -99,7 +100,7 @@ def _borders(greys: ByteImage, tables: ByteImage) -> Iterator[tuple[slice, slice
     for band in _slices(rows, high):
         top, bottom = max(band.start - 1, 0), min(band.stop + 1, rows)  # with their neighbours
         first = top - band.start + 1
-        for of in _slices(planes, max(BAND // (high * columns), 1)):
+        for of in _slices(planes, max(TOGETHER // (high * columns), 1)):
             padded = framed(of.stop - of.start, band.stop - band.start, columns)
             seen = padded[:, first : first + bottom - top, 1:-1]
             for bits, grey, table in zip(seen, greys[of, top:bottom], tables[of], strict=True):

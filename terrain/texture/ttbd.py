@@ -58,8 +58,4 @@ def packed_tables(members: BoolArray) -> ByteImage:
     (..., ceil(n / 8), 256) array of uint8
         Bit b of table j at a grey is set where the grey belongs to image 8 j + b.
     """
-    *stack, images, greys = members.shape
-    tables = np.zeros((*stack, -(-images // 8), greys), np.uint8)
-    for image in range(images):
-        tables[..., image // 8, :] |= members[..., image, :].view(np.uint8) << np.uint8(image % 8)
-    return tables
+    return np.packbits(members, axis=-2, bitorder="little")
