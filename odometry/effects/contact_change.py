@@ -7,6 +7,7 @@ speeds before any slip: then they do not depend on what else is fitted, and are 
 """
 
 from abc import abstractmethod
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -41,7 +42,8 @@ class ContactChange(MotionEffect):
 
     def __init__(self, half_width: float | None = None) -> None:
         self.half_width = half_width
-        self._answers: dict[bytes, FloatArray] = {}
+        self._changes: dict[bytes, FloatArray] = {}
+        self._balanced: dict[bytes, FloatArray] = {}
 
     @classmethod
     def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
@@ -101,30 +103,41 @@ class ContactChange(MotionEffect):
     ) -> FloatArray:
         """See `MotionEffect.twist`."""
         means, counts = _means(inputs)
-        return np.asarray(twist + np.repeat(self._remembered(values, means, base), counts, axis=0))
+        return np.asarray(twist + np.repeat(self._change(values, means, base), counts, axis=0))
 
     def added_by_values(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
         """Derivative (P, N, 3) of what `twist` adds, whatever the twist is."""
         means, counts = _means(inputs)
         return np.repeat(self.change_by_values(values, means, base), counts, axis=1)
 
-    def _remembered(self, values: FloatArray, means: Inputs, base: Base) -> FloatArray:
+    def balanced(self, balances: FloatArray, inputs: Inputs) -> FloatArray:
+        """Balanced twists (K, 3) of parameters (K, 9) of `Contact`."""
+        stack = (balances, inputs.tread_speeds_m_s, inputs.roll_rad, inputs.pitch_rad)
+        return _remembered(self._balanced, stack, lambda: MODEL.twist(balances, inputs))
+
+    def balanced_by_values(self, balances: FloatArray, inputs: Inputs) -> FloatArray:
+        """Their derivative (P, K, 3) by the effect's parameters."""
+        jacobian = MODEL.derivative_at(balances, inputs, self.balanced(balances, inputs))
+        return np.moveaxis(jacobian[..., IN_BALANCE], -1, 0)
+
+    def _change(self, values: FloatArray, means: Inputs, base: Base) -> FloatArray:
         known = np.array([self._half_width_m(base)])
         time_s = np.empty(0) if means.time_s is None else means.time_s
         recorded = (means.tread_speeds_m_s, means.roll_rad, means.pitch_rad, time_s)
         stack = (values, known, *recorded)
-        key = b"".join(np.ascontiguousarray(of).tobytes() for of in stack)
-        if key not in self._answers:
-            while len(self._answers) >= REMEMBERED:
-                self._answers.pop(next(iter(self._answers)))
-            self._answers[key] = self.change(values, means, base)
-        return self._answers[key]
+        return _remembered(self._changes, stack, lambda: self.change(values, means, base))
 
 
-def balance_by_values(balance: FloatArray, inputs: Inputs) -> FloatArray:
-    """Derivative (P, K, 3) of the balanced twist (K, 3) by the effect's parameters."""
-    jacobian = MODEL.linearised(balance, inputs).by_parameters
-    return np.moveaxis(jacobian[..., IN_BALANCE], -1, 0)
+def _remembered(
+    answers: dict[bytes, FloatArray], stack: Sequence[FloatArray], answer: Callable[[], FloatArray]
+) -> FloatArray:
+    """What was answered to the same numbers, or the answer now."""
+    key = b"".join(np.ascontiguousarray(of).tobytes() for of in stack)
+    if key not in answers:
+        while len(answers) >= REMEMBERED:
+            answers.pop(next(iter(answers)))
+        answers[key] = answer()
+    return answers[key]
 
 
 def _means(inputs: Inputs) -> tuple[Inputs, IntArray]:

@@ -5,7 +5,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base import Effect
 from odometry.effects.base_model import Base
-from odometry.effects.contact_change import IN_BALANCE, MODEL, ContactChange, balance_by_values
+from odometry.effects.contact_change import IN_BALANCE, ContactChange
 from odometry.effects.contact_following import followed
 from odometry.effects.recorded import Recorded
 from odometry.models.inputs import Inputs
@@ -35,14 +35,14 @@ class InertiaByContact(ContactChange):
     def change(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
         """See `ContactChange.change`."""
         fast, both, balances = self._fast_and_slow(values, inputs, base)
-        balanced, of_slow = np.split(MODEL.twist(balances, both), 2)
+        balanced, of_slow = np.split(self.balanced(balances, both), 2)
         return np.asarray(followed(balances[0], fast, balanced) - of_slow / SLOW)
 
     def change_by_values(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
         """See `ContactChange.change_by_values`; of what follows by differences."""
         fast, both, balances = self._fast_and_slow(values, inputs, base)
-        balanced, _ = np.split(MODEL.twist(balances, both), 2)
-        by_values, of_slow = np.split(balance_by_values(balances, both), 2, axis=1)
+        balanced, _ = np.split(self.balanced(balances, both), 2)
+        by_values, of_slow = np.split(self.balanced_by_values(balances, both), 2, axis=1)
         at = followed(balances[0], fast, balanced)
         changes = []
         for place, column in zip(IN_BALANCE, by_values, strict=True):

@@ -4,7 +4,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
-from odometry.effects.contact_change import MODEL, ContactChange, balance_by_values
+from odometry.effects.contact_change import ContactChange
 from odometry.effects.slope_icr import lacks_tilt
 from odometry.models.inputs import Inputs
 
@@ -25,23 +25,26 @@ class SlopeByContact(ContactChange):
 
     def change(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
         """See `ContactChange.change`."""
-        balance = self.balance_values(values, base)
-        tilted, level = np.split(MODEL.twist(balance, _and_level(inputs)), 2)
+        tilted, level = np.split(self.balanced(*self._tilted_and_level(values, inputs, base)), 2)
         return np.asarray(tilted - level)
 
     def change_by_values(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
         """See `ContactChange.change_by_values`."""
-        balance = self.balance_values(values, base)
-        both = balance_by_values(balance, _and_level(inputs))
+        both = self.balanced_by_values(*self._tilted_and_level(values, inputs, base))
         tilted, level = np.split(both, 2, axis=1)
         return np.asarray(tilted - level)
 
+    def _tilted_and_level(
+        self, values: FloatArray, inputs: Inputs, base: Base
+    ) -> tuple[FloatArray, Inputs]:
+        """Parameters (2 K, 9) of `Contact`, and inputs: as they are (K,), then on level terrain.
 
-def _and_level(inputs: Inputs) -> Inputs:
-    """Inputs (2 K,) as they are (K,), then the same on level terrain: balances found at once."""
-    level = np.zeros_like(inputs.roll_rad)
-    return Inputs(
-        np.concatenate([inputs.tread_speeds_m_s] * 2),
-        np.concatenate([inputs.roll_rad, level]),
-        np.concatenate([inputs.pitch_rad, level]),
-    )
+        Balances of both are found at once.
+        """
+        level = np.zeros_like(inputs.roll_rad)
+        both = Inputs(
+            np.concatenate([inputs.tread_speeds_m_s] * 2),
+            np.concatenate([inputs.roll_rad, level]),
+            np.concatenate([inputs.pitch_rad, level]),
+        )
+        return np.tile(self.balance_values(values, base), (2 * len(level), 1)), both

@@ -88,6 +88,11 @@ class Contact(KinematicModel):
         both = _in_blocks(_linearised, values, inputs)
         return Linearised(both[..., 0], both[..., 1:])
 
+    def derivative_at(self, values: FloatArray, inputs: Inputs, twist: FloatArray) -> FloatArray:
+        """Derivative (N, 3, P) by the parameters (N, P) of twists (N, 3) that are balanced."""
+        balance = balance_at(stance_of(values, inputs), twist.T)
+        return np.asarray(np.moveaxis(parameter_derivative(balance), -1, 0))
+
     def speed_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.speed_jacobian`."""
         return _in_blocks(_speed_derivative, values, inputs)
