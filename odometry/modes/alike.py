@@ -22,7 +22,7 @@ def alike_modes(signals: Signals, modes: VelocityModes, leading: IntArray) -> Bo
     are told apart by their noise.
     """
     gains = modes.steady_gains()[:, 1]
-    asked = signals.tread_speeds_m_s @ gains.T
+    asked = modes.steady_yaw_rates(signals.tread_speeds_m_s)
     asked[:-1] *= np.any(np.isfinite(signals.measured[1:]), axis=1, keepdims=True)
     means, lasts_s = _means(asked, signals.stamps_s)
     # the deviation of what lasts of errors in a mean over so long

@@ -10,7 +10,7 @@ from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
 from odometry.modes.mode_track import ModeTrack
 from odometry.run import UNKNOWN
 
-AGREED = 0.5  # probability from which on the rolling test takes a mode for the one that fits
+AGREED = 0.6  # probability from which on the rolling test takes a mode for the one that fits
 BOUND = 2.0  # standard deviations: 95 % of what is left of a mode that is true
 
 
@@ -65,7 +65,9 @@ def named_modes(track: ModeTrack, sure: float) -> AnyArray:
 
     A mode is named whose probability among the modes is `sure` or more, and against "none of
     these" as well; which the rolling test takes for the one that fits, too; and whose bias of the
-    gyroscope is one that is expected. A gyroscope whose scale is off tells no mode.
+    gyroscope is one that is expected. Neither turns to one side nor the distance that was measured
+    contradict it. A gyroscope whose scale is off tells no mode, and where every mode travels by
+    another distance than was measured none fits.
     """
     most = track.probabilities.argmax(axis=1)
     named = track.probabilities.max(axis=1) >= sure
@@ -81,6 +83,11 @@ def named_modes(track: ModeTrack, sure: float) -> AnyArray:
         none = none | np.isfinite(track.gyroscope.scale)
     if track.alike is not None:
         named &= ~track.alike.any(axis=1)
+    if track.turns_are_off is not None:
+        named &= ~track.turns_are_off
+    if track.travel is not None:
+        named &= ~track.travel.off[np.arange(len(most)), most]
+        none = none | track.travel.off.all(axis=1)
     answers = np.where(named, np.array(track.names, dtype=object)[most], UNDETERMINED)
     return np.where(none, NONE_OF_THESE, answers)
 
@@ -198,6 +205,7 @@ def _shares(answers: AnyArray, lasts_s: FloatArray, mode: str) -> tuple[float, f
     if not lasts_s.any():  # the last stamp alone
         lasts_s = np.ones(len(answers))
     whole = float(lasts_s.sum())
-    right = float(lasts_s[answers == mode].sum()) / whole
-    none, open_ = (float(lasts_s[answers == one].sum()) / whole for one in NO_MODES)
-    return right, 1 - right - open_ - none, open_, none
+    others = ~np.isin(answers, (mode, *NO_MODES))
+    chosen = (answers == mode, others, answers == UNDETERMINED, answers == NONE_OF_THESE)
+    right, wrong, open_, none = (float(lasts_s[of].sum()) / whole for of in chosen)
+    return right, wrong, open_, none

@@ -1,4 +1,4 @@
-"""Why no mode is named although one is probable: the gyroscope, or modes that are alike."""
+"""Why no mode is named although one is probable: gyroscope, modes alike, turns or travel."""
 
 from dataclasses import dataclass
 
@@ -65,8 +65,39 @@ def doubts(followed: Followed) -> tuple[Doubt, ...]:
                 _share(followed, alike),
             )
         )
+    found += _of_motion(followed, undetermined)
     said = [one for one in found if one.share >= LEAST_DOUBT]
     return tuple(sorted(said, key=lambda one: -one.share))
+
+
+def _of_motion(followed: Followed, undetermined: BoolArray) -> list[Doubt]:
+    """What turns and measured travel say against the most probable mode."""
+    track, found = followed.last_track, []
+    sure = track.probabilities.max(axis=1) >= followed.config.sure
+    if track.turns_are_off is not None:
+        off = track.turns_are_off & sure & undetermined
+        found.append(
+            Doubt(
+                "the robot turns by more or by less than the most probable mode says for "
+                f"{round(100 * _share(followed, off))} % of the time",
+                "identify a mode for this terrain and load, and check the counts of both treads",
+                _share(followed, off),
+            )
+        )
+    if track.travel is not None:
+        most = track.probabilities.argmax(axis=1)
+        off = track.travel.off[np.arange(len(most)), most]
+        if off.any():
+            ratio = float(np.median(track.travel.ratio[off, most[off]]))
+            found.append(
+                Doubt(
+                    f"measured positions went {ratio:.2f} times as far as the most probable mode "
+                    f"says {_when(followed, off)}",
+                    "check the size and pressure of the tyres, the load, and the positions",
+                    _share(followed, off),
+                )
+            )
+    return found
 
 
 def _share(followed: Followed, rows: BoolArray) -> float:

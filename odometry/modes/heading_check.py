@@ -93,7 +93,7 @@ def heading_check(run: Run) -> HeadingCheck | None:
     yaw_rate = run.yaw_rate
     if yaw_rate is None or run.pose is None or len(yaw_rate.stamps_s) < LEAST_POSES:
         return None
-    heard = _without_spikes(yaw_rate)
+    heard = without_spikes(yaw_rate)
     gyroscope = gyroscope_of(heard)
     measured = np.isfinite(run.pose["yaw"])
     if gyroscope is None or measured.sum() < LEAST_POSES:
@@ -164,7 +164,7 @@ def _noise_rad(apart: FloatArray, chained: BoolArray) -> float | None:
     return float(max(np.median(np.abs(second)) / 0.6745 / np.sqrt(6.0), 1e-5))
 
 
-def _without_spikes(yaw_rate: YawRate) -> YawRate:
+def without_spikes(yaw_rate: YawRate) -> YawRate:
     """The median of each three samples."""
     values = yaw_rate.yaw_rate_rad_s.copy()
     values[1:-1] = np.median(np.stack([values[:-2], values[1:-1], values[2:]]), axis=0)

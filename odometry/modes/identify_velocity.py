@@ -7,7 +7,7 @@ from tqdm import tqdm
 
 from odometry.arrays import FloatArray
 from odometry.identification.errors import IdentificationError
-from odometry.modes.response import Record, errors_of, fitted_response
+from odometry.modes.response import Record, errors_of, fitted_response, growing_power
 from odometry.modes.signals import forward_speed_m_s, velocity_signals
 from odometry.modes.stretches import stretches_by_label
 from odometry.modes.velocity import VelocityModes
@@ -75,6 +75,7 @@ def identify_velocity_modes(
     blocks = np.tile(FOLLOWING, (len(names), 1, 1))
     measurement = np.full((len(names), 2), FOLLOWS_SIGMA**2)
     lasting_s = []
+    speed_power = np.zeros((len(names), 2))
     for place, name in enumerate(names):
         for row in measured_rows:
             response = fitted_response(pooled if shared else records[name], row)
@@ -82,13 +83,22 @@ def identify_velocity_modes(
             blocks[place, row] = response.row_of(row)
             measurement[place, row] = errors.variance
             lasting_s.append(errors.power / errors.variance)
+            if row == SPEED:
+                speed_power[place] = growing_power(records[name], row, response, by=OMEGA)
     if common_noise:
         measurement[:] = np.median(measurement, axis=0)
     process = measurement * np.median([record.step_s for record in pooled]) / CORRECTED_S**2
     errors_last_s = float(np.median(lasting_s))
     fastest_m_s = max(float(np.abs(record.table[:, 2:]).max()) for record in pooled)
     return VelocityModes(
-        names, blocks[..., :2], blocks[..., 2:], process, measurement, errors_last_s, fastest_m_s
+        names,
+        blocks[..., :2],
+        blocks[..., 2:],
+        process,
+        measurement,
+        errors_last_s,
+        fastest_m_s,
+        speed_power if SPEED in measured_rows else None,
     )
 
 

@@ -58,6 +58,10 @@ MODE = {
     ),
     "traction": (Key("gains", (2, 3, 5)), Key("lag_s", (), "0 or more")),
 }
+OPTIONAL_MODE: dict[str, tuple[Key, ...]] = {
+    "velocity": (Key("speed_power", (2,), "0 or more"),),
+    "traction": (),
+}
 KINDS: dict[str, type[VelocityModes] | type[TractionModes]] = {
     "velocity": VelocityModes,
     "traction": TractionModes,
@@ -133,7 +137,7 @@ def write_mode_set(file: Path, mode_set: ModeSet, comment: str = "") -> None:
         if np.isfinite(getattr(modes, one.name))
     }
     tables = {
-        name: {one.name: _plain(getattr(modes, one.name)[row]) for one in MODE[modes.kind]}
+        name: {one.name: _plain(getattr(modes, one.name)[row]) for one in _keys_of(modes)}
         | {"dwell_s": float(mode_set.dwell_s[row])}
         for row, name in enumerate(modes.names)
     }
@@ -172,9 +176,12 @@ def read_mode_set(file: Path) -> ModeSet:
     given = (*HEAD[kind], *(one for one in OPTIONAL[kind] if one.name in head))
     values: dict[str, Any] = {one.name: _array(head, one, where) for one in given}
     dwell = Key("dwell_s", (), "above 0")
+    keys = (*MODE[kind], dwell)
     for name, table in tables.items():
-        _only(table, {one.name for one in (*MODE[kind], dwell)}, f"{file}: [mode.{name}]")
-    for one in (*MODE[kind], dwell):
+        known = {one.name for one in (*keys, *OPTIONAL_MODE[kind])}
+        _only(table, known, f"{file}: [mode.{name}]")
+    in_any = [o for o in OPTIONAL_MODE[kind] if any(o.name in table for table in tables.values())]
+    for one in (*keys, *in_any):
         of_modes = [_array(table, one, f"{file}: [mode.{name}]") for name, table in tables.items()]
         values[one.name] = np.stack(of_modes)
     values = {name: of if of.shape else float(of) for name, of in values.items()}
@@ -184,6 +191,12 @@ def read_mode_set(file: Path) -> ModeSet:
         return ModeSet(modes, dwell_s, str(head.get("source", "")))
     except ParameterError as error:
         raise ParameterError(f"{file}: {error}") from error
+
+
+def _keys_of(modes: VelocityModes | TractionModes) -> tuple[Key, ...]:
+    """Those of a table: all that are needed, and the optional ones that are known."""
+    optional = OPTIONAL_MODE[modes.kind]
+    return (*MODE[modes.kind], *(o for o in optional if getattr(modes, o.name) is not None))
 
 
 def _plain(values: FloatArray | float) -> Any:

@@ -6,6 +6,7 @@ from odometry.arrays import AnyArray, BoolArray, FloatArray
 from odometry.config import require, require_positive
 from odometry.modes.gyroscope_trust import GyroscopeTrust
 from odometry.modes.innovation_test import ModeFit
+from odometry.modes.travel_check import TravelCheck
 
 
 @dataclass(frozen=True)
@@ -64,6 +65,10 @@ class ModeTrack:
         Whether the gyroscope can be trusted; without it it is.
     alike : (N, M) or None
         Modes that what was driven cannot tell from the most probable one; without it none are.
+    turns_are_off : (N,) or None
+        Where turns to one side or to both contradict the most probable mode; without it nowhere.
+    travel : TravelCheck or None
+        Modes that travel by another distance than was measured; without it none do.
 
     Examples
     --------
@@ -85,3 +90,5 @@ class ModeTrack:
     fit: ModeFit | None = None
     gyroscope: GyroscopeTrust | None = None
     alike: BoolArray | None = None
+    turns_are_off: BoolArray | None = None
+    travel: TravelCheck | None = None

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+from scipy.optimize import minimize_scalar, nnls
 from scipy.signal import lfilter
 
 from odometry.arrays import FloatArray, IntArray
@@ -94,6 +94,25 @@ def errors_of(records: Sequence[Record], row: int, response: Response) -> Errors
     powers = np.concatenate(blocks)
     variance = max(float(np.mean(np.concatenate(left) ** 2)), LEAST_VARIANCE)
     return Errors(variance, float(powers.mean()) if len(powers) else 0.0)
+
+
+def growing_power(
+    records: Sequence[Record], row: int, response: Response, *, by: int
+) -> FloatArray:
+    """Power of errors (2,) at low frequency: where column `by` is 0, and what its square adds."""
+    blocks = [
+        (
+            block_powers(_left(record, row, response), record.step_s),
+            block_means(record.table[:, by] ** 2, record.step_s),
+        )
+        for record in records
+    ]
+    powers = np.concatenate([power for power, _ in blocks])
+    squares = np.concatenate([square for _, square in blocks])
+    if not len(powers):
+        return np.zeros(2)
+    values, _ = nnls(np.column_stack([np.ones(len(powers)), squares]), powers)
+    return np.asarray(values)
 
 
 def block_powers(errors: FloatArray, step_s: float) -> FloatArray:

@@ -7,6 +7,7 @@ import numpy as np
 from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import RunFolderError
 from odometry.modes.heading_check import HeadingCheck, heading_check
+from odometry.modes.measured_travel import MeasuredTravel, measured_travel
 from odometry.row_terrains import row_terrains
 from odometry.run import Run
 from odometry.windows.gaps import odometry_gaps
@@ -36,6 +37,8 @@ class Signals:
         Between which stamps the speeds in force are not known.
     heading_check : HeadingCheck or None
         What measured headings say of the gyroscope, where they are no measurement of the filters.
+    travel : MeasuredTravel or None
+        What measured positions say, where they are no measurement of the filters.
     """
 
     stamps_s: FloatArray
@@ -44,6 +47,7 @@ class Signals:
     labels: AnyArray
     gaps_s: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
     heading_check: HeadingCheck | None = None
+    travel: MeasuredTravel | None = None
 
     def __len__(self) -> int:
         return len(self.stamps_s)
@@ -58,6 +62,7 @@ class Signals:
             self.labels[later],
             self.gaps_s[self.gaps_s[:, 0] >= self.stamps_s[row]],
             self.heading_check,
+            self.travel,
         )
 
     @property
@@ -92,7 +97,8 @@ def velocity_signals(run: Run) -> Signals:
     measured = np.column_stack([speed, omega])
     speeds = run.odometry.stack("v_left", "v_right")
     gaps_s = odometry_gaps(run).spans_s
-    return Signals(stamps_s, speeds, measured, row_terrains(run), gaps_s, heading_check(run))
+    check, travel = heading_check(run), measured_travel(run)
+    return Signals(stamps_s, speeds, measured, row_terrains(run), gaps_s, check, travel)
 
 
 def pose_signals(run: Run) -> Signals:

@@ -22,6 +22,8 @@ from odometry.modes.sight import SeenGround, mode_chains
 from odometry.modes.signals import Signals
 from odometry.modes.standing_bias import moving
 from odometry.modes.tempered_bank import TemperedBank
+from odometry.modes.travel_check import TravelCheck, travel_check
+from odometry.modes.turn_test import turns_are_off
 from odometry.modes.velocity import VelocityModes
 from odometry.run import Run
 from odometry.windows.spans import touched
@@ -157,7 +159,7 @@ def follow_signals(
         signals.labels,
         mode_fit(left, mode_set.dwell_s, config.misfit_share),
         _trust(signals, mode_set, means[:, -1], sigmas[:, -1]),
-        _alike(replace(signals, measured=measured), mode_set, leading),
+        *_contradictions(replace(signals, measured=measured), mode_set, left),
     )
 
 
@@ -170,10 +172,17 @@ def _trust(
     return gyroscope_trust(signals, biases_rad_s, sigmas_rad_s, bias_readings(signals))
 
 
-def _alike(signals: Signals, mode_set: ModeSet, leading: IntArray) -> BoolArray | None:
-    if isinstance(mode_set.modes, VelocityModes):
-        return alike_modes(signals, mode_set.modes, leading)
-    return None
+def _contradictions(
+    signals: Signals, mode_set: ModeSet, left: Innovations
+) -> tuple[BoolArray | None, BoolArray | None, TravelCheck | None]:
+    """Modes alike, turns that contradict, and travel; None of modes that hear poses themselves."""
+    modes = mode_set.modes
+    if not isinstance(modes, VelocityModes):
+        return None, None, None
+    asked = modes.steady_yaw_rates(signals.tread_speeds_m_s)
+    before = np.vstack([np.zeros(asked.shape[1]), asked[:-1]])
+    alike = alike_modes(signals, modes, left.leading)
+    return alike, turns_are_off(left, before), travel_check(signals, modes)
 
 
 def _normalised_squared(belief: ModeBelief, measured: FloatArray) -> float:

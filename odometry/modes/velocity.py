@@ -43,6 +43,9 @@ class VelocityModes:
     fastest_m_s : float
         Largest speed of a tread in the runs identified from: the models say nothing of speeds far
         above it.
+    speed_power : (M, 2) or None
+        Power at low frequency of errors of the forward speed [m^2/s]: on a straight, and what each
+        (rad/s)^2 of yaw rate adds. None where it was identified without measured speeds.
     """
 
     names: tuple[str, ...]
@@ -52,6 +55,7 @@ class VelocityModes:
     measurement_variance: FloatArray
     errors_last_s: float = 0.0
     fastest_m_s: float = np.inf
+    speed_power: FloatArray | None = None
 
     kind = "velocity"
     state_angles: tuple[int, ...] = ()
@@ -106,6 +110,10 @@ class VelocityModes:
     def steady_gains(self) -> FloatArray:
         """Speed and yaw rate (M, 2, 2) per tread speed, once all has settled: -A^-1 B."""
         return np.asarray(-np.linalg.solve(self.A, self.B))
+
+    def steady_yaw_rates(self, tread_speeds_m_s: FloatArray) -> FloatArray:
+        """Yaw rates (N, M) of tread speeds (N, 2), once all has settled [rad/s]."""
+        return np.asarray(tread_speeds_m_s @ self.steady_gains()[:, 1].T)
 
 
 @lru_cache(maxsize=256)

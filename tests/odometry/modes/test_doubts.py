@@ -12,6 +12,7 @@ from odometry.modes.gyroscope_trust import GyroscopeTrust
 from odometry.modes.in_short import in_short
 from odometry.modes.mode_set import NONE_OF_THESE, UNDETERMINED
 from odometry.modes.mode_track import ModesConfig
+from odometry.modes.travel_check import TravelCheck
 from odometry.modes.words import sentences
 from tests.odometry.modes.mode_examples import run_of, track, velocity_set
 
@@ -37,7 +38,14 @@ def cases():
     open_ = GyroscopeTrust(late(True, before=False), known)
     off = GyroscopeTrust(never, late(1.21, before=np.nan))
     alike = np.column_stack([never, late(True, before=False)])
+    travel = TravelCheck(
+        np.column_stack([late(True, before=False), never]),
+        np.column_stack([late(0.93, before=1.0)] * 2),
+    )
+    turns = late(True, before=False)
     return [
+        ({"travel": travel}, UNDETERMINED, "positions went 0.93 times as far", "check the size"),
+        ({"turns_are_off": turns}, UNDETERMINED, "turns by more or by less", "identify a mode"),
         ({"gyroscope": off}, NONE_OF_THESE, "the gyroscope reads 1.21 times", "check the gyro"),
         ({"gyroscope": open_}, UNDETERMINED, "a gyroscope bias of 0.000 rad/s", "let the robot s"),
         ({"alike": alike}, UNDETERMINED, "answer alike for 40 % of the time", "drive turns of"),

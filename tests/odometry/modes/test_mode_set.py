@@ -12,6 +12,7 @@ from odometry.modes.mode_set import (
     KINDS,
     MODE,
     OPTIONAL,
+    OPTIONAL_MODE,
     ModeSet,
     read_mode_set,
     write_mode_set,
@@ -35,7 +36,8 @@ def mode_sets(draw):
     given_too = [one for one in OPTIONAL[kind] if draw(st.booleans())]
     values = {one.name: drawn(one) for one in (*HEAD[kind], *given_too)}
     values = {name: of if of.shape else float(of) for name, of in values.items()}
-    values |= {one.name: drawn(one, len(names)) for one in MODE[kind]}
+    of_each = (*MODE[kind], *(one for one in OPTIONAL_MODE[kind] if draw(st.booleans())))
+    values |= {one.name: drawn(one, len(names)) for one in of_each}
     if kind == "velocity":
         values["A"] -= 3e6 * np.eye(2)  # that decays
     dwell_s = draw(arrays(np.float64, len(names), elements=positive))

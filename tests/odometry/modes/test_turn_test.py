@@ -1,0 +1,83 @@
+"""Turns that contradict a mode: innovations are drawn here, white or in proportion to the turn."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.modes.answers import named_modes
+from odometry.modes.innovation_test import LONG_BOUND, Innovations, mode_fit
+from odometry.modes.mode_set import UNDETERMINED
+from odometry.modes.turn_test import BOUND, LEAST_RAD_S, WINDOWS_S, turn_sums, turns_are_off
+from tests.odometry.modes.mode_examples import track
+
+STEP_S, SIZE = 0.02, 1500
+STAMPS_S = STEP_S * np.arange(SIZE)
+WEAVING = 0.5 * np.sign(np.sin(2 * np.pi * STAMPS_S / 3.0 + 1e-6))  # 1.5 s to either side
+
+
+def left_over(normalised, independent=1.0):
+    """Of two modes, the first of which is in the lead."""
+    both = np.stack([normalised, normalised + 50.0], axis=1)
+    return Innovations(both[..., None], np.zeros(SIZE, dtype=int), STAMPS_S, independent)
+
+
+def asked(rates):
+    return np.column_stack([rates, 2 * rates])
+
+
+def white(seed=5):
+    return np.random.default_rng(seed).normal(size=SIZE)
+
+
+def test_sums_are_those_written_out():
+    innovations = white()
+    sums = turn_sums(left_over(innovations), asked(WEAVING), 6.0)
+    window = slice(1000 - 300 + 1, 1001)
+    rates, clipped = WEAVING[window], np.clip(innovations[window], -3, 3)
+    of_sides = [
+        clipped[side * rates > 0].sum() * side / np.sqrt((side * rates > 0).sum())
+        for side in (1, -1)
+    ]
+    np.testing.assert_allclose(sums[1000, :2], of_sides)
+    assert sums[1000, 2] == pytest.approx(sum(of_sides) / np.sqrt(2))
+
+
+def test_sums_have_unit_variance_where_the_mode_is_true():
+    last = [turn_sums(left_over(white(seed)), asked(WEAVING), 6.0)[-1] for seed in range(300)]
+    np.testing.assert_allclose(np.std(last, axis=0), 1.0, atol=0.12)
+
+
+def test_errors_that_last_are_expected_to():
+    """Each is held for half a second: 25 samples are worth one."""
+    seeds = range(200)
+    held = [white(seed)[np.arange(SIZE) // 25] for seed in seeds]
+    last = [turn_sums(left_over(one, 0.04), asked(WEAVING), 6.0)[-1] for one in held]
+    np.testing.assert_allclose(np.std(last, axis=0), 1.0, atol=0.2)
+
+
+@pytest.mark.parametrize("share", [-0.3, 0.3])
+def test_a_gain_that_is_off_shows_over_turns_to_both_sides_where_a_plain_sum_cancels(share):
+    innovations = left_over(white() + share * np.sign(WEAVING))
+    off = turns_are_off(innovations, asked(WEAVING))
+    assert off[round(max(WINDOWS_S) / STEP_S) :].mean() > 0.95
+    sums = turn_sums(innovations, asked(WEAVING), max(WINDOWS_S))
+    assert np.sign(sums[-1]).tolist() == [np.sign(share)] * 3
+    plain = mode_fit(innovations, np.array([20.0, 20.0]), 0.05).lasting
+    assert np.nanmax(np.abs(plain[300:])) < LONG_BOUND
+
+
+def test_a_gain_to_one_side_alone_is_off():
+    off = turns_are_off(left_over(white() + 0.5 * (WEAVING > 0)), asked(WEAVING))
+    assert off[round(max(WINDOWS_S) / STEP_S) :].all()
+
+
+def test_nothing_is_off_on_straights_nor_where_nothing_was_measured():
+    straight = np.full(SIZE, 0.9 * LEAST_RAD_S)
+    assert not turns_are_off(left_over(white() + BOUND), asked(straight)).any()
+    assert not turns_are_off(left_over(np.full(SIZE, np.nan)), asked(WEAVING)).any()
+
+
+def test_a_mode_that_turns_contradict_is_not_named():
+    known = replace(track(["a", "a"], ["a"] * 2), turns_are_off=np.array([False, True]))
+    assert named_modes(known, 0.9).tolist() == ["a", UNDETERMINED]
