@@ -151,7 +151,7 @@ class Switch:
             return replace(
                 self,
                 shares={self.in_force: 1.0},
-                supported_m=travel_m,
+                supported_m=travel_m - self.unsupported_m,
                 event=None,
             )
         points = se2.transform(pose, self.footprint.middle_and_points)

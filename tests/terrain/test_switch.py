@@ -142,14 +142,19 @@ def test_on_request_a_label_counts_when_it_is_seen():
 
 
 def test_ground_without_a_label_for_long_is_no_longer_known():
-    switch = start()
+    switch, last_m = start(), 0.0
     for x in np.arange(0.0, 40.0, 0.25):
         switch = switch.see(seen_at(x, "grass" if x < 5 else "unknown"))
         switch = switch.at(2 * x, np.array([x, 0.0, 0.0]), x)
-        if x < 6.0:
-            assert switch.footing.terrain == "grass"
+        if switch.settled.sights:
+            last_m = switch.supported_m
+        within = x - last_m <= SwitchConfig().unknown_m
+        assert switch.footing.terrain == ("grass" if within else "unknown")
     assert switch.in_force == "grass"
-    assert switch.footing.terrain == "unknown"
+    assert 6.0 < last_m < 8.0
+    assert not switch.settled.sights  # by now they are forgotten
+    after = switch.see(seen_at(40.0, "gravel")).at(80.0, np.array([40.0, 0.0, 0.0]), 40.0)
+    assert after.footing.terrain == "unknown"  # one label of something else is no support
 
 
 def test_ground_that_labels_contradict_is_no_longer_known():
