@@ -46,7 +46,7 @@ def dead_reckon_in_space(
     pitch_rad: FloatArray | None,
     start: FloatArray,
 ) -> SpatialTrajectory:
-    """Integrate twists over ground whose tilt is measured (Martinez 2024 eq. 12).
+    """Integrate twists over terrain whose tilt is measured (Martinez 2024 eq. 12).
 
     The attitude is REP-103's; eq. 12 is printed for another order of the angles (data/README.md).
     Each twist stays in the plane on which its step starts, so that on one tilted plane both

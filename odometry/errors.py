@@ -28,7 +28,7 @@ class ConfigError(OdometryError):
 
 
 class TrajectoryError(OdometryError):
-    """A trajectory is malformed, or does not cover what was asked of it."""
+    """A trajectory is malformed, or does not cover the requested time."""
 
 
 class OutputError(OdometryError):

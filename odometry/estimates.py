@@ -76,17 +76,17 @@ class Replay:
 
     @property
     def yaw_rates_rad_s(self) -> FloatArray:
-        """Yaw rates (N - 1,) of the gyroscope from each stamp to the next; NaN where silent."""
+        """Yaw rates (N - 1,) of the gyroscope from each stamp to the next; NaN without samples."""
         return np.array([estimate.yaw_rate_rad_s for estimate in self.estimates[1:]])
 
     @property
     def has_gyroscope(self) -> bool:
-        """Whether a gyroscope told a yaw rate anywhere."""
+        """Whether a gyroscope measured a yaw rate anywhere."""
         return bool(np.isfinite(self.yaw_rates_rad_s).any())
 
     @property
     def used_gyroscope(self) -> bool:
-        """Whether a gyroscope turned the robot anywhere: settings may tell the filter not to."""
+        """Whether a gyroscope turned the robot anywhere: settings may turn it off in the filter."""
         return any(math.isfinite(each.believed_yaw_rate_rad_s) for each in self.estimates)
 
     def open_loop(self, track_width: float) -> dict[str, Trajectory]:
@@ -105,8 +105,8 @@ class Replay:
     def odometer(self) -> Trajectory:
         """The model integrated open loop with what was held at each moment, never corrected.
 
-        Where the gyroscope told the yaw rate, the robot is turned by it, less the bias held. The
-        effects of the parameter set are part of the model.
+        Where the gyroscope measures the yaw rate, the robot is turned by it, less the bias held.
+        The effects of the parameter set are part of the model.
         """
         return self._reckon(self.odometer_twists())
 
@@ -125,7 +125,7 @@ class Replay:
     def gyroscope(self, track_width: float) -> Trajectory:
         """Mean wheel speed along the heading of the gyroscope as recorded: nothing is fitted.
 
-        Where the gyroscope was silent, the ideal differential drive turns.
+        Where the gyroscope has no samples, the ideal differential drive turns.
         """
         twists = icr_twist(ideal_icrs(track_width), np.nan_to_num(self.tread_speeds_m_s))
         told = np.isfinite(self.yaw_rates_rad_s)

@@ -1,4 +1,4 @@
-"""What a robot stands on: one terrain, or shares of several while it crosses an edge."""
+"""The terrain under the robot: one terrain, or shares of several while it crosses an edge."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ class Footing:
     terrain : str
         The one with the largest share, as a rule.
     shares : Mapping of str to float
-        Above zero; they add up to 1. The one share of a robot that stands on one terrain is 1.
+        Above zero; they add up to 1. On one terrain alone its share is 1.
     """
 
     terrain: str
@@ -26,5 +26,5 @@ class Footing:
 
     @property
     def is_whole(self) -> bool:
-        """Whether the robot stands on one terrain."""
+        """Whether all of the footprint is on one terrain."""
         return len(self.shares) == 1

@@ -30,12 +30,12 @@ class Frame:
     pose : (3,) or None
         Measured x, y, yaw in the reference frame at this stamp; NaN for what was not measured.
     image : Path, (H, W) or (H, W, 3) of uint8, or None
-        The image taken at this stamp: a file, which is opened by whoever needs it, or grey or
+        The image taken at this stamp: a file, which is opened only where it is needed, or grey or
         RGB pixels.
     in_gap : bool
         Whether the speeds that led to this frame are not known: odometry.csv has a gap there.
     yaw_rate_rad_s : float
-        Mean of the gyroscope's yaw rate since the frame before; NaN where it was silent.
+        Mean of the gyroscope's yaw rate since the frame before; NaN where not measured.
     velocity : (3,) or None
         Measured v_x, v_y [m/s], omega [rad/s] at this stamp; NaN for what was not measured.
 

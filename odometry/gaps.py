@@ -25,7 +25,7 @@ def fill_gaps(stamps_s: FloatArray, values: FloatArray) -> FloatArray:
 
 
 def level_where_missing(stamps_s: FloatArray, angle_rad: FloatArray | None) -> FloatArray:
-    """Roll or pitch (N,) with its gaps filled; level ground where it was never measured."""
+    """Roll or pitch (N,) with its gaps filled; level terrain where it was never measured."""
     if angle_rad is None or np.all(np.isnan(angle_rad)):
         return np.zeros(len(stamps_s))
     return fill_gaps(stamps_s, angle_rad)

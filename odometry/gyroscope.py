@@ -1,4 +1,4 @@
-"""What a gyroscope turned up to any moment, and where it was silent."""
+"""The angle that a gyroscope turned up to any moment, and where it has no samples."""
 
 from dataclasses import dataclass
 
@@ -26,7 +26,7 @@ class Gyroscope:
     integrals: FloatArray
 
     def between(self, begin_s: FloatArray, end_s: FloatArray) -> FloatArray:
-        """Integrals (4, K) from stamps (K,) to others; outside of the samples it is silent."""
+        """Integrals (4, K) from stamps (K,) to others; zero where there are no samples."""
         turn, gross, off, silent_s = (
             np.interp(end_s, self.stamps_s, column) - np.interp(begin_s, self.stamps_s, column)
             for column in self.integrals.T
@@ -38,7 +38,7 @@ class Gyroscope:
     def mean_rates_rad_s(self, stamps_s: FloatArray) -> FloatArray:
         """Mean yaw rate (N,) from the stamp before to each of N stamps.
 
-        NaN at the first, and where the gyroscope was silent for more than half of the time.
+        NaN at the first, and where samples are missing for more than half of the time.
         """
         turn_rad, _, _, silent_s = self.between(stamps_s[:-1], stamps_s[1:])
         steps_s = np.diff(stamps_s)

@@ -27,7 +27,7 @@ def learned_parameters(
         Terrains where no pose was taken in keep their tables, and so does one that was left
         before the filter knew it about as well as its table states. One without a table gets
         none unless the filter came to know much more of its ICRs than at the start there: a
-        robot that stands, or drives straight on, tells nothing of them.
+        stationary robot, or one that drives straight on, gives no information on them.
     replay : Replay
     run_name : str
         Named as the source.

@@ -8,8 +8,7 @@ import numpy as np
 
 from odometry.arrays import ByteImage, FloatArray
 from odometry.frames import Frame
-from odometry.gyroscope import SILENT_S
-from odometry.live_gyroscope import LiveGyroscope
+from odometry.gyroscope import SILENT_S, Gyroscope, step_integrals
 
 UNKNOWN_SPEEDS = np.full(2, math.nan)
 
@@ -24,7 +23,7 @@ class LiveFrames:
         their time. With 0 a message that comes after one with a later stamp may be too late.
     has_gyroscope : bool
         Whether a frame waits for the gyroscope as well, whose first sample at or after its stamp
-        ends the turn until then; a gyroscope that is silent for longer than 0.5 s is not waited
+        ends the turn until then; a gyroscope without samples for more than 0.5 s is not waited
         for.
 
     Attributes
@@ -37,7 +36,7 @@ class LiveFrames:
     -----
     Stamps are those of measurement, in seconds of one clock; the messages of one sensor come in
     order. The frames are the same to the last bit as those of the run folder, except for the
-    first after the gyroscope fell silent.
+    first after the samples of the gyroscope ended.
 
     Examples
     --------
@@ -129,3 +128,42 @@ class LiveFrames:
             yaw_rate_rad_s=yaw_rate,
             velocity=parts.get("velocity"),
         )
+
+
+class LiveGyroscope:
+    """Mean yaw rates between stamps, by samples up to now; samples of the past are forgotten.
+
+    Attributes
+    ----------
+    latest_s : float
+        Stamp of the latest sample.
+    """
+
+    def __init__(self) -> None:
+        self.latest_s = -math.inf
+        self._rate_rad_s = math.nan
+        self._stamps_s: list[float] = []
+        self._integrals = [np.zeros(4)]
+
+    def add(self, stamp_s: float, yaw_rate_rad_s: float) -> bool:
+        """Take in a sample; False where its stamp does not increase, or it is no number."""
+        if not (self.latest_s < stamp_s < math.inf and math.isfinite(yaw_rate_rad_s)):
+            return False
+        if self._stamps_s:
+            steps = step_integrals(
+                np.array([self.latest_s, stamp_s]), np.array([self._rate_rad_s, yaw_rate_rad_s])
+            )
+            self._integrals.append(self._integrals[-1] + steps[0])
+        self._stamps_s.append(stamp_s)
+        self.latest_s, self._rate_rad_s = stamp_s, yaw_rate_rad_s
+        return True
+
+    def mean_rate_rad_s(self, begin_s: float, end_s: float) -> float:
+        """Mean yaw rate between two stamps; NaN without samples. Older samples are then dropped."""
+        if not self._stamps_s or math.isinf(begin_s):
+            return math.nan
+        samples = Gyroscope(np.array(self._stamps_s), np.stack(self._integrals))
+        rate = float(samples.mean_rates_rad_s(np.array([begin_s, end_s]))[1])
+        first = max(int(np.searchsorted(self._stamps_s, end_s, side="right")) - 1, 0)
+        del self._stamps_s[:first], self._integrals[:first]
+        return rate

@@ -15,7 +15,7 @@ from odometry.random_effects import (
     largest_between_run_variance,
 )
 
-FEWEST = 3  # runs of which a spread can be told
+FEWEST = 3  # runs from which a spread can be estimated
 FAR = 5.7e-7  # probability: five standard deviations of a normal distribution, both sides
 UNITS = dict.fromkeys(ICR_NAMES[:3], " m")
 
@@ -33,7 +33,7 @@ class MergedTerrain:
         upper limit.
     spread : Mapping of parameter to float
         Standard deviation of the true values between runs, as estimated; empty where it cannot be
-        told.
+        estimated.
     disagree : tuple of str
         Sentences on runs that lie far from the others.
     """
@@ -71,15 +71,15 @@ def merged_terrain(
 
     The mean weighs each run with the inverse of its covariance plus the spread between runs, and
     the covariance is of a next run. Both take the spread at its upper limit, for each parameter
-    apart: that of two runs cannot be told, and is wide. One run's table stays as it is.
+    apart: that of two runs cannot be estimated, and is wide. One run's table stays as it is.
 
     Parameters
     ----------
     tables : Mapping of run to TerrainParameters
         As the ICR filter leaves them: the model `icr`, a covariance of the same parameters.
     began_alike : bool
-        Whether the runs began with the same table: their errors may then be alike, and the mean
-        is taken for no surer than one run of mean certainty.
+        Whether the runs began with the same table: their errors may then be correlated, and the
+        mean is taken for no surer than one run of mean certainty.
 
     References
     ----------
@@ -146,7 +146,7 @@ def _pair_disagrees(
         return ()
     return (
         f"{runs[0]} and {runs[1]} disagree far beyond their covariances; which of them is right "
-        "cannot be told",
+        "cannot be estimated",
     )
 
 

@@ -12,7 +12,7 @@ LARGEST = 1e9  # of a parameter in SI units: the stiffest and heaviest stay belo
 
 
 def finite_number(value: Any, where: str) -> float:
-    """The value as a float, or a ParameterError that says where it stands."""
+    """The value as a float, or a ParameterError that names its place."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= LARGEST:
         raise ParameterError(
             f"{where} = {value!r}, expected a finite number, at most {LARGEST:g} in size"

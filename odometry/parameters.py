@@ -31,7 +31,7 @@ class TerrainParameters:
     values : Mapping[str, float]
         Parameters by name, SI units.
     covariance_order : tuple of str
-        The parameters that `covariance` speaks of; empty where the set states none.
+        The parameters of `covariance`, in its order; empty where the set states none.
     covariance : (K, K)
     source : str
         Where the values come from.

@@ -1,4 +1,4 @@
-"""The frame loop: a run goes in, a filter is told the terrain, its estimates come out."""
+"""The frame loop: a run, a filter and a source of terrain give estimates."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
@@ -42,7 +42,7 @@ class TerrainSource(Protocol):
     def terrain(self, frame: Frame, estimate: Estimate) -> str | Footing:
         """The terrain in force from this frame on, given the estimate before it.
 
-        `unknown` where for long nothing has told it; shares of several where the robot is astride.
+        `unknown` where for long there was no support for it; shares of several on an edge.
         """
 
 
@@ -87,7 +87,7 @@ def replay(
     estimator : Estimator
     source : TerrainSource
     noticed : tuple of FilterEvent
-        Of the run before the filter saw it, such as a delay of its poses.
+        Found in the run before the filter started, such as a delay of its poses.
     causal : bool
         See `IcrEkfConfig`.
     show_progress : bool
@@ -130,7 +130,7 @@ def replay(
 
 
 def started(estimator: Estimator, source: TerrainSource, frame: Frame) -> Estimate:
-    """The first estimate; the image of its frame is looked at, and a switch takes effect next."""
+    """The first estimate; the image of its frame is classified, and a switch takes effect next."""
     estimate = estimator.start(frame, source.initial)
     source.terrain(frame, estimate)
     return estimate
@@ -139,7 +139,7 @@ def started(estimator: Estimator, source: TerrainSource, frame: Frame) -> Estima
 def stepped(
     estimator: Estimator, source: TerrainSource, estimate: Estimate, frame: Frame
 ) -> Estimate:
-    """The next estimate, on the terrain that the source tells."""
+    """The next estimate, on the terrain that the source gives."""
     return estimator.step(estimate, frame, source.terrain(frame, estimate))
 
 
@@ -164,11 +164,11 @@ def _first_estimate(run: Run, first: Frame, estimator: Estimator, terrain: str) 
         return start
     found_there = [event for event in estimate.events if event.kind == INITIAL_YAW]
     if not found_there:
-        return start  # found so late that it does not tell the yaw at the beginning
+        return start  # found too late to give the yaw at the beginning
     event = found_there[0]
     yaw_rad, sigma_rad = event.values
     pose = np.array([*first.pose[:2], yaw_rad])
-    # the positions that told the yaw come again: they are not to count twice
+    # the positions that gave the yaw come again: they must not count twice
     sigma_rad = max(LEAST_YAW_SIGMA_RAD, 2 * sigma_rad)
     found = estimator.start(replace(first, pose=pose), terrain, yaw_sigma_rad=sigma_rad)
     return replace(found, events=(event,))

@@ -1,7 +1,7 @@
 """Poses whose stamps are late: by a delay that is given, or by one that is certain.
 
-Poses of the 19 recordings of data/motion that are not among the seven by which the odometer is
-judged are up to 0.2 s early against the gyroscope and at most 0.03 s late.
+Poses of the 19 recordings of data/motion that are not among the seven of the final evaluation
+are up to 0.2 s early against the gyroscope and at most 0.03 s late.
 """
 
 from dataclasses import replace
@@ -15,7 +15,7 @@ from odometry.run import Run
 from odometry.table import Table
 
 FINDING = "pose_late"
-LEAST_LATE_S, LEAST_LATE_PERIODS = 0.05, 0.25  # of a delay that is less than `check` tells
+LEAST_LATE_S, LEAST_LATE_PERIODS = 0.05, 0.25  # a shorter delay is not reported by `check` either
 OF_GYROSCOPE = 0.5  # of a delay, by which treads may be late too; then it is the gyroscope's
 Moved = tuple[Run, tuple[FilterEvent, ...]]
 

@@ -57,8 +57,8 @@ def largest_between_run_variance(
 ) -> float:
     """Upper limit of the variance of the true values between runs.
 
-    Few runs tell little of their spread, and the estimate is often 0 by chance: whoever predicts
-    another run takes this limit.
+    Few runs determine their spread poorly, and the estimate is often 0 by chance: predictions of
+    another run take this limit.
 
     Parameters
     ----------

@@ -9,7 +9,7 @@ from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
 
 
 def with_named_terrain(run: Run, given: str | None) -> Run:
-    """The run with a name for every terrain: `given`, or "ground", where nobody names it."""
+    """The run with a name for every terrain: `given`, or "ground", where it has no name."""
     usual = run.terrain if run.terrain not in (None, UNKNOWN) else given or UNNAMED_TERRAIN
     settings = {**run.settings, "run": {**run.settings.get("run", {}), "terrain": usual}}
     odometry = run.odometry

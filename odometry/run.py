@@ -16,7 +16,7 @@ from odometry.sensors import Sensors, YawRate, preferred_yaw_rate, sensors_of
 from odometry.table import Table
 
 UNKNOWN = "unknown"  # the reserved terrain name: nothing is known of this terrain
-UNNAMED_TERRAIN = "ground"  # of a run where nobody names the terrain
+UNNAMED_TERRAIN = "ground"  # of a run that does not name its terrain; the name in parameter sets
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Run:
     folder : Path
     robot : Robot
     settings : Mapping
-        run.toml as it stands, unknown tables included.
+        run.toml as read, unknown tables included.
     odometry : Table
         t, v_left, v_right and what else was recorded.
     pose, velocity, images, truth, imu : Table or None
@@ -126,7 +126,7 @@ class Run:
         return np.concatenate([[0.0], np.cumsum(speeds[:-1] * np.diff(self.odometry.stamps_s))])
 
     def frames(self) -> Iterator[Frame]:
-        """All that the run says in time order, see `odometry.frames.merged_frames`."""
+        """All data of the run in time order, see `odometry.frames.merged_frames`."""
         return merged_frames(
             self.odometry,
             self.pose,

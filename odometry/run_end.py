@@ -12,7 +12,7 @@ from odometry.geometry.angles import wrap
 from odometry.run import Run
 
 REFUSED_SHARE = 0.03  # of the poses; fewer are usual
-LAST_POSES = 20  # whose median distance tells where a trajectory ends
+LAST_POSES = 20  # whose median distance is the error at the end
 BIAS_RAD_S, BIAS_SIGMAS = 0.005, 4.0  # 0.3 degrees per second
 DRIFT_RAD_S = 0.02  # four standard deviations of a bias that counts as found
 KNOWN_BIAS_RAD_S = 0.005  # standard deviation from which on the bias is one that was found
@@ -22,7 +22,7 @@ DRIFT_FOLLOWED = "gyroscope_drift_followed"
 
 
 def run_end_events(run: Run, replay: Replay) -> tuple[FilterEvent, ...]:
-    """Events that last at the end, and what only the whole run tells."""
+    """Events that last at the end, and those that only the whole run shows."""
     last = replay.estimates[-1]
     found = list(ongoing(last.watch, last.stamp_s)) if last.watch is not None else []
     found += _heading(last)
@@ -36,9 +36,9 @@ def _heading(last: Estimate) -> list[FilterEvent]:
     if last.course is None:
         return []
     text = (
-        "the heading cannot be told: no yaw is measured, and the course of the "
+        "the heading cannot be determined: no yaw is measured, and the course of the "
         f"{last.course.count} positions over {last.course.travel_m:.1f} m of dead reckoning does "
-        "not tell it; the estimate follows the positions, its yaw is not to be used"
+        "not determine it; the estimate follows the positions, do not use its yaw"
     )
     return [FilterEvent("heading_unknown", last.course.begin_s, last.stamp_s, text)]
 

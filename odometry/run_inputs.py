@@ -11,7 +11,7 @@ from odometry.windows.turns import continuous_yaw
 
 
 def inputs_of(run: Run) -> Inputs:
-    """What a model is told at each row (N,) of odometry.csv.
+    """Inputs of a model at each row (N,) of odometry.csv.
 
     Empty cells of roll, pitch and accelerations are interpolated in time and held at the ends.
     Roll and pitch are level where they were not recorded; accelerations are None unless both

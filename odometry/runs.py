@@ -7,7 +7,7 @@ from odometry.run import Robot, Run
 
 
 def run_names(runs: Sequence[Run]) -> list[str]:
-    """Names of the folders; where those of different folders are alike, their paths."""
+    """Names of the folders; where those of different folders are the same, their paths."""
     folders = {run.folder for run in runs}
     names = [folder.resolve().name for folder in folders]
     return [run.name if names.count(run.name) == 1 else str(run.folder) for run in runs]
@@ -24,7 +24,7 @@ def check_no_run_twice(runs: Sequence[Run]) -> None:
 
 
 def robot_labels(robots: Sequence[Robot]) -> dict[tuple[str, float], str]:
-    """A short name for every robot: what comes before a bracket where that tells them apart."""
+    """A short name for every robot: the part before a bracket where that distinguishes them."""
     keys = list(dict.fromkeys((robot.name, robot.track_width) for robot in robots))
     full = {(name, width): name or f"robot {width:g} m wide" for name, width in keys}
     short = {key: name.split(" (")[0] for key, name in full.items()}

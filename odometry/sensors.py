@@ -70,11 +70,11 @@ def sensors_of(settings: Mapping[str, Any], where: str) -> Sensors:
 
 
 def preferred_yaw_rate(imu: Table | None, odometry: Table, sensors: Sensors) -> YawRate | None:
-    """The yaw rate of imu.csv where it tells one, else gyro_z of odometry.csv, else None.
+    """The yaw rate of imu.csv where it has one, else gyro_z of odometry.csv, else None.
 
     Rows without a number are dropped. The axes of imu.csv are turned into the robot frame by
     `sensors.imu_rad`, which needs all three; where one is absent and roll or pitch is stated,
-    imu.csv tells no yaw rate.
+    imu.csv gives no yaw rate.
     """
     tables = [(imu, _imu_rates(imu, sensors), "imu.csv")] if imu is not None else []
     if "gyro_z" in odometry:
@@ -87,12 +87,12 @@ def preferred_yaw_rate(imu: Table | None, odometry: Table, sensors: Sensors) -> 
 
 
 def _imu_rates(imu: Table, sensors: Sensors) -> FloatArray:
-    """Yaw rate (N,) of imu.csv about the robot's z, NaN where it cannot be told."""
+    """Yaw rate (N,) of imu.csv about the robot's z, NaN where it is not known."""
     roll_pitch_yaw = np.array(sensors.imu_rad or (0.0, 0.0, 0.0))
     if "gyro_z" in imu and not roll_pitch_yaw[:2].any():
         return imu["gyro_z"]
     if all(axis in imu for axis in GYRO_AXES):
-        z_of_robot = rotation_from_roll_pitch_yaw(roll_pitch_yaw)[2]  # seen in the sensor's axes
+        z_of_robot = rotation_from_roll_pitch_yaw(roll_pitch_yaw)[2]  # in the sensor's axes
         return np.asarray(imu.stack(*GYRO_AXES) @ z_of_robot)
     return np.full(len(imu), np.nan)
 

@@ -23,4 +23,4 @@ def shipped_data() -> Path:
     for folder in (package / "data", package.parent / "data"):
         if (folder / "README.md").is_file():
             return folder
-    raise OdometryError(f"the shipped data is not beside {package}; install the package anew")
+    raise OdometryError(f"the shipped data is not beside {package}; install the package again")

@@ -45,7 +45,7 @@ class SpatialTrajectory:
 
     @classmethod
     def from_plane(cls, trajectory: Trajectory) -> "SpatialTrajectory":
-        """A trajectory of the plane on level ground at z = 0."""
+        """A trajectory of the plane on level terrain at z = 0."""
         x, y, yaw = trajectory.poses.T
         zero = np.zeros_like(x)
         rotation = se3.rotation_from_roll_pitch_yaw(np.column_stack([zero, zero, yaw]))

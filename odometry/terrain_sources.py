@@ -34,7 +34,7 @@ class NamedTerrain:
     def told(
         cls, initial: str, stamps_s: FloatArray, answers: AnyArray, silent: Sequence[str]
     ) -> "NamedTerrain":
-        """From answers (N,), of which the `silent` ones keep the terrain in force."""
+        """From answers (N,); those in `silent` keep the terrain in force."""
         speaks = ~np.isin(answers.astype(str), list(silent))
         return cls(initial, stamps_s[speaks], answers[speaks])
 
@@ -46,7 +46,7 @@ class NamedTerrain:
 
 @dataclass(frozen=True)
 class ToldFooting:
-    """What a filter was told in a replay before: the latest footing at or before each frame.
+    """The terrain of an earlier replay: the latest footing at or before each frame.
 
     Attributes
     ----------

@@ -11,12 +11,12 @@ from odometry.geometry.angles import wrap
 
 
 def lies_within(stamps_s: FloatArray, asked_s: FloatArray) -> BoolArray:
-    """Which of the asked stamps (M,) lie between the first and the last of stamps (N,)."""
+    """Which of the requested stamps (M,) lie between the first and the last of stamps (N,)."""
     return np.asarray((asked_s >= stamps_s[0]) & (asked_s <= stamps_s[-1]))
 
 
 def require_within(stamps_s: FloatArray, asked_s: FloatArray) -> FloatArray:
-    """The asked stamps (M,) as floats; TrajectoryError if one lies outside of stamps (N,)."""
+    """The requested stamps (M,) as floats; TrajectoryError if one lies outside of stamps (N,)."""
     asked_s = np.asarray(asked_s, dtype=np.float64)
     if len(asked_s) and not np.all(lies_within(stamps_s, asked_s)):
         raise TrajectoryError(

@@ -1,4 +1,4 @@
-"""Terrain seen ahead of a skid-steer robot: features, classifier, camera, and the main job.
+"""Terrain ahead of a skid-steer robot: features, classifier, camera, and the main job.
 
 Names are imported when they are first used, so that `import terrain` costs nothing.
 """

@@ -1,4 +1,4 @@
-"""The camera: ground plane to image pixels and back, whatever the calibration came from."""
+"""The camera: ground plane to image pixels and back, from any calibration."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -81,7 +81,7 @@ class Camera:
             Lens coefficients in OpenCV's order; empty for none.
         mount : (6,) array_like
             x, y, z [m], roll, pitch, yaw [rad]; R = Rz(yaw) Ry(pitch) Rx(roll). The camera's own
-            x is its viewing direction, y left, z up, so that a positive pitch looks down.
+            x is its viewing direction, y left, z up, so that a positive pitch points down.
 
         Raises
         ------
@@ -185,7 +185,7 @@ class Camera:
         return _apply(self.matrix, raw).reshape(ground.shape)
 
     def pixels_to_ground(self, pixels: ArrayLike) -> FloatArray:
-        """Ground points seen at raw (distorted) pixels; the inverse of `ground_to_pixels`.
+        """Ground points at raw (distorted) pixels; the inverse of `ground_to_pixels`.
 
         Parameters
         ----------
@@ -220,7 +220,7 @@ class Camera:
             raise CameraError(f"the image is {seen} pixels, the camera's are {expected}")
 
     def undistort(self, image: AnyArray) -> AnyArray:
-        """Image (H, W) or (H, W, 3) as a lens without distortion and the same `matrix` sees it.
+        """Image (H, W) or (H, W, 3) of a lens without distortion and with the same `matrix`.
 
         Raises
         ------

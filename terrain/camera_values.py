@@ -14,7 +14,7 @@ from terrain.image_size import PIXELS
 LARGEST = 1e9  # of a value in pixels, metres or radians
 SHORTEST_FOCUS_PX = 1e-3  # also where matrix is that of an image of one unit
 
-# The optical frame (x right, y down, z along the view) seen from the camera's own (x, y left, z up)
+# The optical frame (x right, y down, z along the view) from the camera's own (x, y left, z up)
 _OPTICAL_FROM_CAMERA = np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]])
 
 
@@ -71,7 +71,7 @@ def size_in_pixels(image_size: tuple[int, int]) -> tuple[int, int]:
 
 
 def pose_key(table: Mapping[str, Any]) -> str:
-    """Name of the key of a camera table that says where the ground is."""
+    """Name of the key of a camera table that gives the ground plane."""
     missing = [key for key in ("image_size", "matrix", "distortion") if key not in table]
     if missing:
         raise CameraError(f"{', '.join(missing)} missing; seen: {sorted(table)}")

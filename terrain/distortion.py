@@ -37,7 +37,7 @@ def radius_limit(distortion: FloatArray) -> float:
     return _radius_limit(*_padded(distortion)[:8].tolist())
 
 
-@lru_cache(maxsize=64)  # asked for at each projection, of the lens of one camera
+@lru_cache(maxsize=64)  # needed at each projection, of the lens of one camera
 def _radius_limit(*coefficients: float) -> float:
     k1, k2, _, _, k3, k4, k5, k6 = coefficients
     numerator = np.polynomial.Polynomial([1.0, k1, k2, k3])
@@ -89,10 +89,10 @@ def _known(*distortion: float) -> tuple[FloatArray, float, float]:
 
 
 def _unfolded_radius(*coefficients: float) -> float:
-    """Radius up to which the lens is far from any fold, so that no derivative need be looked at.
+    """Radius up to which the lens is far from any fold, so that no derivative has to be checked.
 
-    Between the places that are tried the determinant changes by much less than what is asked of
-    it; it is 1 on the axis.
+    Between the places that are tried the determinant changes by much less than its limit;
+    it is 1 on the axis.
     """
     lens = np.array(coefficients)
     radii = np.linspace(0.0, min(radius_limit(lens), _WIDEST), _RADII)
@@ -240,5 +240,5 @@ def _solve_2x2(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
 
 
 def _determinants(matrices: FloatArray) -> FloatArray:
-    """Return the determinants (N,) of matrices (N, 2, 2); silent about NaN, unlike NumPy."""
+    """Return the determinants (N,) of matrices (N, 2, 2); no warning for NaN, unlike NumPy."""
     return np.asarray(matrices[:, 0, 0] * matrices[:, 1, 1] - matrices[:, 0, 1] * matrices[:, 1, 0])

@@ -26,7 +26,7 @@ class ImageError(TerrainError):
 
 
 class PatchError(TerrainError, ValueError):
-    """A set of labelled patches cannot be used for training; as scikit-learn asks, a ValueError."""
+    """A set of labelled patches cannot be used for training; scikit-learn asks for a ValueError."""
 
 
 class ModelFileError(TerrainError):

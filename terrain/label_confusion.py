@@ -8,8 +8,8 @@ import numpy as np
 
 from odometry.arrays import IntArray
 from odometry.run import UNKNOWN, Run
+from terrain.image_label import ImageLabel
 from terrain.run_result import RunResult
-from terrain.sighting import Sighting
 
 NO_LABEL = "no label"
 
@@ -72,12 +72,12 @@ def label_confusions(result: RunResult) -> dict[str, LabelConfusion]:
     """
     if result.watcher is None:
         return {}
-    sightings = result.watcher.sightings
+    image_labels = result.watcher.image_labels
     by_file = {
-        "images.csv": _of_images(result.run, sightings),
-        "truth.csv": _of_truth(result.run, sightings),
+        "images.csv": _of_images(result.run, image_labels),
+        "truth.csv": _of_truth(result.run, image_labels),
     }
-    found = {file: _confusion(names, sightings) for file, names in by_file.items()}
+    found = {file: _confusion(names, image_labels) for file, names in by_file.items()}
     return {file: confusion for file, confusion in found.items() if confusion.true}
 
 
@@ -86,11 +86,11 @@ def label_confusion_table(result: RunResult) -> dict[str, Any]:
     return {file: of.to_table() for file, of in label_confusions(result).items()}
 
 
-def _confusion(true: Sequence[str], sightings: Sequence[Sighting]) -> LabelConfusion:
-    """Of the sightings whose true terrain is named; "" and `unknown` are no names."""
+def _confusion(true: Sequence[str], image_labels: Sequence[ImageLabel]) -> LabelConfusion:
+    """Of the image labels whose true terrain is named; "" and `unknown` are no names."""
     pairs = [
-        (name, sighting.label or NO_LABEL)
-        for name, sighting in zip(true, sightings, strict=True)
+        (name, image_label.label or NO_LABEL)
+        for name, image_label in zip(true, image_labels, strict=True)
         if name not in ("", UNKNOWN)
     ]
     names = sorted({name for name, _ in pairs})
@@ -102,23 +102,23 @@ def _confusion(true: Sequence[str], sightings: Sequence[Sighting]) -> LabelConfu
     return LabelConfusion(tuple(names), tuple(labels), counts)
 
 
-def _of_images(run: Run, sightings: Sequence[Sighting]) -> list[str]:
+def _of_images(run: Run, image_labels: Sequence[ImageLabel]) -> list[str]:
     if run.images is None or "terrain" not in run.images:
-        return [""] * len(sightings)
+        return [""] * len(image_labels)
     named = dict(zip(run.images.stamps_s.tolist(), run.images["terrain"].tolist(), strict=True))
-    return [str(named[sighting.stamp_s]) for sighting in sightings]
+    return [str(named[image_label.stamp_s]) for image_label in image_labels]
 
 
-def _of_truth(run: Run, sightings: Sequence[Sighting]) -> list[str]:
+def _of_truth(run: Run, image_labels: Sequence[ImageLabel]) -> list[str]:
     """Where the wheel travel to the region has been driven; "" where the run ends before."""
     if run.truth is None or "terrain" not in run.truth:
-        return [""] * len(sightings)
+        return [""] * len(image_labels)
     stamps_s, travel_m = run.odometry.stamps_s, run.wheel_travel_m
     names = []
-    for sighting in sightings:
-        ahead_m = 0.0 if sighting.region is None else sighting.region.distance_ahead_m
-        there_m = float(np.interp(sighting.stamp_s, stamps_s, travel_m)) + ahead_m
-        there_s = float(np.interp(there_m, travel_m, stamps_s)) if ahead_m else sighting.stamp_s
+    for image_label in image_labels:
+        ahead_m = 0.0 if image_label.region is None else image_label.region.distance_ahead_m
+        there_m = float(np.interp(image_label.stamp_s, stamps_s, travel_m)) + ahead_m
+        there_s = float(np.interp(there_m, travel_m, stamps_s)) if ahead_m else image_label.stamp_s
         row = int(np.searchsorted(run.truth.stamps_s, there_s, side="right")) - 1
         known = row >= 0 and there_m <= travel_m[-1]
         names.append(str(run.truth["terrain"][row]) if known else "")

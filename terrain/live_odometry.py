@@ -19,12 +19,12 @@ from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.likeness import Likeness
 from terrain.classification.own_statistics import used_as
 from terrain.config import Config
-from terrain.sighting import Sighting
+from terrain.image_label import ImageLabel
 from terrain.sources import initial_terrain
 from terrain.switch import SwitchEvent
 from terrain.watcher import TerrainWatcher
 
-KEPT = 1  # sighting and event that the watcher remembers
+KEPT = 1  # image label and event that the watcher remembers
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class LiveStep:
         x, y [m], yaw [rad] of the odometer, which no measured pose corrects after the start.
     terrain : str
         In force; `unknown` where for long no label supported it.
-    sighting : Sighting or None
+    image_label : ImageLabel or None
         What the image of the frame said; None where it has none, or nothing reads images.
     switch : SwitchEvent or None
         The terrain that came into force at this frame.
@@ -58,7 +58,7 @@ class LiveStep:
     estimate: Estimate
     odometer: FloatArray
     terrain: str
-    sighting: Sighting | None = None
+    image_label: ImageLabel | None = None
     switch: SwitchEvent | None = None
 
 
@@ -78,7 +78,7 @@ class LiveOdometry:
     config : Config, optional
         `[filter] causal` counts as set.
     source : TerrainSource, optional
-        What tells the terrain instead of the images.
+        Gives the terrain instead of the images.
     lever_m : (x, y)
         Place in the robot frame of the point whose position is measured, `[sensors] pose`.
     at_pose : bool
@@ -163,14 +163,14 @@ class LiveOdometry:
             pose = self._odometer.step(self._estimate)
         if self._watcher is None:
             return LiveStep(self._estimate, pose, self._estimate.terrain)
-        seen = self._watcher.sightings[-1] if frame.image is not None else None
+        seen = self._watcher.image_labels[-1] if frame.image is not None else None
         return LiveStep(self._estimate, pose, self._estimate.terrain, seen, self._watcher.event)
 
     @property
     def likeness(self) -> Likeness | None:
-        """Whether the latest images look like the model's training photographs.
+        """Whether the latest images are similar to the model's training photographs.
 
-        None where nothing reads images, or the model cannot tell; `Likeness.note` is what to say.
+        None where images are not used, or the model holds no comparison; `Likeness.note` has words.
         """
         return None if self._watcher is None else self._watcher.seen.likeness
 

@@ -1,4 +1,4 @@
-"""The main job: an image and odometry run goes in, terrain-aware odometry comes out."""
+"""The main job: from a run with images and odometry to terrain-aware odometry."""
 
 from pathlib import Path
 
@@ -23,8 +23,8 @@ from odometry.terrain_sources import ToldFooting
 from odometry.windows.measured_poses import lacks_yaw
 from terrain.classification.classifier import Classifier, TerrainClassifier
 from terrain.config import Config
-from terrain.images_outside import add_images_outside
-from terrain.judged import SecondReplay, judged_trajectories
+from terrain.evaluated_trajectories import SecondReplay, evaluated_trajectories
+from terrain.images_outside_replay import add_images_outside
 from terrain.run_presets import run_preset, with_preset
 from terrain.run_result import RunResult
 from terrain.sources import BOTH, OWN_SOURCE, initial_terrain, source_name, terrain_source
@@ -47,41 +47,41 @@ def run_odometry(
     preset: str | None = None,
     show_progress: bool = False,
 ) -> RunResult:
-    """Replay a run with the ICR filter, its terrain told by the camera or another source.
+    """Replay a run with the ICR filter; the camera or another source gives the terrain.
 
     Parameters
     ----------
     run : Run or path
     model : TerrainClassifier or path, optional
-        Without one there is no vision.
+        Without a model images are not used.
     parameters : ParameterSet or path, optional
         A terrain without a table starts from a broad prior centred on the track width. Effects
         of a table act on that terrain; those on the measurement must be the same everywhere.
     vision : bool
-        False keeps images closed: without another `source` one terrain is in force throughout.
+        False reads no image: without another `source` one terrain is in force for the whole run.
     terrain : str, optional
         In force until the first switch; by default the run's own where `parameters` has it, else
         the first of `parameters`, else the run's own. By modes it is `unknown` where neither names
         it.
     config : Config, optional
     source : {"camera", "labels", "modes", "feel", "none"} or TerrainSource, optional
-        What tells the terrain: the images, read by `model`; the run's own column `terrain`; the
-        motion, by `modes`; what the robot feels, by `feel`; nothing. By default the camera where
-        there is a model, else feel where there is one of that, else nothing.
+        The source of the terrain: the images, classified by `model`; the run's own column
+        `terrain`; the motion, by `modes`; inertial and current sensors, by `feel`; none. By
+        default the camera where there is a model, else feel where `feel` is given, else none.
     modes : ModeSet or path, optional
-        Made by `identify-modes`, for that source.
+        From `identify-modes`, for the source "modes".
     feel : FeelModel or path, optional
-        Made by `identify-feel`, for that source, and as a further source beside the camera.
+        From `identify-feel`, for the source "feel", and as a second source beside the camera.
     preset : {"chen2023"}, optional
-        A published system whole, see `terrain.run_presets`; `config` may set what it leaves open.
+        All settings of a published system, see `terrain.run_presets`; `config` may set the others.
     show_progress : bool
         Whether to draw a bar on standard error.
 
     Raises
     ------
     OdometryError
-        If an input is not as its format says, a model is given for a run without images, or
-        something contradicts the preset.
+        If an input does not follow its format, a model is given for a run without images, or
+        a setting contradicts the preset.
 
     Examples
     --------
@@ -136,7 +136,7 @@ def run_odometry(
     second = None
     if reference_name == "pose":
         second = _second_replay(run, estimator, result, causal, show_progress=show_progress)
-    judged = judged_trajectories(run, result, reference_name, reference, second)
+    evaluated = evaluated_trajectories(run, result, reference_name, reference, second)
     return RunResult(
         run,
         config,
@@ -146,9 +146,10 @@ def run_odometry(
         result,
         reference_name,
         reference,
+        evaluated,
         {
             name: score(run, of.trajectory, of.reference, config.evaluation)
-            for name, of in judged.items()
+            for name, of in evaluated.items()
         },
         learned_parameters(parameters, result, run.name, run.robot.track_width),
         odometer_uncertainty(run, result, reference if reference_name == "truth" else None),
@@ -160,7 +161,7 @@ def run_odometry(
 def _second_replay(
     run: Run, estimator: Estimator, first: Replay, causal: bool, *, show_progress: bool
 ) -> SecondReplay | None:
-    """Replay without the poses that judge; no image is looked at twice."""
+    """Replay without the poses of the evaluation; no image is classified twice."""
     withheld = withhold(run, float(first.stamps_s[0]), float(first.stamps_s[-1]))
     if withheld is None:
         return None

@@ -1,4 +1,4 @@
-"""Odometry of other programs beside a finished run: what judges it, and where it comes from."""
+"""Odometry of other programs beside a finished run: its evaluation and its source."""
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -18,11 +18,11 @@ from odometry.io.structured import read_json
 from odometry.io.trajectory_files import read_trajectory
 from odometry.trajectory import Trajectory
 from terrain.errors import ResultError
-from terrain.other_stamps import late_by_s
+from terrain.other_odometry_lag import late_by_s
 
 FOLDER = "other_odometry"  # of a run folder: odometry that a bag had, as NAME.csv
 PREFIX = "other/"  # of its name among the trajectories of a run
-LEAST_SCALE, LEAST_TURN_DEG = 0.05, 10.0  # off the reference by more is told
+LEAST_SCALE, LEAST_TURN_DEG = 0.05, 10.0  # off the reference by more is reported
 
 
 def other_errors(
@@ -43,7 +43,7 @@ def other_errors(
         Trajectory files: TUM, or what else `read_trajectory` reads, or a table of
         `other_odometry` (CSV: t, x, y, yaw).
     run_path : str or None
-        The run folder, whose `other_odometry` is judged as well where it is there.
+        The run folder, whose `other_odometry` is evaluated as well where it is there.
     axes : str
         Of the files, as of `read_trajectory`.
     times : Path, optional
@@ -54,7 +54,7 @@ def other_errors(
     dict
         Errors as of result.json, with `share` of the reference's stamps, `scale`, `turned_deg`,
         `notes`, and `odometer`: the errors of ours at the same stamps. `error` alone where
-        something cannot be judged.
+        something cannot be evaluated.
     """
     kept = sorted((Path(run_path) / FOLDER).glob("*.csv")) if run_path else []
     files = {file.stem: file for file in kept} | dict(given)
@@ -75,7 +75,7 @@ def other_errors(
 
 
 def read_judge(folder: Path) -> Judge:
-    """What judges the trajectories of a finished run.
+    """What the trajectories of a finished run are evaluated with.
 
     Raises
     ------
@@ -159,7 +159,7 @@ def _notes(found: OtherScore) -> list[str]:
     notes = []
     if found.share < 1:
         notes.append(
-            f"judged at {100 * found.share:.1f} % of the reference's stamps: the others lie "
+            f"evaluated at {100 * found.share:.1f} % of the reference's stamps: the others lie "
             f"outside of it or in a gap above {LONGEST_GAP_S:g} s; the row of our odometer below "
             "it is of the same stamps"
         )
@@ -167,7 +167,7 @@ def _notes(found: OtherScore) -> list[str]:
         notes.append(
             f"its path fits the reference best when it grows by the factor {found.scale:.3g} (the "
             "scale of a single camera is not known, and wheels slip). Nothing is scaled: the "
-            "errors are of the path as it stands"
+            "errors are of the path as given"
         )
     if abs(degrees(found.turned_rad)) > LEAST_TURN_DEG:
         notes.append(

@@ -1,4 +1,4 @@
-"""Rectangles on the ground, along the axes of the robot frame."""
+"""Rectangles on the ground plane, along the axes of the robot frame."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from odometry.arrays import FloatArray
 
 @dataclass(frozen=True)
 class Rectangle:
-    """A rectangle on the ground, its sides along the axes of the robot frame now [m].
+    """A rectangle on the ground plane, its sides along the axes of the robot frame now [m].
 
     Examples
     --------
@@ -32,7 +32,7 @@ class Rectangle:
 
     @property
     def corners(self) -> FloatArray:
-        """Corners (4, 2), far left first, clockwise as seen in the image."""
+        """Corners (4, 2), far left first, clockwise in the image."""
         return np.array(
             [
                 [self.x_max, self.y_max],

@@ -1,4 +1,4 @@
-"""Where the robot will be: the piece of ground to classify (Chen 2023, 3.2.2)."""
+"""The region that the robot will drive over: the terrain to classify (Chen 2023, 3.2.2)."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -13,14 +13,14 @@ from odometry.geometry import se2
 from odometry.run import Robot
 from terrain.camera import Camera
 from terrain.rectangle import Rectangle
-from terrain.shown import is_shown, largest_shown
+from terrain.visible_terrain import is_visible, largest_visible
 
 __all__ = ["Rectangle", "Region", "RegionConfig", "predict_region"]
 
 STEPS = 200  # places tried along the predicted motion
 POINTS = 7  # along each side of the footprint; odd, so that its middle is one of them
 FEW = [0, POINTS - 1, POINTS**2 // 2, POINTS**2 - POINTS, POINTS**2 - 1]  # corners and middle
-GRADES = 4  # of the share in sight, from all of the footprint to the least share
+GRADES = 4  # of the visible share, from all of the footprint to the least share
 TRIES = 10  # places of a grade that are tried for one that can be classified
 COARSE = "the image is too coarse there"
 
@@ -34,8 +34,8 @@ class RegionConfig:
     footprint_scale : float
         The footprint is made larger by this factor (Chen 2023: 1.2).
     ahead_s : float
-        How far ahead in time; 0 means the smallest for which all of the footprint is in sight,
-        or else as much of it as there is in view.
+        How far ahead in time; 0 means the smallest for which all of the footprint is visible,
+        or else as much of it as possible.
     least_share : float
         There is no region unless the image shows the middle of the footprint and so much of it.
     most_ahead_s, most_ahead_lengths : float
@@ -43,7 +43,7 @@ class RegionConfig:
     coarsest : float
         The image may resolve the region this much more coarsely than the training patches.
     per_tread : bool
-        Classify the ground of the left and of the right tread apart: the two halves of the
+        Classify the terrain of the left and of the right tread apart: the two halves of the
         footprint.
     """
 
@@ -66,12 +66,12 @@ class RegionConfig:
 
 @dataclass(frozen=True)
 class Region:
-    """The ground under the robot some time ahead.
+    """The terrain under the robot some time ahead.
 
     Attributes
     ----------
     rectangles : tuple of Rectangle
-        The ground to classify: the largest rectangle that the image shows of the rectangle
+        The terrain to classify: the largest rectangle that the image shows of the rectangle
         round the footprint; with `per_tread`, of those round its left and its right half.
     ahead_s : float
     distance_ahead_m : float
@@ -87,7 +87,7 @@ class Region:
 
     @property
     def place(self) -> FloatArray:
-        """The middle (2,) of the ground to classify, in the robot frame now [m]."""
+        """The middle (2,) of the terrain to classify, in the robot frame now [m]."""
         return self.rectangle.middle
 
     @property
@@ -130,9 +130,9 @@ def predict_region(
     config: RegionConfig,
     *,
     coarsest_m: float = inf,
-    unsuited: Callable[[Rectangle], str] = lambda _: "",
+    scale_mismatch: Callable[[Rectangle], str] = lambda _: "",
 ) -> Region | str:
-    """Carry the footprint ahead until it is in sight, and keep of it what the image shows.
+    """Move the footprint ahead until it is visible, and keep the part of it that the image shows.
 
     Parameters
     ----------
@@ -145,8 +145,8 @@ def predict_region(
         Mean of |v_left| and |v_right|.
     config : RegionConfig
     coarsest_m : float
-        Ground of which a pixel covers more than this is as good as out of sight.
-    unsuited : callable
+        Terrain of which a pixel covers more than this counts as not visible.
+    scale_mismatch : callable
         Why a rectangle cannot be classified, or ""; the region is the first that can.
 
     Returns
@@ -155,16 +155,16 @@ def predict_region(
         The reason in words where there is no region.
     """
     if wheel_speed_m_s <= 0:
-        return "the robot stands"
+        return "the robot is stationary"
     ahead_s = _times_ahead_s(robot, wheel_speed_m_s, config)
     poses = se2.exp(twist * ahead_s[:, None])
     parts = _parts(robot, config)
     reasons = []
     for place in _places(camera, poses, parts, coarsest_m, config.least_share):
         rectangles = [
-            largest_shown(camera, part.bounds(poses[place]), coarsest_m) for part in parts
+            largest_visible(camera, part.bounds(poses[place]), coarsest_m) for part in parts
         ]
-        reasons = [reason for reason in map(unsuited, rectangles) if reason]
+        reasons = [reason for reason in map(scale_mismatch, rectangles) if reason]
         if not reasons:
             time_s = float(ahead_s[place])
             return Region(tuple(rectangles), time_s, wheel_speed_m_s * time_s, poses[place])
@@ -200,13 +200,13 @@ def _parts_of(length_m: float, width_m: float, per_tread: bool) -> tuple[_Part, 
 def _shares(
     camera: Camera, poses: FloatArray, parts: tuple[_Part, ...], coarsest_m: float = inf
 ) -> FloatArray:
-    """The share (N,) of the parts that is in sight at poses (N, 3), 0 where a middle is not.
+    """The visible share (N,) of the parts at poses (N, 3), 0 where a middle is not visible.
 
-    Of several parts that of which the least is in sight.
+    Of several parts the smallest share.
     """
     shares = np.ones(len(poses))
     for part in parts:
-        shown = is_shown(camera, se2.transform(poses[:, None], part.points), coarsest_m)
+        shown = is_visible(camera, se2.transform(poses[:, None], part.points), coarsest_m)
         shares = np.minimum(shares, shown[:, POINTS**2 // 2] * shown.mean(axis=1))
     return shares
 
@@ -218,9 +218,9 @@ def _places(
     coarsest_m: float,
     least_share: float,
 ) -> Iterator[int]:
-    """Places to try: the first ones where all is in sight, then where less is, to the least.
+    """Places to try: the first ones where all is visible, then where less is, to the least.
 
-    Mostly the first will do, and no more is looked for until it will not.
+    Usually the first one is enough, and the search ends there.
     """
     first = _first_whole(camera, poses, parts, coarsest_m)
     if first is not None:
@@ -236,11 +236,11 @@ def _places(
 def _first_whole(
     camera: Camera, poses: FloatArray, parts: tuple[_Part, ...], coarsest_m: float
 ) -> int | None:
-    """The first of poses (N, 3) at which all points of all parts are in sight."""
+    """The first of poses (N, 3) at which all points of all parts are visible."""
     points = np.concatenate([part.points for part in parts])
     few = np.concatenate([part.points[FEW] for part in parts])
-    maybe = is_shown(camera, se2.transform(poses[:, None], few), coarsest_m).all(axis=1)
+    maybe = is_visible(camera, se2.transform(poses[:, None], few), coarsest_m).all(axis=1)
     for place in np.flatnonzero(maybe):
-        if is_shown(camera, se2.transform(poses[place], points), coarsest_m).all():
+        if is_visible(camera, se2.transform(poses[place], points), coarsest_m).all():
             return int(place)
     return None

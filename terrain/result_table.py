@@ -6,16 +6,17 @@ from importlib.metadata import version
 from math import isfinite
 from typing import Any
 
+import numpy as np
+
+from odometry.evaluation.score import counted_reference_yaw
 from odometry.evaluation.withheld import JUDGED_EVERY_S, SILENT_S
+from terrain.evaluation_notes import remarks
 from terrain.filter_summary import filter_table
 from terrain.label_confusion import label_confusion_table
-from terrain.reference_table import reference_place_m
-from terrain.run_result import RunResult
+from terrain.run_result import RunResult, TerrainChange
 from terrain.switch import SwitchEvent
 from terrain.switch_delay import switch_delays
-from terrain.terrain_change import TerrainChange
 from terrain.uncertainty_table import uncertainty_table
-from terrain.verdicts import remarks
 
 FORMAT = 1  # of result.json
 
@@ -46,7 +47,7 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "odometer_uncertainty": uncertainty_table(result.uncertainty, result.reference_name),
         "switches": _switches(result),
         "missed_changes": _missed_changes(result),
-        "sightings": sighting_counts(result),
+        "sightings": image_label_counts(result),
         "other_odometry": sorted(of.stem for of in result.run.folder.glob("other_odometry/*.csv")),
         "label_confusion": label_confusion_table(result),
         "like_training": _like_training(result),
@@ -71,23 +72,23 @@ def _origin(result: RunResult) -> list[float] | None:
 
 def error_tables(result: RunResult) -> dict[str, dict[str, Any]]:
     """Errors by trajectory, and what each is against."""
-    against = {name: judged.against for name, judged in result.judged.items()}
+    against = {name: of.against for name, of in result.evaluated.items()}
     return {
         name: {"against": against[name]} | score.to_table() for name, score in result.scores.items()
     }
 
 
-def sighting_counts(result: RunResult) -> dict[str, int]:
+def image_label_counts(result: RunResult) -> dict[str, int]:
     """How often each label, or each reason for none, was given."""
     counts: dict[str, int] = {}
-    for sighting in result.watcher.sightings if result.watcher else ():
-        word = sighting.label or f"no label: {sighting.reason}"
+    for image_label in result.watcher.image_labels if result.watcher else ():
+        word = image_label.label or f"no label: {image_label.reason}"
         counts[word] = counts.get(word, 0) + 1
     return dict(sorted(counts.items()))
 
 
 def _like_training(result: RunResult) -> dict[str, Any] | None:
-    """Whether the images look like the training photographs; None where nothing can tell."""
+    """Whether the images are similar to the training photographs; None where not known."""
     likeness = None if result.watcher is None else result.watcher.seen.likeness
     if likeness is None or not likeness.images:
         return None
@@ -95,7 +96,7 @@ def _like_training(result: RunResult) -> dict[str, Any] | None:
 
 
 def _withheld(result: RunResult) -> dict[str, Any] | None:
-    """By which poses the estimate was judged, where it saw the others."""
+    """The poses of the evaluation of the estimate, where it used the others."""
     if result.second is None:
         return None
     withheld = result.second.withheld
@@ -117,12 +118,12 @@ def _switches(result: RunResult) -> list[dict[str, Any]]:
 
 
 def _sight(change: SwitchEvent | TerrainChange) -> dict[str, float | None]:
-    """What the camera saw of a switch; None where no camera told the terrain."""
+    """Stamp and distance of the first label of a switch; None without a camera."""
     if isinstance(change, TerrainChange):
         return dict.fromkeys(("seen_s", "distance_ahead_m", "waited_s", "waited_m"))
     return {
-        "seen_s": change.sight.stamp_s,
-        "distance_ahead_m": change.sight.distance_ahead_m,
+        "seen_s": change.first_label.stamp_s,
+        "distance_ahead_m": change.first_label.distance_ahead_m,
         "waited_s": change.waited_s,
         "waited_m": change.waited_m,
     }
@@ -132,3 +133,20 @@ def _missed_changes(result: RunResult) -> list[dict[str, Any]]:
     """True changes of terrain that no switch answered."""
     missed = switch_delays(result)[len(result.changes) :]
     return [{"terrain": delay.terrain, "stamp_s": delay.true_s} for delay in missed]
+
+
+def reference_columns(result: RunResult) -> dict[str, Any]:
+    """Columns by name: t, x, y, yaw (whole turns counted) and wheel_travel; none without poses."""
+    reference, run = result.reference, result.run
+    if reference is None:
+        return {}
+    travel_m = np.interp(reference.stamps_s, run.odometry.stamps_s, run.wheel_travel_m)
+    x, y, _ = reference.poses.T
+    yaw = counted_reference_yaw(run, reference)
+    return {"t": reference.stamps_s, "x": x, "y": y, "yaw": yaw, "wheel_travel": travel_m}
+
+
+def reference_place_m(result: RunResult) -> list[float]:
+    """Where the reference's poses are taken, x and y in the robot frame [m]."""
+    lever_m = result.run.sensors.pose_m
+    return list(lever_m[:2]) if result.reference_name == "pose" and lever_m else [0.0, 0.0]

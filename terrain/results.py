@@ -17,8 +17,7 @@ from odometry.outputs.manifest import check_finished
 from odometry.parameters import write_parameters
 from odometry.trajectory import Trajectory
 from terrain.errors import ResultError
-from terrain.reference_table import reference_columns
-from terrain.result_table import FORMAT, result_table
+from terrain.result_table import FORMAT, reference_columns, result_table
 from terrain.run_result import RunResult
 from terrain.terrain_table import terrain_columns
 from terrain.uncertainty_table import covariance_columns
@@ -48,8 +47,8 @@ def write_results(
     -------
     list of Path
         odometer.csv and .tum, estimate.csv and .tum, result.json; learned.toml where there is
-        anything to hand on; terrain.csv where images were seen or another source told the
-        terrain; reference.csv where there are poses to judge by, and reference.tum where they
+        anything to store; terrain.csv where there is a source of terrain; reference.csv where there
+        are poses to evaluate with, and reference.tum where they
         have a yaw.
 
     Examples

@@ -1,4 +1,4 @@
-"""What is asked of a replay, beside the run itself."""
+"""Options of a replay, beside the run itself."""
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -42,8 +42,8 @@ class RunOptions:
     span: Span = field(default_factory=Span)
 
     @property
-    def told_by(self) -> str:
-        """What tells the terrain."""
+    def terrain_source(self) -> str:
+        """Name of the source of the terrain."""
         return source_name(
             self.source,
             vision=self.vision,
@@ -54,7 +54,7 @@ class RunOptions:
     @property
     def reads_images(self) -> bool:
         """Whether images of the runs are opened."""
-        return self.told_by == "camera"
+        return self.terrain_source == "camera"
 
     @property
     def wants_images(self) -> bool:
@@ -86,7 +86,7 @@ class RunOptions:
             vision=self.vision,
             terrain=self.terrain,
             config=self.config,
-            source=self.told_by,
+            source=self.terrain_source,
             modes=self.modes,
             feel=self.feel,
             preset=self.preset,

@@ -89,7 +89,7 @@ def with_preset(
     config : Config
         With the fixed settings; others may differ from those of the preset.
     source : str
-        What tells the terrain.
+        Source of the terrain.
     model : TerrainClassifier or None
     parameters : ParameterSet
 
@@ -107,7 +107,7 @@ def with_preset(
             if seen != value:
                 raise ConfigError(f"{where} has [{block}] {key} = {value}, seen {seen}")
     if source != "camera":
-        raise ConfigError(f"{where} is told the terrain by the camera (a model), seen {source!r}")
+        raise ConfigError(f"{where} takes the terrain from the camera (a model), seen {source!r}")
     if model is None or model.preset != preset.model_preset or model.colour_:
         raise ConfigError(
             f"{where} needs a model of train --preset {preset.model_preset}, without colour; seen "
@@ -122,7 +122,7 @@ def with_preset(
 
 
 def _with_look_ahead(config: Config, run: Run) -> Config:
-    """Settings with one look-ahead time t_s for all images, as the paper has (3.2.2).
+    """Settings with one look-ahead time t_s for all images, as in the paper (3.2.2).
 
     The paper does not print its t_s. Unless [region] ahead_s gives one, it is the smallest after
     which the image holds the whole region of a robot that drives straight on at the median speed

@@ -1,4 +1,4 @@
-"""All that came out of a replayed run."""
+"""The result of a replayed run."""
 
 from dataclasses import dataclass
 
@@ -11,15 +11,32 @@ from odometry.parameters import ParameterSet
 from odometry.run import Run
 from odometry.trajectory import Trajectory
 from terrain.config import Config
-from terrain.judged import Judged, SecondReplay, judged_trajectories, seen_by
+from terrain.evaluated_trajectories import (
+    EvaluatedTrajectory,
+    SecondReplay,
+    at_reference_point,
+)
 from terrain.switch import SwitchEvent
-from terrain.terrain_change import TerrainChange
 from terrain.watcher import TerrainWatcher
 
 
 @dataclass(frozen=True)
+class TerrainChange:
+    """A change of the terrain in force that comes from another source than the camera.
+
+    Attributes
+    ----------
+    terrain : str
+    stamp_s : float
+    """
+
+    terrain: str
+    stamp_s: float
+
+
+@dataclass(frozen=True)
 class RunResult:
-    """All that came out of one run.
+    """Everything that the replay of one run gives.
 
     Attributes
     ----------
@@ -30,24 +47,26 @@ class RunResult:
         What was known before the run.
     initial_terrain : str
     watcher : TerrainWatcher or None
-        What was seen; None without vision.
+        Labels of the images; None without vision.
     replay : Replay
         Estimates at every frame.
     reference_name : str
         "truth", "pose" or "" where there is none.
     reference : Trajectory or None
+    evaluated : dict of str to EvaluatedTrajectory
+        Every trajectory that can be evaluated fairly, with the poses that it is compared with.
     scores : dict of str to Score
         By trajectory: differential_drive, gyroscope, odometer_without_gyroscope (both only where
-        there is one), odometer, and estimate where `judged` holds it.
+        there is one), odometer, and estimate where `evaluated` holds it.
     learned : ParameterSet
-        `parameters` with what the filter learned in place of what it visited.
+        `parameters`, with what the filter learned about the terrains that it drove on.
     uncertainty : OdometerUncertainty
         Covariance of the odometer along the run.
     second : SecondReplay or None
-        The run replayed without the poses that judge the estimate; None where there is a truth,
-        or too few poses.
+        The run replayed without the poses that the estimate is evaluated with; None where there is
+        a truth, or too few poses.
     source : str
-        What told the terrain: "camera", "labels", "modes", "none", or a source of one's own.
+        Source of the terrain: "camera", "labels", "modes", "feel", "none", or the user's own.
 
     Examples
     --------
@@ -67,6 +86,7 @@ class RunResult:
     replay: Replay
     reference_name: str
     reference: Trajectory | None
+    evaluated: dict[str, EvaluatedTrajectory]
     scores: dict[str, Score]
     learned: ParameterSet
     uncertainty: OdometerUncertainty
@@ -74,23 +94,16 @@ class RunResult:
     source: str = "none"
 
     @property
-    def judged(self) -> dict[str, Judged]:
-        """Every trajectory that can be judged fairly, with the poses that judge it."""
-        return judged_trajectories(
-            self.run, self.replay, self.reference_name, self.reference, self.second
-        )
-
-    @property
     def off_at_the_end_m(self) -> dict[str, float]:
         """Distance of each trajectory, as delivered, from the reference at its last stamp.
 
-        Where the reference is pose.csv the estimate has seen it, up to that pose: its distance is
-        no measure of its error, but a large one says that the filter lost the poses.
+        Where the reference is pose.csv the filter has used it, up to that pose: the distance of the
+        estimate is no measure of its error, but a large one says that the filter lost the poses.
         """
-        delivered = self.judged
+        delivered = dict(self.evaluated)
         if self.reference is not None:
-            seen = seen_by(self.run, self.reference_name, self.replay.trajectory())
-            delivered["estimate"] = Judged(seen, self.reference, self.reference_name)
+            line = at_reference_point(self.run, self.reference_name, self.replay.trajectory())
+            delivered["estimate"] = EvaluatedTrajectory(line, self.reference, self.reference_name)
         distances = {
             name: position_errors(of.trajectory, of.reference)[1] for name, of in delivered.items()
         }

@@ -16,13 +16,13 @@ from terrain.camera import Camera
 from terrain.classification.classifier import Classifier
 from terrain.classification.own_statistics import used_as
 from terrain.config import Config
-from terrain.felt_sights import FeltSights
+from terrain.feel_labels import FeelLabels
 from terrain.watcher import TerrainWatcher
 
 SOURCES = ("camera", "labels", "modes", "feel", "none")
 BOTH = "camera and feel"
 OWN_SOURCE = "a source of your own"
-TOLD_BY = {
+SOURCE_WORDS = {
     "camera": "the camera",
     "labels": "the run's own labels (the column `terrain`)",
     "modes": "the motion (the set of modes)",
@@ -95,7 +95,7 @@ def terrain_source(
     initial : str
         In force until the first switch; of labels only where `terrain` says so too, and of modes
         where `terrain` or the run does: else a wrong start would mislead the gyroscope's bias, and
-        the terrain is `unknown` until the motion tells it.
+        the terrain is `unknown` until the motion supports one.
     terrain : str, optional
         What the user named.
     model : Classifier, optional
@@ -155,7 +155,7 @@ def _watcher(
         )
     camera = Camera.from_table(run.settings["camera"], str(run.folder / "run.toml"))
     names = tuple(map(str, model.classes_))
-    felt = None if feel is None else FeltSights.of(_felt(run, feel), names)
+    felt = None if feel is None else FeelLabels.of(_felt(run, feel), names)
     return TerrainWatcher(
         run.robot,
         camera,

@@ -1,4 +1,4 @@
-"""The terrain in force: that of the labelled places on which the footprint stands."""
+"""The terrain in force: that of the labelled places under the footprint."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -11,8 +11,8 @@ from odometry.footing import Footing
 from odometry.geometry import se2
 from odometry.run import UNKNOWN
 from terrain.label_chain import carried
-from terrain.places import DRIFT, Footprint, Sight, nearest
-from terrain.settled import Settled, by_evidence, by_rows
+from terrain.place_beliefs import PlaceBeliefs, by_evidence, by_rows
+from terrain.place_labels import DRIFT, Footprint, PlaceLabel, nearest
 
 MAJORITY = 0.5  # of the footprint; a terrain with more comes into force
 KNOWN = 0.9  # a terrain that is less probable has no support
@@ -41,7 +41,7 @@ class SwitchConfig:
     change_m : float
         Mean distance between changes of terrain [m]; used where labels are accumulated.
     alike_m : float
-        Correlation length of labels: ground that looks like another terrain does so for this
+        Correlation length of labels: terrain that is similar to another one is so for this
         far in the mean [m]; used where labels are accumulated.
     """
 
@@ -72,15 +72,15 @@ class SwitchEvent:
     ----------
     terrain : str
     stamp_s : float
-    sight : Sight
+    first_label : PlaceLabel
         The first of the labels that made the change.
     waited_s, waited_m : float
-        Time and wheel travel from that sight to the switch.
+        Time and wheel travel from that label to the switch.
     """
 
     terrain: str
     stamp_s: float
-    sight: Sight
+    first_label: PlaceLabel
     waited_s: float
     waited_m: float
 
@@ -95,11 +95,11 @@ class Switch:
     footprint : Footprint
     config : SwitchConfig
     before : str
-        The terrain before the first of `sights`; by default `in_force`.
-    sights : tuple of Sight
-        In the order in which they were seen, as far back as the odometer knows where.
-    settled : Settled or None
-        The terrain at the place of each sight.
+        The terrain before the first of `place_labels`; by default `in_force`.
+    place_labels : tuple of PlaceLabel
+        In order of time, as far back as the odometer knows their places.
+    place_beliefs : PlaceBeliefs or None
+        The terrain at the place of each label.
     shares : Mapping of str to float
         Of the terrains under the footprint, `unknown` among them; they add up to 1.
     supported_m : float
@@ -115,8 +115,8 @@ class Switch:
     footprint: Footprint
     config: SwitchConfig = SwitchConfig()
     before: str = ""
-    sights: tuple[Sight, ...] = ()
-    settled: Settled | None = None
+    place_labels: tuple[PlaceLabel, ...] = ()
+    place_beliefs: PlaceBeliefs | None = None
     shares: Mapping[str, float] = field(default_factory=dict)
     supported_m: float = 0.0
     unsupported_m: float = 0.0
@@ -124,7 +124,7 @@ class Switch:
 
     @property
     def footing(self) -> Footing:
-        """What the robot stands on; `unknown` where for long no label supports what is in force."""
+        """The terrain under the robot; `unknown` where for long no label supports that in force."""
         if self.unsupported_m > self.config.unknown_m and not self.config.labels_in_row:
             return Footing.of(UNKNOWN)
         if not self.config.by_shares:
@@ -133,21 +133,26 @@ class Switch:
         shares[self.in_force] = shares.get(self.in_force, 0.0) + shares.pop(UNKNOWN, 0.0)
         return Footing(self.in_force, {name: share for name, share in shares.items() if share > 0})
 
-    def see(self, sight: Sight) -> "Switch":
-        """Take in a label, and settle anew what lies at each place."""
-        oldest_m = sight.travel_m - self.footprint.radius_m / DRIFT
-        kept = tuple(known for known in self.sights if known.travel_m >= oldest_m)
+    def add_label(self, place_label: PlaceLabel) -> "Switch":
+        """Add a label, and compute again the terrain of each place."""
+        oldest_m = place_label.travel_m - self.footprint.radius_m / DRIFT
+        kept = tuple(known for known in self.place_labels if known.travel_m >= oldest_m)
         before = self._before(oldest_m)
-        sights = (*kept, sight)
-        return replace(self, before=before, sights=sights, settled=self._settle(sights, before))
+        place_labels = (*kept, place_label)
+        return replace(
+            self,
+            before=before,
+            place_labels=place_labels,
+            place_beliefs=self._settle(place_labels, before),
+        )
 
-    def astray(self) -> "Switch":
-        """The switch of a robot that went nobody knows how far: no place is known any more."""
-        return replace(self, before=self.in_force, sights=(), settled=None)
+    def without_labels(self) -> "Switch":
+        """The switch after a stretch of unknown motion: no labelled place is known any more."""
+        return replace(self, before=self.in_force, place_labels=(), place_beliefs=None)
 
     def at(self, stamp_s: float, pose: FloatArray, travel_m: float) -> "Switch":
         """The switch with the robot at a pose (3,) of the odometry frame."""
-        if self.settled is None or not self.settled.sights:
+        if self.place_beliefs is None or not self.place_beliefs.place_labels:
             return replace(
                 self,
                 shares={self.in_force: 1.0},
@@ -155,20 +160,26 @@ class Switch:
                 event=None,
             )
         points = se2.transform(pose, self.footprint.middle_and_points)
-        place, apart_m = self._under(self.settled, points, travel_m)
+        place, apart_m = self._under(self.place_beliefs, points, travel_m)
         beliefs = carried(
-            self.settled.beliefs[place], np.exp(-apart_m / self.config.change_m)[:, None]
+            self.place_beliefs.beliefs[place], np.exp(-apart_m / self.config.change_m)[:, None]
         )
         reached = apart_m <= self.footprint.radius_m
-        shares = self._shares(self.settled, beliefs[1:], reached[1:])
+        shares = self._shares(self.place_beliefs, beliefs[1:], reached[1:])
         terrain, event = max(shares, key=lambda name: shares[name]), None
         if reached[0] and terrain not in (self.in_force, UNKNOWN) and shares[terrain] > MAJORITY:
-            sight = self.settled.first_sight(int(place[0]), terrain)
+            place_label = self.place_beliefs.first_label(int(place[0]), terrain)
             event = SwitchEvent(
-                terrain, stamp_s, sight, stamp_s - sight.stamp_s, travel_m - sight.travel_m
+                terrain,
+                stamp_s,
+                place_label,
+                stamp_s - place_label.stamp_s,
+                travel_m - place_label.travel_m,
             )
         in_force = terrain if event is not None else self.in_force
-        known = (self.settled.probability(beliefs[0], name) for name in (self.in_force, in_force))
+        known = (
+            self.place_beliefs.probability(beliefs[0], name) for name in (self.in_force, in_force)
+        )
         supported_m = travel_m if max(known) >= KNOWN else self.supported_m
         return replace(
             self,
@@ -180,38 +191,42 @@ class Switch:
         )
 
     def _shares(
-        self, settled: Settled, beliefs: FloatArray, reached: BoolArray
+        self, place_beliefs: PlaceBeliefs, beliefs: FloatArray, reached: BoolArray
     ) -> dict[str, float]:
         """Of the terrains at points of beliefs (m, k + 1); the one in force where not reached."""
-        counts = np.bincount(settled.probable(beliefs[reached]), minlength=len(settled.names))
-        shares = dict(zip(settled.names, (counts / len(beliefs)).tolist(), strict=True))
+        counts = np.bincount(
+            place_beliefs.probable(beliefs[reached]), minlength=len(place_beliefs.names)
+        )
+        shares = dict(zip(place_beliefs.names, (counts / len(beliefs)).tolist(), strict=True))
         rest = 1 - np.count_nonzero(reached) / len(reached)
         shares[self.in_force] = shares.get(self.in_force, 0.0) + rest
         return {name: share for name, share in shares.items() if share > 0}
 
     def _under(
-        self, settled: Settled, points: FloatArray, travel_m: float
+        self, place_beliefs: PlaceBeliefs, points: FloatArray, travel_m: float
     ) -> tuple[IntArray, FloatArray]:
         """The place at each point (m, 2) and its distance [m]; or the last, if at once."""
         if not self.config.on_arrival:
-            return np.full(len(points), len(settled.sights) - 1), np.zeros(len(points))
-        return nearest(points, settled.places, travel_m - settled.travel_m)
+            return np.full(len(points), len(place_beliefs.place_labels) - 1), np.zeros(len(points))
+        return nearest(points, place_beliefs.places, travel_m - place_beliefs.travel_m)
 
     def _before(self, oldest_m: float) -> str:
         """The terrain at the last of the places that are forgotten."""
-        if self.settled is None:
+        if self.place_beliefs is None:
             return self.before or self.in_force
-        settled = self.settled
-        forgotten = settled.probable(settled.beliefs[settled.travel_m < oldest_m])
-        names = [settled.names[code] for code in forgotten if settled.names[code] != UNKNOWN]
+        place_beliefs = self.place_beliefs
+        forgotten = place_beliefs.probable(place_beliefs.beliefs[place_beliefs.travel_m < oldest_m])
+        names = [
+            place_beliefs.names[code] for code in forgotten if place_beliefs.names[code] != UNKNOWN
+        ]
         return names[-1] if names else self.before
 
-    def _settle(self, sights: tuple[Sight, ...], before: str) -> Settled:
+    def _settle(self, place_labels: tuple[PlaceLabel, ...], before: str) -> PlaceBeliefs:
         c = self.config
         if c.labels_in_row:
-            return by_rows(sights, before, c.labels_in_row)
+            return by_rows(place_labels, before, c.labels_in_row)
         return by_evidence(
-            sights,
+            place_labels,
             before,
             accuracy=c.label_accuracy,
             change_m=c.change_m,

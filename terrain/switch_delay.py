@@ -6,9 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.evaluation.stretches import Stretch, stretches
-from terrain.run_result import RunResult
+from terrain.run_result import RunResult, TerrainChange
 from terrain.switch import SwitchEvent
-from terrain.terrain_change import TerrainChange
 
 Change = SwitchEvent | TerrainChange
 
@@ -51,7 +50,7 @@ def switch_delays(result: RunResult) -> list[SwitchDelay]:
     -------
     list of SwitchDelay
         One for each of `result.changes`, in that order; then the changes that were missed, in
-        order of time. Empty where nothing told the terrain.
+        order of time. Empty without a source of terrain.
 
     Examples
     --------
@@ -59,7 +58,7 @@ def switch_delays(result: RunResult) -> list[SwitchDelay]:
     >>> import terrain
     >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> result = terrain.run_odometry(run, vision=False)
-    >>> terrain.switch_delays(result)  # no source told the terrain
+    >>> terrain.switch_delays(result)  # there is no source of terrain
     []
     """
     if result.source == "none":

@@ -18,11 +18,10 @@ from terrain.camera import Camera
 from terrain.errors import SynthesisError
 from terrain.synthesis.config import SynthesisConfig
 from terrain.synthesis.exposure import Illumination, encode_jpeg, expose
-from terrain.synthesis.identified import identified_parameters
 from terrain.synthesis.layout import lay_out
 from terrain.synthesis.patches import render_patches, write_patches
 from terrain.synthesis.photos import built_in_photos, photos_from_folder
-from terrain.synthesis.records import motion_tables, run_settings
+from terrain.synthesis.records import identified_parameters, motion_tables, run_settings
 from terrain.synthesis.view import Scene, View
 
 __all__ = ["SynthesisConfig", "synthesise"]
@@ -37,7 +36,7 @@ def synthesise(
 ) -> Path:
     """Make a run folder, `patches/` and `parameters.toml`, ready for `train` and `run`.
 
-    A robot with ICRs of its own on every terrain is driven over zones of textured ground, and
+    A robot with other ICRs on every terrain is driven over zones of textured terrain, and
     its camera's view is rendered. The motion is integrated from velocity constraints (see
     `odometry.simulation`); no equation is shared with the estimators.
 
@@ -61,7 +60,7 @@ def synthesise(
     Raises
     ------
     SynthesisError
-        If `out` is not empty, the photographs do not suffice, or the camera sees no ground.
+        If `out` is not empty, the photographs do not suffice, or the camera shows no terrain.
 
     Examples
     --------
@@ -141,7 +140,7 @@ def _frames(
 def _images_table(
     drive: Drive, ground: GroundMap, camera: Camera, shown: range
 ) -> dict[str, AnyArray]:
-    """Table images: the terrain is that of the ground at the image's centre."""
+    """Table images: the terrain is that at the image's centre."""
     centre = camera.pixels_to_ground((np.array(camera.image_size) - 1) / 2)
     seen = [ground.strip_at(to_world(drive.poses_world[k], centre)) for k in shown]
     return {

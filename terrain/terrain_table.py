@@ -4,21 +4,20 @@ from typing import Any
 
 import numpy as np
 
-from terrain.run_result import RunResult
-from terrain.sighting import Sighting
-from terrain.terrain_change import TerrainChange
+from terrain.image_label import ImageLabel
+from terrain.run_result import RunResult, TerrainChange
 
 SAID = ("t", "label", "confidence", "distance_ahead", "terrain_in_force", "reason", "image")
 
 
 def terrain_columns(result: RunResult) -> dict[str, Any]:
-    """Columns of terrain.csv by name; none where nothing told the terrain.
+    """Columns of terrain.csv by name; none without a source of terrain.
 
     With the camera a row is an image. With another source it is a change of the terrain in force,
-    the first row the start, and no image stands in it.
+    the first row the start, and no image is named.
     """
     if result.watcher is not None:
-        return _of_images(result.watcher.sightings, result.watcher.in_force)
+        return _of_images(result.watcher.image_labels, result.watcher.in_force)
     if result.source == "none":
         return {}
     start = TerrainChange(result.replay.terrains[0], float(result.replay.stamps_s[0]))
@@ -29,39 +28,39 @@ def terrain_columns(result: RunResult) -> dict[str, Any]:
     return dict(zip(SAID, (stamps_s, names, unknown, unknown, names, empty, empty), strict=True))
 
 
-def _of_images(sightings: list[Sighting], in_force: list[str]) -> dict[str, Any]:
-    if not sightings:
+def _of_images(image_labels: list[ImageLabel], in_force: list[str]) -> dict[str, Any]:
+    if not image_labels:
         return {}
-    regions = [sighting.region for sighting in sightings]
+    regions = [image_label.region for image_label in image_labels]
     distances = [np.nan if region is None else region.distance_ahead_m for region in regions]
     said = (
-        np.array([sighting.stamp_s for sighting in sightings]),
-        np.array([sighting.label for sighting in sightings]),
-        np.array([sighting.confidence for sighting in sightings]),
+        np.array([image_label.stamp_s for image_label in image_labels]),
+        np.array([image_label.label for image_label in image_labels]),
+        np.array([image_label.confidence for image_label in image_labels]),
         np.array(distances),
         np.array(in_force),
-        np.array([sighting.reason for sighting in sightings]),
-        np.array([sighting.image for sighting in sightings]),
+        np.array([image_label.reason for image_label in image_labels]),
+        np.array([image_label.image for image_label in image_labels]),
     )
     columns: dict[str, Any] = dict(zip(SAID, said, strict=True))
-    if any(sighting.left for sighting in sightings):
-        columns["left"] = np.array([sighting.left for sighting in sightings])
-        columns["right"] = np.array([sighting.right for sighting in sightings])
-    return columns | _numbers(sightings) | _places(sightings)
+    if any(image_label.left for image_label in image_labels):
+        columns["left"] = np.array([image_label.left for image_label in image_labels])
+        columns["right"] = np.array([image_label.right for image_label in image_labels])
+    return columns | _numbers(image_labels) | _places(image_labels)
 
 
-def _places(sightings: list[Sighting]) -> dict[str, Any]:
+def _places(image_labels: list[ImageLabel]) -> dict[str, Any]:
     """Where the middle of what was classified lay, in the robot frame at the image's stamp [m]."""
     unseen = np.full(2, np.nan)
-    places = np.stack([unseen if s.region is None else s.region.place for s in sightings])
+    places = np.stack([unseen if s.region is None else s.region.place for s in image_labels])
     return {"place_x": places[:, 0], "place_y": places[:, 1]}
 
 
-def _numbers(sightings: list[Sighting]) -> dict[str, Any]:
-    """What the classifier gave beside the label; NaN where it was not asked, or twice."""
-    names = sorted({name for sighting in sightings for name in sighting.probabilities})
+def _numbers(image_labels: list[ImageLabel]) -> dict[str, Any]:
+    """Results of the classifier beside the label; NaN without one, or with two."""
+    names = sorted({name for image_label in image_labels for name in image_label.probabilities})
     of = {
-        f"probability_{name}": np.array([s.probabilities.get(name, np.nan) for s in sightings])
+        f"probability_{name}": np.array([s.probabilities.get(name, np.nan) for s in image_labels])
         for name in names
     }
-    return {"class_distance": np.array([s.class_distance for s in sightings])} | of
+    return {"class_distance": np.array([s.class_distance for s in image_labels])} | of

@@ -1,4 +1,4 @@
-"""Ground seen from above: a rectangle of the ground as an image of known scale."""
+"""The view from above: a rectangle of the terrain as an image of known scale."""
 
 import math
 from functools import lru_cache
@@ -18,7 +18,7 @@ def ground_view(
     metres_per_pixel: float,
     middle: tuple[int, int] | None = None,
 ) -> ByteImage:
-    """Warp a rectangle of the ground to a view from above.
+    """Warp a rectangle of the terrain to a view from above.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def _pixels(
 ) -> tuple[AnyArray, AnyArray]:
     """Where the middles of cells from a corner on appear, u and v (rows, columns) as float32.
 
-    `Camera.ground_to_pixels` by OpenCV, without a look at where the lens model ends. Depth is
+    `Camera.ground_to_pixels` by OpenCV, without a check where the lens model ends. Depth is
     linear on the ground, and in front of the camera the tangent of the angle off the axis is
     quasi-convex: what holds at the corners of a rectangle holds within.
     """
@@ -79,7 +79,7 @@ def _pixels(
 
 
 def pixel_view(image: ByteImage, camera: Camera, rectangle: Rectangle) -> ByteImage:
-    """Crop the image to the pixels that a rectangle of the ground spans, without warping.
+    """Crop the image to the pixels that a rectangle of the terrain spans, without warping.
 
     For a classifier whose training patches have no metric scale.
     """
@@ -96,7 +96,7 @@ def view_shape(rectangle: Rectangle, metres_per_pixel: float) -> tuple[int, int]
     return rows, columns
 
 
-@lru_cache(maxsize=16)  # asked for by whoever chooses a region, and again for its view
+@lru_cache(maxsize=16)  # needed to choose a region, and again for its view
 def ground_sampling_m(camera: Camera, rectangle: Rectangle) -> tuple[float, float]:
     """Finest and coarsest size of a pixel on the ground over a rectangle [m].
 

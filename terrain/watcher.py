@@ -17,13 +17,13 @@ from odometry.run import Robot
 from terrain.camera import Camera
 from terrain.classification.classifier import Classifier
 from terrain.errors import CameraError, ImageError
-from terrain.felt_sights import FeltSights
+from terrain.feel_labels import FeelLabels
+from terrain.image_label import ImageLabel, answered
 from terrain.images import read_image
-from terrain.places import Footprint, Sight
+from terrain.place_labels import Footprint, PlaceLabel
 from terrain.region import Rectangle, Region, RegionConfig, predict_region
-from terrain.seen_so_far import SeenSoFar
-from terrain.sighting import Sighting, answered
-from terrain.suited import coarsest_m, unsuited
+from terrain.region_scale import coarsest_m, scale_mismatch
+from terrain.run_likeness import RunLikeness
 from terrain.switch import Switch, SwitchConfig, SwitchEvent
 from terrain.warp import ground_view, pixel_view, view_shape
 
@@ -44,20 +44,20 @@ class TerrainWatcher:
     folder : Path, optional
         What names of image files are relative to.
     keep : int, optional
-        How many of the latest sightings and events are kept; by default all.
-    felt : FeltSights, optional
-        What the robot feels, as one more source.
+        How many of the latest image labels and events are kept; by default all.
+    felt : FeelLabels, optional
+        Terrain by feel, as one more source.
 
     Attributes
     ----------
     classifier : Classifier
-    sightings : list of Sighting
-        One for each image that was seen.
+    image_labels : list of ImageLabel
+        One for each image.
     in_force : list of str
-        The terrain in force after each sighting.
+        The terrain in force after each image label.
     events : list of SwitchEvent
-    seen : SeenSoFar
-        Whether the images look like the training photographs; labels count less where not.
+    seen : RunLikeness
+        Whether the images are similar to the training photographs; if not, labels count less.
     """
 
     def __init__(
@@ -71,16 +71,16 @@ class TerrainWatcher:
         switch: SwitchConfig,
         folder: Path | None = None,
         keep: int | None = None,
-        felt: FeltSights | None = None,
+        felt: FeelLabels | None = None,
     ) -> None:
         self.initial = initial
-        self.sightings: list[Sighting] = []
+        self.image_labels: list[ImageLabel] = []
         self.in_force: list[str] = []
         self.events: list[SwitchEvent] = []
         self._robot = robot
         self._camera = camera
         self.classifier = classifier
-        self.seen = SeenSoFar(classifier)
+        self.seen = RunLikeness(classifier)
         self._region = region
         self._folder = folder
         self._keep = keep
@@ -95,19 +95,19 @@ class TerrainWatcher:
         self._has_answered = False
 
     def terrain(self, frame: Frame, estimate: Estimate) -> Footing:
-        """Look at the frame's image, if it has one, and tell what the robot stands on."""
+        """Classify the frame's image, if it has one, and return the terrain under the robot."""
         self._travel_m += self._travelled_m(frame)
         travel_m = self._travel_m
         pose = self._pose_at(frame, estimate)
         if frame.in_gap:
-            self._switch = self._switch.astray()
+            self._switch = self._switch.without_labels()
         if frame.image is not None:
-            sighting = self.look(frame, estimate)
-            self.sightings.append(sighting)
-            if sighting.label and sighting.region is not None:
-                given = self.seen.weighed(sighting.label, sighting.probabilities)
-                sight = _sight(sighting, sighting.region, given, pose, travel_m)
-                self._switch = self._switch.see(self._beside(sight))
+            image_label = self.look(frame, estimate)
+            self.image_labels.append(image_label)
+            if image_label.label and image_label.region is not None:
+                given = self.seen.weighed(image_label.label, image_label.probabilities)
+                place_label = _place_label(image_label, image_label.region, given, pose, travel_m)
+                self._switch = self._switch.add_label(self._beside(place_label))
         self._feel(frame, pose)
         self._switch = self._switch.at(frame.stamp_s, pose, travel_m)
         if self._switch.event is not None:
@@ -115,27 +115,27 @@ class TerrainWatcher:
         if frame.image is not None:
             self.in_force.append(self._switch.footing.terrain)
         if self._keep is not None:
-            for one in (self.sightings, self.in_force, self.events):
+            for one in (self.image_labels, self.in_force, self.events):
                 del one[: -self._keep]
         return self._switch.footing
 
-    def _beside(self, sight: Sight) -> Sight:
-        """A sight that says nothing of terrains which only feel knows."""
+    def _beside(self, place_label: PlaceLabel) -> PlaceLabel:
+        """A label that gives no evidence on terrains which only feel can name."""
         if self._felt is None:
-            return sight
-        return replace(sight, probabilities=self._felt.beside(sight.probabilities))
+            return place_label
+        return replace(place_label, probabilities=self._felt.beside(place_label.probabilities))
 
     def _feel(self, frame: Frame, pose: FloatArray) -> None:
-        """Take in what was felt up to a frame."""
+        """Add the labels by feel up to a frame."""
         if self._felt is None:
             return
         after_s, self._felt_upto_s = self._felt_upto_s, frame.stamp_s
-        for sight in self._felt.between(after_s, frame.stamp_s, pose, self._travel_m):
-            self._switch = self._switch.see(sight)
+        for place_label in self._felt.between(after_s, frame.stamp_s, pose, self._travel_m):
+            self._switch = self._switch.add_label(place_label)
 
     @property
     def event(self) -> SwitchEvent | None:
-        """What the latest frame brought into force."""
+        """The switch at the latest frame, if any."""
         return self._switch.event
 
     def _travelled_m(self, frame: Frame) -> float:
@@ -147,18 +147,18 @@ class TerrainWatcher:
         return travel_m if math.isfinite(travel_m) else 0.0
 
     def _pose_at(self, frame: Frame, estimate: Estimate) -> FloatArray:
-        """The robot at a frame in the odometry frame, by what the filter believed of each step."""
+        """The robot at a frame in the odometry frame, by the filter's yaw rate at each step."""
         if self._last is not None:
             believed = estimate.believed_yaw_rate_rad_s
             self._pose = _carried(self._pose, self._last, estimate.stamp_s, believed)
         self._last = estimate
         return _carried(self._pose, estimate, frame.stamp_s, frame.yaw_rate_rad_s)
 
-    def look(self, frame: Frame, estimate: Estimate) -> Sighting:
+    def look(self, frame: Frame, estimate: Estimate) -> ImageLabel:
         """Classify the region ahead in the image of a frame.
 
         An image that cannot be read, a grey one where the classifier needs colour, or one of
-        another size among good ones, is a sighting without a label, so that one bad file does
+        another size among good ones, is a image label without a label, so that one bad file does
         not end a long run.
 
         Raises
@@ -170,7 +170,7 @@ class TerrainWatcher:
             raise ValueError(f"the frame at {frame.stamp_s} s has no image")
         name = self._name(frame.image)
         if not np.all(np.isfinite(frame.tread_speeds_m_s)):
-            return Sighting(frame.stamp_s, name, reason="the tread speeds are not known")
+            return ImageLabel(frame.stamp_s, name, reason="the tread speeds are not known")
         commanded = replace(estimate, tread_speeds_m_s=frame.tread_speeds_m_s)
         region = predict_region(
             self._robot,
@@ -179,20 +179,20 @@ class TerrainWatcher:
             float(np.abs(frame.tread_speeds_m_s).mean()),
             self._region,
             coarsest_m=coarsest_m(self.classifier, self._region.coarsest),
-            unsuited=self._unsuited,
+            scale_mismatch=self._scale_mismatch,
         )
         if isinstance(region, str):
-            return Sighting(frame.stamp_s, name, reason=region)
+            return ImageLabel(frame.stamp_s, name, reason=region)
         try:
             image = read_image(frame.image) if isinstance(frame.image, Path) else frame.image
         except ImageError:
-            return Sighting(frame.stamp_s, name, region=region, reason="the image cannot be read")
+            return ImageLabel(frame.stamp_s, name, region=region, reason="the image cannot be read")
         if not self._is_of_size(image, name or f"the image of {frame.stamp_s} s"):
             reason = "the image is not of the camera's size"
-            return Sighting(frame.stamp_s, name, region=region, reason=reason)
+            return ImageLabel(frame.stamp_s, name, region=region, reason=reason)
         if self.classifier.colour_ and image.ndim != 3:
             reason = "the image is grey, the model was trained with colour"
-            return Sighting(frame.stamp_s, name, region=region, reason=reason)
+            return ImageLabel(frame.stamp_s, name, region=region, reason=reason)
         views = [self._view(image, r) for r in region.rectangles]
         answers = self.classifier.classify(views)
         self.seen.add(views)
@@ -214,8 +214,8 @@ class TerrainWatcher:
             raise CameraError(f"{name}: {error}; see [camera] image_size in run.toml") from error
         return True
 
-    def _unsuited(self, rectangle: Rectangle) -> str:
-        return unsuited(self.classifier, self._camera, rectangle, self._region.coarsest)
+    def _scale_mismatch(self, rectangle: Rectangle) -> str:
+        return scale_mismatch(self.classifier, self._camera, rectangle, self._region.coarsest)
 
     def _view(self, image: ByteImage, rectangle: Rectangle) -> ByteImage:
         scale = self.classifier.metres_per_pixel
@@ -242,16 +242,16 @@ def _carried(
     return state[:3]
 
 
-def _sight(
-    sighting: Sighting,
+def _place_label(
+    image_label: ImageLabel,
     region: Region,
     given: Mapping[str, float],
     pose: FloatArray,
     travel_m: float,
-) -> Sight:
-    return Sight(
-        sighting.label,
-        sighting.stamp_s,
+) -> PlaceLabel:
+    return PlaceLabel(
+        image_label.label,
+        image_label.stamp_s,
         travel_m,
         se2.transform(pose, region.place),
         region.distance_ahead_m,

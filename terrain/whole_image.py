@@ -1,4 +1,4 @@
-"""All the ground that an image shows, cut into cells and classified (Chen 2023, Fig. 6)."""
+"""All the terrain that an image shows, cut into cells and classified (Chen 2023, Fig. 6)."""
 
 from dataclasses import dataclass
 
@@ -16,14 +16,14 @@ MOST_AHEAD_M = 4.0
 
 @dataclass(frozen=True)
 class Cell:
-    """A square of ground in the robot frame and what it was taken for."""
+    """A square of terrain in the robot frame and its class."""
 
     rectangle: Rectangle
     classification: Classification
 
 
 def classify_ground(image: ByteImage, camera: Camera, classifier: Classifier) -> list[Cell]:
-    """Classify the visible ground cell by cell, as one would without a prediction of the path.
+    """Classify the visible terrain cell by cell, as without a prediction of the path.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def classify_ground(image: ByteImage, camera: Camera, classifier: Classifier) ->
     Returns
     -------
     list of Cell
-        Near cells first, from left to right. Empty where the image shows no ground finely enough.
+        Near cells first, from left to right. Empty where the image shows no terrain finely enough.
 
     Raises
     ------
@@ -48,7 +48,7 @@ def classify_ground(image: ByteImage, camera: Camera, classifier: Classifier) ->
     scale = classifier.metres_per_pixel
     if scale is None:
         raise TerrainError(
-            "the classifier was trained without metres per pixel; the ground of a whole image "
+            "the classifier was trained without metres per pixel; the terrain of a whole image "
             "can only be cut into cells of a known size"
         )
     camera.check_size(image)
@@ -59,7 +59,7 @@ def classify_ground(image: ByteImage, camera: Camera, classifier: Classifier) ->
 
 
 def visible_cells(camera: Camera, size_m: float, coarsest_m: float) -> list[Rectangle]:
-    """Squares of ground, side by side, that the image holds whole and shows finely enough.
+    """Squares of terrain, side by side, that the image shows whole and finely enough.
 
     Parameters
     ----------
@@ -67,12 +67,12 @@ def visible_cells(camera: Camera, size_m: float, coarsest_m: float) -> list[Rect
     size_m : float
         Side of a square.
     coarsest_m : float
-        A pixel may cover so much ground at the most.
+        A pixel may cover so much terrain at the most.
 
     Returns
     -------
     list of Rectangle
-        From the nearest ground straight ahead to 4 m; near first, then from left to right.
+        From the nearest terrain straight ahead to 4 m; near first, then from left to right.
     """
     nearest_m = _nearest_ahead_m(camera)
     if nearest_m is None:
@@ -113,7 +113,7 @@ def _is_visible(camera: Camera, cell: Rectangle) -> bool:
 
 
 def _nearest_ahead_m(camera: Camera) -> float | None:
-    """The nearest ground straight ahead of the robot that the image shows."""
+    """The nearest terrain straight ahead of the robot that the image shows."""
     x = np.linspace(0.0, MOST_AHEAD_M, 401)
     seen: BoolArray = camera.in_image(camera.ground_to_pixels(np.stack([x, 0 * x], axis=-1)))
     return float(x[seen.argmax()]) if seen.any() else None

@@ -1,4 +1,4 @@
-"""Roll and pitch of the robot, as the orientation of its Imu messages tells them."""
+"""Roll and pitch of the robot, from the orientation of its Imu messages."""
 
 import math
 import tempfile
@@ -12,7 +12,7 @@ from odometry.bags.poses import rotations_of
 from odometry.geometry import se3
 
 TILTED_DEG = 50.0  # no skid-steer robot drives there in the mean
-OFF_GRAVITY_DEG = 15.0  # of the mean specific force, from the vertical that orientation tells
+OFF_GRAVITY_DEG = 15.0  # of the mean specific force, from the vertical of the orientation
 LEAST_GRAVITY_M_S2 = 5.0  # less: gravity is left out of the accelerations, or the unit is another
 BLOCK = 8192  # rows of odometry.csv at a time
 
@@ -23,7 +23,7 @@ class Attitudes:
     Attributes
     ----------
     written : int
-        Attitudes that were told.
+        Number of attitudes written.
     """
 
     def __init__(self, robot_from_imu: FloatArray) -> None:

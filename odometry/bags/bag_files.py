@@ -101,7 +101,7 @@ def bag_files(paths: Sequence[Path], losses: Losses) -> list[BagFile]:
 
 
 def is_bag(path: Path) -> bool:
-    """Whether a path looks like a bag: a file that starts as one, or a folder that holds such."""
+    """Whether a path may be a bag: a file that starts as one, or a folder that holds such files."""
     if path.is_dir():
         return any(map(is_bag, _named_as_bags(path)))
     try:

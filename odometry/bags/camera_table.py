@@ -49,7 +49,7 @@ def camera_table(
 
 
 def looks_along_z(robot_from_frame: FloatArray) -> bool:
-    """Whether a frame may be an optical one: along its z it does not look up, or along x no less.
+    """Whether a frame may be an optical one: its z axis points no higher than its x axis.
 
     Some drivers name the frame of the camera's body, x ahead and z upwards, in their images.
     """

@@ -1,4 +1,4 @@
-"""What a bag says of a topic, and one of its messages as it stands there."""
+"""A topic of a bag as the bag describes it, and one of its messages, not yet decoded."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -17,7 +17,7 @@ class Connection:
     message_type : str
         As ROS 2 writes it: package/msg/Name.
     encoding : str
-        How messages are laid out: one of READABLE, or another that nobody here reads.
+        Encoding of the messages: one of READABLE, or another, which cannot be read.
     definition : str
         Text of the message definition; empty where the bag has none.
     schema : str

@@ -9,7 +9,7 @@ import numpy as np
 from odometry.bags.errors import BagError
 
 STEP = re.compile(r"([A-Za-z_]\w*)|\[(-?\d+)\]")
-DEEPEST, LONGEST_ARRAY = 4, 16  # of what is looked through for numbers
+DEEPEST, LONGEST_ARRAY = 4, 16  # limits of the search for numbers
 
 
 def number_paths(message: Any, prefix: str = "", depth: int = 0) -> Iterator[str]:

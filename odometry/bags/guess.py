@@ -18,8 +18,8 @@ from odometry.bags.message_kinds import (
     TRANSFORM_LISTS,
     TWISTS,
 )
-from odometry.bags.sides import side_of, sided
 from odometry.bags.topic import Topic
+from odometry.bags.wheel_names import side_of, sided
 
 COMMANDS = re.compile(
     r"cmd|command|goal|target|setpoint|set_point|plan|desired|waypoint|initialpose|joy|teleop",
@@ -143,7 +143,7 @@ def _fields(topic: Topic) -> list[Guess]:
 
 
 def unit_of(name: str, paths: Iterable[str]) -> str:
-    """Unit of wheel speeds by the names of a topic and its fields; empty where none speaks."""
+    """Unit of wheel speeds by the names of a topic and its fields; empty where none names one."""
     words = " ".join((name, *paths)).lower()
     for unit, mark in UNIT_MARKS:
         if re.search(mark, words):

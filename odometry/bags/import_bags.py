@@ -21,7 +21,8 @@ from odometry.bags.run_settings import run_settings
 from odometry.bags.speeds import FASTEST_M_S
 from odometry.bags.streams import Stream
 from odometry.bags.survey import REPORT_EVERY, Progress, Survey
-from odometry.bags.what_was_lost import lost_of
+
+MOST_REASONS = 3
 
 
 @dataclass(frozen=True)
@@ -85,7 +86,7 @@ def write_run(
 
 
 def _too_fast(plan: Plan) -> list[str]:
-    """What to look at where no row of wheel speeds is left."""
+    """What to check where no row of wheel speeds is left."""
     unit = plan.wheels.unit
     why = f"speeds above {FASTEST_M_S:g} m/s are left out; is the unit ({unit}) right? See --unit"
     return [why] if unit else []
@@ -133,3 +134,27 @@ def _read(
         for stream in of_topic:
             stream.add(message, content)
     progress(count % REPORT_EVERY)
+
+
+def lost_of(stream: Stream) -> Iterator[str]:
+    """Sentences on messages of a topic that did not become rows; nothing where all did."""
+    sink, topic = stream.sink, stream.topic
+    if sink.repeated:
+        yield f"{topic}: {sink.repeated} messages repeat the stamp of one before; dropped"
+    if sink.back:
+        far = getattr(sink, "farthest_back_s", 0.0)
+        how_far = f", by up to {far:.3g} s" if far else ""
+        yield (
+            f"{topic}: {sink.back} messages have a stamp that goes back{how_far}; dropped "
+            "(--time log takes the times at which the bag received them)"
+        )
+    if incomplete := getattr(sink, "incomplete", 0):
+        yield f"{topic}: {incomplete} rows lack a number that {stream.file} needs; dropped"
+    reasons = stream.dropped.most_common()
+    for reason, count in reasons[:MOST_REASONS]:
+        yield f"{topic}: {count} messages dropped: {reason}"
+    if len(reasons) > MOST_REASONS:
+        rest = sum(count for _, count in reasons[MOST_REASONS:])
+        yield f"{topic}: {rest} more messages dropped for other reasons"
+    if not sink.written:
+        yield f"{topic}: nothing of it could be used; there is no {stream.file}"

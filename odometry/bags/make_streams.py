@@ -25,7 +25,7 @@ from odometry.bags.poses import (
 from odometry.bags.speeds import TreadSpeeds, row_reader
 from odometry.bags.streams import Images, Rows, Stream, TransformRows
 from odometry.bags.survey import Survey
-from odometry.bags.transform_poses import TransformPoses
+from odometry.bags.transforms import TransformPoses
 
 IMU_COLUMNS = ("gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z")
 OTHER = "other_odometry"

@@ -1,7 +1,8 @@
 """MCAP files, read from front to back: no index and no summary are needed.
 
 The index at the end of a file is never used, so that a file that was cut off is read as any other;
-where the end is there, topics are known even if their first announcement is damaged. Source: https://mcap.dev/spec.
+where the end is there, topics are known even if their first announcement is damaged. Source:
+https://mcap.dev/spec.
 """
 
 import re
@@ -194,7 +195,7 @@ def _strings(record: memoryview, begin: int, count: int) -> list[str]:
 
 
 def _next_chunk(stream: BinaryIO, begin: int, size: int) -> int | None:
-    """Where the next chunk that looks whole begins; None where there is none."""
+    """Start of the next chunk that seems complete; None where there is none."""
     for first, window in windows(stream, begin, MARK_BYTES):
         for mark in CHUNK_MARK.finditer(window):
             start = first + mark.start()

@@ -14,13 +14,13 @@ TRANSFORM = "geometry_msgs/msg/TransformStamped"
 POINT = "geometry_msgs/msg/PointStamped"
 TRANSFORM_LISTS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
 
-# Types with a twist (linear ahead, angular about z), and where it stands
+# Types with a twist (linear ahead, angular about z), and the fields that hold it
 TWISTS: dict[str, Callable[[Any], Any]] = {
     ODOMETRY: lambda message: message.twist.twist,
     "geometry_msgs/msg/TwistStamped": lambda message: message.twist,
     "geometry_msgs/msg/TwistWithCovarianceStamped": lambda message: message.twist.twist,
 }
-# Types with a pose (position and orientation, or translation and rotation), and where it stands
+# Types with a pose (position and orientation, or translation and rotation), and its fields
 POSES: dict[str, Callable[[Any], Any]] = {
     ODOMETRY: lambda message: message.pose.pose,
     "geometry_msgs/msg/PoseStamped": lambda message: message.pose,

@@ -50,7 +50,7 @@ class Plan:
     imu, reference, images, camera_info : str
         Names of topics; empty where none is taken.
     frames : Mapping of topic to str
-        The frame whose motion or readings a topic tells.
+        The frame whose motion or readings a topic holds.
     world : str
         Of a reference taken from transforms: the frame in which poses are wanted.
     other_odometry : tuple of str
@@ -145,7 +145,7 @@ def _world(topics: Mapping[str, Topic], wishes: Wishes, reference: str, survey: 
 
 
 def _frame_of(topic: Topic, robot: RobotFrame) -> str:
-    """The frame that a topic tells of; a list of transforms tells of the robot's."""
+    """The frame that a topic describes; for a list of transforms that of the robot."""
     lists = topic.message_type in TRANSFORM_LISTS
     return robot.base if lists else body_frame(topic.sample)
 
@@ -160,8 +160,9 @@ def _no_reference(
     moving = [name for name in told if not name.endswith("static")]
     if moving and "map" in survey.robot.all.frames:
         yield (
-            f"reference: none. {moving[0]} tells the robot's place in the frame map: --reference "
-            f"{moving[0]} takes it (a measurement only where SLAM or satellites made it)"
+            f"reference: none. {moving[0]} holds the robot's position in the frame map: "
+            f"--reference {moving[0]} takes it (a measurement only where SLAM or satellites made "
+            "it)"
         )
     else:
         yield "reference: none; the run has no pose.csv"

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.bags.sides import is_wheel, side_of
+from odometry.bags.wheel_names import is_wheel, side_of
 from odometry.geometry import se3
 
 LONGEST = 16 * 1024**2  # characters
@@ -95,7 +95,7 @@ def _triple(text: str | None) -> FloatArray:
 
 
 def _radius(link: ET.Element) -> float | None:
-    """Radius of a link that is a cylinder or a sphere, by its collision shape, else its look."""
+    """Radius of a link that is a cylinder or a sphere, by its collision, else visual shape."""
     for place in ("collision", "visual"):
         for kind in ("cylinder", "sphere"):
             shape = link.find(f"{place}/geometry/{kind}")

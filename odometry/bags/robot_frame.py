@@ -17,7 +17,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.bags.errors import BagError
 from odometry.bags.robot_seen import RobotSeen
-from odometry.bags.sides import is_wheel, side_of
+from odometry.bags.wheel_names import is_wheel, side_of
 
 BASES = ("base_footprint", "base_link", "base", "chassis_link", "body", "trunk")
 HOW_TRACK = "measure from the middle of the left wheels (or tracks) to the middle of the right ones"
@@ -70,7 +70,7 @@ def robot_frame(robot: RobotSeen, wishes: Mapping[str, Any], bodies: Iterable[st
     wishes : Mapping
         The table [robot] of a map.
     bodies : of str
-        Frames whose motion odometry topics tell: where names do not say the base frame, one of
+        Frames whose motion odometry topics hold: where names do not give the base frame, one of
         these is it.
 
     Raises

@@ -13,7 +13,7 @@ TRANSFORMS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
 PARAMETERS = "rcl_interfaces/msg/ParameterEvent"
 TEXT = "std_msgs/msg/String"
 ROBOT_TYPES = (*TRANSFORMS, PARAMETERS, TEXT)
-MOST_DYNAMIC = 200  # messages of /tf that are looked at
+MOST_DYNAMIC = 200  # messages of /tf that are decoded
 NUMBERS = {"wheel_radius": "wheel_radius", "wheel_separation": "track_width"}
 STILL = 1e-6  # of the values of a transform
 WORLD = re.compile(r"(^|/)(odom|map|world|earth|utm)", re.IGNORECASE)
@@ -39,7 +39,7 @@ class RobotSeen:
         return kind == PARAMETERS or (kind == TEXT and b"<robot" in bytes(message.data))
 
     def look(self, message: Message, content: Any) -> None:
-        """Take in a message that `wants` was true of."""
+        """Read a message for which `wants` is true."""
         kind = message.connection.message_type
         if kind in TRANSFORMS:
             fixed = message.connection.topic.endswith("static")

@@ -137,7 +137,7 @@ def _inside(
 
 
 def _next_chunk(stream: BinaryIO, begin: int) -> int | None:
-    """Where the next chunk that looks whole begins; None where there is none."""
+    """Start of the next chunk that seems complete; None where there is none."""
     for first, window in windows(stream, begin, MARK_BYTES):
         for mark in CHUNK_MARK.finditer(window):
             for back in range(4, 64):

@@ -1,7 +1,7 @@
 """Bag files of ROS 2 in SQLite (.db3), row by row.
 
 Rows come in the order in which they were written. Where the file is cut or damaged, rows behind
-the damage are looked for as well. Source: rosbag2_storage_sqlite3, schemas 1 to 4.
+the damage are searched for as well. Source: rosbag2_storage_sqlite3, schemas 1 to 4.
 """
 
 import sqlite3
@@ -34,7 +34,7 @@ def sqlite_messages(file: Path, losses: Losses) -> Iterator[Message]:
     journal = file.with_name(file.name + "-wal")
     if journal.is_file() and journal.stat().st_size:
         losses.append(
-            f"{file}: what stands in {journal.name} is not read; write it into the bag first: "
+            f"{file}: the content of {journal.name} is not read; write it into the bag first: "
             f"sqlite3 {file} 'PRAGMA wal_checkpoint'"
         )
     database = sqlite3.connect(f"file:{quote(str(file.resolve()))}?mode=ro&immutable=1", uri=True)
@@ -75,7 +75,7 @@ def _missing_pages(file: Path) -> Iterator[str]:
 def _rows(
     database: sqlite3.Connection, file: Path, topics: Container[int], losses: Losses
 ) -> Iterator[Row]:
-    """Rows in their order; those that SQLite does not reach are looked for page by page."""
+    """Rows in their order; those that SQLite does not reach are searched page by page."""
     last = 0
     try:
         for row in database.execute(ROWS):

@@ -10,7 +10,7 @@ from odometry.bags.errors import BagError
 from odometry.bags.image_files import ImageFiles
 from odometry.bags.ordered_rows import OrderedRows
 from odometry.bags.topic import header_ns
-from odometry.bags.transform_poses import TransformPoses
+from odometry.bags.transforms import TransformPoses
 
 Row = tuple[float, ...]
 

@@ -1,9 +1,41 @@
-"""What bags hold of a topic."""
+"""A topic of a bag in summary: count, times, a sample message, and the range of its motion."""
 
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from odometry.bags.motion_seen import Ranges
+VELOCITY, PLACE = "velocity", "place"
+MOVING_TYPES = ("sensor_msgs/msg/JointState", "nav_msgs/msg/Odometry")
+Ranges = dict[tuple[str, str], tuple[float, float]]
+
+
+def widen(ranges: Ranges, message: Any) -> None:
+    """Widen the ranges of velocities and places by those of a joint state or an odometry."""
+    for kind, name, value in _values(message):
+        if math.isfinite(value):
+            least, most = ranges.get((kind, name), (value, value))
+            ranges[kind, name] = min(least, value), max(most, value)
+
+
+def moved(ranges: Ranges, kind: str, name: str) -> bool:
+    """Whether a place was ever another, or a velocity ever other than zero."""
+    least, most = ranges.get((kind, name), (0.0, 0.0))
+    return least != most or (kind == VELOCITY and least != 0)
+
+
+def _values(message: Any) -> Iterator[tuple[str, str, float]]:
+    if hasattr(message, "twist"):
+        twist, place = message.twist.twist, message.pose.pose.position
+        yield VELOCITY, "ahead", twist.linear.x
+        yield VELOCITY, "turn", twist.angular.z
+        yield PLACE, "x", place.x
+        yield PLACE, "y", place.y
+        return
+    for name, value in zip(message.name, message.velocity, strict=False):
+        yield VELOCITY, name, float(value)
+    for name, value in zip(message.name, message.position, strict=False):
+        yield PLACE, name, float(value)
 
 
 @dataclass(frozen=True)
@@ -21,7 +53,7 @@ class Topic:
     header_offset_s : float or None
         Median of header stamp minus time of reception; None where there is no header stamp.
     ranges : Mapping
-        Of the numbers that tell motion, see `motion_seen`.
+        Smallest and largest value of the motion fields, see `motion_ranges`.
     problem : str
         Why it cannot be read; empty where it can.
     """

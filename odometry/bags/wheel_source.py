@@ -9,10 +9,8 @@ from odometry.bags.errors import BagError
 from odometry.bags.fields import number_at, number_paths
 from odometry.bags.guess import SIMPLE_ARRAY, unit_of
 from odometry.bags.message_kinds import JOINTS, NO_WHEELS, ODOMETRY, TWISTS
-from odometry.bags.motion_seen import PLACE, VELOCITY, moved
-from odometry.bags.sides import side_of, sided
-from odometry.bags.topic import Topic
-from odometry.bags.wheel_units import UNITS, check_unit, gear_of
+from odometry.bags.topic import PLACE, VELOCITY, Topic, moved
+from odometry.bags.wheel_names import UNITS, check_unit, gear_of, side_of, sided
 
 HOW_RADIUS = (
     "roll the robot straight ahead for ten turns of a wheel, and divide the way by 62.83; or "
@@ -62,15 +60,15 @@ def wheel_source(topic: Topic, wishes: Mapping[str, Any], radius_m: float | None
     ----------
     topic : Topic
     wishes : Mapping
-        The table [wheels] of a map; what it does not say is told by names.
+        The table [wheels] of a map; what it does not give is guessed from names.
     radius_m : float or None
         Of the wheels; needed where the numbers are angles.
 
     Raises
     ------
     BagError
-        If it cannot be told which numbers are left and right, or their unit, or the radius is not
-        known: it says what to give.
+        If the left and right numbers or their unit cannot be determined, or the radius is not
+        known: the message says which option to give.
     """
     if topic.sample is None:
         raise BagError(f"{topic.name}: no message of it can be read: {topic.problem}")

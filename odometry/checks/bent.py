@@ -150,7 +150,7 @@ def _ratio_by_yaw(evidence: Evidence, along_rad: float, sharp: BoolArray) -> flo
 
 
 def _lasts(motion: Motion, distance_m: FloatArray, whole: Relation) -> bool:
-    """Whether both halves of the recording, where they tell, have the stretch of the whole."""
+    """Whether both halves of the recording, where they suffice, give the scale of the whole."""
     known = np.flatnonzero(np.isfinite(distance_m))
     halves = [_by_course(motion.rows(rows), distance_m[rows]) for rows in np.array_split(known, 2)]
     size = float(np.sum(whole.coefficients[1:] ** 2))

@@ -3,7 +3,7 @@
 CATALOGUE: dict[str, str] = {
     # Files, stamps and run.toml
     "no_run_folder": "a bag, another file or folder",
-    "column_name": "a column that nobody reads, with a name like a known one",
+    "column_name": "a column that is not read, with a name like a known one",
     "unreadable": "a file is not as the format says",
     "one_row": "odometry.csv has one row",
     "stamp_unit": "stamps in ns, us or ms",
@@ -16,7 +16,7 @@ CATALOGUE: dict[str, str] = {
     "track_width": "track width far from the width that turns imply",
     "sensor_place": "[sensors] pose in mm",
     "terrain_names": "two spellings of one terrain",
-    "sensors_disagree": "sensors differ, and no cause can be told",
+    "sensors_disagree": "sensors differ, and the cause cannot be determined",
     # Treads
     "tread_unit": "tread speeds in rad/s, RPM, mm/s, ticks ...",
     "scale": "tread speeds or positions scaled",

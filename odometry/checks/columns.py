@@ -1,4 +1,4 @@
-"""Columns that nobody reads, whose names are near to those that are read."""
+"""Columns that are not read, with names close to those of columns that are."""
 
 from collections.abc import Iterator
 from difflib import SequenceMatcher
@@ -41,7 +41,7 @@ ALIKE = 0.8
 
 
 def columns(evidence: Evidence) -> Iterator[Finding]:
-    """Columns that look like a known one that is not there."""
+    """Columns with a name close to that of a known column which is missing."""
     for file, table in tables_of(evidence.run).items():
         known = KNOWN.get(file, ())
         for name in table.columns:

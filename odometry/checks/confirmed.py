@@ -5,9 +5,8 @@ from collections.abc import Callable, Iterable, Sequence
 from odometry.checks.catalogue import CATALOGUE
 from odometry.checks.disagreement import lasting_disagreements
 from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level
+from odometry.checks.finding import Finding, Level, disagreement
 from odometry.checks.mending import Mend, between, in_turn
-from odometry.checks.unnamed import disagreement
 from odometry.run import Run
 
 MOMENTS = frozenset({"pose_jumps", "yaw_jumps"})  # are undone by a cut
@@ -102,7 +101,7 @@ def _left(parts: Sequence[Evidence]) -> list[str]:
 
 
 def _unnamed(found: Sequence[Finding], judged: Sequence[Finding], left: list[str]) -> list[Finding]:
-    """The findings with some of them told as a disagreement, after those that are facts."""
+    """The findings, some of them joined in one disagreement, after those that are facts."""
     seen = "; ".join(finding.seen for finding in judged)
     best = ", ".join(dict.fromkeys(CATALOGUE[finding.name] for finding in judged))
     words = f"{seen}; with the likeliest cause ({best}) undone, {'; '.join(left)}"

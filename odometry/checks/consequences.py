@@ -1,4 +1,4 @@
-"""Findings that follow from another one, and are not told beside it."""
+"""Findings that follow from another one, and are not reported beside it."""
 
 from collections.abc import Sequence
 
@@ -86,7 +86,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
 }
 
 
-# No curve of the speeds is looked for where these are.
+# No curve of the speeds is fitted where these were found.
 NOT_CURVES = frozenset(
     {"stuck_encoder", "treads_frozen", "treads_are_twist", "treads_unrelated", "poses_unrelated"}
     | {"treads_equal"}

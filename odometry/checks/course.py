@@ -69,7 +69,7 @@ def _offset(evidence: Evidence, heading: Heading) -> Iterator[Finding]:
             "yaw_backwards",
             seen,
             "Yaw is off by 180 degrees (sensor mounted backwards), or the treads are swapped and "
-            f"both have the wrong sign: these look alike{_as_well(evidence)}",
+            f"both have the wrong sign: these have the same effect{_as_well(evidence)}",
             "Add pi to yaw, or mend the treads",
             yaw_plus(offset),
         )
@@ -95,11 +95,14 @@ def _offset(evidence: Evidence, heading: Heading) -> Iterator[Finding]:
 
 
 def _as_well(evidence: Evidence) -> str:
-    """Other causes where the drive does not tell them from an offset."""
+    """Other causes, where the drive does not distinguish them from an offset."""
     more = ""
     found = headings(evidence.motion, evidence.turn_rad(evidence.motion))
     if found and found["radians, reversed"].concentration > CONSISTENT:
-        more += "; or yaw is reversed or positions are mirrored: one straight line does not tell"
+        more += (
+            "; or yaw is reversed or positions are mirrored: one straight line does not "
+            "distinguish these"
+        )
     if pose_sense(evidence) is Sense.UNKNOWN:
         more += "; or both treads have the wrong sign, if it is by 180 degrees"
     if evidence.arm_share > np.tan(OFF_RAD) / 2:

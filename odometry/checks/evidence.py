@@ -21,7 +21,7 @@ CLEARLY = 0.3  # difference of concentrations or squared correlations that decid
 
 @dataclass(frozen=True)
 class Evidence(Recorded):
-    """A run, and relations between its sensors. All properties are made once, when asked for."""
+    """A run, and relations between its sensors. Each property is computed once, at first use."""
 
     @cached_property
     def yaw_in_degrees(self) -> bool:
@@ -50,7 +50,7 @@ class Evidence(Recorded):
 
     @cached_property
     def heading(self) -> Heading | None:
-        """How yaw and course belong together; None where they do not, or it cannot be told."""
+        """Relation of yaw and course; None where they do not agree, or it cannot be determined."""
         found = headings(self.motion, self.turn_rad(self.motion))
         if not found:
             return None
@@ -62,7 +62,7 @@ class Evidence(Recorded):
 
     @cached_property
     def best_concentration(self) -> float | None:
-        """How well course and yaw agree by the best reading of yaw; None where few windows tell."""
+        """Agreement of course and yaw by the best reading of yaw; None with too few windows."""
         found = headings(self.motion, self.turn_rad(self.motion))
         return max((heading.concentration for heading in found.values()), default=None)
 

@@ -82,7 +82,7 @@ class CheckReport:
     ----------
     folder : Path
     findings : tuple of Finding
-        By level; within a level a cause stands before what follows from it.
+        By level; within a level a cause is listed before its consequences.
     skipped : tuple of str
         What could not be checked, and why.
 
@@ -138,3 +138,14 @@ def in_order(findings: Iterable[Finding]) -> tuple[Finding, ...]:
     """Most severe first; findings of one level keep their order."""
     rank = list(Level)
     return tuple(sorted(findings, key=lambda finding: rank.index(finding.level)))
+
+
+def disagreement(seen: str) -> Finding:
+    """The finding where sensors differ and the cause cannot be determined."""
+    return Finding(
+        "sensors_disagree",
+        Level.WARNING,
+        seen,
+        "The cause cannot be determined: no single known fault explains it",
+        "Look where they part: check --picture",
+    )

@@ -60,7 +60,7 @@ def gaps(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _only_changes(evidence: Evidence) -> bool:
-    """Whether a row stands only where a speed changed by more than a limit."""
+    """Whether rows were recorded only where a speed changed by more than a limit."""
     changes = np.abs(np.diff(evidence.run.odometry.stack("v_left", "v_right"), axis=0)).max(axis=1)
     return bool(np.quantile(changes, 0.02) > LIMIT * np.median(changes))
 

@@ -7,8 +7,8 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, counted
+from odometry.checks.outliers import spikes
 from odometry.checks.spans import constant_spans
-from odometry.checks.spikes import spikes
 
 LEAST_BIAS_RAD_S = 0.003
 LARGE_BIAS_RAD_S = 0.1
@@ -65,7 +65,7 @@ def _turns_at_rest(rate_rad_s: float, how: str) -> Finding:
 
 def stationary_bias(evidence: Evidence) -> tuple[float, float, str] | None:
     """Bias [rad/s], its standard deviation, and from what: while both treads stand still."""
-    assert evidence.yaw_rate is not None  # noqa: S101 - the caller has looked
+    assert evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
     stamps_s, rates = evidence.yaw_rate
     still = np.abs(evidence.run.odometry.stack("v_left", "v_right")).max(axis=1) < STATIONARY_M_S
     rows = np.clip(np.searchsorted(evidence.stamps_s, stamps_s, side="right") - 1, 0, None)
@@ -91,7 +91,7 @@ def _bias_by_poses(evidence: Evidence) -> tuple[float, float, str] | None:
 
 
 def _clipped(evidence: Evidence) -> Iterator[Finding]:
-    assert evidence.yaw_rate is not None  # noqa: S101 - the caller has looked
+    assert evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
     rates = evidence.yaw_rate[1]
     largest = float(np.abs(rates).max())
     at_top = np.abs(np.abs(rates) - largest) < 1e-9
@@ -107,7 +107,7 @@ def _clipped(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _dead(evidence: Evidence) -> Iterator[Finding]:
-    assert evidence.yaw_rate is not None  # noqa: S101 - the caller has looked
+    assert evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
     stamps_s, rates = evidence.yaw_rate
     spans = constant_spans(stamps_s, rates, DEAD_S)
     odd = [span for span in spans if _turns_by_treads(evidence, span)]
@@ -140,7 +140,7 @@ def _turns_by_treads(evidence: Evidence, span: FloatArray) -> bool:
 
 def _absurd(evidence: Evidence) -> Iterator[Finding]:
     found = evidence.run.yaw_rate
-    assert found is not None  # noqa: S101 - the caller has looked
+    assert found is not None  # noqa: S101 - checked by the caller
     rates = found.yaw_rate_rad_s
     far = spikes(rates) & (np.abs(rates) > 3 * np.quantile(np.abs(rates), 0.99) + 1.0)
     if far.any():

@@ -7,7 +7,7 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence import Evidence
 
-LONGEST = 1.2  # times the span that is asked for
+LONGEST = 1.2  # times the length that was requested
 LEAST = 30  # spans
 
 

@@ -51,7 +51,10 @@ def pose_late(lag: Lag, other: str) -> Finding:
     word, opposite = _words(lag)
     more = ""
     if other == "the treads":
-        more = f"; or those of the treads are {opposite}: without a gyroscope this cannot be told"
+        more = (
+            f"; or those of the treads are {opposite}: without a gyroscope this cannot be "
+            "determined"
+        )
         if lag.seconds > 0:
             more += " (v_left and v_right may be commands, which the robot follows later)"
     return Finding(
@@ -98,7 +101,8 @@ def treads_apart(evidence: Evidence, lag: Lag, other: str) -> Finding:
     kind, mend = commands_or_stamps(evidence, -lag.seconds)
     if kind == "stamps":
         return _treads("treads_late", lag, other, cause, mend)
-    more = "" if kind == "commands" else "; or their stamps are early: these cannot be told apart"
+    either = "; or their stamps are early: these cannot be distinguished"
+    more = "" if kind == "commands" else either
     return _treads(
         "treads_are_commands",
         lag,

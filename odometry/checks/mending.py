@@ -57,7 +57,7 @@ def yaw_plus(offset_rad: float) -> Mend:
 
 
 def gyroscope_times(run: Run, factor: float) -> Mend:
-    """The yaw rate that is read times a factor, in the file in which it stands."""
+    """The yaw rate that is read, times a factor, in its own file."""
     found = run.yaw_rate
     if run.imu is None or found is None or found.file != "imu.csv":
         return times("odometry", factor, "gyro_z")

@@ -31,7 +31,7 @@ class Motion:
     moved_m : (K, 2)
         Measured x, y at the end less at the start, NaN without poses.
     yaw_rad : (K, 2)
-        Measured yaw at the start and at the end, as it stands in the file.
+        Measured yaw at the start and at the end, as in the file.
     """
 
     start_s: FloatArray
@@ -161,14 +161,14 @@ def scattered(motion: Motion) -> bool:
 
 
 def turns_both_ways(motion: Motion) -> bool:
-    """Whether left and right turns are there: else an offset cannot be told from a wrong width."""
+    """Whether there are left and right turns: else an offset looks like a wrong width."""
     turns = motion.difference_m[np.abs(motion.difference_m) > 0.05 * np.abs(motion.mean_m)]
     left = float(np.mean(turns > 0)) if len(turns) else 0.0
     return 0.15 < left < 0.85
 
 
 def _between_poses(run: Run, of: Integrals, rows: IntArray, window_s: float) -> Motion:
-    assert run.pose is not None  # noqa: S101 - for the type checker: the caller has looked
+    assert run.pose is not None  # noqa: S101 - for the type checker: checked by the caller
     first, last = rows[:-1], rows[1:]
     pose_s = run.pose.stamps_s
     lasts_s = pose_s[last] - pose_s[first]

@@ -14,7 +14,7 @@ TIMES_NOISE = 3.0  # of positions, by which a path must be longer
 ALIKE = 0.5  # below, paths are others: recordings of robots that slip have 0.62 and more,
 ALIKE_BY_TREADS = 0.7  # without a gyroscope, whose turns hold from span to span, 0.82
 STEEP_RAD, STEEP_SHARE = np.radians(8.0), 0.9  # figure eights at 12 degrees slide off their path
-WIDTHS = (1.0, 1.4, 2.0)  # of treads, in track widths, where no gyroscope tells the turns
+WIDTHS = (1.0, 1.4, 2.0)  # of treads, in track widths, where no gyroscope measures the turns
 
 
 def paths_apart(evidence: Evidence) -> str:
@@ -47,11 +47,11 @@ def _is_steep(evidence: Evidence) -> bool:
 def _likeness(
     evidence: Evidence, stamps_s: FloatArray, positions: FloatArray
 ) -> tuple[float, float]:
-    """The likeness of both paths, and that below which they are others; NaN where not known.
+    """Similarity of both paths, and the limit below which they differ; NaN where not known.
 
-    A path that is turned, scaled and moved is one complex number times the other: their complex
-    correlation over a span tells by its size how alike they are, and by its angle the turn. With
-    a gyroscope that turn is the same in the next span.
+    A path that is turned, scaled and moved is one complex number times the other: the size of their
+    complex correlation over a span says how similar they are, its angle by how much one is turned.
+    With a gyroscope that turn is the same in the next span.
     """
     of = evidence.integrals
     begin_s = max(stamps_s[0], evidence.stamps_s[0])

@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level, counted
+from odometry.checks.finding import Finding, Level, counted, disagreement
 from odometry.checks.spans import runs_of, within
 from odometry.checks.steps import (
     FAR_S,
@@ -21,7 +21,6 @@ from odometry.checks.steps import (
     step_sizes,
     without_window_changes,
 )
-from odometry.checks.unnamed import disagreement
 
 LEAST_JUMP_M = 0.4
 LEAST_WITHOUT_HEADING_M = 1.0  # where no heading says which way the robot drove, or it slides
@@ -53,11 +52,11 @@ def jumps(
     ----------
     evidence : Evidence
     rows : (M,)
-        Of pose.csv: the poses that are judged.
+        Of pose.csv: the poses that are checked.
     travel_m : (M,)
         Tread travel at each of them.
     frozen_s : (S, 2)
-        Run time in which the poses are frozen: no jump is looked for there.
+        Run time in which the poses are frozen: jumps are not searched there.
     """
     if evidence.run.pose is None:
         return

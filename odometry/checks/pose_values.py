@@ -111,7 +111,7 @@ def _interpolated(stamps_s: FloatArray, positions: FloatArray) -> Iterator[Findi
             Level.NOTE,
             f"{100 * share:.0f} % of the poses lie exactly on the line between their neighbours",
             "Poses are interpolated (resampled) between fewer measured ones",
-            "Keep the measured ones: the others share their noise and look too good",
+            "Keep the measured ones: the others share their noise and seem too good",
         )
 
 
@@ -133,7 +133,7 @@ def _noisy(evidence: Evidence, stamps_s: FloatArray) -> Iterator[Finding]:
 
 
 def _yaw_constant(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
-    assert evidence.run.pose is not None  # noqa: S101 - the caller has looked
+    assert evidence.run.pose is not None  # noqa: S101 - checked by the caller
     yaw = evidence.run.pose["yaw"][rows]
     turned = float(np.nansum(np.abs(evidence.uniform.gyroscope_rad)))
     if evidence.yaw_rate is None:
@@ -151,7 +151,7 @@ def _yaw_constant(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
 
 def _yaw_is_course(evidence: Evidence, rows: IntArray, positions: FloatArray) -> Iterator[Finding]:
     """The direction from one position to the next, written as yaw: not where the robot points."""
-    assert evidence.run.pose is not None  # noqa: S101 - the caller has looked
+    assert evidence.run.pose is not None  # noqa: S101 - checked by the caller
     yaw = evidence.run.pose["yaw"][rows]
     steps = np.diff(positions, axis=0)
     moving = np.hypot(*steps.T) > 0.3 * np.quantile(np.hypot(*steps.T), 0.9)
@@ -192,7 +192,7 @@ def _quaternion(evidence: Evidence) -> Iterator[Finding]:
     yield _finding(
         "yaw_is_quaternion",
         f"yaw of pose.csv lies within -1 and 1, and twice its arc sine agrees with the course "
-        f"(concentration {half.concentration:.2f}, as it stands {plain.concentration:.2f})",
+        f"(concentration {half.concentration:.2f}, as recorded {plain.concentration:.2f})",
         "Yaw holds a component (z) of a quaternion, not an angle",
         "Convert: yaw = atan2(2 (w z + x y), 1 - 2 (y^2 + z^2))",
     )

@@ -20,6 +20,8 @@ REPEATED = 0.3  # share of poses equal to the one before while the treads move
 LEAST_ARM_M = 0.6
 LASTING = 0.4  # share of the swing that each piece of the recording has
 OUTLIERS = 0.01  # share of poses that go out and back, from which it is a warning
+LEAST_S, LEAST_PERIODS = 5.0, 10.0  # an outage is longer than both
+LEAST_M = 1.0  # that the treads travel meanwhile
 
 
 def poses(evidence: Evidence) -> Iterator[Finding]:
@@ -145,3 +147,31 @@ def _lever_arm(evidence: Evidence) -> Iterator[Finding]:
             f"State its place: [sensors] pose = [{x_m:.2f}, {y_m:.2f}, 0.0]",
             mend=moved(x_m, y_m, _axis_rad(evidence)),
         )
+
+
+def pose_outages(evidence: Evidence) -> Iterator[Finding]:
+    """A reference that was lost, and said nothing meanwhile."""
+    if evidence.run.pose is None or evidence.positions_measured is None:
+        return
+    stamps_s = evidence.run.pose.stamps_s[evidence.positions_measured]
+    inside = (stamps_s >= evidence.stamps_s[0]) & (stamps_s <= evidence.stamps_s[-1])
+    stamps_s = stamps_s[inside]
+    if len(stamps_s) < 2:
+        return
+    lasts_s = np.diff(stamps_s)
+    driven_m = np.diff(evidence.travel_m(stamps_s))
+    long = lasts_s > max(LEAST_S, LEAST_PERIODS * float(np.median(lasts_s)))
+    rows = np.flatnonzero(long & (driven_m > LEAST_M))
+    if not len(rows):
+        return
+    spans = [(evidence.run_time_s(stamps_s[i]), evidence.run_time_s(stamps_s[i + 1])) for i in rows]
+    yield Finding(
+        "pose_outage",
+        Level.NOTE,
+        f"pose.csv has no positions for {lasts_s[rows].sum():.1f} s in "
+        f"{counted(len(rows), 'place')} (first from {spans[0][0]:.1f} s on, for "
+        f"{lasts_s[rows[0]]:.1f} s) while the treads travel {driven_m[rows].sum():.3g} m",
+        "The reference was lost for a while (an outage), or its rows were",
+        "Nothing to do: windows do not cross it, and the filter goes on by the odometer",
+        tuple(spans),
+    )

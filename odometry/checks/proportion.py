@@ -13,7 +13,7 @@ from odometry.checks.turning import lasting_turn_rad
 
 SLOW, FAST = 0.25, 0.9  # shares of the ordinary fastest speed that are compared
 UNLIKE = 1.3  # ratio of what a metre at slow and at fast speed moves the robot; slip stays below
-LASTING = 1.12  # the same in each half of the recording, and in turns where these tell
+LASTING = 1.12  # the same in each half of the recording, and in turns where there are enough
 SURELY = 0.1  # of what a metre turns: standard deviation of its bend
 CERTAIN = 6.0  # standard deviations
 HALVED = 0.6  # share of the residual squares that is left when proportion is given up
@@ -105,7 +105,7 @@ def holds_the_mean(evidence: Evidence) -> str:
     """A column that alone is the way along, of a robot that turns as if it were too narrow.
 
     Turns by a tread and the mean are those of half the width, and the mean is the way along. A
-    sensor above one tread of a robot that turns without slip looks alike.
+    sensor above one tread of a robot that turns without slip has the same effect.
     """
     turn, forward = evidence.gyroscope_by_difference, evidence.forward_by_treads
     if evidence.yaw_rate is None:

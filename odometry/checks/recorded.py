@@ -7,8 +7,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.motion import Integrals, Motion, integrals, motion_between, scattered
-from odometry.checks.pose_cleaning import pose_outliers
-from odometry.checks.spikes import without_spikes
+from odometry.checks.outliers import pose_outliers, without_spikes
 from odometry.run import Run
 
 LONGER_S = (1.0, 2.0)  # windows
@@ -17,7 +16,7 @@ MOST_OUTLIERS = 0.3  # share of the poses: where more are far from the others, n
 
 @dataclass(frozen=True)
 class Recorded:
-    """A run, cleaned. All properties are made once, when asked for.
+    """A run, cleaned. Each property is computed once, at first use.
 
     Attributes
     ----------
@@ -65,7 +64,7 @@ class Recorded:
 
     @cached_property
     def gyroscope_file(self) -> str:
-        """The file in which the yaw rate stands."""
+        """The file that holds the yaw rate."""
         found = self.run.yaw_rate
         return "odometry.csv" if found is None else found.file
 

@@ -5,23 +5,19 @@ from pathlib import Path
 
 import numpy as np
 
-from odometry.checks.agreement import agreement, yaw_against_course
 from odometry.checks.attitude import attitude
 from odometry.checks.bent import bent
 from odometry.checks.columns import columns
 from odometry.checks.confirmed import alone, confirmed
 from odometry.checks.consequences import without_consequences
 from odometry.checks.course import course
-from odometry.checks.disagreement import sensors_disagree
-from odometry.checks.equal_treads import equal_treads
+from odometry.checks.disagreement import agreement, sensors_disagree, yaw_against_course
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import CheckReport, Finding, Level, in_order
 from odometry.checks.gaps import gaps
 from odometry.checks.gyroscope import gyroscope
-from odometry.checks.no_run_folder import no_run_folder
-from odometry.checks.pose_outages import pose_outages
 from odometry.checks.pose_values import pose_values
-from odometry.checks.poses import poses
+from odometry.checks.poses import pose_outages, poses
 from odometry.checks.proportion import proportion
 from odometry.checks.scale_change import scale_change
 from odometry.checks.settings import settings
@@ -29,16 +25,16 @@ from odometry.checks.sides import sides
 from odometry.checks.stamps import stamps, unreadable_stamps
 from odometry.checks.timing import timing
 from odometry.checks.tread_motion import tread_motion
-from odometry.checks.treads import treads
+from odometry.checks.treads import equal_treads, treads
 from odometry.checks.turning import turning
 from odometry.checks.units import units
-from odometry.checks.unreadable import unreadable
+from odometry.checks.unreadable import no_run_folder, unreadable
 from odometry.errors import RunFolderError
 from odometry.run import Run
 
 Check = Callable[[Evidence], Iterator[Finding]]
 
-# In this order findings of one level are told: a cause stands before what follows from it.
+# Findings of one level are reported in this order: a cause before its consequences.
 CHECKS: tuple[Check, ...] = (
     stamps,
     pose_values,

@@ -35,7 +35,7 @@ class Relation:
     explained : float
         Share of the squares of the target that the fit explains, outliers included.
     distinct : bool
-        Whether the data tell the shares of the columns: else no coefficient is certain.
+        Whether the data determine the shares of the columns: else no coefficient is certain.
     """
 
     coefficients: FloatArray
@@ -100,7 +100,7 @@ def relation(target: FloatArray, *columns: FloatArray) -> Relation | None:
 
 
 def pieces(target: FloatArray, *columns: FloatArray) -> list[Relation]:
-    """The relation of columns (K,) to a target (K,) in each quarter of windows that tells it."""
+    """The relation of columns (K,) to a target (K,) in each quarter of windows that suffices."""
     known = np.flatnonzero(np.isfinite(target) & np.isfinite(np.stack(columns)).all(axis=0))
     found = (
         relation(target[rows], *(column[rows] for column in columns))

@@ -5,11 +5,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level
+from odometry.checks.finding import Finding, Level, disagreement
 from odometry.checks.mending import changed, treads_times
 from odometry.checks.motion import turns_both_ways
 from odometry.checks.relation import Relation, pieces, relation
-from odometry.checks.unnamed import disagreement
 
 UNEQUAL = (
     1.15  # ratio of the treads' shares in turns; real ones have 0.94 to 1.07 where terrain holds
@@ -90,7 +89,7 @@ def _unequal(evidence: Evidence, turn: Relation, forward: Relation | None) -> It
 
 
 def _lasts(evidence: Evidence, ratio: float) -> bool:
-    """Whether each piece of the recording that tells has the ratio of the whole."""
+    """Whether each piece of the recording with enough motion has the ratio of the whole."""
     m, turns = evidence.uniform, evidence.uniform.gyroscope_rad
     if evidence.gyroscope_by_treads is None:
         m, turns = evidence.turn_motion, evidence.pose_turn_rad
@@ -103,7 +102,7 @@ def _lasts(evidence: Evidence, ratio: float) -> bool:
 
 
 def _offset(evidence: Evidence) -> Iterator[Finding]:
-    """A constant added to one tread: it drives while the robot stands."""
+    """A constant added to one tread: it reads a speed while the robot is stationary."""
     m = evidence.motion
     if _reads_zero(evidence) or not evidence.yaw_measured or not turns_both_ways(m):
         return
@@ -129,7 +128,7 @@ def _offset(evidence: Evidence) -> Iterator[Finding]:
         "what the treads say",
         f"{tread} an offset of about {abs(offset):.3f} m/s: it reads a constant besides its speed, "
         "a zero that was never set",
-        "Subtract what it reads where the robot stands",
+        "Subtract what it reads while the robot is stationary",
         mend=changed("odometry", "v_left" if left else "v_right", lambda speed: speed - reads),
     )
 

@@ -13,7 +13,7 @@ from odometry.table import Table
 LONGEST_PERIOD_S = 20.0  # poses or images are hardly slower, where odometry.csv is of another time
 LONGEST_ODOMETRY_PERIOD_S = 2.5  # nor are treads that are logged evenly
 EVEN = 3.0  # ratio of a long to a short step below which a log is even: no log of changes
-LONGEST_HOLD_S = 1000.0  # nobody holds a command for longer, usually
+LONGEST_HOLD_S = 1000.0  # commands are usually not held for longer
 SHORTEST_PERIOD_S = 2e-5  # nor is any log faster
 EPOCH_S = 1e8  # stamps above count from 1970 (1e8 s is in 1973)
 USUAL_PERIODS_S = (0.002, 2.0)
@@ -39,7 +39,7 @@ def unreadable_stamps(run: Run) -> Iterator[Finding]:
     odometry_s = run.odometry.stamps_s
     if len(odometry_s) < 2:
         yield _refused(
-            "one_row", "odometry.csv has one row", "The recording is empty", "Record anew"
+            "one_row", "odometry.csv has one row", "The recording is empty", "Record again"
         )
         return
     for name, table in tables.items():

@@ -51,7 +51,7 @@ def found_in(evidence: Evidence, lags: dict[tuple[str, str], Lag]) -> Iterator[F
 
 
 def lags_of(evidence: Evidence) -> dict[tuple[str, str], Lag]:
-    """Lags of the first of two sensors behind the second, of those that can be told."""
+    """Lags of the first of two sensors behind the second, of those that can be estimated."""
     signals = _headings(evidence)
     return {
         (late, early): lag

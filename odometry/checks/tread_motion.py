@@ -51,7 +51,7 @@ def _stuck(evidence: Evidence) -> Iterator[Finding]:
 def _contradicted(evidence: Evidence, span: FloatArray, side: int) -> bool:
     """Whether turns or the way along in a span are far from what the treads say elsewhere.
 
-    Where both treads keep their values, a command that is held looks alike: that is no evidence.
+    Where both treads keep their values, a held command has the same effect: that is no evidence.
     """
     begin_s, end_s = span
     rows = within(evidence.stamps_s, span[None])

@@ -19,7 +19,7 @@ from odometry.checks.relation import Relation
 
 LEAST_TURN_RAD = 1.0  # summed turns below which nothing is said
 UNRELATED = (
-    0.2  # share of the turns explained below which two sensors do not speak of the same turns
+    0.2  # share of the turns explained below which two sensors do not measure the same turns
 )
 
 HELD = 0.9  # share of the turns explained from which less is compared with less
@@ -108,7 +108,7 @@ def pose_sense(evidence: Evidence) -> Sense:
 
 
 def turning(evidence: Evidence) -> Iterator[Finding]:
-    """Signs of treads, gyroscope and yaw: whoever is alone against the others is wrong."""
+    """Signs of treads, gyroscope and yaw: the one that contradicts the other two is wrong."""
     gyroscope, pose = gyroscope_sense(evidence), pose_sense(evidence)
     known = [s for s in (gyroscope, pose) if s is not Sense.UNKNOWN]
     if not known or all(s is Sense.AGREES for s in known):
@@ -221,7 +221,7 @@ def _pose_opposite(evidence: Evidence, others: str, *, alone: bool) -> Finding:
 
 
 def _yaw_reversed(evidence: Evidence, others: str) -> Finding:
-    assert evidence.heading is not None  # noqa: S101 - the caller has looked
+    assert evidence.heading is not None  # noqa: S101 - checked by the caller
     offset = float(np.degrees(evidence.heading.offset_rad))
     compass = abs(abs(offset) - 90) < 20
     cause = "yaw is a compass bearing (clockwise from north)" if compass else "yaw is clockwise"

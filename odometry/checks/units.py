@@ -5,8 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level
-from odometry.checks.imported_unit import imported_unit
+from odometry.checks.finding import Finding, Level, disagreement
 from odometry.checks.mending import times
 from odometry.checks.proportion import holds_the_mean
 from odometry.checks.relation import Relation, pieces
@@ -14,6 +13,7 @@ from odometry.checks.turning import Sense, gyroscope_sense, pose_sense
 from odometry.checks.unit_findings import (
     SLIP_OR_TRACK,
     gyroscope_unit,
+    imported_unit,
     scale_along,
     slip_along,
     too_fast,
@@ -26,7 +26,6 @@ from odometry.checks.unit_tables import (
     matching,
     tread_units,
 )
-from odometry.checks.unnamed import disagreement
 
 # Robots that were measured move 0.75 to 1.05 times as far as their treads where the terrain holds,
 # and turn as if 1.0 to 3.1 times as wide; on ice 0.24 to 0.4 times as far, on snow 10 times
@@ -111,7 +110,7 @@ def _odd(width: float) -> bool:
 
 
 def _slopes(evidence: Evidence, found: Relation) -> list[float]:
-    """Turn per difference of the treads in the pieces of the recording that tell it."""
+    """Turn per difference of the treads in the pieces of the recording that determine it."""
     m = evidence.uniform
     told = pieces(m.gyroscope_rad, m.difference_m, m.lasts_s)
     if found is evidence.pose_turn_by_difference:
@@ -120,7 +119,7 @@ def _slopes(evidence: Evidence, found: Relation) -> list[float]:
 
 
 def _gyroscope_factor(evidence: Evidence) -> float | None:
-    """By what the gyroscope is too large; None where it is in rad/s or nobody can say."""
+    """Factor by which the gyroscope is too large; None where it is in rad/s or not known."""
     by_gyroscope = evidence.pose_turn_by_gyroscope
     if by_gyroscope is not None and by_gyroscope.certain() and by_gyroscope.explained > TIGHT:
         factor = 1 / abs(by_gyroscope.slope)
@@ -175,7 +174,7 @@ def _along(evidence: Evidence, forward: float, tight: bool, width: float | None)
 
 
 def _across(evidence: Evidence, forward: float | None, width: float, tight: bool) -> Finding:
-    """The robot turns as if of another width, while nothing speaks against the way along."""
+    """The robot turns as if of another width, while nothing contradicts the distance driven."""
     track = evidence.run.robot.track_width
     seen = (
         f"the robot turns as if {width * track:.3g} m wide, {width:.3g} times the track_width of "

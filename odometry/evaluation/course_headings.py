@@ -1,10 +1,10 @@
-"""The heading of a reference that measured positions alone, told by its course."""
+"""The heading of a reference that measured positions alone, from its course."""
 
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 
-LEAST_SPREAD = 0.1  # of the reach: positions nearer together than this tell no heading
+LEAST_SPREAD = 0.1  # of the reach: positions closer than this give no heading
 
 
 def course_headings(
@@ -29,7 +29,7 @@ def course_headings(
     travelled_m : (N,)
         Wheel travel at each stamp, not decreasing.
     rows : (K,)
-        Where the heading is asked.
+        Rows at which the heading is wanted.
     reach_m : float
 
     Returns

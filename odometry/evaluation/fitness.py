@@ -78,8 +78,8 @@ def fitness(
     >>> forward, turning = treads.mean(axis=1), np.diff(treads)[:, 0] / 0.4
     >>> twists = np.column_stack([forward, np.zeros(len(treads)), turning])  # ideal drive
     >>> path = odometry.open_loop(run, twists)
-    >>> judged = odometry.fitness(path, *odometry.measured_poses(run))
-    >>> f"J / N = {judged.mean:.1f}, of it yaw {judged.yaw_rad2:.1f}"
+    >>> errors = odometry.fitness(path, *odometry.measured_poses(run))
+    >>> f"J / N = {errors.mean:.1f}, of it yaw {errors.yaw_rad2:.1f}"
     'J / N = 22.4, of it yaw 0.2'
     """
     covered = trajectory.covers(reference_s)

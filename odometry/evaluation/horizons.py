@@ -22,7 +22,7 @@ def spatial_horizons(travel_m: FloatArray, horizon_m: float, stride_m: float) ->
     (K, 2)
         First and last sample of each window. The last is the first sample at which the wheel
         travel is reached, so that a window may be longer than `horizon_m` by one step. While
-        the robot stands, only one window starts.
+        the robot is stationary, only one window starts.
     """
     travelled = travel_m - travel_m[0]
     last = np.floor(max(travelled[-1] - horizon_m, -1.0) / stride_m + 1e-9)

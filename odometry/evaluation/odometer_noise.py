@@ -51,13 +51,13 @@ USUAL_NOISE = OdometerNoise(
     np.square([0.14, 0.05]),
     stretches=0,
     longest_m=0.0,
-)  # means with no least share, x and y alike, of 19 recordings: tests/studies/odometer_noise.py
+)  # means without least shares, equal for x and y, of 19 recordings (studies/odometer_noise.py)
 
 
 def motion_errors(
     poses: FloatArray, true_poses: FloatArray, first: IntArray, last: IntArray
 ) -> FloatArray:
-    """Motions (K, 3) from first to last poses less the true ones, both seen from the first."""
+    """Motions (K, 3) from first to last poses less the true ones, in the frame of the first."""
     ours, true = (se2.between(each[first], each[last]) for each in (poses, true_poses))
     errors = ours - true
     errors[:, 2] = wrap(errors[:, 2])
@@ -70,7 +70,7 @@ def measured_noise(
     """Find the variances by which an odometer errs as it does.
 
     Squared errors of stretches of several lengths are the sum of what each source adds, weighed
-    alike for each length: least squares over variances that are not below a least value (the
+    with the same weight for each length: least squares over variances with a lower limit (the
     method of moments for variance components; Rao and Kleffe 1988, Estimation of Variance
     Components, 1.3).
 
@@ -115,7 +115,7 @@ def _variances(units: FloatArray, squares: FloatArray) -> FloatArray:
     """Variances (14,) of sources and reference whose sum is nearest to squared errors (R,).
 
     None is less than LEAST_SHARE of its usual value, all usual values scaled by one factor to
-    these errors: few stretches cannot tell that a source is absent, and a covariance without it
+    these errors: few stretches cannot show that a source is absent, and a covariance without it
     would be far too sure where the robot then moves otherwise.
     """
     usual = np.concatenate([USUAL_NOISE.variances, USUAL_NOISE.reference])

@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.estimates import Replay
-from odometry.evaluation.learning_errors import learning_covariances
+from odometry.estimation.transition import STATES, Y_LEFT
 from odometry.evaluation.odometer_noise import USUAL_NOISE, OdometerNoise, measured_noise
 from odometry.evaluation.open_loop_consistency import (
     DISTANCES_M,
@@ -16,6 +16,7 @@ from odometry.evaluation.open_loop_consistency import (
 )
 from odometry.evaluation.open_loop_errors import OpenLoopPath
 from odometry.geometry import se2
+from odometry.models.icr import icr_speed_matrix, icr_twist_jacobian
 from odometry.run import Run
 from odometry.trajectory import Trajectory
 
@@ -37,7 +38,7 @@ class OdometerUncertainty:
         Where the covariance comes from, in words.
     checks : tuple of OpenLoopConsistency
         NEES by distance against the truth, or of each half of the run by the noise of the other;
-        empty where nothing can judge.
+        empty where there is no reference.
     own_checks : tuple of OpenLoopConsistency
         Without a truth, NEES against the poses between which the noise was measured: it says
         whether the sources can describe the run, not whether they foretell another one.
@@ -148,3 +149,43 @@ def _after(path: OpenLoopPath, covariances: FloatArray) -> dict[float, FloatArra
         for distance_m, row in rows.items()
         if row < len(covariances)
     }
+
+
+def learning_covariances(replay: Replay, path: OpenLoopPath) -> FloatArray:
+    """Covariances (N, 3, 3) by which poses of the odometer are less sure than the run's usual.
+
+    The noise of an odometer is measured over the whole run. Where the filter was less sure of a
+    parameter than usual (the median of the run), as it is at first, the difference of the two
+    variances acts along the path besides. The error of a parameter is taken to keep its sign
+    while it shrinks, and those of different parameters to be independent.
+    """
+    variances = np.square(replay.sigmas[:, Y_LEFT:])
+    excess = np.sqrt(np.maximum(variances - np.median(variances, axis=0), 0.0))[:-1]
+    steps_s = np.diff(replay.stamps_s)
+    slopes = _twist_slopes(replay) * excess[:, None, :] * steps_s[:, None, None]
+    moved = np.stack([path.moved_by(slopes[..., k]) for k in range(slopes.shape[-1])])
+    return np.asarray(np.einsum("kni,knj->nij", moved, moved))
+
+
+def _twist_slopes(replay: Replay) -> FloatArray:
+    """Derivatives (N - 1, 3, 6) of twists by y_left, y_right, x_icr, bias, alphas."""
+    held = replay.estimates[:-1]
+    icrs, bias, alphas = np.split(replay.means[:-1, Y_LEFT:], [3, 4], axis=1)
+    speeds = np.nan_to_num(
+        np.stack([estimate.tread_speeds_m_s + estimate.added_speeds_m_s for estimate in held])
+    )
+    slopes = np.zeros((len(held), 3, STATES - Y_LEFT))
+    slopes[..., :3] = icr_twist_jacobian(icrs, alphas * speeds)
+    slopes[..., 4:] = icr_speed_matrix(icrs) * speeds[:, None, :]
+    believed = np.array([estimate.believed_yaw_rate_rad_s for estimate in replay.estimates[1:]])
+    told = np.isfinite(believed)
+    omega = (believed - bias[:, 0])[told]
+    by_gyroscope = np.zeros((len(omega), 3, STATES - Y_LEFT))
+    by_gyroscope[:, 0, 0] = by_gyroscope[:, 0, 1] = omega / 2
+    by_gyroscope[:, 1, 2] = -omega
+    by_gyroscope[:, 0, 3] = -icrs[told, :2].sum(axis=1) / 2
+    by_gyroscope[:, 1, 3] = icrs[told, 2]
+    by_gyroscope[:, 2, 3] = -1.0
+    by_gyroscope[:, 0, 4:] = speeds[told] / 2
+    slopes[told] = by_gyroscope
+    return slopes

@@ -47,7 +47,7 @@ class OpenLoopConsistency:
 def open_loop_consistency(
     path: OpenLoopPath, rows: IntArray, truth: FloatArray, noise: OdometerNoise
 ) -> list[OpenLoopConsistency]:
-    """NEES of the motions of a path against true poses, by a noise that has not seen them.
+    """NEES of the motions of a path against true poses, by a noise that was estimated elsewhere.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """How errors of an open-loop odometer add up along its path, to first order.
 
 An error along x, along y or of yaw, made at one place, moves every later pose; one of yaw turns
-all of the path after it. Two kinds are told apart. A random error is another one at each step,
+all of the path after it. There are two kinds. A random error is another one at each step,
 independent of those before: its variance grows with the wheel travel and with the angle turned. A
 constant error is one unknown factor for the whole path (a tread's scale, a bias): the error itself
 grows with the signed distance of the treads and the signed turn. Each of the twelve SOURCES has

@@ -1,8 +1,8 @@
 """Errors of the odometry of another program on a run that was replayed, by the same rules.
 
-It is judged at the stamps of the reference that lie within its own, none of them in a gap, and is
-placed where the filter believed the robot to be at the first of these: our odometer starts so as
-well. Nothing else is fitted. Its scale and its axes stay as they are, and are only told.
+It is evaluated at the stamps of the reference that lie within its own, none of them in a gap, and
+placed at the filter's estimate at the first of these, where our odometer starts as well. Nothing
+else is fitted. Its scale and its axes stay as they are, and are only reported.
 """
 
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ LONGEST_GAP_S = 1.0  # between two poses; no straight line is drawn over a longe
 
 @dataclass(frozen=True)
 class Judge:
-    """What judges the trajectories of a run.
+    """What the trajectories of a run are evaluated with.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class OtherScore:
     ours : Score
         Of our odometer at the same stamps, from the same start.
     share : float
-        Part of the reference's stamps at which it is judged.
+        Part of the reference's stamps at which it is evaluated.
     scale : float
         By which its path would have to grow to fit the reference best.
     turned_rad : float

@@ -47,7 +47,7 @@ class RelativeErrors:
     start_s : (K,)
         When each window starts.
     translation_per_m : (K,)
-        Distance between the two end positions, both seen from the start, per metre of wheel
+        Distance between the two end positions, both in the frame of the start, per metre of wheel
         travel.
     rotation_per_m : (K,)
         Absolute difference of the two turns, rad per metre of wheel travel; whole turns count,
@@ -71,8 +71,8 @@ def relative_errors(
     """Compare motions over spatial horizons (data/README.md, Symbols and frame).
 
     Where the reference has no yaw at the start of a window, its heading there is the one that its
-    course tells over a horizon before and a horizon after, see `course.course_headings`; where
-    that tells none, there is no window.
+    course gives over a horizon before and a horizon after, see `course.course_headings`; where
+    that gives none, there is no window.
 
     Parameters
     ----------

@@ -1,10 +1,10 @@
-"""Poses that are kept from a filter, so that it can be judged by them.
+"""Poses that are held out from a filter, so that its estimate can be evaluated with them.
 
-Every JUDGED_EVERY_S one pose is judged, and no pose of the last SILENT_S before it is given to the
-filter either: poses that follow one another closely err alike, and an estimate that has just taken
-one in would be judged by its noise alone. What is judged is thus the estimate SILENT_S after its
-last pose, or one period of the poses after it where they are sparser. A delay of the poses is found
-and undone before, by all of them.
+Every JUDGED_EVERY_S one pose is used for evaluation, and no pose of the last SILENT_S before it is
+given to the filter: poses that follow one another closely have similar errors, and an estimate
+right after an update would be compared with the noise of that pose alone. What is evaluated is thus
+the estimate SILENT_S after its last pose, or one period of the poses after it where they are
+sparser. A delay of the poses is found and undone before, by all of them.
 """
 
 from dataclasses import dataclass, replace
@@ -22,14 +22,14 @@ SILENT_S = 1.0
 
 @dataclass(frozen=True)
 class Withheld:
-    """A run without some of its poses, and those of them that judge.
+    """A run without some of its poses, and those of them that are used for evaluation.
 
     Attributes
     ----------
     run : Run
         x, y and yaw of the withheld rows are NaN: its frames keep their stamps.
     judged : Trajectory
-        One withheld pose every JUDGED_EVERY_S; its yaw is NaN where none was measured.
+        One held-out pose every JUDGED_EVERY_S; its yaw is NaN where none was measured.
     poses : int
         How many were withheld.
     """
@@ -40,7 +40,7 @@ class Withheld:
 
 
 def withhold(run: Run, begin_s: float, end_s: float) -> Withheld | None:
-    """Empty the poses of a run that shall judge; None where fewer than two do.
+    """Remove poses of a run for evaluation; None where fewer than two are left for that.
 
     Parameters
     ----------
@@ -70,12 +70,12 @@ def withhold(run: Run, begin_s: float, end_s: float) -> Withheld | None:
 
 
 def choose(stamps_s: FloatArray) -> tuple[BoolArray, BoolArray]:
-    """Which poses at increasing stamps (M,) are judged, and which are given to the filter.
+    """Which poses at increasing stamps (M,) are evaluated with, and which are given to the filter.
 
-    The first is given, and so is at least one between two that are judged.
+    The first is given, and so is at least one between two of the evaluation.
     """
     judged, given = np.zeros(len(stamps_s), dtype=np.bool_), np.ones(len(stamps_s), dtype=np.bool_)
-    last_s, given_from = stamps_s[:1], 0  # of what was judged last; at first, the pose of the start
+    last_s, given_from = stamps_s[:1], 0  # last evaluation pose; at first, the start
     for row, stamp_s in enumerate(stamps_s):
         silent_from = int(np.searchsorted(stamps_s, stamp_s - SILENT_S, side="right"))
         if stamp_s - last_s[0] >= JUDGED_EVERY_S and silent_from > given_from:

@@ -90,13 +90,13 @@ def drive_numbers(
     Raises
     ------
     ParameterError
-        If the model has no constant ICRs, or nothing tells the track width.
+        If the model has no constant ICRs, or the track width is not known.
     """
     form = icr_form(table, f"[terrain.{terrain}]")
     width_m = table.values.get("track_width") if track_width_m is None else track_width_m
     if width_m is None:
         raise ParameterError(
-            f"[terrain.{terrain}]: the model {table.model!r} does not tell the track width, which "
+            f"[terrain.{terrain}]: the model {table.model!r} does not give the track width, which "
             "the wheel separation is a multiple of: give --track-width METRES"
         )
     y_left, y_right, x_icr = form.icrs.tolist()

@@ -4,7 +4,7 @@ What is measured is the error of the motion over windows of h metres of wheel tr
 may be one constant error, a velocity errs by the error per metre times the speed; as all of it may
 be independent from metre to metre, the variance of a pose grows by the square of the error of a
 window over h, times the speed, in a second. Each alone explains the errors; which of them it is,
-one length of windows does not tell.
+one length of windows does not show.
 """
 
 from dataclasses import dataclass

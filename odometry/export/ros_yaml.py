@@ -17,7 +17,7 @@ from odometry.outputs.formats import format_line
 FORMAT = 1
 NOT_MEASURED = 1e6  # variance by which drivers of ROS say that a component is not measured
 STATE = 15  # x y z, roll pitch yaw, their rates, and accelerations
-# Of robot_localization's own example, for what windows of motion do not tell.
+# Of robot_localization's own example, for what windows of motion do not determine.
 EXAMPLE_NOISE = (
     *(0.05, 0.05, 0.06, 0.03, 0.03, 0.06, 0.025, 0.025, 0.04),
     *(0.01, 0.01, 0.02, 0.01, 0.01, 0.015),
@@ -75,7 +75,7 @@ def _controller(
     yield f"    right_wheel_radius_multiplier: {_with_interval(drive.right)}"
     yield from _left_over(drive.x_icr_m, drive.y_middle_m)
     if errors is None or pace is None:
-        yield "    # twist_covariance_diagonal is left out: nothing told how far the motion errs."
+        yield "    # twist_covariance_diagonal is left out: the error of the motion is not known."
         yield "    # Export a folder that `run` wrote with poses, or use `identify --ros`."
         return
     left_over_m = (drive.y_middle_m.value, drive.x_icr_m.value)
@@ -103,7 +103,7 @@ def _left_over(x: Stated, y: Stated) -> Iterable[str]:
 
 def _filter(errors: MotionErrors | None, pace: Pace | None) -> Iterable[str]:
     if errors is None or pace is None:
-        yield "# ekf_filter_node is left out: nothing told its process noise."
+        yield "# ekf_filter_node is left out: its process noise is not known."
         return
     noise = np.array(EXAMPLE_NOISE)
     noise[list(MEASURED)] = errors.pose_variances_per_s(pace)

@@ -35,7 +35,7 @@ class ExportSource:
     content : Mapping
         result.json; empty of a parameter set.
     terrain : str
-        Which one a controller that knows one terrain gets; "" where nobody says.
+        The one for a controller that knows one terrain; "" where none was chosen.
     track_width_m : float or None
         That someone says, else the robot's, else that of [vehicle].
     cell_m : float
@@ -93,7 +93,7 @@ class ExportSource:
 
     @property
     def motion_errors(self) -> MotionErrors | None:
-        """How far the wheels' odometry erred on the run; None where nothing judged it."""
+        """Errors of the wheels' odometry on the run; None where there was no reference."""
         errors = self.content.get("errors", {})
         name = next((name for name in JUDGED_BY_WHEELS if name in errors), "")
         match errors.get(name):
@@ -123,7 +123,7 @@ class ExportSource:
 
     @property
     def origin(self) -> tuple[float, float, float] | None:
-        """Latitude, longitude [deg] and height [m] of x = y = 0; None where nothing tells it."""
+        """Latitude, longitude [deg] and height [m] of x = y = 0; None where it is not known."""
         match self.content.get("origin"):
             case [float() | int() as latitude, float() | int() as longitude, *height]:
                 return float(latitude), float(longitude), float(height[0]) if height else 0.0

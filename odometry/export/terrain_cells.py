@@ -1,4 +1,4 @@
-"""The terrain that was driven and seen, on a metric grid in the frame of pose.csv."""
+"""The terrain under the treads and in the images, on a metric grid in the frame of pose.csv."""
 
 from dataclasses import dataclass
 
@@ -45,11 +45,11 @@ def terrain_cells(source: ExportSource) -> list[Cell]:
     Raises
     ------
     ExportError
-        If nothing told the terrain of the run, or the result is of an older version.
+        If the run has no source of terrain, or the result is of an older version.
     """
     if not (source.folder / "terrain.csv").exists():
         raise ExportError(
-            f"{source.path}: nothing told the terrain of this run, so there is no map of it; `run` "
+            f"{source.path}: this run had no source of terrain, so there is no map of it; `run` "
             "with --model or --source"
         )
     table, estimate = source.table("terrain"), source.trajectory("estimate")

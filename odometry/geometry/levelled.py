@@ -1,8 +1,8 @@
-"""Steps of a body on tilted ground, seen in the level frame that shares its yaw.
+"""Steps of a body on tilted terrain, in the level frame that shares its yaw.
 
 The attitude is REP-103's Rz(yaw) Ry(pitch) Rx(roll) (data/README.md; Martinez 2024 eq. 12 prints
 another order). A step (dx, dy, angle) lies in the body's own plane: the position part is exact,
-and so is the yaw where the ground is a plane. Steps and attitudes broadcast.
+and so is the yaw where the terrain is a plane. Steps and attitudes broadcast.
 """
 
 from typing import NamedTuple
@@ -27,7 +27,7 @@ def tilt_of(roll_rad: FloatArray, pitch_rad: FloatArray) -> Tilt:
 
 
 def level_steps(steps: FloatArray, tilt: Tilt) -> FloatArray:
-    """Horizontal part of steps on tilted ground.
+    """Horizontal part of steps on tilted terrain.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def level_steps(steps: FloatArray, tilt: Tilt) -> FloatArray:
     -------
     (..., 3)
         Along and across [m] in the level frame of the start's yaw, and the change of yaw [rad].
-        On level ground the steps themselves, also where they are more than half a turn.
+        On level terrain the steps themselves, also where they are more than half a turn.
     """
     dx, dy, angle = np.moveaxis(np.asarray(steps), -1, 0)
     x_turned, y_turned = _turned_axis(angle, tilt)

@@ -9,7 +9,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.geometry import se3
 
-# Columns: the camera's x, y and z axes, seen from the optical frame
+# Columns: the camera's x, y and z axes in the optical frame
 OPTICAL_FROM_CAMERA = np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]])
 
 

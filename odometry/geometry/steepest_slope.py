@@ -30,7 +30,7 @@ def steepest_slope(roll_rad: FloatArray, pitch_rad: FloatArray) -> tuple[FloatAr
         large at 10 degrees of roll and pitch).
     gamma_rad : (...)
         From straight uphill counter-clockwise to the robot's x axis, -pi to pi; NaN on level
-        ground, where no way is up.
+        terrain, where no direction is uphill.
 
     Examples
     --------

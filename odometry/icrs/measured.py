@@ -17,7 +17,7 @@ from odometry.windows.windows import Windows, windows_of
 SHORT_WINDOWS = WindowConfig(horizon_s=1.0)  # in which speeds hardly change
 SPEED_SHARE = 0.02  # by which a mean tread speed may be off
 SURE = 0.9999  # probability of the side to which a window turned
-HALF_TURN_RAD = np.pi  # beyond it the ends of a window tell its mean twist poorly
+HALF_TURN_RAD = np.pi  # beyond it the ends of a window determine its mean twist poorly
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ def icrs_of_windows(
 ) -> MeasuredIcrs:
     """ICRs from the measured motion of windows and the mean tread speeds in them.
 
-    The twist is the one whose arc leads from pose to pose (logarithm of SE(2)), seen from above:
+    The twist is the one whose arc leads from pose to pose (logarithm of SE(2)), in the plane:
     it is that of the robot where speeds hold. Its noise is that of the poses; a mean tread speed
     may be off by 2 %, which matters on wide curves. Left out are windows of more than half a
     turn, and those in which it is not sure to which side the robot turned.

@@ -7,7 +7,7 @@ import numpy as np
 from odometry.arrays import AnyArray, FloatArray, IntArray
 from odometry.icrs.measured import MeasuredIcrs
 
-LEAST_WINDOWS = 10  # fewer tell no interval
+LEAST_WINDOWS = 10  # fewer give no interval
 BLOCK, LEAST_BLOCKS = 5, 5  # neighbouring windows that are drawn together; of a run, at least
 DRAWS = 500
 COVERED = (2.5, 97.5)  # percentiles of the 95 % interval

@@ -6,7 +6,7 @@ from pathlib import Path
 
 SUFFIXES = (".bag", ".mcap", ".db3", ".active")
 PACKED = (".zstd", ".zst")
-MOST_ENTRIES = 1000  # of a folder that are looked at
+MOST_ENTRIES = 1000  # of a folder that are listed
 
 
 def is_named_bag(path: Path) -> bool:

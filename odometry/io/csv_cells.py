@@ -54,7 +54,7 @@ def opened_csv(
         header = [unquoted_text(name.strip()) for name in header]
         repeated = sorted({name for name in header if header.count(name) > 1})
         if repeated:
-            raise error(f"{file}: row 1: the column {repeated[0]!r} stands there twice")
+            raise error(f"{file}: row 1: the column {repeated[0]!r} is there twice")
         yield header, _blocks(rows, len(header), file, error)
 
 

@@ -61,7 +61,7 @@ def parsed_json(data: bytes, file: Path, error: type[OdometryError]) -> Any:
     """The value that JSON bytes hold; `file` is for messages. Raises as `read_json`."""
 
     def refuse(word: str) -> None:
-        raise error(f"{file}: {word} stands in it, expected JSON with finite numbers")
+        raise error(f"{file}: it holds {word}, expected JSON with finite numbers")
 
     try:
         content = json.loads(data, parse_constant=refuse)

@@ -53,7 +53,7 @@ def read_trajectory(
     times : path, optional
         Stamps of a KITTI file.
     axes : {"", "robot", "optical"}
-        Of the file, body and fixed frame alike; "" takes those of the format: optical of KITTI,
+        Of body and fixed frame in the file; "" takes those of the format: optical of KITTI,
         robot of the others.
 
     Raises
@@ -71,7 +71,7 @@ def read_trajectory(
     >>> still = odometry.SpatialTrajectory(np.array([0.0]), np.eye(4)[None])
     >>> with TemporaryDirectory() as folder:
     ...     (file,) = odometry.write_trajectory(Path(folder), "estimate", still, "euroc")
-    ...     print(len(odometry.read_trajectory(file)))  # the format is seen in its first row
+    ...     print(len(odometry.read_trajectory(file)))  # the format follows from its first row
     1
     """
     file = Path(file)

@@ -20,7 +20,7 @@ from odometry.windows.stretch_motion import antenna_ways, carried, rotations
 from odometry.windows.stretch_noise import UNKNOWN_NOISE
 from odometry.windows.stretches import Stretches, position_record_with_yaw_rates
 
-PREFERRED = ("icr", "icr_symmetric")  # the first that the positions tell
+PREFERRED = ("icr", "icr_symmetric")  # the first that the positions determine
 LEAST_POSITION_M, LEAST_WANDER_M, LEAST_WANDER_RAD = 0.005, 0.005, 0.002
 GYROSCOPE_RAD = 0.005  # by the root of a second: what its bias leaves
 BIAS_RAD_S, GYROSCOPE_SCALE = 0.03, 0.02  # of a gyroscope, one standard deviation
@@ -118,7 +118,7 @@ def _samples(of: Stretches) -> IntArray:
 
 
 def _fit(stretches: Stretches, run: Run) -> Fit:
-    """The first of PREFERRED that the stretches tell."""
+    """The first of PREFERRED that the stretches determine."""
     *better, simplest = PREFERRED
     for name in better:
         try:

@@ -1,4 +1,4 @@
-"""Runs whose positions were measured without yaw, with the yaw that these tell written in."""
+"""Runs whose positions were measured without yaw: the yaw is estimated from the positions."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from odometry.positions.carrier import carrier_of
-from odometry.positions.told_yaw import told_yaw
+from odometry.positions.yaw_from_positions import told_yaw
 from odometry.run import Run
 from odometry.windows.measured_poses import YAW_FOUND, lacks_yaw
 
@@ -22,16 +22,16 @@ class FoundHeading:
     ----------
     run : Run
         pose.csv with a yaw in each row that has x and y within the time of odometry.csv, where
-        the positions tell it, and a column YAW_FOUND with its standard deviation [rad]. Its
+        the positions determine it, and a column YAW_FOUND with its standard deviation [rad]. Its
         positions are as they were.
     position_sigma_m : float
         Of a measured position, as the shapes of stretches show it.
     yaw_sigma_rad : float
-        Median of the column. Errors of neighbouring yaws are alike.
+        Median of the column. Errors of neighbouring yaws are correlated.
     by_gyroscope : bool
         Whether a gyroscope carried the yaw between positions, and not the treads.
     told_share : float
-        Of the positions, at which the yaw could be told; at the others it is not.
+        Share of the positions at which the yaw could be estimated.
     """
 
     run: Run
@@ -50,7 +50,7 @@ class FoundHeading:
         """A sentence for a reader."""
         by = "by the gyroscope" if self.by_gyroscope else "by the treads alone"
         untold = 1 - self.told_share
-        except_for = f"; at {untold:.1%} of the positions it cannot be told" if untold else ""
+        except_for = f"; at {untold:.1%} of the positions it cannot be estimated" if untold else ""
         return (
             f"{self.run.folder}: yaw was not measured; it is found from positions with a noise of "
             f"{self.position_sigma_m:.2g} m, to about {np.degrees(self.yaw_sigma_rad):.2g} "
@@ -102,8 +102,8 @@ def found_heading(run: Run) -> FoundHeading:
     Raises
     ------
     OdometryError
-        If there are too few positions for a model, they contradict the treads, or do not tell
-        the yaw (`told_yaw`).
+        If there are too few positions for a model, they contradict the treads, or do not determine
+        the yaw (`yaw_from_positions`).
     """
     carrier = carrier_of(run)
     told = told_yaw(carrier)

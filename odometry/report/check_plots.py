@@ -1,4 +1,4 @@
-"""Signals of a recording as its check sees them, each drawn on given axes."""
+"""Signals of a recording as its check reads them, each drawn on given axes."""
 
 from collections.abc import Mapping
 
@@ -18,7 +18,7 @@ from odometry.report.palette import LINE_STYLES, REFERENCE_STYLE, TERRAIN_TINTS,
 Marks = Mapping[str, FloatArray]
 
 ORDINARY_WIDTH = 1.8  # effective width in track widths where none can be estimated
-NARROWEST = 0.004  # of the time axis: a mark of a single sample must be seen
+NARROWEST = 0.004  # of the time axis: so that the mark of a single sample is visible
 ROOM = 1.15  # of the limits, above what all but one sample in 200 reach
 BEYOND = 3.0  # times that, from which single samples do not set the limits
 ARROWS = 36

@@ -12,16 +12,16 @@ from odometry.comparison.evaluation import Evaluation
 from odometry.comparison.files import file_name
 from odometry.comparison.result import Comparison
 from odometry.comparison.summary import QUANTITIES, Place, values_of
-from odometry.report.commanded_rotation import (
+from odometry.report.comparison_plots import (
     commanded_rotation,
     difference_edges,
+    plot_against_horizon,
     plot_commanded_rotation,
+    plot_violins,
 )
 from odometry.report.figure import save_figure
-from odometry.report.horizon_curves import plot_against_horizon
 from odometry.report.html import Picture
 from odometry.report.palette import line_styles
-from odometry.report.violins import plot_violins
 
 _WIDTH_IN, _LEGEND_COLUMNS = 7.0, 4
 _PANELS, _PANEL_IN = 3, 2.3  # of the figure of turns

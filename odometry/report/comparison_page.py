@@ -76,7 +76,7 @@ def write_comparison_report(comparison: Comparison, out: str | Path) -> list[Pat
 
 
 def lead(comparison: Comparison) -> str:
-    """What a hurried reader should see: the best model, and what contradicts that."""
+    """The main result: the best model, and what contradicts that."""
     if len(comparison.places) == 1:
         said = comparison.sentences_at(comparison.places[0])
         contradicted = comparison.contradictions_at(comparison.places[0])
@@ -92,7 +92,7 @@ def lead(comparison: Comparison) -> str:
     places = len(comparison.places)
     count = sum(bool(comparison.contradictions_at(place)) for place in comparison.places)
     return f"Least mean translation error at {places} places: {counts or 'none'}." + (
-        f" At {count} of them medians or whole runs say otherwise; see there." if count else ""
+        f" At {count} of them medians or whole runs give another order; see there." if count else ""
     )
 
 

@@ -94,7 +94,7 @@ def fitness_grid(comparison: Comparison) -> Grid:
 
 
 def parameter_grid(comparison: Comparison) -> Grid:
-    """What was identified, from all that each model may see."""
+    """What was identified, from all data that each model may use."""
     rows = []
     for (robot, model), parameters in comparison.parameters.items():
         for terrain, table in parameters.terrains.items():

@@ -1,4 +1,4 @@
-"""A figure of what was felt over time: answers as strips, and probabilities."""
+"""A figure of terrain by feel over time: answers as strips, and probabilities."""
 
 from pathlib import Path
 

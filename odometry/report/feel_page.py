@@ -12,10 +12,10 @@ from odometry.report.html import Grid, Listing, Paragraph, Section, write_page
 
 HOW = (
     "Windows of the IMU's vibration, the yaw response and the motor currents are compared with "
-    "those of known terrains; what depends on speed is taken out. Evidence of the last stretch is "
-    "put together for the answer. unknown: unlike every terrain of the model, or at a speed that "
-    "it does not know. undetermined: several terrains are possible. stationary: a robot that "
-    "stands feels nothing."
+    "those of known terrains; the effect of speed is removed. The answer combines the evidence of "
+    "the last stretch. unknown: unlike every terrain of the model, or at a speed that its runs do "
+    "not have. undetermined: several terrains are possible. stationary: without motion there is "
+    "nothing to measure."
 )
 LENGTHS = {"window": "window", "stretch": "stretch of 10 s", "run": "run"}
 
@@ -27,7 +27,7 @@ def write_feel_report(felt: Felt, out: Path) -> list[Path]:
     sections = [
         Section("In short", [Listing(sentences(felt))]),
         Section("Over time", [picture, Grid(("answer", "share of the time"), rows)]),
-        Section("The model, on runs that it never saw", accuracy_blocks(felt.model)),
+        Section("The model, on runs held out from training", accuracy_blocks(felt.model)),
         Section("Settings", [_settings(felt)]),
         Section("How to read this", [Paragraph(HOW)]),
     ]
@@ -46,11 +46,11 @@ def accuracy_blocks(model: FeelModel) -> list[Grid | Paragraph | Listing]:
     rows = [(word, *figures(report[name])) for name, word in LENGTHS.items()]
     table = report["window"]["confusion"]
     confused = [
-        (name, *(str(line.get(told, 0)) for told in model.names)) for name, line in table.items()
+        (name, *(str(line.get(label, 0)) for label in model.names)) for name, line in table.items()
     ]
     groups = [(name, f"{of:.3f}") for name, of in report["window_by_groups"].items()]
     return [
-        Grid(header, rows, f"Whole {report['held_out']} held out, every terrain counting alike."),
+        Grid(header, rows, f"Whole {report['held_out']} held out; each terrain has equal weight."),
         Grid(("true terrain", *model.names), confused, "Windows by answer."),
         Grid(("features", "balanced accuracy"), groups, "Windows by other sets of features."),
         Listing(report["notes"]),

@@ -1,11 +1,15 @@
 """One page and its figures from the gap between a model and measured runs."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
+from odometry.effects.base import Effect
+from odometry.effects.in_course import CommandsInCourse, MotionInCourse
+from odometry.effects.reference_outliers import ReferenceOutliers
+from odometry.effects.time_course import InBursts
 from odometry.gap.result import GapResult
 from odometry.gap.share_closed import Share, held_out_share
 from odometry.gap.words import sentences
-from odometry.report.gap_events import event_grids
 from odometry.report.gap_figures import closing_picture, evidence_picture, time_picture
 from odometry.report.gap_map import map_picture
 from odometry.report.gap_rollouts import rollout_pictures
@@ -27,8 +31,8 @@ HOW = (
     "The gap is the root mean square distance between simulated and measured positions at the ends "
     "of short windows, each started at a measured pose. The noise floor is the same on stretches "
     "of the calibration runs, each by a model identified on the others: what is left where nothing "
-    "is missing. Candidates were judged on windows that they were not fitted to; what was held out "
-    "was not seen at all. Intervals are 95 % intervals."
+    "is missing. Candidates were tested on windows that they were not fitted to; held-out data "
+    "were not used at all. Intervals are 95 % intervals."
 )
 
 
@@ -92,3 +96,33 @@ def _evidence(result: GapResult, folder: Path, share: Share | None) -> list[Grid
     picture = evidence_picture(result, folder)
     blocks += [picture, rival_grid(result)] if picture is not None else []
     return blocks
+
+
+def event_grids(result: GapResult) -> list[Grid]:
+    """Events of effects in bursts, and poses that are left out, run by run; none where none are."""
+    scenes = (*result.measured_scenes, *result.holdout_scenes)
+    folders = list(dict.fromkeys(scene.run.folder.name for scene in scenes))
+    grids = []
+    for one in result.effects:
+        effect = one.added.effect
+        runs = [words_of_events(events) for events in events_of(effect)]
+        if any(runs):
+            rows = list(zip(folders, runs, strict=False))
+            grids.append(Grid(("run", "run time s"), rows, f"When: {effect.in_words}."))
+    return grids
+
+
+def events_of(effect: Effect) -> tuple[tuple[tuple[float, ...], ...], ...]:
+    """Run by run: (begin, end) of each event, or the time of each pose left out."""
+    if isinstance(effect, ReferenceOutliers):
+        return tuple(tuple((at_s,) for at_s in stamps) for stamps in effect.stamps_s)
+    if isinstance(effect, CommandsInCourse | MotionInCourse) and isinstance(
+        effect.in_time, InBursts
+    ):
+        return effect.in_time.events_s
+    return ()
+
+
+def words_of_events(events_s: Sequence[Sequence[float]]) -> str:
+    """Events in one line."""
+    return "; ".join(" to ".join(f"{at_s:.1f}" for at_s in event) for event in events_s)

@@ -51,7 +51,7 @@ def rollouts(result: GapResult, scene: DenseWindows) -> dict[str, Trajectory]:
 
 
 def rollout(base: Base, effects: Sequence[Added], scene: DenseWindows) -> Trajectory:
-    """Simulated poses of a whole run, as the reference sensor would see them, from its first."""
+    """Simulated poses of a whole run, as the reference sensor measures them, from its first."""
     seen = simulated_poses(base, effects, scene)
     moved = se2.compose(scene.poses[:1], se2.between(seen[:1], seen))
     return Trajectory(scene.pose_s, moved)

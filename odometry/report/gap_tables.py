@@ -172,9 +172,9 @@ def predictor_grid(result: GapResult) -> Grid:
 
 
 def equivalent_grid(result: GapResult) -> Grid:
-    """What the data cannot tell apart."""
+    """What the data cannot distinguish."""
     rows = [(one.instead_of, one.name, one.told_apart_by) for one in result.equivalent]
-    return Grid(("named", "could also be", "told apart by"), rows)
+    return Grid(("named", "could also be", "distinguished by"), rows)
 
 
 def _closing(closing: Closing) -> tuple[str, str, str]:

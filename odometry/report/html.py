@@ -78,7 +78,7 @@ class Listing:
 class Grid:
     """A table of plain text; the first column names its row.
 
-    `links` are addresses of pages by what stands in the first column.
+    `links` are addresses of pages by the text of the first column.
     """
 
     header: Sequence[str]
@@ -108,7 +108,7 @@ class Picture:
     ----------
     file : Path
     alt : str
-        What it shows, for those who do not see it.
+        A description of it, for readers who cannot see it.
     caption : str
     """
 
@@ -130,7 +130,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class Section:
-    """A title and what stands below it."""
+    """A title and its blocks."""
 
     title: str
     blocks: Sequence[Paragraph | Listing | Grid | Picture]
@@ -143,7 +143,7 @@ def render_page(title: str, lead: str, sections: Sequence[Section]) -> str:
     ----------
     title : str
     lead : str
-        The one sentence that a hurried reader should see; none where the first section has it.
+        The main sentence of the page; none where the first section has it.
     sections : sequence of Section
         Those without blocks are left out.
     """

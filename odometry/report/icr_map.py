@@ -1,4 +1,4 @@
-"""Measured ICRs drawn over the robot, seen from above: x forward is up, y left is left."""
+"""Measured ICRs drawn over the robot, from above: x forward is up, y left is left."""
 
 from dataclasses import dataclass
 from typing import Any

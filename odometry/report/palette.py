@@ -1,4 +1,4 @@
-"""Colours that colour-blind readers can tell apart, the same in every figure of a page."""
+"""Colours that colour-blind readers can distinguish, the same in every figure of a page."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ UNKNOWN_TINT = "#DDDDDD"
 
 @dataclass(frozen=True)
 class LineStyle:
-    """Colour, dashes and width of a line: never told apart by colour alone."""
+    """Colour, dashes and width of a line: two lines never differ by colour alone."""
 
     colour: str
     dashes: str | tuple[float, tuple[float, ...]] = "solid"

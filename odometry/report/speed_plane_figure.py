@@ -86,7 +86,7 @@ def speed_plane_picture(
         f"Errors over the plane of tread speeds of {', '.join(names)}.",
         "Mean held-out errors by the mean tread speeds of the windows (as Baril 2020 Fig. 8), on a "
         "logarithmic scale of colours; white where there was no window. On the grey line both "
-        "treads run alike.",
+        "treads run at the same speed.",
     )
 
 

@@ -58,15 +58,15 @@ def run_batch(
 ) -> Batch:
     """Replay many runs, and write batch.csv, report.html, learned.toml and times.csv beside them.
 
-    A run whose folder holds the same already is not replayed again: a batch that was stopped goes
-    on where it was. All files but times.csv are the same whoever computes them.
+    A run whose folder already holds the same results is not replayed again: a stopped batch
+    continues where it was. All files but times.csv are the same on any process.
 
     Parameters
     ----------
     jobs : sequence of Job
         Their `out` are folders in `out`.
     asked : Asked
-        The command that asks for all of them.
+        The command that starts all of them.
     out : Path
     before : ParameterSet
         With which every run begins.

@@ -32,7 +32,7 @@ def connected(address: str) -> Iterator[Any]:
         If the scheduler cannot be reached, has no workers, or something has other versions.
     """
     distributed = extra_module("distributed", "dask", "--scheduler")
-    with warnings.catch_warnings():  # of other versions, which are looked at below
+    with warnings.catch_warnings():  # of other versions, which are checked below
         warnings.simplefilter("ignore")
         try:
             client = distributed.Client(address, timeout=CONNECTS_S, set_as_default=False)

@@ -29,11 +29,11 @@ class Job:
     name : str
         Of the result's folder; no other job of the batch has it.
     folder, out : Path
-        The run and its results, as every process sees them.
+        The run and its results, by paths that every process can use.
     asked : Asked
         The command `run` that gives the same.
     options : RunOptions
-        Its files as every process sees them.
+        Its files, by paths that every process can use.
     """
 
     name: str
@@ -103,7 +103,7 @@ def _is_whole(manifest: Manifest, folder: Path) -> bool:
 
 
 def what_differs(earlier: Mapping[str, Any], made: Made) -> str:
-    """Why an earlier result is not the one that is asked for, in a few words."""
+    """Why an earlier result is not the requested one, in a few words."""
     sums = {one["role"]: one["sha256"] for one in earlier["inputs"]}
     changed = [role for role, _, sha256 in made.inputs if sums.get(role, sha256) != sha256]
     packages = [

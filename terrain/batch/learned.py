@@ -82,7 +82,7 @@ def write_learned(learned: Learned, file: Path, comment: str) -> bool:
 def _said(name: str, of: MergedTerrain) -> list[str]:
     if not of.spread:
         runs = "1 run" if len(of.runs) == 1 else f"{len(of.runs)} runs"
-        first = f"{name}: {runs}: the spread between runs cannot be told, 3 runs or more can"
+        first = f"{name}: {runs}: no spread between runs: 3 or more runs are needed"
     else:
         sigmas = ", ".join(f"{key} {sigma:.3f}" for key, sigma in of.spread.items())
         first = f"{name}: {len(of.runs)} runs; standard deviation between runs: {sigmas}"

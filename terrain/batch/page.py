@@ -18,8 +18,8 @@ HEADER = (
     *("gyroscope [m per m]", "against", "driven [m]", "time [s]", "switches", "flags"),
 )
 HOW = (
-    "Mean errors per metre of wheel travel, worst odometer first. The estimate is judged by the "
-    "truth, or by poses that were withheld from it. A run with a flag may mislead: what it "
+    "Mean errors per metre of wheel travel, worst odometer first. The estimate is evaluated with "
+    "the truth, or by poses that were withheld from it. A run with a flag may mislead: what it "
     "learned is not merged."
 )
 

@@ -39,9 +39,9 @@ class Row:
     error : str
         Why there is no result; empty where there is one.
     reference : str
-        What judges: `truth`, `pose`, or empty. The estimate is judged by withheld poses of `pose`.
+        The reference: `truth`, `pose`, or empty. With `pose` the estimate has held-out poses.
     numbers : Mapping
-        `duration_s`, `wheel_travel_m`, mean errors by `ERRORS`; None where nothing judges.
+        `duration_s`, `wheel_travel_m`, mean errors by `ERRORS`; None without a reference.
     counts : Mapping
         `switches` of the terrain in force, `missed_changes`.
     robot : tuple of (str, float)

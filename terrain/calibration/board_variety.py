@@ -1,4 +1,4 @@
-"""Whether views of a chessboard differ enough to tell a lens, and what to photograph next."""
+"""Whether images of a chessboard determine a lens, and what to photograph next."""
 
 import numpy as np
 
@@ -10,12 +10,12 @@ FEWEST_VIEWS, ENOUGH_VIEWS = 5, 12
 ALIKE_PX = 0.02  # of the image's diagonal: views nearer to each other than this are one
 TILT_DEG, GOOD_TILT_DEG = 15.0, 30.0  # between the boards of two views
 CELLS = 3  # the image is cut into as many columns and rows
-FEWEST_CELLS = 5  # of nine, in which corners were seen
+FEWEST_CELLS = 5  # of nine, in which corners were found
 ROWS, COLUMNS = ("top", "middle", "bottom"), ("left", "centre", "right")
 
 
 def require_variety(seen: BoardViews) -> None:
-    """Raise CalibrationError where views are too few, too alike or all in one part of the image."""
+    """Raise CalibrationError where images are too few, too similar or in one part of the image."""
     found, without = len(seen.views), len(seen.without)
     reason = f"; {without} without: {next(iter(seen.without.values()))}" if without else ""
     advice = "; ".join(what_next(seen, 0.0))
@@ -28,8 +28,8 @@ def require_variety(seen: BoardViews) -> None:
         )
     if np.count_nonzero(_cells(seen)) < FEWEST_CELLS:
         raise CalibrationError(
-            f"corners were seen in {np.count_nonzero(_cells(seen))} of 9 parts of the image, "
-            f"expected {FEWEST_CELLS}: the distortion cannot be told. Next: {advice}"
+            f"corners were found in {np.count_nonzero(_cells(seen))} of 9 parts of the image, "
+            f"expected {FEWEST_CELLS}: the distortion cannot be determined. Next: {advice}"
         )
 
 
@@ -72,7 +72,7 @@ def what_next(seen: BoardViews, tilt_deg: float) -> tuple[str, ...]:
 
 
 def _cells(seen: BoardViews) -> BoolArray:
-    """In which parts (rows, columns) of the image a corner was seen."""
+    """In which parts (rows, columns) of the image a corner was found."""
     cells = np.zeros((CELLS, CELLS), dtype=bool)
     for view in seen.views:
         column, row = np.floor(CELLS * view.corners_px / np.array(seen.image_size)).astype(int).T

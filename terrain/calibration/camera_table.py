@@ -32,7 +32,7 @@ def write_camera(folder: Path, table: Mapping[str, Any]) -> None:
     Raises
     ------
     CalibrationError
-        If [camera] stands there in a form that cannot be replaced.
+        If [camera] has a form that cannot be replaced.
     OutputError
         If the file cannot be written.
     """
@@ -49,8 +49,7 @@ def write_camera(folder: Path, table: Mapping[str, Any]) -> None:
         reads_back = False
     if not reads_back:
         raise CalibrationError(
-            f"{file}: [camera] stands there in a form that cannot be replaced; put the table in by "
-            "hand"
+            f"{file}: [camera] has a form that cannot be replaced; put the table in by hand"
         )
     with atomic_write(file) as part:
         part.write_bytes(new.encode("utf-8"))

@@ -171,4 +171,4 @@ def _other_count(image: ByteImage, board: Chessboard) -> str:
                 f"{inner.columns} x {inner.rows}: count the corners between squares, not the "
                 "squares"
             )
-    return f"no board of {board.columns} x {board.rows} inner corners is seen whole"
+    return f"no board of {board.columns} x {board.rows} inner corners was found whole"

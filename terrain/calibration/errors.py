@@ -4,4 +4,4 @@ from terrain.errors import CameraError
 
 
 class CalibrationError(CameraError):
-    """What was given cannot tell the lens or the mount."""
+    """The input does not determine the lens or the mount."""

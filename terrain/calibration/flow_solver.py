@@ -25,7 +25,7 @@ class Solution:
     motions : (P, 3)
         What was added to the steps of the odometer.
     residuals_px : (N, 2)
-        Of the features; NaN where the mount sees no terrain.
+        Of the features; NaN where they would be above the horizon.
     """
 
     values: FloatArray

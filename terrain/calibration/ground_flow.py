@@ -6,8 +6,8 @@ from functools import cached_property
 import numpy as np
 
 from odometry.arrays import FloatArray
-from terrain.calibration.carried import carried_rays
 from terrain.calibration.tracks import Tracks
+from terrain.calibration.warp import carried_rays
 
 # Standard deviations of the odometer's steps: shares of the way (x, y) and of the turn
 ALONG, ASIDE, ASIDE_PER_RAD_M, TURN_RAD, TURN = 0.02, 0.02, 0.05, 0.003, 0.05

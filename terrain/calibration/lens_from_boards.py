@@ -24,7 +24,7 @@ CORNER_PX = 0.05  # corners are no better than this, whatever few views say
 
 @dataclass(frozen=True, eq=False)
 class LensFit:
-    """A lens and how well the photographs tell it.
+    """A lens, and how well the photographs determine it.
 
     Attributes
     ----------
@@ -55,8 +55,8 @@ def lens_from_boards(seen: BoardViews, board: Chessboard) -> LensFit:
     Raises
     ------
     CalibrationError
-        If the views are too few or too alike, or do not tell the focal length; it says what to
-        photograph next.
+        If the images are too few or too similar, or do not determine the focal length; the message
+        says photograph next.
     """
     require_variety(seen)
     corners_m = board.corners_m.astype(np.float32)
@@ -99,6 +99,6 @@ def _check(
     if not (half[:2] <= WIDEST_FOCUS * focus).all():
         advice = what_next(seen, tilt_deg) or ("photograph the board nearer and more tilted",)
         raise CalibrationError(
-            f"the photographs do not tell the focal length: {focus[0]:.0f} px, give or take "
+            f"the photographs do not determine the focal length: {focus[0]:.0f} px, give or take "
             f"{half[0]:.0f}. Next: {'; '.join(advice)}"
         )

@@ -15,7 +15,7 @@ from terrain.errors import CameraError
 
 @dataclass(frozen=True, eq=False)
 class LensSource:
-    """A lens and what told it.
+    """A lens and its source.
 
     Attributes
     ----------
@@ -83,7 +83,7 @@ def lens_of_photos(
     Raises
     ------
     CameraError
-        If the photographs cannot tell it, or are of another size than the run's images.
+        If the photographs do not determine it, or are of another size than the run's images.
     """
     seen = find_boards(photo_files(folder), board, show_progress=show_progress)
     fit = lens_from_boards(seen, board)

@@ -1,4 +1,4 @@
-"""Where `run` would look when the robot drives straight on, and how large a metre is there."""
+"""The region of `run` for a robot that drives straight on, and how large a metre is there."""
 
 from dataclasses import dataclass, replace
 from math import inf
@@ -11,7 +11,7 @@ from terrain.camera import Camera
 from terrain.classification.classifier import Classifier
 from terrain.rectangle import Rectangle
 from terrain.region import Region, RegionConfig, predict_region
-from terrain.suited import coarsest_m, unsuited
+from terrain.region_scale import coarsest_m, scale_mismatch
 
 Motion = tuple[FloatArray, float]  # body twist (3,) and mean tread speed [m/s]
 STRAIGHT_ON: Motion = (np.array([1.0, 0.0, 0.0]), 1.0)
@@ -49,7 +49,7 @@ def look_ahead(
     camera : Camera
     robot : Robot
     classifier : Classifier, optional
-        Which looks no farther than the image is fine enough for it.
+        The region is no farther than the image is fine enough for it.
     """
     whole = look_ahead_whole(camera, robot, classifier)
     if whole is not None:
@@ -100,7 +100,9 @@ def run_region(
     def misfit(rectangle: Rectangle) -> str:
         if classifier is None:
             return ""
-        return unsuited(classifier, camera, rectangle, config.coarsest)
+        return scale_mismatch(classifier, camera, rectangle, config.coarsest)
 
     coarsest = inf if classifier is None else coarsest_m(classifier, config.coarsest)
-    return predict_region(robot, camera, *motion, config, coarsest_m=coarsest, unsuited=misfit)
+    return predict_region(
+        robot, camera, *motion, config, coarsest_m=coarsest, scale_mismatch=misfit
+    )

@@ -1,4 +1,4 @@
-"""A mount with its intervals, whatever told it."""
+"""A mount with its intervals, from any source."""
 
 from dataclasses import dataclass
 
@@ -7,19 +7,19 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray
 
 NAMES = ("x", "y", "z", "roll", "pitch", "yaw")
-WIDEST_M, WIDEST_RAD = 0.1, float(np.radians(2.0))  # a wider half interval tells nothing of use
+WIDEST_M, WIDEST_RAD = 0.1, float(np.radians(2.0))  # a wider half interval is of no use
 
 
 @dataclass(frozen=True, eq=False)
 class MountFit:
-    """Place and attitude of a camera, and how well they are told.
+    """Place and attitude of a camera, and how well they are determined.
 
     Attributes
     ----------
     mount : (6,)
         x, y, z [m], roll, pitch, yaw [rad], as in `[camera]`.
     half_interval : (6,)
-        Half of the 95 % interval; NaN of a value that was given, not told.
+        Half of the 95 % interval; NaN of a value that was given, not estimated.
     errors_px : (N,)
         Distance in the image of each point from where the mount puts it.
     notes : tuple of str
@@ -49,6 +49,6 @@ class MountFit:
 
 
 def too_wide(half_interval: FloatArray) -> BoolArray:
-    """Which values (6,) of a mount are told so badly that they are of no use."""
+    """Values (6,) of a mount whose interval is too wide to be of use."""
     widest = np.array([WIDEST_M] * 3 + [WIDEST_RAD] * 3)
     return np.asarray(~(half_interval <= widest))

@@ -24,7 +24,7 @@ BLOCKS = 8  # of the run, each left out once (jackknife)
 SURE = 0.975
 # What repeats over the whole run, such as errors of the lens, no stretch left out can show
 LEAST_SHARE, LEAST_RAD = 0.005, float(np.radians(0.05))
-HIGHEST_SHARE = 0.05  # of the height: a wider half interval tells nothing of use
+HIGHEST_SHARE = 0.05  # of the height: a wider half interval is of no use
 # The coarse search: heights, pitches and views, features of it, and how far off one may be
 HEIGHTS_M = np.geomspace(0.15, 2.5, 12)
 PITCHES_RAD = np.radians(np.arange(-4.0, 85.0, 4.0))
@@ -44,7 +44,7 @@ def mount_from_motion(
     """Find height, roll, pitch and yaw of a camera from the flow of the terrain.
 
     A robot that drives on level terrain turns about the vertical alone: the direction of the flow
-    tells pitch and yaw of the camera, how it grows towards the image's edge pitch and roll, its
+    gives pitch and yaw of the camera, how it grows towards the image's edge pitch and roll, its
     size the height, all relative to the odometer's motion. x and y are taken as given.
 
     Parameters
@@ -52,21 +52,21 @@ def mount_from_motion(
     tracks : Tracks
     lens : Lens
     given : (6,), optional
-        A mount; its x and y, and what the run cannot tell, are kept.
+        A mount; its x and y, and what the run does not determine, are kept.
     again : callable, optional
-        Better tracks, made with the mount (6,) that the first ones told.
+        Better tracks, made with the mount (6,) of the first ones.
 
     Returns
     -------
     MountFit
-        Half intervals are NaN of what was kept. Errors are infinite where no terrain is seen.
+        Half intervals are NaN of what was kept. Errors are infinite above the horizon.
     Tracks
         The features, in the order of the errors.
 
     Raises
     ------
     CalibrationError
-        If the run cannot tell the pitch: too little texture or motion, too few features that
+        If the run does not determine the pitch: too little texture or motion, too few features that
         move as terrain does, or an interval too wide.
     """
     _check(tracks)
@@ -87,20 +87,22 @@ def mount_from_motion(
     notes = [_scale_note()]
     if vague[2]:
         raise CalibrationError(
-            f"the run cannot tell the pitch: {np.degrees(found.values[2]):.1f} degrees, give or "
-            f"take {np.degrees(half[2]):.1f}; drive straight on over textured, level terrain"
+            f"the run does not determine the pitch: {np.degrees(found.values[2]):.1f} degrees, "
+            f"give or take {np.degrees(half[2]):.1f}; drive straight on over textured, level "
+            "terrain"
         )
     if vague.any():
         free = ~vague
         start = np.where(free, found.values, known[PLACES])
         if vague[0] and given is None:
             raise CalibrationError(
-                "the run cannot tell the height of the camera, and none is given; drive farther"
+                "the run does not determine the height of the camera, and none is given; drive "
+                "farther"
             )
         found = solve_mount(flow, start, free)
         half = _half_interval(flow, found.values, free)
         kept = " and ".join(word for word, one in zip(WORDS, vague, strict=True) if one)
-        notes.append(f"{kept} cannot be told from this run; kept as given")
+        notes.append(f"{kept} cannot be determined from this run; kept as given")
     half[~free] = np.nan
     mount, interval = known.copy(), np.full(6, np.nan)
     mount[PLACES], interval[PLACES] = found.values, half
@@ -114,14 +116,14 @@ def _check(tracks: Tracks) -> None:
     if tracks.tried < FEWEST_PAIRS:
         raise CalibrationError(
             f"the run has {tracks.tried} pairs of images with 3 cm to 60 cm of travel and little "
-            f"turning between them, expected at least {FEWEST_PAIRS}: the mount cannot be told; "
-            "record more images while driving"
+            f"turning between them, expected at least {FEWEST_PAIRS}: the mount cannot be "
+            "determined; record more images while driving"
         )
     if len(tracks.steps) < FEWEST_PAIRS:
         raise CalibrationError(
             f"features could be followed in {len(tracks.steps)} of {tracks.tried} pairs of images, "
             f"expected at least {FEWEST_PAIRS}: the terrain has too little texture, or images are "
-            "too far apart; the mount cannot be told"
+            "too far apart; the mount cannot be determined"
         )
 
 
@@ -161,8 +163,8 @@ def _check_agreement(found: Solution) -> None:
     if share < FEWEST_SHARE:
         raise CalibrationError(
             f"only {100 * share:.0f} % of the features move as terrain would under any mount; the "
-            "mount cannot be told. Are the stamps of images and odometry of one clock, is the "
-            "lens right, and is the terrain level?"
+            "mount cannot be determined. Are the stamps of images and odometry of one clock, is "
+            "the lens right, and is the terrain level?"
         )
 
 

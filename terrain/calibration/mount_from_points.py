@@ -38,7 +38,7 @@ def mount_from_points(lens: Lens, points: MarkedPoints) -> MountFit:
     ------
     CalibrationError
         If there are too few points, they lie on a line, one is outside of the image, or they do
-        not tell the mount.
+        determine the mount.
     """
     _check(lens, points)
     mount = _best(lens, points.pixels, points.ground_m)
@@ -53,8 +53,8 @@ def mount_from_points(lens: Lens, points: MarkedPoints) -> MountFit:
     if vague.any():
         names = ", ".join(name for name, one in zip(NAMES, vague, strict=True) if one)
         raise CalibrationError(
-            f"{len(points.lines)} points cannot tell {names} of the mount; mark more, far apart: "
-            "near and far, left and right"
+            f"{len(points.lines)} points do not determine {names} of the mount; mark more, far "
+            "apart: near and far, left and right"
         )
     return MountFit(mount, half_interval, errors_px, contradiction=odd)
 

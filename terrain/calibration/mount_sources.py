@@ -27,7 +27,7 @@ from terrain.main_job import run_odometry
 
 @dataclass(frozen=True, eq=False)
 class MountSource:
-    """A camera on the robot, and what told where it sits.
+    """A camera on the robot, and the source of its mount.
 
     Attributes
     ----------
@@ -37,9 +37,9 @@ class MountSource:
     fit : MountFit or None
         With its intervals, where it was fitted.
     tracks : Tracks or None
-        Features of the images, where the run told it.
+        Features of the images, where the mount comes from the run.
     points : MarkedPoints or None
-        Where they told it.
+        Where the mount comes from them.
     """
 
     camera: Camera
@@ -52,7 +52,7 @@ class MountSource:
 def mount_of_run(run: Run, lens: LensSource) -> MountSource | None:
     """The mount of [camera] in run.toml, None where it has none that goes with the lens.
 
-    A `ground_to_image` belongs to the lens that stands beside it.
+    A `ground_to_image` belongs to the lens of the same table.
 
     Raises
     ------
@@ -86,7 +86,7 @@ def mount_of_transforms(
     Raises
     ------
     CameraError
-        If the file does not tell it.
+        If the file does not hold it.
     """
     transforms = read_transforms(file)
     name = frame or (lens.file.name if lens.file is not None else "")
@@ -122,7 +122,7 @@ def mount_of_points(lens: Lens, file: Path) -> MountSource:
     Raises
     ------
     CalibrationError
-        If the points cannot tell it.
+        If the points do not determine it.
     """
     points = read_marked_points(file)
     try:
@@ -140,10 +140,10 @@ def mount_of_motion(
     Raises
     ------
     OdometryError
-        If the run cannot tell it, or cannot be replayed.
+        If the run does not determine it, or cannot be replayed.
     """
     if run.images is None:
-        raise CalibrationError(f"{run.folder}: no images.csv; the mount cannot be told from it")
+        raise CalibrationError(f"{run.folder}: no images.csv: a mount cannot be determined from it")
     result = run_odometry(run, vision=False)
     odometer = result.replay.odometer()
     tracker = tracker_of(result.run, lens, odometer, show_progress=show_progress)

@@ -35,7 +35,7 @@ class SuggestedPitch:
 def suggest_pitch(
     camera: Camera, robot: Robot, classifier: Classifier | None = None
 ) -> SuggestedPitch | None:
-    """Find a pitch by which the region is seen whole; None where no pitch shows it so.
+    """Find a pitch by which the image shows the whole region; None where no pitch does.
 
     Parameters
     ----------

@@ -50,7 +50,7 @@ class Tracks:
     tried: int
 
     def of_pairs(self, chosen: IntArray) -> "Tracks":
-        """The tracks of some pairs, numbered anew."""
+        """The tracks of some pairs, numbered again from 0."""
         place = np.full(len(self.steps), -1)
         place[chosen] = np.arange(len(chosen))
         kept = place[self.pair] >= 0
@@ -87,8 +87,8 @@ class Tracker:
         Parameters
         ----------
         mount : (6,), optional
-            Where there is one, each second image is first warped to look as the first would if
-            all were terrain: what is left to track is small, and no longer changes its shape,
+            Where there is one, each second image is first warped to what the first would show if
+            all were terrain: the remaining motion is small, and the features keep their shape,
             by which a tracker of windows errs.
 
         Raises

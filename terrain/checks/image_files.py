@@ -29,7 +29,7 @@ def damaged(images: Sequence[SampledImage]) -> Iterator[Finding]:
     yield Finding(
         "images_damaged",
         Level.WARNING if count > MANY * len(images) else Level.NOTE,
-        f"{count} of {len(images)} images looked at cannot be used: {words} (the first is "
+        f"{count} of {len(images)} images that were read cannot be used: {words} (the first is "
         f"{first.file.name})",
         cause,
         remedy,
@@ -68,8 +68,8 @@ def frozen(run: Run, images: Sequence[SampledImage]) -> Iterator[Finding]:
     yield Finding(
         "images_frozen",
         Level.WARNING,
-        f"{sum(map(len, held))} of {len(images)} images looked at are identical to the one before "
-        f"or after, though the treads moved by {max(_travel_m(run, g) for g in held):.3g} m "
+        f"{sum(map(len, held))} of {len(images)} images that were read are identical to the one "
+        f"before or after, though the treads moved by {max(_travel_m(run, g) for g in held):.3g} m "
         f"meanwhile (from {spans[0][0]:.1f} s of run time)",
         "The camera was frozen: it repeats its last image, or one file was copied to many names",
         "Leave these rows out of images.csv, and look at the camera's driver",
@@ -93,7 +93,7 @@ def outside_of_odometry(run: Run) -> Iterator[Finding]:
     first_s, last_s = float(run.odometry.stamps_s[0]), float(run.odometry.stamps_s[-1])
     before, after = int(np.sum(stamps_s < first_s)), int(np.sum(stamps_s > last_s))
     share = (before + after) / len(stamps_s)
-    if FEW_OUTSIDE < share <= 0.5:  # above, odometry.checks.stamps speaks
+    if FEW_OUTSIDE < share <= 0.5:  # above, odometry.checks.stamps reports it
         yield Finding(
             "images_outside",
             Level.NOTE,

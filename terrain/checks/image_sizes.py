@@ -89,7 +89,7 @@ def _whole_run(camera: Camera, table: Mapping[str, Any], size: Size, seen: str) 
 
 
 def _matrix(camera: Camera, table: Mapping[str, Any]) -> Iterator[Scaled]:
-    """A principal point far from the centre, in both directions alike."""
+    """A principal point far from the centre, by the same factor in both directions."""
     off = _off_centre(camera, camera.image_size)
     if np.all(_within(off, CENTRE)):
         return

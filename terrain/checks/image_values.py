@@ -149,5 +149,5 @@ def _exposure(found: Sequence[Values]) -> Iterator[Finding]:
 
 def _finding(name: str, seen: str, cause: str) -> Finding:
     return Finding(
-        name, Level.WARNING, seen, cause, "Record anew with other settings; leave vision out here"
+        name, Level.WARNING, seen, cause, "Record again with other settings; leave vision out here"
     )

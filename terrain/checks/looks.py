@@ -1,4 +1,4 @@
-"""What the camera sees of the region ahead over a run."""
+"""The region ahead in the images of a run."""
 
 from collections import Counter
 from collections.abc import Mapping
@@ -23,7 +23,7 @@ OUTSIDE, TINY = "outside the image", f"smaller than {SMALLEST_PX} pixels"
 
 @dataclass(frozen=True)
 class Looks:
-    """What the camera sees of the region ahead over a run.
+    """The region ahead in the images of a run.
 
     Attributes
     ----------

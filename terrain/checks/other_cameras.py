@@ -11,11 +11,11 @@ from odometry.run import Robot
 
 # No skid-steer robot carries its camera as far from its centre [m].
 FARTHEST_M = 5.0
-WHOLE_TURN_RAD = 2 * np.pi  # nobody writes a larger angle in radians
-UP_RAD = 0.09  # 5 degrees, by which nobody lets a camera for the ground look up
-LARGE_RAD = 3.2  # above half a turn, which nobody needs in radians; 2 and 3 degrees are seldom
-TILTED_RAD = 0.35  # 20 degrees, by which nobody turns a camera about its view
-# Columns: the camera's x, y, z axes seen in its optical frame (x right, y down, z along the view)
+WHOLE_TURN_RAD = 2 * np.pi  # larger angles in radians are not expected
+UP_RAD = 0.09  # 5 degrees, a camera for the terrain does not point higher
+LARGE_RAD = 3.2  # above half a turn, which is not needed in radians; 2 and 3 degrees are seldom
+TILTED_RAD = 0.35  # 20 degrees, a camera is not rolled by more
+# Columns: the camera's x, y, z axes in its optical frame (x right, y down, z along the view)
 _CAMERA_IN_OPTICAL = np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]])
 
 
@@ -66,7 +66,7 @@ def tilted(mount: FloatArray) -> bool:
 
 
 def looks_up(mount: FloatArray) -> bool:
-    """Whether a mount (6,) looks above the horizon."""
+    """Whether a mount (6,) points above the horizon."""
     return bool(-np.sin(mount[4]) > np.sin(UP_RAD))
 
 
@@ -100,7 +100,7 @@ def _angles(mount: FloatArray) -> Iterator[tuple[str, str, FloatArray]]:
         return
     if pitch < 0:
         yield (
-            "pitch has the wrong sign: the camera looks up (a positive pitch looks down)",
+            "pitch has the wrong sign: the camera points up (a positive pitch points down)",
             "Negate pitch",
             np.array([roll, -pitch, yaw]),
         )
@@ -111,15 +111,15 @@ def _angles(mount: FloatArray) -> Iterator[tuple[str, str, FloatArray]]:
     )
     for degrees, words in ((-90, "90"), (90, "-90"), (180, "180")):
         yield (
-            f"yaw is off by {words} degrees, or the camera does not look ahead",
-            "Correct yaw, or use a camera that looks where the robot goes",
+            f"yaw is off by {words} degrees, or the camera does not point ahead",
+            "Correct yaw, or use a camera that points where the robot goes",
             np.array([roll, pitch, yaw + np.radians(degrees)]),
         )
     for words, value, other in (
         ("roll", roll, [pitch, roll, yaw]),
         ("yaw", yaw, [roll, yaw, pitch]),
     ):
-        if max(abs(pitch), TILTED_RAD) < value < np.pi / 2:  # what stands there looks down
+        if max(abs(pitch), TILTED_RAD) < value < np.pi / 2:  # as given it points down
             yield (
                 f"pitch and {words} are exchanged",
                 "Write roll, pitch, yaw in this order",
@@ -130,7 +130,7 @@ def _angles(mount: FloatArray) -> Iterator[tuple[str, str, FloatArray]]:
 def _places(mount: FloatArray) -> Iterator[tuple[str, str, FloatArray]]:
     if mount[2] < 0:
         yield (
-            "z has the wrong sign (the height above the ground is positive)",
+            "z has the wrong sign (the height above the terrain is positive)",
             "Negate z",
             mount[:3] * [1, 1, -1],
         )

@@ -28,7 +28,7 @@ def check_run(
     """What is odd about a recording and its camera: likeliest cause, remedy, most important first.
 
     Beside what `odometry.check_recording` finds: the camera's numbers are tried on the motion of
-    the run, and at most 100 images spread over it are looked at, 20 of them decoded.
+    the run, and at most 100 images spread over it are read, 20 of them decoded.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def _findings(run: Run, classifier: TerrainClassifier | None) -> Iterator[Findin
             "no_camera",
             Level.WARNING,
             f"images.csv has {len(run.images)} images, and run.toml has no table [camera]",
-            "The camera's calibration is missing: nobody knows which ground an image shows",
+            "The camera's calibration is missing: it is not known which terrain an image shows",
             "Write [camera] with image_size, matrix, distortion and mount, or leave images.csv out",
         )
         yield from image_values(_values(images, None, run))

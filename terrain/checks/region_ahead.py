@@ -1,4 +1,4 @@
-"""Whether the camera sees the ground where the robot will be."""
+"""Whether the image shows the terrain where the robot will be."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -46,7 +46,7 @@ def region_ahead(run: Run, table: Mapping[str, Any]) -> Iterator[Finding]:
         Level.WARNING,
         seen,
         _cause(fitting),
-        fitting[0].remedy if fitting else "Check [camera] with check --picture, or calibrate anew",
+        fitting[0].remedy if fitting else "Check [camera] with check --picture, or calibrate again",
     )
 
 
@@ -74,7 +74,7 @@ def _mount(table: Mapping[str, Any]) -> FloatArray:
 def _fitting(robot: Robot, table: Mapping[str, Any]) -> list[Reading]:
     """Readings by which the image shows the region of a robot that drives straight on.
 
-    Those that put the camera near the ground or very high come last.
+    Those that put the camera near the terrain or very high come last.
     """
     found: list[tuple[bool, Reading]] = []
     for reading in _readings(robot, table):
@@ -89,7 +89,7 @@ def _fitting(robot: Robot, table: Mapping[str, Any]) -> list[Reading]:
 
 
 def height_m(camera: Camera) -> float:
-    """Height above the ground: H = s K R [e1 e2 -c] has the determinant -s^3 fx fy c_z."""
+    """Height above the terrain: H = s K R [e1 e2 -c] has the determinant -s^3 fx fy c_z."""
     rays = np.linalg.solve(camera.matrix, camera.ground_to_image)
     scale = float(np.mean(np.linalg.norm(rays[:, :2], axis=0)))
     return float(-np.linalg.det(rays) / scale**3)
@@ -105,8 +105,8 @@ def _readings(robot: Robot, table: Mapping[str, Any]) -> list[Reading]:
 def _cause(fitting: list[Reading]) -> str:
     if not fitting:
         return (
-            "The cause cannot be told: no mistake that was tried (degrees, mm, signs, axes, an "
-            "inverse, a turned camera) brings the region into the image"
+            "The cause cannot be determined: no mistake that was tried (degrees, mm, signs, axes, "
+            "an inverse, a turned camera) brings the region into the image"
         )
     first, *others = fitting
     return first.cause + (f"; less likely: {others[0].cause}" if others else "")
@@ -116,8 +116,9 @@ def _where_it_goes(seen: str, ahead: Region) -> Finding:
     return Finding(
         "region_seldom_seen",
         Level.NOTE,
-        f"{seen}; it would be seen {ahead.distance_ahead_m:.2g} m ahead when driving straight on",
-        "The robot turns or reverses most of the time, where the camera does not look",
+        f"{seen}; it would be visible {ahead.distance_ahead_m:.2g} m ahead when driving straight "
+        "on",
+        "The robot turns or reverses most of the time, where the camera does not point",
         "Nothing to do: images get labels where the robot drives ahead",
     )
 
@@ -134,12 +135,12 @@ def _counts(found: Looks) -> str:
 
 
 def _seen(camera: Camera, table: Mapping[str, Any]) -> str:
-    """Where the camera looks, by its own numbers."""
+    """Where the camera points, by its own numbers."""
     (ground,) = camera.pixels_to_ground([(np.array(camera.image_size) - 1) / 2])
     centre = (
-        f"the middle of the image shows the ground at x = {ground[0]:.2f}, y = {ground[1]:.2f} m"
+        f"the middle of the image shows the terrain at x = {ground[0]:.2f}, y = {ground[1]:.2f} m"
         if np.abs(ground).max() < HORIZON_M  # False for NaN
-        else "the middle of the image shows no ground"
+        else "the middle of the image shows no terrain"
     )
     if camera.mount is None:
         return f"by ground_to_image {centre}"

@@ -1,4 +1,4 @@
-"""A few images spread over a run, looked at within bounds of time and memory."""
+"""A few images spread over a run, read within bounds of time and memory."""
 
 import hashlib
 from dataclasses import dataclass

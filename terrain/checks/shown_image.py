@@ -1,4 +1,4 @@
-"""The images of a run that are drawn, and what the camera says of the ground there."""
+"""The images of a run that are drawn, and the terrain that they show by the camera's numbers."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -40,7 +40,7 @@ class ShownImage:
 
 
 def shown_image(run: Run) -> ShownImage | None:
-    """An image in the middle of the motion in which the region ahead is seen, else any one."""
+    """An image in the middle of the motion that shows the region ahead, else any one."""
     camera, reason = _camera(run)
     stamps_s = image_rows(run)
     regions = _regions(run, stamps_s, camera, reason)
@@ -56,7 +56,7 @@ def shown_image(run: Run) -> ShownImage | None:
 def shown_images(
     run: Run, camera: Camera, most: int, region_at: Callable[[FloatArray, float], Region | str]
 ) -> list[ShownImage]:
-    """Up to so many images spread over the motion of a run, or over all of it where it stands.
+    """Up to so many images spread over the motion of a run, or over all of it if stationary.
 
     Parameters
     ----------

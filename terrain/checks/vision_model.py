@@ -8,7 +8,7 @@ from terrain.camera import Camera
 from terrain.checks.looks import straight_ahead
 from terrain.classification.classifier import TerrainClassifier
 from terrain.region import RegionConfig
-from terrain.suited import unsuited
+from terrain.region_scale import scale_mismatch
 
 
 def vision_model(
@@ -23,15 +23,15 @@ def vision_model(
             f"the model's training patches of {classifier.patch_size_px} pixels have no "
             "metres_per_pixel",
             "The model has no metric scale: pixels of the region are compared as they are, and "
-            "texture looks finer the farther away it is",
-            "Train with --metres-per-pixel, on patches seen from above",
+            "texture is finer in the image the farther away it is",
+            "Train with --metres-per-pixel, on patches in the view from above",
         )
     if camera is None:
         return
     region = straight_ahead(camera, robot)
     if isinstance(region, str):
         return
-    reason = unsuited(classifier, camera, region.rectangle, RegionConfig().coarsest)
+    reason = scale_mismatch(classifier, camera, region.rectangle, RegionConfig().coarsest)
     if reason:
         size = f"{scale:.3g} m" if scale is not None else "no stated scale"
         yield Finding(
@@ -40,6 +40,6 @@ def vision_model(
             f"{reason}, when driving straight on ({region.distance_ahead_m:.2g} m ahead; patches "
             f"of {classifier.patch_size_px} pixels, {size} a pixel): vision will label nothing",
             "metres_per_pixel of the model is wrong (mm?), or the model is of another camera, "
-            "nearer to the ground",
+            "nearer to the terrain",
             "Train with patches of this camera and their metres_per_pixel",
         )

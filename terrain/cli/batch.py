@@ -50,8 +50,8 @@ def batch(
 
     Writes batch.csv with a row for each run, one page over all of them, and learned.toml, what
     they learned by terrain. A run that fails is a row that says why, and the exit code is then 1.
-    The same command goes on after an interrupt: runs that are whole are not replayed again. With
-    --scheduler the runs and DIR have to lie on a path that all workers see.
+    The same command continues after an interrupt: finished runs are not replayed again. With
+    --scheduler the runs and DIR have to lie on a path that all workers can read.
 
     \b
     Example:

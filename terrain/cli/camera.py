@@ -1,4 +1,4 @@
-"""`terrain-odometry camera`: what the camera sees of the terrain, and its calibration."""
+"""`terrain-odometry camera`: the terrain in the camera's image, and the calibration."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -69,7 +69,7 @@ def board_size(text: str) -> tuple[int, int]:
     is_flag=True,
     help="Mount from the run itself: pitch, height, roll and yaw that agree with the odometer.",
 )
-@click.option("--model", type=FILE, help="Classifier made by `train` that is going to look.")
+@click.option("--model", type=FILE, help="Classifier made by `train` that will read the images.")
 @click.option("--write", is_flag=True, help="Put [camera] into RUN/run.toml.")
 @span_options
 def camera(
@@ -91,7 +91,7 @@ def camera(
     write: bool,
     span: "Span",
 ) -> None:
-    """Show what the camera of the run folder RUN sees of the terrain, or calibrate it.
+    """Show the terrain that the camera of the run folder RUN images, or calibrate the camera.
 
     Draws a metric grid, the footprint and the look-ahead place on images of the run. Without
     other options it shows [camera] of run.toml. A lens comes from --file or --chessboard, a mount
@@ -103,7 +103,7 @@ def camera(
       terrain-odometry camera my_run --file camera.yaml --points marked.csv --out camera
     """
     from terrain.classification.classifier import TerrainClassifier
-    from terrain.cli.camera_doubts import print_doubts
+    from terrain.cli.camera_advice import print_doubts
     from terrain.cli.camera_outputs import draw, write_tables
     from terrain.cli.camera_text import print_lens, print_mount, print_seen, print_written
     from terrain.cli.outputs import claim_folder
@@ -198,7 +198,7 @@ def _placed(
 def _write(run_folder: Path, placed: "MountSource | None") -> None:
     from terrain.calibration.camera_table import write_camera
     from terrain.calibration.errors import CalibrationError
-    from terrain.cli.camera_doubts import is_no_mount
+    from terrain.cli.camera_advice import is_no_mount
 
     if placed is None:
         raise CalibrationError(

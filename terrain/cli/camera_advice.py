@@ -2,17 +2,21 @@
 
 from collections.abc import Iterator
 
+import click
 import numpy as np
 
+from odometry.checks.finding import Level
 from odometry.geometry.angles import wrap
-from odometry.run import Robot
+from odometry.run import Robot, Run
 from terrain.calibration.look_ahead import look_ahead
+from terrain.calibration.mount_sources import MountSource
 from terrain.calibration.suggested_mount import suggest_pitch
 from terrain.camera import Camera
+from terrain.checks.region_ahead import no_mount, region_ahead
 from terrain.classification.classifier import Classifier
 from terrain.region import RegionConfig
 
-ASIDE_RAD = np.radians(60.0)  # a camera that looks farther aside is not one for the way ahead
+ASIDE_RAD = np.radians(60.0)  # a camera that points farther aside does not show the way ahead
 
 
 def advice(camera: Camera, robot: Robot, classifier: Classifier | None) -> Iterator[str]:
@@ -22,7 +26,7 @@ def advice(camera: Camera, robot: Robot, classifier: Classifier | None) -> Itera
     yaw_rad = float(wrap(camera.mount[5]))
     if abs(yaw_rad) > ASIDE_RAD:
         yield (
-            f"the camera looks aside or back (yaw {np.degrees(yaw_rad):.0f} degrees): it sees "
+            f"the camera points aside or back (yaw {np.degrees(yaw_rad):.0f} degrees): it shows "
             "regions only where the robot drives that way, such as in reverse"
         )
         return
@@ -47,7 +51,7 @@ def advice(camera: Camera, robot: Robot, classifier: Classifier | None) -> Itera
 
 
 def _coarser_model(camera: Camera, robot: Robot, classifier: Classifier) -> str:
-    """The whole region is in sight by some pitch, but not as the model wants to see it."""
+    """A pitch shows the whole region, but not with the resolution that the model needs."""
     ahead = look_ahead(camera, robot)
     if isinstance(ahead, str) or classifier.metres_per_pixel is None:
         return (
@@ -61,3 +65,17 @@ def _coarser_model(camera: Camera, robot: Robot, classifier: Classifier) -> str:
         f"{coarsest_mm / RegionConfig.coarsest:.2g} mm a pixel or coarser, or use a camera of more "
         "pixels"
     )
+
+
+def print_doubts(run: Run, source: MountSource) -> None:
+    """Say what the check of a run would say of this mount, before it is in run.toml."""
+    if source.fit is not None:
+        return
+    for finding in region_ahead(run, source.camera.to_table()):
+        if finding.level is Level.WARNING:
+            click.echo(f"Warning: {finding.line.partition(': ')[2]}", err=True)
+
+
+def is_no_mount(source: MountSource) -> bool:
+    """Whether the mount is one that no camera for the terrain has: degrees, mm, points upwards."""
+    return source.fit is None and no_mount(source.camera.to_table())

@@ -1,4 +1,4 @@
-"""What `camera` prints of a lens, a mount, and the terrain that is seen."""
+"""What `camera` prints of a lens, a mount, and the terrain in the image."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def print_lens(source: "LensSource") -> None:
-    """Size, matrix and distortion, with the errors of the photographs that told them."""
+    """Size, matrix and distortion, with the errors of the photographs that gave them."""
     lens = source.lens
     (fx, _, cx), (_, fy, cy), _ = lens.matrix
     click.echo(f"Lens (from {source.where}): {lens.image_size[0]} x {lens.image_size[1]} pixels")
@@ -59,18 +59,18 @@ def print_mount(source: "MountSource") -> None:
 
 
 def print_seen(camera: Camera, robot: Robot, classifier: "TerrainClassifier | None") -> None:
-    """What of the terrain is in sight, how large a metre is there, and which pitch would do."""
+    """Which terrain the image shows, how large a metre is there, and which pitch would do."""
     nearest_m = nearest_seen_m(camera)
     if nearest_m is None:
         click.echo("The image shows no terrain straight ahead.")
     else:
         click.echo(
-            f"The nearest terrain in sight straight ahead is {nearest_m:.2f} m ahead of the "
+            f"The nearest visible terrain straight ahead is {nearest_m:.2f} m ahead of the "
             "robot's centre."
         )
     ahead = look_ahead(camera, robot, classifier)
     if isinstance(ahead, str):
-        click.echo(f"Warning: `run` would see no region straight ahead: {ahead}.", err=True)
+        click.echo(f"Warning: `run` would have no region straight ahead: {ahead}.", err=True)
     else:
         _print_ahead(ahead)
     if classifier is not None:

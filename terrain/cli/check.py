@@ -23,7 +23,7 @@ TRUE_SLIP = ("slip", "slip_in_turns", "slip_episodes")  # findings that may be n
     "--picture",
     type=click.Path(path_type=Path),
     metavar="DIR_or_FILE",
-    help="Draw each run: speeds, yaw rates, path, the ground in one image (PNG).",
+    help="Draw each run: speeds, yaw rates, path, the terrain in one image (PNG).",
 )
 @click.option(
     "--model",
@@ -33,7 +33,7 @@ TRUE_SLIP = ("slip", "slip_in_turns", "slip_episodes")  # findings that may be n
 def check(
     folders: tuple[Path, ...], *, as_json: bool, picture: Path | None, model: Path | None
 ) -> None:
-    """Find what is odd about the run folders RUN: what was seen, its likeliest cause, what to do.
+    """Find problems of the run folders RUN: what was found, its likeliest cause, what to do.
 
     `refused`: the run cannot be read as it is. `warning`: answers would mislead. `note`: repaired,
     or harmless. The exit code is 1 where a run is refused or has a warning.

@@ -1,4 +1,4 @@
-"""The verb that names the terrain of images, or judges a model on labelled ones."""
+"""The verb that names the terrain of images, or tests a model on labelled ones."""
 
 import json
 import sys

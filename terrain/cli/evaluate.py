@@ -22,7 +22,7 @@ from terrain.cli.results import HEADER, error_cells, print_table
     multiple=True,
     metavar="NAME=FILE",
     help="Poses of another program on the same run (TUM, KITTI, EuRoC, or a table of "
-    "other_odometry), judged by the same rules; repeat.",
+    "other_odometry), evaluated by the same rules; repeat.",
 )
 @trajectory_options
 @click.option("--json", "as_json", is_flag=True, help="Print the numbers as JSON.")
@@ -37,7 +37,7 @@ def evaluate(
     """Show the errors of finished runs side by side.
 
     DIR is a folder that `run` wrote. One that cannot be read becomes a row that says why, and
-    the exit code is then 1. Odometry of other programs stands beside ours: files of --with, and
+    the exit code is then 1. Odometry of other programs is listed beside ours: files of --with, and
     what a run folder keeps in other_odometry. It starts where ours does; nothing else is fitted.
 
     \b
@@ -98,7 +98,7 @@ def _not_found(result: Mapping[str, Any]) -> str:
     if not kept or not path or Path(path).is_dir():
         return ""
     return (
-        f"{', '.join(kept)} of its run is not judged: there is no folder {path} here. Name the "
+        f"{', '.join(kept)} of its run is not evaluated: there is no folder {path} here. Name the "
         f"file: --with {kept[0]}=RUN/other_odometry/{kept[0]}.csv"
     )
 

@@ -32,7 +32,7 @@ FOLDER = RunFolder()
     multiple=True,
     metavar="RUN",
     type=FOLDER,
-    help="Run on which the answer is judged; else stretches of MEASURED are held back; repeat.",
+    help="Run on which the answer is tested; else stretches of MEASURED are held out; repeat.",
 )
 @click.option(
     "--model",

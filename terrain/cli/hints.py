@@ -1,14 +1,15 @@
-"""What a user may not have meant."""
+"""Advice after a run: missed options, and whether to keep what the filter learned."""
 
 from collections import Counter
 from collections.abc import Sequence
+from pathlib import Path
 
 from odometry.estimation.filter_event import FilterEvent
 from odometry.run import UNKNOWN
 from terrain.classification.own_statistics import OwnStatisticsClassifier
 from terrain.filter_summary import event_line
+from terrain.image_label import ImageLabel
 from terrain.run_result import RunResult
-from terrain.sighting import Sighting
 
 MANY_REFUSED = 0.1
 FEW_EVENTS = 10
@@ -22,7 +23,7 @@ def hints(result: RunResult, *, vision: bool, named: str | None = None) -> list[
     ----------
     result : RunResult
     vision : bool
-        Whether images should be looked at.
+        Whether images should be used.
     named : str, optional
         The terrain that was named for the start of the run.
     """
@@ -45,9 +46,9 @@ def hints(result: RunResult, *, vision: bool, named: str | None = None) -> list[
         likeness = result.watcher.seen.likeness
         if likeness is not None and likeness.note is not None:
             found.append(f"{likeness.note}. Here they count less")
-        found += _blind(result.watcher.sightings)
+        found += _blind(result.watcher.image_labels)
         if named is None and len(known) > 1:
-            found += _start(result.initial_terrain, result.run.terrain, result.watcher.sightings)
+            found += _start(result.initial_terrain, result.run.terrain, result.watcher.image_labels)
     innovations = [e.innovation for e in result.replay.estimates if e.innovation is not None]
     refused = sum(not innovation.accepted for innovation in innovations)
     many = refused > MANY_REFUSED * len(innovations)
@@ -62,9 +63,9 @@ def hints(result: RunResult, *, vision: bool, named: str | None = None) -> list[
     return found
 
 
-def _start(assumed: str, of_run: str | None, sightings: Sequence[Sighting]) -> list[str]:
-    """Say that the run began on a terrain that nobody named and the first label does not show."""
-    labels = (sighting.label for sighting in sightings)
+def _start(assumed: str, of_run: str | None, image_labels: Sequence[ImageLabel]) -> list[str]:
+    """Say that the run began on a terrain that was not named and differs from the first label."""
+    labels = (image_label.label for image_label in image_labels)
     seen = next((label for label in labels if label not in ("", UNKNOWN)), assumed)
     if assumed in (seen, of_run):
         return []
@@ -83,14 +84,51 @@ def _events(events: Sequence[FilterEvent], began_s: float) -> list[str]:
     return lines
 
 
-def _blind(sightings: Sequence[Sighting]) -> list[str]:
+def _blind(image_labels: Sequence[ImageLabel]) -> list[str]:
     """Say why where no image was given the name of a terrain."""
-    if not sightings or any(sighting.label not in ("", UNKNOWN) for sighting in sightings):
+    if not image_labels or any(
+        image_label.label not in ("", UNKNOWN) for image_label in image_labels
+    ):
         return []
-    reasons = Counter(sighting.reason or "unlike any training patch" for sighting in sightings)
+    reasons = Counter(
+        image_label.reason or "unlike any training patch" for image_label in image_labels
+    )
     words = ", ".join(f"{reason} ({count})" for reason, count in reasons.most_common(3))
     return [
-        f"vision named no terrain in any of {len(sightings)} images: {words}; the terrain in force "
-        "never changed. Try terrain-odometry camera RUN --model MODEL --out DIR, which shows what "
-        "the camera sees and suggests a pitch"
+        f"vision named no terrain in any of {len(image_labels)} images: {words}; the terrain "
+        "in force never changed. Try terrain-odometry camera RUN --model MODEL --out DIR: it shows "
+        "what the camera sees and suggests a pitch"
     ]
+
+
+def learned_advice(
+    result: "RunResult", run_folder: Path, out: Path, *, has_warnings: bool, preset: str | None
+) -> str | None:
+    """One line on learned.toml; None where the run has learned nothing, or a preset refuses it.
+
+    Parameters
+    ----------
+    result : RunResult
+    run_folder, out : Path
+        Of the run, and of its results.
+    has_warnings : bool
+        Whether the check of the recording found what would mislead.
+    preset : str, optional
+        A published system knows no parameter sets.
+    """
+    from terrain.filter_summary import misleading
+
+    if preset is not None or not result.has_learned:
+        return None
+    if has_warnings:
+        return (
+            "learned.toml is not recommended: the recording has warnings (terrain-odometry check "
+            f"{run_folder})"
+        )
+    events = misleading(result.replay)
+    if events:
+        kinds = ", ".join(dict.fromkeys(event.kind.replace("_", " ") for event in events))
+        return (
+            f"learned.toml is not recommended: the filter noticed {kinds} (see {out}/report.html)"
+        )
+    return f"Next time: --parameters {out / 'learned.toml'} starts from what was learned"

@@ -61,7 +61,7 @@ def require_determined(found: "Identification") -> None:
         lines += [f"  {words(found.left_out)}"] if found.left_out else []
         simpler = told_instead(found)
         if simpler is not None:
-            lines += [f"The same runs tell fewer parameters: --model {SIMPLE}"]
+            lines += [f"The same runs determine a model with fewer parameters: --model {SIMPLE}"]
             lines += [f"  {in_short(name, one)}" for name, one in simpler.grounds.items()]
         raise IdentificationError("\n".join(lines)) from error
 

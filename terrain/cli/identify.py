@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     "--model",
     required=True,
     metavar="NAME|SET.toml",
-    help=f"One of {', '.join(MODEL_NAMES)}; or a parameter set, to identify its models anew with "
+    help=f"One of {', '.join(MODEL_NAMES)}; or a parameter set, to identify its models again with "
     "its effects held.",
 )
 @click.option(
@@ -113,7 +113,7 @@ def identify(
     Runs are cut into windows of equal wheel travel; the parameters are those whose dead reckoning
     ends nearest to the measured poses. Of positions without yaw (GNSS) the shapes of longer
     stretches count. One table is written for each terrain that the runs name.
-    Parameters that the runs cannot tell are named, and nothing is written then.
+    Parameters that the runs do not determine are named, and nothing is written then.
 
     \b
     Example:

@@ -1,4 +1,4 @@
-"""The files that `identify` writes: claimed before any work, and what stands beside the set."""
+"""The files that `identify` writes: claimed before any work, and what is written with the set."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def require_icr_form(model: str) -> None:
-    """Refuse --ros of a model that no multiplier stands for, before any run is read."""
+    """Refuse --ros of a model that has no multiplier in ROS, before any run is read."""
     from odometry.estimation.icr_prior import ICR_FORM_MODELS
 
     if model in MODEL_NAMES and model not in ICR_FORM_MODELS:
@@ -29,7 +29,7 @@ def require_icr_form(model: str) -> None:
 def draw(
     picture: Path, runs: "Sequence[Run]", found: "Identification", terrain: str | None
 ) -> None:
-    """Draw the picture, or say why there is none: the parameter set stands without it."""
+    """Draw the picture, or say why there is none: the parameter set is written without it."""
     from odometry.errors import OdometryError
     from odometry.outputs.output_file import picture_source
     from odometry.positions.heading import headed

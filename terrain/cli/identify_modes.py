@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from odometry.modes.velocity import VelocityModes
     from odometry.run_span import Span
 
-ALIKE_S = 5.0  # pairs that take longer to be told apart are named
+ALIKE_S = 5.0  # pairs that take longer to be distinguished are named
 PAIRS = 4  # so many of them
 SLOW_TIGHT_TURNS_M_S = ((0.05, 0.15), (0.15, 0.05))  # to the left, to the right
 
@@ -40,13 +40,13 @@ SLOW_TIGHT_TURNS_M_S = ((0.05, 0.15), (0.15, 0.05))  # to the left, to the right
     type=click.Choice(["velocity", "traction"]),
     default="velocity",
     show_default=True,
-    help="Terrains, told by the yaw rate; or slipping wheels, told by the poses.",
+    help="Terrains, from the yaw rate; or slipping wheels, from the poses.",
 )
 @click.option("--shared", is_flag=True, help="Velocity: one model, with the noise of each mode.")
 @click.option(
     "--common-noise",
     is_flag=True,
-    help="Velocity: one noise for all, so that only the answer to the treads tells modes apart.",
+    help="Velocity: one noise for all, so that modes differ by their answer to the treads alone.",
 )
 @click.option("--paper", is_flag=True, help="Traction: one k and m alone, as in Salvi 2024.")
 @click.option(
@@ -68,7 +68,7 @@ def identify_modes(
     dwell: float,
     span: "Span",
 ) -> None:
-    """Identify the modes that the run folders RUN name, for `modes` to tell them apart.
+    """Identify the modes that the run folders RUN name, for `modes` to recognise them.
 
     A mode is a name of [run] terrain in run.toml or of the column terrain in odometry.csv: a
     terrain, or the wheels that slip. Every mode needs turns, traction modes to both sides.
@@ -95,7 +95,7 @@ def identify_modes(
             raise click.UsageError(f"{option} is for --kind velocity")
     if shared and common_noise:
         raise click.UsageError(
-            "--shared and --common-noise together leave nothing to tell modes by"
+            "--shared and --common-noise together leave no difference between modes"
         )
     if paper and kind != "traction":
         raise click.UsageError("--paper is for --kind traction")
@@ -180,17 +180,17 @@ def _print_traction(modes: "TractionModes") -> None:
 
 
 def _print_alike(found: "tuple[Pair, ...]") -> None:
-    """Say which modes answer alike, and how long the hardest to tell apart take."""
+    """Say which modes answer alike, and how long the most similar take to be distinguished."""
     if not found:
-        click.echo("Note: there is one mode: `modes` needs two or more to tell apart", err=True)
+        click.echo("Note: there is one mode: `modes` needs two or more", err=True)
         return
     alike = [pair for pair in found if pair.seconds > ALIKE_S]
     for pair in alike[:PAIRS] or found[:1]:
         both = " and ".join(pair.names)
-        words = "answer alike" if alike else "are the most alike"
+        words = "answer alike" if alike else "are the most similar"
         digits = 0 if pair.seconds >= 10 else 1
         time = f"about {pair.seconds:.{digits}f} s" if pair.seconds < 1e4 else "for ever"
         time = "less than 0.1 s" if pair.seconds < 0.1 else time
-        click.echo(f"{both} {words}: driven as in these runs they take {time} to be told apart.")
+        click.echo(f"{both} {words}: driven as in these runs they take {time} to be distinguished.")
     if len(alike) > PAIRS:
         click.echo(f"So do {len(alike) - PAIRS} further pairs (more than {ALIKE_S:g} s).")

@@ -83,7 +83,7 @@ KEYS = {
 )
 @click.option("--imu", metavar="TOPIC|none", help="The inertial sensor.")
 @click.option("--reference", metavar="TOPIC|none", help="The poses or fixes to compare with.")
-@click.option("--images", metavar="TOPIC|none", help="The camera that sees the terrain.")
+@click.option("--images", metavar="TOPIC|none", help="The camera that shows the terrain.")
 @click.option("--camera-info", metavar="TOPIC|none", help="The calibration of its lens.")
 @click.option(
     "--time",
@@ -119,7 +119,7 @@ def import_(
         _check(add_to_run(bags, out, poses))
         return
     if out is None and not as_list:
-        raise click.UsageError("--out RUN is missing (or --list, to look into the bags first)")
+        raise click.UsageError("--out RUN is missing (or --list, to list the topics first)")
     _require_extra()
     if as_list or out is None:
         _list(bags)

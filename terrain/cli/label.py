@@ -41,7 +41,7 @@ SOURCES = ("truth.csv", "odometry.csv", "images.csv", "run.toml")
     "--by-feel",
     metavar="FEEL",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="Model made by `identify-feel`: what the robot felt labels what the camera saw before.",
+    help="Model made by `identify-feel`: terrain by feel labels the images that showed it before.",
 )
 @click.option(
     "--parameters",
@@ -91,8 +91,8 @@ def label(
 ) -> None:
     """Cut labelled patches from recordings, for `train`.
 
-    A patch is a square that an image shows and that the robot then drove over, as seen from
-    above. Its label is the terrain that was told while the footprint was over it: by --span, by a
+    A patch is a square that an image shows and that the robot then drove over, in the view from
+    above. Its label is the terrain that is given while the footprint was over it: by --span, by a
     column `terrain`, or by [run] terrain. A square astride two terrains is left out. Patches of
     one place share a photo_id, so that `train` holds them back together.
 

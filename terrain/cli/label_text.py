@@ -21,7 +21,7 @@ def _runs(ground: "LabelledTerrain", told: "Sequence[ToldTerrain]") -> Iterator[
         left_out = ground.left_out[folder]
         counts = ", ".join(f"{count} {why}" for why, count in sorted(left_out.items()))
         yield (
-            f"{folder}: {seen} squares seen and then driven over, labelled by "
+            f"{folder}: {seen} squares in images and then driven over, labelled by "
             f"{of.source}; left out: {counts or 'none'}"
         )
 
@@ -43,7 +43,7 @@ def _notes(ground: "LabelledTerrain") -> Iterator[str]:
     few = [f"{label} ({count})" for label, count in _places(ground).items() if count < FEW_PLACES]
     if few:
         yield (
-            f"Note: patches of few places: {', '.join(few)}; `train` needs 2 a class, and judges "
+            f"Note: patches of few places: {', '.join(few)}; `train` needs 2 a class, and tests "
             f"itself well with {FEW_PLACES} or more"
         )
     if len(_places(ground)) == 1:

@@ -58,7 +58,7 @@ def _notes(
     if classifier.trained_on_ is None:
         return [
             f"{model} does not say which images it was trained on; whether these are held out "
-            "cannot be told"
+            "cannot be determined"
         ]
     notes = []
     trained = [each for each in answers if each.in_training]

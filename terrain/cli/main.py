@@ -5,16 +5,16 @@ import signal
 import sys
 from difflib import get_close_matches
 from keyword import iskeyword
+from types import FrameType
 
 import click
 
 from odometry.errors import OdometryError
-from terrain.cli.interrupt import Interrupted, raise_on_signals
 
 VERBS = {
     "import": "Make a run folder from bags of ROS 1 or ROS 2.",
     "check": "What is odd about recordings, before anything is fitted to them.",
-    "camera": "What the camera sees of the terrain; calibrate its lens and mount.",
+    "camera": "The terrain in the camera's image; calibrate its lens and mount.",
     "label": "Cut labelled patches from recordings.",
     "train": "Train a terrain classifier on labelled patches.",
     "classify": "Name the terrain of images.",
@@ -26,8 +26,8 @@ VERBS = {
     "identify": "Parameters of a kinematic model from recorded runs.",
     "compare": "Held-out errors of several models, side by side.",
     "gap": "Which effect a model lacks, and the gap closed.",
-    "identify-modes": "Models of terrains or of slipping wheels, to be told apart in motion.",
-    "modes": "Which terrain, or which slipping wheels, the motion speaks for.",
+    "identify-modes": "Models of terrains or of slipping wheels, to be recognised by the motion.",
+    "modes": "Which terrain, or which slipping wheels, the motion supports.",
     "identify-feel": "How terrains feel: vibration, currents and yaw response.",
     "feel": "Which terrain a run feels like.",
     "export": "Results in the formats of other programs: ROS, MCAP, maps, trajectories.",
@@ -36,7 +36,7 @@ VERBS = {
 
 
 class LazyGroup(click.Group):
-    """Imports the file of a verb only when that verb is asked for."""
+    """Imports the file of a verb only when that verb is called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002 - click's signature
         """Verbs in the order in which one uses them."""
@@ -105,3 +105,35 @@ def main() -> None:
     except MemoryError as error:
         click.echo(f"Error: there is not enough memory for this input: {error}", err=True)
         sys.exit(1)
+
+
+class Interrupted(BaseException):
+    """The user, or the system, stopped the command.
+
+    It is no `KeyboardInterrupt`, which click turns into an exit code of its own.
+    """
+
+    def __init__(self, number: int) -> None:
+        super().__init__("Interrupted" if number == signal.SIGINT else "Terminated")
+        self.exit_code = 128 + number
+
+    @property
+    def left(self) -> str:
+        """What was written, by those who were writing."""
+        return "; ".join(getattr(self, "__notes__", [])) or "nothing was written"
+
+
+def raise_on_signals(*numbers: signal.Signals) -> None:
+    """Raise `Interrupted` at the first of these signals; a second one ends the process at once.
+
+    A signal that is ignored, as after `nohup`, stays ignored.
+    """
+
+    def stop(number: int, frame: FrameType | None) -> None:  # noqa: ARG001 - the signal's own
+        for one in numbers:
+            signal.signal(one, signal.SIG_DFL)
+        raise Interrupted(number)
+
+    for one in numbers:
+        if signal.getsignal(one) != signal.SIG_IGN:
+            signal.signal(one, stop)

@@ -1,4 +1,4 @@
-"""`terrain-odometry modes`: which terrain, or which slipping wheels, the motion speaks for."""
+"""`terrain-odometry modes`: which terrain, or which slipping wheels, the motion supports."""
 
 import sys
 from pathlib import Path
@@ -35,7 +35,7 @@ FOLDER = RunFolder()
     "--seen",
     metavar="TERRAIN.csv",
     type=FILE,
-    help="What vision saw on the one RUN: terrain.csv of `run`.",
+    help="Labels of vision for the one RUN: terrain.csv of `run`.",
 )
 @click.option(
     "--sure",
@@ -58,8 +58,8 @@ def modes(
 
     Writes the probability of each mode over time, the answers, and how soon and how often they
     were right where the run says what is true. "none of these" is the answer where no mode fits,
-    with the signal that speaks against it. With --seen, what vision saw is weighed too, and
-    where sight and motion disagree for long is said. Several runs get a folder each; one that
+    with the signal that contradicts it. With --seen, the labels of vision are used too, and long
+    disagreements of vision and motion are reported. Several runs get a folder each; one that
     cannot be used becomes a row of runs.csv that says why, and the exit code is then 1.
 
     \b

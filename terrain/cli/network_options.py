@@ -30,7 +30,7 @@ def network_options(command: Callable[..., None]) -> Callable[..., None]:
     @click.option(
         "--input-range",
         metavar="LOW:HIGH",
-        help="What 0 and 255 become before the network sees them.  [default: -1:1]",
+        help="Values of 0 and 255 at the network's input.  [default: -1:1]",
     )
     @wraps(command)
     def with_network(

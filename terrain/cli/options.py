@@ -16,7 +16,7 @@ MODEL_NAMES = (
 )
 
 
-# What exists at the place of an output is judged where it is claimed, with one exit code.
+# What exists at the place of an output is refused where it is claimed, with one exit code.
 OUTPUT = click.Path(path_type=Path)
 
 
@@ -40,7 +40,7 @@ def scheduler_option(command: Callable[..., None]) -> Callable[..., None]:
 
 
 class RunFolder(click.Path):
-    """A run folder; a bag is told how to become one."""
+    """A run folder; for a bag the error says how to import it."""
 
     def __init__(self) -> None:
         super().__init__(file_okay=False, path_type=Path)

@@ -37,28 +37,29 @@ def print_errors(results: Mapping[str, "RunResult"]) -> None:
 
 
 def _beside_errors(result: "RunResult") -> list[str]:
-    """What the table does not say: how the estimate is judged, what is missing, what is better."""
+    """What the table does not hold: how the estimate is evaluated, and what else to note."""
+    from terrain.evaluation_notes import NO_GYROSCOPE, evaluated_with, remarks
     from terrain.odometer_advice import advice
-    from terrain.verdicts import NO_GYROSCOPE, judged_by, remarks
 
-    judged = [f"The estimate is judged by {judged_by(result.second)}"] if result.second else []
+    second = result.second
+    how = [] if second is None else [f"The estimate is evaluated with {evaluated_with(second)}"]
     missing = [] if result.replay.has_gyroscope else [NO_GYROSCOPE]
     return [
-        *judged,
+        *how,
         *missing,
         *remarks(result.scores, result.off_at_the_end_m, result.replay.events),
         advice(result.uncertainty, result.reference_name),
     ]
 
 
-def print_sightings(counts: Mapping[str, int]) -> None:
+def print_image_labels(counts: Mapping[str, int]) -> None:
     """Say how many images got each label, and how many none and why."""
     if counts:
         click.echo("Images: " + ", ".join(f"{count} {word}" for word, count in counts.items()))
 
 
 def print_changes(result: "RunResult") -> None:
-    """Say when which terrain came into force, where anything told it."""
+    """Say when which terrain came into force, where there is a source of terrain."""
     if result.source == "none":
         return
     began_s = result.run.began_s

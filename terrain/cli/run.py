@@ -27,12 +27,11 @@ def run(run_folder: Path, *, out: Path, options: "RunOptions") -> None:
     Example:
       terrain-odometry run my_run --model terrain.model --parameters set.toml --out results
     """
-    from terrain.cli.hints import hints
-    from terrain.cli.learned_advice import learned_advice
+    from terrain.cli.hints import hints, learned_advice
     from terrain.cli.outputs import claim_folder
     from terrain.cli.recordings import checks_made, read_run
-    from terrain.cli.results import print_changes, print_errors, print_sightings, print_written
-    from terrain.result_table import sighting_counts
+    from terrain.cli.results import print_changes, print_errors, print_image_labels, print_written
+    from terrain.result_table import image_label_counts
     from terrain.run_output import write_run
 
     output = claim_folder(out, reads_images=options.reads_images)
@@ -42,7 +41,7 @@ def run(run_folder: Path, *, out: Path, options: "RunOptions") -> None:
         click.echo(f"Note: {hint}", err=True)
     write_run(result, output, checks_made())
     print_errors({result.run.name: result})
-    print_sightings(sighting_counts(result))
+    print_image_labels(image_label_counts(result))
     print_changes(result)
     for name, effects in result.effects.items():
         click.echo(f"Effects on {name}, in every trajectory but the ideal: {', '.join(effects)}")

@@ -26,7 +26,7 @@ def run_options(command: Callable[..., None]) -> Callable[..., None]:
     @click.option(
         "--source",
         type=click.Choice(SOURCES),
-        help="What tells the terrain: the images (needs --model), the run's own column `terrain`, "
+        help="Source of the terrain: the images (needs --model), the run's own column `terrain`, "
         "the motion (needs --modes), what the robot feels (needs --feel), or nothing.  [default: "
         "camera with --model, else feel with --feel, else none]",
     )

@@ -1,4 +1,4 @@
-"""The robot and the tractions that `simulate` was asked for by name."""
+"""The robot and the tractions of `simulate`, by the names of its options."""
 
 from difflib import get_close_matches
 from pathlib import Path

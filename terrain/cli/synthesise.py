@@ -40,7 +40,7 @@ from terrain.cli.options import OUTPUT
 @click.option(
     "--metres-per-pixel",
     type=float,
-    help="Scale of the photographs on the ground. [default: 0.003]",
+    help="Scale of the photographs on the terrain. [default: 0.003]",
 )
 @click.option("--image-rate", type=float, help="Images a second.  [default: 4]")
 @click.option("--camera", type=click.Path(path_type=Path), help="TOML file with a [camera] table.")

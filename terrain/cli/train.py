@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     type=click.Choice(["default", "fast", "chen2023"]),
     default="default",
     show_default=True,
-    help="fast looks at fewer filtered copies of a patch, for small computers; chen2023 is the "
+    help="fast uses fewer filtered copies of a patch, for small computers; chen2023 is the "
     "paper's classifier.",
 )
 @click.option(
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 @click.option(
     "--metres-per-pixel",
     type=Positive(1000.0),
-    help="Scale of the photographs on the ground; kept in the model.  [default: as manifest.csv "
+    help="Scale of the photographs on the terrain; kept in the model.  [default: as manifest.csv "
     "states it]",
 )
 @click.option(
@@ -153,8 +153,8 @@ def train(
     if (manifest := read_manifest(patches)) is not None and manifest.runs:
         click.echo(
             f"Note: the patches are of {', '.join(manifest.runs)}: what is held out are other "
-            "places of the same recordings. The same terrain looks different elsewhere: label "
-            "recordings of several sites, and judge the model on one that is left out (classify)",
+            "places of the same recordings. The same terrain has another texture elsewhere: label "
+            "recordings of several sites, and test the model on one that is held out (classify)",
             err=True,
         )
     if features is not None:

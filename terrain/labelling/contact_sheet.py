@@ -16,7 +16,7 @@ MOST = 500  # patches of a picture, spread evenly
 
 
 def write_contact_sheet(file: Path, folder: Path, paths: Sequence[str]) -> None:
-    """Draw patches side by side; under each stands its file name, without run and suffix.
+    """Draw patches side by side, each above its file name without run and suffix.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ class Corrections:
 def read_corrections(folder: Path) -> Corrections:
     """Compare the files of a folder with the manifest that `label` wrote into it.
 
-    A patch that lies in another class than it was told to be of was moved; one that lies nowhere
+    A patch that lies in another class than the one of its label was moved; one that lies nowhere
     was removed, unless the folder is unfinished. A folder without such a manifest has no
     corrections.
 

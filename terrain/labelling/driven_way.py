@@ -9,14 +9,14 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.geometry import se2
 from odometry.run import Run
 from odometry.trajectory import Trajectory
-from terrain.places import Footprint
+from terrain.place_labels import Footprint
 
 STEP_M = 0.03  # of wheel travel, between the poses of a way
 
 
 @dataclass(frozen=True)
 class Passing:
-    """From before the footprint was over any part of a piece of ground until it was over none."""
+    """From before the footprint was over any part of a square until it was over none."""
 
     begin_s: float
     end_s: float
@@ -55,11 +55,12 @@ class DrivenWay:
         return slice(first, int(np.searchsorted(self.travel_m, at_m + most_m, side="right")))
 
     def passings(self, points: FloatArray, rows: slice) -> list[Passing | None]:
-        """When the robot first went over each of several pieces of ground.
+        """When the robot first drove over each of several squares of terrain.
 
-        It goes over a piece that its footprint covers in one passing, and that lies between where
-        its middle comes from and where it goes to: terrain is told of the middle, so that it is
-        not known ahead of a place where the robot turned round or went back.
+        It drives over a square that its footprint covers in one passage, and that lies between
+        where its middle comes from and where it goes to: labels are of the terrain under the
+        middle, so that they are not known ahead of a place where the robot turned round or went
+        back.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Terrain that the robot felt, as labels of what its camera saw before."""
+"""Terrain by feel, as labels of the images that showed it before."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ STRETCH_S = 4.0  # so long is put together, around the moment that is labelled
 
 
 def told_by_feel(run: Run, model: FeelModel) -> ToldTerrain:
-    """What the run feels like, where that is sure; nothing is told elsewhere.
+    """The terrain by feel of a run, where that is sure; elsewhere there is no label.
 
     Evidence of STRETCH_S is put together, half of it from before each moment and half from after.
 

@@ -1,4 +1,4 @@
-"""From recordings to labelled squares of ground, chosen place by place."""
+"""From recordings to labelled squares of terrain, chosen place by place."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -74,7 +74,7 @@ def label_runs(
     corrections: Corrections | None = None,
     show_progress: bool = False,
 ) -> LabelledTerrain:
-    """Find squares of ground that images show and the robot then drove over, and label them.
+    """Find squares of terrain that images show and the robot then drove over, and label them.
 
     Parameters
     ----------
@@ -210,7 +210,7 @@ def _spread(
 
 
 def _names(runs: Sequence[Run]) -> list[str]:
-    """Names of runs; with a number where two folders are named alike."""
+    """Names of runs; with a number where two folders have the same name."""
     names = [run.name for run in runs]
     if len(set(names)) == len(names):
         return names

@@ -1,4 +1,4 @@
-"""The label of each square: what was told of the terrain while the footprint was over it."""
+"""The label of each square: the terrain that was given while the footprint was over it."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ from odometry.run import Run
 from terrain.labelling.squares import DrivenSquare, SquareFinder
 from terrain.labelling.told_terrain import ToldTerrain
 
-STRADDLES, UNTOLD = "astride two terrains", "of no terrain that was told"
+STRADDLES, UNTOLD = "astride two terrains", "of no given terrain"
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ def labelled_squares(
 ) -> tuple[list[LabelledSquare], Counter[str]]:
     """Squares of one terrain, and how many others there are, by why they are left out.
 
-    The label is what was told of all the time during which the footprint was over any part of the
+    The label is the terrain of all the time during which the footprint was over any part of the
     square. Where images are labelled, it is what all images say that show the middle of the
     square before the robot gets there.
 

@@ -1,4 +1,4 @@
-"""Places: parts of the ground that share none of it, so that no patch is of two of them."""
+"""Places: parts of the terrain that do not overlap, so that no patch is of two of them."""
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -16,7 +16,7 @@ def place_centres(middles_m: FloatArray, apart_m: float) -> FloatArray:
 
 
 def places_of(middles_m: FloatArray, centres_m: FloatArray, radius_m: float) -> IntArray:
-    """The place in which each piece of ground lies whole.
+    """The place in which each square lies whole.
 
     A place is all that is nearer to its centre than to any other (a Voronoi cell).
 

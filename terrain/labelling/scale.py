@@ -16,7 +16,7 @@ from terrain.warp import ground_sampling_m
 
 SIDE = 0.6  # of the width of the footprint
 SMALLEST_PX = 32
-IMAGES = 50  # of a run that are looked at for the scale
+IMAGES = 50  # of a run from which the scale is chosen
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class LabelConfig:
     patch_size_px : int or None
         Side of a patch; None takes 0.6 of the width of the robot, at most 128 pixels.
     metres_per_pixel : float or None
-        None takes what a camera resolves of the nearest ground that is driven over.
+        None takes what a camera resolves of the nearest terrain that is driven over.
     per_place : int
         Patches of one terrain at one place, at the most.
     place_m : float
@@ -64,12 +64,12 @@ class PatchScale:
 
     @property
     def side_m(self) -> float:
-        """Side on the ground."""
+        """Side on the terrain."""
         return self.size_px * self.metres_per_pixel
 
     @property
     def coarsest_m(self) -> float:
-        """An image may show the ground this much more coarsely, as a region."""
+        """An image may resolve the terrain this much more coarsely, as a region."""
         return RegionConfig.coarsest * self.metres_per_pixel
 
 
@@ -79,7 +79,7 @@ def patch_scale(finders: Sequence[SquareFinder], config: LabelConfig) -> PatchSc
     Raises
     ------
     PatchError
-        If no image shows ground that the robot then drove over, or a patch would have too few
+        If no image shows terrain that the robot then drove over, or a patch would have too few
         pixels, or would be wider than a robot.
     """
     width_m = min(finder.way.footprint.width_m for finder in finders)
@@ -117,7 +117,7 @@ def _resolved_m(finder: SquareFinder, side_m: float) -> float:
     ]
     if not coarsest:
         raise PatchError(
-            f"{finder.run.folder}: none of {len(chosen)} images shows ground of "
+            f"{finder.run.folder}: none of {len(chosen)} images shows terrain of "
             f"{side_m:.2f} x {side_m:.2f} m that the robot then drove over; see [camera] of "
             "run.toml, and `terrain-odometry check`"
         )

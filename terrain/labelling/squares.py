@@ -1,4 +1,4 @@
-"""Squares of ground that an image shows finely enough and the robot then drove over."""
+"""Squares of terrain that an image shows finely enough and the robot then drove over."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from terrain.camera import Camera
 from terrain.labelling.driven_way import DrivenWay, Passing
 from terrain.rectangle import Rectangle
 from terrain.region import RegionConfig
-from terrain.shown import is_shown
+from terrain.visible_terrain import is_visible
 
 ASIDE = 0.8  # of what a footprint is wider than a square: so far the outer squares lie apart
 GRID = 5  # points along each side of a square; all of them are shown and driven over
@@ -25,7 +25,7 @@ GRID = 5  # points along each side of a square; all of them are shown and driven
 
 @dataclass(frozen=True)
 class DrivenSquare:
-    """A square of ground in one image.
+    """A square of terrain in one image.
 
     Attributes
     ----------
@@ -110,7 +110,7 @@ class SquareFinder:
         ----------
         side_m : float
         coarsest_m : float
-            A pixel may cover so much of the ground at the most.
+            A pixel may cover so much of the terrain at the most.
         rows : (n,)
             Of images.csv.
         show_progress : bool
@@ -134,7 +134,7 @@ class SquareFinder:
         grid = np.linspace(-side_m / 2, side_m / 2, GRID)
         points = np.stack(np.meshgrid(grid, grid), axis=-1).reshape(-1, 2)
         points = middles[:, None] + points
-        shown = is_shown(self.camera, points, coarsest_m).all(axis=1)
+        shown = is_visible(self.camera, points, coarsest_m).all(axis=1)
         middles, points = middles[shown], se2.transform(pose, points[shown])
         rows = self.way.ahead(stamp_s, self.reach_m + 2 * self.way.footprint.radius_m)
         passings = self.way.passings(points, rows)
@@ -166,7 +166,7 @@ class SquareFinder:
         return np.asarray(se2.transform(ahead[:, None], across)).reshape(-1, 2)
 
     def _in_gap(self, begin_s: float, end_s: float) -> bool:
-        """Whether the odometry is silent between two stamps: where the robot went is not known."""
+        """Whether the odometry has a gap between two stamps: where the robot went is not known."""
         return bool(((self._gaps_s[:, 0] < end_s) & (self._gaps_s[:, 1] > begin_s)).any())
 
     def _at_images(self, trajectory: Trajectory) -> FloatArray:

@@ -1,4 +1,4 @@
-"""What a recording, or its owner, tells of the terrain: by time or by image."""
+"""The terrain that a recording, or its owner, gives: by time or by image."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -45,16 +45,16 @@ class TerrainSpan:
 
 @dataclass(frozen=True)
 class ToldTerrain:
-    """Names of terrain, each from its stamp until the next one; "" where nothing is told.
+    """Names of terrain, each from its stamp until the next one; "" where none is given.
 
     Attributes
     ----------
     source : str
-        What tells them.
+        Their source.
     stamps_s : (N,)
     names : tuple of str, length N
     of_images : bool
-        Whether a name is of what an image shows; else of what the robot stands on.
+        Whether a name is of what an image shows; else of the terrain under the robot.
     """
 
     source: str
@@ -76,7 +76,7 @@ class ToldTerrain:
 
 
 def told_by_spans(run: Run, spans: Sequence[TerrainSpan], start_s: float) -> ToldTerrain:
-    """Spans of run time; nothing is told between them.
+    """Spans of run time; no terrain is given between them.
 
     Parameters
     ----------
@@ -96,8 +96,8 @@ def told_by_spans(run: Run, spans: Sequence[TerrainSpan], start_s: float) -> Tol
     >>> import terrain
     >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> span = terrain.TerrainSpan(5.0, 12.5, "grass")
-    >>> told = terrain.told_by_spans(run, [span], start_s=0.0)
-    >>> told.between(6.0, 7.0), told.between(0.0, 1.0)
+    >>> given = terrain.told_by_spans(run, [span], start_s=0.0)
+    >>> given.between(6.0, 7.0), given.between(0.0, 1.0)
     (frozenset({'grass'}), frozenset({''}))
     """
     ordered = sorted(spans, key=lambda span: span.from_s)
@@ -118,7 +118,7 @@ def told_by_spans(run: Run, spans: Sequence[TerrainSpan], start_s: float) -> Tol
 
 
 def told_terrain(run: Run, source: str | None = None) -> ToldTerrain:
-    """What a file of the run tells.
+    """The terrain that a file of the run gives.
 
     Parameters
     ----------
@@ -136,8 +136,8 @@ def told_terrain(run: Run, source: str | None = None) -> ToldTerrain:
     >>> import odometry
     >>> import terrain
     >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
-    >>> told = terrain.told_terrain(run)
-    >>> told.source, told.names[0]
+    >>> given = terrain.told_terrain(run)
+    >>> given.source, given.names[0]
     ('truth.csv', 'gravel')
     """
     for name in SOURCES if source is None else (source,):

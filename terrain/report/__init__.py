@@ -1,4 +1,4 @@
-"""Figures and one page of a run: what was seen, when the terrain changed, how far off it is.
+"""Figures and one page of a run: labels, changes of terrain, and errors.
 
 Names are imported when they are first used.
 """

@@ -1,4 +1,4 @@
-"""What a camera sees of the terrain, and how well its calibration fits, as PNG files."""
+"""The terrain in a camera's image, and how well its calibration fits, as PNG files."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -16,8 +16,7 @@ from terrain.calibration.lens_from_boards import LensFit
 from terrain.calibration.marked_points import MarkedPoints
 from terrain.camera import Camera
 from terrain.checks.shown_image import ShownImage
-from terrain.report.ground_picture import plot_ground
-from terrain.report.ground_plots import draw_ground_grid
+from terrain.report.ground_plots import draw_ground_grid, plot_ground
 from terrain.report.plots import plot_image
 
 WIDTH_IN, MARGIN_IN = 9.0, 0.75
@@ -27,7 +26,7 @@ SOURCE = picture_source("camera")
 
 
 def write_ground_figures(folder: Path, robot: Robot, shown: Sequence[ShownImage]) -> list[Path]:
-    """Draw each image with grid, footprint and look-ahead place, as terrain_1.png and so on."""
+    """Draw each image with grid, footprint and region ahead, as terrain_1.png and so on."""
     return [
         _image_figure(folder / f"terrain_{number}.png", one.image, _ground(robot, one))
         for number, one in enumerate(shown, start=1)
@@ -78,7 +77,7 @@ def write_flow_figure(
 
 
 def write_board_figure(file: Path, seen: BoardViews, fit: LensFit) -> Path:
-    """Draw where corners were seen in the image, and the error of each photograph."""
+    """Draw where corners were found in the image, and the error of each photograph."""
 
     def draw(figure: Figure) -> None:
         image, errors = figure.subplots(1, 2, width_ratios=[1.5, 1.0])

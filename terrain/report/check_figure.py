@@ -1,4 +1,4 @@
-"""The figure of a check: treads, yaw rates, measured path, and the ground that the camera sees."""
+"""The figure of a check: treads, yaw rates, measured path, and the terrain in one image."""
 
 from pathlib import Path
 from textwrap import wrap
@@ -18,7 +18,7 @@ from odometry.report.check_plots import (
 from odometry.report.figure import save_figure
 from odometry.run import Run
 from terrain.checks.shown_image import shown_image
-from terrain.report.ground_picture import plot_ground
+from terrain.report.ground_plots import plot_ground
 
 _WIDTH_IN = 10.0
 _SIGNALS_IN, _PLACES_IN = 5.4, 3.6  # height of the panels over time, and of path and image

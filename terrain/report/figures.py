@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from odometry.evaluation.relative import position_errors
 from odometry.evaluation.score import window_errors
 from odometry.evaluation.stretches import Stretch, stretches
-from odometry.report.figure import save_figure
+from odometry.report.figure import save_figure, show_run_time
 from odometry.report.html import Picture
 from odometry.report.map_plots import plot_ground, plot_paths
 from odometry.report.outages import broken_at_outages
@@ -18,7 +18,6 @@ from odometry.report.plots import (
     plot_icr,
     plot_position_errors,
 )
-from odometry.report.run_time_axis import show_run_time
 from terrain.report.lines import ICR_COORDINATES, ReportLines
 from terrain.run_result import RunResult
 from terrain.switch_delay import true_stretches
@@ -51,14 +50,14 @@ def path_picture(lines: ReportLines, tints: Tints, folder: Path) -> Picture:
     return Picture(
         save_figure(folder / "path.png", (_WIDTH_IN, height_in), draw),
         f"Map of the paths: {', '.join(paths)}.",
-        f"Paths seen from above. The broad band is {along}.",
+        f"Paths from above. The broad band is {along}.",
     )
 
 
 def position_picture(lines: ReportLines, folder: Path) -> Picture | None:
-    """Position errors over time; None where nothing can be judged."""
+    """Position errors over time; None without a reference."""
     errors = {
-        name: position_errors(of.trajectory, of.reference) for name, of in lines.judged().items()
+        name: position_errors(of.trajectory, of.reference) for name, of in lines.evaluated().items()
     }
     errors = {n: broken_at_outages(*error) for n, error in errors.items() if len(error[0])}
     if not errors:
@@ -83,7 +82,7 @@ def distribution_picture(lines: ReportLines, folder: Path) -> Picture | None:
     result = lines.result
     relative = {
         name: window_errors(result.run, of.trajectory, of.reference, result.config.evaluation)
-        for name, of in lines.judged().items()
+        for name, of in lines.evaluated().items()
     }
     if not any(len(errors.start_s) for errors in relative.values()):
         return None

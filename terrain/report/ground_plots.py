@@ -1,4 +1,4 @@
-"""What the camera sees of the ground: a metric grid, the footprint and the region ahead."""
+"""The terrain in the camera's image: a metric grid, the footprint and the region ahead."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -9,7 +9,9 @@ from matplotlib.patheffects import withStroke
 from odometry.arrays import FloatArray
 from odometry.run import Robot
 from terrain.camera import Camera
+from terrain.checks.shown_image import ShownImage
 from terrain.region import Rectangle, Region
+from terrain.report.plots import plot_image
 from terrain.whole_image import outline
 
 GRID = "#FFFFFF"
@@ -52,7 +54,7 @@ def draw_ground_grid(axes: Axes, camera: Camera, region: Region | None) -> float
 
 
 def draw_footprint(axes: Axes, camera: Camera, robot: Robot) -> None:
-    """Outline the robot as it stands."""
+    """Outline the robot's footprint."""
     length, width = robot.length or robot.track_width, robot.width or robot.track_width
     _outlined(axes, camera, Rectangle(-length / 2, length / 2, -width / 2, width / 2), FOOTPRINT)
 
@@ -105,3 +107,27 @@ def _outlined(axes: Axes, camera: Camera, rectangle: Rectangle, name: str) -> No
             axes.add_patch(
                 Polygon(shape, fill=False, edgecolor=colour, linewidth=width_pt, gid=name)
             )
+
+
+def plot_ground(axes: Axes, robot: Robot, shown: ShownImage) -> None:
+    """Draw an image with grid, footprint and region ahead, where there is a camera for it.
+
+    Parameters
+    ----------
+    axes : Axes
+    robot : Robot
+    shown : ShownImage
+    """
+    ahead = f"region {shown.region.distance_ahead_m:.2g} m ahead" if shown.region else shown.reason
+    plot_image(axes, shown.image, "")
+    axes.set_title(f"image at {shown.run_time_s:.1f} s: {ahead}", fontsize=9.5, loc="left",
+                   parse_math=False)  # fmt: skip
+    if shown.camera is None:
+        return
+    height, width = shown.image.shape[:2]
+    step_m = draw_ground_grid(axes, shown.camera, shown.region)
+    draw_footprint(axes, shown.camera, robot)
+    if shown.region is not None:
+        draw_region_ahead(axes, shown.camera, shown.region)
+    axes.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5))
+    ground_legend(axes, step_m)

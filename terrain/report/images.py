@@ -5,17 +5,16 @@ from pathlib import Path
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from odometry.report.figure import save_figure
+from odometry.report.figure import save_figure, show_run_time
 from odometry.report.html import Picture
-from odometry.report.run_time_axis import show_run_time
 from terrain.camera import Camera
 from terrain.classification.classifier import Classifier
+from terrain.image_label import ImageLabel
 from terrain.images import read_image
 from terrain.report.figures import Tints, in_force
 from terrain.report.plots import draw_cells, draw_region, plot_confusion, plot_image, plot_labels
 from terrain.report.seen_ahead import Confusion, around_switches
 from terrain.run_result import RunResult
-from terrain.sighting import Sighting
 from terrain.switch_delay import true_stretches
 from terrain.watcher import TerrainWatcher
 from terrain.whole_image import classify_ground
@@ -33,20 +32,21 @@ def labels_picture(
 
     def draw(figure: Figure) -> None:
         axes = figure.add_axes((0.13, 0.17, 0.84, 0.8))
-        plot_labels(axes, watcher.sightings, in_force(result), truth, tints)
+        plot_labels(axes, watcher.image_labels, in_force(result), truth, tints)
         show_run_time(axes, result.run.began_s)
 
-    labelled = sum(bool(sighting.label) for sighting in watcher.sightings)
+    labelled = sum(bool(image_label.label) for image_label in watcher.image_labels)
     return Picture(
         save_figure(folder / "labels.png", (_WIDTH_IN, 1.6 + 0.3 * len(tints)), draw),
         "What each image was taken for, over time, above the terrain in force.",
-        f"What each of {len(watcher.sightings)} images was taken for ({labelled} had a label); the "
-        "paler, the less sure. A label is of the terrain ahead and comes into force on arrival.",
+        f"What each of {len(watcher.image_labels)} images was taken for ({labelled} had a label); "
+        "the paler, the less sure. A label is of the terrain ahead and comes into force on "
+        "arrival.",
     )
 
 
 def confusion_picture(found: Confusion, folder: Path) -> Picture:
-    """Labels against the truth of the places that they speak of."""
+    """Labels against the true terrain of their places."""
 
     def draw(figure: Figure) -> None:
         axes = figure.add_axes((0.3, 0.2, 0.62, 0.75))
@@ -71,15 +71,15 @@ def regions_picture(
     result: RunResult, watcher: TerrainWatcher, tints: Tints, folder: Path
 ) -> Picture | None:
     """The classified region on images around the switches; None if no image has a label."""
-    chosen = around_switches(watcher.sightings, watcher.events)
+    chosen = around_switches(watcher.image_labels, watcher.events)
     if not chosen:
         return None
     camera = camera_of(result)
     rows = -(-len(chosen) // 2)
 
     def draw(figure: Figure) -> None:
-        for axes, sighting in zip(figure.subplots(rows, 2).flat, chosen, strict=False):
-            _draw_sighting(axes, result, camera, sighting, tints)
+        for axes, image_label in zip(figure.subplots(rows, 2).flat, chosen, strict=False):
+            _draw_sighting(axes, result, camera, image_label, tints)
         for axes in figure.axes[len(chosen) :]:
             axes.remove()
         figure.subplots_adjust(0.01, 0.01, 0.99, 1 - 0.1 / rows, wspace=0.03, hspace=0.13)
@@ -101,7 +101,7 @@ def whole_image_picture(
     tints: Tints,
     folder: Path,
 ) -> Picture | None:
-    """Images around the first switch, all their ground classified beside the region alone."""
+    """Images around the first switch, all visible terrain classified beside the region alone."""
     chosen = _about_first_switch(watcher)
     if not chosen or classifier.metres_per_pixel is None:
         return None
@@ -109,22 +109,22 @@ def whole_image_picture(
     rows = len(chosen)
 
     def draw(figure: Figure) -> None:
-        for (left, right), sighting in zip(
+        for (left, right), image_label in zip(
             figure.subplots(rows, 2, squeeze=False), chosen, strict=True
         ):
-            image = read_image(result.run.folder / sighting.image)
-            at_s = sighting.stamp_s - result.run.began_s
-            plot_image(left, image, f"{at_s:.2f} s: all the ground in sight")
+            image = read_image(result.run.folder / image_label.image)
+            at_s = image_label.stamp_s - result.run.began_s
+            plot_image(left, image, f"{at_s:.2f} s: all visible terrain")
             draw_cells(left, camera, classify_ground(image, camera, classifier), tints)
-            _draw_sighting(right, result, camera, sighting, tints)
+            _draw_sighting(right, result, camera, image_label, tints)
         figure.subplots_adjust(0.01, 0.01, 0.99, 1 - 0.1 / rows, wspace=0.03, hspace=0.13)
 
     size_in = _grid_size(camera, rows)
     return Picture(
         save_figure(folder / "whole_image.png", size_in, draw, _PHOTO_DPI),
-        "Images with all visible ground cut into classified cells, beside the predicted region.",
-        "Left: all the ground that the image resolves finely enough, cut into cells of the size of "
-        "a training patch. Right: only the region where the robot will be.",
+        "Images with all visible terrain cut into classified cells, beside the predicted region.",
+        "Left: all the terrain that the image resolves finely enough, cut into cells of the size "
+        "of a training patch. Right: only the region where the robot will be.",
     )
 
 
@@ -134,30 +134,32 @@ def camera_of(result: RunResult) -> Camera:
 
 
 def _draw_sighting(
-    axes: Axes, result: RunResult, camera: Camera, sighting: Sighting, tints: Tints
+    axes: Axes, result: RunResult, camera: Camera, image_label: ImageLabel, tints: Tints
 ) -> None:
-    ahead = f"{sighting.region.distance_ahead_m:.1f} m ahead" if sighting.region else ""
-    at_s = sighting.stamp_s - result.run.began_s
-    title = f"{at_s:.2f} s: {sighting.reason or ahead}"
-    plot_image(axes, read_image(result.run.folder / sighting.image), title)
-    draw_region(axes, camera, sighting, tints)
+    ahead = f"{image_label.region.distance_ahead_m:.1f} m ahead" if image_label.region else ""
+    at_s = image_label.stamp_s - result.run.began_s
+    title = f"{at_s:.2f} s: {image_label.reason or ahead}"
+    plot_image(axes, read_image(result.run.folder / image_label.image), title)
+    draw_region(axes, camera, image_label, tints)
 
 
-def _about_first_switch(watcher: TerrainWatcher) -> list[Sighting]:
-    """The first sight of the first change and a labelled image on either side of it.
+def _about_first_switch(watcher: TerrainWatcher) -> list[ImageLabel]:
+    """The first first label of the first change and a labelled image on either side of it.
 
     Without a change, the middle labelled image of the run.
     """
-    labelled = [place for place, sighting in enumerate(watcher.sightings) if sighting.label]
+    labelled = [
+        place for place, image_label in enumerate(watcher.image_labels) if image_label.label
+    ]
     if not watcher.events:
         places = labelled[len(labelled) // 2 :][:1]
     else:
-        seen_s = watcher.events[0].sight.stamp_s
-        first = [sighting.stamp_s for sighting in watcher.sightings].index(seen_s)
+        seen_s = watcher.events[0].first_label.stamp_s
+        first = [image_label.stamp_s for image_label in watcher.image_labels].index(seen_s)
         before = [place for place in labelled if place <= first - _IMAGES_APART]
         after = [place for place in labelled if place >= first + _IMAGES_APART]
         places = [*before[-1:], first, *after[:1]]
-    return [watcher.sightings[place] for place in places]
+    return [watcher.image_labels[place] for place in places]
 
 
 def _grid_size(camera: Camera, rows: int) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""The lines of a report: which trajectories it shows, under which names and in which style."""
+"""The lines of a report: its trajectories, their names and styles."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from odometry.models.catalogue import ICR_NAMES
 from odometry.report.outages import broken_at_outages
 from odometry.report.palette import REFERENCE_STYLE, LineStyle, line_styles
 from odometry.trajectory import Trajectory
-from terrain.judged import Judged, seen_by
+from terrain.evaluated_trajectories import EvaluatedTrajectory, at_reference_point
 from terrain.run_result import RunResult
 
 LABELS = {
@@ -29,7 +29,7 @@ IcrLine = tuple[FloatArray, FloatArray, FloatArray]
 
 @dataclass(frozen=True)
 class ReportLines:
-    """A result and those that it is compared with, line by line.
+    """A result and the results that it is compared with, line by line.
 
     Attributes
     ----------
@@ -43,18 +43,18 @@ class ReportLines:
 
     @property
     def reference_name(self) -> str:
-        """What the errors are against, as a reader would say."""
+        """Name of the reference on the page."""
         return REFERENCE_NAMES.get(self.result.reference_name, "")
 
-    def judged(self) -> dict[str, Judged]:
-        """Trajectories that can be judged fairly, and the poses that judge them."""
+    def evaluated(self) -> dict[str, EvaluatedTrajectory]:
+        """Trajectories that can be evaluated fairly, with the poses that they are compared with."""
         result = self.result
         if result.reference is None:
             return {}
-        own = {LABELS[name]: of for name, of in result.judged.items()}
+        own = {LABELS[name]: of for name, of in result.evaluated.items()}
         others = {
-            name: Judged(
-                seen_by(result.run, result.reference_name, line),
+            name: EvaluatedTrajectory(
+                at_reference_point(result.run, result.reference_name, line),
                 result.reference,
                 result.reference_name,
             )
@@ -63,17 +63,19 @@ class ReportLines:
         return own | others
 
     def scores(self) -> dict[str, Score]:
-        """Score of each judged trajectory; none without a reference."""
+        """Score of each trajectory that is evaluated; none without a reference."""
         result = self.result
+        own = {LABELS[name]: of for name, of in result.scores.items()}
         return {
-            name: score(result.run, of.trajectory, of.reference, result.config.evaluation)
-            for name, of in self.judged().items()
+            name: own.get(name)
+            or score(result.run, of.trajectory, of.reference, result.config.evaluation)
+            for name, of in self.evaluated().items()
         }
 
     def paths(self) -> dict[str, Trajectory]:
         """Trajectories to be drawn, the reference first so that it lies below.
 
-        The reference has NaN where it was silent for long.
+        The reference has NaN where it has no pose for long.
         """
         result, lines = self.result, {}
         if result.reference is not None:
@@ -103,7 +105,7 @@ class ReportLines:
         return (truth.stamps_s[known], truth[name][known]) if known.any() else None
 
     def styles(self) -> dict[str, LineStyle]:
-        """A style for every name; the ICRs of a compared result look like its odometer."""
+        """A style for every name; the ICRs of a compared result have that of its odometer."""
         others = [other_odometer(name) for name in self.compared_with]
         first = [ODOMETER, IDEAL, ESTIMATE]
         styles = line_styles([*first, *others, *(n for n in LABELS.values() if n not in first)])
@@ -124,5 +126,5 @@ class ReportLines:
 
 
 def other_odometer(name: str) -> str:
-    """How the odometer of a compared result is called."""
+    """Name of the odometer of a compared result."""
     return f"odometer, {name}"

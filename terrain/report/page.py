@@ -5,8 +5,8 @@ from pathlib import Path
 
 from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
 from odometry.report.palette import terrain_colours
+from terrain.label_confusion import label_confusions
 from terrain.odometer_advice import advice
-from terrain.report.confusion_table import label_table
 from terrain.report.figures import (
     Tints,
     distribution_picture,
@@ -32,7 +32,7 @@ from terrain.report.tables import (
 )
 from terrain.report.words import headline, notes
 from terrain.run_result import RunResult
-from terrain.sources import TOLD_BY
+from terrain.sources import SOURCE_WORDS
 from terrain.switch_delay import true_stretches
 
 Block = Paragraph | Listing | Grid | Picture
@@ -126,10 +126,10 @@ def _terrain(result: RunResult, tints: Tints, folder: Path) -> list[Block]:
         return []
     if watcher is None:
         return [
-            Paragraph(f"The terrain was told by {TOLD_BY[result.source]}."),
+            Paragraph(f"The source of the terrain was {SOURCE_WORDS[result.source]}."),
             switch_table(result) or _never_changed(result),
         ]
-    if not watcher.sightings:
+    if not watcher.image_labels:
         return [Paragraph("No image lies within the time of the run.")]
     seen = confusion(result)
     blocks = [
@@ -152,6 +152,21 @@ def _tints(result: RunResult) -> Tints:
     names = {result.initial_terrain, *result.replay.terrains, *result.learned.terrains}
     names |= {stretch.terrain for stretch in true_stretches(result)}
     if result.watcher is not None:
-        names |= {sighting.label for sighting in result.watcher.sightings}
+        names |= {image_label.label for image_label in result.watcher.image_labels}
         names |= {str(name) for name in result.watcher.classifier.classes_}
     return terrain_colours(names)
+
+
+def label_table(result: RunResult) -> Grid | None:
+    """Images by the terrain that images.csv names and by label; None where it names none.
+
+    Against truth.csv there is a picture, see `terrain.report.labels_and_truth.confusion`.
+    """
+    of = label_confusions(result).get("images.csv")
+    if of is None:
+        return None
+    rows = [(name, *map(str, row)) for name, row in zip(of.true, of.counts.tolist(), strict=True)]
+    share = of.right_share
+    right = "" if share is None else f"; {share:.0%} of the labels that are names are right"
+    caption = f"Images by their terrain in images.csv (rows) and by label (columns){right}."
+    return Grid(("true terrain", *of.labels), rows, caption)

@@ -1,4 +1,4 @@
-"""What the camera saw and what was made of it, each figure drawn on given axes."""
+"""Images with their regions and labels, each figure drawn on given axes."""
 
 from collections.abc import Mapping, Sequence
 
@@ -11,8 +11,8 @@ from odometry.arrays import ByteImage, FloatArray, IntArray
 from odometry.evaluation.stretches import Stretch
 from odometry.run import UNKNOWN
 from terrain.camera import Camera
+from terrain.image_label import ImageLabel
 from terrain.region import Rectangle
-from terrain.sighting import Sighting
 from terrain.whole_image import Cell, outline
 
 NO_LABEL = "no label"
@@ -27,29 +27,31 @@ def plot_image(axes: Axes, image: ByteImage, title: str) -> None:
     axes.set_title(title, fontsize=9.5, parse_math=False)
 
 
-def draw_region(axes: Axes, camera: Camera, sighting: Sighting, tints: Mapping[str, str]) -> None:
-    """Outline the region of a sighting on the raw image, with its label and confidence.
+def draw_region(
+    axes: Axes, camera: Camera, image_label: ImageLabel, tints: Mapping[str, str]
+) -> None:
+    """Outline the region of a image label on the raw image, with its label and confidence.
 
     Parameters
     ----------
     axes : Axes
         That show the image.
     camera : Camera
-    sighting : Sighting
+    image_label : ImageLabel
         Nothing is drawn if it has no region.
     tints : Mapping of terrain to colour
     """
-    if sighting.region is None:
+    if image_label.region is None:
         return
-    colour = tints.get(sighting.label, "#FFFFFF")
-    shape = _outlined(axes, camera, sighting.region.rectangle, colour)
-    name = sighting.label or NO_LABEL
-    sure = f" {sighting.confidence:.0%}" if np.isfinite(sighting.confidence) else ""
+    colour = tints.get(image_label.label, "#FFFFFF")
+    shape = _outlined(axes, camera, image_label.region.rectangle, colour)
+    name = image_label.label or NO_LABEL
+    sure = f" {image_label.confidence:.0%}" if np.isfinite(image_label.confidence) else ""
     _write_inside(axes, shape, f"{name}{sure}", 10.0)
 
 
 def draw_cells(axes: Axes, camera: Camera, cells: Sequence[Cell], tints: Mapping[str, str]) -> None:
-    """Tint every classified cell of ground on the raw image, as in Fig. 6 of Chen 2023.
+    """Tint every classified cell of terrain on the raw image, as in Fig. 6 of Chen 2023.
 
     Parameters
     ----------
@@ -71,7 +73,7 @@ def draw_cells(axes: Axes, camera: Camera, cells: Sequence[Cell], tints: Mapping
 
 def plot_labels(
     axes: Axes,
-    sightings: Sequence[Sighting],
+    image_labels: Sequence[ImageLabel],
     in_force: Sequence[Stretch],
     truth: Sequence[Stretch],
     tints: Mapping[str, str],
@@ -81,17 +83,17 @@ def plot_labels(
     Parameters
     ----------
     axes : Axes
-    sightings : sequence of Sighting
+    image_labels : sequence of ImageLabel
         A point each, the paler the less sure; without a label a tick in a row of its own.
     in_force, truth : sequences of Stretch
         Drawn as bars; `truth` may be empty.
     tints : Mapping of terrain to colour
     """
     names = [name for name in tints if name != UNKNOWN]
-    labels = [sighting.label or NO_LABEL for sighting in sightings]
+    labels = [image_label.label or NO_LABEL for image_label in image_labels]
     names += [name for name in (UNKNOWN, NO_LABEL) if name in labels]
     for row, name in enumerate(names):
-        shown = [s for s, label in zip(sightings, labels, strict=True) if label == name]
+        shown = [s for s, label in zip(image_labels, labels, strict=True) if label == name]
         sure = np.nan_to_num([s.confidence for s in shown], nan=1.0)
         axes.scatter(
             [s.stamp_s for s in shown],

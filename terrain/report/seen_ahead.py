@@ -1,4 +1,4 @@
-"""What was seen against what was there, and which images show it best."""
+"""Labels of images against the true terrain, and which images to show."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,8 +8,8 @@ import numpy as np
 from odometry.arrays import IntArray
 from odometry.evaluation.stretches import terrain_at
 from odometry.run import UNKNOWN
+from terrain.image_label import ImageLabel
 from terrain.run_result import RunResult
-from terrain.sighting import Sighting
 from terrain.switch import SwitchEvent
 from terrain.switch_delay import true_stretches
 
@@ -33,16 +33,16 @@ class Confusion:
 
 
 def confusion(result: RunResult) -> Confusion | None:
-    """Compare each label with the true terrain of the place that it speaks of.
+    """Compare each label with the true terrain of its place.
 
     That place is where the robot is after the wheel travel of the region ahead. Labels of places
     that the run does not reach are left out. None where nothing can be compared.
     """
     truth = true_stretches(result)
     pairs = [
-        (sighting.label, terrain_at(truth, _arrival_s(result, sighting)))
-        for sighting in (result.watcher.sightings if result.watcher else ())
-        if sighting.label and sighting.region is not None
+        (image_label.label, terrain_at(truth, _arrival_s(result, image_label)))
+        for image_label in (result.watcher.image_labels if result.watcher else ())
+        if image_label.label and image_label.region is not None
     ]
     pairs = [(label, true) for label, true in pairs if true]
     if not pairs:
@@ -57,28 +57,28 @@ def confusion(result: RunResult) -> Confusion | None:
 
 
 def around_switches(
-    sightings: Sequence[Sighting], events: Sequence[SwitchEvent], most: int = 6
-) -> list[Sighting]:
-    """Labelled sightings that show the switches: the first of each, then their neighbours.
+    image_labels: Sequence[ImageLabel], events: Sequence[SwitchEvent], most: int = 6
+) -> list[ImageLabel]:
+    """Labelled image labels that show the switches: the first of each, then their neighbours.
 
     Parameters
     ----------
-    sightings : sequence of Sighting
+    image_labels : sequence of ImageLabel
     events : sequence of SwitchEvent
-        Without any, the sightings are spread evenly over the run.
+        Without any, the image labels are spread evenly over the run.
     most : int
 
     Returns
     -------
-    list of Sighting
+    list of ImageLabel
         At most `most`, in order of time.
     """
-    labelled = [sighting for sighting in sightings if sighting.label]
+    labelled = [image_label for image_label in image_labels if image_label.label]
     firsts = [
         place
         for event in events
-        for place, sighting in enumerate(labelled)
-        if sighting.stamp_s == event.sight.stamp_s
+        for place, image_label in enumerate(labelled)
+        if image_label.stamp_s == event.first_label.stamp_s
     ]
     if not firsts:
         places = np.linspace(0, len(labelled) - 1, min(most, len(labelled))).astype(int).tolist()
@@ -88,11 +88,13 @@ def around_switches(
     return [labelled[place] for place in sorted(inside[:most])]
 
 
-def _arrival_s(result: RunResult, sighting: Sighting) -> float:
+def _arrival_s(result: RunResult, image_label: ImageLabel) -> float:
     """When the robot gets to the middle of the region, infinite if it never does."""
-    assert sighting.region is not None  # noqa: S101 - asked by the caller
+    assert image_label.region is not None  # noqa: S101 - checked by the caller
     stamps_s, travel_m = result.run.odometry.stamps_s, result.run.wheel_travel_m
-    there_m = np.interp(sighting.stamp_s, stamps_s, travel_m) + sighting.region.distance_ahead_m
+    there_m = (
+        np.interp(image_label.stamp_s, stamps_s, travel_m) + image_label.region.distance_ahead_m
+    )
     if there_m > travel_m[-1]:
         return float("inf")
     return float(stamps_s[np.searchsorted(travel_m, there_m)])

@@ -11,10 +11,9 @@ from odometry.report.html import Grid
 from odometry.run import UNKNOWN
 from terrain.odometer_advice import not_checked, verdict
 from terrain.report.lines import ICR_COORDINATES, ReportLines
-from terrain.run_result import RunResult
+from terrain.run_result import RunResult, TerrainChange
 from terrain.switch import SwitchEvent
 from terrain.switch_delay import SwitchDelay, switch_delays, true_stretches
-from terrain.terrain_change import TerrainChange
 
 NOTHING = "\N{EN DASH}"
 
@@ -102,7 +101,7 @@ def switch_table(result: RunResult) -> Grid | None:
         return None
     known = bool(true_stretches(result))
     changes = result.changes
-    header = ("terrain", "first seen [s]", "then ahead [m]", "in force [s]")
+    header = ("terrain", "first label [s]", "then ahead [m]", "in force [s]")
     rows = [
         (
             change.terrain,
@@ -152,10 +151,13 @@ def settings_table(result: RunResult) -> Grid:
 
 
 def _sight(change: SwitchEvent | TerrainChange, began_s: float) -> tuple[str, str]:
-    """When the camera saw the terrain first and how far ahead, where there is a camera."""
+    """Stamp of the first label of a terrain and how far ahead, where there is a camera."""
     if isinstance(change, TerrainChange):
         return NOTHING, NOTHING
-    return f"{change.sight.stamp_s - began_s:.2f}", f"{change.sight.distance_ahead_m:.2f}"
+    return (
+        f"{change.first_label.stamp_s - began_s:.2f}",
+        f"{change.first_label.distance_ahead_m:.2f}",
+    )
 
 
 def _mean(check: OpenLoopConsistency | None) -> str:

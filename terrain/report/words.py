@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from odometry.evaluation.score import Score
+from terrain.evaluation_notes import NO_GYROSCOPE, evaluated_with, remarks
 from terrain.report.lines import (
     GYROSCOPE,
     IDEAL,
@@ -16,7 +17,6 @@ from terrain.report.lines import (
 from terrain.report.tables import number
 from terrain.run_result import RunResult
 from terrain.switch_delay import true_stretches
-from terrain.verdicts import NO_GYROSCOPE, judged_by, remarks
 
 
 def headline(lines: ReportLines, scores: Mapping[str, Score]) -> str:
@@ -25,7 +25,7 @@ def headline(lines: ReportLines, scores: Mapping[str, Score]) -> str:
     if not scores:
         return (
             "The run has neither truth.csv nor pose.csv with two poses or more: this page shows "
-            "what was estimated, and nothing is judged."
+            "what was estimated, and there are no errors."
         )
     own = scores[ODOMETER].mean_translation_per_m
     horizon_m = result.config.evaluation.horizon_m
@@ -63,7 +63,7 @@ def notes(lines: ReportLines) -> list[str]:
         f"{result.run.robot.track_width:g} m.",
         *_gyroscope_notes(result),
         f"Errors per metre are taken over {evaluation.horizon_m:g} m of wheel travel, the mean of "
-        f"both treads, starting anew every {evaluation.stride_m:g} m.",
+        f"both treads, starting again every {evaluation.stride_m:g} m.",
     ]
     if result.run.began_s:
         found.append(
@@ -78,7 +78,7 @@ def notes(lines: ReportLines) -> list[str]:
         )
     if result.reference_name == "pose":
         found.append(
-            "Errors are against pose.csv, whose own noise is in them. The filter has seen these "
+            "Errors are against pose.csv, whose own noise is in them. The filter has used these "
             "poses; the odometer's ICRs were learned from those that came before each moment."
         )
     if result.uncertainty.checks:
@@ -88,21 +88,21 @@ def notes(lines: ReportLines) -> list[str]:
             + (
                 "It is taken against the truth."
                 if result.reference_name == "truth"
-                else "Each half of the run is judged by the noise measured on the other half; "
+                else "Each half of the run is evaluated with the noise measured on the other half; "
                 "by own poses means that the same poses measured the noise."
             )
         )
     if result.second is not None:
         found.append(
-            f"The estimate is judged by {judged_by(result.second)} The estimate that is written to "
-            "estimate.csv has seen all poses: off_at_the_end_m of result.json is small for it "
-            "because of that, and does not say how well it does without them."
+            f"The estimate is evaluated with {evaluated_with(result.second)} The estimate that is "
+            "written to estimate.csv has used all poses: off_at_the_end_m of result.json is small "
+            "for it because of that, and does not say how well it does without them."
         )
     if result.reference_name == "truth":
-        found.append("Errors are against truth.csv, which no estimator has seen.")
+        found.append("Errors are against truth.csv, which no estimator has used.")
     if result.source == "none":
         found.append(
-            f"Nothing told the terrain (no vision, no other source): {result.initial_terrain} was "
+            f"There was no source of terrain (no vision, no other): {result.initial_terrain} was "
             "in force throughout."
         )
     elif true_stretches(result):
@@ -127,8 +127,8 @@ def _gyroscope_notes(result: RunResult) -> list[str]:
         ]
     return [
         plain,
-        "Where the gyroscope tells the yaw rate, the odometer is turned by it, less the bias that "
-        "the filter held; the odometer without gyroscope is turned by the treads.",
+        "Where the gyroscope measures the yaw rate, the odometer is turned by it, less the bias "
+        "that the filter held; the odometer without gyroscope is turned by the treads.",
     ]
 
 

@@ -1,1 +1,1 @@
-"""The parts of a synthetic run: photographs, textured ground, the camera's view of it, patches."""
+"""The parts of a synthetic run: photographs, textured terrain, the camera's images, patches."""

@@ -30,7 +30,7 @@ _KNOWN_ICRS = {
 
 
 def default_camera() -> Camera:
-    """Camera on a mast that looks 40 degrees down, as in data/cameras/mast.toml."""
+    """Camera on a mast that points 40 degrees down, as in data/cameras/mast.toml."""
     return Camera.from_mount(
         (640, 480),
         [[460.0, 0.0, 319.5], [0.0, 460.0, 239.5], [0.0, 0.0, 1.0]],
@@ -57,7 +57,7 @@ class SynthesisConfig:
     zone_length_m : float
         Length of each zone along the way.
     icrs_m : mapping of terrain to (y_left, y_right, x_icr), or None
-        True ICRs on each terrain; None takes built-in ones (see `true_icrs_m`).
+        True ICRs on each terrain; None takes the defaults (see `true_icrs_m`).
     robot : mapping
         The `[robot]` table: track_width, length, width [m], name.
     camera : Camera
@@ -67,7 +67,7 @@ class SynthesisConfig:
     odometry_rate_hz, pose_rate_hz, image_rate_hz : float
         The first must be a multiple of the others.
     metres_per_pixel : float
-        Scale at which the photographs are laid on the ground, and that of the patches.
+        Scale at which the photographs are laid on the terrain, and that of the patches.
     patch_size_px, patches_per_terrain : int
         Edge and least number of the labelled patches.
     jpeg_quality : int

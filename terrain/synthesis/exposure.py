@@ -36,7 +36,7 @@ class Illumination:
 
 
 def expose(brightness: AnyArray, light: Illumination, rng: np.random.Generator) -> ByteImage:
-    """Image (H, W) or (H, W, 3) of a camera that sees `brightness` (0 to 255) in this light."""
+    """Image (H, W) or (H, W, 3) of a scene of `brightness` (0 to 255) in this light."""
     width = brightness.shape[1]
     gain = light.gain * (1 + light.slope * np.linspace(-1, 1, width, dtype=np.float32))
     gain = gain if brightness.ndim == 2 else gain[:, None]

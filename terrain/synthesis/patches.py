@@ -1,4 +1,4 @@
-"""Labelled patches, seen through the run's own camera but of ground that the run never shows."""
+"""Labelled patches by the run's own camera, of terrain that the run never shows."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -45,7 +45,7 @@ def patch_ahead(camera: Camera, edge_m: float) -> Rectangle:
         square = _square(middle_m, edge_m)
         if camera.in_image(camera.ground_to_pixels(square.corners)).all():
             return square
-    raise SynthesisError(f"the camera sees no square of {edge_m:.2f} m straight ahead within 10 m")
+    raise SynthesisError(f"the camera shows no square of {edge_m:.2f} m straight ahead within 10 m")
 
 
 def render_patches(
@@ -54,7 +54,7 @@ def render_patches(
     photos: Mapping[str, tuple[Photo, ...]],
     rng: np.random.Generator,
 ) -> Iterator[Patch]:
-    """Lay each photograph on the ground, look at it from random angles, warp it as a run does.
+    """Lay each photograph on the terrain, image it from random angles, warp it as a run does.
 
     Blur, noise and JPEG of the patches are therefore those of the run's regions.
     """

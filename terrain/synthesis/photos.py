@@ -1,4 +1,4 @@
-"""Photographs of ground, parted so that no patch shows ground that the run drives over."""
+"""Photographs of terrain, split so that no patch shows terrain that the run drives over."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ class Photo:
 
 @dataclass(frozen=True, eq=False)
 class PhotoSets:
-    """Photographs by terrain: those for the ground and, disjoint, those for patches."""
+    """Photographs by terrain: those for the run and, disjoint, those for patches."""
 
     ground: Mapping[str, tuple[Photo, ...]]
     patches: Mapping[str, tuple[Photo, ...]]
@@ -43,7 +43,7 @@ class PhotoSets:
 
 
 def built_in_photos() -> PhotoSets:
-    """Grass, gravel and brick of scikit-image: left halves for the ground, right for patches.
+    """Grass, gravel and brick of scikit-image: left halves for the run, right for patches.
 
     The right half is parted into areas of 128 x 128 pixels, each with a photo_id of its own.
     The images are 512 x 512, grey, CC0.
@@ -71,14 +71,15 @@ def built_in_photos() -> PhotoSets:
 
 
 def photos_from_folder(folder: Path, rng: np.random.Generator) -> PhotoSets:
-    """Labelled photographs parted at random by photo_id, one half each for ground and patches.
+    """Labelled photographs split at random by photo_id, one half each for run and patches.
 
     Parameters
     ----------
     folder : Path
         ``root/<class>/*.jpg|png``, as for training.
     rng : numpy.random.Generator
-        Decides which photographs go where; at most 3 a class become ground and 16 patches.
+        Decides which photographs go where; at most 3 a class are used for the run and 16 for
+        patches.
 
     Raises
     ------

@@ -8,12 +8,14 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
+from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.simulation.drive import Drive
 from odometry.simulation.ground import GroundMap
 from odometry.simulation.noise import measured_poses
 from terrain.synthesis.config import SynthesisConfig
 
 Tables = dict[str, dict[str, AnyArray]]
+NAMES = ("y_left", "y_right", "x_icr")
 
 
 def motion_tables(config: SynthesisConfig, drive: Drive, rng: np.random.Generator) -> Tables:
@@ -79,3 +81,40 @@ def run_settings(
 
 def _columns(names: str, values: FloatArray) -> dict[str, AnyArray]:
     return dict(zip(names.split(), values.T, strict=True))
+
+
+def identified_parameters(
+    config: SynthesisConfig, true_icrs_m: Mapping[str, FloatArray], rng: np.random.Generator
+) -> ParameterSet:
+    """Truth plus noise of the stated sigma, in the order of `true_icrs_m`.
+
+    Parameters
+    ----------
+    config : SynthesisConfig
+        For its `sigma_parameters_m` and robot.
+    true_icrs_m : mapping of terrain to (3,) array
+        y_left, y_right, x_icr [m].
+    rng : numpy.random.Generator
+        Source of the noise.
+    """
+    sigma = np.array(config.sigma_parameters_m)
+    stated = ", ".join(f"{s:g}" for s in sigma)
+    source = f"synthetic truth plus noise of sigma {stated} m, as from an identification run"
+    terrains = {
+        name: TerrainParameters(
+            model="icr",
+            values={
+                key: round(float(value), 4)
+                for key, value in zip(NAMES, icr + sigma * rng.standard_normal(3), strict=True)
+            },
+            covariance_order=NAMES,
+            covariance=np.diag(sigma**2),
+            source=source,
+        )
+        for name, icr in true_icrs_m.items()
+    }
+    vehicle = {
+        "name": str(config.robot.get("name", "robot")),
+        "source": "terrain-odometry synthesise",
+    }
+    return ParameterSet(terrains, vehicle)

@@ -1,4 +1,4 @@
-"""A photograph laid on the ground by mirror tiling, ready to be looked up without aliasing."""
+"""A photograph laid on the terrain by mirror tiling, for look-up without aliasing."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -19,7 +19,7 @@ class Texture:
     levels : tuple of float32 arrays
         (H, W) or (H, W, 3); each level averages 2 x 2 pixels of the one before.
     metres_per_pixel : float
-        Scale of the first level on the ground.
+        Scale of the first level on the terrain.
     origin_world : (2,) array
         World point under the photograph's top left corner [m].
     angle_rad : float
@@ -87,7 +87,7 @@ class Texture:
         points_world : (H, W, 2) array
             Ground points [m].
         detail_m : (H, W) array
-            Size of the patch of ground to average over [m].
+            Size of the patch of terrain to average over [m].
 
         Returns
         -------

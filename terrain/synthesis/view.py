@@ -1,4 +1,4 @@
-"""What a camera on the robot sees of a textured ground."""
+"""The image of a textured terrain by a camera on the robot."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -16,14 +16,14 @@ SKY_BRIGHTNESS = 190.0
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """The ground point behind every pixel of a camera, worked out once.
+    """The point of the ground plane behind every pixel of a camera, computed once.
 
     Attributes
     ----------
     points_robot : (H, W, 2) array
-        Ground points in the robot frame [m]; 0 where the pixel sees no ground.
+        Ground points in the robot frame [m]; 0 where the pixel is above the horizon.
     detail_m : (H, W) array
-        Larger edge of the ground seen by a pixel [m].
+        Larger edge of the ground covered by a pixel [m].
     sees_ground : (H, W) array of bool
         False at and above the horizon.
     """
@@ -39,7 +39,7 @@ class View:
         Raises
         ------
         SynthesisError
-            If no pixel sees the ground.
+            If no pixel shows the ground.
         """
         width, height = camera.image_size
         columns, rows = np.meshgrid(np.arange(width), np.arange(height))
@@ -48,7 +48,7 @@ class View:
         detail = np.maximum(*steps)
         sees_ground = np.isfinite(detail)
         if not sees_ground.any():
-            raise SynthesisError("the camera sees no ground; its pitch must look down")
+            raise SynthesisError("the camera shows no terrain; its pitch must point down")
         return cls(
             np.where(sees_ground[..., None], points, 0.0),
             np.where(sees_ground, detail, detail[sees_ground].max()),
@@ -58,7 +58,7 @@ class View:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A camera's view of a ground whose strips each have a texture."""
+    """The image of terrain whose strips each have a texture."""
 
     view: View
     ground: GroundMap

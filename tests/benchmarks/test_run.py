@@ -27,7 +27,7 @@ def test_run(benchmark, run, preset):
     of_run = {"preset": preset} if preset == "chen2023" else {}
     settings = {"model": model} | of_run
     result = benchmark.pedantic(terrain.run_odometry, (run,), settings, rounds=5, warmup_rounds=1)
-    assert len(result.watcher.sightings) == len(list((run.folder / "images").iterdir()))
+    assert len(result.watcher.image_labels) == len(list((run.folder / "images").iterdir()))
 
 
 @pytest.mark.benchmark(group="the demo with vision")

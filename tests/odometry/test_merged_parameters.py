@@ -72,7 +72,7 @@ def test_of_two_runs_no_spread_is_told_and_the_covariance_covers_both():
     assert np.all(np.sqrt(np.diag(merged.parameters.covariance)) > 0.2)
     (said,) = merged.disagree
     assert said.startswith("a and b disagree")
-    assert "cannot be told" in said
+    assert "cannot be estimated" in said
 
 
 def test_a_run_far_from_the_others_is_named_with_what_is_far(rng):

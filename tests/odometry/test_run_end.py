@@ -92,7 +92,7 @@ def test_a_heading_that_was_never_found_is_said():
     still = posed(run, x=x, y=y, yaw=np.full(len(x), np.nan))
     found = kinds(replace(still, odometry=table("odometry.csv", **standing)))
     assert "heading_unknown" in found
-    assert "cannot be told" in found["heading_unknown"].text
+    assert "cannot be determined" in found["heading_unknown"].text
 
 
 def test_an_estimate_that_ends_worse_than_the_ideal_drive_says_so():

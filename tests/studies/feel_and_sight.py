@@ -30,8 +30,8 @@ from odometry.pipeline import replay
 from odometry.run import Run
 from odometry.table import Table
 from terrain.config import Config
-from terrain.felt_sights import FeltSights
-from terrain.sighting import Sighting
+from terrain.feel_labels import FeelLabels
+from terrain.image_label import ImageLabel
 
 ZONES = ("gravel", "grass", "brick", "gravel", "brick", "grass")
 RATE_HZ = 100.0
@@ -48,7 +48,7 @@ class Blind(LabellingWatcher):
 
     def look(self, frame, estimate):  # noqa: ARG002 - the watcher's
         """No label."""
-        return Sighting(frame.stamp_s, frame.image.name, reason="blind")
+        return ImageLabel(frame.stamp_s, frame.image.name, reason="blind")
 
 
 def main():
@@ -120,7 +120,7 @@ def judged(course, felt, accuracy, seed):
     found = []
     for kind, with_feel in ((LabellingWatcher, False), (Blind, True), (LabellingWatcher, True)):
         watcher = kind(course, config, accuracy=accuracy, held_m=HELD_M, seed=seed)
-        watcher._felt = FeltSights.of(felt, tuple(SHAKEN)) if with_feel else None
+        watcher._felt = FeelLabels.of(felt, tuple(SHAKEN)) if with_feel else None
         run = course.run
         estimator = IcrEkf(run.robot.track_width, course.parameters, config.filter)
         result = replay(run, estimator, watcher)

@@ -33,7 +33,7 @@ from terrain.classification.training import train
 from terrain.images import read_image
 from terrain.main_job import run_odometry
 from terrain.region import Rectangle, RegionConfig, predict_region
-from terrain.suited import coarsest_m, unsuited
+from terrain.region_scale import coarsest_m, scale_mismatch
 from terrain.synthesis.config import SynthesisConfig, default_camera
 from terrain.synthetic import synthesise
 from terrain.warp import ground_view
@@ -97,7 +97,7 @@ def outcomes(camera, robot, twist, speed_m_s):
         needs = {}
         if fine:
             needs["coarsest_m"] = coarsest_m(PATCHES, config.coarsest)
-            needs["unsuited"] = partial(too_small, camera, config.coarsest)
+            needs["scale_mismatch"] = partial(too_small, camera, config.coarsest)
         region = predict_region(robot, camera, twist, speed_m_s, config, **needs)
         found.append(not isinstance(region, str))
     return found
@@ -105,7 +105,7 @@ def outcomes(camera, robot, twist, speed_m_s):
 
 def too_small(camera, coarsest, rectangle):
     """Why a rectangle cannot be compared with the patches, or ""."""
-    return unsuited(PATCHES, camera, rectangle, coarsest)
+    return scale_mismatch(PATCHES, camera, rectangle, coarsest)
 
 
 def moving(run, every_s):
@@ -152,19 +152,19 @@ def accuracy(data: Path, seeds: int) -> None:
             )
             model = train(run.folder / "patches").classifier
             result = run_odometry(run, model=model, parameters=run.folder / "parameters.toml")
-            images += len(result.watcher.sightings)
+            images += len(result.watcher.image_labels)
             camera = Camera.from_table(run.settings["camera"])
-            for sighting in result.watcher.sightings:
-                if sighting.region is None:
+            for image_label in result.watcher.image_labels:
+                if image_label.region is None:
                     continue
-                true = terrain_of(run, config, sighting.stamp_s, sighting.region.rectangle)
-                share = shown_share(run.robot, sighting.region)
+                true = terrain_of(run, config, image_label.stamp_s, image_label.region.rectangle)
+                share = shown_share(run.robot, image_label.region)
                 if true:
-                    shown.append((share, sighting.label == true, sighting.label == "unknown"))
+                    shown.append((share, image_label.label == true, image_label.label == "unknown"))
                 if true and share > 0.99:
-                    image = read_image(run.folder / sighting.image)
+                    image = read_image(run.folder / image_label.image)
                     for name, cut in HIDDEN.items():
-                        part = without(sighting.region.rectangle, *cut)
+                        part = without(image_label.region.rectangle, *cut)
                         view = ground_view(image, camera, part, model.metres_per_pixel)
                         hidden[name].append(model.classify([view])[0].label == true)
     table = np.array(shown)

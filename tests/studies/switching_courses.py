@@ -22,11 +22,10 @@ from odometry.simulation.ground import GroundMap, footprint_points, to_world
 from odometry.simulation.noise import ornstein_uhlenbeck
 from terrain.camera import Camera
 from terrain.config import Config
+from terrain.image_label import ImageLabel
 from terrain.region import predict_region
-from terrain.sighting import Sighting
 from terrain.synthesis.config import SynthesisConfig
-from terrain.synthesis.identified import identified_parameters
-from terrain.synthesis.records import motion_tables, run_settings
+from terrain.synthesis.records import identified_parameters, motion_tables, run_settings
 from terrain.watcher import TerrainWatcher
 
 MOST_S = 900.0
@@ -157,10 +156,10 @@ class LabellingWatcher(TerrainWatcher):
         speed_m_s = float(np.abs(frame.tread_speeds_m_s).mean())
         region = predict_region(self._robot, self._camera, commanded.twist, speed_m_s, self._region)
         if isinstance(region, str):
-            return Sighting(frame.stamp_s, name, reason=region)
+            return ImageLabel(frame.stamp_s, name, reason=region)
         true = self._course.true_terrain(frame.stamp_s, region.place)
         label = self._label(true, self._travel_m)
-        return Sighting(frame.stamp_s, name, label, self._accuracy, region)
+        return ImageLabel(frame.stamp_s, name, label, self._accuracy, region)
 
     def _label(self, true, travel_m):
         """Wrong at any label, or in stretches of about `held_m` that are as much of the way."""

@@ -15,7 +15,7 @@ import numpy as np
 from tqdm import tqdm
 
 from odometry.geometry import se2
-from terrain.places import Footprint, Sight
+from terrain.place_labels import Footprint, PlaceLabel
 from terrain.switch import Switch, SwitchConfig
 from tests.terrain.switch_drives import FOOTPRINT_M, STEP_S, forward, random_drive
 
@@ -82,8 +82,8 @@ def judged(driven, labels, config):
         if step in looks:
             look, label = looks[step]
             place = se2.transform(pose, look.place_robot)
-            sight = Sight(label, step * STEP_S, travel_m, place, look.distance_ahead_m)
-            switch = switch.see(sight)
+            place_label = PlaceLabel(label, step * STEP_S, travel_m, place, look.distance_ahead_m)
+            switch = switch.add_label(place_label)
         switch = switch.at(step * STEP_S, pose, travel_m)
         in_force.append(switch.in_force)
         events += [(step, switch.event.terrain)] if switch.event else []

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from terrain.places import Footprint, Sight
+from terrain.place_labels import Footprint, PlaceLabel
 from terrain.switch import Switch, SwitchConfig
 
 FOOTPRINT = Footprint(0.5, 0.5)  # regions are of 0.6 m by 0.6 m
@@ -21,7 +21,7 @@ def start(in_force="grass", **settings_):
 def seen_at(x, label, ahead_m=AHEAD_M, probabilities=None):
     """A label seen by a robot at (x, 0), heading along x."""
     place = np.array([x + ahead_m, 0.0])
-    return Sight(label, 2 * x, x, place, ahead_m, probabilities or {})
+    return PlaceLabel(label, 2 * x, x, place, ahead_m, probabilities or {})
 
 
 def drive(switch, labels, spacing_m=0.25, step_m=0.05, to_m=None):
@@ -34,7 +34,7 @@ def drive(switch, labels, spacing_m=0.25, step_m=0.05, to_m=None):
     for x in np.arange(0.0, to_m + 1e-9, step_m):
         if seen < len(labels) and x >= seen * spacing_m - 1e-9:
             if labels[seen]:
-                switch = switch.see(seen_at(x, labels[seen]))
+                switch = switch.add_label(seen_at(x, labels[seen]))
             seen += 1
         switch = switch.at(2 * x, np.array([x, 0.0, 0.0]), x)
         history.append((float(x), switch.in_force))

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from terrain.label_chain import UNNAMED, carried, given_to, smoothed
-from terrain.label_rows import settled_by_rows
+from terrain.place_beliefs import terrains_by_rows
 
 CHANGE_M = 4.0
 
@@ -123,4 +123,4 @@ def test_rows(labels, needed, settled):
     """The terrain before is a; ? is unknown."""
     names = {"?": "unknown"}
     given_, wanted = ([names.get(n, n) for n in row.split()] for row in (labels, settled))
-    assert settled_by_rows(given_, "a", needed) == wanted
+    assert terrains_by_rows(given_, "a", needed) == wanted

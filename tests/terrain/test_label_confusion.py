@@ -7,7 +7,7 @@ import pytest
 
 from terrain.label_confusion import LabelConfusion, label_confusion_table, label_confusions
 from terrain.main_job import run_odometry
-from terrain.report.confusion_table import label_table
+from terrain.report.page import label_table
 from tests.odometry.modes.mode_drives import run_of_tables
 
 LABELS = ["ice", "mud", "", "unknown", "ice", "ice"]
@@ -25,7 +25,7 @@ def result_of(labels, ahead_m=0.0, **tables):
     """A drive of 1 m/s for ten seconds with an image each second."""
     t = np.arange(11.0)
     run = run_of_tables({"t": t, "v_left": np.ones(11), "v_right": np.ones(11)}, **tables)
-    return SimpleNamespace(run=run, watcher=SimpleNamespace(sightings=seen(labels, ahead_m)))
+    return SimpleNamespace(run=run, watcher=SimpleNamespace(image_labels=seen(labels, ahead_m)))
 
 
 def of_images(*names):
@@ -82,8 +82,8 @@ def test_a_run_that_names_its_images_is_judged(tmp_path, world, classifier):
     first = run_odometry(folder, model=classifier, terrain="gravel")
     header, *rows = (folder / "images.csv").read_text().split()
     names = []
-    for sighting in first.watcher.sightings:
-        x = world.speed_m_s * sighting.stamp_s + sighting.region.place[0]
+    for image_label in first.watcher.image_labels:
+        x = world.speed_m_s * image_label.stamp_s + image_label.region.place[0]
         names.append("boards" if world.edges_m[0] < x < world.edges_m[1] else "gravel")
     lines = [f"{row},{name}" for row, name in zip(rows, names, strict=True)]
     (folder / "images.csv").write_text("\n".join([f"{header},terrain", *lines]) + "\n")

@@ -52,15 +52,15 @@ def written(result, folder):
 
 
 def with_steps(result, steps):
-    """A result whose estimates, sightings and switches are those of live steps."""
-    seen = [step for step in steps if step.sighting is not None]
+    """A result whose estimates, image labels and switches are those of live steps."""
+    seen = [step for step in steps if step.image_label is not None]
     folder = result.run.folder
-    sightings = [
-        replace(s.sighting, image=Path(s.sighting.image).relative_to(folder).as_posix())
+    image_labels = [
+        replace(s.image_label, image=Path(s.image_label.image).relative_to(folder).as_posix())
         for s in seen
     ]
     watcher = SimpleNamespace(
-        sightings=sightings,
+        image_labels=image_labels,
         in_force=[step.terrain for step in seen],
         events=[step.switch for step in steps if step.switch is not None],
         seen=result.watcher.seen if result.watcher else SimpleNamespace(likeness=None),
@@ -153,9 +153,9 @@ def test_memory_does_not_grow_with_the_frames(across_run, classifier):
     seen = 0
     for frame in run.frames():
         step = live.step(frame)
-        seen += step.sighting is not None
+        seen += step.image_label is not None
         watcher = live._watcher
-        assert max(map(len, (watcher.sightings, watcher.in_force, watcher.events))) <= 1
+        assert max(map(len, (watcher.image_labels, watcher.in_force, watcher.events))) <= 1
     assert seen > 15
 
 
@@ -172,12 +172,12 @@ def test_pixels_are_read_as_a_file_is(across_run, classifier):
     ]
     of_pixels = [step for frame in frames if (step := live.step(frame)) is not None]
     said = [
-        [(s.sighting.label, s.sighting.confidence) for s in steps if s.sighting]
+        [(s.image_label.label, s.image_label.confidence) for s in steps if s.image_label]
         for steps in (of_files, of_pixels)
     ]
     assert said[0] == said[1]
     assert len(said[0]) > 15
-    assert {step.sighting.image for step in of_pixels if step.sighting} == {""}
+    assert {step.image_label.image for step in of_pixels if step.image_label} == {""}
 
 
 def test_a_frame_out_of_order_is_refused_and_changes_nothing(across_run, classifier):

@@ -55,7 +55,9 @@ def test_length_and_width_default_to_the_track_width():
 
 
 def test_a_robot_that_stands_has_no_region():
-    assert predict_region(ROBOT, AHEAD, np.zeros(3), 0.0, RegionConfig()) == "the robot stands"
+    assert (
+        predict_region(ROBOT, AHEAD, np.zeros(3), 0.0, RegionConfig()) == "the robot is stationary"
+    )
 
 
 @pytest.mark.parametrize(

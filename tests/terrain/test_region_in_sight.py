@@ -101,12 +101,16 @@ def test_the_region_is_the_first_that_can_be_classified():
     """A stand-in that can read no region nearer than 1.5 m."""
     forward = np.array([1.0, 0.0, 0.0])
 
-    def unsuited(rectangle):
+    def scale_mismatch(rectangle):
         return "too near" if rectangle.x_min < 1.5 else ""
 
-    region = predict_region(ROBOT, AHEAD, forward, 1.0, RegionConfig(), unsuited=unsuited)
+    region = predict_region(
+        ROBOT, AHEAD, forward, 1.0, RegionConfig(), scale_mismatch=scale_mismatch
+    )
     assert 1.5 <= region.rectangle.x_min < 1.9
-    never = predict_region(ROBOT, AHEAD, forward, 1.0, RegionConfig(), unsuited=lambda _: "no")
+    never = predict_region(
+        ROBOT, AHEAD, forward, 1.0, RegionConfig(), scale_mismatch=lambda _: "no"
+    )
     assert never == "no"
 
 

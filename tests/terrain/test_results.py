@@ -111,7 +111,7 @@ def test_result_json_is_strict_and_names_the_switches(across_out, across_result)
     for switch in content["switches"]:
         assert switch["waited_s"] == pytest.approx(switch["stamp_s"] - switch["seen_s"])
         assert switch["waited_m"] == pytest.approx(0.5 * switch["waited_s"], abs=1e-6)
-    assert sum(content["sightings"].values()) == len(across_result.watcher.sightings)
+    assert sum(content["sightings"].values()) == len(across_result.watcher.image_labels)
     assert content["config"] == across_result.config.to_table()
     assert content["reference"] == "pose"
 

@@ -39,13 +39,13 @@ def test_the_terrain_changes_where_the_robot_crosses_the_edges(across_result, wo
 def test_ground_that_fills_the_region_is_named_rightly(across_result, world):
     """The robot drives along x at constant speed, so a region's place in the world is known."""
     wrong = checked = 0
-    for sighting in across_result.watcher.sightings:
-        start = world.speed_m_s * sighting.stamp_s
-        box = sighting.region.rectangle
+    for image_label in across_result.watcher.image_labels:
+        start = world.speed_m_s * image_label.stamp_s
+        box = image_label.region.rectangle
         low, high = start + box.x_min, start + box.x_max
         if all(high < edge or low > edge for edge in world.edges_m):
             true = "boards" if world.edges_m[0] < low < world.edges_m[1] else "gravel"
-            wrong += sighting.label != true
+            wrong += image_label.label != true
             checked += 1
     assert checked > 15
     assert wrong <= 0.1 * checked
@@ -53,7 +53,7 @@ def test_ground_that_fills_the_region_is_named_rightly(across_result, world):
 
 def test_every_image_of_the_run_was_looked_at(across_result, across_run):
     files = [line.split(",")[1] for line in (across_run / "images.csv").read_text().split()[1:]]
-    assert [sighting.image for sighting in across_result.watcher.sightings] == files
+    assert [image_label.image for image_label in across_result.watcher.image_labels] == files
     assert len(across_result.watcher.in_force) == len(files)
 
 
@@ -89,7 +89,7 @@ def test_astride_an_edge_the_icrs_lie_between_those_of_the_terrains(by_set):
 def test_per_tread_sees_a_robot_astride_an_edge(astride_run, classifier):
     per_tread = Config(region=RegionConfig(per_tread=True))
     result = run_odometry(astride_run, model=classifier, terrain="gravel", config=per_tread)
-    seen = [(s.label, s.left, s.right) for s in result.watcher.sightings]
+    seen = [(s.label, s.left, s.right) for s in result.watcher.image_labels]
     assert len(seen) > 5
     assert seen.count(("unknown", "gravel", "boards")) >= 0.9 * len(seen)
     assert set(result.replay.terrains) == {"gravel"}
@@ -129,12 +129,16 @@ def test_the_reserved_name_is_never_in_force(tmp_path, world, curvy_run):
 
 def test_a_run_and_a_model_may_be_given_as_objects_or_paths(astride_run, model_file, classifier):
     expected = run_odometry(astride_run, model=classifier, terrain="gravel")
-    labels = [(s.label, s.confidence) for s in expected.watcher.sightings if s.region is not None]
+    labels = [
+        (s.label, s.confidence) for s in expected.watcher.image_labels if s.region is not None
+    ]
     assert len(labels) > 5
     for run, model in ((Run.read(astride_run), model_file), (str(astride_run), str(model_file))):
         result = run_odometry(run, model=model, terrain="gravel")
         np.testing.assert_array_equal(result.replay.means, expected.replay.means)
-        seen = [(s.label, s.confidence) for s in result.watcher.sightings if s.region is not None]
+        seen = [
+            (s.label, s.confidence) for s in result.watcher.image_labels if s.region is not None
+        ]
         assert seen == labels
 
 
@@ -143,7 +147,7 @@ def test_what_there_is_to_judge_by_decides_what_is_judged(tmp_path, world, curvy
     by_pose = run_odometry(curvy_run)
     assert by_pose.reference_name == "pose"
     assert set(by_pose.scores) == {"odometer", "differential_drive", "estimate"}
-    assert by_pose.judged["estimate"].against == "withheld pose"
+    assert by_pose.evaluated["estimate"].against == "withheld pose"
     by_truth = run_odometry(world.drive_curves(tmp_path / "truth", truth=True))
     assert by_truth.reference_name == "truth"
     assert set(by_truth.scores) == {"odometer", "differential_drive", "estimate"}
@@ -173,7 +177,7 @@ def test_a_gyroscope_adds_its_rows_and_they_stand_side_by_side(tmp_path, world):
         "estimate",
     ]
     truth = result.run.truth.stack("x", "y", "yaw")
-    by_gyroscope = result.judged["gyroscope"].trajectory.poses
+    by_gyroscope = result.evaluated["gyroscope"].trajectory.poses
     turned = np.exp(1j * by_gyroscope[:, 2])  # held from row to row, where it is interpolated
     np.testing.assert_allclose(turned, np.exp(1j * truth[:, 2]), atol=0.06)
     # mean wheel speed knows nothing of x_icr nor of the middle between the treads' ICRs
@@ -197,7 +201,7 @@ def test_the_second_replay_sees_the_withheld_poses_no_more_than_the_first_saw_a_
     """Its terrains are those of the first, and no image is looked at for it."""
     result = across_result
     assert result.second.replay.terrains == result.replay.terrains
-    assert len(result.watcher.sightings) == len(result.run.images)
+    assert len(result.watcher.image_labels) == len(result.run.images)
     kept = np.isfinite(result.second.withheld.run.pose["x"])
     assert kept.sum() + result.second.withheld.poses == len(result.run.pose)
     assert result.run.pose["x"][~kept] == pytest.approx(world_x(result, ~kept))

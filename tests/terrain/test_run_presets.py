@@ -31,21 +31,21 @@ def result(across_run, paper):
 
 def test_the_look_ahead_is_one_time_for_all_images(result):
     """The robot drives straight at one speed: what fits is what our own search finds."""
-    times_s = {s.region.ahead_s for s in result.watcher.sightings if s.region is not None}
+    times_s = {s.region.ahead_s for s in result.watcher.image_labels if s.region is not None}
     assert times_s == {result.config.region.ahead_s}
     ours = run_odometry(
         result.run, model=result.watcher.classifier._classifier, terrain="gravel"
-    ).watcher.sightings[3]
+    ).watcher.image_labels[3]
     assert times_s.pop() == pytest.approx(ours.region.ahead_s, rel=0.05)
-    assert len(result.watcher.sightings) > 30
+    assert len(result.watcher.image_labels) > 30
 
 
 def test_two_labels_in_a_row_switch_at_once(result):
-    labels = [sighting.label for sighting in result.watcher.sightings]
+    labels = [image_label.label for image_label in result.watcher.image_labels]
     assert set(labels) == {"boards", "gravel"}
     for event in result.watcher.events:
-        seen_s = [s.stamp_s for s in result.watcher.sightings]
-        second = labels[seen_s.index(event.sight.stamp_s) : seen_s.index(event.stamp_s) + 1]
+        seen_s = [s.stamp_s for s in result.watcher.image_labels]
+        second = labels[seen_s.index(event.first_label.stamp_s) : seen_s.index(event.stamp_s) + 1]
         assert second == [event.terrain] * 2
     assert len(result.watcher.events) >= 2
 

@@ -1,4 +1,4 @@
-"""What tells the terrain: the camera, the run's own labels, the motion, nothing, or one's own."""
+"""Sources of terrain: the camera, the run's own labels, the motion, nothing, or one's own."""
 
 import csv
 import json
@@ -68,7 +68,7 @@ def test_what_labels_put_in_force_is_written(labelled_run, tmp_path):
 def test_the_page_says_who_told_the_terrain(labelled_run, tmp_path):
     write_report(run_odometry(labelled_run, source="labels"), tmp_path)
     page = (tmp_path / "report.html").read_text()
-    assert "The terrain was told by the run&#x27;s own labels" in page
+    assert "The source of the terrain was the run&#x27;s own labels" in page
     assert "in force throughout" not in page
     assert "boards</th>" in page
 

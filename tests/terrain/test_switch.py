@@ -27,8 +27,8 @@ def test_the_change_is_half_way_between_the_last_old_and_the_first_new_label(rul
     assert name == "gravel"
     assert 1.875 <= x <= 1.875 + 0.1  # more than half of the points, and the next step
     (event,) = events
-    assert event.terrain == event.sight.label == "gravel"
-    assert event.sight.stamp_s == pytest.approx(2.0)
+    assert event.terrain == event.first_label.label == "gravel"
+    assert event.first_label.stamp_s == pytest.approx(2.0)
     assert event.waited_s == pytest.approx(2 * (x - 1.0))
     assert event.waited_m == pytest.approx(x - 1.0)
 
@@ -81,8 +81,10 @@ def test_a_label_of_low_confidence_says_less():
     for given_ in (sure, unsure):
         switch = start()
         for k in range(4):
-            switch = switch.see(seen_at(0.25 * k, "gravel", probabilities=given_))
-        probabilities.append(switch.settled.probability(switch.settled.beliefs[-1], "gravel"))
+            switch = switch.add_label(seen_at(0.25 * k, "gravel", probabilities=given_))
+        probabilities.append(
+            switch.place_beliefs.probability(switch.place_beliefs.beliefs[-1], "gravel")
+        )
     assert probabilities[0] > 0.9
     assert probabilities[1] < 0.5
 
@@ -91,10 +93,10 @@ def test_labels_of_one_place_never_make_a_change():
     """A robot that creeps sees one place in a hundred images: one look, which may be wrong."""
     switch = start()
     for _ in range(100):
-        switch = switch.see(seen_at(0.001, "gravel"))
+        switch = switch.add_label(seen_at(0.001, "gravel"))
     assert switch.at(3.0, np.array([1.0, 0.0, 0.0]), 1.0).in_force == "grass"
     for k in range(1, 4):
-        switch = switch.see(seen_at(0.25 * k, "gravel"))
+        switch = switch.add_label(seen_at(0.25 * k, "gravel"))
     assert switch.at(3.0, np.array([1.0, 0.0, 0.0]), 1.0).in_force == "gravel"
 
 
@@ -102,18 +104,18 @@ def test_a_stretch_seen_again_says_no_more():
     """It goes to and fro before 0.3 m that look like gravel, and sees them ten times."""
     switch = start()
     for k in range(6):
-        switch = switch.see(seen_at(0.15 * k, "grass"))
+        switch = switch.add_label(seen_at(0.15 * k, "grass"))
     stretch = [seen_at(x, "gravel") for x in (0.9, 1.05, 1.2)]
     beliefs = []
     for _ in range(10):
-        for sight in stretch:
-            switch = switch.see(sight)
-        settled = switch.settled
-        place = int(np.abs(settled.places[:, 0] - 1.9).argmin())
-        beliefs.append(settled.probability(settled.beliefs[place], "gravel"))
+        for place_label in stretch:
+            switch = switch.add_label(place_label)
+        place_beliefs = switch.place_beliefs
+        place = int(np.abs(place_beliefs.places[:, 0] - 1.9).argmin())
+        beliefs.append(place_beliefs.probability(place_beliefs.beliefs[place], "gravel"))
     assert beliefs[-1] == pytest.approx(beliefs[0], abs=0.05)
-    assert len(settled.places) == 36
-    assert (np.diff(settled.places[:, 0]) >= 0).all()
+    assert len(place_beliefs.places) == 36
+    assert (np.diff(place_beliefs.places[:, 0]) >= 0).all()
 
 
 @pytest.mark.parametrize("needed", [1, 2, 3, 5])
@@ -144,7 +146,7 @@ def test_on_request_a_label_counts_when_it_is_seen():
 def test_ground_without_a_label_for_long_is_no_longer_known():
     switch, last_m = start(), 0.0
     for x in np.arange(0.0, 40.0, 0.25):
-        switch = switch.see(seen_at(x, "grass" if x < 5 else "unknown"))
+        switch = switch.add_label(seen_at(x, "grass" if x < 5 else "unknown"))
         switch = switch.at(2 * x, np.array([x, 0.0, 0.0]), x)
         if switch.settled.sights:
             last_m = switch.supported_m
@@ -162,7 +164,7 @@ def test_ground_that_labels_contradict_is_no_longer_known():
     labels = np.random.default_rng(1).choice(["grass", "gravel", "sand"], 80)
     known = []
     for x, label in zip(0.25 * np.arange(80), labels, strict=True):
-        switch = switch.see(seen_at(x, str(label)))
+        switch = switch.add_label(seen_at(x, str(label)))
         switch = switch.at(2 * x, np.array([x, 0.0, 0.0]), x)
         known.append(switch.footing.terrain != "unknown")
     assert np.mean(known) < 0.3
@@ -171,7 +173,7 @@ def test_ground_that_labels_contradict_is_no_longer_known():
 def test_ground_with_right_labels_stays_known():
     switch = start()
     for x in 0.25 * np.arange(80):
-        switch = switch.see(seen_at(x, "grass" if x < 9 else "gravel"))
+        switch = switch.add_label(seen_at(x, "grass" if x < 9 else "gravel"))
         switch = switch.at(2 * x, np.array([x, 0.0, 0.0]), x)
         assert switch.footing.terrain != "unknown" or abs(x - 9.9) < 0.3
 
@@ -179,7 +181,9 @@ def test_ground_with_right_labels_stays_known():
 def test_a_call_gives_a_new_switch_and_leaves_the_old():
     switch = start()
     before = dataclasses.replace(switch)
-    switch.see(seen_at(0.0, "gravel")).see(seen_at(0.1, "gravel")).at(2.0, np.ones(3), 2.0)
+    switch.add_label(seen_at(0.0, "gravel")).add_label(seen_at(0.1, "gravel")).at(
+        2.0, np.ones(3), 2.0
+    )
     assert switch == before
     with pytest.raises(dataclasses.FrozenInstanceError):
         switch.in_force = "gravel"

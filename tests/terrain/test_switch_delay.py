@@ -8,7 +8,7 @@ import pytest
 
 from odometry.run import Robot, Run
 from odometry.table import Table
-from terrain.places import Sight
+from terrain.place_labels import PlaceLabel
 from terrain.switch import SwitchEvent
 from terrain.switch_delay import SwitchDelay, switch_delays, true_changes, true_stretches
 
@@ -17,8 +17,8 @@ ROWS = np.arange(len(STAMPS_S)) + 2
 
 
 def event(terrain, stamp_s):
-    sight = Sight(terrain, stamp_s - 1, 0.0, np.zeros(2), 0.5)
-    return SwitchEvent(terrain, stamp_s, sight, 1.0, 0.5)
+    place_label = PlaceLabel(terrain, stamp_s - 1, 0.0, np.zeros(2), 0.5)
+    return SwitchEvent(terrain, stamp_s, place_label, 1.0, 0.5)
 
 
 def result_of(true, events, initial="ice", start_s=0.0):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from odometry.geometry import se2
-from terrain.places import Footprint, Sight
+from terrain.place_labels import Footprint, PlaceLabel
 from terrain.switch import Switch, SwitchConfig
 from tests.terrain.switch_drives import FOOTPRINT_M, STEP_S, forward, random_drive
 
@@ -22,16 +22,16 @@ def followed(driven, config):
     in_force, events = [], []
     for step, (pose, travel_m) in enumerate(zip(driven.odometer, driven.travel_m, strict=True)):
         if step in looks:
-            switch = switch.see(sight_of(looks[step], pose, travel_m))
+            switch = switch.add_label(place_label_of(looks[step], pose, travel_m))
         switch = switch.at(step * STEP_S, pose, travel_m)
         in_force.append(switch.in_force)
         events += [(step, switch.event)] if switch.event else []
     return np.array(in_force), events
 
 
-def sight_of(look, pose, travel_m):
+def place_label_of(look, pose, travel_m):
     place = se2.transform(pose, look.place_robot)
-    return Sight(look.label, look.step * STEP_S, travel_m, place, look.distance_ahead_m)
+    return PlaceLabel(look.label, look.step * STEP_S, travel_m, place, look.distance_ahead_m)
 
 
 @BOTH_RULES

@@ -6,7 +6,7 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 
-from terrain.places import DRIFT, Footprint, Sight
+from terrain.place_labels import DRIFT, Footprint, PlaceLabel
 from terrain.switch import Switch, SwitchConfig
 
 FOOTPRINT = Footprint(0.6, 0.5)
@@ -29,13 +29,13 @@ class AnyDrive(RuleBasedStateMachine):
         ahead_m=st.floats(0.0, 2.0),
         repeat=st.integers(1, 3),
     )
-    def see(self, label, ahead_m, repeat):
+    def add_label(self, label, ahead_m, repeat):
         heading = np.array([np.cos(self.pose[2]), np.sin(self.pose[2])])
         in_force = self.switch.in_force
         for _ in range(repeat):
             place = self.pose[:2] + ahead_m * heading
-            sight = Sight(label, self.stamp_s, self.travel_m, place, ahead_m)
-            self.switch = self.switch.see(sight)
+            place_label = PlaceLabel(label, self.stamp_s, self.travel_m, place, ahead_m)
+            self.switch = self.switch.add_label(place_label)
             self.heard.append(label)
             if self.heard[-max(1, self.needed) :] == [label] * max(1, self.needed):
                 self.confirmed.add(label)
@@ -59,13 +59,16 @@ class AnyDrive(RuleBasedStateMachine):
         if event is None:
             return
         assert event.terrain == self.switch.in_force
-        labels = {sight.label for sight in self.switch.sights}
-        assert event.sight.label == event.terrain or event.terrain not in labels
-        assert event.waited_s == pytest.approx(self.stamp_s - event.sight.stamp_s)
-        assert event.waited_m == pytest.approx(self.travel_m - event.sight.travel_m)
+        labels = {place_label.label for place_label in self.switch.place_labels}
+        assert event.first_label.label == event.terrain or event.terrain not in labels
+        assert event.waited_s == pytest.approx(self.stamp_s - event.first_label.stamp_s)
+        assert event.waited_m == pytest.approx(self.travel_m - event.first_label.travel_m)
         assert sum(self.switch.shares.values()) == pytest.approx(1.0)
         assert self.switch.shares[event.terrain] > 0.5
-        apart_m = [np.hypot(*(self.pose[:2] - sight.place)) for sight in self.switch.sights]
+        apart_m = [
+            np.hypot(*(self.pose[:2] - place_label.place))
+            for place_label in self.switch.place_labels
+        ]
         assert min(apart_m) <= FOOTPRINT.radius_m
 
     @invariant()
@@ -74,9 +77,9 @@ class AnyDrive(RuleBasedStateMachine):
 
     @invariant()
     def no_more_is_kept_than_the_odometer_can_tell(self):
-        sights = self.switch.sights
-        if sights:
-            longest_m = sights[-1].travel_m - sights[0].travel_m
+        place_labels = self.switch.place_labels
+        if place_labels:
+            longest_m = place_labels[-1].travel_m - place_labels[0].travel_m
             assert longest_m <= FOOTPRINT.radius_m / DRIFT + 1e-9
 
     @precondition(lambda self: self.travel_m > 0)

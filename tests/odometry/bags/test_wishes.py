@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from odometry.bags.wheel_units import UNITS
+from odometry.bags.wheel_names import UNITS
 from odometry.bags.wishes import KEYS, read_wishes
 
 EXAMPLE = Path(__file__).parents[3] / "data/bags/map.toml"

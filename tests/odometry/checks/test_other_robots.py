@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from odometry.checks.finding import Level
-from odometry.checks.pose_cleaning import pose_outliers
+from odometry.checks.outliers import pose_outliers
 from odometry.checks.recording import check_recording
 from odometry.checks.relation import relation
 from odometry.run import Robot, Run
@@ -99,7 +99,7 @@ def test_what_has_no_name_is_a_disagreement(name):
     assert not check_recording(run).misleads
     (warning,) = check_recording(UNNAMED[name](run)).at(Level.WARNING)
     assert warning.name == "sensors_disagree"
-    assert "cannot be told" in warning.cause
+    assert "cannot be determined" in warning.cause
 
 
 def turning_much():

@@ -7,8 +7,7 @@ import pytest
 
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.estimation.transition import STATES, Y_LEFT
-from odometry.evaluation.learning_errors import learning_covariances
-from odometry.evaluation.odometer_uncertainty import path_of
+from odometry.evaluation.odometer_uncertainty import learning_covariances, path_of
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.pipeline import ConstantTerrain, replay
 from odometry.run import Run

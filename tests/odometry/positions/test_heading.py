@@ -10,7 +10,7 @@ from odometry.geometry.angles import wrap
 from odometry.positions.carrier import carrier_of
 from odometry.positions.heading import found_heading, headed
 from odometry.positions.smoother import Way, filtered, smoothed
-from odometry.positions.told_yaw import told_yaw
+from odometry.positions.yaw_from_positions import told_yaw
 from odometry.windows.measured_poses import YAW_FOUND, lacks_yaw
 from tests.odometry.positions_drives import drive, emptied
 

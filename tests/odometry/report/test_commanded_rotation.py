@@ -2,7 +2,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from odometry.report.commanded_rotation import (
+from odometry.report.comparison_plots import (
     CommandedRotation,
     commanded_rotation,
     difference_edges,

@@ -127,7 +127,7 @@ def test_the_lead_says_what_contradicts_it(compared):
     )
     assert "icr_symmetric (J/N 900) errs more than differential_drive (" in lead(alone)
     both = replace(compared, fitness=fitness)
-    assert "At 2 of them medians or whole runs say otherwise" in lead(both)
+    assert "At 2 of them medians or whole runs give another order" in lead(both)
 
 
 def test_figures_of_an_earlier_comparison_go_and_other_files_stay(compared, tmp_path):

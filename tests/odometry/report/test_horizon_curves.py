@@ -1,6 +1,6 @@
 import numpy as np
 
-from odometry.report.horizon_curves import plot_against_horizon
+from odometry.report.comparison_plots import plot_against_horizon
 from odometry.report.palette import LineStyle
 
 STYLES = {"a": LineStyle("#0000FF"), "$b^$": LineStyle("#FF0000", "dashed")}

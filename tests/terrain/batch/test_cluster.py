@@ -67,9 +67,9 @@ def test_a_worker_that_cannot_do_the_jobs_is_told_in_one_line(
         opened = os.open(tmp_path, os.O_RDONLY)
         mine = job_of(curvy_run, out=type(tmp_path)(f"/proc/self/fd/{opened}/out"))
         message = refused([mine], scheduler)
-        assert f"does not see /proc/self/fd/{opened}/out" in message
+        assert f"cannot read /proc/self/fd/{opened}/out" in message
         seen = job_of(type(tmp_path)(f"/proc/self/fd/{opened}/out"))
-        assert f"does not see {seen.folder}" in refused([seen], scheduler)
+        assert f"cannot read {seen.folder}" in refused([seen], scheduler)
         os.close(opened)
 
 

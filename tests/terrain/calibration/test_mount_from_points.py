@@ -86,7 +86,7 @@ def test_a_wrong_row_is_named():
             marked(CAMERA, GROUND) + np.array([2000, 0, 0, 0]),
             r"row 2: .* outside of the image of 1280 x 720",
         ),
-        (marked(CAMERA, GROUND[[4, 5, 7, 8]] * 0.02 + [1.5, 0.0]), "cannot tell"),
+        (marked(CAMERA, GROUND[[4, 5, 7, 8]] * 0.02 + [1.5, 0.0]), "do not determine"),
     ],
 )
 def test_what_cannot_be_told_is_said(rows, words):

@@ -101,7 +101,7 @@ def test_pixels_without_matrix_are_named(faulty, world):
 def test_no_cause_is_invented(faulty):
     faulty.settings(camera={"mount": [X, Y, 4.0, 0.0, -0.4, 2.3]})
     finding = faulty.found()["region_outside"]
-    assert "cannot be told" in finding.cause
+    assert "cannot be determined" in finding.cause
 
 
 def test_a_robot_in_mm_is_named(faulty):

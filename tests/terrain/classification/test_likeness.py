@@ -8,7 +8,7 @@ from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.likeness import FEWEST_IMAGES, TrainingLook, look_of
 from terrain.classification.persistence import read_model, write_model
 from terrain.errors import ModelFileError
-from terrain.seen_so_far import WORTH_OF_UNLIKE, SeenSoFar
+from terrain.run_likeness import WORTH_OF_UNLIKE, RunLikeness
 
 
 def texture(rng, grain_px, size=64, spread=35):
@@ -135,7 +135,7 @@ def test_a_classifier_of_features_says_nothing():
 
 def test_labels_of_unlike_images_count_less(classifier, training_patches):
     given = {"boards": 0.9, "gravel": 0.1}
-    like, unlike = SeenSoFar(classifier), SeenSoFar(classifier)
+    like, unlike = RunLikeness(classifier), RunLikeness(classifier)
     for image in training_patches[0][::7]:
         like.add([image])
         unlike.add([image // 3])

@@ -108,7 +108,7 @@ def test_the_same_set_of_runs_is_learned_from_once(here):
     answer = call(batch, "a", "./a", str(here / "a"), "--processes", "1")
     assert answer.output.count("given twice") == 2
     assert [row["run"] for row in rows(here / "out")] == ["a"]
-    assert "the spread between runs cannot be told" in answer.output
+    assert "no spread between runs: 3 or more runs are needed" in answer.output
 
 
 @pytest.mark.usefixtures("no_report")

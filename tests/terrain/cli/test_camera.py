@@ -118,7 +118,7 @@ def test_a_camera_that_misses_the_region(verb, run, tmp_path):
     answer = verb("camera", run, "--out", tmp_path / "out", *stated)
     assert answer.exit_code == 0, answer.output
     assert "shows no terrain straight ahead" in answer.output
-    assert "would see no region straight ahead" in answer.output
+    assert "would have no region straight ahead" in answer.output
     assert "Suggestion: a pitch of" in answer.output
 
 

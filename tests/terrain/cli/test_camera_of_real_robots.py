@@ -111,4 +111,4 @@ def test_a_camera_that_looks_back(verb, undrawn_husky, tmp_path):
     run, frames = undrawn_husky
     answer = calibrated(verb, run, frames, tmp_path / "out", "camera_rear")
     assert "no terrain straight ahead" in answer.output
-    assert "looks aside or back (yaw 180 degrees)" in answer.output.replace("yaw -180", "yaw 180")
+    assert "points aside or back (yaw 180 degrees)" in answer.output.replace("yaw -180", "yaw 180")

@@ -15,7 +15,7 @@ def result(
         if classes is None
         else SimpleNamespace(
             classifier=SimpleNamespace(classes_=classes),
-            sightings=[],
+            image_labels=[],
             seen=SimpleNamespace(likeness=None),
         )
     )
@@ -62,7 +62,7 @@ def starting(labels, *, initial="grass", of_run=None):
     """A run whose set begins with grass, and the first labels of its images."""
     of = result(initial, ("grass", "gravel"), classes=["grass", "gravel"])
     of.run.terrain = of_run
-    of.watcher.sightings = [SimpleNamespace(label=label, reason="") for label in labels]
+    of.watcher.image_labels = [SimpleNamespace(label=label, reason="") for label in labels]
     return of
 
 
@@ -89,7 +89,7 @@ def test_many_refused_poses_are_named():
 def sighted(*labels_and_reasons):
     """A result whose images got these labels."""
     of = result(classes=["gravel"])
-    of.watcher.sightings = [
+    of.watcher.image_labels = [
         SimpleNamespace(label=label, reason=reason) for label, reason in labels_and_reasons
     ]
     return of

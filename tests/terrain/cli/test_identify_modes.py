@@ -64,7 +64,7 @@ def test_velocity_modes_are_shown_and_written(grounds, out):
         per_metre, track_m, *_ = cells(answer, name)
         assert per_metre == pytest.approx(turn / 0.5, rel=0.05)
         assert track_m == pytest.approx(1 / per_metre, abs=2e-3)
-    assert "ice and tar are the most alike: driven as in these runs they take" in answer.stdout
+    assert "ice and tar are the most similar: driven as in these runs they take" in answer.stdout
     assert f"Wrote {out}\nNext: terrain-odometry modes RUN --models {out} --out" in answer.stdout
 
 
@@ -139,12 +139,12 @@ def test_runs_that_cannot_be_used_are_told(make, out, settings, kind, message):
 @pytest.mark.parametrize(
     ("seconds", "words"),
     [
-        (0.01, "are the most alike: driven as in these runs they take less than 0.1 s"),
-        (0.52, "are the most alike: driven as in these runs they take about 0.5 s"),
+        (0.01, "are the most similar: driven as in these runs they take less than 0.1 s"),
+        (0.52, "are the most similar: driven as in these runs they take about 0.5 s"),
         (40.0, "answer alike: driven as in these runs they take about 40 s"),
         (1e9, "answer alike: driven as in these runs they take for ever"),
     ],
 )
 def test_the_time_to_tell_two_modes_apart_is_said(capsys, seconds, words):
     _print_alike((Pair(("ice", "sand"), seconds),))
-    assert capsys.readouterr().out == f"ice and sand {words} to be told apart.\n"
+    assert capsys.readouterr().out == f"ice and sand {words} to be distinguished.\n"

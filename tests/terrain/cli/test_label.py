@@ -185,7 +185,7 @@ def test_spans_of_several_runs_name_their_run(across_run, astride_run, tmp_path)
 def test_a_span_outside_of_the_run_leaves_no_patch_and_says_why(across_run, tmp_path):
     answer = invoke(across_run, "--out", tmp_path / "a", "--span", "1000:2000=gravel")
     assert answer.exit_code == 1
-    assert re.search(r"squares of terrain: \d+ of no terrain that was told", str(answer.exception))
+    assert re.search(r"squares of terrain: \d+ of no given terrain", str(answer.exception))
 
 
 def test_spans_count_from_the_first_stamp_also_of_a_part(across_run, tmp_path):

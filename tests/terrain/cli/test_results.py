@@ -7,12 +7,12 @@ from terrain.cli.results import (
     error_cells,
     print_changes,
     print_errors,
-    print_sightings,
+    print_image_labels,
     print_table,
     print_written,
 )
 from terrain.main_job import run_odometry
-from terrain.terrain_change import TerrainChange
+from terrain.run_result import TerrainChange
 
 
 def test_columns_line_up_words_to_the_left_numbers_to_the_right(capsys):
@@ -42,7 +42,7 @@ def test_errors_are_those_of_the_scores_and_name_the_reference(curvy_run, capsys
     assert "5 m of wheel travel" in lines[0]
     rows = {line.split("  ")[1]: line.split()[-1] for line in lines[2:5]}
     assert set(rows) == {"a run: odometer", "a run: differential_drive", "a run: estimate"}
-    assert lines[5].startswith("The estimate is judged by 6 poses, one every 2 s")
+    assert lines[5].startswith("The estimate is evaluated with 6 poses, one every 2 s")
     assert lines[6].startswith("The run has no gyroscope")
     for name, score in result.scores.items():
         assert rows[f"a run: {name}"] == f"{score.final_position_m:.4f}"
@@ -57,9 +57,9 @@ def test_files_are_named_within_their_folder(tmp_path, capsys):
 
 
 def test_images_are_counted_by_what_they_said(capsys):
-    print_sightings({"mud": 12, "no label: the robot stands": 3})
-    assert capsys.readouterr().out == "Images: 12 mud, 3 no label: the robot stands\n"
-    print_sightings({})
+    print_image_labels({"mud": 12, "no label: the robot is stationary": 3})
+    assert capsys.readouterr().out == "Images: 12 mud, 3 no label: the robot is stationary\n"
+    print_image_labels({})
     assert capsys.readouterr().out == ""
 
 

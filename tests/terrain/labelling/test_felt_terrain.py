@@ -6,7 +6,7 @@ from odometry.errors import RunFolderError
 from odometry.feel.identify_feel import identify_feel
 from terrain.labelling.felt_terrain import told_by_feel
 from tests.odometry.feel.feel_drives import drive, drives
-from tests.terrain.test_felt_sights import joined
+from tests.terrain.test_feel_labels import joined
 
 
 @pytest.fixture(scope="module")

@@ -155,7 +155,7 @@ def test_a_run_without_images_or_camera_is_refused(run, told_spans, part):
 def test_a_camera_that_sees_no_ground_that_is_driven_over_is_refused(run, told_spans):
     mount = [0.2, 0.0, 0.55, 0.0, -1.0, 0.0]  # it looks up
     settings = {**run.settings, "camera": {**run.settings["camera"], "mount": mount}}
-    with pytest.raises(PatchError, match="shows ground"):
+    with pytest.raises(PatchError, match="shows terrain"):
         label_runs([replace(run, settings=settings)], [told_spans(run)])
 
 

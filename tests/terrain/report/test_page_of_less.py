@@ -24,8 +24,8 @@ def test_against_measured_poses_the_estimate_is_judged_by_withheld_ones(across_r
     read = Reader(tmp_path / "report.html")
     _, rows = read.table("trajectory")
     assert [row[0] for row in rows] == ["differential drive", "odometer", "estimate"]
-    assert "The filter has seen these poses" in read.text
-    assert "The estimate is judged by 4 poses, one every 2 s" in read.text
+    assert "The filter has used these poses" in read.text
+    assert "The estimate is evaluated with 4 poses, one every 2 s" in read.text
     assert "The run has no gyroscope" in read.text
     assert "late by [s]" not in read.text
     assert not (tmp_path / "figures" / "confusion.png").exists()
@@ -58,7 +58,9 @@ def test_the_uncertainty_of_the_odometer_is_listed(across_result, tmp_path):
     why = "not checked: too few poses 20 m apart in a half of the run"
     assert rows[1][4:] == [NOTHING, NOTHING, why]
     assert "Multiply the covariance by 3.0 before you rely on it" in read.text
-    assert "Each half of the run is judged by the noise measured on the other half" in read.text
+    assert (
+        "Each half of the run is evaluated with the noise measured on the other half" in read.text
+    )
     write_report(dataclasses.replace(across_result, uncertainty=own), tmp_path)
     _, rows = Reader(tmp_path / "report.html").table("NEES")
     assert rows[0][4:] == [NOTHING, "9.0", "1.7 to 4.7", "too small"]
@@ -82,7 +84,7 @@ def test_a_run_with_nothing_but_odometry_has_a_page(world, tmp_path):
     assert {file.stem for file in written} == {"path", "icrs", "report"}
     text = Reader(tmp_path / "out" / "report.html").text
     assert "nothing is judged" in text
-    assert "Nothing told the terrain" in text
+    assert "There was no source of terrain" in text
 
 
 def test_images_that_show_no_region_have_a_page(across_result, tmp_path):
@@ -90,10 +92,10 @@ def test_images_that_show_no_region_have_a_page(across_result, tmp_path):
     watcher = across_result.watcher
     blank = [
         dataclasses.replace(s, label="", confidence=np.nan, region=None, reason="too dark")
-        for s in watcher.sightings
+        for s in watcher.image_labels
     ]
     stand_in = type(watcher).__new__(type(watcher))
-    stand_in.__dict__.update(watcher.__dict__ | {"sightings": blank, "events": []})
+    stand_in.__dict__.update(watcher.__dict__ | {"image_labels": blank, "events": []})
     written = write_report(dataclasses.replace(across_result, watcher=stand_in), tmp_path)
     assert {file.stem for file in written} == {
         "path",

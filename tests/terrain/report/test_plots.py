@@ -10,6 +10,7 @@ from matplotlib.patches import Polygon
 from odometry.evaluation.stretches import Stretch
 from terrain.camera import Camera
 from terrain.classification.classifier import Classification
+from terrain.image_label import ImageLabel
 from terrain.region import Rectangle, Region
 from terrain.report.plots import (
     NO_LABEL,
@@ -19,7 +20,6 @@ from terrain.report.plots import (
     plot_image,
     plot_labels,
 )
-from terrain.sighting import Sighting
 from terrain.whole_image import Cell
 
 TINTS = {"$ice^$": "#112233", "snow": "#445566", "unknown": "#dddddd"}
@@ -64,7 +64,7 @@ def test_an_image_is_shown_as_it_is(axes):
 
 def test_the_region_is_outlined_where_its_border_is_seen(axes, camera, world):
     plot_image(axes, np.zeros((120, 160), np.uint8), "")
-    draw_region(axes, camera, Sighting(1.0, "a.png", "$ice^$", 0.875, REGION), TINTS)
+    draw_region(axes, camera, ImageLabel(1.0, "a.png", "$ice^$", 0.875, REGION), TINTS)
     inner = polygons(axes)[-1]
     assert to_hex(inner.get_edgecolor()) == TINTS["$ice^$"]
     points = ground_of(inner.get_xy(), world)
@@ -77,10 +77,10 @@ def test_the_region_is_outlined_where_its_border_is_seen(axes, camera, world):
 
 
 def test_a_region_without_a_label_says_so_and_none_draws_nothing(axes, camera):
-    draw_region(axes, camera, Sighting(1.0, "a.png", region=REGION, reason="too coarse"), TINTS)
+    draw_region(axes, camera, ImageLabel(1.0, "a.png", region=REGION, reason="too coarse"), TINTS)
     assert [text.get_text() for text in axes.texts] == [NO_LABEL]
     before = len(axes.patches)
-    draw_region(axes, camera, Sighting(1.0, "a.png", reason="the robot stands"), TINTS)
+    draw_region(axes, camera, ImageLabel(1.0, "a.png", reason="the robot is stationary"), TINTS)
     assert len(axes.patches) == before
 
 
@@ -99,15 +99,15 @@ def test_cells_are_tinted_by_what_they_were_taken_for(axes, camera):
 
 
 def test_labels_stand_at_their_time_and_row_and_fade_with_doubt(axes):
-    sightings = [
-        Sighting(1.0, "a.png", "snow", 1.0, REGION),
-        Sighting(2.0, "b.png", "$ice^$", 0.5, REGION),
-        Sighting(3.0, "c.png", reason="the robot stands"),
-        Sighting(4.0, "d.png", "snow", 0.2, REGION),
+    image_labels = [
+        ImageLabel(1.0, "a.png", "snow", 1.0, REGION),
+        ImageLabel(2.0, "b.png", "$ice^$", 0.5, REGION),
+        ImageLabel(3.0, "c.png", reason="the robot is stationary"),
+        ImageLabel(4.0, "d.png", "snow", 0.2, REGION),
     ]
     force = (Stretch("$ice^$", 0.0, 2.5), Stretch("snow", 2.5, 5.0))
     truth = (Stretch("$ice^$", 0.0, 2.0), Stretch("snow", 2.0, 4.9), Stretch("$ice^$", 4.9, 5.0))
-    plot_labels(axes, sightings, force, truth, TINTS)
+    plot_labels(axes, image_labels, force, truth, TINTS)
     rows = [label.get_text() for label in axes.get_yticklabels()]
     assert rows == ["$ice^$", "snow", NO_LABEL, "in force", "truth"]
     points = {c.get_gid(): c.get_offsets().tolist() for c in axes.collections}

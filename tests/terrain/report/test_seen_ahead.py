@@ -8,10 +8,10 @@ import pytest
 
 from odometry.run import Robot, Run
 from odometry.table import Table
-from terrain.places import Sight
+from terrain.image_label import ImageLabel
+from terrain.place_labels import PlaceLabel
 from terrain.region import Rectangle, Region
 from terrain.report.seen_ahead import around_switches, confusion
-from terrain.sighting import Sighting
 from terrain.switch import SwitchEvent
 
 STAMPS_S = np.arange(0.0, 20.5, 0.5)  # at 0.5 m/s; snow from 10 s on
@@ -21,10 +21,10 @@ REGION = Region((RECTANGLE,), 2.0, 1.0, np.array([1.0, 0.0, 0.0]))
 
 
 def seen(stamp_s, label):
-    return Sighting(stamp_s, f"{stamp_s}.png", label, 0.9, REGION)
+    return ImageLabel(stamp_s, f"{stamp_s}.png", label, 0.9, REGION)
 
 
-def result_of(sightings, truth=True):
+def result_of(image_labels, truth=True):
     speeds = np.full(len(STAMPS_S), 0.5)
     odometry = Table(Path("o.csv"), {"t": STAMPS_S, "v_left": speeds, "v_right": speeds}, ROWS)
     names = np.where(STAMPS_S < 10, "ice", "snow").astype(object)
@@ -33,7 +33,7 @@ def result_of(sightings, truth=True):
         run=Run(Path("run"), Robot(0.4), {}, odometry, truth=table),
         initial_terrain="ice",
         replay=SimpleNamespace(stamps_s=STAMPS_S),
-        watcher=SimpleNamespace(sightings=sightings),
+        watcher=SimpleNamespace(image_labels=image_labels),
     )
 
 
@@ -45,8 +45,8 @@ def test_a_label_is_judged_by_the_place_that_it_speaks_of():
 
 
 def test_other_labels_have_rows_and_unknown_is_the_last():
-    sightings = [seen(1.0, "unknown"), seen(2.0, "mud"), seen(3.0, "zinc"), seen(9.0, "unknown")]
-    found = confusion(result_of(sightings))
+    image_labels = [seen(1.0, "unknown"), seen(2.0, "mud"), seen(3.0, "zinc"), seen(9.0, "unknown")]
+    found = confusion(result_of(image_labels))
     assert found.said == ("ice", "snow", "mud", "zinc", "unknown")
     assert found.counts.tolist() == [[0, 0], [0, 0], [1, 0], [1, 0], [1, 1]]
 
@@ -61,7 +61,7 @@ def test_places_that_are_not_reached_are_left_out():
     [
         result_of([seen(7.0, "ice")], truth=False),
         result_of([]),
-        result_of([Sighting(7.0, "a.png", reason="the robot stands")]),
+        result_of([ImageLabel(7.0, "a.png", reason="the robot is stationary")]),
     ],
 )
 def test_nothing_to_compare(result):
@@ -69,24 +69,24 @@ def test_nothing_to_compare(result):
 
 
 def switch_at(stamp_s):
-    sight = Sight("snow", stamp_s, 0.0, np.zeros(2), 1.0)
-    return SwitchEvent("snow", stamp_s + 2, sight, 2.0, 1.0)
+    place_label = PlaceLabel("snow", stamp_s, 0.0, np.zeros(2), 1.0)
+    return SwitchEvent("snow", stamp_s + 2, place_label, 2.0, 1.0)
 
 
 def test_images_stand_around_the_first_sight_of_a_change():
-    sightings = [seen(float(t), "ice") for t in range(10)]
-    sightings[5] = Sighting(5.0, "5.png", reason="the robot stands")
-    chosen = around_switches(sightings, [switch_at(6.0)])
-    assert [sighting.stamp_s for sighting in chosen] == [4.0, 6.0, 7.0]
+    image_labels = [seen(float(t), "ice") for t in range(10)]
+    image_labels[5] = ImageLabel(5.0, "5.png", reason="the robot is stationary")
+    chosen = around_switches(image_labels, [switch_at(6.0)])
+    assert [image_label.stamp_s for image_label in chosen] == [4.0, 6.0, 7.0]
 
 
 def test_every_change_is_shown_before_any_neighbour():
-    sightings = [seen(float(t), "ice") for t in range(20)]
-    chosen = around_switches(sightings, [switch_at(t) for t in (3.0, 9.0, 15.0)], most=4)
-    assert [sighting.stamp_s for sighting in chosen] == [2.0, 3.0, 9.0, 15.0]
+    image_labels = [seen(float(t), "ice") for t in range(20)]
+    chosen = around_switches(image_labels, [switch_at(t) for t in (3.0, 9.0, 15.0)], most=4)
+    assert [image_label.stamp_s for image_label in chosen] == [2.0, 3.0, 9.0, 15.0]
 
 
 def test_without_a_change_images_are_spread_over_the_run():
-    sightings = [seen(float(t), "ice") for t in range(11)]
-    assert [s.stamp_s for s in around_switches(sightings, [], most=3)] == [0.0, 5.0, 10.0]
+    image_labels = [seen(float(t), "ice") for t in range(11)]
+    assert [s.stamp_s for s in around_switches(image_labels, [], most=3)] == [0.0, 5.0, 10.0]
     assert around_switches([], []) == []

@@ -27,11 +27,11 @@ def test_an_image_that_cannot_be_read_is_a_row_and_the_run_goes_on(watch, bad, c
     watched = watch([DARK, BRIGHT, bad, BRIGHT, BRIGHT])
     terrains = drive(watched)
     capfd.readouterr()  # the image library speaks of the damage on its own
-    bad_one = watched.watcher.sightings[2]
+    bad_one = watched.watcher.image_labels[2]
     assert bad_one.label == ""
     assert bad_one.reason == "the image cannot be read"
     assert np.isnan(bad_one.confidence)
-    assert [s.label for s in watched.watcher.sightings] == ["mud", "snow", "", "snow", "snow"]
+    assert [s.label for s in watched.watcher.image_labels] == ["mud", "snow", "", "snow", "snow"]
     assert terrains[-1] == "snow"  # it breaks no row
 
 
@@ -39,9 +39,9 @@ def test_a_grey_image_among_coloured_ones_is_a_row_and_the_run_goes_on(watch):
     bright, dark = (np.repeat(image[..., None], 3, axis=2) for image in (BRIGHT, DARK))
     watched = watch([dark, bright, BRIGHT, bright, bright], ByBrightness(colour=True))
     assert drive(watched)[-1] == "snow"
-    assert [s.label for s in watched.watcher.sightings] == ["mud", "snow", "", "snow", "snow"]
+    assert [s.label for s in watched.watcher.image_labels] == ["mud", "snow", "", "snow", "snow"]
     reason = "the image is grey, the model was trained with colour"
-    assert watched.watcher.sightings[2].reason == reason
+    assert watched.watcher.image_labels[2].reason == reason
 
 
 def test_a_region_of_which_a_corner_is_outside_the_image_has_a_label(watch):
@@ -51,8 +51,8 @@ def test_a_region_of_which_a_corner_is_outside_the_image_has_a_label(watch):
     turning = dataclasses.replace(frame, tread_speeds_m_s=np.array([0.3125, 0.6875]))
     whole = watch_whole(watched)
     assert whole.look(turning, estimate_at(frame)).reason == "the region lies outside the image"
-    sighting = watched.watcher.look(turning, estimate_at(frame))
-    assert sighting.label == "snow"
+    image_label = watched.watcher.look(turning, estimate_at(frame))
+    assert image_label.label == "snow"
     (shown,) = watched.classifier.shown
     assert min(shown.shape) >= watched.classifier.patch_size_px
 
@@ -74,7 +74,7 @@ def test_a_file_that_vanished_is_a_row(watch):
     watched = watch([DARK, BRIGHT])
     (watched.folder / "1.png").unlink()
     drive(watched)
-    assert [s.reason for s in watched.watcher.sightings] == ["", "the image cannot be read"]
+    assert [s.reason for s in watched.watcher.image_labels] == ["", "the image cannot be read"]
 
 
 def test_images_of_another_size_than_the_cameras_are_an_error(watch):
@@ -86,8 +86,8 @@ def test_images_of_another_size_than_the_cameras_are_an_error(watch):
 def test_one_image_of_another_size_is_a_row(watch):
     watched = watch([DARK, np.zeros((240, 320), np.uint8), DARK])
     drive(watched)
-    assert [s.label for s in watched.watcher.sightings] == ["mud", "", "mud"]
-    assert watched.watcher.sightings[1].reason == "the image is not of the camera's size"
+    assert [s.label for s in watched.watcher.image_labels] == ["mud", "", "mud"]
+    assert watched.watcher.image_labels[1].reason == "the image is not of the camera's size"
 
 
 @pytest.mark.parametrize(
@@ -101,8 +101,8 @@ def test_one_image_of_another_size_is_a_row(watch):
 def test_a_region_that_does_not_compare_with_the_patches_has_no_label(watch, classifier, reason):
     watched = watch([DARK], classifier)
     drive(watched)
-    (sighting,) = watched.watcher.sightings
-    assert (sighting.label, sighting.reason) == ("", reason)
+    (image_label,) = watched.watcher.image_labels
+    assert (image_label.label, image_label.reason) == ("", reason)
     assert classifier.shown == []
 
 
@@ -110,13 +110,13 @@ def test_half_a_region_may_be_too_small_where_the_whole_is_not(watch):
     """The whole is 80 by 68 pixels, each half 80 by 34."""
     watched = watch([DARK], ByBrightness(0.006, 40), per_tread=True)
     drive(watched)
-    assert watched.watcher.sightings[0].reason == "the region is smaller than a training patch"
+    assert watched.watcher.image_labels[0].reason == "the region is smaller than a training patch"
 
 
 @pytest.mark.parametrize(
     ("speeds", "reason"),
     [
-        ((0.0, 0.0), "the robot stands"),
+        ((0.0, 0.0), "the robot is stationary"),
         ((np.nan, np.nan), "the tread speeds are not known"),
         ((-0.3, 0.3), "the region lies outside the image"),
         ((-0.3, -0.3), "the region lies outside the image"),
@@ -127,14 +127,14 @@ def test_where_there_is_no_region_there_is_a_reason(watch, speeds, reason):
     frame = next(f for f in watched.run.frames() if f.image is not None)
     frame = dataclasses.replace(frame, tread_speeds_m_s=np.array(speeds))
     watched.watcher.terrain(frame, estimate_at(frame, speeds=speeds))
-    (sighting,) = watched.watcher.sightings
-    assert (sighting.label, sighting.reason, sighting.region) == ("", reason, None)
+    (image_label,) = watched.watcher.image_labels
+    assert (image_label.label, image_label.reason, image_label.region) == ("", reason, None)
 
 
 def test_a_frame_without_an_image_cannot_be_looked_at(watch):
     watched = watch([DARK])
     frame = Frame(0.0, np.array([0.5, 0.5]), 0, None, None)
     assert watched.watcher.terrain(frame, estimate_at(frame)) == Footing.of("mud")
-    assert watched.watcher.sightings == watched.watcher.in_force == []
+    assert watched.watcher.image_labels == watched.watcher.in_force == []
     with pytest.raises(ValueError, match="no image"):
         watched.watcher.look(frame, estimate_at(frame))

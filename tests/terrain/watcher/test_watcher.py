@@ -16,11 +16,11 @@ from tests.terrain.watcher.watched import BRIGHT, DARK, ByBrightness, drive, est
 def test_every_image_has_a_sighting_and_the_terrain_after_it(watch):
     watched = watch([DARK, BRIGHT, BRIGHT, BRIGHT, BRIGHT])
     drive(watched)
-    sightings = watched.watcher.sightings
-    assert [s.label for s in sightings] == ["mud", "snow", "snow", "snow", "snow"]
-    assert [s.image for s in sightings] == [f"{k}.png" for k in range(5)]
-    assert [s.confidence for s in sightings] == [0.7, 0.9, 0.9, 0.9, 0.9]
-    assert [s.stamp_s for s in sightings] == [0.4, 1.4, 2.4, 3.4, 4.4]
+    image_labels = watched.watcher.image_labels
+    assert [s.label for s in image_labels] == ["mud", "snow", "snow", "snow", "snow"]
+    assert [s.image for s in image_labels] == [f"{k}.png" for k in range(5)]
+    assert [s.confidence for s in image_labels] == [0.7, 0.9, 0.9, 0.9, 0.9]
+    assert [s.stamp_s for s in image_labels] == [0.4, 1.4, 2.4, 3.4, 4.4]
     # places at 0.77 m and 1.27 m: the edge between them, at 1.02 m, is passed at 2.04 s
     assert watched.watcher.in_force == ["mud", "mud", "snow", "snow", "snow"]
 
@@ -36,8 +36,8 @@ def test_the_place_counts_along_the_driven_path(watch, corrected):
     watched = watch([DARK, BRIGHT, BRIGHT, BRIGHT, BRIGHT])
     drive(watched, corrected)
     (event,) = watched.watcher.events
-    assert event.sight.place == pytest.approx(
-        [0.5 * event.sight.stamp_s + event.sight.distance_ahead_m, 0.0], abs=1e-9
+    assert event.first_label.place == pytest.approx(
+        [0.5 * event.first_label.stamp_s + event.first_label.distance_ahead_m, 0.0], abs=1e-9
     )
     assert event.stamp_s == 2.4  # the second label, a little after the edge
     assert event.waited_s == pytest.approx(2.4 - 1.4)
@@ -138,10 +138,10 @@ def test_without_a_metric_scale_the_classifier_is_shown_pixels_of_the_raw_image(
     classifier = ByBrightness(None, 16)
     watched = watch([np.stack([v, v, u], axis=-1)], classifier)  # OpenCV writes blue first
     drive(watched)
-    (crop,), (sighting,) = classifier.shown, watched.watcher.sightings
+    (crop,), (image_label,) = classifier.shown, watched.watcher.image_labels
     assert (np.diff(crop[..., 0].astype(int), axis=1) == 1).all()
     assert (np.diff(crop[..., 1].astype(int), axis=0) == 1).all()
-    box = sighting.region.rectangle
+    box = image_label.region.rectangle
     x, y = np.moveaxis(world.ground_seen(world.camera), -1, 0)
     inside = (x >= box.x_min) & (x <= box.x_max) & (y >= box.y_min) & (y <= box.y_max)
     rows, columns = np.nonzero(inside)
@@ -156,12 +156,12 @@ def test_a_robot_astride_an_edge_is_seen_as_such(watch):
     half[:, :80] = 200
     watched = watch([BRIGHT, half, half, DARK], per_tread=True)
     drive(watched)
-    assert [(s.label, s.left, s.right) for s in watched.watcher.sightings] == [
+    assert [(s.label, s.left, s.right) for s in watched.watcher.image_labels] == [
         ("snow", "snow", "snow"),
         ("unknown", "snow", "mud"),
         ("unknown", "snow", "mud"),
         ("mud", "mud", "mud"),
     ]
-    assert watched.watcher.sightings[1].reason == "astride: snow on the left, mud on the right"
-    assert watched.watcher.sightings[1].confidence == 0.7  # of the less certain
+    assert watched.watcher.image_labels[1].reason == "astride: snow on the left, mud on the right"
+    assert watched.watcher.image_labels[1].confidence == 0.7  # of the less certain
     assert set(watched.watcher.in_force) == {"mud"}

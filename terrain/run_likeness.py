@@ -1,4 +1,4 @@
-"""Whether the images of a run look like the training photographs, and what labels are worth."""
+"""Similarity of the images of a run to the training photographs, and the weight of labels."""
 
 from collections import deque
 from collections.abc import Mapping, Sequence
@@ -10,18 +10,18 @@ from odometry.run import UNKNOWN
 from terrain.classification.answer import Classifier
 from terrain.classification.likeness import Likeness, TrainingLook, look_of, middle_of
 
-KEPT = 200  # looks of the latest images
+KEPT = 200  # statistics of the latest images
 # ground/ to pavements/, standardised: 0.47 right of four terrains is 0.3 of the way from chance
 WORTH_OF_UNLIKE = 0.3
 
 
-class SeenSoFar:
-    """The looks of what a classifier was shown in a run.
+class RunLikeness:
+    """Statistics of the regions that were classified in a run.
 
     Parameters
     ----------
     classifier : Classifier
-        One that knows no look of its training photographs can tell nothing.
+        Without statistics of its training photographs there is no comparison.
     """
 
     def __init__(self, classifier: Classifier) -> None:
@@ -31,7 +31,7 @@ class SeenSoFar:
         self._ranks: deque[tuple[float, float]] = deque(maxlen=KEPT)
 
     def add(self, views: Sequence[ByteImage]) -> None:
-        """Take in what was shown of one image."""
+        """Add the regions of one image."""
         if self._training is not None:
             looks = [look_of(middle_of(view, self._classifier.patch_size_px)) for view in views]
             look = np.mean(looks, axis=0)
@@ -40,14 +40,14 @@ class SeenSoFar:
 
     @property
     def likeness(self) -> Likeness | None:
-        """Of the images so far; None where the classifier cannot tell."""
+        """Of the images so far; None where there is no comparison."""
         if self._training is None:
             return None
         how = self._training.how(np.array(self._looks)) if self._looks else ()
         return Likeness.of(self._ranks, how)
 
     def weighed(self, label: str, probabilities: Mapping[str, float]) -> Mapping[str, float]:
-        """What a label gives to each terrain: less than it says where the images are unlike."""
+        """Probabilities of each terrain by a label; closer to chance where images are unlike."""
         given = probabilities or ({} if label == UNKNOWN else {label: 1.0})
         if not Likeness.of(self._ranks).is_unlike or not given:
             return probabilities

@@ -1,7 +1,11 @@
-"""Which names mean a wheel, and on which side it stands."""
+"""Names of wheels, their sides of the robot, and units of their speeds."""
 
+import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from odometry.bags.errors import BagError
 
 WHEEL = re.compile(r"wheel|track|tread|tyre|tire|drive|motor|sprocket|whl", re.IGNORECASE)
 NO_WHEEL = re.compile(
@@ -12,6 +16,19 @@ SHORT = {
     "left": {"l", "fl", "rl", "bl", "ml", "lf", "lr", "lb", "lm", "lh"},
     "right": {"r", "fr", "rr", "br", "mr", "rf", "rb", "rm", "rh"},
 }
+# Unit: (what one is in radians or metres, whether it is of the wheel's angle, whether a speed)
+UNITS: dict[str, tuple[float, bool, bool]] = {
+    "rad/s": (1.0, True, True),
+    "deg/s": (math.pi / 180, True, True),
+    "rpm": (2 * math.pi / 60, True, True),
+    "turns/s": (2 * math.pi, True, True),
+    "m/s": (1.0, False, True),
+    "mm/s": (1e-3, False, True),
+    "rad": (1.0, True, False),
+    "deg": (math.pi / 180, True, False),
+    "turns": (2 * math.pi, True, False),
+    "m": (1.0, False, False),
+}
 
 
 def is_wheel(name: str) -> bool:
@@ -20,7 +37,7 @@ def is_wheel(name: str) -> bool:
 
 
 def side_of(name: str) -> str:
-    """Side that a name speaks of: "left", "right", or empty where it speaks of none or both."""
+    """Side in a name: "left", "right", or empty where it names none or both."""
     low = name.lower()
     if ("left" in low) != ("right" in low):
         return "left" if "left" in low else "right"
@@ -38,3 +55,17 @@ def sided(names: Iterable[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     left = tuple(name for name in wheels if side_of(name) == "left")
     right = tuple(name for name in wheels if side_of(name) == "right")
     return (left, right) if len(left) == len(right) else ((), ())
+
+
+def check_unit(unit: str) -> None:
+    """Raise BagError unless a unit is one of UNITS."""
+    if unit not in UNITS:
+        raise BagError(f"unit {unit!r}, expected one of {', '.join(UNITS)}")
+
+
+def gear_of(wishes: Mapping[str, Any]) -> float:
+    """Turns that are counted for one of a wheel, as [wheels] of a map says."""
+    gear = float(wishes.get("gear", 1.0))
+    if not 1e-6 <= abs(gear) <= 1e6:
+        raise BagError(f"gear = {gear!r}, expected the turns that are counted for one of a wheel")
+    return gear

@@ -3,7 +3,7 @@
 from odometry.estimates import Replay
 from odometry.run import Run
 from odometry.table import Table
-from terrain.sighting import Sighting
+from terrain.image_label import ImageLabel
 from terrain.watcher import TerrainWatcher
 
 BEFORE_ODOMETRY = "before the first row of odometry.csv"
@@ -12,28 +12,28 @@ AFTER_ODOMETRY = "after the end of odometry.csv"
 
 
 def add_images_outside(watcher: TerrainWatcher, run: Run, images: Table, replay: Replay) -> None:
-    """Add a sighting without a label for each image of the run that the replay did not come to.
+    """Add a image label without a label for each image of the run that the replay did not come to.
 
     The terrain in force is the initial one before the replay, and the last one after it.
 
     Parameters
     ----------
     watcher : TerrainWatcher
-        Told the terrain of the replay; its `sightings` and `in_force` are completed.
+        Told the terrain of the replay; its `image_labels` and `in_force` are completed.
     run : Run
     images : Table
         Of the run.
     replay : Replay
     """
     begin_s, end_s = replay.stamps_s[[0, -1]]
-    sightings = [
-        Sighting(float(stamp_s), str(file), reason=_reason(run, float(stamp_s), begin_s))
+    image_labels = [
+        ImageLabel(float(stamp_s), str(file), reason=_reason(run, float(stamp_s), begin_s))
         for stamp_s, file in zip(images.stamps_s, images["file"], strict=True)
         if not begin_s <= stamp_s <= end_s
     ]
-    before = [sighting for sighting in sightings if sighting.stamp_s < begin_s]
-    after = sightings[len(before) :]
-    watcher.sightings[:] = [*before, *watcher.sightings, *after]
+    before = [image_label for image_label in image_labels if image_label.stamp_s < begin_s]
+    after = image_labels[len(before) :]
+    watcher.image_labels[:] = [*before, *watcher.image_labels, *after]
     watcher.in_force[:] = [
         *[watcher.initial] * len(before),
         *watcher.in_force,

@@ -1,4 +1,4 @@
-"""What the robot feels beneath it, as sights of the place where it stands."""
+"""Terrain by feel as labels of the place under the robot."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -9,11 +9,11 @@ from odometry.arrays import FloatArray
 from odometry.feel.follow import Felt
 from odometry.feel.windows import STEPS
 from odometry.run import UNKNOWN
-from terrain.places import Sight
+from terrain.place_labels import PlaceLabel
 
 
 @dataclass(frozen=True)
-class FeltSights:
+class FeelLabels:
     """Windows that do not overlap and say something.
 
     Attributes
@@ -21,7 +21,7 @@ class FeltSights:
     names : tuple of str
         Of the terrains of the model of feel.
     seen_names : tuple of str
-        Of the terrains that the camera tells.
+        Of the terrains that the camera can name.
     ends_s : (N,)
     probabilities : (N, K)
         Of each terrain by one window, as often right as they say on runs held out.
@@ -33,7 +33,7 @@ class FeltSights:
     probabilities: FloatArray
 
     @classmethod
-    def of(cls, felt: Felt, seen_names: tuple[str, ...] = ()) -> "FeltSights":
+    def of(cls, felt: Felt, seen_names: tuple[str, ...] = ()) -> "FeelLabels":
         """Windows that do not overlap; those that fit no terrain are none."""
         windows = felt.windows
         rows = np.arange(0, len(windows), STEPS)
@@ -47,7 +47,7 @@ class FeltSights:
 
     def between(
         self, after_s: float, upto_s: float, pose: FloatArray, travel_m: float
-    ) -> Iterator[Sight]:
+    ) -> Iterator[PlaceLabel]:
         """Sights of the windows that ended after one stamp and up to another.
 
         Parameters
@@ -61,18 +61,18 @@ class FeltSights:
         first, end = np.searchsorted(self.ends_s, [after_s, upto_s], side="right")
         for row in range(int(first), int(end)):
             given = dict(zip(self.names, self.probabilities[row].tolist(), strict=True))
-            yield Sight(
+            yield PlaceLabel(
                 max(given, key=lambda name: given[name]),
                 float(self.ends_s[row]),
                 travel_m,
                 pose[:2],
                 0.0,
                 widened(given, self.seen_names),
-                is_felt=True,
+                by_feel=True,
             )
 
     def beside(self, seen: Mapping[str, float]) -> Mapping[str, float]:
-        """What a look gave to each terrain, those that only feel knows among them."""
+        """Probabilities of one image with those terrains added that only feel can name."""
         return widened(seen, self.names) if seen else seen
 
 

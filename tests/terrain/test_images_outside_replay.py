@@ -18,7 +18,7 @@ def result(tmp_path_factory, world, classifier):
 
 
 def test_every_image_has_a_row_in_order(result):
-    stamps_s = [sighting.stamp_s for sighting in result.watcher.sightings]
+    stamps_s = [image_label.stamp_s for image_label in result.watcher.image_labels]
     np.testing.assert_array_equal(stamps_s, result.run.images.stamps_s)
     assert len(result.watcher.in_force) == len(stamps_s)
 
@@ -32,18 +32,18 @@ def test_every_image_has_a_row_in_order(result):
     ],
 )
 def test_an_image_outside_of_the_replay_says_why_it_was_not_read(result, begin_s, end_s, reason):
-    within = [s for s in result.watcher.sightings if begin_s <= s.stamp_s < end_s]
+    within = [s for s in result.watcher.image_labels if begin_s <= s.stamp_s < end_s]
     assert within
     assert {(s.label, s.reason, s.region) for s in within} == {("", reason, None)}
 
 
 def test_the_terrain_in_force_is_the_first_before_and_the_last_after(result):
-    rows = list(zip(result.watcher.sightings, result.watcher.in_force, strict=True))
+    rows = list(zip(result.watcher.image_labels, result.watcher.in_force, strict=True))
     assert {name for s, name in rows if s.stamp_s < 1.0} == {"gravel"}
     assert {name for s, name in rows if s.stamp_s > 3.2} == {result.replay.terrains[-1]}
 
 
 def test_images_within_the_replay_were_read(result):
-    within = [s for s in result.watcher.sightings if 1.0 <= s.stamp_s <= 3.0]
+    within = [s for s in result.watcher.image_labels if 1.0 <= s.stamp_s <= 3.0]
     assert len(within) > 5
-    assert all(sighting.label for sighting in within)
+    assert all(image_label.label for image_label in within)

@@ -1,4 +1,4 @@
-"""Feel as a source of terrain: alone, and as sights beneath the robot beside the camera."""
+"""Feel as a source of terrain: alone, and as place labels beneath the robot beside the camera."""
 
 from dataclasses import replace
 
@@ -11,7 +11,7 @@ from odometry.feel.identify_feel import identify_feel
 from odometry.run import Run
 from odometry.table import Table
 from terrain.config import Config
-from terrain.felt_sights import FeltSights, widened
+from terrain.feel_labels import FeelLabels, widened
 from terrain.main_job import run_odometry
 from terrain.switch import SwitchConfig
 from tests.odometry.feel.feel_drives import drive, drives
@@ -50,18 +50,18 @@ def test_what_is_felt_brings_a_terrain_into_force(model):
 
 def test_sights_do_not_overlap_and_lie_beneath_the_robot(model):
     felt = follow_feel(drive("snow", 62), model)
-    sights = FeltSights.of(felt, ("snow", "mud"))
-    assert np.diff(sights.ends_s).min() >= felt.windows.window_s - 1e-9
+    place_labels = FeelLabels.of(felt, ("snow", "mud"))
+    assert np.diff(place_labels.ends_s).min() >= felt.windows.window_s - 1e-9
     pose = np.array([3.0, 1.0, np.pi / 2])
-    (first, *_) = sights.between(-np.inf, 6.0, pose, 4.0)
+    (first, *_) = place_labels.between(-np.inf, 6.0, pose, 4.0)
     assert first.label == "snow"
     assert first.place == pytest.approx(pose[:2])
     assert set(first.probabilities) == {*NAMES, "mud"}
-    assert not list(sights.between(6.0, 6.0, pose, 4.0))
+    assert not list(place_labels.between(6.0, 6.0, pose, 4.0))
 
 
 def test_what_fits_no_terrain_is_no_sight(model):
-    assert len(FeltSights.of(follow_feel(drive("grates", 64), model)).ends_s) == 0
+    assert len(FeelLabels.of(follow_feel(drive("grates", 64), model)).ends_s) == 0
 
 
 def test_a_terrain_that_a_source_does_not_know_gets_the_mean():

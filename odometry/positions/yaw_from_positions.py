@@ -1,8 +1,8 @@
-"""Yaw at measured positions, and where these do not tell it.
+"""Yaw at measured positions, and where these do not determine it.
 
 Filters start all round, for the carrier as identified and for the corners of its uncertainty.
 Their yaws are mixed; where one that the positions do not rule out lies far from the others, the
-yaw cannot be told. Filters over the positions before and after each one share no position but
+yaw cannot be estimated. Filters over the positions before and after each one share no position but
 that: where they disagree by more than they state, the standard deviation is raised.
 """
 
@@ -20,16 +20,16 @@ from odometry.windows.left_out import ODOMETRY_GAP
 STARTS = 12  # headings all round
 FAR_RAD = np.radians(20.0)  # of another yaw that leaves it untold
 RULED_OUT = 1e-3  # share of the probability of the best, below which a start is ruled out
-SURE_RAD = 0.35  # of both filters, where their disagreement is looked at
+SURE_RAD = 0.35  # of both filters, where their disagreement counts
 # Chosen on 19 recordings (`tests/studies/positions_yaw.py`), so that 95 % are within 2 of them:
 LASTING = 2.5  # slip lasts, so that the yaw errs by so many of the filter's standard deviations
 LEAST_RAD = np.radians(3.0)
-LARGEST_RAD = np.radians(30.0)  # a larger one tells nothing
-LEAST_SHARE = 0.5  # of the positions, at which the yaw must be told
+LARGEST_RAD = np.radians(30.0)  # a larger one is of no use
+LEAST_SHARE = 0.5  # of the positions, at which the yaw must be estimated
 
 
 class ToldYaw(NamedTuple):
-    """Yaw (M,) at each position and its standard deviation (M,) [rad]; NaN where not told.
+    """Yaw (M,) at each position and its standard deviation (M,) [rad]; NaN where not estimated.
 
     `disagreement` is the root mean square difference of the yaws by earlier and by later positions
     alone, in units of what they state; NaN where neither is ever sure.
@@ -41,7 +41,7 @@ class ToldYaw(NamedTuple):
 
     @property
     def share(self) -> float:
-        """Share of the positions at which the yaw is told."""
+        """Share of the positions at which the yaw is estimated."""
         return float(np.isfinite(self.yaw_rad).mean())
 
 
@@ -51,7 +51,7 @@ def told_yaw(carrier: Carrier) -> ToldYaw:
     Raises
     ------
     OdometryError
-        If the yaw is told at fewer than LEAST_SHARE of the positions.
+        If the yaw is estimated at fewer than LEAST_SHARE of the positions.
     """
     starts_rad = carrier.first_yaw_rad + np.arange(STARTS) * 2 * np.pi / STARTS
     way = _way(carrier, np.repeat(carrier.steps, STARTS, axis=0))
@@ -73,7 +73,7 @@ def told_yaw(carrier: Carrier) -> ToldYaw:
     if np.isnan(disagreement) or found.share < LEAST_SHARE:
         raise OdometryError(
             f"{carrier.record.run.folder}: yaw was not measured, and the positions (noise "
-            f"{np.sqrt(carrier.position_variance_m2):.2g} m) do not tell it: at "
+            f"{np.sqrt(carrier.position_variance_m2):.2g} m) do not determine it: at "
             f"{1 - found.share:.0%} of them, headings more than {np.degrees(FAR_RAD):.0f} degrees "
             "apart agree with them, or none is known well; expected a measured yaw, better "
             "positions, or longer drives between turns"
@@ -94,9 +94,9 @@ def _way(carrier: Carrier, steps: FloatArray) -> Way:
 
 
 def _weights(of: Filtered) -> FloatArray:
-    """Probability (H,) of each filter: all carriers alike, the starts of one by likelihood.
+    """Probability (H,) of each filter: all carriers the same, the starts of one by likelihood.
 
-    Where positions surprise, they tell less than they would: the likelihood is lowered by that.
+    Positions with large residuals have less information: the likelihood is lowered by that.
     """
     by_carrier = of.log_likelihoods.reshape(-1, STARTS)
     surprise = max(1.0, float(of.surprise[np.argmax(by_carrier[0])]))

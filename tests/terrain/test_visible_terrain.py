@@ -10,7 +10,7 @@ from hypothesis.extra.numpy import arrays
 
 from terrain.camera import Camera
 from terrain.rectangle import Rectangle
-from terrain.shown import CELLS, is_shown, largest_shown
+from terrain.visible_terrain import CELLS, is_visible, largest_visible
 
 MATRIX = [[300.0, 0.0, 320.0], [0.0, 300.0, 240.0], [0.0, 0.0, 1.0]]
 AHEAD = Camera.from_mount((640, 480), MATRIX, [-0.1, 0.02, 0, 0], [0.3, 0.0, 0.9, 0.0, 0.8, 0.0])
@@ -55,25 +55,25 @@ def test_no_other_block_of_shown_cells_is_larger(holes, shift, border):
     top, bottom, left, right = border
     vertices[:top] = vertices[CELLS + 1 - bottom :] = False
     vertices[:, :left] = vertices[:, CELLS + 1 - right :] = False
-    a, b, c, d = cells_of(largest_shown(showing(vertices), UNIT))
+    a, b, c, d = cells_of(largest_visible(showing(vertices), UNIT))
     assert (b - a) * (d - c) == largest_by_trying_all(vertices)
     assert vertices[a : b + 1, c : d + 1].all() or (a, c) == (b, d)
 
 
 def test_all_of_a_rectangle_is_that_rectangle():
     whole = Rectangle(0.9, 1.4, -0.2, 0.3)
-    assert largest_shown(AHEAD, whole) == whole
+    assert largest_visible(AHEAD, whole) == whole
 
 
 def test_where_nothing_is_shown_the_rectangle_has_no_size():
-    behind = largest_shown(AHEAD, Rectangle(-2.0, -1.0, -0.2, 0.3))
+    behind = largest_visible(AHEAD, Rectangle(-2.0, -1.0, -0.2, 0.3))
     assert (behind.x_max - behind.x_min) * (behind.y_max - behind.y_min) == 0.0
 
 
 def test_from_straight_above_the_image_border_cuts_the_rectangle():
     """3 m above with 300 px focal length: 0.01 m a pixel, so that the image ends at x = 2.4."""
     camera = Camera.from_mount((640, 480), MATRIX, [], [0.0, 0.0, 3.0, 0.0, np.pi / 2, 0.0])
-    shown = largest_shown(camera, Rectangle(1.6, 3.2, -0.5, 0.5))
+    shown = largest_visible(camera, Rectangle(1.6, 3.2, -0.5, 0.5))
     assert (shown.y_min, shown.y_max) == (-0.5, 0.5)
     assert shown.x_min == 1.6
     assert 2.4 - 1.6 / CELLS <= shown.x_max <= 2.4 + 1e-9
@@ -90,6 +90,6 @@ def test_fine_ground_is_where_a_pixel_covers_little_in_every_direction(coarsest_
     reach_m = np.linalg.norm(ellipses - points[..., None, :], axis=-1).max(axis=-1) / 0.01
     clear = AHEAD.in_image(pixels) & (np.abs(reach_m / coarsest_m - 1) > 0.01)
     assert clear.sum() > 100
-    fine = is_shown(AHEAD, points, coarsest_m)
+    fine = is_visible(AHEAD, points, coarsest_m)
     np.testing.assert_array_equal(fine[clear], reach_m[clear] < coarsest_m)
     assert not fine[~AHEAD.in_image(pixels)].any()

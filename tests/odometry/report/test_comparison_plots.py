@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from matplotlib.collections import PolyCollection
 
+from odometry.report.comparison_plots import plot_violins
 from odometry.report.palette import LineStyle
-from odometry.report.violins import plot_violins
 
 STYLES = {"a": LineStyle("#0000FF"), "$b^$": LineStyle("#FF0000"), "few": LineStyle("#00FF00")}
 

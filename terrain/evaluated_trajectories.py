@@ -1,4 +1,4 @@
-"""Which trajectories of a run are judged, and by which poses."""
+"""Which trajectories of a run are evaluated, and with which poses."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ from odometry.trajectory import Trajectory
 
 @dataclass(frozen=True)
 class SecondReplay:
-    """The same filter on the same run without the poses that judge it.
+    """The same filter on the same run, without the poses of the evaluation.
 
     Attributes
     ----------
@@ -26,8 +26,8 @@ class SecondReplay:
 
 
 @dataclass(frozen=True)
-class Judged:
-    """A trajectory, the poses that judge it, and what these are called.
+class EvaluatedTrajectory:
+    """A trajectory, the poses that it is compared with, and their name.
 
     Attributes
     ----------
@@ -41,34 +41,36 @@ class Judged:
     against: str
 
 
-def judged_trajectories(
+def evaluated_trajectories(
     run: Run,
     replay: Replay,
     reference_name: str,
     reference: Trajectory | None,
     second: SecondReplay | None,
-) -> dict[str, Judged]:
-    """Every trajectory that can be judged fairly, by name; none without a reference.
+) -> dict[str, EvaluatedTrajectory]:
+    """Every trajectory that can be evaluated fairly, by name; none without a reference.
 
-    No pose corrects the open-loop ones. The filter has seen pose.csv: without a truth its estimate
-    is judged in a second replay, by poses that were withheld from it.
+    No pose corrects the open-loop ones. The filter uses pose.csv: without a truth its estimate
+    is evaluated in a second replay, with poses that were held out from it.
     """
     if reference is None:
         return {}
     found = {
-        name: Judged(seen_by(run, reference_name, trajectory), reference, reference_name)
+        name: EvaluatedTrajectory(
+            at_reference_point(run, reference_name, trajectory), reference, reference_name
+        )
         for name, trajectory in replay.open_loop(run.robot.track_width).items()
     }
     if reference_name == "truth":
-        found["estimate"] = Judged(replay.trajectory(), reference, reference_name)
+        found["estimate"] = EvaluatedTrajectory(replay.trajectory(), reference, reference_name)
     elif second is not None:
-        estimate = seen_by(run, reference_name, second.replay.trajectory())
-        found["estimate"] = Judged(estimate, second.withheld.judged, "withheld pose")
+        estimate = at_reference_point(run, reference_name, second.replay.trajectory())
+        found["estimate"] = EvaluatedTrajectory(estimate, second.withheld.judged, "withheld pose")
     return found
 
 
-def seen_by(run: Run, reference_name: str, trajectory: Trajectory) -> Trajectory:
-    """A trajectory of the robot as its reference sees it: pose.csv holds the antenna's place."""
+def at_reference_point(run: Run, reference_name: str, trajectory: Trajectory) -> Trajectory:
+    """A trajectory of the point that the reference measures: in pose.csv that is the antenna."""
     if reference_name != "pose" or run.sensors.pose_m is None:
         return trajectory
     places = se2.transform(trajectory.poses, np.array(run.sensors.pose_m[:2]))

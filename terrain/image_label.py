@@ -1,4 +1,4 @@
-"""What one image said of the terrain ahead."""
+"""The result of one image: the label of the terrain ahead."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -9,7 +9,7 @@ from terrain.region import Region
 
 
 @dataclass(frozen=True)
-class Sighting:
+class ImageLabel:
     """What one image said of the terrain ahead.
 
     Attributes
@@ -28,10 +28,10 @@ class Sighting:
     left, right : str
         Labels of the tread strips, where they were classified apart.
     probabilities : Mapping of str to float
-        What the classifier gave to each terrain, where it was asked once.
+        By the classifier for each terrain, where the region was classified as one.
     class_distance : float
-        Distance to the nearest class, which the rejection threshold judges; of tread strips that
-        were classified apart the larger one. NaN without a label.
+        Distance to the nearest class, which is compared with the rejection threshold; of tread
+        strips classified apart the larger one. NaN without a label.
     """
 
     stamp_s: float
@@ -48,11 +48,11 @@ class Sighting:
 
 def answered(
     stamp_s: float, name: str, region: Region, answers: Sequence[Classification]
-) -> Sighting:
-    """The sighting of a region by the classifier's answer, or by those for the tread strips."""
+) -> ImageLabel:
+    """The image label of a region by the classifier's answer, or by those for the tread strips."""
     if len(answers) == 1:
         answer = answers[0]
-        return Sighting(
+        return ImageLabel(
             stamp_s,
             name,
             answer.label,
@@ -65,10 +65,10 @@ def answered(
     left, right = (answer.label for answer in answers)
     confidence = min(answer.confidence for answer in answers)
     if left == right:
-        return Sighting(
+        return ImageLabel(
             stamp_s, name, left, confidence, region, "", left, right, class_distance=distance
         )
     reason = f"astride: {left} on the left, {right} on the right"
-    return Sighting(
+    return ImageLabel(
         stamp_s, name, UNKNOWN, confidence, region, reason, left, right, class_distance=distance
     )

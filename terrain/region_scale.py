@@ -1,4 +1,4 @@
-"""Whether a rectangle of the ground can be compared with the training patches."""
+"""Whether the image of a rectangle has the scale of the training patches."""
 
 import math
 
@@ -10,7 +10,9 @@ from terrain.region import COARSE, Rectangle
 from terrain.warp import ground_sampling_m, view_shape
 
 
-def unsuited(classifier: Classifier, camera: Camera, rectangle: Rectangle, coarsest: float) -> str:
+def scale_mismatch(
+    classifier: Classifier, camera: Camera, rectangle: Rectangle, coarsest: float
+) -> str:
     """Why a rectangle cannot be compared with the training patches, or "".
 
     Parameters
@@ -35,6 +37,6 @@ def unsuited(classifier: Classifier, camera: Camera, rectangle: Rectangle, coars
 
 
 def coarsest_m(classifier: Classifier, coarsest: float) -> float:
-    """How much ground a pixel may cover at the most for a classifier [m]; see `RegionConfig`."""
+    """Largest size of a pixel on the terrain that a classifier accepts [m]; see `RegionConfig`."""
     scale = classifier.metres_per_pixel
     return math.inf if scale is None else coarsest * scale

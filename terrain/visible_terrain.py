@@ -1,4 +1,4 @@
-"""Which ground an image shows, finely enough, and the largest rectangle of it."""
+"""Which terrain an image shows, finely enough, and the largest rectangle of it."""
 
 from math import inf
 
@@ -9,12 +9,12 @@ from terrain.camera import Camera
 from terrain.rectangle import Rectangle
 
 CELLS = 16  # along each side of a rectangle of which a part is shown
-STEP_M = 1e-3  # of the differences that say how finely ground is shown
+STEP_M = 1e-3  # of the differences that give the size of a pixel on the terrain
 ASIDE = STEP_M * np.array([[[0.0, 0.0]], [[1.0, 0.0]], [[0.0, 1.0]]])
 
 
-def is_shown(camera: Camera, points: FloatArray, coarsest_m: float = inf) -> BoolArray:
-    """Whether an image shows points of the ground, and finely enough.
+def is_visible(camera: Camera, points: FloatArray, coarsest_m: float = inf) -> BoolArray:
+    """Whether an image shows points of the terrain, and finely enough.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ def is_shown(camera: Camera, points: FloatArray, coarsest_m: float = inf) -> Boo
     points : (..., 2)
         In the robot frame [m].
     coarsest_m : float
-        A pixel may cover so much ground at the most, in its coarsest direction.
+        A pixel may cover so much terrain at the most, in its coarsest direction.
 
     Returns
     -------
@@ -37,7 +37,7 @@ def is_shown(camera: Camera, points: FloatArray, coarsest_m: float = inf) -> Boo
     return (camera.in_image(at) & fine).reshape(np.shape(points)[:-1])
 
 
-def largest_shown(camera: Camera, rectangle: Rectangle, coarsest_m: float = inf) -> Rectangle:
+def largest_visible(camera: Camera, rectangle: Rectangle, coarsest_m: float = inf) -> Rectangle:
     """The largest part of a rectangle, itself a rectangle, that an image shows whole.
 
     Its sides lie on a grid of CELLS by CELLS cells; all of it where the image shows all.
@@ -47,7 +47,7 @@ def largest_shown(camera: Camera, rectangle: Rectangle, coarsest_m: float = inf)
     camera : Camera
     rectangle : Rectangle
     coarsest_m : float
-        See `is_shown`.
+        See `is_visible`.
 
     Returns
     -------
@@ -57,7 +57,7 @@ def largest_shown(camera: Camera, rectangle: Rectangle, coarsest_m: float = inf)
     x = np.linspace(rectangle.x_min, rectangle.x_max, CELLS + 1)
     y = np.linspace(rectangle.y_min, rectangle.y_max, CELLS + 1)
     points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
-    corners = is_shown(camera, points, coarsest_m)
+    corners = is_visible(camera, points, coarsest_m)
     if corners.all():
         return rectangle
     cells = corners[1:, 1:] & corners[1:, :-1] & corners[:-1, 1:] & corners[:-1, :-1]

@@ -1,4 +1,4 @@
-"""Places ahead and behind that were labelled, and which of them the robot stands on."""
+"""Places ahead and behind that were labelled, and which of them are under the robot."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -10,29 +10,29 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.run import Robot
 
-DRIFT = 0.03  # metres per metre: an odometer is about so far off a place that it saw
+DRIFT = 0.03  # metres per metre: usual error of an odometer on its way to a labelled place
 
 
 @dataclass(frozen=True)
-class Sight:
+class PlaceLabel:
     """A label and the place that it belongs to.
 
     Attributes
     ----------
     label : str
     stamp_s : float
-        When it was seen.
+        When the image was taken, or the window of feel ended.
     travel_m : float
-        Wheel travel of the run when it was seen.
+        Wheel travel of the run then.
     place : (2,)
         The middle of the region in the odometry frame: poses that are integrated from twists
         and that no measured pose corrects, so that places do not move under the robot [m].
     distance_ahead_m : float
-        Wheel travel from the robot to the place when it was seen.
+        Wheel travel from the robot to the place then.
     probabilities : Mapping of str to float
         What the classifier gave to each terrain; empty where only the label is known.
-    is_felt : bool
-        Whether the robot felt the terrain itself, and did not see what it looks like.
+    by_feel : bool
+        Whether the label comes from terrain by feel, and not from an image.
     """
 
     label: str
@@ -41,12 +41,12 @@ class Sight:
     place: FloatArray
     distance_ahead_m: float
     probabilities: Mapping[str, float] = field(default_factory=dict)
-    is_felt: bool = False
+    by_feel: bool = False
 
 
 @dataclass(frozen=True)
 class Footprint:
-    """The rectangle on which the robot stands.
+    """The rectangle under the robot.
 
     Attributes
     ----------
@@ -92,7 +92,7 @@ def nearest(
     points : (m, 2)
     places : (n, 2), n at least 1
     since_m : (n,)
-        Wheel travel since each place was seen.
+        Wheel travel since each place was labelled.
 
     Returns
     -------
@@ -106,14 +106,14 @@ def nearest(
 
 
 def along_way(places: FloatArray, same_m: float) -> IntArray:
-    """Order of places along the way: one that was seen before goes beside where it was seen.
+    """Order of places along the way: a place that was labelled before goes beside the earlier one.
 
-    So a patch that is seen again, after going back, is not taken for new ground.
+    So a patch that is labelled again, after going back, is not taken for new terrain.
 
     Parameters
     ----------
     places : (n, 2)
-        In the order in which they were seen.
+        In the order in which they were labelled.
     same_m : float
         A place no farther from an earlier one goes right after the nearest of these, any other one
         to the end.

@@ -1,4 +1,4 @@
-"""What a reader of the errors should not miss: where the simple does as well or better."""
+"""Sentences beside the errors: where a method without a fit is as good or better."""
 
 from collections.abc import Mapping, Sequence
 
@@ -6,7 +6,7 @@ from odometry.estimation.filter_event import FilterEvent
 from odometry.evaluation.score import Score
 from odometry.evaluation.withheld import JUDGED_EVERY_S, SILENT_S
 from odometry.run_end import OFF_AT_END
-from terrain.judged import SecondReplay
+from terrain.evaluated_trajectories import SecondReplay
 
 NEEDS_NO_FIT = {
     "gyroscope": "the gyroscope with mean wheel speed",
@@ -25,7 +25,7 @@ def remarks(
     off_m: Mapping[str, float],
     events: Sequence[FilterEvent] = (),
 ) -> list[str]:
-    """Sentences that belong beside the errors; none where nothing is judged.
+    """Sentences that belong beside the errors; none without a reference.
 
     Parameters
     ----------
@@ -33,15 +33,15 @@ def remarks(
     off_m : Mapping of trajectory to float
         Distance from the reference at its last stamp, see `RunResult.off_at_the_end_m`.
     events : sequence of FilterEvent
-        Which are shown beside: what one of them says of the estimate's end is not said again.
+        Events shown beside: what one of them says of the estimate's end is not said again.
     """
     if any(event.kind == OFF_AT_END for event in events):
         off_m = {name: off for name, off in off_m.items() if name != "estimate"}
     return [*simple_is_better(scores), *worse_at_the_end(off_m)] if scores else []
 
 
-def judged_by(second: SecondReplay) -> str:
-    """By which poses an estimate is judged that saw the others."""
+def evaluated_with(second: SecondReplay) -> str:
+    """The poses of the evaluation, of an estimate that used the others."""
     withheld = second.withheld
     return (
         f"{len(withheld.judged)} poses, one every {JUDGED_EVERY_S:g} s: a second replay was not "
@@ -66,7 +66,7 @@ def simple_is_better(scores: Mapping[str, Score]) -> list[str]:
 def worse_at_the_end(off_m: Mapping[str, float]) -> list[str]:
     """A sentence for each trajectory that ends farther off than the ideal differential drive.
 
-    Of the estimate this is said although it may have seen the reference: that makes it no better.
+    Also for the estimate, which may have used the reference and is no better for that.
     """
     ideal_m = off_m.get("differential_drive")
     if ideal_m is None:

@@ -1,0 +1,83 @@
+"""Single samples and poses that a robot cannot have driven: outliers that come back at once."""
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray
+
+NEIGHBOURS = 4.0  # a spike exceeds both neighbours by this many ordinary steps (99 in 100)
+OF_FASTEST = 0.6  # and by this share of the ordinary fastest value (99 in 100)
+LONGEST = 3  # samples of a spike or poses of an outlier: a longer one is a jump
+REACH = 5  # poses to each side whose median is compared
+LEAST_M = 0.5
+TIMES = 8.0  # the usual distance from that median
+
+
+def spikes(values: FloatArray) -> BoolArray:
+    """Which of the samples (N,) go out and come back at once, far beyond what is usual.
+
+    A step that stays is none: treads start and stop, and latched speeds jump.
+    """
+    if len(values) < 10:
+        return np.zeros(len(values), dtype=np.bool_)
+    ordinary = min(0.99, 1 - 2 * LONGEST / len(values))  # one spike is not to be ordinary
+    usual_step = np.quantile(np.abs(np.diff(values)), ordinary)
+    fastest = np.quantile(np.abs(values), ordinary)
+    least = max(NEIGHBOURS * float(usual_step), OF_FASTEST * float(fastest), 1e-9)
+    found = np.zeros(len(values), dtype=np.bool_)
+    for length in range(1, LONGEST + 1):
+        before, after = values[: -length - 1], values[length + 1 :]
+        inside = np.lib.stride_tricks.sliding_window_view(values[1:-1], length)
+        higher = inside.min(axis=1) - np.maximum(before, after)
+        lower = np.minimum(before, after) - inside.max(axis=1)
+        begins = np.flatnonzero(np.maximum(higher, lower) > least) + 1
+        for offset in range(length):
+            found[begins + offset] = True
+    return found
+
+
+def without_spikes(values: FloatArray) -> FloatArray:
+    """The values (N,) with spikes replaced by a line between their neighbours."""
+    odd = spikes(values) | ~np.isfinite(values)
+    if not odd.any() or odd.all():
+        return values
+    rows = np.arange(len(values))
+    return np.asarray(np.interp(rows, rows[~odd], values[~odd]))
+
+
+def pose_outliers(positions: FloatArray) -> BoolArray:
+    """Which positions (M, 2) are far from the median of their neighbours, for a few poses.
+
+    While the robot drives, the median of its neighbours is where it is: only what leaves the way
+    and comes back differs from it.
+    """
+    count = len(positions)
+    if count < 2 * REACH + 1:
+        return np.zeros(count, dtype=np.bool_)
+    padded = np.concatenate(
+        [np.repeat(positions[:1], REACH, 0), positions, np.repeat(positions[-1:], REACH, 0)]
+    )
+    around = np.lib.stride_tricks.sliding_window_view(padded, 2 * REACH + 1, axis=0)
+    away = np.hypot(*(positions - np.median(around, axis=-1)).T)
+    step = float(np.quantile(np.hypot(*np.diff(positions, axis=0).T), 0.9))
+    usual = 1.4826 * float(np.median(away))
+    far = away > max(TIMES * usual, 3 * step, LEAST_M * _unit(step))
+    edges = np.diff(np.concatenate([[False], far, [False]]).astype(np.int8))
+    begins, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
+    found = np.zeros(count, dtype=np.bool_)
+    for begin, end in zip(begins, ends, strict=True):
+        short = end - begin <= LONGEST
+        found[begin:end] = short and _comes_back(positions, away, int(begin), int(end))
+    return found
+
+
+def _comes_back(positions: FloatArray, away: FloatArray, begin: int, end: int) -> bool:
+    """Whether the poses beside a span are near each other: else the robot drove on."""
+    if begin == 0 or end == len(positions):
+        return True
+    apart = float(np.hypot(*(positions[end] - positions[begin - 1])))
+    return apart < float(away[begin:end].max())
+
+
+def _unit(step: float) -> float:
+    """A metre in the unit of the positions, as far as their steps show: it may be wrong."""
+    return 1.0 if 1e-3 < step < 10 else step
