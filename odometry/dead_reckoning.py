@@ -3,10 +3,10 @@
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.gaps import level_where_missing
 from odometry.geometry import se2, se3
 from odometry.geometry.angles import wrap
 from odometry.geometry.levelled import level_steps, rises, tilt_of
+from odometry.missing_values import level_where_missing
 from odometry.spatial_trajectory import SpatialTrajectory
 from odometry.trajectory import Trajectory
 

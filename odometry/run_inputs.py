@@ -3,7 +3,7 @@
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.gaps import fill_gaps, level_where_missing
+from odometry.missing_values import fill_gaps, level_where_missing
 from odometry.models.inputs import Inputs
 from odometry.row_terrains import row_terrains
 from odometry.run import Run

@@ -10,10 +10,10 @@ from .config import Config
 from .demo import run_demo
 from .errors import TerrainError
 from .images import decode_image, read_image, to_grey
+from .labelling.given_terrain import TerrainSpan, told_by_spans, told_terrain
 from .labelling.label_runs import label_runs
 from .labelling.patch_files import write_labelled_patches
 from .labelling.scale import LabelConfig
-from .labelling.told_terrain import TerrainSpan, told_by_spans, told_terrain
 from .live_odometry import LiveOdometry, LiveStep
 from .main_job import run_odometry
 from .rectangle import Rectangle

@@ -13,7 +13,7 @@ from odometry.evaluation.odometer_uncertainty import odometer_uncertainty
 from odometry.evaluation.score import reference_of, score
 from odometry.evaluation.withheld import withhold
 from odometry.feel.model import FeelModel
-from odometry.learned import learned_parameters
+from odometry.learned_parameters import learned_parameters
 from odometry.modes.mode_set import ModeSet
 from odometry.parameters import ParameterSet, read_parameters
 from odometry.pipeline import Estimator, TerrainSource, replay

@@ -4,15 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from odometry.bags.choices import (
-    camera_info_of,
-    clock_of,
-    other_odometry_of,
-    topic_for,
-    topic_named,
-)
 from odometry.bags.errors import BagError
-from odometry.bags.guess import LIKELY, best, guess
 from odometry.bags.message_kinds import (
     FIX,
     IMAGES,
@@ -26,8 +18,16 @@ from odometry.bags.message_kinds import (
 from odometry.bags.robot_frame import HOW_TRACK, RobotFrame, robot_frame
 from odometry.bags.survey import Survey
 from odometry.bags.topic import Topic
+from odometry.bags.topic_guess import LIKELY, best, guess
+from odometry.bags.topic_map import TopicMap
+from odometry.bags.topic_roles import (
+    camera_info_of,
+    clock_of,
+    other_odometry_of,
+    topic_for,
+    topic_named,
+)
 from odometry.bags.wheel_source import WheelSource, wheel_source
-from odometry.bags.wishes import Wishes
 
 REFERENCES = (*POSES, FIX, POINT, *TRANSFORM_LISTS)
 NO_SPEEDS = (
@@ -74,7 +74,7 @@ class Plan:
     frames: Mapping[str, str] = field(default_factory=dict)
 
 
-def make_plan(survey: Survey, wishes: Wishes) -> Plan:
+def make_plan(survey: Survey, topic_map: TopicMap) -> Plan:
     """Decide what is taken from which topic.
 
     Raises
@@ -84,35 +84,35 @@ def make_plan(survey: Survey, wishes: Wishes) -> Plan:
         that is not there or of another kind: it says what to give.
     """
     topics = survey.topics
-    reference = topic_for(topics, wishes.reference, "reference", REFERENCES)
+    reference = topic_for(topics, topic_map.reference, "reference", REFERENCES)
     bodies = [body_frame(one.sample) for one in topics.values() if one.sample is not None]
-    robot = robot_frame(survey.robot, wishes.robot, filter(None, bodies))
-    wheels = _wheels(topics, wishes.wheels, reference, robot)
-    separation = wishes.wheels.get("separation", robot.track_width_m)
+    robot = robot_frame(survey.robot, topic_map.robot, filter(None, bodies))
+    wheels = _wheels(topics, topic_map.wheels, reference, robot)
+    separation = topic_map.wheels.get("separation", robot.track_width_m)
     if robot.track_width_m is None:
         raise BagError(
             "the track width of the robot is not known, and no robot description in the bag gives "
             f"it: add --track-width METRES. To measure it, {HOW_TRACK}"
         )
-    world = _world(topics, wishes, reference, survey)
-    imu = topic_for(topics, wishes.imu, "imu", (IMU,))
-    images = topic_for(topics, wishes.images, "images", IMAGES)
-    info = camera_info_of(topics, wishes.images, images)
-    named = {imu: wishes.imu, reference: wishes.reference, images: wishes.images}
+    world = _world(topics, topic_map, reference, survey)
+    imu = topic_for(topics, topic_map.imu, "imu", (IMU,))
+    images = topic_for(topics, topic_map.images, "images", IMAGES)
+    info = camera_info_of(topics, topic_map.images, images)
+    named = {imu: topic_map.imu, reference: topic_map.reference, images: topic_map.images}
     frames = {
         name: str(said.get("frame") or _frame_of(topics[name], robot)).lstrip("/")
         for name, said in named.items()
         if name
     }
-    other = other_odometry_of(topics, wishes.other_odometry, reference)
+    other = other_odometry_of(topics, topic_map.other_odometry, reference)
     used = [topics[name] for name in (wheels.topic, imu, reference, images) if name]
-    by_header, said = clock_of(used, wishes.time)
+    by_header, said = clock_of(used, topic_map.time)
     notes = [
         *robot.notes,
         f"wheel speeds: {wheels.topic}: {wheels.why}",
         *(f"{role}: {name}" for role, name in _named(imu, reference, images, info) if name),
         *said,
-        *_no_reference(topics, wishes, reference, survey),
+        *_no_reference(topics, topic_map, reference, survey),
     ]
     return Plan(
         robot,
@@ -130,12 +130,12 @@ def make_plan(survey: Survey, wishes: Wishes) -> Plan:
     )
 
 
-def _world(topics: Mapping[str, Topic], wishes: Wishes, reference: str, survey: Survey) -> str:
+def _world(topics: Mapping[str, Topic], topic_map: TopicMap, reference: str, survey: Survey) -> str:
     """The frame in which poses from transforms are wanted; empty where no transforms are taken."""
     if not reference or topics[reference].message_type not in TRANSFORM_LISTS:
         return ""
     frames = survey.robot.all.frames
-    named = str(wishes.reference.get("world", "map"))
+    named = str(topic_map.reference.get("world", "map"))
     if named not in frames:
         raise BagError(
             f"{reference}: there is no frame {named!r}; name the one in which poses are wanted as "
@@ -151,10 +151,10 @@ def _frame_of(topic: Topic, robot: RobotFrame) -> str:
 
 
 def _no_reference(
-    topics: Mapping[str, Topic], wishes: Wishes, reference: str, survey: Survey
+    topics: Mapping[str, Topic], topic_map: TopicMap, reference: str, survey: Survey
 ) -> Iterator[str]:
     """What is said where the odometry is compared with nothing."""
-    if reference or "topic" in wishes.reference:
+    if reference or "topic" in topic_map.reference:
         return
     told = [name for name, one in topics.items() if one.message_type in TRANSFORM_LISTS]
     moving = [name for name in told if not name.endswith("static")]
@@ -173,9 +173,9 @@ def _named(imu: str, reference: str, images: str, info: str) -> list[tuple[str, 
 
 
 def _wheels(
-    topics: Mapping[str, Topic], wishes: Mapping[str, Any], reference: str, robot: RobotFrame
+    topics: Mapping[str, Topic], topic_map: Mapping[str, Any], reference: str, robot: RobotFrame
 ) -> WheelSource:
-    named = wishes.get("topic")
+    named = topic_map.get("topic")
     left = {name: topic for name, topic in topics.items() if name != reference}
     name = topic_named(topics, named).name if named else best(left, "wheels")
     if name is None:
@@ -192,4 +192,4 @@ def _wheels(
             f"no topic is known to hold measured wheel speeds{seen}. Name it with --wheels TOPIC; "
             "--list shows all topics"
         )
-    return wheel_source(topics[name], wishes, robot.wheel_radius_m)
+    return wheel_source(topics[name], topic_map, robot.wheel_radius_m)

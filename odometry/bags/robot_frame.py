@@ -16,7 +16,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.bags.errors import BagError
-from odometry.bags.robot_seen import RobotSeen
+from odometry.bags.robot_messages import RobotMessages
 from odometry.bags.wheel_names import is_wheel, side_of
 
 BASES = ("base_footprint", "base_link", "base", "chassis_link", "body", "trunk")
@@ -53,7 +53,7 @@ class RobotFrame:
     size_m: Mapping[str, float]
     notes: tuple[str, ...]
 
-    def pose_of(self, frame: str, robot: RobotSeen) -> FloatArray | None:
+    def pose_of(self, frame: str, robot: RobotMessages) -> FloatArray | None:
         """Pose (4, 4) of a frame of the bag in the robot frame; None where it is not known."""
         if frame == self.base and frame:
             return self.robot_from_base
@@ -61,13 +61,15 @@ class RobotFrame:
         return None if seen is None else np.asarray(self.robot_from_base @ seen)
 
 
-def robot_frame(robot: RobotSeen, wishes: Mapping[str, Any], bodies: Iterable[str]) -> RobotFrame:
+def robot_frame(
+    robot: RobotMessages, topic_map: Mapping[str, Any], bodies: Iterable[str]
+) -> RobotFrame:
     """Find the robot frame and the robot's size.
 
     Parameters
     ----------
-    robot : RobotSeen
-    wishes : Mapping
+    robot : RobotMessages
+    topic_map : Mapping
         The table [robot] of a map.
     bodies : of str
         Frames whose motion odometry topics hold: where names do not give the base frame, one of
@@ -78,10 +80,10 @@ def robot_frame(robot: RobotSeen, wishes: Mapping[str, Any], bodies: Iterable[st
     BagError
         If the map names a frame that the bag does not have.
     """
-    base = _base(robot, wishes, bodies)
+    base = _base(robot, topic_map, bodies)
     centres = _wheel_centres(robot, base)
     notes = []
-    radius, track = wishes.get("wheel_radius"), wishes.get("track_width")
+    radius, track = topic_map.get("wheel_radius"), topic_map.get("track_width")
     radii = [w.radius_m for w in robot.description.wheels if w.radius_m is not None]
     if radius is None and radii:
         radius = mean(radii)
@@ -95,23 +97,23 @@ def robot_frame(robot: RobotSeen, wishes: Mapping[str, Any], bodies: Iterable[st
     elif track is None and "track_width" in robot.numbers:
         track = robot.numbers["track_width"]
         notes.append(f"track width {track:.4g} m: from wheel_separation, a parameter in the bag")
-    place, height_known = _base_place(base, centres, radius, wishes)
+    place, height_known = _base_place(base, centres, radius, topic_map)
     return RobotFrame(
         base,
         place,
         height_known,
         track,
         radius,
-        str(wishes.get("name", robot.description.name)),
-        {key: float(wishes[key]) for key in ("length", "width", "mass") if key in wishes},
+        str(topic_map.get("name", robot.description.name)),
+        {key: float(topic_map[key]) for key in ("length", "width", "mass") if key in topic_map},
         tuple(notes),
     )
 
 
-def _base(robot: RobotSeen, wishes: Mapping[str, Any], bodies: Iterable[str]) -> str:
+def _base(robot: RobotMessages, topic_map: Mapping[str, Any], bodies: Iterable[str]) -> str:
     frames = robot.all.frames
-    if "frame" in wishes:
-        named = str(wishes["frame"]).lstrip("/")
+    if "frame" in topic_map:
+        named = str(topic_map["frame"]).lstrip("/")
         if frames and named not in frames:
             raise BagError(
                 f"[robot] frame = {named!r}: the bag has no such frame; seen: "
@@ -125,7 +127,7 @@ def _base(robot: RobotSeen, wishes: Mapping[str, Any], bodies: Iterable[str]) ->
     return next((body for body in bodies if body in frames), "")
 
 
-def _wheel_centres(robot: RobotSeen, base: str) -> dict[str, list[FloatArray]]:
+def _wheel_centres(robot: RobotMessages, base: str) -> dict[str, list[FloatArray]]:
     """Centres (3,) of the wheels in the base frame by side; empty where a side has none."""
     if not base:
         return {}
@@ -146,15 +148,15 @@ def _base_place(
     base: str,
     centres: Mapping[str, list[FloatArray]],
     radius_m: float | None,
-    wishes: Mapping[str, Any],
+    topic_map: Mapping[str, Any],
 ) -> tuple[FloatArray, bool]:
     """Pose (4, 4) of the base frame in the robot frame, and whether its height is known."""
     pose = np.eye(4)
     if centres:
         middle = np.mean([*centres["left"], *centres["right"]], axis=0)
         pose[:2, 3] = -middle[:2]
-    if "frame_height" in wishes:
-        pose[2, 3] = float(wishes["frame_height"])
+    if "frame_height" in topic_map:
+        pose[2, 3] = float(topic_map["frame_height"])
     elif centres and radius_m is not None:
         pose[2, 3] = radius_m - middle[2]
     elif not base.endswith("base_footprint"):

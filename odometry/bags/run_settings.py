@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 
 from odometry.bags.camera_table import camera_table, looks_along_z
-from odometry.bags.guess import RECTIFIED
 from odometry.bags.message_kinds import FIX, body_frame
 from odometry.bags.plan import Plan
 from odometry.bags.poses import LocalMetres
 from odometry.bags.robot_frame import HOW_HEIGHT
 from odometry.bags.survey import Survey
+from odometry.bags.topic_guess import RECTIFIED
 from odometry.geometry import se3
 from odometry.geometry.optical_frame import OPTICAL_FROM_CAMERA
 

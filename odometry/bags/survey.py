@@ -12,7 +12,7 @@ from odometry.bags.errors import BagError
 from odometry.bags.losses import Losses
 from odometry.bags.message_kinds import IMAGES, JOINTS
 from odometry.bags.message_types import MessageTypes
-from odometry.bags.robot_seen import ROBOT_TYPES, RobotSeen
+from odometry.bags.robot_messages import ROBOT_TYPES, RobotMessages
 from odometry.bags.topic import MOVING_TYPES, Ranges, Topic, header_ns, widen
 from odometry.bags.wheel_names import sided
 
@@ -34,12 +34,12 @@ class Tally:
         self._of_robot = connection.message_type in ROBOT_TYPES
         self.tells_motion = connection.message_type in MOVING_TYPES
 
-    def add(self, message: Message, types: MessageTypes, robot: RobotSeen) -> None:
+    def add(self, message: Message, types: MessageTypes, robot: RobotMessages) -> None:
         """Take in a message; what it says of the robot goes to `robot`."""
         self.count += 1
         self.first_ns = min(self.first_ns, message.received_ns)
         self.last_ns = max(self.last_ns, message.received_ns)
-        of_robot = self._of_robot and robot.wants(message)
+        of_robot = self._of_robot and robot.may_describe_robot(message)
         if not (of_robot or self._looks()):
             return
         try:
@@ -48,7 +48,7 @@ class Tally:
             self.problem = str(problem)
             return
         if of_robot:
-            robot.look(message, content)
+            robot.add(message, content)
         if self.tells_motion:
             widen(self.ranges, content)
         stamp_ns = header_ns(content)
@@ -98,14 +98,14 @@ class Survey:
     files : tuple of BagFile
         In the order of their first messages.
     topics : Mapping of name to Topic
-    robot : RobotSeen
+    robot : RobotMessages
     losses : tuple of str
         What could not be read.
     """
 
     files: tuple[BagFile, ...]
     topics: Mapping[str, Topic]
-    robot: RobotSeen
+    robot: RobotMessages
     losses: tuple[str, ...]
 
     @property
@@ -133,7 +133,7 @@ def survey(
     BagError
         If no message can be read.
     """
-    tallies, robot = dict[str, Tally](), RobotSeen()
+    tallies, robot = dict[str, Tally](), RobotMessages()
     begins: dict[BagFile, int] = {}
     for file in files:
         of_file: dict[int, Tally | None] = {}

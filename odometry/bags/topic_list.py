@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator
 
-from odometry.bags.guess import best, guess
 from odometry.bags.message_kinds import TRANSFORM_LISTS
-from odometry.bags.robot_seen import TEXT
+from odometry.bags.robot_messages import TEXT
 from odometry.bags.survey import Survey
 from odometry.bags.topic import Topic
+from odometry.bags.topic_guess import best, guess
 
 ROLES = ("wheels", "imu", "reference", "images")
 

@@ -63,9 +63,9 @@ def check_unit(unit: str) -> None:
         raise BagError(f"unit {unit!r}, expected one of {', '.join(UNITS)}")
 
 
-def gear_of(wishes: Mapping[str, Any]) -> float:
+def gear_of(topic_map: Mapping[str, Any]) -> float:
     """Turns that are counted for one of a wheel, as [wheels] of a map says."""
-    gear = float(wishes.get("gear", 1.0))
+    gear = float(topic_map.get("gear", 1.0))
     if not 1e-6 <= abs(gear) <= 1e6:
         raise BagError(f"gear = {gear!r}, expected the turns that are counted for one of a wheel")
     return gear

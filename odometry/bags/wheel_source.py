@@ -7,9 +7,9 @@ from typing import Any
 
 from odometry.bags.errors import BagError
 from odometry.bags.fields import number_at, number_paths
-from odometry.bags.guess import SIMPLE_ARRAY, unit_of
 from odometry.bags.message_kinds import JOINTS, NO_WHEELS, ODOMETRY, TWISTS
 from odometry.bags.topic import PLACE, VELOCITY, Topic, moved
+from odometry.bags.topic_guess import SIMPLE_ARRAY, unit_of
 from odometry.bags.wheel_names import UNITS, check_unit, gear_of, side_of, sided
 
 HOW_RADIUS = (
@@ -53,13 +53,13 @@ class WheelSource:
     unit: str = ""
 
 
-def wheel_source(topic: Topic, wishes: Mapping[str, Any], radius_m: float | None) -> WheelSource:
+def wheel_source(topic: Topic, topic_map: Mapping[str, Any], radius_m: float | None) -> WheelSource:
     """Decide what of a topic is taken as wheel speeds.
 
     Parameters
     ----------
     topic : Topic
-    wishes : Mapping
+    topic_map : Mapping
         The table [wheels] of a map; what it does not give is guessed from names.
     radius_m : float or None
         Of the wheels; needed where the numbers are angles.
@@ -78,10 +78,12 @@ def wheel_source(topic: Topic, wishes: Mapping[str, Any], radius_m: float | None
             "states, odometry, a twist with a stamp, or numbers of another message"
         )
     if topic.message_type in TWISTS:
-        return _twist(topic, wishes)
+        return _twist(topic, topic_map)
     joints = topic.message_type == JOINTS
-    left, right = _sides(topic, wishes, list(topic.sample.name) if joints else None)
-    speeds, unit = _joint_values(topic, wishes, left + right) if joints else _unit(topic, wishes)
+    left, right = _sides(topic, topic_map, list(topic.sample.name) if joints else None)
+    speeds, unit = (
+        _joint_values(topic, topic_map, left + right) if joints else _unit(topic, topic_map)
+    )
     one, of_angle, is_speed = UNITS[unit]
     if of_angle and radius_m is None:
         raise BagError(
@@ -90,14 +92,14 @@ def wheel_source(topic: Topic, wishes: Mapping[str, Any], radius_m: float | None
             f"{HOW_RADIUS}"
         )
     reach_m = radius_m if of_angle and radius_m is not None else 1.0
-    metres = one * reach_m / gear_of(wishes)
+    metres = one * reach_m / gear_of(topic_map)
     return WheelSource(
         topic.name,
         "joints" if joints else "fields",
         left,
         right,
-        metres * float(wishes.get("left_sign", 1)),
-        metres * float(wishes.get("right_sign", 1)),
+        metres * float(topic_map.get("left_sign", 1)),
+        metres * float(topic_map.get("right_sign", 1)),
         is_speed,
         _wrap(topic, left + right, one) if joints and not speeds else math.inf,
         f"{'speeds' if is_speed else 'differences of places'} of {', '.join(left)} (left) and "
@@ -106,26 +108,26 @@ def wheel_source(topic: Topic, wishes: Mapping[str, Any], radius_m: float | None
     )
 
 
-def _twist(topic: Topic, wishes: Mapping[str, Any]) -> WheelSource:
+def _twist(topic: Topic, topic_map: Mapping[str, Any]) -> WheelSource:
     zero = not moved(topic.ranges, VELOCITY, "ahead") and not moved(topic.ranges, VELOCITY, "turn")
     by_pose = topic.message_type == ODOMETRY and (
-        wishes.get("values") == "position" or (zero and moved(topic.ranges, PLACE, "x"))
+        topic_map.get("values") == "position" or (zero and moved(topic.ranges, PLACE, "x"))
     )
     what = "differences of its poses" if by_pose else "its twist"
     why = f"{what}, as v -/+ w * separation / 2"
-    signs = (float(wishes.get("left_sign", 1)), float(wishes.get("right_sign", 1)))
+    signs = (float(topic_map.get("left_sign", 1)), float(topic_map.get("right_sign", 1)))
     return WheelSource(topic.name, "twist", (), (), *signs, speeds=not by_pose, why=why)
 
 
 def _sides(
-    topic: Topic, wishes: Mapping[str, Any], joints: list[str] | None
+    topic: Topic, topic_map: Mapping[str, Any], joints: list[str] | None
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Names of joints, or paths, of the left and of the right wheels."""
-    if ("left" in wishes) != ("right" in wishes):
+    if ("left" in topic_map) != ("right" in topic_map):
         raise BagError(f"{topic.name}: left and right wheels belong together; give both")
     array = SIMPLE_ARRAY.match(topic.message_type) is not None
-    if "left" in wishes:
-        left, right = (tuple(map(str, wishes[side])) for side in ("left", "right"))
+    if "left" in topic_map:
+        left, right = (tuple(map(str, topic_map[side])) for side in ("left", "right"))
         if array:
             left, right = (tuple(_in_array(one) for one in side) for side in (left, right))
         _check_there(topic, left + right, joints)
@@ -160,16 +162,16 @@ def _check_there(topic: Topic, names: tuple[str, ...], joints: list[str] | None)
 
 
 def _joint_values(
-    topic: Topic, wishes: Mapping[str, Any], names: tuple[str, ...]
+    topic: Topic, topic_map: Mapping[str, Any], names: tuple[str, ...]
 ) -> tuple[bool, str]:
     """Whether velocities are taken, else positions; and their unit."""
-    said = wishes.get("values")
+    said = topic_map.get("values")
     if said not in (None, "velocity", "position"):
         raise BagError(f"[wheels] values = {said!r}, expected velocity or position")
     has_velocity = any(moved(topic.ranges, VELOCITY, name) for name in names)
     has_place = any(moved(topic.ranges, PLACE, name) for name in names)
     speeds = said == "velocity" if said else has_velocity or not has_place
-    unit = str(wishes.get("unit", "rad/s" if speeds else "rad"))
+    unit = str(topic_map.get("unit", "rad/s" if speeds else "rad"))
     check_unit(unit)
     if UNITS[unit][2] != speeds:
         kind = "speeds" if speeds else "places"
@@ -177,8 +179,8 @@ def _joint_values(
     return speeds, unit
 
 
-def _unit(topic: Topic, wishes: Mapping[str, Any]) -> tuple[bool, str]:
-    unit = str(wishes.get("unit") or unit_of(topic.name, number_paths(topic.sample)))
+def _unit(topic: Topic, topic_map: Mapping[str, Any]) -> tuple[bool, str]:
+    unit = str(topic_map.get("unit") or unit_of(topic.name, number_paths(topic.sample)))
     if not unit:
         raise BagError(
             f"{topic.name}: the unit of its wheel speeds is not known: add --unit with one of "

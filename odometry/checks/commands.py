@@ -4,7 +4,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
-from odometry.checks.mending import TREADS, Mend, changed, in_turn, sooner
+from odometry.checks.undo import TREADS, Mend, changed, in_turn, sooner
 from odometry.run import Run
 
 GRID_S = 0.02

@@ -4,9 +4,9 @@ from collections.abc import Iterator, Sequence
 
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, disagreement
-from odometry.checks.headings_apart import headings_apart, scales_apart, yaw_wanders
-from odometry.checks.paths_apart import paths_apart
-from odometry.checks.positions_apart import positions_apart, positions_apart_everywhere
+from odometry.checks.heading_differences import headings_apart, scales_apart, yaw_wanders
+from odometry.checks.path_differences import paths_apart
+from odometry.checks.position_differences import positions_apart, positions_apart_everywhere
 from odometry.checks.proportion import holds_the_mean, one_side_not_proportional, treads_unlike
 from odometry.checks.relation import Relation
 from odometry.checks.turning import Sense, gyroscope_sense, pose_sense

@@ -6,10 +6,10 @@ from functools import cached_property
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.checks.cleaned_recording import CleanedRecording
 from odometry.checks.course_turns import course_turns
 from odometry.checks.heading import CONSISTENT, Heading, across_m, along_m, headings
 from odometry.checks.motion import Motion, motion_between, scattered
-from odometry.checks.recorded import Recorded
 from odometry.checks.relation import Relation, relation
 
 MOST_SHARP = 0.8  # share of the windows in sharp turns, from which these are used as well
@@ -20,7 +20,7 @@ CLEARLY = 0.3  # difference of concentrations or squared correlations that decid
 
 
 @dataclass(frozen=True)
-class Evidence(Recorded):
+class Evidence(CleanedRecording):
     """A run, and relations between its sensors. Each property is computed once, at first use."""
 
     @cached_property

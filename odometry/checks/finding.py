@@ -6,7 +6,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
-from odometry.checks.mending import Mend
+from odometry.checks.undo import Mend
 
 
 class Level(StrEnum):

@@ -8,10 +8,10 @@ from odometry.arrays import FloatArray
 from odometry.checks.course import OFF_RAD
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, counted
-from odometry.checks.mending import moved
 from odometry.checks.pose_jumps import jumps
 from odometry.checks.relation import pieces, relation
 from odometry.checks.spans import constant_spans, runs_of
+from odometry.checks.undo import moved
 from odometry.checks.yaw_jumps import yaw_jumps
 
 FROZEN_S = 1.5

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from odometry.checks.attitude import attitude
-from odometry.checks.bent import bent
 from odometry.checks.columns import columns
-from odometry.checks.confirmed import alone, confirmed
+from odometry.checks.compass_error import bent
+from odometry.checks.confirmed_causes import alone, confirmed
 from odometry.checks.consequences import without_consequences
 from odometry.checks.course import course
 from odometry.checks.disagreement import agreement, sensors_disagree, yaw_against_course

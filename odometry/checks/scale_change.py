@@ -7,8 +7,8 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
-from odometry.checks.mending import TREADS, Mend, changed, in_turn
 from odometry.checks.relation import Relation, relation
+from odometry.checks.undo import TREADS, Mend, changed, in_turn
 from odometry.run import Run
 
 CHANGED = 1.4  # ratio of what a metre moves; in 23 real recordings along and in turns at most 1.3

@@ -6,9 +6,9 @@ import numpy as np
 
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, disagreement
-from odometry.checks.mending import changed, treads_times
 from odometry.checks.motion import turns_both_ways
 from odometry.checks.relation import Relation, pieces, relation
+from odometry.checks.undo import changed, treads_times
 
 UNEQUAL = (
     1.15  # ratio of the treads' shares in turns; real ones have 0.94 to 1.07 where terrain holds

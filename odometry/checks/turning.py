@@ -8,14 +8,14 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence import CLEARLY, Evidence
 from odometry.checks.finding import Finding, Level
-from odometry.checks.mending import (
+from odometry.checks.relation import Relation
+from odometry.checks.undo import (
     Mend,
     exchanged,
     gyroscope_times,
     times,
     treads_times,
 )
-from odometry.checks.relation import Relation
 
 LEAST_TURN_RAD = 1.0  # summed turns below which nothing is said
 UNRELATED = (

@@ -5,7 +5,7 @@ import numpy as np
 from odometry.bags.wheel_names import UNITS
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
-from odometry.checks.mending import gyroscope_times, treads_times
+from odometry.checks.undo import gyroscope_times, treads_times
 from odometry.checks.unit_tables import ORDINARY_FORWARD, Unit, matching, tread_units
 
 SLIP_OR_TRACK = "; or heavy slip in turns (snow), or a wrong track_width"

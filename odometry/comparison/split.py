@@ -9,7 +9,7 @@ from odometry.arrays import BoolArray
 from odometry.identification.from_positions import stretches_for
 from odometry.row_terrains import row_terrains
 from odometry.run import Run
-from odometry.runs import check_no_run_twice, robot_labels, run_names
+from odometry.run_names import check_no_run_twice, robot_labels, run_names
 from odometry.windows.config import WindowConfig
 from odometry.windows.errors import WindowError
 from odometry.windows.measured_poses import lacks_yaw

@@ -30,7 +30,7 @@ from odometry.models.base import KinematicModel
 from odometry.models.icr import Icr
 from odometry.positions.heading import headed
 from odometry.run import Run
-from odometry.runs import check_no_run_twice
+from odometry.run_names import check_no_run_twice
 
 
 def find_gap(

@@ -22,7 +22,7 @@ from odometry.identification.identification import Identification, Identified
 from odometry.models.catalogue import MODELS
 from odometry.row_terrains import with_named_terrain
 from odometry.run import UNKNOWN, Robot, Run
-from odometry.runs import check_no_run_twice
+from odometry.run_names import check_no_run_twice
 from odometry.windows.config import WindowConfig
 from odometry.windows.stretches import Stretches
 from odometry.windows.window_errors import WindowErrors, errors_over

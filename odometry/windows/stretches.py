@@ -11,7 +11,7 @@ import numpy as np
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.evaluation.horizons import spatial_horizons
 from odometry.run import Run
-from odometry.runs import run_names
+from odometry.run_names import run_names
 from odometry.windows.config import WindowConfig
 from odometry.windows.errors import WindowError
 from odometry.windows.gyroscope_yaw import yaw_rates_of

@@ -11,7 +11,7 @@ from odometry.evaluation.horizons import spatial_horizons
 from odometry.geometry import se2
 from odometry.models.inputs import Inputs, joined
 from odometry.run import Run
-from odometry.runs import run_names
+from odometry.run_names import run_names
 from odometry.windows.config import WindowConfig
 from odometry.windows.errors import WindowError
 from odometry.windows.left_out import STATIONARY, straddling, summed, words

@@ -14,7 +14,7 @@ from terrain.calibration.ground_flow import GroundFlow
 from terrain.calibration.mount_fit import MountFit, too_wide
 from terrain.calibration.tracks import Tracks
 from terrain.camera_files.calibration import Lens
-from terrain.checks.sampled import spread
+from terrain.checks.sampled_images import spread
 
 AGAIN = 2  # features are tracked anew with the mount found
 FEWEST_PAIRS = 16

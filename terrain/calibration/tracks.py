@@ -14,7 +14,7 @@ from terrain.calibration.errors import CalibrationError
 from terrain.calibration.followed import followed
 from terrain.calibration.warp import Warp
 from terrain.camera_files.calibration import Lens
-from terrain.checks.sampled import spread
+from terrain.checks.sampled_images import spread
 from terrain.errors import ImageError
 from terrain.images import read_image, to_grey
 

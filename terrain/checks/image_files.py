@@ -8,7 +8,7 @@ import numpy as np
 
 from odometry.checks.finding import Finding, Level, counted
 from odometry.run import Run
-from terrain.checks.sampled import SampledImage
+from terrain.checks.sampled_images import SampledImage
 from terrain.image_size import PIXELS
 
 MANY = 0.1  # of the images: more are no accident at the end of a recording

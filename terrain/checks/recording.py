@@ -13,9 +13,9 @@ from terrain.checks.image_files import damaged, frozen, outside_of_odometry
 from terrain.checks.image_sizes import other_sizes
 from terrain.checks.image_values import Values, grey_of, image_values, values_of
 from terrain.checks.lens import lens
-from terrain.checks.looks import straight_ahead
 from terrain.checks.region_ahead import region_ahead
-from terrain.checks.sampled import DECODED, SampledImage, decode, sample_images, spread
+from terrain.checks.run_regions import straight_ahead
+from terrain.checks.sampled_images import DECODED, SampledImage, decode, sample_images, spread
 from terrain.checks.vision_model import vision_model
 from terrain.classification.classifier import TerrainClassifier
 from terrain.errors import CameraError

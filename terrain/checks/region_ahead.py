@@ -9,7 +9,6 @@ from odometry.arrays import FloatArray
 from odometry.checks.finding import Finding, Level
 from odometry.run import Robot, Run
 from terrain.camera import Camera
-from terrain.checks.looks import Looks, looks, straight_ahead
 from terrain.checks.other_cameras import (
     Reading,
     angles_in_degrees,
@@ -18,6 +17,7 @@ from terrain.checks.other_cameras import (
     tilted,
     too_far,
 )
+from terrain.checks.run_regions import RunRegions, looks, straight_ahead
 from terrain.errors import CameraError
 from terrain.region import Region
 
@@ -123,7 +123,7 @@ def _where_it_goes(seen: str, ahead: Region) -> Finding:
     )
 
 
-def _counts(found: Looks) -> str:
+def _counts(found: RunRegions) -> str:
     if found.frames == 0:
         return (
             f"{found.ahead} when driving straight on"

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from odometry.checks.finding import Finding, Level
 from odometry.run import Robot
 from terrain.camera import Camera
-from terrain.checks.looks import straight_ahead
+from terrain.checks.run_regions import straight_ahead
 from terrain.classification.classifier import TerrainClassifier
 from terrain.region import RegionConfig
 from terrain.region_scale import scale_mismatch

@@ -12,7 +12,7 @@ from odometry.run import Run
 from terrain.calibration.camera_table import camera_text
 from terrain.calibration.first_image import first_image
 from terrain.calibration.look_ahead import run_region
-from terrain.checks.shown_image import shown_images
+from terrain.checks.drawn_images import shown_images
 from terrain.distortion import distort
 from terrain.region import Region
 from terrain.report.camera_figures import (

@@ -86,7 +86,7 @@ def identify_modes(
     from odometry.modes.mode_set import ModeSet, write_mode_set
     from odometry.modes.traction import TractionModes
     from odometry.outputs.output_file import is_set_of
-    from terrain.cli.headings import with_turns
+    from terrain.cli.measured_turns import with_turns
     from terrain.cli.outputs import claim_file, comment
     from terrain.cli.recordings import read_runs
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from odometry.bags.import_bags import Imported
     from odometry.bags.message_types import MessageTypes
     from odometry.bags.survey import Survey
-    from odometry.bags.wishes import Wishes
+    from odometry.bags.topic_map import TopicMap
 
 LARGEST_M = 1000.0
 # Options that override a key of the map, and the key
@@ -124,15 +124,17 @@ def import_(
     if as_list or out is None:
         _list(bags)
         return
-    from odometry.bags.wishes import Wishes, read_wishes
+    from odometry.bags.topic_map import TopicMap, read_topic_map
     from terrain.cli.outputs import claim_folder
 
-    wishes = read_wishes(map_file) if map_file is not None else Wishes()
+    topic_map = read_topic_map(map_file) if map_file is not None else TopicMap()
     options = without_reference(options, poses)
-    wishes = wishes.overridden({KEYS[name]: _value(name, said) for name, said in options.items()})
+    topic_map = topic_map.overridden(
+        {KEYS[name]: _value(name, said) for name, said in options.items()}
+    )
     output = claim_folder(out)
     with output.writing() as part:
-        imported = _write(bags, wishes, part)
+        imported = _write(bags, topic_map, part)
         added = write_poses(part, poses)
     _print_imported(out, imported)
     for line in added:
@@ -162,12 +164,12 @@ def _value(name: str, said: Any) -> Any:
 
 def _list(bags: tuple[Path, ...]) -> None:
     from odometry.bags.errors import BagError
-    from odometry.bags.guess import best
     from odometry.bags.message_kinds import NO_WHEELS
     from odometry.bags.message_types import MessageTypes
     from odometry.bags.plan import NO_SPEEDS, make_plan
+    from odometry.bags.topic_guess import best
     from odometry.bags.topic_list import topic_lines
-    from odometry.bags.wishes import Wishes
+    from odometry.bags.topic_map import TopicMap
 
     found = _surveyed(bags, MessageTypes())
     for line in topic_lines(found):
@@ -178,7 +180,7 @@ def _list(bags: tuple[Path, ...]) -> None:
         click.echo(f"Note: {NO_SPEEDS}")
         return
     try:
-        make_plan(found, Wishes())
+        make_plan(found, TopicMap())
     except BagError as problem:
         click.echo(f"Note: {problem}")
     named = " ".join(map(str, bags))
@@ -203,7 +205,7 @@ def _surveyed(bags: tuple[Path, ...], types: "MessageTypes") -> "Survey":
         return survey(files, types, losses, bar.update)
 
 
-def _write(bags: tuple[Path, ...], wishes: "Wishes", folder: Path) -> "Imported":
+def _write(bags: tuple[Path, ...], topic_map: "TopicMap", folder: Path) -> "Imported":
     from tqdm import tqdm
 
     from odometry.bags.import_bags import write_run
@@ -212,7 +214,7 @@ def _write(bags: tuple[Path, ...], wishes: "Wishes", folder: Path) -> "Imported"
 
     types = MessageTypes()
     found = _surveyed(bags, types)
-    plan = make_plan(found, wishes)
+    plan = make_plan(found, topic_map)
     with tqdm(desc="import", total=found.count, unit=" messages", leave=False, disable=None) as bar:
         return write_run(found, plan, types, folder, bar.update)
 

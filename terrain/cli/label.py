@@ -112,11 +112,11 @@ def label(
     from terrain.cli.outputs import claim_folder
     from terrain.cli.recordings import read_run
     from terrain.labelling.corrections import read_corrections
-    from terrain.labelling.felt_terrain import told_by_feel
+    from terrain.labelling.given_terrain import told_by_spans, told_terrain
     from terrain.labelling.label_runs import label_runs
     from terrain.labelling.patch_files import write_labelled_patches
     from terrain.labelling.scale import LabelConfig
-    from terrain.labelling.told_terrain import told_by_spans, told_terrain
+    from terrain.labelling.terrain_by_feel import told_by_feel
 
     if sum(map(bool, (spans, source, by_feel))) > 1:
         raise click.UsageError("--span, --labels and --by-feel: give one of them")

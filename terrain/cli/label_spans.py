@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from terrain.labelling.told_terrain import TerrainSpan
+    from terrain.labelling.given_terrain import TerrainSpan
 
 FORM = "[RUN:]FROM:TO=TERRAIN, such as 0:20.5=grass, or my_run:0:20.5=grass with several runs"
 
@@ -33,7 +33,7 @@ def spans_by_run(texts: Sequence[str], runs: Sequence[Path]) -> "dict[Path, list
 
 
 def _parsed(text: str, runs: Sequence[Path]) -> "tuple[Path, TerrainSpan]":
-    from terrain.labelling.told_terrain import TerrainSpan
+    from terrain.labelling.given_terrain import TerrainSpan
 
     times, sign, terrain = text.partition("=")
     *name, begin, end = ["", *times.rsplit(":", 2)][-3:]

@@ -5,18 +5,18 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from terrain.labelling.given_terrain import GivenTerrain
     from terrain.labelling.label_runs import LabelledTerrain
-    from terrain.labelling.told_terrain import ToldTerrain
 
 FEW_PLACES = 5  # as many folds has the cross-validation of `train`
 
 
-def summary(ground: "LabelledTerrain", told: "Sequence[ToldTerrain]") -> str:
+def summary(ground: "LabelledTerrain", told: "Sequence[GivenTerrain]") -> str:
     """Squares of each run, patches of each class, and what is too little for training."""
     return "\n".join([*_runs(ground, told), "", *_classes(ground), *_notes(ground)])
 
 
-def _runs(ground: "LabelledTerrain", told: "Sequence[ToldTerrain]") -> Iterator[str]:
+def _runs(ground: "LabelledTerrain", told: "Sequence[GivenTerrain]") -> Iterator[str]:
     for (folder, seen), of in zip(ground.seen.items(), told, strict=True):
         left_out = ground.left_out[folder]
         counts = ", ".join(f"{count} {why}" for why, count in sorted(left_out.items()))

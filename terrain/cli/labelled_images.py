@@ -31,7 +31,7 @@ def print_held_out(
     """
     from terrain.classification.held_out import answer_photos, held_out_score
     from terrain.classification.patches import find_photos
-    from terrain.cli.likeness import print_likeness
+    from terrain.cli.likeness_note import print_likeness
     from terrain.errors import PatchError
 
     answers, unusable = answer_photos(classifier, find_photos(folder))

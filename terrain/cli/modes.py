@@ -158,7 +158,7 @@ def _followed(
     from odometry.errors import RunFolderError
     from odometry.modes.followed import followed
     from odometry.modes.sight import seen_grounds
-    from terrain.cli.headings import with_turns
+    from terrain.cli.measured_turns import with_turns
     from terrain.cli.recordings import read_run
 
     (run,) = with_turns([read_run(folder, span)])

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from terrain.cli.adapted import adapted
+from terrain.cli.adapt_text import adapted
 from terrain.cli.network_options import network_options
 from terrain.cli.options import OUTPUT, Positive, processes_option, scheduler_option
 

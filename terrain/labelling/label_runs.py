@@ -13,12 +13,12 @@ from odometry.terrain_sources import NamedTerrain
 from terrain.camera import Camera
 from terrain.errors import PatchError
 from terrain.labelling.corrections import Corrections
-from terrain.labelling.driven_way import DrivenWay
-from terrain.labelling.labelled import LabelledSquare, labelled_squares
-from terrain.labelling.places import place_centres, places_of
+from terrain.labelling.driven_path import DrivenWay
+from terrain.labelling.given_terrain import GivenTerrain
+from terrain.labelling.patch_places import place_centres, places_of
 from terrain.labelling.scale import LabelConfig, PatchScale, patch_scale
+from terrain.labelling.square_labels import LabelledSquare, labelled_squares
 from terrain.labelling.squares import SquareFinder
-from terrain.labelling.told_terrain import ToldTerrain
 from terrain.main_job import run_odometry
 
 ASTRIDE_PLACES, NOT_NEEDED = "across the border of two places", "more than a place needs"
@@ -67,7 +67,7 @@ class LabelledTerrain:
 
 def label_runs(
     runs: Sequence[Run],
-    told: Sequence[ToldTerrain],
+    told: Sequence[GivenTerrain],
     config: LabelConfig | None = None,
     *,
     parameters: ParameterSet | None = None,
@@ -80,7 +80,7 @@ def label_runs(
     ----------
     runs : sequence of Run
         With images and a camera.
-    told : sequence of ToldTerrain
+    told : sequence of GivenTerrain
         Of each run.
     config : LabelConfig, optional
     parameters : ParameterSet, optional
@@ -129,7 +129,7 @@ def label_runs(
 
 
 def square_finder(
-    run: Run, told: ToldTerrain, parameters: ParameterSet | None = None
+    run: Run, told: GivenTerrain, parameters: ParameterSet | None = None
 ) -> SquareFinder:
     """Replay a run without its images, and be ready to find its squares.
 

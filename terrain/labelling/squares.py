@@ -14,7 +14,7 @@ from odometry.table import Table
 from odometry.trajectory import Trajectory
 from odometry.windows.gaps import odometry_gaps
 from terrain.camera import Camera
-from terrain.labelling.driven_way import DrivenWay, Passing
+from terrain.labelling.driven_path import DrivenWay, Passing
 from terrain.rectangle import Rectangle
 from terrain.region import RegionConfig
 from terrain.visible_terrain import is_visible

@@ -1,6 +1,6 @@
+from .labels_and_truth import confusion
 from .lines import ICR_COORDINATES, ReportLines
 from .plots import draw_region, plot_confusion, plot_image, plot_labels
-from .seen_ahead import confusion
 
 __all__ = [
     "ICR_COORDINATES",

@@ -15,7 +15,7 @@ from terrain.calibration.chessboard import BoardViews
 from terrain.calibration.lens_from_boards import LensFit
 from terrain.calibration.marked_points import MarkedPoints
 from terrain.camera import Camera
-from terrain.checks.shown_image import ShownImage
+from terrain.checks.drawn_images import ShownImage
 from terrain.report.ground_plots import draw_ground_grid, plot_ground
 from terrain.report.plots import plot_image
 

@@ -17,7 +17,7 @@ from odometry.report.check_plots import (
 )
 from odometry.report.figure import save_figure
 from odometry.run import Run
-from terrain.checks.shown_image import shown_image
+from terrain.checks.drawn_images import shown_image
 from terrain.report.ground_plots import plot_ground
 
 _WIDTH_IN = 10.0

@@ -9,7 +9,7 @@ from matplotlib.patheffects import withStroke
 from odometry.arrays import FloatArray
 from odometry.run import Robot
 from terrain.camera import Camera
-from terrain.checks.shown_image import ShownImage
+from terrain.checks.drawn_images import ShownImage
 from terrain.region import Rectangle, Region
 from terrain.report.plots import plot_image
 from terrain.whole_image import outline

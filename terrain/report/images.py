@@ -12,8 +12,8 @@ from terrain.classification.classifier import Classifier
 from terrain.image_label import ImageLabel
 from terrain.images import read_image
 from terrain.report.figures import Tints, in_force
+from terrain.report.labels_and_truth import Confusion, around_switches
 from terrain.report.plots import draw_cells, draw_region, plot_confusion, plot_image, plot_labels
-from terrain.report.seen_ahead import Confusion, around_switches
 from terrain.run_result import RunResult
 from terrain.switch_delay import true_stretches
 from terrain.watcher import TerrainWatcher

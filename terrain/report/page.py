@@ -20,8 +20,8 @@ from terrain.report.images import (
     regions_picture,
     whole_image_picture,
 )
+from terrain.report.labels_and_truth import confusion
 from terrain.report.lines import ReportLines
-from terrain.report.seen_ahead import confusion
 from terrain.report.tables import (
     error_table,
     event_grid,

@@ -24,7 +24,7 @@ from odometry.bags.import_bags import write_run
 from odometry.bags.message_kinds import COMPRESSED_IMAGE
 from odometry.bags.message_types import MessageTypes
 from odometry.bags.plan import make_plan
-from odometry.bags.wishes import Wishes
+from odometry.bags.topic_map import TopicMap
 from tests.odometry.bags.imports import SIZE, looked_at
 from tests.odometry.bags.made_bags import BEGIN_NS, RADIUS_M, Bag, name_of, writer_of
 
@@ -83,7 +83,7 @@ def read_with_import(path, out, images):
     out.mkdir()
     types = MessageTypes()
     found = looked_at(path)[0]
-    plan = make_plan(found, Wishes().overridden({**SIZE, "images.topic": images}))
+    plan = make_plan(found, TopicMap().overridden({**SIZE, "images.topic": images}))
     said = write_run(found, plan, types, out, lambda _: None)
     assert said.losses == (), said.losses
     shutil.rmtree(out)

@@ -21,9 +21,9 @@ from terrain.camera import Camera
 from terrain.camera_values import homography_of_mount
 from terrain.checks.image_sizes import other_sizes
 from terrain.checks.lens import lens
-from terrain.checks.looks import straight_ahead
 from terrain.checks.region_ahead import region_ahead
-from terrain.checks.sampled import SampledImage
+from terrain.checks.run_regions import straight_ahead
+from terrain.checks.sampled_images import SampledImage
 from terrain.errors import CameraError
 
 RIGHT = ("none", "none, homography")

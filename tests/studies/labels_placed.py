@@ -20,9 +20,9 @@ from switching_courses import make_course
 from switching_labels import COURSES
 from tqdm import tqdm
 
+from terrain.labelling.given_terrain import told_terrain
 from terrain.labelling.label_runs import label_runs
-from terrain.labelling.labelled import STRADDLES
-from terrain.labelling.told_terrain import told_terrain
+from terrain.labelling.square_labels import STRADDLES
 
 
 def main() -> None:

@@ -6,7 +6,7 @@ from odometry.bags.losses import Losses
 from odometry.bags.message_types import MessageTypes
 from odometry.bags.plan import make_plan
 from odometry.bags.survey import survey
-from odometry.bags.wishes import Wishes
+from odometry.bags.topic_map import TopicMap
 from odometry.run import Run
 from tests.odometry.bags.made_bags import RADIUS_M, TRACK_M
 
@@ -19,12 +19,12 @@ def looked_at(*paths):
     return survey(bag_files(paths, losses), types, losses, lambda _: None), types
 
 
-def imported(out, *paths, wishes=Wishes(), **options):  # noqa: B008 - frozen
+def imported(out, *paths, topic_map=TopicMap(), **options):  # noqa: B008 - frozen
     """Import bags with the size of the robot given; the run, and what was said."""
     found, types = looked_at(*paths)
     size = {} if options.pop("unsized", False) else SIZE
     dotted = {name.replace("__", "."): value for name, value in options.items()}
-    plan = make_plan(found, wishes.overridden({**size, **dotted}))
+    plan = make_plan(found, topic_map.overridden({**size, **dotted}))
     out.mkdir()
     said = write_run(found, plan, types, out, lambda _: None)
     return Run.read(out), said

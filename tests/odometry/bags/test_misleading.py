@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.bags.errors import BagError
-from odometry.bags.wishes import read_wishes
+from odometry.bags.topic_map import read_topic_map
 from odometry.checks.recording import check_recording
 from tests.odometry.bags.imports import imported, looked_at
 from tests.odometry.bags.made_bags import RADIUS_M, Bag, course, half_turn
@@ -58,7 +58,7 @@ def test_speeds_that_no_robot_has_ask_for_the_unit(tmp_path):
 def test_a_key_that_is_a_table_says_so(tmp_path):
     (tmp_path / "map.toml").write_text("wheels = 3\n")
     with pytest.raises(BagError, match=r"wheels = 3, expected a table \[wheels\] with keys such"):
-        read_wishes(tmp_path / "map.toml")
+        read_topic_map(tmp_path / "map.toml")
 
 
 def test_an_archive_is_to_be_unpacked(tmp_path):

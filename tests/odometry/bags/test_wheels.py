@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.bags.errors import BagError
-from odometry.bags.wishes import Wishes
+from odometry.bags.topic_map import TopicMap
 from tests.odometry.bags.imports import imported
 from tests.odometry.bags.made_bags import RADIUS_M, TRACK_M, Bag, course, half_turn
 
@@ -246,6 +246,6 @@ def test_a_size_that_is_not_known_is_asked_for(unsaid, words, tmp_path):
     path = bag_of(message).write(tmp_path / "drive")
     other = {"robot.wheel_radius": 0.15, "robot.track_width": 0.6}
     del other[unsaid]
-    wishes = Wishes().overridden(other)
+    topic_map = TopicMap().overridden(other)
     with pytest.raises(BagError, match=f"{words}.*[Tt]o measure it"):
-        imported(tmp_path / "run", path, wishes=wishes, unsized=True)
+        imported(tmp_path / "run", path, topic_map=topic_map, unsized=True)

@@ -8,10 +8,10 @@ import pytest
 from odometry.checks.course_turns import course_turns
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Level
-from odometry.checks.paths_apart import paths_apart
+from odometry.checks.path_differences import paths_apart
 from odometry.checks.recording import check_recording
 from tests.odometry.checks.faulty import FAULTS, gyroscope, put
-from tests.odometry.checks.test_confirmed import turning_all_round
+from tests.odometry.checks.test_confirmed_causes import turning_all_round
 from tests.odometry.checks.test_other_robots import drive, without_gyroscope
 
 

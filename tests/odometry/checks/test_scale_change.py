@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from odometry.checks.evidence import Evidence
-from odometry.checks.mending import changed, in_turn
 from odometry.checks.scale_change import scale_change
+from odometry.checks.undo import changed, in_turn
 from tests.odometry.checks.test_other_robots import winding, without_gyroscope
 
 

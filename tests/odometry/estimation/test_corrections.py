@@ -13,7 +13,7 @@ from odometry.errors import ParameterError
 from odometry.estimation.config import PAPER, IcrEkfConfig
 from odometry.estimation.corrections import corrections_of
 from odometry.estimation.icr_ekf import IcrEkf
-from odometry.learned import learned_parameters
+from odometry.learned_parameters import learned_parameters
 from odometry.models.catalogue import MODELS
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.pipeline import ConstantTerrain, replay

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from odometry.estimates import Replay
 from odometry.footing import Footing
-from odometry.learned import learned_parameters
+from odometry.learned_parameters import learned_parameters
 from odometry.terrain_sources import ToldFooting
 from tests.odometry.estimation.icr_ekf_drives import driven, filter_of, frame, table
 

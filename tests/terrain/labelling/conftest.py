@@ -3,9 +3,9 @@
 import pytest
 
 from odometry.run import Run
+from terrain.labelling.given_terrain import TerrainSpan, told_by_spans
 from terrain.labelling.label_runs import label_runs
 from terrain.labelling.scale import LabelConfig
-from terrain.labelling.told_terrain import TerrainSpan, told_by_spans
 
 SMALL = LabelConfig(place_m=1.0)
 

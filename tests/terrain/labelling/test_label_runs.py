@@ -13,11 +13,11 @@ from odometry.table import Table
 from terrain.errors import PatchError
 from terrain.images import read_image
 from terrain.labelling.corrections import Corrections
+from terrain.labelling.given_terrain import told_terrain
 from terrain.labelling.label_runs import label_runs
-from terrain.labelling.labelled import STRADDLES
 from terrain.labelling.patch_files import write_labelled_patches
 from terrain.labelling.scale import LabelConfig
-from terrain.labelling.told_terrain import told_terrain
+from terrain.labelling.square_labels import STRADDLES
 
 SMALL = LabelConfig(place_m=1.0)
 

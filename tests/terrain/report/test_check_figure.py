@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 
 from odometry.run import Run
+from terrain.checks.drawn_images import shown_image
 from terrain.checks.recording import check_run
-from terrain.checks.shown_image import shown_image
 from terrain.report.check_figure import write_check_figure
 
 

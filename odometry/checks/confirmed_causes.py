@@ -6,7 +6,7 @@ from odometry.checks.catalogue import CATALOGUE
 from odometry.checks.disagreement import lasting_disagreements
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, disagreement
-from odometry.checks.mending import Mend, between, in_turn
+from odometry.checks.undo import Mend, between, in_turn
 from odometry.run import Run
 
 MOMENTS = frozenset({"pose_jumps", "yaw_jumps"})  # are undone by a cut

@@ -20,7 +20,7 @@ WORLD = re.compile(r"(^|/)(odom|map|world|earth|utm)", re.IGNORECASE)
 DOUBLE, STRING = 3, 4  # rcl_interfaces/msg/ParameterType
 
 
-class RobotSeen:
+class RobotMessages:
     """Gathers what messages say of the robot, message by message."""
 
     def __init__(self) -> None:
@@ -31,15 +31,15 @@ class RobotSeen:
         self.description = RobotDescription()
         self.numbers: dict[str, float] = {}
 
-    def wants(self, message: Message) -> bool:
+    def may_describe_robot(self, message: Message) -> bool:
         """Whether a message of ROBOT_TYPES may say something of the robot."""
         kind, topic = message.connection.message_type, message.connection.topic
         if kind in TRANSFORMS:
             return topic.endswith("static") or self._moving_looks < MOST_DYNAMIC
         return kind == PARAMETERS or (kind == TEXT and b"<robot" in bytes(message.data))
 
-    def look(self, message: Message, content: Any) -> None:
-        """Read a message for which `wants` is true."""
+    def add(self, message: Message, content: Any) -> None:
+        """Read a message for which `may_describe_robot` is true."""
         kind = message.connection.message_type
         if kind in TRANSFORMS:
             fixed = message.connection.topic.endswith("static")

@@ -5,7 +5,7 @@ import pytest
 
 from odometry.run import Run
 from odometry.trajectory import Trajectory
-from terrain.labelling.driven_way import STEP_M, DrivenWay
+from terrain.labelling.driven_path import STEP_M, DrivenWay
 
 SPEED_M_S, LENGTH_M, WIDTH_M = 0.5, 0.4, 0.34
 

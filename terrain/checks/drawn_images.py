@@ -8,8 +8,8 @@ import numpy as np
 from odometry.arrays import ByteImage, FloatArray
 from odometry.run import Run
 from terrain.camera import Camera
-from terrain.checks.looks import image_rows, motion_at, seen_region
-from terrain.checks.sampled import spread
+from terrain.checks.run_regions import image_rows, motion_at, seen_region
+from terrain.checks.sampled_images import spread
 from terrain.errors import CameraError, ImageError
 from terrain.images import read_image
 from terrain.region import Region

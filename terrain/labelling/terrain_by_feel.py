@@ -6,13 +6,13 @@ from odometry.errors import RunFolderError
 from odometry.feel.follow import SILENT, FeelConfig, follow_feel
 from odometry.feel.model import FeelModel
 from odometry.run import UNKNOWN, Run
-from terrain.labelling.told_terrain import ToldTerrain
+from terrain.labelling.given_terrain import GivenTerrain
 
 SURE = 0.9  # probability from which a window labels: a wrong label misleads the classifier
 STRETCH_S = 4.0  # so long is put together, around the moment that is labelled
 
 
-def told_by_feel(run: Run, model: FeelModel) -> ToldTerrain:
+def told_by_feel(run: Run, model: FeelModel) -> GivenTerrain:
     """The terrain by feel of a run, where that is sure; elsewhere there is no label.
 
     Evidence of STRETCH_S is put together, half of it from before each moment and half from after.
@@ -37,7 +37,7 @@ def told_by_feel(run: Run, model: FeelModel) -> ToldTerrain:
         )
     names = np.where(silent, "", felt.lasting_answers)
     mean = felt.lasting_probabilities.max(axis=1)[~silent].mean()
-    return ToldTerrain(
+    return GivenTerrain(
         f"feel (mean probability {mean:.2f})",
         felt.stamps_s - STRETCH_S / 2,
         tuple(names.tolist()),

@@ -8,7 +8,7 @@ import pytest
 from odometry.errors import RunFolderError
 from odometry.run import Run
 from odometry.table import Table
-from terrain.labelling.told_terrain import TerrainSpan, told_by_spans, told_terrain
+from terrain.labelling.given_terrain import TerrainSpan, told_by_spans, told_terrain
 
 
 @pytest.fixture

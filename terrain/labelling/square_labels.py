@@ -8,8 +8,8 @@ import numpy as np
 
 from odometry.geometry import se2
 from odometry.run import Run
+from terrain.labelling.given_terrain import GivenTerrain
 from terrain.labelling.squares import DrivenSquare, SquareFinder
-from terrain.labelling.told_terrain import ToldTerrain
 
 STRADDLES, UNTOLD = "astride two terrains", "of no given terrain"
 
@@ -34,7 +34,7 @@ class LabelledSquare:
 
 
 def labelled_squares(
-    finder: SquareFinder, told: ToldTerrain, squares: Sequence[DrivenSquare], run_name: str
+    finder: SquareFinder, told: GivenTerrain, squares: Sequence[DrivenSquare], run_name: str
 ) -> tuple[list[LabelledSquare], Counter[str]]:
     """Squares of one terrain, and how many others there are, by why they are left out.
 
@@ -45,7 +45,7 @@ def labelled_squares(
     Parameters
     ----------
     finder : SquareFinder
-    told : ToldTerrain
+    told : GivenTerrain
     squares : sequence of DrivenSquare
         Of the finder.
     run_name : str
@@ -65,7 +65,7 @@ def labelled_squares(
     return found, left_out
 
 
-def _names(finder: SquareFinder, told: ToldTerrain, square: DrivenSquare) -> frozenset[str]:
+def _names(finder: SquareFinder, told: GivenTerrain, square: DrivenSquare) -> frozenset[str]:
     if not told.of_images:
         return told.between(square.passing.begin_s, square.passing.end_s)
     first, end = finder.rows_before(square)

@@ -15,7 +15,7 @@ MOST_OUTLIERS = 0.3  # share of the poses: where more are far from the others, n
 
 
 @dataclass(frozen=True)
-class Recorded:
+class CleanedRecording:
     """A run, cleaned. Each property is computed once, at first use.
 
     Attributes

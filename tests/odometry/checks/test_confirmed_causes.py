@@ -8,7 +8,8 @@ import pytest
 
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
-from odometry.checks.mending import (
+from odometry.checks.recording import check_recording
+from odometry.checks.undo import (
     between,
     changed,
     exchanged,
@@ -18,7 +19,6 @@ from odometry.checks.mending import (
     times,
     treads_times,
 )
-from odometry.checks.recording import check_recording
 from odometry.table import Table
 from tests.odometry.checks.faulty import FAULTS, pose_stamps, positions, put, treads, yaw
 from tests.odometry.checks.test_other_robots import drive, winding

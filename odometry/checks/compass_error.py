@@ -9,9 +9,9 @@ from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.heading import middle_yaw
 from odometry.checks.heading_spans import HeadingSpans, heading_spans
-from odometry.checks.mending import Mend, changed
 from odometry.checks.motion import Motion, scattered
 from odometry.checks.relation import Relation, relation
+from odometry.checks.undo import Mend, changed
 from odometry.run import Run
 
 SPANS_S = (5.0, 1.5)

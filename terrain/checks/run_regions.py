@@ -9,7 +9,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.run import Robot, Run
 from terrain.camera import Camera
-from terrain.checks.sampled import spread
+from terrain.checks.sampled_images import spread
 from terrain.region import Region, RegionConfig, predict_region
 
 FRAMES = 40  # moments of a run, some milliseconds each
@@ -22,7 +22,7 @@ OUTSIDE, TINY = "outside the image", f"smaller than {SMALLEST_PX} pixels"
 
 
 @dataclass(frozen=True)
-class Looks:
+class RunRegions:
     """The region ahead in the images of a run.
 
     Attributes
@@ -44,7 +44,7 @@ class Looks:
         return self.frames > 0 and sum(self.unseen.values()) > MOST * self.frames
 
 
-def looks(run: Run, camera: Camera) -> Looks:
+def looks(run: Run, camera: Camera) -> RunRegions:
     """Predict the region at moments of a run, by an ordinary effective width."""
     twists, speeds_m_s = motion_at(run, image_rows(run))
     reasons = [
@@ -52,7 +52,7 @@ def looks(run: Run, camera: Camera) -> Looks:
         for twist, speed_m_s in zip(twists, speeds_m_s, strict=True)
     ]
     unseen = Counter(reason for reason in reasons if isinstance(reason, str))
-    return Looks(len(reasons), unseen, straight_ahead(camera, run.robot))
+    return RunRegions(len(reasons), unseen, straight_ahead(camera, run.robot))
 
 
 def straight_ahead(camera: Camera, robot: Robot) -> Region | str:

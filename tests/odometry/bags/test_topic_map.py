@@ -2,22 +2,22 @@
 
 from pathlib import Path
 
+from odometry.bags.topic_map import KEYS, read_topic_map
 from odometry.bags.wheel_names import UNITS
-from odometry.bags.wishes import KEYS, read_wishes
 
 EXAMPLE = Path(__file__).parents[3] / "data/bags/map.toml"
 
 
 def test_the_shipped_map_can_be_read():
-    wishes = read_wishes(EXAMPLE)
-    assert wishes.wheels["left"] == ["front_left_wheel", "rear_left_wheel"]
-    assert wishes.robot["frame_height"] == 0.132
-    assert wishes.other_odometry == ("/odometry/filtered",)
-    assert wishes.wheels["unit"] in UNITS
+    topic_map = read_topic_map(EXAMPLE)
+    assert topic_map.wheels["left"] == ["front_left_wheel", "rear_left_wheel"]
+    assert topic_map.robot["frame_height"] == 0.132
+    assert topic_map.other_odometry == ("/odometry/filtered",)
+    assert topic_map.wheels["unit"] in UNITS
 
 
 def test_options_override_the_map_key_by_key():
-    changed = read_wishes(EXAMPLE).overridden({"robot.track_width": 1.0, "time": None})
+    changed = read_topic_map(EXAMPLE).overridden({"robot.track_width": 1.0, "time": None})
     assert changed.robot["track_width"] == 1.0
     assert changed.robot["wheel_radius"] == 0.165
     assert changed.time == "auto"

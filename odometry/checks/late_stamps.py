@@ -7,7 +7,7 @@ from odometry.checks.commands import commands_or_stamps
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.lag import Lag
-from odometry.checks.mending import TREADS, Mend, changed, sooner
+from odometry.checks.undo import TREADS, Mend, changed, sooner
 
 NAMES = {"pose": "poses", "treads": "treads", "gyroscope": "gyroscope"}
 

@@ -43,7 +43,7 @@ WHAT = {str: "a text", list: "a list", int: "a number", float: "a number"}
 
 
 @dataclass(frozen=True)
-class Wishes:
+class TopicMap:
     """What a map and the options say; what they do not say is guessed.
 
     Attributes
@@ -64,7 +64,7 @@ class Wishes:
     reference: Mapping[str, Any] = field(default_factory=dict)
     images: Mapping[str, Any] = field(default_factory=dict)
 
-    def overridden(self, options: Mapping[str, Any]) -> "Wishes":
+    def overridden(self, options: Mapping[str, Any]) -> "TopicMap":
         """The same with options: `time`, or "table.key" for a key of a table; None is unsaid."""
         changed: dict[str, Any] = {}
         for name, value in options.items():
@@ -78,7 +78,7 @@ class Wishes:
         return replace(self, **changed)
 
 
-def read_wishes(file: Path) -> Wishes:
+def read_topic_map(file: Path) -> TopicMap:
     """Read a map of topics.
 
     Raises
@@ -102,7 +102,7 @@ def read_wishes(file: Path) -> Wishes:
         raise BagError(f"{file}: time = {content['time']!r}, expected one of {', '.join(TIMES)}")
     other = content.get("other_odometry")
     kept = tuple(map(str, other)) if other is not None else None
-    return Wishes(content.get("time", "auto"), kept, **tables)
+    return TopicMap(content.get("time", "auto"), kept, **tables)
 
 
 def _check(keys: Any, table: Mapping[str, Any], name: str, where: str) -> None:

@@ -4,19 +4,19 @@ from collections.abc import Mapping
 from typing import Any
 
 from odometry.bags.errors import BagError
-from odometry.bags.guess import best, guess
 from odometry.bags.message_kinds import CAMERA_INFO, POSES
 from odometry.bags.topic import Topic
-from odometry.bags.wishes import NONE
+from odometry.bags.topic_guess import best, guess
+from odometry.bags.topic_map import NONE
 
 SAME_CLOCK_S = 2.0  # header stamps and times of reception that differ by less share a clock
 
 
 def topic_for(
-    topics: Mapping[str, Topic], wishes: Mapping[str, Any], role: str, kinds: tuple[str, ...]
+    topics: Mapping[str, Topic], topic_map: Mapping[str, Any], role: str, kinds: tuple[str, ...]
 ) -> str:
     """Name of the topic for a role; empty where there is none, or none is wanted."""
-    said = wishes.get("topic")
+    said = topic_map.get("topic")
     if said is None:
         return best(topics, role) or ""
     if said == NONE:
@@ -39,11 +39,11 @@ def topic_named(topics: Mapping[str, Topic], name: str) -> Topic:
     return found
 
 
-def camera_info_of(topics: Mapping[str, Topic], wishes: Mapping[str, Any], images: str) -> str:
+def camera_info_of(topics: Mapping[str, Topic], topic_map: Mapping[str, Any], images: str) -> str:
     """The CameraInfo that goes with an image topic: said, else the one of the same folder."""
     if not images:
         return ""
-    said = wishes.get("camera_info")
+    said = topic_map.get("camera_info")
     if said == NONE:
         return ""
     if said is not None:
@@ -74,10 +74,10 @@ def other_odometry_of(
     )
 
 
-def clock_of(used: list[Topic], wished: str) -> tuple[bool, list[str]]:
+def clock_of(used: list[Topic], requested: str) -> tuple[bool, list[str]]:
     """Whether header stamps are taken, and what is to be said of it."""
-    if wished != "auto":
-        return wished == "header", []
+    if requested != "auto":
+        return requested == "header", []
     offsets = [one.header_offset_s for one in used if one.header_offset_s is not None]
     if not offsets:
         return False, []

@@ -44,7 +44,7 @@ class TerrainSpan:
 
 
 @dataclass(frozen=True)
-class ToldTerrain:
+class GivenTerrain:
     """Names of terrain, each from its stamp until the next one; "" where none is given.
 
     Attributes
@@ -75,7 +75,7 @@ class ToldTerrain:
         return tuple(sorted({*self.names} - {""}))
 
 
-def told_by_spans(run: Run, spans: Sequence[TerrainSpan], start_s: float) -> ToldTerrain:
+def told_by_spans(run: Run, spans: Sequence[TerrainSpan], start_s: float) -> GivenTerrain:
     """Spans of run time; no terrain is given between them.
 
     Parameters
@@ -117,7 +117,7 @@ def told_by_spans(run: Run, spans: Sequence[TerrainSpan], start_s: float) -> Tol
     return _told(SPANS, np.array([*stamps_s, start_s + end_s]), [*names, ""])
 
 
-def told_terrain(run: Run, source: str | None = None) -> ToldTerrain:
+def told_terrain(run: Run, source: str | None = None) -> GivenTerrain:
     """The terrain that a file of the run gives.
 
     Parameters
@@ -151,7 +151,7 @@ def told_terrain(run: Run, source: str | None = None) -> ToldTerrain:
     )
 
 
-def _of_file(run: Run, name: str) -> ToldTerrain | None:
+def _of_file(run: Run, name: str) -> GivenTerrain | None:
     start_s = run.odometry.stamps_s[:1]
     if name == "odometry.csv":
         if "terrain" not in run.odometry:
@@ -168,7 +168,7 @@ def _of_file(run: Run, name: str) -> ToldTerrain | None:
 
 def _told(
     source: str, stamps_s: FloatArray, names: Sequence[str], *, of_images: bool = False
-) -> ToldTerrain:
+) -> GivenTerrain:
     known = tuple("" if name == UNKNOWN else str(name) for name in names)
     for name in sorted(set(known)):
         if name.startswith(".") or any(sign in name for sign in "/\\\0"):
@@ -176,4 +176,4 @@ def _told(
                 f"{source}: the terrain {name!r} cannot name a folder of patches; expected a name "
                 "without slashes that does not begin with a dot"
             )
-    return ToldTerrain(source, stamps_s, known, of_images)
+    return GivenTerrain(source, stamps_s, known, of_images)

@@ -3,7 +3,7 @@ import pytest
 
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.frames import Frame
-from odometry.learned import learned_parameters
+from odometry.learned_parameters import learned_parameters
 from odometry.parameters import ParameterSet, TerrainParameters, read_parameters, write_parameters
 from odometry.pipeline import replay
 from odometry.run import Run
