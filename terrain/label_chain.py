@@ -112,8 +112,8 @@ def _both_ways(
 
     The chain is reversible: what comes before, in shares of what is drawn, obeys the same step
     as the likelihood of what comes after. Backward variables hold the evidence of their place,
-    forward ones that of the places before alone. On the way to each place terrain and appearance stay
-    with the probabilities `same` (2, n).
+    forward ones that of the places before alone. On the way to each place terrain and appearance
+    stay with the probabilities `same` (2, n).
     """
     ahead, after = np.empty_like(evidence), np.empty_like(evidence)
     ahead[0] = _step(first, appearances, drawn, *same[:, 0])
