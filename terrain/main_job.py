@@ -10,7 +10,7 @@ from odometry.estimation.corrections import corrections_of
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.estimation.means_kept import MeansKept
 from odometry.evaluation.odometer_uncertainty import odometer_uncertainty
-from odometry.evaluation.score import reference_of, score
+from odometry.evaluation.score import reference_of
 from odometry.evaluation.withheld import withhold
 from odometry.feel.model import FeelModel
 from odometry.learned_parameters import learned_parameters
@@ -23,7 +23,7 @@ from odometry.terrain_sources import ToldFooting
 from odometry.windows.measured_poses import lacks_yaw
 from terrain.classification.classifier import Classifier, TerrainClassifier
 from terrain.config import Config
-from terrain.evaluated_trajectories import SecondReplay, evaluated_trajectories
+from terrain.evaluated_trajectories import SecondReplay
 from terrain.images_outside_replay import add_images_outside
 from terrain.run_presets import run_preset, with_preset
 from terrain.run_result import RunResult
@@ -136,7 +136,6 @@ def run_odometry(
     second = None
     if reference_name == "pose":
         second = _second_replay(run, estimator, result, causal, show_progress=show_progress)
-    evaluated = evaluated_trajectories(run, result, reference_name, reference, second)
     return RunResult(
         run,
         config,
@@ -146,11 +145,6 @@ def run_odometry(
         result,
         reference_name,
         reference,
-        evaluated,
-        {
-            name: score(run, of.trajectory, of.reference, config.evaluation)
-            for name, of in evaluated.items()
-        },
         learned_parameters(parameters, result, run.name, run.robot.track_width),
         odometer_uncertainty(run, result, reference if reference_name == "truth" else None),
         second,

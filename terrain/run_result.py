@@ -1,11 +1,12 @@
 """The result of a replayed run."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 from odometry.estimates import Replay
 from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.relative import position_errors
-from odometry.evaluation.score import Score
+from odometry.evaluation.score import Score, score
 from odometry.evaluation.stretches import stretches
 from odometry.parameters import ParameterSet
 from odometry.run import Run
@@ -15,6 +16,7 @@ from terrain.evaluated_trajectories import (
     EvaluatedTrajectory,
     SecondReplay,
     at_reference_point,
+    evaluated_trajectories,
 )
 from terrain.switch import SwitchEvent
 from terrain.watcher import TerrainWatcher
@@ -53,11 +55,6 @@ class RunResult:
     reference_name : str
         "truth", "pose" or "" where there is none.
     reference : Trajectory or None
-    evaluated : dict of str to EvaluatedTrajectory
-        Every trajectory that can be evaluated fairly, with the poses that it is compared with.
-    scores : dict of str to Score
-        By trajectory: differential_drive, gyroscope, odometer_without_gyroscope (both only where
-        there is one), odometer, and estimate where `evaluated` holds it.
     learned : ParameterSet
         `parameters`, with what the filter learned about the terrains that it drove on.
     uncertainty : OdometerUncertainty
@@ -86,12 +83,29 @@ class RunResult:
     replay: Replay
     reference_name: str
     reference: Trajectory | None
-    evaluated: dict[str, EvaluatedTrajectory]
-    scores: dict[str, Score]
     learned: ParameterSet
     uncertainty: OdometerUncertainty
     second: SecondReplay | None = None
     source: str = "none"
+
+    @cached_property
+    def evaluated(self) -> dict[str, EvaluatedTrajectory]:
+        """Every trajectory that can be evaluated fairly, with the poses that it is compared with.
+
+        differential_drive, gyroscope, odometer_without_gyroscope (both only where there is one),
+        odometer, and estimate; see `evaluated_trajectories`.
+        """
+        return evaluated_trajectories(
+            self.run, self.replay, self.reference_name, self.reference, self.second
+        )
+
+    @cached_property
+    def scores(self) -> dict[str, Score]:
+        """Errors of each trajectory that is evaluated, by its name."""
+        return {
+            name: score(self.run, of.trajectory, of.reference, self.config.evaluation)
+            for name, of in self.evaluated.items()
+        }
 
     @property
     def off_at_the_end_m(self) -> dict[str, float]:

@@ -66,8 +66,8 @@ def test_the_filter_has_six_states_and_keeps_its_icrs(result):
     ("given", "words"),
     [
         ({"parameters": SET}, "knows no parameter sets.*gravel"),
-        ({"source": "none"}, "by the camera.*'none'"),
-        ({"vision": False}, "by the camera.*'none'"),
+        ({"source": "none"}, "from the camera.*'none'"),
+        ({"vision": False}, "from the camera.*'none'"),
         ({"preset": "chen2024"}, "'chen2024' is not one of chen2023"),
         (
             {"config": replace(PAPER, region=replace(PAPER.region, per_tread=True))},
