@@ -158,10 +158,8 @@ def print_table(title: str, tracks: Sequence[ModeTrack]) -> None:
     print(f"\n{title}: named with {SURE:.0%} and more | most probable")
     print(" " * 10, *(f"{name[:9]:>9}" for name in (*names, *NO_MODES, "", *names)))
     named = sum(confusion(track, SURE, names) for track in tracks)
-    forced = sum(
-        confusion(replace(track, fit=None, gyroscope=None, alike=None), 0.0, names)
-        for track in tracks
-    )
+    untested = dict.fromkeys(("fit", "gyroscope", "alike", "turns_are_off", "travel"))
+    forced = sum(confusion(replace(track, **untested), 0.0, names) for track in tracks)
     forced = forced[:, : len(names)]
     for name, row, other in zip(names, named, forced, strict=True):
         cells = [f"{value:9.2f}" for value in row / row.sum()]
