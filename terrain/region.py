@@ -15,7 +15,7 @@ from terrain.camera import Camera
 from terrain.rectangle import Rectangle
 from terrain.visible_terrain import is_visible, largest_visible
 
-__all__ = ["Rectangle", "Region", "RegionConfig", "predict_region"]
+__all__ = ["NoRegion", "Rectangle", "Region", "RegionConfig", "predict_region"]
 
 STEPS = 200  # places tried along the predicted motion
 POINTS = 7  # along each side of the footprint; odd, so that its middle is one of them
@@ -99,6 +99,19 @@ class Region:
 
 
 @dataclass(frozen=True)
+class NoRegion:
+    """Why there is no region.
+
+    Attributes
+    ----------
+    reason : str
+        In words, without a capital and a full stop.
+    """
+
+    reason: str
+
+
+@dataclass(frozen=True)
 class _Part:
     """The footprint or one half of it: its middle (2,) in the robot frame, length and width."""
 
@@ -131,7 +144,7 @@ def predict_region(
     *,
     coarsest_m: float = inf,
     scale_mismatch: Callable[[Rectangle], str] = lambda _: "",
-) -> Region | str:
+) -> Region | NoRegion:
     """Move the footprint ahead until it is visible, and keep the part of it that the image shows.
 
     Parameters
@@ -151,11 +164,10 @@ def predict_region(
 
     Returns
     -------
-    Region or str
-        The reason in words where there is no region.
+    Region or NoRegion
     """
     if wheel_speed_m_s <= 0:
-        return "the robot is stationary"
+        return NoRegion("the robot is stationary")
     ahead_s = _times_ahead_s(robot, wheel_speed_m_s, config)
     poses = se2.exp(twist * ahead_s[:, None])
     parts = _parts(robot, config)
@@ -169,9 +181,9 @@ def predict_region(
             time_s = float(ahead_s[place])
             return Region(tuple(rectangles), time_s, wheel_speed_m_s * time_s, poses[place])
     if reasons:
-        return reasons[0]
+        return NoRegion(reasons[0])
     in_image = _shares(camera, poses, parts) >= config.least_share
-    return COARSE if in_image.any() else "the region lies outside the image"
+    return NoRegion(COARSE if in_image.any() else "the region lies outside the image")
 
 
 def _times_ahead_s(robot: Robot, wheel_speed_m_s: float, config: RegionConfig) -> FloatArray:

@@ -14,7 +14,7 @@ from terrain.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.one_patch import OnePatchClassifier
 from terrain.config import Config
-from terrain.region import predict_region
+from terrain.region import NoRegion, predict_region
 
 STRAIGHT = np.array([1.0, 0.0, 0.0])
 
@@ -140,8 +140,8 @@ def _with_look_ahead(config: Config, run: Run) -> Config:
     speed_m_s = float(np.nanmedian(speeds_m_s[speeds_m_s > 0])) if np.any(speeds_m_s > 0) else 0.0
     whole = replace(config.region, least_share=1.0)
     region = predict_region(run.robot, camera, speed_m_s * STRAIGHT, speed_m_s, whole)
-    if isinstance(region, str):
+    if isinstance(region, NoRegion):
         raise ConfigError(
-            f"no look-ahead time t_s fits the camera: {region}; give [region] ahead_s"
+            f"no look-ahead time t_s fits the camera: {region.reason}; give [region] ahead_s"
         )
     return replace(config, region=replace(config.region, ahead_s=region.ahead_s))

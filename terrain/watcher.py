@@ -21,7 +21,7 @@ from terrain.feel_labels import FeelLabels
 from terrain.image_label import ImageLabel, answered
 from terrain.images import read_image
 from terrain.place_labels import Footprint, PlaceLabel
-from terrain.region import Rectangle, Region, RegionConfig, predict_region
+from terrain.region import NoRegion, Rectangle, Region, RegionConfig, predict_region
 from terrain.region_scale import coarsest_m, scale_mismatch
 from terrain.run_likeness import RunLikeness
 from terrain.switch import Switch, SwitchConfig, SwitchEvent
@@ -181,8 +181,8 @@ class TerrainWatcher:
             coarsest_m=coarsest_m(self.classifier, self._region.coarsest),
             scale_mismatch=self._scale_mismatch,
         )
-        if isinstance(region, str):
-            return ImageLabel(frame.stamp_s, name, reason=region)
+        if isinstance(region, NoRegion):
+            return ImageLabel(frame.stamp_s, name, reason=region.reason)
         try:
             image = read_image(frame.image) if isinstance(frame.image, Path) else frame.image
         except ImageError:

@@ -64,7 +64,7 @@ def identified_ros_yaml(found: Identification, runs: Sequence[Run], comment: str
         )
     ((name, table),) = terrains.items()
     drive = drive_numbers(name, table, found.robot.track_width)
-    of_terrain = found.grounds[name]
+    of_terrain = found.terrains[name]
     errors = None
     if of_terrain.held_out is not None:
         horizon_m = float(np.mean(of_terrain.fit.windows.travel_m))

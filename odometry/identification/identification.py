@@ -52,30 +52,35 @@ class Identified:
 
 @dataclass(frozen=True)
 class Identification:
-    """What runs tell of a model, by terrain.
+    """Parameters of a model that runs determine, by terrain.
 
     Attributes
     ----------
     robot : Robot
-    grounds : Mapping of terrain to Identified
+    terrains : Mapping of terrain to Identified
     window_config : WindowConfig
     """
 
     robot: Robot
-    grounds: Mapping[str, Identified]
+    terrains: Mapping[str, Identified]
     window_config: WindowConfig
 
     @property
+    def grounds(self) -> Mapping[str, Identified]:
+        """`terrains` under its old name, for one version."""
+        return self.terrains
+
+    @property
     def left_out(self) -> Counter[str]:
-        """How many windows of the runs there are not, by reason, on all terrains together."""
-        return next(iter(self.grounds.values())).fit.windows.left_out
+        """Windows of the runs that were left out, counted by reason, on all terrains together."""
+        return next(iter(self.terrains.values())).fit.windows.left_out
 
     @property
     def left_open(self) -> tuple[str, ...]:
-        """What the runs do not tell, a clause each."""
+        """Parameters that the runs do not determine, a clause each."""
         return tuple(
             f"[{terrain}] {words}"
-            for terrain, found in self.grounds.items()
+            for terrain, found in self.terrains.items()
             for words in (
                 *(open_.words() for open_ in found.fit.undetermined),
                 *not_told(found.fit, self.robot),
@@ -87,7 +92,7 @@ class Identification:
         """Why a fit is no model of what was recorded, a clause each."""
         return tuple(
             f"[{terrain}] {words}"
-            for terrain, found in self.grounds.items()
+            for terrain, found in self.terrains.items()
             for words in (*refusals(found.fit), *contradicted(found.fit, found.ideal))
         )
 
@@ -114,7 +119,7 @@ class Identification:
     def to_parameter_set(self) -> ParameterSet:
         """One table a terrain, with covariances and where the values come from."""
         terrains = {}
-        for terrain, found in self.grounds.items():
+        for terrain, found in self.terrains.items():
             runs = ", ".join(dict.fromkeys(map(str, found.fit.windows.run)))
             source = (
                 f"identified by terrain-odometry from {len(found.fit.windows)} {found.fit.noun} of "

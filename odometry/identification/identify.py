@@ -74,7 +74,7 @@ def identify(
     >>> import odometry
     >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> identified = odometry.identify([run], "icr", terrain="yard")
-    >>> fit = identified.grounds["yard"].fit
+    >>> fit = identified.terrains["yard"].fit
     >>> f"y_left - y_right = {fit.values['y_left'] - fit.values['y_right']:.1f} m"
     'y_left - y_right = 0.8 m'
     >>> identified.to_parameter_set().terrains["yard"].model
@@ -97,7 +97,7 @@ def identify(
     runs_by_ground = (len(set(here.run)) for here in by_ground.values())
     fits = sum(3 + (min(count, MOST_FOLDS) if count > 1 else 0) for count in runs_by_ground)
     off = None if show_progress else True
-    grounds = {}
+    terrains = {}
     with tqdm(total=fits, unit="fit", disable=off) as bar:
         for name, here in by_ground.items():
             bar.set_description(asked[name].model.name)
@@ -110,8 +110,8 @@ def identify(
                 window_config=window_config,
                 solver_config=solver_config,
             )
-            grounds[name] = _identified(here, _counted(fit_to, bar), robot, given)
-    return Identification(robot, grounds, window_config)
+            terrains[name] = _identified(here, _counted(fit_to, bar), robot, given)
+    return Identification(robot, terrains, window_config)
 
 
 def _given(

@@ -32,9 +32,9 @@ def with_profiles(found: Identification, solver_config: SolverConfig) -> Identif
     """
     terrains = {
         name: replace(of, fit=_profiled(of.fit, found.robot, found.window_config, solver_config))
-        for name, of in found.grounds.items()
+        for name, of in found.terrains.items()
     }
-    return replace(found, grounds=terrains)
+    return replace(found, terrains=terrains)
 
 
 def _profiled(

@@ -18,7 +18,7 @@ def told_instead(found: Identification) -> Identification | None:
     None where the model asked for does not explain the runs, has effects or is as simple, or
     where the runs do not tell this one either. Nothing is held out.
     """
-    asked = [one.fit.model for one in found.grounds.values()]
+    asked = [one.fit.model for one in found.terrains.values()]
     if found.unexplained or any(model.name == SIMPLE or effects_of(model) for model in asked):
         return None
     fit_to = fitter(
@@ -29,11 +29,11 @@ def told_instead(found: Identification) -> Identification | None:
         solver_config=SolverConfig(),
     )
     try:
-        grounds = {
+        terrains = {
             terrain: replace(one, fit=fit_to(one.fit.windows), held_out=None, given={})
-            for terrain, one in found.grounds.items()
+            for terrain, one in found.terrains.items()
         }
-        simpler = replace(found, grounds=grounds)
+        simpler = replace(found, terrains=terrains)
         simpler.require_determined()
     except OdometryError:
         return None

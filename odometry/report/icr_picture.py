@@ -56,7 +56,7 @@ def save_identified_icrs(
     )
     windows = windows_of([with_named_terrain(run, terrain) for run in runs], config)
     measured, fitted = {}, {}
-    for name, ground in found.grounds.items():
+    for name, ground in found.terrains.items():
         fit, alphas = ground.fit, np.array(NO_SLIP)
         if fit.model.has_constant_icrs:
             form = fit.model.icr_form(fit.packed)

@@ -10,7 +10,7 @@ from odometry.run import Robot
 from terrain.camera import Camera
 from terrain.classification.classifier import Classifier
 from terrain.rectangle import Rectangle
-from terrain.region import Region, RegionConfig, predict_region
+from terrain.region import NoRegion, Region, RegionConfig, predict_region
 from terrain.region_scale import coarsest_m, scale_mismatch
 
 Motion = tuple[FloatArray, float]  # body twist (3,) and mean tread speed [m/s]
@@ -41,7 +41,7 @@ class LookAhead:
 
 def look_ahead(
     camera: Camera, robot: Robot, classifier: Classifier | None = None
-) -> LookAhead | str:
+) -> LookAhead | NoRegion:
     """The region that `run` would classify, or why there is none.
 
     Parameters
@@ -55,7 +55,7 @@ def look_ahead(
     if whole is not None:
         return whole
     region = run_region(camera, robot, classifier)
-    if isinstance(region, str):
+    if isinstance(region, NoRegion):
         return region
     return LookAhead(region, False, *metre_px(camera, region.place))
 
@@ -65,7 +65,7 @@ def look_ahead_whole(
 ) -> LookAhead | None:
     """The same where the image shows all of the footprint, else None."""
     region = run_region(camera, robot, classifier, config=WHOLE)
-    if isinstance(region, str):
+    if isinstance(region, NoRegion):
         return None
     return LookAhead(region, True, *metre_px(camera, region.place))
 
@@ -94,7 +94,7 @@ def run_region(
     classifier: Classifier | None,
     motion: Motion = STRAIGHT_ON,
     config: RegionConfig = WHERE_RUN_LOOKS,
-) -> Region | str:
+) -> Region | NoRegion:
     """The region that `run` would classify in a motion, or why there is none."""
 
     def misfit(rectangle: Rectangle) -> str:

@@ -8,11 +8,11 @@ import numpy as np
 from odometry.arrays import ByteImage, FloatArray
 from odometry.run import Run
 from terrain.camera import Camera
-from terrain.checks.run_regions import image_rows, motion_at, seen_region
+from terrain.checks.run_regions import image_rows, motion_at, whole_region
 from terrain.checks.sampled_images import spread
 from terrain.errors import CameraError, ImageError
 from terrain.images import read_image
-from terrain.region import Region
+from terrain.region import NoRegion, Region
 
 TRIES = 5  # images that are opened until one can be read
 
@@ -54,7 +54,7 @@ def shown_image(run: Run) -> ShownImage | None:
 
 
 def shown_images(
-    run: Run, camera: Camera, most: int, region_at: Callable[[FloatArray, float], Region | str]
+    run: Run, camera: Camera, most: int, region_at: Callable[[FloatArray, float], Region | NoRegion]
 ) -> list[ShownImage]:
     """Up to so many images spread over the motion of a run, or over all of it if stationary.
 
@@ -77,8 +77,8 @@ def shown_images(
             continue
         camera.check_size(image)
         region = region_at(twist, float(speed))
-        if isinstance(region, str):
-            found.append(ShownImage(run_time_s, image, camera, None, region))
+        if isinstance(region, NoRegion):
+            found.append(ShownImage(run_time_s, image, camera, None, region.reason))
         else:
             found.append(ShownImage(run_time_s, image, camera, region, ""))
     return found
@@ -86,10 +86,10 @@ def shown_images(
 
 def _regions(
     run: Run, stamps_s: FloatArray, camera: Camera | None, reason: str
-) -> list[Region | str]:
+) -> list[Region | NoRegion]:
     twists, speeds_m_s = motion_at(run, stamps_s)
     return [
-        seen_region(camera, run.robot, twist, speed) if camera is not None else reason
+        whole_region(camera, run.robot, twist, speed) if camera is not None else NoRegion(reason)
         for twist, speed in zip(twists, speeds_m_s, strict=True)
     ]
 
@@ -109,16 +109,17 @@ def _run_time_s(run: Run, stamp_s: float) -> float:
 
 
 def _shown(
-    run_time_s: float, image: ByteImage, camera: Camera | None, region: Region | str
+    run_time_s: float, image: ByteImage, camera: Camera | None, region: Region | NoRegion
 ) -> ShownImage:
     if camera is None:
-        return ShownImage(run_time_s, image, None, None, str(region))
+        reason = region.reason if isinstance(region, NoRegion) else ""
+        return ShownImage(run_time_s, image, None, None, reason)
     height, width = image.shape[:2]
     if (width, height) != camera.image_size:
         reason = "image of {}x{}, [camera] of {}x{}".format(width, height, *camera.image_size)
         return ShownImage(run_time_s, image, None, None, reason)
-    if isinstance(region, str):
-        return ShownImage(run_time_s, image, camera, None, f"the region ahead is {region}")
+    if isinstance(region, NoRegion):
+        return ShownImage(run_time_s, image, camera, None, f"the region ahead is {region.reason}")
     return ShownImage(run_time_s, image, camera, region, "")
 
 

@@ -19,6 +19,7 @@ from terrain.checks.sampled_images import DECODED, SampledImage, decode, sample_
 from terrain.checks.vision_model import vision_model
 from terrain.classification.classifier import TerrainClassifier
 from terrain.errors import CameraError
+from terrain.region import Region
 from terrain.warp import pixel_view
 
 
@@ -109,14 +110,14 @@ def _camera(table: Mapping[str, Any]) -> Camera | None:
 
 def _values(images: Sequence[SampledImage], camera: Camera | None, run: Run) -> list[Values]:
     """Pixels of some images in the region ahead, of whole images where that is not known."""
-    region = straight_ahead(camera, run.robot) if camera is not None else ""
+    region = straight_ahead(camera, run.robot) if camera is not None else None
     found = []
     for place in spread(len(images), DECODED):
         pixels = decode(images[place])
         if pixels is None or pixels.dtype.itemsize > 2:
             continue
         grey = grey_of(pixels)
-        if camera is not None and not isinstance(region, str):
+        if camera is not None and isinstance(region, Region):
             view = pixel_view(grey, camera, region.rectangle)
             grey = view if images[place].size == camera.image_size else grey
         found.append(values_of(pixels, grey))

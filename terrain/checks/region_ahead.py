@@ -17,9 +17,9 @@ from terrain.checks.other_cameras import (
     tilted,
     too_far,
 )
-from terrain.checks.run_regions import RunRegions, looks, straight_ahead
+from terrain.checks.run_regions import RunRegions, run_regions, straight_ahead
 from terrain.errors import CameraError
-from terrain.region import Region
+from terrain.region import NoRegion, Region
 
 HORIZON_M = 1e4
 USUAL_HEIGHT_M = (0.2, 3.0)  # of cameras on skid-steer robots
@@ -32,12 +32,12 @@ def region_ahead(run: Run, table: Mapping[str, Any]) -> Iterator[Finding]:
     except CameraError as error:
         yield _unreadable(str(error), _fitting(run.robot, table))
         return
-    found = looks(run, camera)
+    found = run_regions(run, camera)
     seen = f"the region ahead is {_counts(found)}; {_seen(camera, table)}"
     impossible = no_mount(table)
     if not impossible and not found.in_vain:
         return
-    if not (impossible or isinstance(found.ahead, str) or tilted(_mount(table))):
+    if not (impossible or isinstance(found.ahead, NoRegion) or tilted(_mount(table))):
         yield _where_it_goes(seen, found.ahead)
         return
     fitting = _fitting(run.robot, table)
@@ -82,7 +82,7 @@ def _fitting(robot: Robot, table: Mapping[str, Any]) -> list[Reading]:
             camera = Camera.from_table(reading.table)
         except CameraError:
             continue
-        if not isinstance(straight_ahead(camera, reading.robot), str):
+        if isinstance(straight_ahead(camera, reading.robot), Region):
             usual = USUAL_HEIGHT_M[0] <= height_m(camera) <= USUAL_HEIGHT_M[1]
             found.append((not usual, reading))
     return [reading for _, reading in sorted(found, key=lambda pair: pair[0])]
@@ -126,8 +126,8 @@ def _where_it_goes(seen: str, ahead: Region) -> Finding:
 def _counts(found: RunRegions) -> str:
     if found.frames == 0:
         return (
-            f"{found.ahead} when driving straight on"
-            if isinstance(found.ahead, str)
+            f"{found.ahead.reason} when driving straight on"
+            if isinstance(found.ahead, NoRegion)
             else "in the image when driving straight on"
         )
     words = [f"{reason} in {count}" for reason, count in found.unseen.items()]

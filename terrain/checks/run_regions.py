@@ -10,7 +10,7 @@ from odometry.arrays import FloatArray
 from odometry.run import Robot, Run
 from terrain.camera import Camera
 from terrain.checks.sampled_images import spread
-from terrain.region import Region, RegionConfig, predict_region
+from terrain.region import NoRegion, Region, RegionConfig, predict_region
 
 FRAMES = 40  # moments of a run, some milliseconds each
 MOST = 0.5
@@ -30,13 +30,13 @@ class RunRegions:
     frames : int
         Moments tried, at stamps of images while the robot moved.
     unseen : Mapping of reason to count
-    ahead : Region or str
-        When driving straight ahead; the reason where there is none.
+    ahead : Region or NoRegion
+        When driving straight ahead.
     """
 
     frames: int
     unseen: Mapping[str, int]
-    ahead: Region | str
+    ahead: Region | NoRegion
 
     @property
     def in_vain(self) -> bool:
@@ -44,29 +44,31 @@ class RunRegions:
         return self.frames > 0 and sum(self.unseen.values()) > MOST * self.frames
 
 
-def looks(run: Run, camera: Camera) -> RunRegions:
+def run_regions(run: Run, camera: Camera) -> RunRegions:
     """Predict the region at moments of a run, by an ordinary effective width."""
     twists, speeds_m_s = motion_at(run, image_rows(run))
-    reasons = [
-        seen_region(camera, run.robot, twist, speed_m_s)
+    regions = [
+        whole_region(camera, run.robot, twist, speed_m_s)
         for twist, speed_m_s in zip(twists, speeds_m_s, strict=True)
     ]
-    unseen = Counter(reason for reason in reasons if isinstance(reason, str))
-    return RunRegions(len(reasons), unseen, straight_ahead(camera, run.robot))
+    unseen = Counter(region.reason for region in regions if isinstance(region, NoRegion))
+    return RunRegions(len(regions), unseen, straight_ahead(camera, run.robot))
 
 
-def straight_ahead(camera: Camera, robot: Robot) -> Region | str:
+def straight_ahead(camera: Camera, robot: Robot) -> Region | NoRegion:
     """The region of a robot that drives straight on."""
-    return seen_region(camera, robot, np.array([1.0, 0.0, 0.0]), 1.0)
+    return whole_region(camera, robot, np.array([1.0, 0.0, 0.0]), 1.0)
 
 
-def seen_region(camera: Camera, robot: Robot, twist: FloatArray, speed_m_s: float) -> Region | str:
-    """The whole region by a twist (3,) if the image shows it large enough, else the reason."""
+def whole_region(
+    camera: Camera, robot: Robot, twist: FloatArray, speed_m_s: float
+) -> Region | NoRegion:
+    """The region by a twist (3,) if the image shows all of it, large enough."""
     region = predict_region(robot, camera, twist, speed_m_s, WHOLE)
-    if isinstance(region, str):
-        return OUTSIDE
+    if isinstance(region, NoRegion):
+        return NoRegion(OUTSIDE)
     pixels = camera.ground_to_pixels(region.rectangle.corners)
-    return region if float(np.ptp(pixels, axis=0).min()) >= SMALLEST_PX else TINY
+    return region if float(np.ptp(pixels, axis=0).min()) >= SMALLEST_PX else NoRegion(TINY)
 
 
 def image_rows(run: Run) -> FloatArray:

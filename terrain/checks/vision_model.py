@@ -7,7 +7,7 @@ from odometry.run import Robot
 from terrain.camera import Camera
 from terrain.checks.run_regions import straight_ahead
 from terrain.classification.classifier import TerrainClassifier
-from terrain.region import RegionConfig
+from terrain.region import NoRegion, RegionConfig
 from terrain.region_scale import scale_mismatch
 
 
@@ -29,7 +29,7 @@ def vision_model(
     if camera is None:
         return
     region = straight_ahead(camera, robot)
-    if isinstance(region, str):
+    if isinstance(region, NoRegion):
         return
     reason = scale_mismatch(classifier, camera, region.rectangle, RegionConfig().coarsest)
     if reason:

@@ -14,7 +14,7 @@ from terrain.calibration.suggested_mount import suggest_pitch
 from terrain.camera import Camera
 from terrain.checks.region_ahead import no_mount, region_ahead
 from terrain.classification.classifier import Classifier
-from terrain.region import RegionConfig
+from terrain.region import NoRegion, RegionConfig
 
 ASIDE_RAD = np.radians(60.0)  # a camera that points farther aside does not show the way ahead
 
@@ -53,7 +53,7 @@ def advice(camera: Camera, robot: Robot, classifier: Classifier | None) -> Itera
 def _coarser_model(camera: Camera, robot: Robot, classifier: Classifier) -> str:
     """A pitch shows the whole region, but not with the resolution that the model needs."""
     ahead = look_ahead(camera, robot)
-    if isinstance(ahead, str) or classifier.metres_per_pixel is None:
+    if isinstance(ahead, NoRegion) or classifier.metres_per_pixel is None:
         return (
             "the image shows no region as large as the model's patches; use a camera of more "
             "pixels, or train on smaller patches"

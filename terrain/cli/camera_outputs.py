@@ -14,7 +14,7 @@ from terrain.calibration.first_image import first_image
 from terrain.calibration.look_ahead import run_region
 from terrain.checks.drawn_images import shown_images
 from terrain.distortion import distort
-from terrain.region import Region
+from terrain.region import NoRegion, Region
 from terrain.report.camera_figures import (
     write_board_figure,
     write_flow_figure,
@@ -61,7 +61,7 @@ def draw(
         return files
     camera = mount.camera
 
-    def region_at(twist: FloatArray, wheel_speed_m_s: float) -> Region | str:
+    def region_at(twist: FloatArray, wheel_speed_m_s: float) -> Region | NoRegion:
         return run_region(camera, run.robot, classifier, (twist, wheel_speed_m_s))
 
     shown = shown_images(run, camera, PICTURES, region_at)

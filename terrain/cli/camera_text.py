@@ -12,6 +12,7 @@ from terrain.calibration.look_ahead import LookAhead, look_ahead, nearest_seen_m
 from terrain.calibration.mount_fit import NAMES
 from terrain.camera import Camera
 from terrain.cli.camera_advice import advice
+from terrain.region import NoRegion
 
 if TYPE_CHECKING:
     from terrain.calibration.lens_sources import LensSource
@@ -69,13 +70,13 @@ def print_seen(camera: Camera, robot: Robot, classifier: "TerrainClassifier | No
             "robot's centre."
         )
     ahead = look_ahead(camera, robot, classifier)
-    if isinstance(ahead, str):
-        click.echo(f"Warning: `run` would have no region straight ahead: {ahead}.", err=True)
+    if isinstance(ahead, NoRegion):
+        click.echo(f"Warning: `run` would have no region straight ahead: {ahead.reason}.", err=True)
     else:
         _print_ahead(ahead)
     if classifier is not None:
         _print_model(ahead, classifier)
-    if isinstance(ahead, str) or not ahead.whole:
+    if isinstance(ahead, NoRegion) or not ahead.whole:
         for line in advice(camera, robot, classifier):
             click.echo(f"Suggestion: {line}")
 
@@ -125,17 +126,17 @@ def _print_ahead(ahead: LookAhead) -> None:
     )
 
 
-def _print_model(ahead: LookAhead | str, classifier: "TerrainClassifier") -> None:
+def _print_model(ahead: LookAhead | NoRegion, classifier: "TerrainClassifier") -> None:
     scale = classifier.metres_per_pixel
     if scale is None:
-        size = "" if isinstance(ahead, str) else f" (here up to {_mm(ahead.along_px)} mm)"
+        size = "" if isinstance(ahead, NoRegion) else f" (here up to {_mm(ahead.along_px)} mm)"
         click.echo(
             "Warning: the model has no metric scale: it compares pixels of the image with pixels "
             f"of its training photographs, whatever they show{size}. Train with --metres-per-pixel "
             "on photographs of a known scale.",
             err=True,
         )
-    elif not isinstance(ahead, str):
+    elif not isinstance(ahead, NoRegion):
         coarsest = _mm(min(ahead.along_px, ahead.across_px))
         click.echo(
             f"  The model's patches have {1000 * scale:.3g} mm a pixel, the image there up to "

@@ -16,7 +16,7 @@ def print_identification(found: "Identification") -> None:
     from odometry.identification.short_windows import short_windows
     from odometry.windows.left_out import words
 
-    for name, of_terrain in found.grounds.items():
+    for name, of_terrain in found.terrains.items():
         click.echo("\n".join(report(name, of_terrain)))
         short = short_windows(of_terrain.fit.windows, found.window_config)
         doubts = (
@@ -57,12 +57,12 @@ def require_determined(found: "Identification") -> None:
         lines = [str(error)]
         lines += ["Mend first what the check warned of:", *causes] if causes else []
         lines += ["Nothing is written. The fit that is refused:"]
-        lines += [f"  {in_short(name, one)}" for name, one in found.grounds.items()]
+        lines += [f"  {in_short(name, one)}" for name, one in found.terrains.items()]
         lines += [f"  {words(found.left_out)}"] if found.left_out else []
         simpler = told_instead(found)
         if simpler is not None:
             lines += [f"The same runs determine a model with fewer parameters: --model {SIMPLE}"]
-            lines += [f"  {in_short(name, one)}" for name, one in simpler.grounds.items()]
+            lines += [f"  {in_short(name, one)}" for name, one in simpler.terrains.items()]
         raise IdentificationError("\n".join(lines)) from error
 
 

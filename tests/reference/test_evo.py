@@ -11,14 +11,6 @@ import numpy as np
 import pytest
 
 from odometry.dead_reckoning import dead_reckon, dead_reckon_in_space
-from odometry.evaluation.alignment import align_origin, align_rigid
-from odometry.evaluation.pose_errors import absolute_pose_errors, relative_pose_errors, statistics
-from odometry.evaluation.pose_pairs import (
-    all_frame_pairs,
-    all_path_pairs,
-    consecutive_frame_pairs,
-    consecutive_path_pairs,
-)
 from odometry.evaluation.relative import EvaluationConfig, position_errors, relative_errors
 from odometry.io.trajectory_files import write_trajectory
 from odometry.io.tum import write_spatial_tum, write_tum
@@ -26,6 +18,18 @@ from odometry.shipped import shipped_data
 from odometry.spatial_trajectory import SpatialTrajectory
 from terrain.main_job import run_odometry
 from terrain.results import write_results
+from tests.reference.pose_metrics.alignment import align_origin, align_rigid
+from tests.reference.pose_metrics.pose_errors import (
+    absolute_pose_errors,
+    relative_pose_errors,
+    statistics,
+)
+from tests.reference.pose_metrics.pose_pairs import (
+    all_frame_pairs,
+    all_path_pairs,
+    consecutive_frame_pairs,
+    consecutive_path_pairs,
+)
 
 STEP_S, SPEED, STEPS = 0.25, 1.0, 160  # binary fractions: wheel travel has no rounding
 STAMPS_S = STEP_S * np.arange(STEPS + 1)

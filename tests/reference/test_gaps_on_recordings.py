@@ -101,7 +101,7 @@ def test_a_log_of_changes_identifies_what_the_whole_log_does(shared_data, name):
     columns = {n: c for n, c in whole.odometry.columns.items() if n not in {"roll", "pitch"}}
     whole = replace(whole, odometry=replace(whole.odometry, columns=columns))
     first, second = (
-        next(iter(identify([run], "icr_symmetric").grounds.values())).fit
+        next(iter(identify([run], "icr_symmetric").terrains.values())).fit
         for run in (whole, on_change_only(whole))
     )
     for parameter, value in first.values.items():

@@ -25,6 +25,7 @@ from terrain.checks.region_ahead import region_ahead
 from terrain.checks.run_regions import straight_ahead
 from terrain.checks.sampled_images import SampledImage
 from terrain.errors import CameraError
+from terrain.region import NoRegion
 
 RIGHT = ("none", "none, homography")
 ALIASES = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # x right, y forward
@@ -44,7 +45,7 @@ def main() -> None:
         rng = np.random.default_rng(seed)
         seed += 1
         robot, table = drawn(rng)
-        if isinstance(straight_ahead(Camera.from_table(table), robot), str):
+        if isinstance(straight_ahead(Camera.from_table(table), robot), NoRegion):
             continue
         for name, (wrong, words) in mistakes(table).items():
             causes = found(robot, wrong, table["image_size"])

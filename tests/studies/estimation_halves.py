@@ -62,7 +62,7 @@ def halves_in(run, model):
         found = identify([run], model, solver_config=SolverConfig(starts=1))
     except OdometryError:
         return None
-    return next(iter(found.grounds.values())).halves
+    return next(iter(found.terrains.values())).halves
 
 
 if __name__ == "__main__":

@@ -49,7 +49,7 @@ def recordings(folder: Path) -> dict[str, Run]:
 def real(runs: Mapping[str, Run]) -> list[Case]:
     """Nothing was done to the data."""
     first, third, fourth = in_parts(runs[TILE])
-    (identified,) = identify([first], "icr", fixed={"x_icr": 0.0}).grounds.values()
+    (identified,) = identify([first], "icr", fixed={"x_icr": 0.0}).terrains.values()
     no_offset = dict(identified.fit.values)
     steep, flat, long = ([runs[name]] for name in (STEEP, FLAT, LONG))
     known, measured, held = ([runs[f"{MARMOTTE}{name}"]] for name in ("s00", "s02", "s04"))

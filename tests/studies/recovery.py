@@ -211,7 +211,7 @@ def _undetermined(name: str, case: Case) -> str:
             yaw_sigma_rad=YAW_RAD,
         )
         found = identify([run], name, fixed=case.fixed, window_config=config)
-    (ground,) = found.grounds.values()
+    (ground,) = found.terrains.values()
     return "\n".join(f"  {open_.words()}" for open_ in ground.fit.undetermined) or "  all told"
 
 

@@ -32,7 +32,7 @@ from terrain.checks.run_regions import motion_at
 from terrain.classification.training import train
 from terrain.images import read_image
 from terrain.main_job import run_odometry
-from terrain.region import Rectangle, RegionConfig, predict_region
+from terrain.region import NoRegion, Rectangle, RegionConfig, predict_region
 from terrain.region_scale import coarsest_m, scale_mismatch
 from terrain.synthesis.config import SynthesisConfig, default_camera
 from terrain.synthetic import synthesise
@@ -99,7 +99,7 @@ def outcomes(camera, robot, twist, speed_m_s):
             needs["coarsest_m"] = coarsest_m(PATCHES, config.coarsest)
             needs["scale_mismatch"] = partial(too_small, camera, config.coarsest)
         region = predict_region(robot, camera, twist, speed_m_s, config, **needs)
-        found.append(not isinstance(region, str))
+        found.append(not isinstance(region, NoRegion))
     return found
 
 

@@ -23,7 +23,7 @@ from terrain.camera import Camera
 from terrain.classification.training import train
 from terrain.config import Config
 from terrain.images import read_image
-from terrain.region import Rectangle, predict_region
+from terrain.region import NoRegion, Rectangle, predict_region
 from terrain.synthetic import synthesise
 from terrain.warp import ground_view
 from terrain.whole_image import classify_ground
@@ -57,7 +57,7 @@ def study(run: Run, preset: str, images: int) -> None:
         speed = float(np.abs(estimate.tread_speeds_m_s).mean())
         start = time.perf_counter()
         region = predict_region(run.robot, camera, estimate.twist, speed, Config().region)
-        if isinstance(region, str):
+        if isinstance(region, NoRegion):
             continue
         view = ground_view(image, camera, region.rectangle, scale)
         (answer,) = classifier.classify([view])

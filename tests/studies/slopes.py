@@ -125,8 +125,8 @@ def identify_models(level: Run, turn: Run) -> dict[str, Fit]:
     )
     return {
         "icr": flat,
-        "icr_slope": sloped.grounds["concrete"].fit,
-        "contact": contact.grounds["concrete"].fit,
+        "icr_slope": sloped.terrains["concrete"].fit,
+        "contact": contact.terrains["concrete"].fit,
     }
 
 

@@ -23,7 +23,7 @@ from odometry.simulation.noise import ornstein_uhlenbeck
 from terrain.camera import Camera
 from terrain.config import Config
 from terrain.image_label import ImageLabel
-from terrain.region import predict_region
+from terrain.region import NoRegion, predict_region
 from terrain.synthesis.config import SynthesisConfig
 from terrain.synthesis.records import identified_parameters, motion_tables, run_settings
 from terrain.watcher import TerrainWatcher
@@ -155,7 +155,7 @@ class LabellingWatcher(TerrainWatcher):
         commanded = replace(estimate, tread_speeds_m_s=frame.tread_speeds_m_s)
         speed_m_s = float(np.abs(frame.tread_speeds_m_s).mean())
         region = predict_region(self._robot, self._camera, commanded.twist, speed_m_s, self._region)
-        if isinstance(region, str):
+        if isinstance(region, NoRegion):
             return ImageLabel(frame.stamp_s, name, reason=region)
         true = self._course.true_terrain(frame.stamp_s, region.place)
         label = self._label(true, self._travel_m)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from odometry.errors import ConfigError
 from odometry.run import Robot
 from terrain.camera import Camera
-from terrain.region import Rectangle, RegionConfig, predict_region
+from terrain.region import NoRegion, Rectangle, RegionConfig, predict_region
 from tests.terrain.regions import (
     AHEAD,
     ALL_ROUND,
@@ -55,8 +55,8 @@ def test_length_and_width_default_to_the_track_width():
 
 
 def test_a_robot_that_stands_has_no_region():
-    assert (
-        predict_region(ROBOT, AHEAD, np.zeros(3), 0.0, RegionConfig()) == "the robot is stationary"
+    assert predict_region(ROBOT, AHEAD, np.zeros(3), 0.0, RegionConfig()) == NoRegion(
+        "the robot is stationary"
     )
 
 
@@ -87,7 +87,7 @@ def test_the_search_ends_at_its_limits():
         {"most_ahead_s": 0.9 * found.ahead_s},
     ):
         ends = RegionConfig(**whole, **limit)
-        assert isinstance(predict_region(ROBOT, AHEAD, forward, 0.5, ends), str)
+        assert isinstance(predict_region(ROBOT, AHEAD, forward, 0.5, ends), NoRegion)
 
 
 @pytest.mark.parametrize("speed", [0.03, 0.5, 5.0])

@@ -84,7 +84,7 @@ def test_standard_deviations_are_those_of_noise(tmp_path, speeds):
 def test_a_husky_on_tile(shared_data):
     """Medians agree with the fit: x_icr -0.146 m, within the 95 % intervals of both together."""
     run = Run.read(shared_data / "motion" / "husky_tile_20231212_1616_s00")
-    fit = identify([run], "icr").grounds["ground"].fit
+    fit = identify([run], "icr").terrains["ground"].fit
     sigmas = np.array([fit.sigmas[name] for name in ("y_left", "y_right", "x_icr")])
     medians = icr_medians(measured_icrs([run], alphas=fit.packed[3:]))
     assert [median.side for median in medians] == ["left", "right"]

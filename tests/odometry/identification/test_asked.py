@@ -56,7 +56,7 @@ def test_effects_on_commands_are_held(winding, synthetic, tmp_path):
     }
     assert table.values == pytest.approx(expected, abs=1e-4)
     assert table.covariance_order == tuple(synthetic.icrs)
-    assert found.grounds["gravel"].held_out.translation_per_m.mean() < 1e-4
+    assert found.terrains["gravel"].held_out.translation_per_m.mean() < 1e-4
 
 
 def test_effects_on_the_measurement_are_undone(winding, synthetic):
@@ -72,7 +72,7 @@ def test_effects_on_the_measurement_are_undone(winding, synthetic):
     found = identified(seen, set_of(ARM, LATE)).to_parameter_set().terrains["gravel"]
     assert found.values == pytest.approx(synthetic.icrs, abs=1e-4)
     assert found.effects == (ARM, LATE)
-    without = identified(seen, "icr").grounds["gravel"].fit.values
+    without = identified(seen, "icr").terrains["gravel"].fit.values
     assert abs(without["x_icr"] - synthetic.icrs["x_icr"]) > 0.2
 
 
@@ -92,27 +92,27 @@ def test_lagging_treads_between_uneven_stamps(synthetic, tmp_path):
     columns |= {"v_left": odometry[:, 1], "v_right": odometry[:, 2]}
     run = replace(run, odometry=replace(run.odometry, columns=columns))
     follows = effect("actuator_lag", "first_order", lag=lag)
-    found = identified(run, set_of(follows, ground="ground")).grounds["ground"].fit.values
+    found = identified(run, set_of(follows, ground="ground")).terrains["ground"].fit.values
     assert found == pytest.approx(synthetic.icrs, abs=1e-3)
 
 
 def test_a_set_without_effects_is_its_model(winding):
     by_set, by_name = identified(winding, set_of()), identified(winding, "icr")
-    assert by_set.grounds["gravel"].fit.model is MODELS["icr"]
-    assert by_set.grounds["gravel"].fit.values == by_name.grounds["gravel"].fit.values
+    assert by_set.terrains["gravel"].fit.model is MODELS["icr"]
+    assert by_set.terrains["gravel"].fit.values == by_name.terrains["gravel"].fit.values
 
 
 def test_what_the_set_knows_of_the_robot_is_held(winding):
     """The width of Baril's law is known: that of the set, of --fix before it, or set free."""
     values = {"alpha": 1.0, "beta_1": 1.0, "beta_2": 1.0, "track_width": 0.55}
     wanted = set_of(model="radius_of_curvature", values=values)
-    found = identified(winding, wanted).grounds["gravel"]
+    found = identified(winding, wanted).terrains["gravel"]
     assert found.given == {"track_width": 0.55}
     assert found.fit.values["track_width"] == 0.55
     fixed = identified(winding, wanted, fixed={"track_width": 0.45, "beta_2": 0.5})
-    assert fixed.grounds["gravel"].given == {"track_width": 0.45, "beta_2": 0.5}
+    assert fixed.terrains["gravel"].given == {"track_width": 0.45, "beta_2": 0.5}
     freed = identified(winding, wanted, released=("track_width",), fixed={"beta_2": 0.5})
-    assert "track_width" in freed.grounds["gravel"].fit.names
+    assert "track_width" in freed.terrains["gravel"].fit.names
 
 
 def test_each_ground_has_the_model_of_its_table(synthetic, tmp_path):
@@ -130,8 +130,8 @@ def test_each_ground_has_the_model_of_its_table(synthetic, tmp_path):
         "ice": TerrainParameters("icr_symmetric", {"alpha": 1.0, "b_hat": 0.8}),
     }
     found = identified(Run.read(folder), ParameterSet(tables), window_config=WindowConfig())
-    assert found.grounds["ice"].fit.model is MODELS["icr_symmetric"]
-    assert [a.effect.name for a in effects_of(found.grounds["sand"].fit.model)] == ["wheel_scale"]
+    assert found.terrains["ice"].fit.model is MODELS["icr_symmetric"]
+    assert [a.effect.name for a in effects_of(found.terrains["sand"].fit.model)] == ["wheel_scale"]
     written = found.to_parameter_set().terrains
     assert {name: (t.model, t.effects) for name, t in written.items()} == {
         "sand": ("icr", (SCALE,)),

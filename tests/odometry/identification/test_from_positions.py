@@ -20,7 +20,7 @@ ONE_START = SolverConfig(starts=1)
 
 def fit_of(*runs, model="icr", **settings):
     found = identify(runs, model, solver_config=ONE_START, **settings)
-    (ground,) = found.grounds.values()
+    (ground,) = found.terrains.values()
     return ground.fit
 
 
@@ -138,7 +138,7 @@ def test_profiles_of_a_quadratic_loss_are_the_symmetric_intervals():
     run = emptied(drive(12, noise_m=0.02))
     found = identify([run], "icr_symmetric", solver_config=config)
     profiled = with_profiles(found, config)
-    plain, curved = (next(iter(f.grounds.values())).fit.intervals for f in (found, profiled))
+    plain, curved = (next(iter(f.terrains.values())).fit.intervals for f in (found, profiled))
     for name, interval in plain.items():
         assert curved[name].low == pytest.approx(interval.low, rel=0.01)
         assert curved[name].high == pytest.approx(interval.high, rel=0.01)
@@ -146,7 +146,7 @@ def test_profiles_of_a_quadratic_loss_are_the_symmetric_intervals():
 
 def test_held_out_errors_are_small_beside_the_ideal_drive():
     found = identify([emptied(drive(13, noise_m=0.02))], "icr", solver_config=ONE_START)
-    (ground,) = found.grounds.values()
+    (ground,) = found.terrains.values()
     for held, ideal in (
         (ground.held_out.translation_per_m, ground.ideal.translation_per_m),
         (ground.held_out.rotation_per_m, ground.ideal.rotation_per_m),

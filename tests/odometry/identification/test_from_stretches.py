@@ -17,7 +17,7 @@ def found(run, model="icr"):
 
 
 def only(identification):
-    (ground,) = identification.grounds.values()
+    (ground,) = identification.terrains.values()
     return ground
 
 

@@ -36,7 +36,7 @@ def with_faster_second_half(run, factor):
 def found_in(runs, model="icr"):
     config = WindowConfig(position_sigma_m=0.01, yaw_sigma_rad=0.005)
     found = identify(runs, model, window_config=config, solver_config=SolverConfig(starts=1))
-    (of_terrain,) = found.grounds.values()
+    (of_terrain,) = found.terrains.values()
     return of_terrain
 
 

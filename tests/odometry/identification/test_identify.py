@@ -116,18 +116,19 @@ def noisy_runs(gravel, ice, synthetic):
     return [synthetic.noisy(run, np.random.default_rng(1)) for run in (gravel, ice)]
 
 
-def test_each_ground_has_its_own_fit(gravel, ice, synthetic):
+def test_each_terrain_has_its_own_fit(gravel, ice, synthetic):
     found = identify([gravel, ice], "icr", solver_config=ONE_START)
-    assert list(found.grounds) == ["gravel", "ice"]
-    assert found.grounds["gravel"].fit.values == pytest.approx(synthetic.icrs, abs=1e-9)
-    assert found.grounds["ice"].fit.values == pytest.approx(ICE, abs=1e-9)
-    assert set(found.grounds["ice"].fit.windows.run) == {"ice_run"}
+    assert list(found.terrains) == ["gravel", "ice"]
+    assert found.grounds is found.terrains  # their old name
+    assert found.terrains["gravel"].fit.values == pytest.approx(synthetic.icrs, abs=1e-9)
+    assert found.terrains["ice"].fit.values == pytest.approx(ICE, abs=1e-9)
+    assert set(found.terrains["ice"].fit.windows.run) == {"ice_run"}
     found.require_determined()
 
 
 def test_runs_of_one_ground_are_fitted_together(make, ice):
     other = make("other", terrain="ice", seed=1)
-    found = identify([ice, other], "icr", solver_config=ONE_START).grounds["ice"]
+    found = identify([ice, other], "icr", solver_config=ONE_START).terrains["ice"]
     assert set(found.fit.windows.run) == {"ice_run", "other"}
     assert found.fit.values == pytest.approx(ICE, abs=1e-9)
 
@@ -136,8 +137,8 @@ def test_a_run_over_two_grounds_is_parted(make):
     names = ["ice"] * 200 + ["sand"] * 200
     run = make("both", terrain_column=names)
     found = identify([run], "icr", solver_config=ONE_START)
-    assert list(found.grounds) == ["ice", "sand"]
-    starts_s = {name: ground.fit.windows.start_s for name, ground in found.grounds.items()}
+    assert list(found.terrains) == ["ice", "sand"]
+    starts_s = {name: ground.fit.windows.start_s for name, ground in found.terrains.items()}
     assert starts_s["ice"].max() < 20 <= starts_s["sand"].min()
 
 
@@ -146,21 +147,21 @@ def test_a_ground_without_name(make, ice, terrain, expected):
     """The given name is for the runs that have none."""
     nameless = make("nameless", seed=1)
     found = identify([nameless, ice], "icr", terrain=terrain, solver_config=ONE_START)
-    assert list(found.grounds) == [expected, "ice"]
+    assert list(found.terrains) == [expected, "ice"]
 
 
 def test_runs_that_name_a_ground_and_runs_that_are_told_to_be_on_it_are_one(make, ice):
     nameless = make("nameless", seed=1)
     found = identify([nameless, ice], "icr", terrain="ice", solver_config=ONE_START)
-    assert set(found.grounds["ice"].fit.windows.run) == {"nameless", "ice_run"}
+    assert set(found.terrains["ice"].fit.windows.run) == {"nameless", "ice_run"}
 
 
 def test_held_out_errors_are_of_other_runs_and_of_the_halves_of_one(make, ice):
     """Two runs of unlike robots, though of one ground: neither tells of the other."""
     other = make("other", truth=ICE | {"y_left": 1.4}, terrain="ice", seed=1)
-    halves = identify([ice], "icr", solver_config=ONE_START).grounds["ice"]
+    halves = identify([ice], "icr", solver_config=ONE_START).terrains["ice"]
     assert np.all(halves.held_out.translation_per_m < 1e-9)
-    crossed = identify([ice, other], "icr", solver_config=ONE_START).grounds["ice"]
+    crossed = identify([ice, other], "icr", solver_config=ONE_START).terrains["ice"]
     assert len(crossed.held_out.rotation_per_m) == len(crossed.fit.windows)
     assert crossed.held_out.rotation_per_m.mean() > 0.05
 
@@ -169,13 +170,13 @@ def test_without_enough_for_the_parts_there_is_no_held_out_error(ice):
     """Five windows tell five parameters; two or three would not tell nine numbers."""
     config = WindowConfig(horizon_m=20.0, shortest=0.9)
     found = identify([ice], "icr_symmetric", window_config=config, solver_config=ONE_START)
-    assert len(found.grounds["ice"].fit.windows) == 1
-    assert found.grounds["ice"].held_out is None
+    assert len(found.terrains["ice"].fit.windows) == 1
+    assert found.terrains["ice"].held_out is None
 
 
 def test_the_ideal_drive_is_that_of_the_track_width(ice):
     """The treads themselves are the ICRs."""
-    found = identify([ice], "icr", solver_config=ONE_START).grounds["ice"]
+    found = identify([ice], "icr", solver_config=ONE_START).terrains["ice"]
     ideal = np.array([0.25, -0.25, 0, 1, 1])
     expected = window_errors(Icr(), ideal, windows_of([ice], WindowConfig()))
     for name in ("translation_per_m", "rotation_per_m"):
@@ -210,8 +211,8 @@ def test_fixed_and_released_reach_the_fit(ice):
     found = identify(
         [ice], "traction_mode", fixed={"m": 1.0}, released=["track_width"], solver_config=ONE_START
     )
-    assert found.grounds["ice"].fit.names == ("k", "track_width")
-    assert found.grounds["ice"].fit.values["m"] == 1.0
+    assert found.terrains["ice"].fit.names == ("k", "track_width")
+    assert found.terrains["ice"].fit.values["m"] == 1.0
 
 
 def test_what_the_runs_leave_open_is_refused_with_numbers(make, synthetic, stated):
@@ -228,7 +229,7 @@ def test_what_the_runs_leave_open_is_refused_with_numbers(make, synthetic, state
     )
     run = synthetic.noisy(run, np.random.default_rng(1))
     found = identify([run], "icr_symmetric", window_config=stated, solver_config=ONE_START)
-    (open_,) = found.grounds["ice"].fit.undetermined
+    (open_,) = found.terrains["ice"].fit.undetermined
     with pytest.raises(IdentificationError) as caught:
         found.require_determined()
     message = str(caught.value)
@@ -248,7 +249,7 @@ def test_a_parameter_set_comes_back_from_its_file(noisy_runs, model, stated, tmp
     write_parameters(file, found.to_parameter_set())
     read = read_parameters(file)
     assert list(read.terrains) == ["gravel", "ice"]
-    for name, ground in found.grounds.items():
+    for name, ground in found.terrains.items():
         table = read.terrains[name]
         assert table.model == model
         assert table.values == ground.fit.values
@@ -289,5 +290,5 @@ def test_slopes_are_fitted_in_two_stages_and_nothing_else_is(gravel):
         window_config=WindowConfig(),
         solver_config=ONE_START,
     )
-    found = identify([gravel], "icr", solver_config=ONE_START).grounds["gravel"].fit
+    found = identify([gravel], "icr", solver_config=ONE_START).terrains["gravel"].fit
     np.testing.assert_allclose(found.packed, fitted.packed, rtol=1e-12)

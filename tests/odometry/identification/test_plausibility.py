@@ -34,7 +34,7 @@ def test_speeds_a_third_of_the_true_are_refused(winding, model, name):
         found.require_determined()
     message = str(caught.value)
     assert f"[gravel] {name} ended at its bound 2" in message
-    scale = found.grounds["gravel"].fit.scale
+    scale = found.terrains["gravel"].fit.scale
     assert f"{scale:.1f} times the poses' stated noise" in message
     assert "another unit" in message
 
@@ -51,10 +51,10 @@ def test_gains_that_slip_does_not_make_are_doubted(winding):
     """Speeds 0.6 of the true: 1.6 is within the bounds, and no slip."""
     found = identified(with_speeds_times(winding, 0.6))
     found.require_determined()
-    said = notes(found.grounds["gravel"].fit)
+    said = notes(found.terrains["gravel"].fit)
     assert [words.split(" =")[0] for words in said] == ["alpha_left", "alpha_right"]
     assert "are the tread speeds in m/s?" in said[0]
-    assert notes(identified(winding).grounds["gravel"].fit) == ()
+    assert notes(identified(winding).terrains["gravel"].fit) == ()
 
 
 def test_at_its_bound_with_residuals_as_the_noise_explains_is_noted(synthetic, tmp_path):
@@ -63,7 +63,7 @@ def test_at_its_bound_with_residuals_as_the_noise_explains_is_noted(synthetic, t
     folder = synthetic.write(tmp_path, odometry, np.arange(0, 39, 0.1), synthetic.icr_twist(truth))
     found = identified(Run.read(folder), config=WindowConfig(horizon_m=0.5))
     found.require_determined()
-    (ground,) = found.grounds.values()
+    (ground,) = found.terrains.values()
     assert ground.fit.at_bound == ("alpha_left",)
     assert any("alpha_left ended at the edge" in words for words in notes(ground.fit))
 
@@ -71,7 +71,7 @@ def test_at_its_bound_with_residuals_as_the_noise_explains_is_noted(synthetic, t
 def test_a_bound_without_effect_is_an_answer(winding):
     """No widening by curvature: beta_2 = 0, whatever else the model lacks."""
     found = identified(winding, "radius_of_curvature", WindowConfig(yaw_sigma_rad=1e-4))
-    fit = found.grounds["gravel"].fit
+    fit = found.terrains["gravel"].fit
     assert fit.scale > 3
     neutral = replace(fit, at_bound=("beta_2",), values={**fit.values, "beta_2": 1e-4})
     assert refusals(neutral) == ()
@@ -80,5 +80,5 @@ def test_a_bound_without_effect_is_an_answer(winding):
 
 def test_few_degrees_of_freedom_are_said(winding):
     windows = WindowConfig(horizon_m=20.0)
-    said = notes(identified(winding, config=windows).grounds["gravel"].fit)
+    said = notes(identified(winding, config=windows).terrains["gravel"].fit)
     assert any("degrees of freedom make intervals" in words for words in said)

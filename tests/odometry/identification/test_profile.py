@@ -72,8 +72,8 @@ def brute(fit, name, window_config):
 
 
 def test_the_ends_are_where_a_general_minimiser_finds_them(curved):
-    (ground,) = curved.grounds.values()
-    (profiled,) = with_profiles(curved, CONFIG).grounds.values()
+    (ground,) = curved.terrains.values()
+    (profiled,) = with_profiles(curved, CONFIG).terrains.values()
     fit = ground.fit
     assert "b_hat" not in fit.at_bound
     low, high = brute(fit, "b_hat", curved.window_config)
@@ -87,8 +87,8 @@ def test_the_ends_are_where_a_general_minimiser_finds_them(curved):
 def test_where_the_loss_is_quadratic_the_interval_is_students(winding, synthetic, stated):
     run = synthetic.noisy(winding, np.random.default_rng(1))
     found = identify([run], "full_linear", window_config=stated, solver_config=CONFIG)
-    (plain,) = found.grounds.values()
-    (profiled,) = with_profiles(found, CONFIG).grounds.values()
+    (plain,) = found.terrains.values()
+    (profiled,) = with_profiles(found, CONFIG).terrains.values()
     for name, of in plain.fit.intervals.items():
         width = of.high - of.low
         ends = (profiled.fit.intervals[name].low, profiled.fit.intervals[name].high)
@@ -96,7 +96,7 @@ def test_where_the_loss_is_quadratic_the_interval_is_students(winding, synthetic
 
 
 def test_a_model_fitted_in_stages_has_no_profile(curved):
-    (name, ground), *_ = curved.grounds.items()
+    (name, ground), *_ = curved.terrains.items()
     staged = replace(ground, fit=replace(ground.fit, model=_Staged()))
     with pytest.raises(IdentificationError, match="stages"):
         with_profiles(replace(curved, grounds={name: staged}), CONFIG)

@@ -14,7 +14,7 @@ from odometry.identification.report import correlations, in_short, report
 def found(winding, synthetic, stated):
     run = synthetic.noisy(winding, np.random.default_rng(1))
     options = {"window_config": stated, "solver_config": SolverConfig(starts=2)}
-    return identify([run], "icr", fixed={"x_icr": 0.06}, **options).grounds["gravel"]
+    return identify([run], "icr", fixed={"x_icr": 0.06}, **options).terrains["gravel"]
 
 
 def cells(lines, name):

@@ -12,7 +12,7 @@ from odometry.identification.short_recording import STEADY_S
 
 @pytest.fixture(scope="module")
 def found(winding, stated):
-    return identify([winding], "icr_symmetric", window_config=stated).grounds["gravel"]
+    return identify([winding], "icr_symmetric", window_config=stated).terrains["gravel"]
 
 
 @pytest.mark.parametrize("below", [True, False])

@@ -58,7 +58,7 @@ def test_gap_finds_slower_wheels_from_positions_alone():
 def test_full_poses_of_an_antenna_are_moved_to_the_robot():
     arm_m = (0.4, -0.25)
     found = identify([drive(5, arm_m=arm_m)], "icr", solver_config=SolverConfig(starts=1))
-    (ground,) = found.grounds.values()
+    (ground,) = found.terrains.values()
     for name, value in ICR.items():
         assert ground.fit.values[name] == pytest.approx(value, abs=1e-3), name
 

@@ -7,6 +7,7 @@ from odometry.run import Robot
 from terrain.calibration.look_ahead import look_ahead, metre_px, nearest_seen_m
 from terrain.calibration.suggested_mount import pitched, suggest_pitch
 from terrain.camera import Camera
+from terrain.region import NoRegion
 
 ROBOT = Robot(track_width=0.4, length=0.5, width=0.5)
 MATRIX = [[400.0, 0.0, 319.5], [0.0, 400.0, 239.5], [0.0, 0.0, 1.0]]
@@ -51,7 +52,7 @@ def test_a_part_only():
 
 def test_a_pitch_is_suggested_where_the_region_is_missed():
     up = camera(-25)
-    assert look_ahead(up, ROBOT) == "the region lies outside the image"
+    assert look_ahead(up, ROBOT) == NoRegion("the region lies outside the image")
     found = suggest_pitch(up, ROBOT)
     for pitch_deg in (found.least_deg, found.suggested_deg, found.most_deg):
         assert look_ahead(pitched(up, pitch_deg), ROBOT).whole

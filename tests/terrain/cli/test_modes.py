@@ -106,7 +106,7 @@ def test_what_was_seen_makes_a_second_track(with_sight):
     assert "With sight: ice: detected after" in answer.stdout
     content = json.loads((out / "result.json").read_text())
     assert content["sight"]["told"] == 2
-    assert "PlaceLabel and motion disagree nowhere for 2 s or longer." in answer.stdout
+    assert "Sight and motion disagree nowhere for 2 s or longer." in answer.stdout
     assert (out / "modes_with_sight.csv").exists()
 
 

@@ -3,11 +3,15 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from odometry.errors import TrajectoryError
-from odometry.evaluation.pose_errors import absolute_pose_errors, relative_pose_errors, statistics
 from odometry.evaluation.relative import position_errors
 from odometry.geometry import se3
 from odometry.spatial_trajectory import SpatialTrajectory
 from odometry.trajectory import Trajectory
+from tests.reference.pose_metrics.pose_errors import (
+    absolute_pose_errors,
+    relative_pose_errors,
+    statistics,
+)
 
 
 def in_plane(poses):

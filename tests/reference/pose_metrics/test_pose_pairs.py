@@ -6,14 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from odometry.errors import ConfigError
-from odometry.evaluation.pose_pairs import (
+from odometry.geometry import se3
+from odometry.spatial_trajectory import SpatialTrajectory
+from tests.reference.pose_metrics.pose_pairs import (
     all_frame_pairs,
     all_path_pairs,
     consecutive_frame_pairs,
     consecutive_path_pairs,
 )
-from odometry.geometry import se3
-from odometry.spatial_trajectory import SpatialTrajectory
 
 
 def along(steps_m):
