@@ -7,7 +7,7 @@ import numpy as np
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.heading import CONSISTENT, Heading, headings
-from odometry.checks.turning import Sense, gyroscope_sense, pose_sense
+from odometry.checks.turn_signs import Sense, gyroscope_sense, pose_sense
 from odometry.checks.undo import Mend, changed, times, yaw_plus
 
 OFF_RAD = np.radians(15)  # a lateral ICR or a sensor that is turned a little is no fault

@@ -9,7 +9,7 @@ from odometry.checks.path_differences import paths_apart
 from odometry.checks.position_differences import positions_apart, positions_apart_everywhere
 from odometry.checks.proportion import holds_the_mean, one_side_not_proportional, treads_unlike
 from odometry.checks.relation import Relation
-from odometry.checks.turning import Sense, gyroscope_sense, pose_sense
+from odometry.checks.turn_signs import Sense, gyroscope_sense, pose_sense
 
 POOR = 0.6  # correlation below which sensors do not measure the same motion
 LEAST_WINDOWS = 15

@@ -5,7 +5,7 @@ import numpy as np
 from odometry.checks.evidence import Evidence
 from odometry.checks.heading import headings
 from odometry.checks.heading_spans import heading_spans
-from odometry.checks.turning import lasting_turn_rad
+from odometry.checks.turn_signs import lasting_turn_rad
 
 SPANS_S = (15.0, 5.0, 1.5)  # over which headings of gyroscope and poses are compared
 APART_RAD = 0.3  # good recordings stay below 0.21 (nine in ten spans)

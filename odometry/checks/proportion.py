@@ -9,7 +9,7 @@ from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.motion import Motion, turns_both_ways
 from odometry.checks.relation import Relation, relation
-from odometry.checks.turning import lasting_turn_rad
+from odometry.checks.turn_signs import lasting_turn_rad
 
 SLOW, FAST = 0.25, 0.9  # shares of the ordinary fastest speed that are compared
 UNLIKE = 1.3  # ratio of what a metre at slow and at fast speed moves the robot; slip stays below

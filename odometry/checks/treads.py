@@ -8,7 +8,7 @@ from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, counted
 from odometry.checks.outliers import spikes
-from odometry.checks.turning import lasting_turn_rad
+from odometry.checks.turn_signs import lasting_turn_rad
 
 COARSE = 0.1  # a step of the readings as a share of the ordinary fastest speed
 LEAST_CHANGES = 15  # of a tread speed, and as a share of the rows: else it is a held command

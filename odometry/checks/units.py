@@ -8,7 +8,7 @@ from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, disagreement
 from odometry.checks.proportion import holds_the_mean
 from odometry.checks.relation import Relation, pieces
-from odometry.checks.turning import Sense, gyroscope_sense, pose_sense
+from odometry.checks.turn_signs import Sense, gyroscope_sense, pose_sense
 from odometry.checks.undo import times
 from odometry.checks.unit_findings import (
     SLIP_OR_TRACK,
