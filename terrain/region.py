@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
 from math import inf
 
 import numpy as np
@@ -12,14 +11,13 @@ from odometry.config import require, require_positive
 from odometry.geometry import se2
 from odometry.run import Robot
 from terrain.camera import Camera
+from terrain.footprint_parts import FootprintPart, first_whole, footprint_parts, visible_shares
 from terrain.rectangle import Rectangle
-from terrain.visible_terrain import is_visible, largest_visible
+from terrain.visible_terrain import largest_visible
 
 __all__ = ["NoRegion", "Rectangle", "Region", "RegionConfig", "predict_region"]
 
 STEPS = 200  # places tried along the predicted motion
-POINTS = 7  # along each side of the footprint; odd, so that its middle is one of them
-FEW = [0, POINTS - 1, POINTS**2 // 2, POINTS**2 - POINTS, POINTS**2 - 1]  # corners and middle
 GRADES = 4  # of the visible share, from all of the footprint to the least share
 TRIES = 10  # places of a grade that are tried for one that can be classified
 COARSE = "the image is too coarse there"
@@ -111,30 +109,6 @@ class NoRegion:
     reason: str
 
 
-@dataclass(frozen=True)
-class _Part:
-    """The footprint or one half of it: its middle (2,) in the robot frame, length and width."""
-
-    middle_m: FloatArray
-    length_m: float
-    width_m: float
-
-    def bounds(self, pose: FloatArray) -> Rectangle:
-        """The rectangle round it at a pose (3,), along the axes of the robot frame now (eq. 22)."""
-        sine, cosine = abs(np.sin(pose[2])), abs(np.cos(pose[2]))
-        along_x = self.width_m * sine + self.length_m * cosine  # H_p
-        along_y = self.width_m * cosine + self.length_m * sine  # L_p
-        middle = se2.transform(pose, self.middle_m)
-        return Rectangle.round(middle, np.array([along_x, along_y]) / 2)
-
-    @cached_property
-    def points(self) -> FloatArray:
-        """Points spread over it (POINTS**2, 2), corners included, in the robot frame."""
-        share = np.linspace(-0.5, 0.5, POINTS)
-        points = np.stack(np.meshgrid(share * self.length_m, share * self.width_m), axis=-1)
-        return np.asarray(self.middle_m + points.reshape(-1, 2))
-
-
 def predict_region(
     robot: Robot,
     camera: Camera,
@@ -170,7 +144,7 @@ def predict_region(
         return NoRegion("the robot is stationary")
     ahead_s = _times_ahead_s(robot, wheel_speed_m_s, config)
     poses = se2.exp(twist * ahead_s[:, None])
-    parts = _parts(robot, config)
+    parts = footprint_parts(robot, config.footprint_scale, per_tread=config.per_tread)
     reasons = []
     for place in _places(camera, poses, parts, coarsest_m, config.least_share):
         rectangles = [
@@ -182,7 +156,7 @@ def predict_region(
             return Region(tuple(rectangles), time_s, wheel_speed_m_s * time_s, poses[place])
     if reasons:
         return NoRegion(reasons[0])
-    in_image = _shares(camera, poses, parts) >= config.least_share
+    in_image = visible_shares(camera, poses, parts) >= config.least_share
     return NoRegion(COARSE if in_image.any() else "the region lies outside the image")
 
 
@@ -194,39 +168,10 @@ def _times_ahead_s(robot: Robot, wheel_speed_m_s: float, config: RegionConfig) -
     return np.linspace(0.0, latest_s, STEPS)
 
 
-def _parts(robot: Robot, config: RegionConfig) -> tuple[_Part, ...]:
-    """The enlarged footprint, of length W_1 and width B_1, or its left and its right half."""
-    length_m = config.footprint_scale * (robot.length or robot.track_width)
-    width_m = config.footprint_scale * (robot.width or robot.track_width)
-    return _parts_of(length_m, width_m, config.per_tread)
-
-
-@lru_cache(maxsize=16)
-def _parts_of(length_m: float, width_m: float, per_tread: bool) -> tuple[_Part, ...]:
-    if not per_tread:
-        return (_Part(np.zeros(2), length_m, width_m),)
-    aside = np.array([0.0, width_m / 4])
-    return _Part(aside, length_m, width_m / 2), _Part(-aside, length_m, width_m / 2)
-
-
-def _shares(
-    camera: Camera, poses: FloatArray, parts: tuple[_Part, ...], coarsest_m: float = inf
-) -> FloatArray:
-    """The visible share (N,) of the parts at poses (N, 3), 0 where a middle is not visible.
-
-    Of several parts the smallest share.
-    """
-    shares = np.ones(len(poses))
-    for part in parts:
-        shown = is_visible(camera, se2.transform(poses[:, None], part.points), coarsest_m)
-        shares = np.minimum(shares, shown[:, POINTS**2 // 2] * shown.mean(axis=1))
-    return shares
-
-
 def _places(
     camera: Camera,
     poses: FloatArray,
-    parts: tuple[_Part, ...],
+    parts: tuple[FootprintPart, ...],
     coarsest_m: float,
     least_share: float,
 ) -> Iterator[int]:
@@ -234,25 +179,12 @@ def _places(
 
     Usually the first one is enough, and the search ends there.
     """
-    first = _first_whole(camera, poses, parts, coarsest_m)
+    first = first_whole(camera, poses, parts, coarsest_m)
     if first is not None:
         yield first
-    shares = _shares(camera, poses, parts, coarsest_m)
+    shares = visible_shares(camera, poses, parts, coarsest_m)
     tried = first is not None
     for share in np.linspace(1.0, least_share, GRADES):
         places = np.flatnonzero(shares >= share - 1e-9)
         yield from places[:: max(1, -(-len(places) // TRIES))][tried:]
         tried = False
-
-
-def _first_whole(
-    camera: Camera, poses: FloatArray, parts: tuple[_Part, ...], coarsest_m: float
-) -> int | None:
-    """The first of poses (N, 3) at which all points of all parts are visible."""
-    points = np.concatenate([part.points for part in parts])
-    few = np.concatenate([part.points[FEW] for part in parts])
-    maybe = is_visible(camera, se2.transform(poses[:, None], few), coarsest_m).all(axis=1)
-    for place in np.flatnonzero(maybe):
-        if is_visible(camera, se2.transform(poses[place], points), coarsest_m).all():
-            return int(place)
-    return None

@@ -69,13 +69,13 @@ def test_a_robot_that_stands_has_no_region():
 )
 def test_where_the_camera_does_not_see_the_way_there_is_no_region(twist):
     region = predict_region(ROBOT, AHEAD, np.array(twist), 0.5, RegionConfig())
-    assert region == "the region lies outside the image"
+    assert region == NoRegion("the region lies outside the image")
 
 
 def test_a_fixed_time_may_lie_outside_the_image():
     forward = np.array([0.5, 0.0, 0.0])
     near = predict_region(ROBOT, AHEAD, forward, 0.5, RegionConfig(ahead_s=0.2))
-    assert near == "the region lies outside the image"
+    assert near == NoRegion("the region lies outside the image")
     assert predict_region(ROBOT, AHEAD, forward, 0.5, RegionConfig(ahead_s=2.0)).ahead_s == 2.0
 
 

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 import terrain.region as region_file
 from odometry.geometry import se2
 from terrain.camera import Camera
+from terrain.footprint_parts import footprint_parts, visible_shares
 from terrain.region import NoRegion, Region, RegionConfig, predict_region
 from tests.terrain.regions import (
     AHEAD,
@@ -162,8 +163,8 @@ def test_places_are_tried_in_the_order_of_the_shares_of_all(
     mount = [*MOUNT[:5], camera_yaw]
     camera = Camera.from_mount((640, 480), MATRIX, [-0.1, 0.02, 0.001, 0.0], mount)
     poses = se2.exp(np.array([0.8, 0.0, omega]) * np.linspace(0.0, 5.0, 60)[:, None])
-    parts = region_file._parts(ROBOT, config)
-    shares = region_file._shares(camera, poses, parts, coarsest_m)
+    parts = footprint_parts(ROBOT, config.footprint_scale, per_tread=per_tread)
+    shares = visible_shares(camera, poses, parts, coarsest_m)
     expected = []
     for share in np.linspace(1.0, least_share, region_file.GRADES):
         places = np.flatnonzero(shares >= share - 1e-9)
