@@ -40,7 +40,7 @@ class LiveStep:
     terrain : str
         In force; `unknown` where for long no label supported it.
     image_label : ImageLabel or None
-        What the image of the frame said; None where it has none, or nothing reads images.
+        Label of the frame's image; None where it has no image, or there is no model.
     switch : SwitchEvent or None
         The terrain that came into force at this frame.
 
@@ -60,6 +60,11 @@ class LiveStep:
     terrain: str
     image_label: ImageLabel | None = None
     switch: SwitchEvent | None = None
+
+    @property
+    def sighting(self) -> ImageLabel | None:
+        """`image_label` under its old name, for one version."""
+        return self.image_label
 
 
 class LiveOdometry:
