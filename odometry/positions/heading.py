@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from odometry.positions.carrier import carrier_of
-from odometry.positions.yaw_from_positions import told_yaw
+from odometry.positions.yaw_from_positions import yaw_at_positions
 from odometry.run import Run
 from odometry.windows.measured_poses import YAW_FOUND, lacks_yaw
 
@@ -30,7 +30,7 @@ class FoundHeading:
         Median of the column. Errors of neighbouring yaws are correlated.
     by_gyroscope : bool
         Whether a gyroscope carried the yaw between positions, and not the treads.
-    told_share : float
+    estimated_share : float
         Share of the positions at which the yaw could be estimated.
     """
 
@@ -38,7 +38,7 @@ class FoundHeading:
     position_sigma_m: float
     yaw_sigma_rad: float
     by_gyroscope: bool
-    told_share: float = 1.0
+    estimated_share: float = 1.0
 
     @property
     def least_horizon_m(self) -> float:
@@ -49,7 +49,7 @@ class FoundHeading:
     def words(self) -> str:
         """A sentence for a reader."""
         by = "by the gyroscope" if self.by_gyroscope else "by the treads alone"
-        untold = 1 - self.told_share
+        untold = 1 - self.estimated_share
         except_for = f"; at {untold:.1%} of the positions it cannot be estimated" if untold else ""
         return (
             f"{self.run.folder}: yaw was not measured; it is found from positions with a noise of "
@@ -106,7 +106,7 @@ def found_heading(run: Run) -> FoundHeading:
         the yaw (`yaw_from_positions`).
     """
     carrier = carrier_of(run)
-    told = told_yaw(carrier)
+    told = yaw_at_positions(carrier)
     if run.pose is None:
         return FoundHeading(run, np.nan, np.nan, carrier.by_gyroscope)
     rows = np.searchsorted(run.pose.stamps_s, carrier.record.pose_s)

@@ -45,7 +45,7 @@ class ToldYaw(NamedTuple):
         return float(np.isfinite(self.yaw_rad).mean())
 
 
-def told_yaw(carrier: Carrier) -> ToldYaw:
+def yaw_at_positions(carrier: Carrier) -> ToldYaw:
     """Yaw at the positions that a carrier moves between.
 
     Raises

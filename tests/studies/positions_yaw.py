@@ -30,7 +30,8 @@ def row(run: Run, seen: Run) -> str:
     told = np.isfinite(errors)
     by_sigma = errors[told] / found.run.pose[YAW_FOUND][told]
     return (
-        f"told {found.told_share:.2f}  error {np.degrees(np.sqrt(np.mean(errors[told] ** 2))):5.1f}"
+        f"estimated {found.estimated_share:.2f}"
+        f"  error {np.degrees(np.sqrt(np.mean(errors[told] ** 2))):5.1f}"
         f"  sigma {np.degrees(found.yaw_sigma_rad):5.1f} deg"
         f"  within 2 {np.mean(by_sigma < 2):.3f}  beyond 4 {np.mean(by_sigma > 4):.4f}"
     )

@@ -10,7 +10,7 @@ from odometry.geometry.angles import wrap
 from odometry.positions.carrier import carrier_of
 from odometry.positions.heading import found_heading, headed
 from odometry.positions.smoother import Way, filtered, smoothed
-from odometry.positions.yaw_from_positions import told_yaw
+from odometry.positions.yaw_from_positions import yaw_at_positions
 from odometry.windows.measured_poses import YAW_FOUND, lacks_yaw
 from tests.odometry.positions_drives import drive, emptied
 
@@ -131,21 +131,21 @@ def test_a_bias_that_is_left_in_the_carrier_does_not_turn_the_yaw():
     carrier = carrier_of(emptied(drive(11, gyroscope=True, noise_m=0.3, duration_s=60.0)))
     steps = carrier.steps.copy()
     steps[..., 2] += 0.03 * np.diff(carrier.record.pose_s)
-    here, biased = told_yaw(carrier), told_yaw(replace(carrier, steps=steps))
+    here, biased = yaw_at_positions(carrier), yaw_at_positions(replace(carrier, steps=steps))
     assert np.nanmax(np.abs(wrap(biased.yaw_rad - here.yaw_rad))) < np.radians(1.0)
 
 
 def test_positions_that_do_not_tell_the_yaw_are_refused():
     """The robot stays within its noise, so that any heading agrees with them."""
-    with pytest.raises(OdometryError, match="do not tell it"):
+    with pytest.raises(OdometryError, match="do not determine it"):
         found_heading(emptied(drive(12, noise_m=8.0, duration_s=60.0)))
 
 
 def test_a_start_headed_elsewhere_is_not_followed():
     """The likeliest of the starts is found wherever the first guess points."""
     carrier = carrier_of(emptied(drive(13, noise_m=0.1, duration_s=60.0)))
-    here = told_yaw(carrier)
-    away = told_yaw(replace(carrier, first_yaw_rad=carrier.first_yaw_rad + 2.5))
+    here = yaw_at_positions(carrier)
+    away = yaw_at_positions(replace(carrier, first_yaw_rad=carrier.first_yaw_rad + 2.5))
     assert np.abs(wrap(away.yaw_rad - here.yaw_rad)).max() < np.radians(0.5)
 
 

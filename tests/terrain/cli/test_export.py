@@ -145,7 +145,7 @@ def test_a_terrain_without_such_numbers_does_not_stop_the_one_that_is_asked_for(
     """The error of the asked one names it, not the first of the set."""
     (tmp_path / "set.toml").write_text(TWO)
     asked = (tmp_path / "set.toml", "--to", "ros", "--terrain", "sand", "--out", tmp_path / "out")
-    assert "[terrain.sand]: the model 'icr' does not tell" in str(call(*asked).exception)
+    assert "[terrain.sand]: the model 'icr' does not give" in str(call(*asked).exception)
     answer = call(*asked, "--track-width", 0.5)
     assert answer.exit_code == 0, answer.output
     text = (tmp_path / "out" / "ros.yaml").read_text()
