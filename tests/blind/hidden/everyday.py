@@ -36,7 +36,7 @@ def cold_grease(rng, scene):
     return hide
 
 
-def backlash(rng, scene):
+def play_in_gears(rng, scene):
     """After a reversal a tread stands until its gears have taken up a play of 2 to 8 cm."""
     play_m = rng.uniform(0.02, 0.08)
 
@@ -184,7 +184,7 @@ EVERYDAY = {
         course="gradual",
     ),
     "cold_grease": Kind(cold_grease, honest=("traction gradual", "wheel size gradual")),
-    "backlash": Kind(backlash, honest=("drive limits", "slow drive", "late commands")),
+    "play_in_gears": Kind(play_in_gears, honest=("drive limits", "slow drive", "late commands")),
     "swinging_payload": Kind(swinging_payload, honest=("tread slip", "traction in_bursts")),
     "weather_vane": Kind(weather_vane),
     "ruts": Kind(ruts),
