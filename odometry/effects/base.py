@@ -66,6 +66,9 @@ class Effect(ABC):
         Effects that are this one at some values, and what tells them apart.
     of_reference : bool
         Whether it is a fault of the reference sensor, not of the robot.
+    mimicked_by : str
+        What a robot may do that looks the same in whatever a run holds. Such an effect is never
+        named; where it explains most, no other effect is named either.
     constant_names : tuple of str
         Known numbers that a parameter set holds among the parameters; arguments to make it.
     course : str
@@ -89,6 +92,7 @@ class Effect(ABC):
     alike: ClassVar[Mapping[str, str]] = {}
     includes: ClassVar[Mapping[str, str]] = {}
     of_reference: ClassVar[bool] = False
+    mimicked_by: ClassVar[str] = ""
     constant_names: ClassVar[tuple[str, ...]] = ()
     course: ClassVar[str] = ""
     slow: ClassVar[bool] = False

@@ -163,10 +163,11 @@ class DriftingMap(OfEachRun):
     """
 
     form = "drifting_map"
-    in_words = "a map that drifts, or a current that carries the robot, in each run its own"
+    in_words = "a map that drifts, in each run its own way"
     equation = "(x, y) -> (x, y) + (v_x, v_y) t"
     source = "definition"
     looks_like = "a robot that stands and moves all the same, always to one side of the map"
+    mimicked_by = "wind, a current or a belt that carries the robot"
     remedy = "let the robot stand for a minute: what its pose moves is the drift of the reference"
     needs = "headings over half a turn or more"
     own = (

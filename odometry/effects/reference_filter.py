@@ -66,14 +66,11 @@ class FilteredPositions(ReferenceFilter):
     equation = "lag d(x, y)_seen/dt = (x, y) - (x, y)_seen"
     source = "first-order lag"
     looks_like = "a robot that is where it was a moment ago, but looks where it looks now"
+    mimicked_by = "a robot that turns at once and follows slowly"
     alike: ClassVar[Mapping[str, str]] = {
         "time_offset": "quick changes of speed: a lag rounds them, late stamps do not",
         "inertia": RAW_FIXES,
     }
-
-    def same_as(self, values: FloatArray) -> Mapping[str, str]:  # noqa: ARG002 - of the interface
-        """See `Effect.same_as`: to first order."""
-        return {"inertia": RAW_FIXES}
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
@@ -94,6 +91,7 @@ class SlowYaw(ReferenceFilter):
     equation = "lag d(yaw)_seen/dt = yaw - yaw_seen"
     source = "first-order lag"
     looks_like = "a robot that goes sideways in turns, outward, the more the faster it turns"
+    mimicked_by = "a robot that slides outward in turns"
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:

@@ -25,7 +25,9 @@ def is_the_effect(fit: Fitted, config: GapConfig) -> str:
 
 
 def is_meant(added: Added) -> str:
-    """Whether the values of an effect are what its name says, beside all others too."""
+    """Whether an effect is what its name says and nothing else, beside all others too."""
+    if rival := added.effect.mimicked_by:
+        return f"{added.effect.in_words}, or {rival}: no data of a run tell them apart"
     if added.effect.is_meant(added.values):
         return ""
     return f"its values ({_words(added)}) are not what the name says"

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from odometry.effects.corrected import Added
+from odometry.effects.map_fault import DriftingMap
 from odometry.effects.reference_filter import (
     FilteredPositions,
     SlowYaw,
@@ -10,6 +12,7 @@ from odometry.effects.reference_filter import (
     SwayingMast,
 )
 from odometry.effects.reported import Reported
+from odometry.gap.effect_values import is_meant
 
 STAMPS_S = np.cumsum(np.random.default_rng(3).uniform(0.04, 0.06, 1200))
 MIDDLE = slice(400, 800)
@@ -74,5 +77,8 @@ def test_a_mast_that_does_not_ring_is_none():
     assert not SwayingMast().is_meant(np.array([0.1, 5.0, 0.9]))
 
 
-def test_slow_positions_are_said_to_be_as_likely_a_robot_that_follows_slowly():
-    assert "inertia" in FilteredPositions().same_as(np.array([0.3]))
+@pytest.mark.parametrize("effect", [FilteredPositions(), SlowYaw(), DriftingMap()])
+def test_what_a_robot_may_do_as_well_is_not_meant(effect):
+    added = Added(effect, np.array([one.start for one in effect.parameters]))
+    assert effect.mimicked_by in is_meant(added)
+    assert is_meant(Added(SmoothedPoses(), np.array([1.0]))) == ""
