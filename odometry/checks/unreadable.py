@@ -27,7 +27,7 @@ CAUSES = (
         "Write the file with commas, and a point in numbers",
     ),
     (
-        r"the column '-?[\d.]+' stands there twice|the header has -?\d+\.\d+|header has -?[\d.]+,",
+        r"the column '-?[\d.]+' is there twice|the header has -?\d+\.\d+|header has -?[\d.]+,",
         "The header line is missing: the first line holds numbers, not names of columns",
         "Write the names of the columns in the first line",
     ),

@@ -16,7 +16,7 @@ from terrain.calibration.tracks import Tracks
 from terrain.camera_files.calibration import Lens
 from terrain.checks.sampled_images import spread
 
-AGAIN = 2  # features are tracked anew with the mount found
+AGAIN = 2  # features are tracked again with the mount found
 FEWEST_PAIRS = 16
 FEWEST_SHARE = 0.5  # of the features below the horizon that flow as terrain does
 AGREES_PX = 2.0

@@ -72,7 +72,7 @@ def frozen(run: Run, images: Sequence[SampledImage]) -> Iterator[Finding]:
         f"before or after, though the treads moved by {max(_travel_m(run, g) for g in held):.3g} m "
         f"meanwhile (from {spans[0][0]:.1f} s of run time)",
         "The camera was frozen: it repeats its last image, or one file was copied to many names",
-        "Leave these rows out of images.csv, and look at the camera's driver",
+        "Leave these rows out of images.csv, and check the camera's driver",
         spans,
     )
 
