@@ -1,7 +1,8 @@
 """Estimates at every frame of a run, and the trajectories that follow from them."""
 
-import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -9,7 +10,8 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.dead_reckoning import dead_reckon
 from odometry.estimation.estimate import ALPHAS, ICRS, Estimate
 from odometry.estimation.filter_event import FilterEvent
-from odometry.estimation.transition import GYRO_BIAS
+from odometry.estimation.kept_estimates import KeptEstimates
+from odometry.estimation.transition import GYRO_BIAS, STATES
 from odometry.models.icr import icr_twist
 from odometry.trajectory import Trajectory
 
@@ -20,7 +22,8 @@ class Replay:
 
     Attributes
     ----------
-    estimates : tuple of Estimate
+    estimates : sequence of Estimate
+        Those of `replay` lie on disk, see `KeptEstimates`.
 
     Examples
     --------
@@ -32,38 +35,66 @@ class Replay:
     ((1085, 9), 1085)
     """
 
-    estimates: tuple[Estimate, ...]
+    estimates: Sequence[Estimate]
+
+    @cached_property
+    def _kept(self) -> KeptEstimates:
+        known = self.estimates
+        return known if isinstance(known, KeptEstimates) else KeptEstimates(known)
 
     @property
     def stamps_s(self) -> FloatArray:
         """Stamps (N,)."""
-        return np.array([estimate.stamp_s for estimate in self.estimates])
+        return self._kept.numbers("stamp_s")
 
     @property
     def means(self) -> FloatArray:
         """States (N, 9)."""
-        return np.stack([estimate.mean for estimate in self.estimates])
+        return self._kept.numbers("mean")
 
     @property
     def sigmas(self) -> FloatArray:
         """Standard deviations (N, 9)."""
-        variances = [np.diag(estimate.covariance) for estimate in self.estimates]
-        return np.sqrt(np.maximum(variances, 0.0))
+        return np.sqrt(np.maximum(self._kept.numbers("variances"), 0.0))
+
+    @property
+    def pose_covariances(self) -> FloatArray:
+        """Covariances (N, 3, 3) of x, y and yaw."""
+        count = len(self.estimates)
+        return self._kept.numbers("covariance").reshape(count, STATES, STATES)[:, :3, :3]
 
     @property
     def terrains(self) -> tuple[str, ...]:
         """Terrain in force at each frame."""
-        return tuple(estimate.terrain for estimate in self.estimates)
+        stretches = self._kept.lasting("terrain")
+        return tuple(name for rows, name in stretches for _ in rows)
 
     @property
     def jumps(self) -> BoolArray:
         """Where a jump of the ICRs was detected (N,)."""
-        return np.array([estimate.jumped for estimate in self.estimates])
+        return np.equal(self._kept.numbers("jumped"), 1.0)
 
     @property
     def events(self) -> tuple[FilterEvent, ...]:
         """What the filter noticed, in order of time."""
-        return tuple(event for estimate in self.estimates for event in estimate.events)
+        return tuple(event for _, events in self._kept.lasting("events") for event in events)
+
+    @property
+    def accepted(self) -> BoolArray:
+        """Where a measured pose passed the gate (N,)."""
+        return np.equal(self._kept.numbers("accepted"), 1.0)
+
+    @property
+    def innovations_squared(self) -> FloatArray:
+        """Normalised innovations squared (N,); NaN where no pose was measured."""
+        return self._kept.numbers("normalised_squared")
+
+    @property
+    def is_astride(self) -> BoolArray:
+        """Where the robot was astride an edge of terrains (N,)."""
+        return np.concatenate(
+            [np.full(len(rows), of is not None) for rows, of in self._kept.lasting("crossing")]
+        )
 
     def trajectory(self) -> Trajectory:
         """The filter's poses, corrected by measurements."""
@@ -72,12 +103,22 @@ class Replay:
     @property
     def tread_speeds_m_s(self) -> FloatArray:
         """Measured tread speeds (N, 2) in force from each stamp on; NaN where not known."""
-        return np.stack([estimate.tread_speeds_m_s for estimate in self.estimates])
+        return self._kept.numbers("tread_speeds_m_s")
+
+    @property
+    def added_speeds_m_s(self) -> FloatArray:
+        """What effects add to these speeds (N, 2)."""
+        return self._kept.numbers("added_speeds_m_s")
 
     @property
     def yaw_rates_rad_s(self) -> FloatArray:
         """Yaw rates (N - 1,) of the gyroscope from each stamp to the next; NaN without samples."""
-        return np.array([estimate.yaw_rate_rad_s for estimate in self.estimates[1:]])
+        return self._kept.numbers("yaw_rate_rad_s")[1:]
+
+    @property
+    def believed_yaw_rates_rad_s(self) -> FloatArray:
+        """Yaw rates (N - 1,) that turned the robot, bias included; NaN where the treads did."""
+        return self._kept.numbers("believed_yaw_rate_rad_s")[1:]
 
     @property
     def has_gyroscope(self) -> bool:
@@ -87,7 +128,7 @@ class Replay:
     @property
     def used_gyroscope(self) -> bool:
         """Whether a gyroscope turned the robot anywhere: settings may turn it off in the filter."""
-        return any(math.isfinite(each.believed_yaw_rate_rad_s) for each in self.estimates)
+        return bool(np.isfinite(self._kept.numbers("believed_yaw_rate_rad_s")).any())
 
     def open_loop(self, track_width: float) -> dict[str, Trajectory]:
         """All trajectories that no pose corrects, the simplest first.
@@ -142,22 +183,18 @@ class Replay:
         """`Estimate.twist` (N, 3) of all estimates."""
         means = self.means
         speeds = self.tread_speeds_m_s
-        added_speeds = np.stack([estimate.added_speeds_m_s for estimate in self.estimates])
-        added_twists = np.stack([estimate.added_twist for estimate in self.estimates])
-        effective = means[:, ALPHAS] * (speeds + added_speeds)
+        added_twists = self._kept.numbers("added_twist")
+        effective = means[:, ALPHAS] * (speeds + self.added_speeds_m_s)
         twists = icr_twist(means[:, ICRS], effective) + added_twists
         twists[~np.isfinite(speeds).all(axis=1)] = 0.0
         return np.asarray(twists)
 
     def _turned_by_gyroscope(self) -> FloatArray:
         """Twists (N - 1, 3) whose omega is measured; NaN where it or the treads are not known."""
-        held = self.estimates[:-1]
-        added = np.stack([estimate.added_twist for estimate in held])
-        effective = np.stack([estimate.effective_speeds_m_s for estimate in held])
-        y_left, y_right, x_icr = self.means[:-1, 3:6].T
-        bias = self.means[:-1, GYRO_BIAS]
-        believed = np.array([estimate.believed_yaw_rate_rad_s for estimate in self.estimates[1:]])
-        omega = believed - bias - added[:, 2]
+        means, added = self.means[:-1], self._kept.numbers("added_twist")[:-1]
+        effective = means[:, ALPHAS] * (self.tread_speeds_m_s + self.added_speeds_m_s)[:-1]
+        y_left, y_right, x_icr = means[:, 3:6].T
+        omega = self.believed_yaw_rates_rad_s - means[:, GYRO_BIAS] - added[:, 2]
         # v_x = alpha v + y omega of either tread (Baril 2020 eq. 4 to 6), the mean of both
         v_x = effective.mean(axis=1) + (y_left + y_right) / 2 * omega
         return np.asarray(added + np.column_stack([v_x, -x_icr * omega, omega]))

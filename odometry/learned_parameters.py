@@ -1,12 +1,11 @@
 """What a replay has learned, as a parameter set for the next run."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from odometry.estimates import Replay
-from odometry.estimation.estimate import Estimate, IcrBelief
+from odometry.estimation.estimate import IcrBelief
 from odometry.models.catalogue import ICR_NAMES
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.run import UNKNOWN
@@ -35,39 +34,34 @@ def learned_parameters(
         Of the robot: [vehicle] gets it, where it says none.
     """
     terrains = dict(before.terrains)
+    names, astride, accepted = np.array(replay.terrains), replay.is_astride, replay.accepted
     for name in dict.fromkeys(replay.terrains):
         if name == UNKNOWN:
             continue
-        there = [
-            estimate
-            for estimate in replay.estimates
-            if estimate.terrain == name and estimate.crossing is None
-        ]
-        poses = sum(_took_pose(estimate) for estimate in there)
-        if poses and _is_worth_keeping(before.terrains.get(name), there):
+        there = np.flatnonzero((names == name) & ~astride)
+        poses = int(accepted[there].sum())
+        if not poses:
+            continue
+        came, left = (replay.estimates[int(there[place])].belief for place in (0, -1))
+        if _is_worth_keeping(before.terrains.get(name), came, left):
             source = f"learned by terrain-odometry from {poses} poses of {run_name}"
             effects = before.terrains[name].effects if name in before.terrains else ()
-            terrains[name] = replace(_table(there[-1].belief, source), effects=effects)
+            terrains[name] = replace(_table(left, source), effects=effects)
     robot = {} if track_width_m is None else {"track_width": track_width_m}
     return ParameterSet(terrains, robot | dict(before.vehicle))
 
 
-def _is_worth_keeping(table: TerrainParameters | None, there: Sequence[Estimate]) -> bool:
-    """Whether the filter left a terrain knowing its ICRs better than a table, or than it began."""
-    left = _icr_variance(there[-1].belief)
+def _is_worth_keeping(table: TerrainParameters | None, came: IcrBelief, left: IcrBelief) -> bool:
+    """Whether the filter left a terrain knowing its ICRs better than a table, or than it came."""
     if table is None:
-        return MUCH_SURER * left < _icr_variance(there[0].belief)
+        return MUCH_SURER * _icr_variance(left) < _icr_variance(came)
     if not set(ICR_NAMES[:3]) <= set(table.covariance_order):
         return True
-    return MUCH_SURER * float(np.trace(table.covariance_of(ICR_NAMES[:3]))) >= left
+    return MUCH_SURER * float(np.trace(table.covariance_of(ICR_NAMES[:3]))) >= _icr_variance(left)
 
 
 def _icr_variance(belief: IcrBelief) -> float:
     return float(np.trace(belief.covariance[:3, :3]))
-
-
-def _took_pose(estimate: Estimate) -> bool:
-    return estimate.innovation is not None and estimate.innovation.accepted
 
 
 def _table(belief: IcrBelief, source: str) -> TerrainParameters:

@@ -12,6 +12,7 @@ from odometry.estimates import Replay
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.heading_search import INITIAL_YAW
+from odometry.estimation.kept_estimates import KeptEstimates
 from odometry.footing import Footing
 from odometry.frames import Frame
 from odometry.run import Run
@@ -114,19 +115,21 @@ def replay(
             f"{run.folder}: no position of pose.csv lies within the time of odometry.csv"
         )
     if causal:
-        estimates = [started(estimator, source, first)]
+        latest = started(estimator, source, first)
     else:
-        estimates = [_first_estimate(run, first, estimator, source.initial)]
-        source.terrain(first, estimates[0])
+        latest = _first_estimate(run, first, estimator, source.initial)
+        source.terrain(first, latest)
+    estimates = KeptEstimates([replace(latest, events=(*noticed, *latest.events))])
     bar: Iterable[Frame] = tqdm(
         frames, desc=run.name, unit="frame", disable=None if show_progress else True
     )
     for frame in bar:
-        estimates.append(stepped(estimator, source, estimates[-1], frame))
-    estimates[0] = replace(estimates[0], events=(*noticed, *estimates[0].events))
-    ended = run_end_events(run, Replay(tuple(estimates)))
-    estimates[-1] = replace(estimates[-1], events=(*estimates[-1].events, *ended))
-    return Replay(tuple(estimates))
+        latest = stepped(estimator, source, latest, frame)
+        estimates.append(latest)
+    latest = estimates[-1]
+    ended = run_end_events(run, Replay(estimates))
+    estimates.end_with(replace(latest, events=(*latest.events, *ended)))
+    return Replay(estimates)
 
 
 def started(estimator: Estimator, source: TerrainSource, frame: Frame) -> Estimate:

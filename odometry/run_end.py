@@ -45,13 +45,14 @@ def _heading(last: Estimate) -> list[FilterEvent]:
 
 def _refused(replay: Replay) -> list[FilterEvent]:
     """Refusals that did not end with a new start."""
-    accepted = [e.innovation.accepted for e in replay.estimates if e.innovation is not None]
+    measured = int(np.isfinite(replay.innovations_squared).sum())
     anew = [event for event in replay.events if event.kind == REINITIALISED]
-    refused = accepted.count(False) - int(sum(event.values[0] for event in anew))
-    if refused <= REFUSED_SHARE * len(accepted):
+    refused = measured - int(replay.accepted.sum())
+    refused -= int(sum(event.values[0] for event in anew))
+    if refused <= REFUSED_SHARE * measured:
         return []
     begin_s, end_s = replay.stamps_s[[0, -1]].tolist()
-    text = f"{refused} of {len(accepted)} poses were refused as outliers"
+    text = f"{refused} of {measured} poses were refused as outliers"
     return [FilterEvent("refused_poses", begin_s, end_s, text)]
 
 
@@ -85,10 +86,9 @@ def bias_error(replay: Replay, first: int) -> float:
 
     How much more the gyroscope less that bias turned than the estimate, which follows the poses.
     """
-    estimates = replay.estimates[first:]
     steps_s, yaws = np.diff(replay.stamps_s[first:]), replay.means[first:, YAW]
     biases = replay.means[first:-1, GYRO_BIAS]
-    rates = np.array([each.believed_yaw_rate_rad_s for each in estimates[1:]])
+    rates = replay.believed_yaw_rates_rad_s[first:]
     told = np.isfinite(rates) & (steps_s > 0)
     off = (rates - biases) * steps_s - wrap(np.diff(yaws))
     duration_s = float(steps_s[told].sum())

@@ -50,11 +50,11 @@ class ToldFooting:
 
     Attributes
     ----------
-    estimates : tuple of Estimate
+    estimates : sequence of Estimate
         Of that replay.
     """
 
-    estimates: tuple[Estimate, ...]
+    estimates: Sequence[Estimate]
 
     @property
     def initial(self) -> str:
@@ -62,16 +62,24 @@ class ToldFooting:
         return self.estimates[0].terrain
 
     @cached_property
-    def _stamps_s(self) -> FloatArray:
-        return np.array([estimate.stamp_s for estimate in self.estimates])
+    def _told(self) -> tuple[FloatArray, list[Footing]]:
+        """Stamps (N,) of the estimates, and the footing at each."""
+        stamps_s, footings, before = [], [], None
+        for estimate in self.estimates:
+            now = estimate.terrain, estimate.crossing
+            if before is None or now[0] != before[0] or now[1] is not before[1]:
+                shares = None if now[1] is None else now[1].shares
+                footing = Footing.of(now[0]) if shares is None else Footing(now[0], shares)
+            stamps_s.append(estimate.stamp_s)
+            footings.append(footing)
+            before = now
+        return np.array(stamps_s), footings
 
     def terrain(self, frame: Frame, estimate: Estimate) -> Footing:  # noqa: ARG002 - the protocol's
         """The footing in force at the stamp of the frame."""
-        row = int(np.searchsorted(self._stamps_s, frame.stamp_s, side="right")) - 1
-        told = self.estimates[max(row, 0)]
-        if told.crossing is None:
-            return Footing.of(told.terrain)
-        return Footing(told.terrain, told.crossing.shares)
+        stamps_s, footings = self._told
+        row = int(np.searchsorted(stamps_s, frame.stamp_s, side="right")) - 1
+        return footings[max(row, 0)]
 
 
 def labelled_terrain(run: Run, initial: str | None = None) -> NamedTerrain:

@@ -29,14 +29,14 @@ HARMLESS = {  # kinds of events after which the filter may be believed all the s
 
 def filter_table(replay: Replay) -> dict[str, Any]:
     """What result.json holds of the filter: plain values, units in the names."""
-    innovations = [e.innovation for e in replay.estimates if e.innovation is not None]
-    squared = [innovation.normalised_squared for innovation in innovations]
+    squared = replay.innovations_squared
+    squared = squared[~np.isnan(squared)]
     last = replay.estimates[-1]
     yaw = next((event.values for event in replay.events if event.kind == INITIAL_YAW), None)
     return {
-        "poses": len(innovations),
-        "poses_refused": sum(not innovation.accepted for innovation in innovations),
-        "median_normalised_innovation_squared": float(np.median(squared)) if squared else None,
+        "poses": len(squared),
+        "poses_refused": len(squared) - int(replay.accepted.sum()),
+        "median_normalised_innovation_squared": float(np.median(squared)) if len(squared) else None,
         "jumps_s": replay.stamps_s[replay.jumps].tolist(),
         "gyro_bias_rad_s": float(last.mean[GYRO_BIAS]) if replay.used_gyroscope else None,
         "sigma_gyro_bias_rad_s": (

@@ -72,7 +72,7 @@ def odometer_uncertainty(
     path = path_of(replay)
     rows, poses = accepted_poses(run, replay)
     if not len(rows):
-        covariances = np.stack([estimate.covariance[:3, :3] for estimate in replay.estimates])
+        covariances = replay.pose_covariances
         return OdometerUncertainty(
             covariances,
             _after(path, covariances),
@@ -117,9 +117,7 @@ def accepted_poses(run: Run, replay: Replay) -> tuple[IntArray, FloatArray]:
 
     A yaw that was not measured is the filter's; the place is the robot's, not the antenna's.
     """
-    accepted = np.array(
-        [e.innovation is not None and e.innovation.accepted for e in replay.estimates]
-    )
+    accepted = replay.accepted
     if run.pose is None or not accepted.any():
         return np.empty(0, dtype=np.int64), np.empty((0, 3))
     rows = np.flatnonzero(accepted)
@@ -162,22 +160,24 @@ def learning_covariances(replay: Replay, path: OpenLoopPath) -> FloatArray:
     variances = np.square(replay.sigmas[:, Y_LEFT:])
     excess = np.sqrt(np.maximum(variances - np.median(variances, axis=0), 0.0))[:-1]
     steps_s = np.diff(replay.stamps_s)
-    slopes = _twist_slopes(replay) * excess[:, None, :] * steps_s[:, None, None]
-    moved = np.stack([path.moved_by(slopes[..., k]) for k in range(slopes.shape[-1])])
-    return np.asarray(np.einsum("kni,knj->nij", moved, moved))
+    slopes = _twist_slopes(replay)
+    slopes *= excess[:, None, :]
+    slopes *= steps_s[:, None, None]
+    found = np.zeros((len(variances), 3, 3))
+    for parameter in range(slopes.shape[-1]):
+        moved = path.moved_by(slopes[..., parameter])
+        found += moved[:, :, None] * moved[:, None, :]
+    return found
 
 
 def _twist_slopes(replay: Replay) -> FloatArray:
     """Derivatives (N - 1, 3, 6) of twists by y_left, y_right, x_icr, bias, alphas."""
-    held = replay.estimates[:-1]
     icrs, bias, alphas = np.split(replay.means[:-1, Y_LEFT:], [3, 4], axis=1)
-    speeds = np.nan_to_num(
-        np.stack([estimate.tread_speeds_m_s + estimate.added_speeds_m_s for estimate in held])
-    )
-    slopes = np.zeros((len(held), 3, STATES - Y_LEFT))
+    speeds = np.nan_to_num((replay.tread_speeds_m_s + replay.added_speeds_m_s)[:-1])
+    slopes = np.zeros((len(speeds), 3, STATES - Y_LEFT))
     slopes[..., :3] = icr_twist_jacobian(icrs, alphas * speeds)
     slopes[..., 4:] = icr_speed_matrix(icrs) * speeds[:, None, :]
-    believed = np.array([estimate.believed_yaw_rate_rad_s for estimate in replay.estimates[1:]])
+    believed = replay.believed_yaw_rates_rad_s
     told = np.isfinite(believed)
     omega = (believed - bias[:, 0])[told]
     by_gyroscope = np.zeros((len(omega), 3, STATES - Y_LEFT))

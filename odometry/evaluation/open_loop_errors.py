@@ -8,6 +8,7 @@ grows with the signed distance of the treads and the signed turn. Each of the tw
 one variance; sums along the path give the covariance between any two of its poses.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,35 +55,45 @@ class OpenLoopPath:
         (K, 12, 3, 3)
             By source of variance 1, in the frame of the first pose.
         """
+        return np.stack(list(self._units(first, last)), axis=1)
+
+    def _units(self, first: IntArray, last: IntArray) -> Iterator[FloatArray]:
+        """`unit_covariances` (K, 3, 3) of one source after the other."""
         turn = np.asarray(wrap(np.diff(self.poses[:, 2])))
         heading = self.poses[:-1, 2] + turn / 2
         middle = (self.poses[1:, :2] + self.poses[:-1, :2]) / 2 - self.poses[0, :2]
         ends = self.poses[last, :2] - self.poses[0, :2]
         along = np.stack([np.cos(heading), np.sin(heading)], axis=-1)
         across = np.stack([-along[:, 1], along[:, 0]], axis=-1)
+        back = _turns(-self.poses[first, 2])
+
+        def of_first(world: FloatArray) -> FloatArray:
+            return np.asarray(back @ world @ np.swapaxes(back, -1, -2))
+
         random_by = (np.diff(self.travel_m), np.abs(turn))
-        constant_by = (np.diff(self.signed_m), turn)
-        world = np.zeros((len(first), len(SOURCES), 3, 3))
-        for place, by in enumerate(random_by):
-            for component, direction in enumerate((along, across)):
+        for direction in (along, across):
+            for by in random_by:
                 squares = by[:, None, None] * direction[:, :, None] * direction[:, None, :]
-                world[:, 2 * component + place, :2, :2] = _between(squares, first, last)
-            world[:, 4 + place] = _random_yaw(by, middle, ends, first, last)
-        for place, by in enumerate(constant_by):
-            for component, direction in enumerate((along, across)):
+                yield of_first(_of_places(_between(squares, first, last)))
+        for by in random_by:
+            yield of_first(_random_yaw(by, middle, ends, first, last))
+        constant_by = (np.diff(self.signed_m), turn)
+        for direction in (along, across):
+            for by in constant_by:
                 moved = _between(by[:, None] * direction, first, last)
-                world[:, 6 + 2 * component + place, :2, :2] = moved[:, :, None] * moved[:, None, :]
+                yield of_first(_of_places(moved[:, :, None] * moved[:, None, :]))
+        for by in constant_by:
             turned = _between(by, first, last)
             lever = ends * turned[:, None] - _between(by[:, None] * middle, first, last)
             error = np.column_stack([-lever[:, 1], lever[:, 0], turned])
-            world[:, 10 + place] = error[:, :, None] * error[:, None, :]
-        back = _turns(-self.poses[first, 2])[:, None]
-        return np.asarray(back @ world @ np.swapaxes(back, -1, -2))
+            yield of_first(error[:, :, None] * error[:, None, :])
 
     def covariances(self, variances: FloatArray, first: IntArray, last: IntArray) -> FloatArray:
         """Covariances (K, 3, 3) of motions in the frame of their first pose, by variances (12,)."""
-        units = self.unit_covariances(first, last)
-        return np.asarray(np.einsum("s,ksij->kij", variances, units))
+        found = np.zeros((len(first), 3, 3))
+        for variance, unit in zip(variances, self._units(first, last), strict=True):
+            found += variance * unit
+        return found
 
     def moved_by(self, errors: FloatArray) -> FloatArray:
         """How far errors of its steps move each pose, to first order, in the frame of the path.
@@ -128,6 +139,13 @@ class OpenLoopPath:
         by_start[:, 1, 2] = self.poses[:, 0] - self.poses[0, 0]
         held = by_start @ start @ np.swapaxes(by_start, -1, -2)
         return np.asarray(held + turn @ motion @ np.swapaxes(turn, -1, -2))
+
+
+def _of_places(covariances: FloatArray) -> FloatArray:
+    """Covariances (K, 2, 2) of x and y as (K, 3, 3), of a yaw that is known."""
+    found = np.zeros((len(covariances), 3, 3))
+    found[:, :2, :2] = covariances
+    return found
 
 
 def _random_yaw(

@@ -20,6 +20,8 @@ from odometry.io.csv_columns import (
 from odometry.io.files import atomic_write
 from odometry.table import Table
 
+ROWS = 4096  # whose cells are texts at a time
+
 
 def read_csv_table(file: Path, required: Iterable[str], complete: Iterable[str] = ()) -> Table:
     """Read a CSV file whose columns are found by name, in any order.
@@ -65,14 +67,16 @@ def read_csv_table(file: Path, required: Iterable[str], complete: Iterable[str] 
 
 def write_csv_table(file: Path, columns: Mapping[str, AnyArray], decimals: int = 9) -> None:
     """Write columns of equal length as CSV; NaN becomes an empty cell, a formula a text."""
-    formatted = [_format(np.asarray(column), decimals) for column in columns.values()]
-    lengths = {name: len(cells) for name, cells in zip(columns, formatted, strict=True)}
+    arrays = [np.asarray(column) for column in columns.values()]
+    lengths = {name: len(array) for name, array in zip(columns, arrays, strict=True)}
     if len(set(lengths.values())) != 1:
         raise RunFolderError(f"{file}: the columns differ in length: {lengths}")
     with atomic_write(file) as part, part.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(map(quoted_text, columns))
-        writer.writerows(zip(*formatted, strict=True))
+        for start in range(0, max(lengths.values(), default=0), ROWS):
+            cells = [_format(array[start : start + ROWS], decimals) for array in arrays]
+            writer.writerows(zip(*cells, strict=True))
 
 
 def _block_columns(

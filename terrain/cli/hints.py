@@ -4,6 +4,8 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
 from odometry.estimation.filter_event import FilterEvent
 from odometry.run import UNKNOWN
 from terrain.classification.own_statistics import OwnStatisticsClassifier
@@ -49,14 +51,14 @@ def hints(result: RunResult, *, vision: bool, named: str | None = None) -> list[
         found += _blind(result.watcher.image_labels)
         if named is None and len(known) > 1:
             found += _start(result.initial_terrain, result.run.terrain, result.watcher.image_labels)
-    innovations = [e.innovation for e in result.replay.estimates if e.innovation is not None]
-    refused = sum(not innovation.accepted for innovation in innovations)
-    many = refused > MANY_REFUSED * len(innovations)
+    poses = int((~np.isnan(result.replay.innovations_squared)).sum())
+    refused = poses - int(result.replay.accepted.sum())
+    many = refused > MANY_REFUSED * poses
     events = [e for e in result.replay.events if not (many and e.kind == REFUSED_POSES)]
     found += _events(events, result.run.began_s)
     if many:
         found.append(
-            f"the filter refused {refused} of {len(innovations)} poses, because they lie far from "
+            f"the filter refused {refused} of {poses} poses, because they lie far from "
             "where it expected them. The units of pose.csv or odometry.csv may be wrong, the poses "
             "may jump, or the noise settings ([filter] of --config) may be too small"
         )
