@@ -153,7 +153,7 @@ def test_after_a_jump_of_the_poses_what_was_learned_is_not_recommended(world, tm
         (["--per-tread"], "per_tread = False, seen True"),
         (["--detect-jumps"], "detect_jumps = False, seen True"),
         (["--own-statistics"], "own_statistics = False, seen True"),
-        (["--source", "none"], "by the camera"),
+        (["--source", "none"], "from the camera"),
     ],
 )
 def test_an_option_that_contradicts_the_preset_is_an_error(across_run, tmp_path, options, words):
