@@ -38,12 +38,9 @@ class FeelLabels:
         windows = felt.windows
         rows = np.arange(0, len(windows), STEPS)
         rows = rows[windows.felt[rows] & (felt.answers[rows] != UNKNOWN)]
-        return cls(
-            felt.model.names,
-            seen_names,
-            felt.stamps_s[rows],
-            felt.probabilities[rows],
-        )
+        given = felt.probabilities[rows]
+        given = given + felt.unknown[rows, None] / given.shape[1]  # of none: says nothing of any
+        return cls(felt.model.names, seen_names, felt.stamps_s[rows], given)
 
     def between(
         self, after_s: float, upto_s: float, pose: FloatArray, travel_m: float

@@ -12,22 +12,33 @@ from odometry.estimation.means_kept import MeansKept
 from odometry.evaluation.odometer_uncertainty import odometer_uncertainty
 from odometry.evaluation.score import reference_of
 from odometry.evaluation.withheld import withhold
+from odometry.feel.follow import Felt
 from odometry.feel.model import FeelModel
 from odometry.learned_parameters import learned_parameters
 from odometry.modes.mode_set import ModeSet
 from odometry.parameters import ParameterSet, read_parameters
 from odometry.pipeline import Estimator, TerrainSource, replay
 from odometry.pose_delay import without_pose_delay
-from odometry.run import Run
-from odometry.terrain_sources import ToldFooting
+from odometry.run import UNKNOWN, Run
+from odometry.terrain_sources import NamedTerrain, ToldFooting
 from odometry.windows.measured_poses import lacks_yaw
 from terrain.classification.classifier import Classifier, TerrainClassifier
 from terrain.config import Config
+from terrain.contradictions import Contradiction, contradictions, seen_beneath
 from terrain.evaluated_trajectories import SecondReplay
 from terrain.images_outside_replay import add_images_outside
+from terrain.new_terrain import learned_apart, new_spans
 from terrain.run_presets import run_preset, with_preset
 from terrain.run_result import RunResult
-from terrain.sources import BOTH, OWN_SOURCE, initial_terrain, source_name, terrain_source
+from terrain.sources import (
+    BOTH,
+    OWN_SOURCE,
+    felt_of,
+    initial_terrain,
+    moved_terrain,
+    source_name,
+    terrain_source,
+)
 from terrain.watcher import TerrainWatcher
 
 __all__ = ["RunResult", "run_odometry"]
@@ -132,10 +143,17 @@ def run_odometry(
     )
     if watcher is not None and run.images is not None:
         add_images_outside(watcher, run, run.images, result)
+    differing: tuple[Contradiction, ...] = ()
+    if feel is not None and name in ("camera", "feel"):
+        motion = None if modes is None else moved_terrain(run, modes, UNKNOWN)
+        differing = _contradictions(felt_of(run, feel), motion, watcher, result)
     reference_name, reference = reference_of(run) or ("", None)
     second = None
     if reference_name == "pose":
         second = _second_replay(run, estimator, result, causal, show_progress=show_progress)
+    learned = learned_parameters(parameters, result, run.name, run.robot.track_width)
+    unknown_s = new_spans(differing)
+    learned = learned_apart(run, estimator, result, unknown_s, learned, causal=causal)
     return RunResult(
         run,
         config,
@@ -145,11 +163,24 @@ def run_odometry(
         result,
         reference_name,
         reference,
-        learned_parameters(parameters, result, run.name, run.robot.track_width),
+        learned,
         odometer_uncertainty(run, result, reference if reference_name == "truth" else None),
         second,
         BOTH if name == "camera" and feel is not None else name,
+        differing,
     )
+
+
+def _contradictions(
+    felt: Felt, motion: NamedTerrain | None, watcher: TerrainWatcher | None, result: Replay
+) -> tuple[Contradiction, ...]:
+    """Where sight, feel and motion differ for long."""
+    seen = None
+    if watcher is not None:
+        seen = seen_beneath(
+            felt, watcher.image_labels, result.odometer(), watcher.footprint.radius_m
+        )
+    return contradictions(felt, seen, motion)
 
 
 def _second_replay(

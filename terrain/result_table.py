@@ -10,6 +10,7 @@ import numpy as np
 
 from odometry.evaluation.score import counted_reference_yaw
 from odometry.evaluation.withheld import JUDGED_EVERY_S, SILENT_S
+from terrain.contradiction_words import contradiction_lines
 from terrain.evaluation_notes import remarks
 from terrain.filter_summary import filter_table
 from terrain.label_confusion import label_confusion_table
@@ -47,6 +48,7 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "odometer_uncertainty": uncertainty_table(result.uncertainty, result.reference_name),
         "switches": _switches(result),
         "missed_changes": _missed_changes(result),
+        "contradictions": contradiction_lines(result),
         "sightings": image_label_counts(result),
         "other_odometry": sorted(of.stem for of in result.run.folder.glob("other_odometry/*.csv")),
         "label_confusion": label_confusion_table(result),

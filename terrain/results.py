@@ -16,6 +16,7 @@ from odometry.outputs.formats import check_format
 from odometry.outputs.manifest import check_finished
 from odometry.parameters import write_parameters
 from odometry.trajectory import Trajectory
+from terrain.contradiction_words import contradiction_columns
 from terrain.errors import ResultError
 from terrain.result_table import FORMAT, reference_columns, result_table
 from terrain.run_result import RunResult
@@ -47,9 +48,9 @@ def write_results(
     -------
     list of Path
         odometer.csv and .tum, estimate.csv and .tum, result.json; learned.toml where there is
-        anything to store; terrain.csv where there is a source of terrain; reference.csv where there
-        are poses to evaluate with, and reference.tum where they
-        have a yaw.
+        anything to store; terrain.csv where there is a source of terrain; contradictions.csv where
+        sight, feel and motion differ for long; reference.csv where there are poses to evaluate
+        with, and reference.tum where they have a yaw.
 
     Examples
     --------
@@ -80,7 +81,11 @@ def write_results(
     if result.learned.terrains:
         write_parameters(out / "learned.toml", result.learned)
         names.append("learned.toml")
-    tables = {"terrain.csv": terrain_columns(result), "reference.csv": reference_columns(result)}
+    tables = {
+        "terrain.csv": terrain_columns(result),
+        "contradictions.csv": contradiction_columns(result.contradictions),
+        "reference.csv": reference_columns(result),
+    }
     for name, columns in tables.items():
         if columns:
             write_csv_table(out / name, columns)

@@ -12,6 +12,7 @@ from odometry.parameters import ParameterSet
 from odometry.run import Run
 from odometry.trajectory import Trajectory
 from terrain.config import Config
+from terrain.contradictions import Contradiction
 from terrain.evaluated_trajectories import (
     EvaluatedTrajectory,
     SecondReplay,
@@ -64,6 +65,8 @@ class RunResult:
         a truth, or too few poses.
     source : str
         Source of the terrain: "camera", "labels", "modes", "feel", "none", or the user's own.
+    contradictions : tuple of Contradiction
+        Where sight, feel and motion differ for long, or no source knows the terrain.
 
     Examples
     --------
@@ -87,6 +90,7 @@ class RunResult:
     uncertainty: OdometerUncertainty
     second: SecondReplay | None = None
     source: str = "none"
+    contradictions: tuple[Contradiction, ...] = ()
 
     @cached_property
     def evaluated(self) -> dict[str, EvaluatedTrajectory]:

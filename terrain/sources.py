@@ -118,20 +118,26 @@ def terrain_source(
     if name == "feel":
         if feel is None:
             raise ConfigError("the terrain source 'feel' needs a model (`identify-feel`)")
-        felt = _felt(run, feel)
+        felt = felt_of(run, feel)
         return NamedTerrain.told(initial, felt.stamps_s, felt.lasting_answers, (*SILENT, UNKNOWN))
     if name == "modes":
         if modes is None:
             raise ConfigError("the terrain source 'modes' needs a set of modes (`identify-modes`)")
-        mode_set = modes if isinstance(modes, ModeSet) else read_mode_set(Path(modes))
         named = terrain is not None or run.terrain == initial
-        return felt_terrain(
-            run, mode_set, initial if named else UNKNOWN, show_progress=show_progress
-        )
+        return moved_terrain(run, modes, initial if named else UNKNOWN, show_progress=show_progress)
     return ConstantTerrain(initial)
 
 
-def _felt(run: Run, feel: FeelModel | str | Path) -> Felt:
+def moved_terrain(
+    run: Run, modes: ModeSet | str | Path, initial: str, *, show_progress: bool = False
+) -> NamedTerrain:
+    """What the motion names."""
+    mode_set = modes if isinstance(modes, ModeSet) else read_mode_set(Path(modes))
+    return felt_terrain(run, mode_set, initial, show_progress=show_progress)
+
+
+def felt_of(run: Run, feel: FeelModel | str | Path) -> Felt:
+    """What the run feels like."""
     return follow_feel(run, feel if isinstance(feel, FeelModel) else read_feel_model(feel))
 
 
@@ -155,7 +161,7 @@ def _watcher(
         )
     camera = Camera.from_table(run.settings["camera"], str(run.folder / "run.toml"))
     names = tuple(map(str, model.classes_))
-    felt = None if feel is None else FeelLabels.of(_felt(run, feel), names)
+    felt = None if feel is None else FeelLabels.of(felt_of(run, feel), names)
     return TerrainWatcher(
         run.robot,
         camera,

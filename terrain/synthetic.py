@@ -22,6 +22,7 @@ from terrain.synthesis.layout import lay_out
 from terrain.synthesis.patches import render_patches, write_patches
 from terrain.synthesis.photos import built_in_photos, photos_from_folder
 from terrain.synthesis.records import identified_parameters, motion_tables, run_settings
+from terrain.synthesis.vibration import imu_table
 from terrain.synthesis.view import Scene, View
 
 __all__ = ["SynthesisConfig", "synthesise"]
@@ -76,7 +77,7 @@ def synthesise(
     config = config or SynthesisConfig()
     if out.exists() and (not out.is_dir() or any(out.iterdir())):
         raise SynthesisError(f"{out} is there already and not an empty folder; choose another")
-    streams = np.random.SeedSequence(config.seed).spawn(7)
+    streams = np.random.SeedSequence(config.seed).spawn(8)
     rngs = [np.random.default_rng(stream) for stream in streams]
 
     sets = built_in_photos() if photos is None else photos_from_folder(Path(photos), rngs[0])
@@ -90,6 +91,9 @@ def synthesise(
     )
     drive = _drive(config, ground, np.array([icrs_m[t] for t in ground.terrains]), rngs[2])
     tables = motion_tables(config, drive, rngs[3])
+    if config.has_imu:
+        tables["odometry"]["terrain"] = np.array(drive.terrains)
+        tables["imu"] = imu_table(drive, tuple(icrs), rngs[7])
 
     shown = range(0, len(drive.stamps_s), config.samples_between("image_rate_hz"))
     tables["images"] = _images_table(drive, ground, config.camera, shown)

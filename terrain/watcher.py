@@ -56,6 +56,7 @@ class TerrainWatcher:
     in_force : list of str
         The terrain in force after each image label.
     events : list of SwitchEvent
+    footprint : Footprint
     seen : RunLikeness
         Whether the images are similar to the training photographs; if not, labels count less.
     """
@@ -86,8 +87,8 @@ class TerrainWatcher:
         self._keep = keep
         self._felt = felt
         self._felt_upto_s = -math.inf
-        footprint = Footprint.of(robot, region.footprint_scale)
-        self._switch = Switch(initial, footprint, switch)
+        self.footprint = Footprint.of(robot, region.footprint_scale)
+        self._switch = Switch(initial, self.footprint, switch)
         self._pose = np.zeros(3)  # of the last estimate, in the odometry frame
         self._last: Estimate | None = None
         self._frame: Frame | None = None

@@ -7,16 +7,17 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
+from odometry.feel.design import SHAPE
 from odometry.feel.folds import FOLDS, stratified_folds
 from odometry.feel.held_out import (
     HeldOut,
     held_out,
+    names_of,
     put_together,
     told_of,
     windows_alone,
 )
 from odometry.feel.members import Choice, averaged_sets
-from odometry.feel.model import Limits
 from odometry.feel.scores import (
     balanced_accuracy,
     bootstrap_interval,
@@ -80,61 +81,82 @@ class Assessment:
     names : tuple of str
     by_length : dict of str to Answers
         Of LENGTHS.
-    choices : tuple of Choice
+    choices : tuple of (float, Choice)
+        The length of windows [s], and what was chosen for them.
     by_groups : dict of str to float
-        Balanced accuracy of windows by other sets of features, at one shrinkage.
+        Balanced accuracy of windows by other sets of features, nothing chosen.
     """
 
     names: tuple[str, ...]
     by_length: dict[str, Answers]
-    choices: tuple[Choice, ...]
+    choices: tuple[tuple[float, Choice], ...]
     by_groups: dict[str, float]
 
     def to_table(self) -> dict[str, Any]:
         """Plain values, for JSON."""
         return {
             **{name: one.to_table(self.names) for name, one in self.by_length.items()},
-            "shrinkage_of_folds": [one.shrinkage for one in self.choices],
+            "chosen_in_folds": [choice_words(*one) for one in self.choices],
             "window_by_groups": self.by_groups,
         }
 
 
-def assessed(table: FeelTable, groups: IntArray, seed: int = 0, folds: int = FOLDS) -> Assessment:
-    """Nested cross-validation: groups of runs (R,) are held out, features chosen without them."""
+def assessed(
+    tables: Sequence[FeelTable], groups: IntArray, seed: int = 0, folds: int = FOLDS
+) -> Assessment:
+    """Nested cross-validation: groups of runs (R,) are held out, all is chosen without them.
+
+    Parameters
+    ----------
+    tables : sequence of FeelTable
+        Of the same runs, each with windows of another length.
+    groups : (R,)
+    seed : int
+    folds : int
+    """
     rng = np.random.default_rng(seed)
-    fold_of = stratified_folds(groups, main_labels(table, len(groups)), folds, rng)
+    names, labels = tables[0].names, main_labels(tables[0], len(groups))
+    fold_of = stratified_folds(groups, labels, folds, rng)
     parts: dict[str, list[Answers]] = {name: [] for name in LENGTHS}
     choices = []
     for fold in np.unique(fold_of):
         known = fold_of != fold
-        if len(set(table.labels[known[table.runs]].tolist())) < 2:
+        if len(names_of(tables[0], known)) < 2:
             continue
-        best = selected(table, groups, known, rng)
-        told = told_of(table, known, ~known, best.choice)
-        if told is None:
+        best = selected(tables, groups, known, rng)
+        table = tables[best.place]
+        judged = told_of(table, known, ~known, [best.choice])
+        if not judged:
             continue
-        choices.append(best.choice)
+        (told,) = judged
+        choices.append((table.design.window_s, best.choice))
         for name, one in _answers(table, told, best).items():
             parts[name].append(one)
     joined = {name: _joined(of) for name, of in parts.items()}
-    return Assessment(table.names, joined, tuple(choices), _by_groups(table, fold_of))
+    return Assessment(names, joined, tuple(choices), _by_groups(tables[0], fold_of))
+
+
+def choice_words(window_s: float, choice: Choice) -> str:
+    """A choice in words."""
+    return f"windows of {window_s:g} s, shrinkage {choice.shrinkage:g}"
 
 
 def _answers(table: FeelTable, told: HeldOut, best: Selected) -> dict[str, Answers]:
-    limits = Limits.of(best.windows, best.stretches, table.speeds_m_s)
+    windows, limits, strangeness = best.calibration, best.limits, best.strangeness
     lengths = (
-        (windows_alone(table, told), limits.window),
-        (put_together(table, told, STRETCH_S), limits.stretch),
-        (put_together(table, told, np.inf), limits.stretch),
+        (windows_alone(table, told, windows), limits.window, strangeness.window),
+        (put_together(table, told, windows, STRETCH_S), limits.stretch, strangeness.stretch),
+        (put_together(table, told, windows, np.inf), limits.stretch, strangeness.stretch),
     )
+    strange = (limits.strange_window, limits.strange_stretch, limits.strange_stretch)
     return {
         name: Answers(
             of.labels,
             of.runs,
-            best.calibration.probabilities(of.log_likelihoods, of.windows),
-            of.novelty > limit,
+            best.calibration.probabilities(of.evidence, of.windows),
+            (of.novelty > limit) | (best.log_odds(of, weights) > most),
         )
-        for name, (of, limit) in zip(LENGTHS, lengths, strict=True)
+        for name, (of, limit, weights), most in zip(LENGTHS, lengths, strange, strict=True)
     }
 
 
@@ -152,15 +174,14 @@ def _by_groups(table: FeelTable, folds: IntArray) -> dict[str, float]:
     present = table.design.groups
     sets = {"all": present}
     if len(present) > 1:
-        sets |= {f"{one} alone": (one,) for one in present}
+        sets |= {f"{one} alone": (one,) for one in present if one != SHAPE}
         sets |= {f"without {one}": tuple(o for o in present if o != one) for one in present}
     everyone = np.ones(len(folds), dtype=bool)
     found = {}
     for name, groups in sets.items():
-        sets_of = averaged_sets(groups)
-        told = windows_alone(
-            table, held_out(table, folds, everyone, Choice(sets_of, SHRINKAGES[0]))
-        )
-        best = np.array(table.names, dtype=object)[told.log_likelihoods.argmax(axis=1)]
-        found[name] = balanced_accuracy(told.labels, best == told.labels)
+        choice = Choice(averaged_sets(groups), SHRINKAGES[0])
+        (told,) = held_out(table, folds, everyone, [choice])
+        best = np.array(table.names, dtype=object)[told.scores.log_likelihoods.argmax(axis=1)]
+        labels = table.labels[told.rows]
+        found[name] = balanced_accuracy(labels, best == labels)
     return found | {"speed alone": speed_alone(table, folds)}

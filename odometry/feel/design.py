@@ -1,4 +1,4 @@
-"""The columns by which windows are told apart: bands of several widths, and motion."""
+"""The columns by which windows are told apart: bands of several widths, shape, and motion."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,14 +8,15 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import RunFolderError
-from odometry.feel.spectra import LOWEST_HZ, band_edges_hz, band_powers
+from odometry.feel.spectra import LOWEST_HZ, band_edges_hz, band_powers, shapes
 from odometry.feel.windows import FeelWindows
 
-LAYOUTS = (6, 7, 8, 9)  # bands of an axis; a discriminant of each is averaged
+LAYOUTS = (6, 8, 10, 12)  # bands of an axis; a discriminant of each is averaged
 LEAST_STEPS = 2  # of frequency in a band
 SLOWER_SHARE = 0.96  # of the highest frequency: a run that carries a little less will do
-GROUPS = ("gyro", "accel", "yaw", "currents")
 SPECTRAL = ("gyro", "accel")
+SHAPE = "shape"
+SHAPE_WORDS = ("flatness", "bandwidth")  # of the spectrum of an axis
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,8 @@ class Design:
         Upper edge of the highest band.
     layouts : tuple of int
         Numbers of bands; none where no axis has a band.
+    shaped : bool
+        Whether the flatness and the bandwidth of each axis' spectrum are columns, too.
     """
 
     window_s: float
@@ -40,6 +43,7 @@ class Design:
     motion: tuple[str, ...]
     top_hz: float
     layouts: tuple[int, ...]
+    shaped: bool
 
     @classmethod
     def shared(cls, windows: Sequence[FeelWindows]) -> "Design":
@@ -50,13 +54,14 @@ class Design:
         step_hz = max(one.step_hz for one in windows)
         most = int((top_hz - LOWEST_HZ) / (LEAST_STEPS * step_hz))
         layouts = tuple(dict.fromkeys(min(bands, most) for bands in LAYOUTS)) if most > 0 else ()
-        return cls(windows[0].window_s, axes if layouts else (), motion, top_hz, layouts or (0,))
+        axes = axes if layouts else ()
+        return cls(windows[0].window_s, axes, motion, top_hz, layouts or (0,), bool(axes))
 
     @property
     def groups(self) -> tuple[str, ...]:
-        """Groups of columns, of GROUPS."""
+        """Groups of columns: of SPECTRAL, SHAPE, and motion."""
         spectral = [kind for kind in SPECTRAL if any(a.startswith(kind) for a in self.axes)]
-        return (*spectral, *self.motion)
+        return (*spectral, *([SHAPE] if self.shaped else []), *self.motion)
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -69,15 +74,18 @@ class Design:
         """The same with some of the groups."""
         axes = tuple(axis for axis in self.axes if axis.partition("_")[0] in groups)
         motion = tuple(one for one in self.motion if one in groups)
-        return Design(self.window_s, axes, motion, self.top_hz, self.layouts if axes else (0,))
+        layouts = self.layouts if axes else (0,)
+        shaped = self.shaped and bool(axes) and SHAPE in groups
+        return Design(self.window_s, axes, motion, self.top_hz, layouts, shaped)
 
     def places(self, of: "Design", layout: int) -> list[int]:
         """Where the columns of a smaller design stand among the columns of this one."""
         bands, found = self.layouts[layout], list[int]()
+        width = bands + len(SHAPE_WORDS) * self.shaped
         for axis in of.axes:
-            at = self.axes.index(axis) * bands
-            found += range(at, at + bands)
-        at = len(self.axes) * bands
+            at = self.axes.index(axis) * width
+            found += range(at, at + (width if of.shaped else bands))
+        at = len(self.axes) * width
         for one in self.motion:
             width = WIDTHS[one]
             found += range(at, at + width) if one in of.motion else []
@@ -87,9 +95,10 @@ class Design:
     def names(self, layout: int) -> tuple[str, ...]:
         """What each column is, in words."""
         edges = band_edges_hz(self.layouts[layout], self.top_hz) if self.axes else np.empty(0)
-        pairs = list(pairwise(edges))
-        bands = [f"{axis} {a:.0f} to {b:.0f} Hz" for axis in self.axes for a, b in pairs]
-        return (*bands, *(word for one in self.motion for word in WORDS[one]))
+        words = [f"{a:.0f} to {b:.0f} Hz" for a, b in pairwise(edges)]
+        words += SHAPE_WORDS if self.shaped else ()
+        spectral = [f"{axis} {word}" for axis in self.axes for word in words]
+        return (*spectral, *(word for one in self.motion for word in WORDS[one]))
 
     def check(self, windows: FeelWindows, where: str) -> None:
         """Raise RunFolderError unless a run has all columns, fast enough."""
@@ -112,8 +121,12 @@ class Design:
         if self.axes:
             rows = [windows.axes.index(axis) for axis in self.axes]
             edges = band_edges_hz(self.layouts[layout], self.top_hz)
-            powers = band_powers(windows.densities[:, rows], windows.step_hz, edges)
-            parts = [powers.reshape(len(windows), -1), *parts]
+            densities = windows.densities[:, rows]
+            spectral = band_powers(densities, windows.step_hz, edges)
+            if self.shaped:
+                shape = shapes(densities, windows.step_hz, self.top_hz)
+                spectral = np.concatenate([spectral, shape], axis=2)
+            parts = [spectral.reshape(len(windows), -1), *parts]
         return np.concatenate(parts, axis=1)
 
 

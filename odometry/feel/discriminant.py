@@ -1,6 +1,8 @@
 """Shrunk linear discriminants in which the effect of speed is taken out."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -37,22 +39,66 @@ class Discriminant:
         whitened, centres = columns @ self.whitening.T, self.means @ self.whitening.T
         return np.asarray(whitened[:, None] - centres)
 
+    @cached_property
+    def between(self) -> FloatArray:
+        """Directions (K - 1, d) of the space that the whitened means lie in; orthonormal."""
+        centres = self.means @ self.whitening.T
+        _, _, directions = np.linalg.svd(centres - centres.mean(axis=0), full_matrices=False)
+        return np.asarray(directions[: len(centres) - 1])
 
-def fitted_discriminant(
-    moments: Moments, names: tuple[str, ...], covariates: int, shrinkage: float
-) -> Discriminant:
-    """Fit a discriminant in which every run of a class, and every class, counts alike.
+
+@dataclass(frozen=True)
+class Pooled:
+    """Moments of K classes in D columns and covariates, of which every run counts alike.
+
+    Attributes
+    ----------
+    means : (K, D)
+    whole : (D, D)
+        Covariance of a window of a run that was never seen.
+    usual : (D,)
+        Mean over runs.
+    """
+
+    means: FloatArray
+    whole: FloatArray
+    usual: FloatArray
+
+    def columns(self, places: Sequence[int]) -> "Pooled":
+        """Some of the columns."""
+        rows = np.asarray(places)
+        return Pooled(self.means[:, rows], self.whole[rows[:, None], rows], self.usual[rows])
+
+
+def pooled(moments: Moments, names: tuple[str, ...]) -> Pooled:
+    """Pool the moments of K classes, each class alike.
 
     The covariance is that of a window of a run that was never seen: within runs, plus that of run
-    means B (1 + 1 / n), n runs of a class. Covariates are taken out by their slopes within
-    classes (analysis of covariance), and what they say of a class themselves is not used; then
-    correlations are shrunk towards none.
+    means B (1 + 1 / n), n runs of a class.
+    """
+    rows = [np.flatnonzero(moments.labels == name) for name in names]
+    means = np.stack([moments.means[of].mean(axis=0) for of in rows])
+    weights = np.zeros(len(moments.labels))
+    for of in rows:
+        weights[of] = 1 / (len(of) * len(names))
+    used = np.concatenate(rows)
+    within = np.tensordot(weights[used], moments.covariances[used], axes=1)
+    off = [moments.means[of] - mean for of, mean in zip(rows, means, strict=True)]
+    free = max(sum(len(of) - 1 for of in off), 1)
+    between = sum(of.T @ of for of in off) / free
+    new = float(np.mean([1 + 1 / len(of) for of in off]))
+    return Pooled(means, within + new * between, moments.means[used].mean(axis=0))
+
+
+def fitted_discriminant(of: Pooled, covariates: int, shrinkage: float) -> Discriminant:
+    """Fit a discriminant in which every run of a class, and every class, counts alike.
+
+    Covariates are taken out by their slopes within classes (analysis of covariance), and what they
+    say of a class themselves is not used; then correlations are shrunk towards none.
 
     Parameters
     ----------
-    moments : Moments
-        Of all classes.
-    names : tuple of str, length K
+    of : Pooled
     covariates : int
         q: so many last columns.
     shrinkage : float
@@ -62,24 +108,18 @@ def fitted_discriminant(
     ----------
     Friedman 1989, "Regularized discriminant analysis", eq. 18, with one covariance.
     """
-    rows = [moments.labels == name for name in names]
-    means = np.stack([moments.means[of].mean(axis=0) for of in rows])
-    within = np.mean([moments.covariances[of].mean(axis=0) for of in rows], axis=0)
-    off = [moments.means[of] - mean for of, mean in zip(rows, means, strict=True)]
-    free = max(sum(len(of) - 1 for of in off), 1)
-    between = sum(of.T @ of for of in off) / free
-    new = float(np.mean([1 + 1 / len(of) for of in off]))
-    whole = within + new * between
+    means, whole = of.means, of.whole
     size = whole.shape[0] - covariates
     columns, cross, own = whole[:size, :size], whole[size:, :size], whole[size:, size:]
-    slopes = np.linalg.solve(own + RIDGE * _diagonal(own), cross)
+    slopes = np.asarray(np.linalg.solve(own + RIDGE * _diagonal(own), cross), dtype=np.float64)
     residual = columns - cross.T @ slopes - slopes.T @ cross + slopes.T @ own @ slopes
     scale = np.sqrt(np.maximum(np.diag(residual), 1e-12))
     correlation = (1 - shrinkage) * residual / np.outer(scale, scale)
     correlation[np.diag_indices(size)] = 1.0
     lower = np.linalg.cholesky(correlation + 1e-9 * np.eye(size))
-    whitening = np.linalg.solve(lower, np.diag(1 / scale))
-    return Discriminant(slopes, means[:, :size] - means[:, size:] @ slopes, whitening)
+    whitening = np.asarray(np.linalg.solve(lower, np.diag(1 / scale)))
+    centres = np.asarray(means[:, :size] - means[:, size:] @ slopes)
+    return Discriminant(slopes, centres, whitening)
 
 
 def _diagonal(matrix: FloatArray) -> FloatArray:

@@ -9,6 +9,7 @@ from odometry.feel.scores import class_weights
 
 TEMPERATURES = np.geomspace(0.5, 30.0, 40)
 OUTLIERS = (0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3)
+LEAST = 1e-12  # probability, below a logarithm
 CORRELATIONS = (0.0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
 
 
@@ -21,7 +22,7 @@ class Calibration:
     temperature : float
         By which the log likelihoods of a window are divided.
     outliers : float
-        Share of the answers that say nothing of the terrain: every terrain is as probable then.
+        Share of the windows that say nothing of the terrain: every terrain is as probable then.
     correlation : float
         Of the evidence of windows of one run: n of them count as n / (1 + (n - 1) correlation).
 
@@ -39,11 +40,17 @@ class Calibration:
         """How many independent windows so many windows, which do not overlap, count as."""
         return np.asarray(windows / (1 + (np.maximum(windows, 1.0) - 1) * self.correlation))
 
-    def probabilities(self, log_likelihoods: FloatArray, windows: FloatArray) -> FloatArray:
-        """Of K terrains, each as probable as another before, from mean log likelihoods (N, K)."""
-        scale = self.worth(np.asarray(windows, dtype=np.float64)) / self.temperature
-        told = softmax(log_likelihoods * scale[:, None])
-        return np.asarray((1 - self.outliers) * told + self.outliers / told.shape[1])
+    def evidence(self, log_likelihoods: FloatArray) -> FloatArray:
+        """Log of the probabilities of K terrains (N, K) by one window, each as probable before.
+
+        Bounded by the outliers: one window that errs cannot outvote many.
+        """
+        told = softmax(log_likelihoods / self.temperature)
+        return np.asarray(np.log((1 - self.outliers) * told + self.outliers / told.shape[1]))
+
+    def probabilities(self, evidence: FloatArray, windows: FloatArray) -> FloatArray:
+        """Of K terrains (N, K) from the mean `evidence` of so many windows (N,)."""
+        return softmax(evidence * self.worth(np.asarray(windows, dtype=np.float64))[:, None])
 
 
 @dataclass(frozen=True)
@@ -54,42 +61,37 @@ class Stretches:
     ----------
     labels, runs, windows : (N,)
         Terrain, number of the run, and how many windows, without their overlap.
-    log_likelihoods : (N, K)
+    evidence : (N, K)
         Mean over its windows.
-    novelty : (N,)
-        Mean over its windows.
+    novelty, nearness : (N,)
+        Means over its windows, see `held_out.Scores`.
     """
 
     labels: AnyArray
     runs: IntArray
     windows: FloatArray
-    log_likelihoods: FloatArray
+    evidence: FloatArray
     novelty: FloatArray
+    nearness: FloatArray
 
     def __len__(self) -> int:
         return len(self.labels)
 
 
-def gathered(
-    parts: IntArray,
-    labels: AnyArray,
-    runs: IntArray,
-    scores: tuple[FloatArray, FloatArray],
-    steps: int,
-) -> Stretches:
+def gathered(windows: Stretches, parts: IntArray, steps: int) -> Stretches:
     """Put windows of equal parts (W,) together; `steps` windows overlap to the length of one."""
     _, first, places, counts = np.unique(
         parts, return_index=True, return_inverse=True, return_counts=True
     )
-    log_likelihoods, novelty = scores
-    sums = np.zeros((len(counts), log_likelihoods.shape[1]))
-    np.add.at(sums, places, log_likelihoods)
+    sums = np.zeros((len(counts), windows.evidence.shape[1]))
+    np.add.at(sums, places, windows.evidence)
     return Stretches(
-        labels[first],
-        runs[first],
+        windows.labels[first],
+        windows.runs[first],
         np.maximum((counts + steps - 1) / steps, 1.0),
         sums / counts[:, None],
-        np.bincount(places, weights=novelty) / counts,
+        np.bincount(places, weights=windows.novelty) / counts,
+        np.bincount(places, weights=windows.nearness) / counts,
     )
 
 
@@ -106,41 +108,43 @@ def stretch_numbers(
     return np.asarray(np.unique(keys, axis=0, return_inverse=True)[1]).ravel()
 
 
-def calibrated(
-    windows: Stretches, stretches: Stretches, names: tuple[str, ...]
+def calibrated_windows(
+    log_likelihoods: FloatArray, labels: AnyArray, names: tuple[str, ...]
 ) -> tuple[float, Calibration]:
-    """Temperature and outliers by windows, then the correlation by stretches.
+    """Temperature and outliers by windows (W, K).
 
     Returns
     -------
     (float, Calibration)
-        The least log loss of windows, every terrain counting alike, and what has it.
+        The least log loss, every terrain counting alike, and what has it.
     """
-    ones = np.ones(len(windows))
-    loss, best = min(
-        (
-            (log_loss(one.probabilities(windows.log_likelihoods, ones), windows, names), one)
-            for one in (Calibration(t, o, 0.0) for t in TEMPERATURES.tolist() for o in OUTLIERS)
-        ),
-        key=lambda pair: pair[0],
-    )
-    both = [replace(best, correlation=one) for one in CORRELATIONS]
-    losses = [
-        log_loss(one.probabilities(stretches.log_likelihoods, stretches.windows), stretches, names)
-        for one in both
-    ]
-    return loss, both[int(np.argmin(losses))]
+    codes, weights = _codes(labels, names), class_weights(labels)
+    rows, best = np.arange(len(codes)), (np.inf, Calibration(1.0, OUTLIERS[0], 0.0))
+    for temperature in TEMPERATURES.tolist():
+        true = softmax(log_likelihoods / temperature)[rows, codes]
+        for outliers in OUTLIERS:
+            told = (1 - outliers) * true + outliers / log_likelihoods.shape[1]
+            loss = float(-weights @ np.log(told))
+            if loss < best[0]:
+                best = loss, Calibration(temperature, outliers, 0.0)
+    return best
 
 
-def log_loss(probabilities: FloatArray, told: Stretches, names: tuple[str, ...]) -> float:
-    """Mean of -log of the probability (N, K) of what is true, every terrain counting alike."""
-    return float(class_weights(told.labels) @ losses_of(probabilities, told, names))
+def calibrated_stretches(
+    windows: Calibration, stretches: Stretches, names: tuple[str, ...]
+) -> tuple[float, Calibration]:
+    """The correlation by stretches whose evidence `windows` gave; the same return."""
+    codes, weights = _codes(stretches.labels, names), class_weights(stretches.labels)
+    rows, tried = np.arange(len(codes)), list[tuple[float, Calibration]]()
+    for correlation in CORRELATIONS:
+        one = replace(windows, correlation=correlation)
+        true = one.probabilities(stretches.evidence, stretches.windows)[rows, codes]
+        tried.append((float(-weights @ np.log(true + LEAST)), one))
+    return min(tried, key=lambda pair: pair[0])
 
 
-def losses_of(probabilities: FloatArray, told: Stretches, names: tuple[str, ...]) -> FloatArray:
-    """-log (N,) of the probability (N, K) of what is true."""
-    codes = np.searchsorted(names, told.labels.astype(str))
-    return np.asarray(-np.log(probabilities[np.arange(len(codes)), codes]))
+def _codes(labels: AnyArray, names: tuple[str, ...]) -> IntArray:
+    return np.asarray(np.searchsorted(names, labels.astype(str)))
 
 
 def softmax(values: FloatArray) -> FloatArray:

@@ -1,7 +1,7 @@
 """What was felt of a run as files."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -43,6 +43,23 @@ def write_feel(felt: Felt, out: Path, about: Mapping[str, Any] | None = None) ->
     return written
 
 
+def write_feel_runs(felt: Sequence[Felt], names: Sequence[str], file: Path) -> None:
+    """Write one row a run: the answer for all of it."""
+    answers = [one.answer_of_run for one in felt]
+    shares = [shares(one) for one in felt]
+    columns = {
+        "run": np.array(names),
+        "label": np.array([label for label, _, _ in answers]),
+        "probability": np.array([probability for _, probability, _ in answers]),
+        "probability_unknown": np.array([unknown for _, _, unknown in answers]),
+        "windows": np.array([int(one.windows.felt.sum()) for one in felt]),
+        "true_label": np.array([one.run.terrain or "" for one in felt]),
+    }
+    for name in (*felt[0].model.names, UNKNOWN):
+        columns[f"share_{name}"] = np.array([of.get(name, 0.0) for of in shares])
+    write_csv_table(file, columns)
+
+
 def columns_of(felt: Felt) -> dict[str, AnyArray]:
     """The columns of feel.csv; `t` is the end of each window, when it is known."""
     names = felt.model.names
@@ -50,9 +67,11 @@ def columns_of(felt: Felt) -> dict[str, AnyArray]:
         "t": felt.stamps_s,
         "label": felt.lasting_answers,
         **_named("probability", names, felt.lasting_probabilities),
+        "probability_unknown": felt.lasting_unknown,
         "window_label": felt.answers,
         **_named("window_probability", names, felt.probabilities),
-        "novelty": felt.novelty / felt.model.limits.window,
+        "window_probability_unknown": felt.unknown,
+        "novelty": felt.scores.novelty / felt.model.limits.window,
         "speed": felt.windows.speeds_m_s,
         "true_label": np.where(felt.windows.labels == UNKNOWN, "", felt.windows.labels),
     }
@@ -70,6 +89,7 @@ def content_of(felt: Felt) -> dict[str, Any]:
             "window_s": felt.model.design.window_s,
             "stretch_s": felt.config.stretch_s,
             "sure": felt.config.sure,
+            "unknown_share": felt.config.unknown_share or felt.model.strangeness.share,
             "columns": list(felt.model.design.columns),
             "source": felt.model.source,
         },

@@ -8,8 +8,10 @@ import numpy as np
 from odometry.arrays import AnyArray, BoolArray, FloatArray
 from odometry.config import require, require_positive
 from odometry.errors import RunFolderError
+from odometry.feel.held_out import Scores
 from odometry.feel.model import FeelModel
-from odometry.feel.windows import STEPS, FeelWindows, feel_windows
+from odometry.feel.told import Told
+from odometry.feel.windows import FeelWindows, feel_windows
 from odometry.run import UNKNOWN, Run
 
 STATIONARY, UNDETERMINED, NOT_MEASURED = "stationary", "undetermined", "not measured"
@@ -27,14 +29,21 @@ class FeelConfig:
         Over so much time before each window evidence is put together.
     sure : float
         The probability from which a terrain is named; below it the answer is "undetermined".
+    unknown_share : float, optional
+        How probable a terrain is, before anything is felt, that the model does not know; by
+        default what kept the model modest on terrains that were left out.
     """
 
     stretch_s: float = 10.0
     sure: float = 0.6
+    unknown_share: float | None = None
 
     def __post_init__(self) -> None:
         require_positive(self, "stretch_s")
-        require(0 < self.sure < 1, f"sure = {self.sure}, expected above 0 and below 1")
+        for name in ("sure", "unknown_share"):
+            value = getattr(self, name)
+            inside = value is None or 0 < value < 1
+            require(inside, f"{name} = {value}, expected above 0 and below 1")
 
 
 @dataclass(frozen=True)
@@ -47,61 +56,74 @@ class Felt:
     model : FeelModel
     config : FeelConfig
     windows : FeelWindows
-    log_likelihoods : (W, K)
-        Zeros where a window says nothing.
-    novelty : (W,)
+    scores : Scores
+        Of W windows; zeros where one says nothing.
     """
 
     run: Run
     model: FeelModel
     config: FeelConfig
     windows: FeelWindows
-    log_likelihoods: FloatArray
-    novelty: FloatArray
+    scores: Scores
 
     @property
     def stamps_s(self) -> FloatArray:
         """From when on (W,) each window is known."""
         return self.windows.ends_s
 
-    @cached_property
+    @property
     def probabilities(self) -> FloatArray:
-        """Of each terrain (W, K) by one window; alike where it says nothing."""
-        calibration = self.model.calibration
-        return calibration.probabilities(self.log_likelihoods, np.ones(len(self.windows)))
+        """Of each terrain (W, K) by one window; rows and `unknown` add up to 1."""
+        return self._windows.probabilities
+
+    @property
+    def unknown(self) -> FloatArray:
+        """Probability (W,) of a terrain that the model does not know, by one window."""
+        return self._windows.unknown
 
     @cached_property
     def answers(self) -> AnyArray:
         """A terrain, "unknown", or one of SILENT (W,), by one window."""
-        return self._answers(self.probabilities, self.novelty > self.model.limits.window)
+        return self._answers(self._windows)
 
-    @cached_property
+    @property
     def lasting_probabilities(self) -> FloatArray:
-        """The same (W, K) by all windows of the last stretch."""
-        sums, _, counts = self._trailing
-        means = sums / np.maximum(counts, 1)[:, None]
-        worth = np.where(counts > 0, (counts + STEPS - 1) / STEPS, 1.0)
-        return self.model.calibration.probabilities(means, worth)
+        """As `probabilities` (W, K), by all windows of the last stretch."""
+        return self._lasting.probabilities
+
+    @property
+    def lasting_unknown(self) -> FloatArray:
+        """As `unknown` (W,), by all windows of the last stretch."""
+        return self._lasting.unknown
 
     @cached_property
     def lasting_answers(self) -> AnyArray:
-        """The same (W,) by all windows of the last stretch."""
-        _, novelty, counts = self._trailing
-        novel = novelty / np.maximum(counts, 1) > self.model.limits.stretch
-        return self._answers(self.lasting_probabilities, novel)
+        """As `answers` (W,), by all windows of the last stretch."""
+        return self._answers(self._lasting)
 
     @cached_property
     def of_run(self) -> tuple[dict[str, float], bool]:
         """Probability of each terrain if the run is of one, and whether it is like none."""
         felt = self.windows.felt
+        summed = np.concatenate([self._evidence[felt].sum(axis=0), [felt.sum()]])[None]
+        told = self._told(summed)
         names = self.model.names
-        if not felt.any():
-            return dict.fromkeys(names, 1 / len(names)), False
-        worth = np.array([max(1.0, felt.sum() / STEPS)])
-        mean = self.log_likelihoods[felt].mean(axis=0)[None]
-        probabilities = self.model.calibration.probabilities(mean, worth)[0]
-        novel = bool(self.novelty[felt].mean() > self.model.limits.stretch)
-        return dict(zip(names, probabilities.tolist(), strict=True)), novel
+        found = dict(zip(names, told.probabilities[0].tolist(), strict=True))
+        return found, bool(told.is_novel[0])
+
+    @property
+    def answer_of_run(self) -> tuple[str, float, float]:
+        """The answer if the run is of one terrain, its probability, and that of an unknown one."""
+        probabilities, is_novel = self.of_run
+        best = max(probabilities, key=lambda name: probabilities[name])
+        unknown = 1 - sum(probabilities.values())
+        moving = self.windows.felt
+        if not moving.any():
+            return (STATIONARY if self.windows.standing.any() else NOT_MEASURED), 0.0, unknown
+        if is_novel or self.outside_speeds[moving].all():
+            return UNKNOWN, 0.0, unknown
+        is_sure = probabilities[best] >= self.config.sure
+        return (best if is_sure else UNDETERMINED), probabilities[best], unknown
 
     @property
     def outside_speeds(self) -> BoolArray:
@@ -111,21 +133,34 @@ class Felt:
         return np.asarray(outside & self.windows.felt)
 
     @cached_property
-    def _trailing(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Sums (W, K), (W,) and counts (W,) over the windows of the stretch up to each."""
+    def _evidence(self) -> FloatArray:
+        """Bounded log probabilities, novelty and nearness (W, K + 2)."""
+        bounded = self.model.calibration.evidence(self.scores.log_likelihoods)
+        return np.column_stack([bounded, self.scores.novelty, self.scores.nearness])
+
+    @cached_property
+    def _windows(self) -> Told:
+        felt = self.windows.felt[:, None]
+        return self._told(np.column_stack([self._evidence, np.ones(len(felt))]) * felt)
+
+    @cached_property
+    def _lasting(self) -> Told:
         felt, ends_s = self.windows.felt, self.stamps_s
         first = np.searchsorted(self.windows.begins_s, ends_s - self.config.stretch_s - 1e-6)
         upto = np.arange(1, len(ends_s) + 1)
         first = np.minimum(first, upto - 1)
-        table = np.column_stack([self.log_likelihoods, self.novelty, felt]) * felt[:, None]
+        table = np.column_stack([self._evidence, np.ones(len(felt))]) * felt[:, None]
         summed = np.vstack([np.zeros(table.shape[1]), np.cumsum(table, axis=0)])
-        part = summed[upto] - summed[first]
-        return part[:, :-2], part[:, -2], part[:, -1]
+        return self._told(summed[upto] - summed[first])
 
-    def _answers(self, probabilities: FloatArray, novel: BoolArray) -> AnyArray:
-        names = np.array(self.model.names, dtype=object)[probabilities.argmax(axis=1)]
-        named = np.where(probabilities.max(axis=1) >= self.config.sure, names, UNDETERMINED)
-        named = np.where(novel | self.outside_speeds, UNKNOWN, named)
+    def _told(self, summed: FloatArray) -> Told:
+        share = self.config.unknown_share or self.model.strangeness.share
+        return Told.of(self.model, summed, share)
+
+    def _answers(self, told: Told) -> AnyArray:
+        names = np.array(self.model.names, dtype=object)[told.probabilities.argmax(axis=1)]
+        named = np.where(told.probabilities.max(axis=1) >= self.config.sure, names, UNDETERMINED)
+        named = np.where(told.is_novel | self.outside_speeds, UNKNOWN, named)
         named = np.where(self.windows.standing, STATIONARY, named)
         return np.where(self.windows.whole, named, NOT_MEASURED)
 
@@ -163,5 +198,4 @@ def follow_feel(run: Run, model: FeelModel, config: FeelConfig | None = None) ->
             f"{run.folder}: a robot of track width {width:g} m; the model is of one of "
             f"{model.track_width_m:g} m: how terrain feels on one robot says nothing of another"
         )
-    log_likelihoods, novelty = model.scores(windows)
-    return Felt(run, model, config or FeelConfig(), windows, log_likelihoods, novelty)
+    return Felt(run, model, config or FeelConfig(), windows, model.scores(windows))

@@ -5,11 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from odometry.config import require
-from odometry.feel.assessment import assessed
+from odometry.feel.assessment import assessed, choice_words
 from odometry.feel.design import Design
 from odometry.feel.folds import days_of, fold_groups
-from odometry.feel.members import fitted_members
-from odometry.feel.model import FeelModel, Limits
+from odometry.feel.members import fitted_members, pools_of
+from odometry.feel.model import FeelModel
 from odometry.feel.notes import notes_of
 from odometry.feel.selection import main_labels, selected
 from odometry.feel.table import FeelTable
@@ -22,20 +22,22 @@ LEAST_RUNS = 2  # of a terrain: one to fit, one to judge
 LEAST_WINDOWS = 5  # of a terrain and run on the average
 
 
-def identify_feel(runs: Sequence[Run], *, window_s: float = 2.0, seed: int = 0) -> FeelModel:
+def identify_feel(
+    runs: Sequence[Run], *, window_s: float | Sequence[float] = 2.0, seed: int = 0
+) -> FeelModel:
     """Identify how the terrains that runs name feel on one robot.
 
     Log power of bands of the IMU's axes, yaw response and motor currents of windows, whichever all
-    runs have; the effect of speed is taken out; shrunk linear discriminants. Shrinkage, what
-    evidence is worth, and from where on nothing known fits are found on runs held out, and the
-    figures of `report` on runs that all of that never saw.
+    runs have; the effect of speed is taken out; shrunk linear discriminants. Which of the columns
+    (see `menu`), shrinkage, what evidence is worth, and from where on nothing known fits are found
+    on runs held out, and the figures of `report` on runs that all of that never saw.
 
     Parameters
     ----------
     runs : sequence of Run
         Of one robot; two or more on each terrain.
-    window_s : float
-        1 to 5 s.
+    window_s : float or sequence of float
+        1 to 5 s; of several the one that is best on runs held out.
     seed : int
         Of the folds.
 
@@ -61,39 +63,49 @@ def identify_feel(runs: Sequence[Run], *, window_s: float = 2.0, seed: int = 0) 
     >>> model.names, model.design.columns
     (('grass', 'gravel'), ('gyro_z',))
     """
-    require(
-        SHORTEST_S <= window_s <= LONGEST_S,
-        f"window_s = {window_s}, expected {SHORTEST_S:g} to {LONGEST_S:g}",
-    )
+    lengths_s = (window_s,) if isinstance(window_s, (int, float)) else tuple(window_s)
+    for one in lengths_s:
+        require(
+            SHORTEST_S <= one <= LONGEST_S,
+            f"window_s = {one}, expected {SHORTEST_S:g} to {LONGEST_S:g}",
+        )
     robot = robot_of(runs)
-    windows = [feel_windows(run, window_s) for run in runs]
-    design = Design.shared(windows)
-    if not design.groups:
-        raise IdentificationError("the runs have no column in common that terrain is felt by")
-    table = FeelTable.of(windows, design)
-    _check(table, windows)
-    labels = main_labels(table, len(runs))
+    windows = [[feel_windows(run, one) for run in runs] for one in lengths_s]
+    tables = [_table(of) for of in windows]
+    labels = main_labels(tables[0], len(runs))
     groups = fold_groups(labels.tolist(), days_of(runs))
-    found = assessed(table, groups, seed)
+    found = assessed(tables, groups, seed)
     everyone = np.ones(len(runs), dtype=bool)
-    best = selected(table, groups, everyone, np.random.default_rng(seed))
+    best = selected(tables, groups, everyone, np.random.default_rng(seed))
+    table = tables[best.place]
     by_day = len(np.unique(groups)) < len(runs)
     return FeelModel(
         table.names,
-        design,
+        table.design,
         best.choice,
-        fitted_members(table, everyone, table.names, best.choice),
+        fitted_members(table, pools_of(table, everyone, table.names), best.choice),
         best.calibration,
-        Limits.of(best.windows, best.stretches, table.speeds_m_s),
+        best.strangeness,
+        best.limits,
         robot.track_width,
         robot.name,
         ", ".join(dict.fromkeys(run.name for run in runs)),
         {
             **found.to_table(),
+            "chosen": choice_words(table.design.window_s, best.choice),
             "held_out": "days" if by_day else "runs",
-            "notes": list(notes_of(table, windows, by_day=by_day)),
+            "notes": list(notes_of(table, windows[best.place], by_day=by_day)),
         },
     )
+
+
+def _table(windows: Sequence[FeelWindows]) -> FeelTable:
+    design = Design.shared(windows)
+    if not design.groups:
+        raise IdentificationError("the runs have no column in common that terrain is felt by")
+    table = FeelTable.of(windows, design)
+    _check(table, windows)
+    return table
 
 
 def _check(table: FeelTable, windows: Sequence[FeelWindows]) -> None:

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.feel.design import SPECTRAL, Design
-from odometry.feel.discriminant import Discriminant, fitted_discriminant
+from odometry.feel.design import SHAPE, SPECTRAL, Design
+from odometry.feel.discriminant import Discriminant, Pooled, fitted_discriminant, pooled
+from odometry.feel.motion_features import SPEED_NAMES
 from odometry.feel.table import FeelTable
 
 
@@ -36,11 +37,10 @@ class Choice:
 
 
 def averaged_sets(groups: Sequence[str]) -> tuple[tuple[str, ...], ...]:
-    """Vibration alone, and with each other group: one that misleads is outvoted."""
-    base = tuple(one for one in groups if one in SPECTRAL)
-    others = [one for one in groups if one not in SPECTRAL]
-    sets = [base] if base else []
-    return (*sets, *((*base, one) for one in others))
+    """Vibration with its shape, alone and with each other group: one that misleads is outvoted."""
+    base = tuple(one for one in groups if one in (*SPECTRAL, SHAPE))
+    others = [one for one in groups if one not in base]
+    return (*([base] if base else []), *((*base, one) for one in others))
 
 
 @dataclass(frozen=True)
@@ -57,13 +57,17 @@ class Members:
     discriminants: tuple[Discriminant, ...]
     usual: tuple[FloatArray, ...]
 
-    def distances(self, tables: Sequence[FloatArray]) -> FloatArray:
-        """Squared Mahalanobis distance (W, K) to each class, the mean over discriminants."""
-        squared = [
-            (one.left(np.where(np.isfinite(table), table, usual)) ** 2).sum(axis=2)
-            for one, table, usual in zip(self.discriminants, tables, self.usual, strict=True)
-        ]
-        return np.asarray(np.mean(squared, axis=0))
+    def distances(self, tables: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
+        """Squared Mahalanobis distances (W, K) to each class, the means over discriminants.
+
+        In all columns, and within the space of the K - 1 discriminants.
+        """
+        whole, within = [], []
+        for one, table, usual in zip(self.discriminants, tables, self.usual, strict=True):
+            left = one.left(np.where(np.isfinite(table), table, usual))
+            whole.append((left**2).sum(axis=2))
+            within.append(((left @ one.between.T) ** 2).sum(axis=2))
+        return np.asarray(np.mean(whole, axis=0)), np.asarray(np.mean(within, axis=0))
 
     @property
     def columns(self) -> float:
@@ -71,29 +75,30 @@ class Members:
         return float(np.mean([one.means.shape[1] for one in self.discriminants]))
 
 
-def fitted_members(
-    table: FeelTable, runs: BoolArray, names: tuple[str, ...], choice: Choice
-) -> Members:
-    """Fit to the windows of some of the runs (R,)."""
-    discriminants, usual = [], []
-    for layout, places in choice.parts(table.design):
-        moments = table.moments[layout]
-        rows = [*places, *_covariates(table.tables[layout], table.covariates)]
-        part = moments.where(runs[moments.runs]).columns(rows)
-        discriminants.append(fitted_discriminant(part, names, table.covariates, choice.shrinkage))
-        usual.append(part.means.mean(axis=0))
-    return Members(tuple(discriminants), tuple(usual))
+def pools_of(table: FeelTable, runs: BoolArray, names: tuple[str, ...]) -> tuple[Pooled, ...]:
+    """Moments of windows of some of the runs (R,), one a layout."""
+    return tuple(pooled(of.where(runs[of.runs]), names) for of in table.moments)
 
 
-def columns_of(
-    tables: Sequence[FloatArray], covariates: int, parts: Sequence[tuple[int, list[int]]]
-) -> list[FloatArray]:
+def fitted_members(table: FeelTable, pools: Sequence[Pooled], choice: Choice) -> Members:
+    """Fit to the windows of `pools_of` the same table."""
+    parts = [
+        pools[layout].columns([*places, *_covariates(table.tables[layout])])
+        for layout, places in choice.parts(table.design)
+    ]
+    return Members(
+        tuple(fitted_discriminant(one, table.covariates, choice.shrinkage) for one in parts),
+        tuple(one.usual for one in parts),
+    )
+
+
+def columns_of(tables: Sequence[FloatArray], design: Design, choice: Choice) -> list[FloatArray]:
     """The columns of each discriminant and the covariates (W, d + q), from one table a layout."""
     return [
-        tables[layout][:, [*places, *_covariates(tables[layout], covariates)]]
-        for layout, places in parts
+        tables[layout][:, [*places, *_covariates(tables[layout])]]
+        for layout, places in choice.parts(design)
     ]
 
 
-def _covariates(table: FloatArray, covariates: int) -> range:
-    return range(table.shape[1] - covariates, table.shape[1])
+def _covariates(table: FloatArray) -> range:
+    return range(table.shape[1] - len(SPEED_NAMES), table.shape[1])

@@ -11,9 +11,11 @@ from odometry.errors import OdometryError
 from odometry.feel.design import Design
 from odometry.feel.discriminant import Discriminant
 from odometry.feel.evidence import Calibration
+from odometry.feel.limits import Limits
 from odometry.feel.members import Choice, Members
-from odometry.feel.model import FeelModel, Limits
+from odometry.feel.model import FeelModel
 from odometry.feel.motion_features import SPEED_NAMES
+from odometry.feel.strangeness import TERMS, Strangeness
 from odometry.io.array_file import FileKind, read_array_file, write_array_file
 
 
@@ -21,7 +23,7 @@ class FeelFileError(OdometryError):
     """A file of how terrains feel is damaged, foreign, or newer than this program."""
 
 
-FEEL = FileKind("terrain-odometry feel", 1, "model of feel", FeelFileError)
+FEEL = FileKind("terrain-odometry feel", 2, "model of feel", FeelFileError)
 
 
 def write_feel_model(
@@ -49,6 +51,10 @@ def write_feel_model(
             f"whitening_{place}": one.whitening,
             f"usual_{place}": usual,
         }
+    arrays |= {
+        "strangeness_window": model.strangeness.window,
+        "strangeness_stretch": model.strangeness.stretch,
+    }
     write_array_file(Path(path), FEEL, _settings(model), arrays, made)
 
 
@@ -93,8 +99,10 @@ def _settings(model: FeelModel) -> dict[str, Any]:
         "motion": list(model.design.motion),
         "top_hz": model.design.top_hz,
         "layouts": list(model.design.layouts),
+        "shaped": model.design.shaped,
         "sets": [list(one) for one in model.choice.sets],
         "shrinkage": model.choice.shrinkage,
+        "unknown_share": model.strangeness.share,
         "calibration": vars(model.calibration),
         "limits": vars(model.limits),
         "track_width_m": model.track_width_m,
@@ -112,6 +120,7 @@ def _model(settings: dict[str, Any], arrays: dict[str, AnyArray]) -> FeelModel:
         tuple(map(str, settings["motion"])),
         float(settings["top_hz"]),
         tuple(map(int, settings["layouts"])),
+        bool(settings.get("shaped", False)),
     )
     sets = tuple(tuple(map(str, one)) for one in settings["sets"])
     choice = Choice(sets, float(settings["shrinkage"]))
@@ -133,12 +142,21 @@ def _model(settings: dict[str, Any], arrays: dict[str, AnyArray]) -> FeelModel:
         choice,
         Members(tuple(discriminants), tuple(usual)),
         Calibration(**{name: float(one) for name, one in settings["calibration"].items()}),
+        _strangeness(settings, arrays),
         Limits(**{name: float(one) for name, one in settings["limits"].items()}),
         float(settings["track_width_m"]),
         str(settings["robot"]),
         str(settings["source"]),
         dict(settings["report"]),
     )
+
+
+def _strangeness(settings: dict[str, Any], arrays: Mapping[str, AnyArray]) -> Strangeness:
+    """Version 1 had none."""
+    if "strangeness_window" not in arrays:
+        return Strangeness.none()
+    weights = [_array(arrays, f"strangeness_{one}", (TERMS,)) for one in ("window", "stretch")]
+    return Strangeness(weights[0], weights[1], float(settings["unknown_share"]))
 
 
 def _array(arrays: Mapping[str, AnyArray], name: str, shape: tuple[int, ...]) -> FloatArray:

@@ -1,6 +1,5 @@
 """Means and covariances of windows by run: all that a discriminant is fitted to."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,16 +29,6 @@ class Moments:
         """Some of the parts."""
         return Moments(
             self.labels[chosen], self.runs[chosen], self.means[chosen], self.covariances[chosen]
-        )
-
-    def columns(self, places: Sequence[int]) -> "Moments":
-        """Some of the columns."""
-        rows = np.asarray(places)
-        return Moments(
-            self.labels,
-            self.runs,
-            self.means[:, rows],
-            self.covariances[:, rows[:, None], rows],
         )
 
 

@@ -1,14 +1,23 @@
-"""How much shrinkage, and what evidence is worth, by runs held out."""
+"""What is chosen for a model by runs held out: windows, shrinkage, and what evidence is worth."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.arrays import AnyArray, BoolArray, IntArray
-from odometry.feel.evidence import Calibration, Stretches, calibrated
-from odometry.feel.folds import stratified_folds
-from odometry.feel.held_out import held_out, put_together, windows_alone
+from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
+from odometry.feel.evidence import (
+    Calibration,
+    Stretches,
+    calibrated_stretches,
+    calibrated_windows,
+)
+from odometry.feel.folds import FOLDS, stratified_folds
+from odometry.feel.held_out import HeldOut, held_out, put_together, windows_alone
+from odometry.feel.left_out import fitted_strangeness, terms_of
+from odometry.feel.limits import Limits
 from odometry.feel.members import Choice, averaged_sets
+from odometry.feel.strangeness import Strangeness
 from odometry.feel.table import FeelTable
 
 SHRINKAGES = (0.03, 0.1, 0.3)
@@ -17,54 +26,114 @@ MOST_FOLDS = 60  # of runs held out one by one; more runs are dealt into so many
 
 
 @dataclass(frozen=True)
-class Selected:
-    """A choice, and what its windows held out got.
+class Judged:
+    """A choice, and how well it does on windows held out.
 
     Attributes
     ----------
     choice : Choice
-    loss : float
-        Log loss of windows, every terrain counting alike.
     calibration : Calibration
-    windows, stretches : Stretches
+    window_loss, stretch_loss : float
+        Log loss, every terrain counting alike.
+    told : HeldOut
     """
 
     choice: Choice
-    loss: float
     calibration: Calibration
-    windows: Stretches
-    stretches: Stretches
+    window_loss: float
+    stretch_loss: float
+    told: HeldOut
+
+
+@dataclass(frozen=True)
+class Selected:
+    """All that is chosen.
+
+    Attributes
+    ----------
+    place : int
+        Of the table among those that were given: the length of the windows.
+    choice : Choice
+    calibration : Calibration
+    strangeness : Strangeness
+    limits : Limits
+    """
+
+    place: int
+    choice: Choice
+    calibration: Calibration
+    strangeness: Strangeness
+    limits: Limits
+
+    def log_odds(self, told: Stretches, weights: FloatArray) -> FloatArray:
+        """Of "never felt" (N,), by weights of `strangeness`."""
+        return np.asarray(terms_of(told, self.calibration) @ weights)
 
 
 def selected(
-    table: FeelTable, groups: IntArray, known: BoolArray, rng: np.random.Generator
+    tables: Sequence[FeelTable], groups: IntArray, known: BoolArray, rng: np.random.Generator
 ) -> Selected:
-    """The shrinkage of least log loss on windows of runs held out, one by one if they are few.
+    """Choose the shrinkage by the log loss of windows, their length by that of stretches.
+
+    Runs are held out one by one if they are few; so they are for calibration and limits.
 
     Parameters
     ----------
-    table : FeelTable
+    tables : sequence of FeelTable
+        Of the same runs, each with windows of another length.
     groups : (R,)
         Of runs that are held out together.
     known : (R,)
         The runs that may be looked at.
     rng : Generator
     """
+    folds = _folds(tables[0], groups, known, MOST_FOLDS, rng)
+    found = [_best(table, folds, known) for table in tables]
+    place = int(np.argmin([one.stretch_loss for one in found]))
+    table, best = tables[place], found[place]
+    left_out = _folds(table, groups, known, FOLDS, rng)
+    how = (best.choice, best.calibration, STRETCH_S)
+    strangeness = fitted_strangeness(table, left_out, known, how)
+    limits = _limits(table, known, best, strangeness)
+    return Selected(place, best.choice, best.calibration, strangeness, limits)
+
+
+def judged(table: FeelTable, told: HeldOut, choice: Choice) -> Judged:
+    """A choice with its calibration, by windows held out."""
+    labels = table.labels[told.rows]
+    loss, windows = calibrated_windows(told.scores.log_likelihoods, labels, table.names)
+    stretches = put_together(table, told, windows, STRETCH_S)
+    stretch_loss, both = calibrated_stretches(windows, stretches, table.names)
+    return Judged(choice, both, loss, stretch_loss, told)
+
+
+def _best(table: FeelTable, folds: IntArray, known: BoolArray) -> Judged:
+    sets = averaged_sets(table.design.groups)
+    choices = [Choice(sets, one) for one in SHRINKAGES]
+    told = held_out(table, folds, known, choices)
+    tried = [judged(table, of, one) for of, one in zip(told, choices, strict=True)]
+    return min(tried, key=lambda one: one.window_loss)
+
+
+def _limits(table: FeelTable, known: BoolArray, best: Judged, strangeness: Strangeness) -> Limits:
+    windows = windows_alone(table, best.told, best.calibration)
+    stretches = put_together(table, best.told, best.calibration, STRETCH_S)
+    sides = [
+        (told.labels, told.novelty, terms_of(told, best.calibration) @ weights)
+        for told, weights in ((windows, strangeness.window), (stretches, strangeness.stretch))
+    ]
+    return Limits.of(sides[0], sides[1], table.speeds_m_s[known[table.runs]])
+
+
+def _folds(
+    table: FeelTable, groups: IntArray, known: BoolArray, most: int, rng: np.random.Generator
+) -> IntArray:
+    """Folds (R,) of the known runs, at most so many."""
     folds = np.full(len(groups), -1)
     labels = main_labels(table, len(groups))
-    count = min(MOST_FOLDS, len(np.unique(groups[known])))
+    count = min(most, len(np.unique(groups[known])))
     folds[known] = stratified_folds(groups[known], labels[known], count, rng)
-    sets = averaged_sets(table.design.groups)
-    tried = [judged(table, folds, known, Choice(sets, one)) for one in SHRINKAGES]
-    return min(tried, key=lambda one: one.loss)
-
-
-def judged(table: FeelTable, folds: IntArray, known: BoolArray, choice: Choice) -> Selected:
-    """A choice with its calibration, by windows held out."""
-    told = held_out(table, folds, known, choice)
-    windows, stretches = windows_alone(table, told), put_together(table, told, STRETCH_S)
-    loss, calibration = calibrated(windows, stretches, table.names)
-    return Selected(choice, loss, calibration, windows, stretches)
+    return folds
 
 
 def main_labels(table: FeelTable, runs: int) -> AnyArray:

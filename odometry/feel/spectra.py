@@ -57,3 +57,23 @@ def band_powers(densities: FloatArray, step_hz: float, edges_hz: FloatArray) -> 
     )
     means = [densities[..., a:b].mean(axis=-1) for a, b in pairwise(first)]
     return np.asarray(np.log(np.stack(means, axis=-1) + LEAST_POWER))
+
+
+def shapes(densities: FloatArray, step_hz: float, top_hz: float) -> FloatArray:
+    """Log flatness and bandwidth [Hz] (..., 2) of densities (..., F), whatever their size.
+
+    Flatness is the geometric mean over the arithmetic mean; the bandwidth is the standard
+    deviation of frequency, weighted by density. From LOWEST_HZ up to `top_hz`.
+
+    References
+    ----------
+    Gray and Markel 1974, "A spectral-flatness measure for studying the autocorrelation method".
+    """
+    frequencies_hz = np.arange(densities.shape[-1]) * step_hz
+    within = (frequencies_hz >= LOWEST_HZ - 1e-9) & (frequencies_hz <= top_hz + step_hz / 2)
+    part, frequencies_hz = densities[..., within] + LEAST_POWER, frequencies_hz[within]
+    flatness = np.log(part).mean(axis=-1) - np.log(part.mean(axis=-1))
+    share = part / part.sum(axis=-1, keepdims=True)
+    mean_hz = (share @ frequencies_hz)[..., None]
+    width_hz = np.sqrt((share * (frequencies_hz - mean_hz) ** 2).sum(axis=-1))
+    return np.stack([flatness, width_hz], axis=-1)

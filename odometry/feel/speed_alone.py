@@ -3,7 +3,7 @@
 import numpy as np
 
 from odometry.arrays import IntArray
-from odometry.feel.discriminant import fitted_discriminant
+from odometry.feel.discriminant import fitted_discriminant, pooled
 from odometry.feel.scores import balanced_accuracy
 from odometry.feel.table import FeelTable
 
@@ -12,9 +12,9 @@ SHRINKAGE = 0.03
 
 def speed_alone(table: FeelTable, folds: IntArray) -> float:
     """Balanced accuracy of windows by the covariates alone, folds (R,) of runs held out."""
-    covariates = table.tables[0][:, -table.covariates :]
-    places = range(table.tables[0].shape[1] - table.covariates, table.tables[0].shape[1])
-    moments = table.moments[0].columns(list(places))
+    width = table.tables[0].shape[1]
+    places = range(width - table.covariates, width)
+    covariates, moments = table.tables[0][:, list(places)], table.moments[0]
     right = np.zeros(len(table), dtype=bool)
     judged = np.zeros(len(table), dtype=bool)
     for fold in np.unique(folds):
@@ -23,7 +23,7 @@ def speed_alone(table: FeelTable, folds: IntArray) -> float:
         rows = (folds[table.runs] == fold) & np.isin(table.labels.astype(str), names)
         if len(names) < 2 or not rows.any():
             continue
-        model = fitted_discriminant(part, names, 0, SHRINKAGE)
+        model = fitted_discriminant(pooled(part, names).columns(places), 0, SHRINKAGE)
         squared = (model.left(covariates[rows]) ** 2).sum(axis=2)
         right[rows] = np.array(names, dtype=object)[squared.argmin(axis=1)] == table.labels[rows]
         judged |= rows

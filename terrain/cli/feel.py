@@ -1,5 +1,6 @@
-"""`terrain-odometry feel`: which terrain a run feels like."""
+"""`terrain-odometry feel`: which terrain runs feel like."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -7,16 +8,18 @@ import click
 
 from terrain.cli.options import OUTPUT, Positive, RunFolder
 from terrain.cli.recordings import span_options
-from terrain.cli.results import print_written
+from terrain.cli.results import print_table, print_written
 
 if TYPE_CHECKING:
+    from odometry.feel.follow import Felt
     from odometry.run_span import Span
 
 FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
+HEADER = ("run", "answer", "probability", "unknown", "windows")
 
 
 @click.command()
-@click.argument("folder", metavar="RUN", type=RunFolder())
+@click.argument("folders", metavar="RUN...", nargs=-1, required=True, type=RunFolder())
 @click.option(
     "--model", required=True, metavar="FEEL", type=FILE, help="Model made by `identify-feel`."
 )
@@ -37,33 +40,60 @@ FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 )
 @span_options
 def feel(
-    folder: Path, *, model: Path, out: Path, stretch: float, sure: float, span: "Span"
+    folders: tuple[Path, ...],
+    *,
+    model: Path,
+    out: Path,
+    stretch: float,
+    sure: float,
+    span: "Span",
 ) -> None:
-    """Tell which terrain the run folder RUN feels like, window by window.
+    """Tell which terrain the run folders RUN feel like, window by window.
 
     Writes feel.csv with the answers and the probability of each terrain, and one page. "unknown"
     is the answer where the run feels like none of the terrains of the model, "stationary" where
-    the robot stands.
+    the robot stands. Several runs get a folder each, and one table, runs.csv.
 
     \b
     Example:
       terrain-odometry feel my_run --model my_robot.feel --out felt
     """
-    from odometry.feel.files import write_feel
+    from odometry.feel.files import write_feel, write_feel_runs
     from odometry.feel.follow import FeelConfig, follow_feel
     from odometry.feel.model_file import read_feel_model
-    from odometry.feel.words import sentences
     from odometry.report.feel_page import write_feel_report
+    from terrain.batch.names import folder_names
     from terrain.cli.outputs import about, claim_folder
     from terrain.cli.recordings import read_run
 
     output = claim_folder(out)
     config = FeelConfig(stretch_s=stretch, sure=sure)
-    felt = follow_feel(read_run(folder, span), read_feel_model(model), config)
+    read = read_feel_model(model)
+    names = folder_names(folders)
+    felt = [follow_feel(read_run(folder, span), read, config) for folder in folders]
     with output.writing() as part:
-        write_feel(felt, part, about(output.made))
-        write_feel_report(felt, part)
-    for sentence in sentences(felt):
-        click.echo(sentence)
+        for name, one in zip(names, felt, strict=True):
+            place = part / name if len(felt) > 1 else part
+            write_feel(one, place, about(output.made))
+            write_feel_report(one, place)
+        if len(felt) > 1:
+            write_feel_runs(felt, names, part / "runs.csv")
+    _print(felt, names)
     print_written(output.out)
-    click.echo(f"Next: open {output.out / 'report.html'}")
+    page = output.out / (names[0] if len(felt) > 1 else "") / "report.html"
+    click.echo(f"Next: open {page}")
+
+
+def _print(felt: "Sequence[Felt]", names: Sequence[str]) -> None:
+    from odometry.feel.words import sentences
+
+    if len(felt) == 1:
+        for sentence in sentences(felt[0]):
+            click.echo(sentence)
+        return
+    rows = []
+    for name, one in zip(names, felt, strict=True):
+        answer, probability, unknown = one.answer_of_run
+        windows = str(int(one.windows.felt.sum()))
+        rows.append((name, answer, f"{probability:.2f}", f"{unknown:.2f}", windows))
+    print_table([HEADER, *rows])

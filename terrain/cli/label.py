@@ -44,6 +44,11 @@ SOURCES = ("truth.csv", "odometry.csv", "images.csv", "run.toml")
     help="Model made by `identify-feel`: terrain by feel labels the images that showed it before.",
 )
 @click.option(
+    "--sure",
+    type=click.FloatRange(0.0, 1.0, min_open=True, max_open=True),
+    help="With --by-feel: probability from which it labels.  [default: 0.8]",
+)
+@click.option(
     "--parameters",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
     help="Parameter set: ICRs by terrain, for runs without gyroscope and poses.",
@@ -82,6 +87,7 @@ def label(
     spans: tuple[str, ...],
     source: str | None,
     by_feel: Path | None,
+    sure: float | None,
     parameters: Path | None,
     patch_size: int | None,
     metres_per_pixel: float | None,
@@ -116,10 +122,12 @@ def label(
     from terrain.labelling.label_runs import label_runs
     from terrain.labelling.patch_files import write_labelled_patches
     from terrain.labelling.scale import LabelConfig
-    from terrain.labelling.terrain_by_feel import told_by_feel
+    from terrain.labelling.terrain_by_feel import SURE, told_by_feel
 
     if sum(map(bool, (spans, source, by_feel))) > 1:
         raise click.UsageError("--span, --labels and --by-feel: give one of them")
+    if sure is not None and by_feel is None:
+        raise click.UsageError("--sure goes with --by-feel")
     config = LabelConfig(patch_size, metres_per_pixel, per_place, place_m)
     by_run = spans_by_run(spans, runs)
     output = claim_folder(out, reads_images=True)
@@ -127,7 +135,7 @@ def label(
     read = [read_run(folder, span, images=True) for folder in runs]
     if by_feel is not None:
         model = read_feel_model(by_feel)
-        told = [told_by_feel(run, model) for run in read]
+        told = [told_by_feel(run, model, sure or SURE) for run in read]
     elif spans:
         told = [
             told_by_spans(run, by_run[run.folder], run.odometry.stamps_s[0] - span.from_s)

@@ -31,6 +31,7 @@ def run(run_folder: Path, *, out: Path, options: "RunOptions") -> None:
     from terrain.cli.outputs import claim_folder
     from terrain.cli.recordings import checks_made, read_run
     from terrain.cli.results import print_changes, print_errors, print_image_labels, print_written
+    from terrain.contradiction_words import contradiction_lines
     from terrain.result_table import image_label_counts
     from terrain.run_output import write_run
 
@@ -43,6 +44,8 @@ def run(run_folder: Path, *, out: Path, options: "RunOptions") -> None:
     print_errors({result.run.name: result})
     print_image_labels(image_label_counts(result))
     print_changes(result)
+    for line in contradiction_lines(result):
+        click.echo(line)
     for name, effects in result.effects.items():
         click.echo(f"Effects on {name}, in every trajectory but the ideal: {', '.join(effects)}")
     print_written(out)

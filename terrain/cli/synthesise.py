@@ -45,6 +45,7 @@ from terrain.cli.options import OUTPUT
 @click.option("--image-rate", type=float, help="Images a second.  [default: 4]")
 @click.option("--camera", type=click.Path(path_type=Path), help="TOML file with a [camera] table.")
 @click.option("--vehicle", type=click.Path(path_type=Path), help="TOML file with a [robot] table.")
+@click.option("--imu", is_flag=True, help="Also imu.csv: vibration by terrain and speed.")
 def synthesise(
     *,
     out: Path,
@@ -56,6 +57,7 @@ def synthesise(
     image_rate: float | None,
     camera: Path | None,
     vehicle: Path | None,
+    imu: bool,
 ) -> None:
     """Make a run folder, patches/ and parameters.toml, ready for train and run.
 
@@ -84,7 +86,7 @@ def synthesise(
         "robot": read_robot(vehicle) if vehicle else None,
     }
     chosen = {name: value for name, value in given.items() if value is not None}
-    config = SynthesisConfig(seed=seed, **chosen)
+    config = SynthesisConfig(seed=seed, has_imu=imu, **chosen)
     with output.writing() as part:
         make_run(part, config, photos=photos, progress=True)
     click.echo(

@@ -55,19 +55,33 @@ class GivenTerrain:
     names : tuple of str, length N
     of_images : bool
         Whether a name is of what an image shows; else of the terrain under the robot.
+    probabilities : (N,), optional
+        Of each name, where the source has some.
     """
 
     source: str
     stamps_s: FloatArray
     names: tuple[str, ...]
     of_images: bool = False
+    probabilities: FloatArray | None = None
 
     def between(self, begin_s: float, end_s: float) -> frozenset[str]:
         """All names that hold at a moment between two, these included; "" where none does."""
-        first = int(np.searchsorted(self.stamps_s, begin_s, side="right")) - 1
-        end = int(np.searchsorted(self.stamps_s, end_s, side="right"))
+        first, end = self._rows(begin_s, end_s)
         before = {""} if first < 0 else set()
         return frozenset(before | set(self.names[max(first, 0) : end]))
+
+    def least_probability(self, begin_s: float, end_s: float) -> float:
+        """The least one of the names that hold between two moments; NaN where none is known."""
+        if self.probabilities is None:
+            return float("nan")
+        first, end = self._rows(begin_s, end_s)
+        return float(np.min(self.probabilities[max(first, 0) : end], initial=1.0))
+
+    def _rows(self, begin_s: float, end_s: float) -> tuple[int, int]:
+        """First and end row of the names that hold between two moments; -1 before all."""
+        first = int(np.searchsorted(self.stamps_s, begin_s, side="right")) - 1
+        return first, int(np.searchsorted(self.stamps_s, end_s, side="right"))
 
     @property
     def terrains(self) -> tuple[str, ...]:

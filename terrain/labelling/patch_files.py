@@ -132,6 +132,7 @@ def _write_manifest(
         "y": [square.place_m[1] for square in squares],
         "over_from": [square.passing.begin_s for square in squares],
         "over_to": [square.passing.end_s for square in squares],
+        "confidence": [each.of.confidence for each in chosen],
     }
     texts = {
         "path": [*map(_path, chosen), *(f"removed/{name}" for name in removed)],

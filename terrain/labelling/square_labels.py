@@ -25,12 +25,16 @@ class LabelledSquare:
     label : str
     name : str
         Of the patch, and of its file; no other square has it.
+    confidence : float
+        The least probability of the label while the footprint was over it; NaN where what told it
+        has none.
     """
 
     run: Run
     square: DrivenSquare
     label: str
     name: str
+    confidence: float = float("nan")
 
 
 def labelled_squares(
@@ -61,7 +65,9 @@ def labelled_squares(
         else:
             (label,) = names
             name = f"{run_name}_{_place(square)}.png"
-            found.append(LabelledSquare(finder.run, square, label, name))
+            over = square.passing
+            confidence = told.least_probability(over.begin_s, over.end_s)
+            found.append(LabelledSquare(finder.run, square, label, name, confidence))
     return found, left_out
 
 

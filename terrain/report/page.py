@@ -5,6 +5,7 @@ from pathlib import Path
 
 from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
 from odometry.report.palette import terrain_colours
+from terrain.contradiction_words import contradiction_lines
 from terrain.label_confusion import label_confusions
 from terrain.odometer_advice import advice
 from terrain.report.figures import (
@@ -23,6 +24,7 @@ from terrain.report.images import (
 from terrain.report.labels_and_truth import confusion
 from terrain.report.lines import ReportLines
 from terrain.report.tables import (
+    contradiction_grid,
     error_table,
     event_grid,
     icr_table,
@@ -88,6 +90,7 @@ def write_report(
         Section("What the filter noticed", _some(event_grid(result))),
         Section("Path", [path_picture(lines, tints, folder)]),
         Section("Terrain", _terrain(result, tints, folder)),
+        Section("Where the sources differ", _differing(result)),
         Section("Centres of rotation", [icr_picture(lines, folder), icr_table(result)]),
         Section("Settings", [settings_table(result)]),
         Section("Notes", [Listing(notes(lines))]),
@@ -141,6 +144,11 @@ def _terrain(result: RunResult, tints: Tints, folder: Path) -> list[Block]:
         whole_image_picture(result, watcher, watcher.classifier, tints, folder),
     ]
     return [block for block in blocks if block is not None]
+
+
+def _differing(result: RunResult) -> list[Block]:
+    lines = contradiction_lines(result)
+    return [Listing(lines), contradiction_grid(result)] if lines else []
 
 
 def _never_changed(result: RunResult) -> Paragraph:

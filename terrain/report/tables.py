@@ -67,6 +67,28 @@ def event_grid(result: RunResult) -> Grid | None:
     return Grid(("event", "from [s]", "to [s]", "what was noticed"), rows)
 
 
+def contradiction_grid(result: RunResult) -> Grid:
+    """Where sight, feel and motion differ for long."""
+    began_s = result.run.began_s
+    rows = [
+        (
+            *(f"{stamp_s - began_s:.1f}" for stamp_s in (one.begin_s, one.end_s)),
+            one.seen or NOTHING,
+            _share(one.seen_probability),
+            one.felt or NOTHING,
+            _share(one.felt_probability),
+            one.moved or NOTHING,
+        )
+        for one in result.contradictions
+    ]
+    header = ("from [s]", "to [s]", "seen", "probability", "felt", "probability", "motion")
+    return Grid(header, rows)
+
+
+def _share(probability: float) -> str:
+    return number(None if np.isnan(probability) else probability, 2)
+
+
 def uncertainty_grid(result: RunResult) -> Grid | None:
     """Standard deviations of the odometer by distance, and whether they are right."""
     of = result.uncertainty

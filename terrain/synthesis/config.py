@@ -82,6 +82,9 @@ class SynthesisConfig:
         Standard deviations of a slow disturbance (Ornstein-Uhlenbeck) of y_left, y_right, x_icr.
     icr_wander_time_s : float
         Time constant of that disturbance.
+    has_imu : bool
+        Whether there is an imu.csv with vibration by terrain and speed, and a column `terrain` in
+        odometry.csv, so that `identify-feel` can be tried.
     sigma_parameters_m : (float, float, float)
         How far parameters.toml is from the truth, as after an identification run.
 
@@ -114,6 +117,7 @@ class SynthesisConfig:
     icr_wander_m: tuple[float, float, float] = (0.003, 0.003, 0.001)
     icr_wander_time_s: float = 8.0
     sigma_parameters_m: tuple[float, float, float] = (0.02, 0.02, 0.01)
+    has_imu: bool = False
 
     def __post_init__(self) -> None:
         if not self.zones:

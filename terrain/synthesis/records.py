@@ -73,6 +73,7 @@ def run_settings(
         "sigma_gyro_rad_s": config.sigma_gyro_rad_s,
         "sigma_parameters_m": list(config.sigma_parameters_m),
         "jpeg_quality": config.jpeg_quality,
+        **({"imu": "vibration made by terrain and speed"} if config.has_imu else {}),
         "driver": {k: v for k, v in asdict(config.driver).items() if k != "phases_rad"},
         "image_terrain": "the terrain of images.csv is that of the ground at the image's centre",
     }

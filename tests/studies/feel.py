@@ -12,58 +12,67 @@ import numpy as np
 
 from odometry.feel.assessment import LENGTHS, assessed
 from odometry.feel.design import Design
-from odometry.feel.evidence import softmax
 from odometry.feel.folds import stratified_folds
-from odometry.feel.held_out import HeldOut, put_together, scores_of, told_of, windows_alone
-from odometry.feel.members import columns_of, fitted_members
-from odometry.feel.model import Limits
+from odometry.feel.held_out import HeldOut, put_together, scored, told_of, windows_alone
+from odometry.feel.left_out import terms_of
 from odometry.feel.scores import area, balanced_accuracy, bootstrap_interval
 from odometry.feel.selection import STRETCH_S, main_labels, selected
 from odometry.feel.speed_alone import speed_alone
+from odometry.feel.strangeness import unknown_probability
 from odometry.feel.table import FeelTable
 from odometry.feel.windows import feel_windows
 from odometry.run import Run
 
 SLOW_M_S = 0.3  # mean speed of a run: slower ones train, faster ones are judged, and back
+SURE = 0.9
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--seeds", type=int, default=3, help="Times that the folds are dealt.")
-    parser.add_argument("--window", type=float, default=2.0)
+    parser.add_argument("--window", type=float, nargs="+", default=[2.0])
+    parser.add_argument("--only", choices=["nested", "unknown", "speeds"], nargs="+")
     given = parser.parse_args()
     runs = [Run.read(file.parent) for file in sorted(given.folder.glob("*/run.toml"))]
-    began_s = time.perf_counter()
-    windows = [feel_windows(run, given.window) for run in runs]
-    each_ms = 1e3 * (time.perf_counter() - began_s) / sum(map(len, windows))
-    table = FeelTable.of(windows, Design.shared(windows))
-    print(f"{len(runs)} runs, {len(table)} windows of {given.window:g} s, {each_ms:.2f} ms each")
-    if given.seeds:
-        nested(table, len(runs), given.seeds)
-    unknown(table, len(runs))
-    other_speeds(table, len(runs))
+    tables = []
+    for window_s in given.window:
+        began_s = time.process_time()
+        windows = [feel_windows(run, window_s) for run in runs]
+        each_ms = 1e3 * (time.process_time() - began_s) / sum(map(len, windows))
+        tables.append(FeelTable.of(windows, Design.shared(windows)))
+        count = len(tables[-1])
+        print(f"{len(runs)} runs, {count} windows of {window_s:g} s, {each_ms:.2f} ms each")
+    parts = given.only or ["nested", "unknown", "speeds"]
+    if "nested" in parts:
+        nested(tables, len(runs), given.seeds)
+    if "unknown" in parts:
+        unknown(tables[0], len(runs))
+    if "speeds" in parts:
+        other_speeds(tables[0], len(runs))
 
 
-def nested(table, runs, seeds):
-    """Whole runs held out in five folds, and one by one; the folds dealt anew for each seed."""
-    for folds in (5, runs):
-        found = [assessed(table, np.arange(runs), seed, folds) for seed in range(seeds)]
-        for name in LENGTHS:
-            rows = [one.by_length[name].to_table(table.names) for one in found]
-            means = {
-                key: np.mean([row[key] for row in rows], axis=0)
-                for key in ("balanced_accuracy", "interval", "calibration_error", "refused")
-            }
-            spread = np.ptp([row["balanced_accuracy"] for row in rows])
-            print(f"{folds} folds, {name}: {shown(means)}, over folds dealt anew {spread:.3f}")
-        for name in found[0].by_groups:
-            groups = np.mean([one.by_groups[name] for one in found])
-            print(f"  windows, {name}: {groups:.3f}")
-        if folds == 5:
-            print(f"  windows by answer: {found[0].to_table()['window']['confusion']}")
-            print(f"  runs by answer: {found[0].to_table()['run']['confusion']}")
-        seeds = 1  # of runs held out one by one there is one way
+def nested(tables, runs, seeds):
+    """Whole runs held out in five folds, dealt anew for each seed; all chosen inside."""
+    found = []
+    for seed in range(seeds):
+        began_s = time.process_time()
+        found.append(assessed(tables, np.arange(runs), seed))
+        print(f"seed {seed}, {time.process_time() - began_s:.0f} s of processor time")
+        for words in found[-1].to_table()["chosen_in_folds"]:
+            print(f"  {words}", flush=True)
+    for name in LENGTHS:
+        rows = [one.by_length[name].to_table(one.names) for one in found]
+        means = {
+            key: np.mean([row[key] for row in rows], axis=0)
+            for key in ("balanced_accuracy", "interval", "calibration_error", "refused")
+        }
+        spread = np.ptp([row["balanced_accuracy"] for row in rows])
+        print(f"{name}: {shown(means)}, over folds dealt anew {spread:.3f}")
+    for name in found[0].by_groups:
+        print(f"  windows, {name}: {np.mean([one.by_groups[name] for one in found]):.3f}")
+    for length in ("window", "run"):
+        print(f"  by answer, {length}: {found[0].to_table()[length]['confusion']}", flush=True)
 
 
 def shown(means):
@@ -75,51 +84,57 @@ def shown(means):
 
 
 def unknown(table, runs):
-    """Each terrain in turn is never felt; known runs are held out in five folds beside it."""
-    labels, groups = main_labels(table, runs), np.arange(runs)
+    """Each terrain in turn is never felt; a fifth of the known runs are held out beside it."""
+    labels, groups, lines = main_labels(table, runs), np.arange(runs), []
     for name in table.names:
         rng = np.random.default_rng(0)
         others = labels != name
         folds = np.full(runs, -1)
         folds[others] = stratified_folds(groups[others], labels[others], 5, rng)
-        scores = {length: ([], []) for length in LENGTHS}
-        refused, sure = [], []
-        for fold in range(5):
-            known = others & (folds != fold)
-            best = selected(table, groups, known, rng)
-            limits = Limits.of(best.windows, best.stretches, table.speeds_m_s)
-            told = told_of(table, known, folds == fold, best.choice)
-            never = judged(table, known, labels == name, best.choice)
-            for place, one in enumerate((told, never)):
-                scores["window"][place].append(one.novelty)
-                for length, lasts_s in (("stretch", STRETCH_S), ("run", np.inf)):
-                    scores[length][place].append(put_together(table, one, lasts_s).novelty)
-            refused.append((never.novelty > limits.window).mean())
-            alone = windows_alone(table, never)
-            probabilities = best.calibration.probabilities(
-                alone.log_likelihoods[:, np.array(table.names) != name], np.ones(len(alone))
-            )
-            bold = (probabilities.max(axis=1) >= 0.9) & (never.novelty <= limits.window)
-            sure.append(bold.mean())
-        areas = [area(*map(np.concatenate, scores[length])) for length in LENGTHS]
-        print(
-            f"without {name}: area by window, stretch, run "
-            f"{', '.join(f'{one:.3f}' for one in areas)}; windows refused {np.mean(refused):.2f}, "
-            f"named with 0.9 or more {np.mean(sure):.2f}"
-        )
+        known = others & (folds != 0)
+        best = selected([table], groups, known, rng)
+        names = tuple(one for one in table.names if one != name)
+        print(f"without {name}, probable before: {best.strangeness.share:g}")
+        lines.append([])
+        for length in LENGTHS[:2]:
+            kinds = []
+            for runs_of in (folds == 0, labels == name):
+                rows = np.flatnonzero(runs_of[table.runs])
+                told = HeldOut(rows, scored(table, known, names, rows, [best.choice])[0])
+                kinds.append(answers(table, told, best, length))
+            lines[-1].append(figures(*kinds))
+            print(f"without {name}, {length}: {said(lines[-1][-1])}", flush=True)
+    for length, means in zip(LENGTHS, np.mean(lines, axis=0), strict=False):
+        print(f"mean over terrains, {length}: {said(means)}")
 
 
-def judged(table, fitted, others, choice):
-    """Windows of runs whose terrain the fitted runs do not hold."""
-    names = tuple(sorted(set(table.labels[fitted[table.runs]].tolist())))
-    rows = np.flatnonzero(others[table.runs])
-    members = fitted_members(table, fitted, names, choice)
-    tables = [one[rows] for one in table.tables]
-    columns = columns_of(tables, table.covariates, choice.parts(table.design))
-    log_likelihoods, novelty = scores_of(members, columns)
-    among = np.tile(log_likelihoods.min(axis=1)[:, None], len(table.names))
-    among[:, np.searchsorted(table.names, names)] = log_likelihoods
-    return HeldOut(rows, among, novelty)
+def answers(table, told, best, length):
+    """Strangeness, whether refused, the best probability of a known terrain without and with it."""
+    calibration, limits = best.calibration, best.limits
+    if length == "window":
+        of, most = windows_alone(table, told, calibration), limits.strange_window
+        far, weights = limits.window, best.strangeness.window
+    else:
+        of, most = put_together(table, told, calibration, STRETCH_S), limits.strange_stretch
+        far, weights = limits.stretch, best.strangeness.stretch
+    odds = terms_of(of, calibration) @ weights
+    among = calibration.probabilities(of.evidence, of.windows).max(axis=1)
+    refused = (odds > most) | (of.novelty > far)
+    return odds, refused, among, among * (1 - unknown_probability(odds, best.strangeness.share))
+
+
+def figures(known, never):
+    """Area; refused of both; named with SURE of both, without strangeness and with it."""
+    shares = [((one[place] >= SURE) & ~one[1]).mean() for place in (2, 3) for one in (known, never)]
+    return [area(known[0], never[0]), known[1].mean(), never[1].mean(), *shares]
+
+
+def said(figures_of):
+    return (
+        "area {:.2f}; refused {:.3f} of known, {:.3f} of never felt; named with 0.9 or more: "
+        "{:.3f} of known and {:.3f} of never felt among the terrains known, "
+        "{:.3f} and {:.3f} as answered"
+    ).format(*figures_of)
 
 
 def other_speeds(table, runs):
@@ -129,10 +144,11 @@ def other_speeds(table, runs):
     groups = np.arange(runs)
     for name, fitted in (("slow", slow), ("fast", ~slow)):
         known = set(table.labels[fitted[table.runs]].tolist())
-        best = selected(table, groups, fitted, np.random.default_rng(0))
-        told = windows_alone(table, told_of(table, fitted, ~fitted, best.choice))
-        said = np.array(table.names, dtype=object)[softmax(told.log_likelihoods).argmax(axis=1)]
-        right = said == told.labels
+        best = selected([table], groups, fitted, np.random.default_rng(0))
+        (judged,) = told_of(table, fitted, ~fitted, [best.choice])
+        told = windows_alone(table, judged, best.calibration)
+        answer = np.array(table.names, dtype=object)[told.evidence.argmax(axis=1)]
+        right = answer == told.labels
         low, high = bootstrap_interval(told.labels, right, told.runs)
         own = balanced_accuracy(told.labels, right)
         print(

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from odometry.feel.signals import AXES
+from odometry.feel.windows import feel_windows
 from odometry.parameters import read_parameters
 from odometry.run import Run
 from odometry.simulation.ground import GroundMap
@@ -157,6 +159,20 @@ def test_same_seed_same_bytes_other_seed_other_bytes(small, tmp_path):
     other = synthesise(tmp_path / "other", replace(SMALL, seed=6))
     assert (other / "images/000003.jpg").read_bytes() != (small / "images/000003.jpg").read_bytes()
     assert (other / "odometry.csv").read_bytes() != (small / "odometry.csv").read_bytes()
+
+
+def test_vibration_changes_nothing_but_imu_and_the_labels(small, tmp_path):
+    with_imu = synthesise(tmp_path / "imu", replace(SMALL, has_imu=True))
+    files = [path.relative_to(with_imu) for path in with_imu.rglob("*") if path.is_file()]
+    assert {
+        path.name
+        for path in files
+        if not (small / path).is_file()
+        or (small / path).read_bytes() != (with_imu / path).read_bytes()
+    } == {"imu.csv", "odometry.csv", "run.toml"}
+    run = Run.read(with_imu)
+    assert run.odometry["terrain"].tolist() == run.truth["terrain"].tolist()
+    assert feel_windows(run).axes == AXES
 
 
 def test_nothing_is_overwritten(small):

@@ -3,7 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.distance import cdist
 
-from odometry.feel.discriminant import fitted_discriminant
+from odometry.feel.discriminant import fitted_discriminant, pooled
 from odometry.feel.moments import moments_of
 
 NAMES = ("a", "b")
@@ -21,12 +21,16 @@ def made(seed, slope=0.0):
     return np.column_stack([columns, covariate]), labels, runs
 
 
+def fitted(table, labels, runs):
+    return fitted_discriminant(pooled(moments_of(table, labels, runs), NAMES), 1, 0.1)
+
+
 @given(st.integers(0, 50), st.floats(-3.0, 3.0))
 def test_what_a_covariate_adds_changes_no_distance(seed, slope):
     table, labels, runs = made(seed)
     other, *_ = made(seed, slope)
-    plain = fitted_discriminant(moments_of(table, labels, runs), NAMES, 1, 0.1)
-    tilted = fitted_discriminant(moments_of(other, labels, runs), NAMES, 1, 0.1)
+    plain = fitted(table, labels, runs)
+    tilted = fitted(other, labels, runs)
     both = [(one.left(of) ** 2).sum(axis=2) for one, of in ((plain, table), (tilted, other))]
     np.testing.assert_allclose(both[0], both[1], rtol=0.05, atol=0.05)
 
@@ -35,7 +39,7 @@ def test_distances_are_those_of_mahalanobis():
     table, labels, runs = made(3)
     columns = table[:, :3]
     moments = moments_of(columns, labels, runs)
-    one = fitted_discriminant(moments, NAMES, 0, 0.0)
+    one = fitted_discriminant(pooled(moments, NAMES), 0, 0.0)
     off, within, between = [], [], np.zeros((3, 3))
     for name in NAMES:
         means = np.stack(
@@ -54,10 +58,8 @@ def test_distances_are_those_of_mahalanobis():
 def test_a_long_run_counts_as_a_short_one():
     table, labels, runs = made(4)
     longer = np.concatenate([np.arange(320), np.flatnonzero(runs == 0)])
-    one = fitted_discriminant(moments_of(table, labels, runs), NAMES, 1, 0.1)
-    other = fitted_discriminant(
-        moments_of(table[longer], labels[longer], runs[longer]), NAMES, 1, 0.1
-    )
+    one = fitted(table, labels, runs)
+    other = fitted(table[longer], labels[longer], runs[longer])
     np.testing.assert_allclose(one.means, other.means, atol=1e-9)
 
 
@@ -67,3 +69,14 @@ def test_a_missing_number_counts_as_the_mean_of_its_run():
     moments = moments_of(table, labels, runs)
     np.testing.assert_allclose(moments.means[0, 0], np.nanmean(table[runs == 0, 0]))
     assert np.isfinite(moments.covariances).all()
+
+
+def test_the_space_of_discriminants_holds_all_that_tells_terrains_apart():
+    """Distances to two means differ by as much there as in all columns."""
+    table, labels, runs = made(6)
+    one = fitted(table, labels, runs)
+    left = one.left(table)
+    whole, within = (left**2).sum(axis=2), ((left @ one.between.T) ** 2).sum(axis=2)
+    assert one.between.shape == (1, 3)
+    np.testing.assert_allclose(np.diff(whole), np.diff(within), atol=1e-8)
+    assert (within <= whole + 1e-9).all()

@@ -4,7 +4,8 @@ import pytest
 from odometry.feel.evidence import (
     Calibration,
     Stretches,
-    calibrated,
+    calibrated_stretches,
+    calibrated_windows,
     gathered,
     softmax,
     stretch_numbers,
@@ -14,40 +15,60 @@ NAMES = ("a", "b", "c")
 
 
 def simulated(count, boast, windows=1, shared=0.0, seed=0):
-    """Log likelihoods of K unit Gaussians, mean of so many windows, `boast` times too certain."""
+    """Labels, and log likelihoods (N, windows, K) of unit Gaussians, `boast` times too certain."""
     rng = np.random.default_rng(seed)
     codes = rng.integers(3, size=count)
     noise = np.sqrt(shared) * rng.normal(size=(count, 1, 3))
     noise = noise + np.sqrt(1 - shared) * rng.normal(size=(count, windows, 3))
-    left = noise[:, :, :] + 1.2 * (np.eye(3)[codes][:, None])
-    squared = ((left[:, :, None] - 1.2 * np.eye(3)) ** 2).sum(axis=3).mean(axis=1)
-    labels = np.array(NAMES, dtype=object)[codes]
+    left = noise + 1.2 * (np.eye(3)[codes][:, None])
+    squared = ((left[:, :, None] - 1.2 * np.eye(3)) ** 2).sum(axis=3)
+    return np.array(NAMES, dtype=object)[codes], -boast * squared / 2
+
+
+def together(calibration, labels, log_likelihoods):
+    count, windows, _ = log_likelihoods.shape
+    evidence = calibration.evidence(log_likelihoods.reshape(count * windows, 3))
+    means = evidence.reshape(count, windows, 3).mean(axis=1)
+    nothing = np.zeros(count)
     return Stretches(
-        labels, np.arange(count), np.full(count, float(windows)), -boast * squared / 2, codes * 0.0
+        labels, np.arange(count), np.full(count, float(windows)), means, nothing, nothing
     )
 
 
 def test_the_temperature_is_found():
-    _, calibration = calibrated(simulated(4000, 3.0), simulated(500, 3.0, 5, seed=1), NAMES)
+    labels, told = simulated(4000, 3.0)
+    _, calibration = calibrated_windows(told[:, 0], labels, NAMES)
     assert calibration.temperature == pytest.approx(3.0, rel=0.15)
     assert calibration.outliers <= 0.02
 
 
 def test_windows_that_repeat_each_other_count_as_one():
-    alone = simulated(4000, 1.0)
-    _, free = calibrated(alone, simulated(2000, 1.0, 5, seed=2), NAMES)
-    _, same = calibrated(alone, simulated(2000, 1.0, 5, shared=1.0, seed=2), NAMES)
+    labels, told = simulated(4000, 1.0)
+    _, windows = calibrated_windows(told[:, 0], labels, NAMES)
+    _, free = calibrated_stretches(windows, together(windows, *simulated(2000, 1.0, 5)), NAMES)
+    _, same = calibrated_stretches(windows, together(windows, *simulated(2000, 1.0, 5, 1.0)), NAMES)
     assert free.correlation <= 0.1
     assert same.correlation >= 0.7
     assert Calibration(1.0, 0.0, 1.0).worth(np.array([7.0])) == pytest.approx(1.0)
     assert Calibration(1.0, 0.0, 0.0).worth(np.array([7.0])) == pytest.approx(7.0)
 
 
-def test_no_answer_is_surer_than_outliers_allow():
+def test_no_window_is_surer_than_outliers_allow():
     calibration = Calibration(1.0, 0.1, 0.0)
-    told = calibration.probabilities(np.array([[0.0, -1e6, -1e6]]), np.array([50.0]))
-    np.testing.assert_allclose(told, [[0.9 + 0.1 / 3, 0.1 / 3, 0.1 / 3]])
+    evidence = calibration.evidence(np.array([[0.0, -1e6, -1e6]]))
+    np.testing.assert_allclose(np.exp(evidence), [[0.9 + 0.1 / 3, 0.1 / 3, 0.1 / 3]])
+    told = calibration.probabilities(evidence, np.ones(1))
+    np.testing.assert_allclose(told, np.exp(evidence))
     np.testing.assert_allclose(softmax(np.zeros((1, 3))), 1 / 3)
+
+
+def test_one_window_that_errs_cannot_outvote_many():
+    calibration = Calibration(1.0, 0.05, 0.0)
+    windows = np.array([[1.0, 0.0, 0.0]] * 9 + [[-1e6, 0.0, -1e6]])
+    told = calibration.probabilities(
+        calibration.evidence(windows).mean(axis=0)[None], np.array([10.0])
+    )
+    assert told[0].argmax() == 0
 
 
 def test_stretches_hold_windows_of_one_run_and_terrain():
@@ -59,7 +80,9 @@ def test_stretches_hold_windows_of_one_run_and_terrain():
         of = parts == part
         assert len(set(runs[of])) == len(set(labels[of])) == 1
         assert np.ptp(begins_s[of]) < 10.0
-    scores = (np.column_stack([begins_s, begins_s]), begins_s)
-    found = gathered(parts, labels, runs, scores, steps=1)
+    evidence = np.column_stack([begins_s, begins_s])
+    windows = Stretches(labels, runs, np.ones(60), evidence, begins_s, begins_s)
+    found = gathered(windows, parts, steps=1)
     assert len(found) == len(np.unique(parts)) == 8
     assert found.windows.sum() == 60
+    np.testing.assert_allclose(found.evidence[:, 0], found.novelty)

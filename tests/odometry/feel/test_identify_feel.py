@@ -118,7 +118,8 @@ def test_a_run_without_a_column_of_the_model_is_refused_and_a_model_without_it_s
 def test_standing_and_gaps_say_nothing(model):
     felt = follow_feel(drive("gravel", 830, speed=0.0, turning=0.0), model)
     assert set(felt.answers) == set(felt.lasting_answers) == {STATIONARY}
-    np.testing.assert_allclose(felt.probabilities, 1 / 3)
+    np.testing.assert_allclose(felt.probabilities, 0.9 / 3)
+    np.testing.assert_allclose(felt.unknown, 0.1)
 
     def with_gap(columns):
         keep = (columns["t"] < 10.0) | (columns["t"] > 20.0)

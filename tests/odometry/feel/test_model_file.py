@@ -14,6 +14,8 @@ from odometry.feel.model_file import (
 )
 from odometry.io.csv_table import read_csv_table
 from odometry.report.feel_page import write_feel_report
+from odometry.run import Run
+from odometry.shipped import shipped_data
 from tests.odometry.feel.feel_drives import drive
 
 
@@ -27,6 +29,16 @@ def test_a_model_comes_back_and_answers_alike(model, tmp_path):
     assert again.report == json.loads(json.dumps(model.report))
     write_feel_model(tmp_path / "b.feel", again)
     assert (tmp_path / "a.feel").read_bytes() == (tmp_path / "b.feel").read_bytes()
+
+
+def test_a_model_of_the_first_version_is_read_and_is_modest():
+    """Written by 0.10, which knew no strangeness."""
+    old = read_feel_model(shipped_data() / "feel" / "demo.feel")
+    assert not old.strangeness.window.any()
+    run = Run.read(shipped_data() / "runs" / "demo")
+    felt = follow_feel(run, old)
+    np.testing.assert_allclose(felt.unknown, 0.1)
+    np.testing.assert_allclose(felt.probabilities.sum(axis=1), 0.9)
 
 
 def test_damage_is_told(model, tmp_path):
@@ -49,6 +61,8 @@ def test_what_was_felt_is_written_and_shown(model, tmp_path):
     write_feel_report(felt, tmp_path)
     table = read_csv_table(tmp_path / "feel.csv", ("t", "label", "probability_snow"))
     assert len(table) == len(felt.windows)
+    told = [table[name] for name in table.columns if name.startswith("probability_")]
+    np.testing.assert_allclose(np.sum(told, axis=0), 1.0, atol=1e-6)
     result = json.loads((tmp_path / "result.json").read_text())
     assert result["run_probabilities"]["snow"] > 0.8
     assert result["balanced_accuracy"]["stretch"] > 0.8

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.signal import butter, sosfilt, welch
 
-from odometry.feel.spectra import band_edges_hz, band_powers, power_densities
+from odometry.feel.spectra import band_edges_hz, band_powers, power_densities, shapes
 
 
 def test_the_density_adds_up_to_the_variance():
@@ -50,3 +50,14 @@ def test_the_highest_frequency_is_in_the_last_band():
     densities[0, 100] = 1.0
     bands = band_powers(densities, 0.5, band_edges_hz(6, 50.0))
     assert bands[0].argmax() == 5
+
+
+def test_shapes_are_those_of_known_spectra():
+    flat, line = np.ones(101), np.zeros(101)
+    line[40] = 1.0
+    told = shapes(np.stack([flat, 7 * flat, line]), 0.5, 50.0)
+    uniform_hz = np.sqrt(((np.arange(99) * 0.5) ** 2).mean() - ((np.arange(99) * 0.5).mean()) ** 2)
+    np.testing.assert_allclose(told[0], [0.0, uniform_hz], atol=1e-9)
+    np.testing.assert_allclose(told[1], told[0], atol=1e-9)
+    assert told[2, 0] < -20
+    assert told[2, 1] == pytest.approx(0.0, abs=0.01)

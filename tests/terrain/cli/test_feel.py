@@ -7,6 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 from odometry.feel.model_file import read_feel_model
+from odometry.io.csv_table import read_csv_table
 from odometry.io.run_folder import write_run_folder
 from terrain.cli.feel import feel
 from terrain.cli.identify_feel import identify_feel
@@ -55,6 +56,22 @@ def test_a_run_is_told_and_written(model, folders, tmp_path):
     assert max(result["run_probabilities"], key=result["run_probabilities"].get) == "gravel"
     for name in ("feel.csv", "report.html", "figures/feel.png"):
         assert (tmp_path / "felt" / name).is_file()
+
+
+def test_several_runs_get_a_folder_each_and_one_table(model, folders, tmp_path):
+    runs = [folders / name for name in ("gravel_1", "tiles_2")]
+    answer = invoke(*runs, "--model", model[1], "--out", tmp_path / "felt")
+    assert answer.exit_code == 0, answer.output
+    for run in runs:
+        assert (tmp_path / "felt" / run.name / "report.html").is_file()
+    table = read_csv_table(tmp_path / "felt" / "runs.csv", ("run", "label"))
+    assert table["label"].tolist() == table["true_label"].tolist() == ["gravel", "tiles"]
+    alone = invoke(runs[0], "--model", model[1], "--out", tmp_path / "alone")
+    assert alone.exit_code == 0
+    both = [tmp_path / "alone" / "feel.csv", tmp_path / "felt" / "gravel_1" / "feel.csv"]
+    assert both[0].read_bytes() == both[1].read_bytes()
+    row = next(line for line in answer.stdout.splitlines() if "tiles_2" in line)
+    assert row.split()[1] == "tiles"
 
 
 def test_no_output_is_left_where_a_run_cannot_be_felt(model, folders, tmp_path):

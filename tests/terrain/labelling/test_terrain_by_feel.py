@@ -1,5 +1,8 @@
 """Labels by what the robot feels: at the right time, and none where that is not sure."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from odometry.errors import RunFolderError
@@ -28,3 +31,15 @@ def test_labels_are_of_the_moment(model):
 def test_what_feels_like_no_terrain_labels_nothing(model):
     with pytest.raises(RunFolderError, match="no moment feels like"):
         told_by_feel(drive("grates", 72), model)
+
+
+def test_labels_know_how_sure_they_are(model):
+    run, begin_s = joined(drive("gravel", 70), drive("snow", 71))
+    told = told_by_feel(run, model, sure=0.7)
+    sure = told.least_probability(4.0, 8.0)
+    assert 0.7 <= sure <= told.probabilities.max()
+    wide = told.least_probability(4.0, begin_s + 10.0)
+    assert wide <= sure
+    assert np.isnan(replace(told, probabilities=None).least_probability(4.0, 8.0))
+    more = told_by_feel(run, model, sure=float(np.median(told.probabilities)))
+    assert 0 < sum(map(bool, more.names)) < sum(map(bool, told.names))

@@ -1,0 +1,85 @@
+"""What terrains get from models that never felt them: each is left out in turn."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.feel.evidence import Calibration, Stretches
+from odometry.feel.held_out import HeldOut, names_of, put_together, scored, windows_alone
+from odometry.feel.members import Choice
+from odometry.feel.scores import class_weights
+from odometry.feel.strangeness import Strangeness, Unseen, fitted_weights, modest_share, terms
+from odometry.feel.table import FeelTable
+
+
+def fitted_strangeness(
+    table: FeelTable,
+    folds: IntArray,
+    known: BoolArray,
+    how: tuple[Choice, Calibration, float],
+) -> Strangeness:
+    """Log odds of "never felt" by terrains left out, on runs (R,) held out as well.
+
+    Parameters
+    ----------
+    table : FeelTable
+    folds : (R,)
+    known : (R,)
+        The runs that may be looked at.
+    how : (Choice, Calibration, float)
+        With the length of a stretch [s].
+    """
+    choice, calibration, stretch_s = how
+    parts: tuple[list[Unseen], list[Unseen]] = ([], [])
+    for name in names_of(table, known):
+        told = _without(table, folds, known, name, choice)
+        if told is None:
+            continue
+        lengths = (
+            windows_alone(table, told, calibration),
+            put_together(table, told, calibration, stretch_s),
+        )
+        for found, one in zip(parts, lengths, strict=True):
+            found.append(_unseen(one, calibration, name))
+    if not parts[0]:
+        return Strangeness.none()
+    weights = [fitted_weights(of) for of in parts]
+    share = max(modest_share(of, one) for of, one in zip(parts, weights, strict=True))
+    return Strangeness(weights[0], weights[1], share)
+
+
+def terms_of(told: Stretches, calibration: Calibration) -> FloatArray:
+    """The terms of strangeness of stretches (N, TERMS)."""
+    probabilities = calibration.probabilities(told.evidence, told.windows)
+    return terms(probabilities, told.novelty, told.nearness)
+
+
+def _without(
+    table: FeelTable, folds: IntArray, known: BoolArray, name: str, choice: Choice
+) -> HeldOut | None:
+    """All windows of the known runs, held out, by models without a terrain."""
+    parts = list(_parts(table, folds, known, name, choice))
+    joined = HeldOut.joined(parts) if parts else None
+    labels = None if joined is None else table.labels[joined.rows]
+    return joined if labels is not None and 0 < (labels == name).sum() < len(labels) else None
+
+
+def _parts(
+    table: FeelTable, folds: IntArray, known: BoolArray, name: str, choice: Choice
+) -> Iterator[HeldOut]:
+    others = tuple(one for one in names_of(table, known) if one != name)
+    for fold in np.unique(folds[known]):
+        fitted = known & (folds != fold)
+        rows = np.flatnonzero((known & (folds == fold))[table.runs])
+        if len(rows) and set(others) <= set(names_of(table, fitted)):
+            yield HeldOut(rows, scored(table, fitted, others, rows, [choice])[0])
+
+
+def _unseen(told: Stretches, calibration: Calibration, name: str) -> Unseen:
+    is_unseen = told.labels == name
+    weights = np.zeros(len(told))
+    weights[is_unseen] = 0.5 / is_unseen.sum()
+    weights[~is_unseen] = 0.5 * class_weights(told.labels[~is_unseen])
+    sure = calibration.probabilities(told.evidence, told.windows).max(axis=1)
+    return Unseen(terms_of(told, calibration), is_unseen, weights, sure)

@@ -1,0 +1,82 @@
+"""How strange a window is: weights against an independent fit, and what they may not do."""
+
+import numpy as np
+import pytest
+from sklearn.linear_model import LogisticRegression
+
+from odometry.feel.strangeness import (
+    BOLD,
+    MOST_BOLD,
+    RIDGE,
+    SHARES,
+    TERMS,
+    Strangeness,
+    Unseen,
+    fitted_weights,
+    modest_share,
+    terms,
+    unknown_probability,
+)
+
+
+def simulated(seed, shift, count=600):
+    """Windows of which half are unseen: `shift` says by how much each term is larger then."""
+    rng = np.random.default_rng(seed)
+    is_unseen = np.arange(count) % 2 == 0
+    table = rng.normal(size=(count, TERMS)) + np.outer(is_unseen, np.append(0.0, shift))
+    table[:, 0] = 1.0
+    return Unseen(table, is_unseen, np.full(count, 1 / count), np.full(count, 0.95))
+
+
+def test_the_weights_are_those_of_a_logistic_regression():
+    part = simulated(1, [0.5, 1.0, 0.2])
+    columns = part.table[:, 1:]
+    standard = (columns - columns.mean(axis=0)) / columns.std(axis=0)
+    other = LogisticRegression(C=1 / (RIDGE * len(columns)), tol=1e-10, max_iter=1000)
+    other.fit(standard, part.is_unseen)
+    odds = part.table @ fitted_weights([part])
+    np.testing.assert_allclose(odds, other.decision_function(standard), atol=1e-4)
+
+
+def test_nothing_makes_a_window_less_strange():
+    weights = fitted_weights([simulated(2, [-1.0, 0.5, -0.3])])
+    assert (weights[1:] >= 0).all()
+    assert weights[1] == weights[3] == 0
+    assert weights[2] > 0
+
+
+def test_a_term_that_does_not_vary_has_no_weight():
+    part = simulated(3, [0.5, 0.0, 0.5])
+    part.table[:, 2] = -13.8
+    assert fitted_weights([part])[2] == 0
+
+
+def test_terms_grow_with_distance_and_doubt():
+    sure, unsure = np.array([[0.98, 0.02]]), np.array([[0.6, 0.4]])
+    one = np.ones(1)
+    assert (terms(unsure, 2 * one, one) >= terms(sure, one, 0 * one)).all()
+
+
+@pytest.mark.parametrize("share", [0.1, 0.3])
+def test_without_evidence_unknown_is_as_probable_as_before(share):
+    assert unknown_probability(np.zeros(1), share)[0] == pytest.approx(share)
+    assert unknown_probability(np.array([np.log(9.0)]), 0.1)[0] == pytest.approx(0.5)
+    told = unknown_probability(np.array([-800.0, 800.0]), share)
+    np.testing.assert_allclose(told, [0.0, 1.0], atol=1e-300)
+
+
+def test_what_was_left_out_is_rarely_named_boldly():
+    easy, hard = simulated(4, [4.0, 4.0, 4.0]), simulated(5, [0.0, 0.0, 0.0])
+    assert modest_share([easy], fitted_weights([easy])) == SHARES[0]
+    weights = fitted_weights([easy, hard])
+    share = modest_share([easy, hard], weights)
+    bold = [
+        (of.sure * (1 - unknown_probability(of.table @ weights, share)) >= BOLD)[of.is_unseen]
+        for of in (easy, hard)
+    ]
+    assert np.mean(bold) <= MOST_BOLD
+    assert share > SHARES[0]
+
+
+def test_what_cannot_be_told_has_no_weights():
+    assert not Strangeness.none().window.any()
