@@ -46,7 +46,7 @@ def write_feel(felt: Felt, out: Path, about: Mapping[str, Any] | None = None) ->
 def write_feel_runs(felt: Sequence[Felt], names: Sequence[str], file: Path) -> None:
     """Write one row a run: the answer for all of it."""
     answers = [one.answer_of_run for one in felt]
-    shares = [shares(one) for one in felt]
+    by_terrain = [shares(one) for one in felt]
     columns = {
         "run": np.array(names),
         "label": np.array([label for label, _, _ in answers]),
@@ -56,7 +56,7 @@ def write_feel_runs(felt: Sequence[Felt], names: Sequence[str], file: Path) -> N
         "true_label": np.array([one.run.terrain or "" for one in felt]),
     }
     for name in (*felt[0].model.names, UNKNOWN):
-        columns[f"share_{name}"] = np.array([of.get(name, 0.0) for of in shares])
+        columns[f"share_{name}"] = np.array([of.get(name, 0.0) for of in by_terrain])
     write_csv_table(file, columns)
 
 

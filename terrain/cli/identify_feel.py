@@ -19,17 +19,19 @@ if TYPE_CHECKING:
 @click.option("--out", required=True, metavar="FEEL", type=OUTPUT, help="Model to write.")
 @click.option(
     "--window",
+    "windows",
     type=Positive(5.0),
-    default=2.0,
+    multiple=True,
+    default=(2.0,),
     show_default=True,
-    help="Length of the windows, 1 to 5 s.",
+    help="Length of the windows, 1 to 5 s; repeat: runs held out say which is best.",
 )
 @click.option(
     "--seed", type=int, default=0, show_default=True, help="Of the folds in which runs are dealt."
 )
 @span_options
 def identify_feel(
-    folders: tuple[Path, ...], *, out: Path, window: float, seed: int, span: "Span"
+    folders: tuple[Path, ...], *, out: Path, windows: tuple[float, ...], seed: int, span: "Span"
 ) -> None:
     """Identify how the terrains that the run folders RUN name feel, for `feel` to tell them.
 
@@ -46,7 +48,7 @@ def identify_feel(
     from terrain.cli.recordings import read_runs
 
     made = claim_file(out, is_feel_model)
-    model = identify(read_runs(folders, span), window_s=window, seed=seed)
+    model = identify(read_runs(folders, span), window_s=windows, seed=seed)
     _print(model)
     write_feel_model(out, model, made.to_table())
     click.echo(f"Wrote {out}")
@@ -67,6 +69,7 @@ def _print(model: "FeelModel") -> None:
         for name, word in LENGTHS.items()
     ]
     print_table([header, *rows])
+    click.echo(f"Chosen by runs held out: {report['chosen']}")
     click.echo("Windows by answer:")
     table = report["window"]["confusion"]
     lines = [

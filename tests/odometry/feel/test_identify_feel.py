@@ -141,3 +141,10 @@ def test_what_is_no_ground_for_a_model_is_refused():
     named = replace(drive("snow", 2), settings={"robot": {"track_width": 0.5}})
     with pytest.raises(OdometryError, match="of gravel"):
         identify_feel([*drives(["gravel"]), named])
+
+
+def test_the_length_of_windows_is_chosen_of_those_given():
+    model = identify_feel(drives(["tiles", "gravel"], count=3), window_s=(1.0, 2.0))
+    assert model.design.window_s in (1.0, 2.0)
+    assert model.report["chosen"].startswith(f"windows of {model.design.window_s:g} s")
+    assert len(model.report["chosen_in_folds"]) == 3

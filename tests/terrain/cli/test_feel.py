@@ -1,5 +1,6 @@
 """`identify-feel` and `feel`: from run folders to a model, and to what a run feels like."""
 
+import csv
 import json
 import shutil
 
@@ -7,7 +8,6 @@ import pytest
 from click.testing import CliRunner
 
 from odometry.feel.model_file import read_feel_model
-from odometry.io.csv_table import read_csv_table
 from odometry.io.run_folder import write_run_folder
 from terrain.cli.feel import feel
 from terrain.cli.identify_feel import identify_feel
@@ -64,8 +64,13 @@ def test_several_runs_get_a_folder_each_and_one_table(model, folders, tmp_path):
     assert answer.exit_code == 0, answer.output
     for run in runs:
         assert (tmp_path / "felt" / run.name / "report.html").is_file()
-    table = read_csv_table(tmp_path / "felt" / "runs.csv", ("run", "label"))
-    assert table["label"].tolist() == table["true_label"].tolist() == ["gravel", "tiles"]
+    with (tmp_path / "felt" / "runs.csv").open(newline="") as stream:
+        table = list(csv.DictReader(stream))
+    assert [row["run"] for row in table] == ["gravel_1", "tiles_2"]
+    assert [row["label"] for row in table] == ["gravel", "tiles"]
+    assert [row["true_label"] for row in table] == ["gravel", "tiles"]
+    told = [sum(float(row[name]) for name in row if name.startswith("share_")) for row in table]
+    assert all(0.9 < one <= 1.0 for one in told)
     alone = invoke(runs[0], "--model", model[1], "--out", tmp_path / "alone")
     assert alone.exit_code == 0
     both = [tmp_path / "alone" / "feel.csv", tmp_path / "felt" / "gravel_1" / "feel.csv"]
