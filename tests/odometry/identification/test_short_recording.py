@@ -35,6 +35,17 @@ def test_the_time_of_all_windows_decides(found, below):
     assert not below or f"The windows last {ends_s[count - 1]:.0f} s in all" in said[0]
 
 
+def test_what_lies_between_the_windows_does_not_count(found):
+    """Of a run of two minutes the first and the last window."""
+    windows = found.fit.windows
+    names = ("first", "last", "first_pose", "last_pose", "measured", "travel_m")
+    ends = replace(windows, **{name: getattr(windows, name)[[0, -1]] for name in names})
+    lines = report("gravel", replace(found, fit=replace(found.fit, windows=ends)))
+    spans = zip(ends.first, ends.last, strict=True)
+    lasted_s = sum(windows.steps_s[first:last].sum() for first, last in spans)
+    assert any(f"The windows last {lasted_s:.0f} s in all" in line for line in lines)
+
+
 def test_nothing_is_said_where_nothing_has_an_interval(found):
     windows = found.fit.windows
     few = windows.where(np.arange(len(windows)) < 2)
