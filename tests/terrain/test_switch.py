@@ -159,6 +159,12 @@ def test_ground_without_a_label_for_long_is_no_longer_known():
     assert after.footing.terrain == "unknown"  # one label of something else is no support
 
 
+def test_a_terrain_that_no_label_names_has_what_is_not_reached():
+    switch = dataclasses.replace(start(), before="gravel")
+    switch = switch.see(seen_at(0.0, "gravel")).at(0.0, np.zeros(3), 0.0)
+    assert switch.shares == {"grass": 1.0}
+
+
 def test_ground_that_labels_contradict_is_no_longer_known():
     switch = start()
     labels = np.random.default_rng(1).choice(["grass", "gravel", "sand"], 80)
