@@ -148,20 +148,20 @@ def test_ground_without_a_label_for_long_is_no_longer_known():
     for x in np.arange(0.0, 40.0, 0.25):
         switch = switch.add_label(seen_at(x, "grass" if x < 5 else "unknown"))
         switch = switch.at(2 * x, np.array([x, 0.0, 0.0]), x)
-        if switch.settled.sights:
+        if switch.place_beliefs.place_labels:
             last_m = switch.supported_m
         within = x - last_m <= SwitchConfig().unknown_m
         assert switch.footing.terrain == ("grass" if within else "unknown")
     assert switch.in_force == "grass"
     assert 6.0 < last_m < 8.0
-    assert not switch.settled.sights  # by now they are forgotten
-    after = switch.see(seen_at(40.0, "gravel")).at(80.0, np.array([40.0, 0.0, 0.0]), 40.0)
+    assert not switch.place_beliefs.place_labels  # by now they are forgotten
+    after = switch.add_label(seen_at(40.0, "gravel")).at(80.0, np.array([40.0, 0.0, 0.0]), 40.0)
     assert after.footing.terrain == "unknown"  # one label of something else is no support
 
 
 def test_a_terrain_that_no_label_names_has_what_is_not_reached():
     switch = dataclasses.replace(start(), before="gravel")
-    switch = switch.see(seen_at(0.0, "gravel")).at(0.0, np.zeros(3), 0.0)
+    switch = switch.add_label(seen_at(0.0, "gravel")).at(0.0, np.zeros(3), 0.0)
     assert switch.shares == {"grass": 1.0}
 
 

@@ -91,7 +91,7 @@ def test_a_place_is_reached_from_the_corners_of_its_region_on(watch, scale):
         slow = dataclasses.replace(frame, tread_speeds_m_s=speed_m_s)
         watched.watcher.terrain(slow, estimate_at(frame, speeds=speed_m_s))
     (event,) = watched.watcher.events
-    away_m = event.sight.place[0] - 0.1 * event.stamp_s
+    away_m = event.first_label.place[0] - 0.1 * event.stamp_s
     corner_m = scale * np.hypot(0.4, 0.34) / 2
     assert 0.7 * corner_m < away_m < corner_m
 
