@@ -9,6 +9,7 @@ from odometry.feel.scores import class_weights
 
 KNOWN_SHARE = 0.96  # of known terrains, held out, that strangeness leaves known
 NEAR_SHARE = 0.99  # and that distance alone does: what lies beyond is like nothing felt
+NEVER = 1e9  # log odds of a model that knows no strangeness; a file holds no infinity
 EVEN = 0.0  # log odds: what is more probably known than not is never refused
 SPEED_MARGIN = 1.25  # by which a window may be slower or faster than all that were fitted to
 
@@ -31,8 +32,8 @@ class Limits:
     stretch: float
     slowest_m_s: float
     fastest_m_s: float
-    strange_window: float = np.inf
-    strange_stretch: float = np.inf
+    strange_window: float = NEVER
+    strange_stretch: float = NEVER
 
     @classmethod
     def of(
