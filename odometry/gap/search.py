@@ -92,7 +92,7 @@ class Search:
     def _judged(self, before: Fitted, candidates: Sequence[Effect]) -> list[Judged]:
         """The quick forms, and those of contact forces where the quick ones leave something."""
         judged = judge(self.fitter, before, candidates, self.config, self.progress)
-        best = self.best_earner(judged, before)
+        best = self.best_earner(judged, before) or self._reference_first(judged, before)
         if best is None or self.fitter.spread(best.fitted) < self.config.contact_spread:
             return judged
         taken = {added.effect.name for added in before.effects}
@@ -101,6 +101,11 @@ class Search:
         more = judge(self.fitter, before, slow, self.config, self.progress)
         fits = [one.fitted for one in (*judged, *more)]
         return ranked(self.fitter, before, fits, self.config)
+
+    def _reference_first(self, judged: Sequence[Judged], before: Fitted) -> Judged | None:
+        """The first that pays, if it is a fault of the reference: motion may do it as well."""
+        best = next((one for one in judged if self.pays(one, before)), None)
+        return best if best is not None and best.effect.of_reference else None
 
     def _all_free(self, one: Judged, before: Fitted) -> Judged:
         """The same with the parameters of slow effects, held in the contest, free again."""
