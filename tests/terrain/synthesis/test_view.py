@@ -114,7 +114,7 @@ def test_sky_and_cameras_without_ground():
     assert (image[:23] == SKY_BRIGHTNESS).all()
     assert (image[25:] == 0).all()
     up = Camera.from_mount((64, 48), level.matrix, [], [0, 0, 1, 0, -1.0, 0])
-    with pytest.raises(SynthesisError, match="sees no ground"):
+    with pytest.raises(SynthesisError, match="shows no terrain"):
         View.of(up)
 
 
