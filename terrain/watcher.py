@@ -95,6 +95,11 @@ class TerrainWatcher:
         self._travel_m = 0.0
         self._has_answered = False
 
+    @property
+    def sightings(self) -> list[ImageLabel]:
+        """`image_labels` under their old name, for one version."""
+        return self.image_labels
+
     def terrain(self, frame: Frame, estimate: Estimate) -> Footing:
         """Classify the frame's image, if it has one, and return the terrain under the robot."""
         self._travel_m += self._travelled_m(frame)
