@@ -1,10 +1,13 @@
 """Jumps of the reference: motion between poses that no robot makes, whatever its treads do.
 
 A tread that slips leaves a robot behind by no more than the tread travelled; a pose that goes
-farther, or aside, has jumped. What follows a jump is as good as what went before.
+farther, or aside, has jumped. What follows a jump is as good as what went before. While a tread
+reports rest for a short time between motion, an encoder may have dropped out, and nothing is said
+of the poses.
 """
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -16,6 +19,8 @@ from odometry.windows.dense import DenseWindows
 from odometry.windows.dense_noise import end_variance
 
 STEP_S = 0.25  # over which a jump is looked for: maps do not all jump from one pose to the next
+SHORT_REST_S = 2.0  # of a tread between motion: an encoder that dropped out would look like it
+AT_REST, ABRUPT = 0.02, 0.1  # shares of a tread's greatest speed: at rest, just before and after
 LEEWAY = 0.5  # share of the travel of treads by which a robot may go ahead of them, or aside
 
 
@@ -57,11 +62,29 @@ def jumps(scene: DenseWindows, calibration: Calibration, config: GapConfig) -> J
     beyond_m = np.sqrt((along - behind) ** 2 + across_m2) - LEEWAY * travel_m
     sigma_m = np.sqrt(end_variance(steps, calibration.noise)[:, :2].max(axis=1))
     sigmas = beyond_m / sigma_m
-    jumped = sigmas > config.outlier_sigmas
+    jumped = (sigmas > config.outlier_sigmas) & ~_may_lack_travel(steps)
     off = np.zeros(len(scene.pose_s), dtype=np.bool_)
     for begin, end in zip(first[jumped], last[jumped], strict=True):
         off[begin + 1 : end + 1] = True
     return Jumps(off, scene.pose_s, distances_m[jumped], sigmas[jumped], len(steps))
+
+
+def _may_lack_travel(steps: DenseWindows) -> BoolArray:
+    """Whether a tread stops short within each step (S,), and is soon as fast again."""
+    speeds_m_s = np.abs(steps.inputs.tread_speeds_m_s)
+    shares = speeds_m_s / np.maximum(speeds_m_s.max(axis=0), np.finfo(float).tiny)
+    lacking = np.zeros(len(shares), dtype=np.bool_)
+    time_s = steps.time_s
+    for share in shares.T:
+        resting = share < AT_REST
+        for begin, end in pairwise(np.flatnonzero(np.diff(resting)) + 1):
+            is_abrupt = min(share[begin - 1], share[end]) > ABRUPT
+            if resting[begin] and is_abrupt and time_s[end] - time_s[begin] < SHORT_REST_S:
+                lacking[begin:end] = True
+    counted = np.concatenate([[0], np.cumsum(lacking)])
+    begin_s, end_s = steps.pose_s[steps.windows].T
+    first = np.maximum(np.searchsorted(time_s, begin_s, side="right") - 1, 0)
+    return np.asarray(counted[np.searchsorted(time_s, end_s)] > counted[first])
 
 
 def _along(predicted: FloatArray, rows: FloatArray) -> FloatArray:

@@ -69,3 +69,14 @@ def test_a_robot_that_slips_stays_behind_and_does_not_jump(make_scene, known):
         return twist * (inputs["t"] % 7 > 2)[:, None]
 
     assert not jumps(make_scene(32, stuck), known, CONFIG).off.any()
+
+
+@pytest.mark.parametrize(("rest_s", "counted"), [(0.8, False), (4.0, True)])
+def test_an_encoder_that_drops_out_is_no_jump_of_the_reference(plain, known, rest_s, counted):
+    """A tread that reports rest for long does rest, as far as anybody can say."""
+    odometry = plain.run.odometry
+    t_s = odometry["t"] - odometry["t"][0]
+    gone = (t_s % 15 > 5) & (t_s % 15 < 5 + rest_s)
+    columns = {**odometry.columns, "v_left": np.where(gone, 0.0, odometry["v_left"])}
+    run = replace(plain.run, odometry=replace(odometry, columns=columns))
+    assert jumps(dense_windows_of(run, CONFIG.horizon_s), known, CONFIG).off.any() == counted
