@@ -99,7 +99,7 @@ def test_a_model_fitted_in_stages_has_no_profile(curved):
     (name, ground), *_ = curved.terrains.items()
     staged = replace(ground, fit=replace(ground.fit, model=_Staged()))
     with pytest.raises(IdentificationError, match="stages"):
-        with_profiles(replace(curved, grounds={name: staged}), CONFIG)
+        with_profiles(replace(curved, terrains={name: staged}), CONFIG)
 
 
 class _Staged:

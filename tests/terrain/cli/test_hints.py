@@ -2,6 +2,8 @@
 
 from types import SimpleNamespace
 
+import numpy as np
+
 from odometry.estimation.filter_event import FilterEvent
 from terrain.classification.likeness import Likeness
 from terrain.cli.hints import hints
@@ -25,13 +27,11 @@ def result(
         watcher=watcher,
         run=SimpleNamespace(images=images or None, began_s=1000.0),
         replay=SimpleNamespace(
-            estimates=[estimate(True)] * 10 + [estimate(False)] * refused, events=events
+            innovations_squared=np.array([np.nan] * 5 + [1.0] * (10 + refused)),
+            accepted=np.array([False] * 5 + [True] * 10 + [False] * refused),
+            events=events,
         ),
     )
-
-
-def estimate(accepted):
-    return SimpleNamespace(innovation=SimpleNamespace(accepted=accepted))
 
 
 def test_nothing_to_say():
