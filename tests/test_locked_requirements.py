@@ -11,7 +11,7 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).parents[1]
-LOCKED = (ROOT / "requirements-dev.txt").read_text(encoding="utf-8")
+LOCKED = (ROOT / "tests" / "requirements-dev.txt").read_text(encoding="utf-8")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 ENTRY = re.compile(r"(\S+)==(\S+)(?: ; (.+?))?((?: \\\n    --hash=sha256:[0-9a-f]{64})+)\n")
 ASKED = [*PROJECT["dependencies"], *chain(*PROJECT["optional-dependencies"].values())]
