@@ -1,4 +1,4 @@
-"""The columns by which windows are told apart: bands of several widths, shape, and motion."""
+"""The columns that distinguish windows: bands of several widths, shape, and motion."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

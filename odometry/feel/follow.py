@@ -10,7 +10,7 @@ from odometry.config import require, require_positive
 from odometry.errors import RunFolderError
 from odometry.feel.held_out import Scores
 from odometry.feel.model import FeelModel
-from odometry.feel.told import Told
+from odometry.feel.probabilities import Probabilities
 from odometry.feel.windows import FeelWindows, feel_windows
 from odometry.run import UNKNOWN, Run
 
@@ -106,10 +106,10 @@ class Felt:
         """Probability of each terrain if the run is of one, and whether it is like none."""
         felt = self.windows.felt
         summed = np.concatenate([self._evidence[felt].sum(axis=0), [felt.sum()]])[None]
-        told = self._told(summed)
+        of = self._probabilities(summed)
         names = self.model.names
-        found = dict(zip(names, told.probabilities[0].tolist(), strict=True))
-        return found, bool(told.is_novel[0])
+        found = dict(zip(names, of.probabilities[0].tolist(), strict=True))
+        return found, bool(of.is_novel[0])
 
     @property
     def answer_of_run(self) -> tuple[str, float, float]:
@@ -139,28 +139,28 @@ class Felt:
         return np.column_stack([bounded, self.scores.novelty, self.scores.nearness])
 
     @cached_property
-    def _windows(self) -> Told:
+    def _windows(self) -> Probabilities:
         felt = self.windows.felt[:, None]
-        return self._told(np.column_stack([self._evidence, np.ones(len(felt))]) * felt)
+        return self._probabilities(np.column_stack([self._evidence, np.ones(len(felt))]) * felt)
 
     @cached_property
-    def _lasting(self) -> Told:
+    def _lasting(self) -> Probabilities:
         felt, ends_s = self.windows.felt, self.stamps_s
         first = np.searchsorted(self.windows.begins_s, ends_s - self.config.stretch_s - 1e-6)
         upto = np.arange(1, len(ends_s) + 1)
         first = np.minimum(first, upto - 1)
         table = np.column_stack([self._evidence, np.ones(len(felt))]) * felt[:, None]
         summed = np.vstack([np.zeros(table.shape[1]), np.cumsum(table, axis=0)])
-        return self._told(summed[upto] - summed[first])
+        return self._probabilities(summed[upto] - summed[first])
 
-    def _told(self, summed: FloatArray) -> Told:
+    def _probabilities(self, summed: FloatArray) -> Probabilities:
         share = self.config.unknown_share or self.model.strangeness.share
-        return Told.of(self.model, summed, share)
+        return Probabilities.of(self.model, summed, share)
 
-    def _answers(self, told: Told) -> AnyArray:
-        names = np.array(self.model.names, dtype=object)[told.probabilities.argmax(axis=1)]
-        named = np.where(told.probabilities.max(axis=1) >= self.config.sure, names, UNDETERMINED)
-        named = np.where(told.is_novel | self.outside_speeds, UNKNOWN, named)
+    def _answers(self, of: Probabilities) -> AnyArray:
+        names = np.array(self.model.names, dtype=object)[of.probabilities.argmax(axis=1)]
+        named = np.where(of.probabilities.max(axis=1) >= self.config.sure, names, UNDETERMINED)
+        named = np.where(of.is_novel | self.outside_speeds, UNKNOWN, named)
         named = np.where(self.windows.standing, STATIONARY, named)
         return np.where(self.windows.whole, named, NOT_MEASURED)
 

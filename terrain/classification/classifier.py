@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import Any, Self
 
 import numpy as np
-from sklearn.base import BaseEstimator, ClassifierMixin, clone
+from sklearn.base import BaseEstimator, ClassifierMixin
 from sklearn.utils.multiclass import check_classification_targets
 from sklearn.utils.validation import validate_data
 
@@ -13,30 +13,23 @@ from odometry.arrays import AnyArray, ByteImage
 from odometry.errors import ConfigError
 from terrain.classification.answer import Classification, Classifier
 from terrain.classification.feature_jobs import shared_feature_matrix
-from terrain.classification.features import FeatureSettings
-from terrain.classification.features_of import Transformed, Transformer
+from terrain.classification.features_of import Transformer
+from terrain.classification.learning import LearningClassifier
 from terrain.classification.likeness import TrainingLook, spread_rows
 from terrain.classification.old_samples import OldSamples, SamplesBesideOld
 from terrain.classification.patches import LabelledPatches
 from terrain.classification.presets import PRESETS
-from terrain.classification.rejection import rejection_distances
-from terrain.classification.trained import TrainedClassifier
 from terrain.classification.trained_on import TrainedOn
 from terrain.classification.training_set import (
     check_labels,
-    common_size,
-    has_colour,
     holds_images,
 )
-from terrain.classification.validation import CrossValidation, Samples, best_way
-from terrain.errors import PatchError
-from terrain.images import to_grey
-from terrain.one_thread import one_thread
+from terrain.classification.validation import Samples
 
 __all__ = ["Classification", "Classifier", "TerrainClassifier"]
 
 
-class TerrainClassifier(TrainedClassifier, ClassifierMixin, BaseEstimator):  # type: ignore[misc]
+class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # type: ignore[misc]
     """Name the terrain of patches, or say that it is unknown; a classifier of scikit-learn.
 
     Parameters
@@ -239,54 +232,6 @@ class TerrainClassifier(TrainedClassifier, ClassifierMixin, BaseEstimator):  # t
             raise ConfigError(f"metres_per_pixel is {scale}, expected above zero")
         if self.n_neighbors is not None and self.n_neighbors < 1:
             raise ConfigError(f"n_neighbors is {self.n_neighbors}, expected 1 or more")
-
-    def _made_by(
-        self, images: Sequence[ByteImage], labels: AnyArray
-    ) -> FeatureSettings | Transformed:
-        """What makes features of square patches, the size that the classifier then asks for.
-
-        The first of `images` have the labels (n,); altered copies follow them.
-        """
-        self.patch_size_px = common_size(images)
-        preset = PRESETS[self.preset]
-        wanted = self.colour and has_colour(images[: len(labels)], labels)
-        settings = preset.colour_features if wanted else preset.features
-        if self.features is None:
-            self._features, self.colour_ = settings, bool(settings.colour_copies)
-        else:
-            shown = images if wanted else [to_grey(image) for image in images]
-            fitted = clone(self.features).fit(shown)
-            self._features, self.colour_ = Transformed(fitted, wanted), wanted
-        return self._features
-
-    @one_thread()  # more add up in another order: the last bits of a model are those of the machine
-    def _learn(self, samples: Samples, copies: Samples) -> None:
-        preset = PRESETS[self.preset]
-        counts = (self.n_neighbors,) if self.n_neighbors else preset.neighbour_counts
-        try:
-            way, found = best_way(
-                preset.ways, counts, samples, copies, calibrates=not preset.as_published
-            )
-            everything = samples.with_copies(np.arange(len(samples.codes)), copies)
-            self._neighbours = way().fit(*everything)
-        except np.linalg.LinAlgError as error:
-            raise PatchError(
-                f"{len(samples.codes)} patches of {len(self.classes_)} classes are too few, or too "
-                "much alike, to tell how patches of one class differ"
-            ) from error
-        self.cross_validation_: CrossValidation = found
-        self.n_neighbors_ = found.n_neighbors
-        if self.n_neighbors_ not in counts and self.n_neighbors:
-            raise PatchError(
-                f"k = {self.n_neighbors}, but with a part held back a class has fewer patches in "
-                "training; choose a smaller k"
-            )
-        self.temperature_ = found.temperature
-        limits = rejection_distances(
-            found.distances, samples.groups[found.rows], self.rejected_share
-        )
-        self.rejection_distances_ = limits[:1] if preset.as_published else limits
-        self.rejection_distance_ = limits[0]
 
     def __sklearn_tags__(self) -> Any:
         """Tell scikit-learn that the input is images or features."""

@@ -11,7 +11,7 @@ from odometry.feel.windows import STEPS
 
 
 @dataclass(frozen=True)
-class Told:
+class Probabilities:
     """Of N windows or stretches.
 
     Attributes
@@ -29,7 +29,7 @@ class Told:
     is_novel: BoolArray
 
     @classmethod
-    def of(cls, model: FeelModel, summed: FloatArray, unknown_share: float) -> "Told":
+    def of(cls, model: FeelModel, summed: FloatArray, unknown_share: float) -> "Probabilities":
         """From sums over overlapping windows, and of what is probable before anything is felt.
 
         Parameters
