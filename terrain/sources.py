@@ -7,7 +7,8 @@ from odometry.feel.follow import SILENT, Felt, follow_feel
 from odometry.feel.model import FeelModel
 from odometry.feel.model_file import read_feel_model
 from odometry.modes.felt_terrain import felt_terrain
-from odometry.modes.mode_set import ModeSet, read_mode_set
+from odometry.modes.mode_set import ModeSet
+from odometry.modes.mode_set_file import read_mode_set
 from odometry.parameters import ParameterSet
 from odometry.pipeline import ConstantTerrain, TerrainSource
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run

@@ -6,59 +6,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import AnyArray, IntArray
-from odometry.modes.answers import (
-    Detection,
-    Misfit,
-    candidates,
-    confusion,
-    detections,
-    disagreements,
-    false_switches,
-    misfits,
-    named_modes,
-)
+from odometry.modes.answers import candidates, disagreements, named_modes
+from odometry.modes.misfits import Misfit, misfits
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED, ModeSet
 from odometry.modes.mode_track import ModesConfig, ModeTrack
+from odometry.modes.score import Score, score_of
 from odometry.modes.sight import SeenGround, seen_labels
 from odometry.modes.signals import Signals
 from odometry.modes.track import follow_signals, judged_signals
 from odometry.run import UNKNOWN, Run
 
 MOTION, SIGHTED = "motion alone", "motion and sight"
-
-
-@dataclass(frozen=True)
-class Score:
-    """Answers against the modes that the run names.
-
-    Attributes
-    ----------
-    detections : tuple of Detection
-        One for each stretch of a mode.
-    right, wrong, undetermined, none_of_these : float
-        Shares of the time after each detection, over all stretches; NaN where none was detected.
-    wrong_of_all : float
-        Share of all the time in stretches of a mode, detected or not; NaN where there is none.
-    false_switches : int
-    """
-
-    detections: tuple[Detection, ...]
-    right: float
-    wrong: float
-    undetermined: float
-    none_of_these: float
-    wrong_of_all: float
-    false_switches: int
-
-    @property
-    def told(self) -> tuple[Detection, ...]:
-        """Stretches whose mode was named."""
-        return tuple(one for one in self.detections if np.isfinite(one.after_s))
-
-    @property
-    def median_after_s(self) -> float:
-        """Median time to detection, NaN without one."""
-        return float(np.median([one.after_s for one in self.told])) if self.told else float("nan")
 
 
 @dataclass(frozen=True)
@@ -167,23 +125,7 @@ class Followed:
 
     def score(self, track: ModeTrack) -> Score:
         """Answers of a track against the modes that the run names."""
-        found = detections(track, self.config.sure)
-        told = [one for one in found if np.isfinite(one.after_s)]
-        weights = np.array([one.to_s - one.from_s - one.after_s for one in told])
-        shares = np.array(
-            [(one.right, one.wrong, one.undetermined, one.none_of_these) for one in told]
-        )
-        means = np.full(4, np.nan)
-        if weights.sum() > 0:
-            means = weights @ shares / weights.sum()
-        right, wrong, open_, none = means.tolist()
-        seconds = confusion(track, self.config.sure, track.names)
-        judged = float(seconds.sum())
-        named = seconds[:, : len(track.names)]
-        off = float(named.sum() - np.trace(named))
-        of_all = off / judged if judged else float("nan")
-        switches = false_switches(track, self.config.sure)
-        return Score(found, right, wrong, open_, none, of_all, switches)
+        return score_of(track, self.config.sure)
 
 
 def followed(

@@ -8,7 +8,8 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.modes.mode_track import ModesConfig
 from odometry.modes.signals import STANDING_M_S
-from odometry.modes.traction import TractionModes, twists_of
+from odometry.modes.traction import TractionModes
+from odometry.modes.traction_gains import twists_of
 from odometry.modes.velocity import VelocityModes
 from odometry.run import Run
 

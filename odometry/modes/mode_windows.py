@@ -9,7 +9,7 @@ from odometry.arrays import BoolArray
 from odometry.identification.errors import IdentificationError
 from odometry.modes.signals import STANDING_M_S
 from odometry.modes.stretches import stretches_by_label
-from odometry.modes.traction import LEFT_TURN, RIGHT_TURN, turns_of
+from odometry.modes.traction_gains import LEFT_TURN, RIGHT_TURN, turns_of
 from odometry.modes.yaw_rate_noise import Heard, heard_of
 from odometry.row_terrains import row_terrains
 from odometry.run import UNKNOWN, Run

@@ -7,31 +7,25 @@ from functools import lru_cache
 import numpy as np
 from tqdm import tqdm
 
-from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.arrays import FloatArray
 from odometry.estimation.ekf_bank import EkfBank
 from odometry.estimation.imm import Imm
 from odometry.estimation.mode_belief import ModeBelief
-from odometry.modes.alike import alike_modes
 from odometry.modes.bias_reading import bias_readings, with_reading
-from odometry.modes.gyroscope_trust import GyroscopeTrust, gyroscope_trust
 from odometry.modes.innovation_test import Innovations, mode_fit
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.mode_track import ModesConfig, ModeTrack
 from odometry.modes.own_filters import OwnFilters, with_bias, with_lead, with_shared_bias
 from odometry.modes.sight import SeenGround, mode_chains
 from odometry.modes.signals import Signals
-from odometry.modes.standing_bias import moving
 from odometry.modes.tempered_bank import TemperedBank
-from odometry.modes.travel_check import TravelCheck, travel_check
-from odometry.modes.turn_test import turns_are_off
-from odometry.modes.velocity import VelocityModes
+from odometry.modes.track_checks import contradictions, gyroscope_trust_of
+from odometry.modes.usable_measurements import independent_share, usable_measurements
 from odometry.run import Run
-from odometry.windows.spans import touched
 
 __all__ = ["ModeTrack", "ModesConfig", "follow_modes", "follow_signals", "judged_signals"]
 
 SETTLED_S = 1e4  # after which a chain has forgotten where it began
-MOST_FASTER = 1.2  # times the fastest run of identification: beyond, models say nothing
 
 
 def follow_modes(
@@ -95,7 +89,7 @@ def follow_signals(
     modes, count = mode_set.modes, len(mode_set.names)
     chains = mode_chains(seen, mode_set.names, mode_set.dwell_s)
     in_force = np.searchsorted([one.stamp_s for one in seen], signals.stamps_s, side="right")
-    independent = _independent(signals, modes.errors_last_s)
+    independent = independent_share(signals, modes.errors_last_s)
     states = modes.model().states
     lasting = np.zeros((count, states))
     lasting[:, :-1] = (1 - independent) * modes.measurement_variance
@@ -112,7 +106,8 @@ def follow_signals(
 
     roughness = modes.roughness(signals)
     gap_ends = np.searchsorted(signals.stamps_s, signals.gaps_s[:, 1])
-    measured, readings = _judged(signals, gap_ends, modes.fastest_m_s), bias_readings(signals)
+    measured = usable_measurements(signals, gap_ends, modes.fastest_m_s)
+    readings = bias_readings(signals)
     first = chains[in_force[0]].transition(SETTLED_S).mean(axis=0)
     merged = modes.start(signals, independent)
     belief = alone = ModeBelief.alike(*merged, first)
@@ -158,31 +153,9 @@ def follow_signals(
         squared,
         signals.labels,
         mode_fit(left, mode_set.dwell_s, config.misfit_share),
-        _trust(signals, mode_set, means[:, -1], sigmas[:, -1]),
-        *_contradictions(replace(signals, measured=measured), mode_set, left),
+        gyroscope_trust_of(signals, mode_set, means[:, -1], sigmas[:, -1]),
+        *contradictions(replace(signals, measured=measured), mode_set, left),
     )
-
-
-def _trust(
-    signals: Signals, mode_set: ModeSet, biases_rad_s: FloatArray, sigmas_rad_s: FloatArray
-) -> GyroscopeTrust | None:
-    """None where the filters measure headings, which confirm a bias."""
-    if mode_set.modes.state_angles:
-        return None
-    return gyroscope_trust(signals, biases_rad_s, sigmas_rad_s, bias_readings(signals))
-
-
-def _contradictions(
-    signals: Signals, mode_set: ModeSet, left: Innovations
-) -> tuple[BoolArray | None, BoolArray | None, TravelCheck | None]:
-    """Modes alike, turns that contradict, and travel; None of modes that hear poses themselves."""
-    modes = mode_set.modes
-    if not isinstance(modes, VelocityModes):
-        return None, None, None
-    asked = modes.steady_yaw_rates(signals.tread_speeds_m_s)
-    before = np.vstack([np.zeros(asked.shape[1]), asked[:-1]])
-    alike = alike_modes(signals, modes, left.leading)
-    return alike, turns_are_off(left, before), travel_check(signals, modes)
 
 
 def _normalised_squared(belief: ModeBelief, measured: FloatArray) -> float:
@@ -191,23 +164,3 @@ def _normalised_squared(belief: ModeBelief, measured: FloatArray) -> float:
         return float("nan")
     of_mode = belief.innovations.normalised_squared[belief.log_probabilities.argmax()]
     return float(of_mode / np.isfinite(measured).sum())
-
-
-def _judged(signals: Signals, gap_ends: IntArray, fastest_m_s: float) -> FloatArray:
-    """What is measured (N, m) where it tells of the modes.
-
-    Not while standing, nor in a gap, nor far above the speeds that the modes were identified at.
-    """
-    faster = np.abs(signals.tread_speeds_m_s).max(axis=1) > MOST_FASTER * fastest_m_s
-    tells = moving(signals) & ~np.append(False, faster[:-1])
-    tells &= ~touched(signals.gaps_s, signals.stamps_s, signals.stamps_s)
-    tells[gap_ends] = False
-    return np.where(tells[:, None], signals.measured, np.nan)
-
-
-def _independent(signals: Signals, errors_last_s: float) -> float:
-    """Share of a measurement that is news, when errors of the models last."""
-    measured_s = signals.stamps_s[np.isfinite(signals.measured).any(axis=1)]
-    if errors_last_s <= 0 or len(measured_s) < 2:
-        return 1.0
-    return min(1.0, float(np.median(np.diff(measured_s))) / errors_last_s)

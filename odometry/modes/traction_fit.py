@@ -8,7 +8,8 @@ from scipy.optimize import least_squares
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.models.icr import GUESSED_WIDTHS
-from odometry.modes.traction import SHORTEST_LAG_S, lagged, requested, turns_of, twists_of
+from odometry.modes.first_order_lag import SHORTEST_LAG_S, lagged
+from odometry.modes.traction_gains import requested, turns_of, twists_of
 from odometry.modes.yaw_rate_noise import Heard, YawRateNoise
 from odometry.windows.dense import DenseWindows
 from odometry.windows.dense_motion import off_measured, poses_at

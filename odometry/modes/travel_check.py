@@ -10,10 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.modes.first_order_lag import lagged
 from odometry.modes.measured_travel import MeasuredTravel
 from odometry.modes.response import SLOWEST_HZ
 from odometry.modes.signals import Signals
-from odometry.modes.traction import lagged
 from odometry.modes.velocity import VelocityModes
 
 WINDOW_S, EVERY_S = 10.0, 0.5

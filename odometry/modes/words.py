@@ -4,11 +4,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from odometry.modes.answers import Detection, Misfit
+from odometry.modes.detections import Detection
 from odometry.modes.doubts import doubts
-from odometry.modes.followed import SIGHTED, Followed, Score
+from odometry.modes.followed import SIGHTED, Followed
+from odometry.modes.misfits import Misfit
 from odometry.modes.mode_set import NO_MODES
 from odometry.modes.mode_track import ModeTrack
+from odometry.modes.score import Score
 
 FEW = 4  # stretches, or answers, that are said one by one
 LEAST_SHARE = 0.005  # less is not said

@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from odometry.arrays import FloatArray
-from odometry.modes.answers import BOUND
 from odometry.modes.followed import Followed
+from odometry.modes.misfits import BOUND
 from odometry.modes.words import SIGNALS
 from odometry.report.figure import save_figure
 from odometry.report.html import Picture

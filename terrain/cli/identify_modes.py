@@ -83,7 +83,8 @@ def identify_modes(
     from odometry.modes.identify_traction import identify_traction_modes
     from odometry.modes.identify_velocity import identify_velocity_modes
     from odometry.modes.mode_pairs import pairs
-    from odometry.modes.mode_set import ModeSet, write_mode_set
+    from odometry.modes.mode_set import ModeSet
+    from odometry.modes.mode_set_file import write_mode_set
     from odometry.modes.traction import TractionModes
     from odometry.outputs.output_file import is_set_of
     from terrain.cli.measured_turns import with_turns
@@ -149,7 +150,7 @@ def _print_traction(modes: "TractionModes") -> None:
     """Print the shares of requested speed and turn rate, and the noise."""
     import numpy as np
 
-    from odometry.modes.traction import requested, twists_of
+    from odometry.modes.traction_gains import requested, twists_of
 
     click.echo(
         "Share k of the requested speed, shares m of the requested turn rate in wide and in tight "

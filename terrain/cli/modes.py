@@ -67,7 +67,7 @@ def modes(
       terrain-odometry modes my_run --models set.toml --out modes
       terrain-odometry modes my_run --models set.toml --seen results/terrain.csv --out modes
     """
-    from odometry.modes.mode_set import read_mode_set
+    from odometry.modes.mode_set_file import read_mode_set
     from odometry.modes.track import ModesConfig
     from terrain.cli.outputs import claim_folder
 

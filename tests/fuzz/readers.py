@@ -10,7 +10,7 @@ from odometry.effects.tables import model_of
 from odometry.errors import OdometryError
 from odometry.estimation.icr_prior import prior_belief
 from odometry.io.tum import read_tum
-from odometry.modes.mode_set import read_mode_set, write_mode_set
+from odometry.modes.mode_set_file import read_mode_set, write_mode_set
 from odometry.modes.track import follow_modes
 from odometry.parameters import read_parameters
 from odometry.run import Run

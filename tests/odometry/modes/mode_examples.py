@@ -4,7 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from odometry.modes.mode_set import MODE, ModeSet
+from odometry.modes.mode_set import ModeSet
+from odometry.modes.mode_set_file import MODE
 from odometry.modes.track import ModeTrack
 from odometry.modes.traction import TractionModes
 from odometry.modes.velocity import VelocityModes

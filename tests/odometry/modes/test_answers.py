@@ -8,14 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from odometry.modes.answers import (
-    candidates,
-    confusion,
-    detections,
-    disagreements,
-    false_switches,
-    named_modes,
-)
+from odometry.modes.answers import candidates, disagreements, named_modes
+from odometry.modes.detections import confusion, detections, false_switches
 from odometry.modes.innovation_test import ModeFit
 from odometry.modes.mode_set import UNDETERMINED
 from tests.odometry.modes.mode_examples import track

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.modes.answers import misfits, named_modes
+from odometry.modes.answers import named_modes
 from odometry.modes.innovation_test import (
     CLIP,
     LONG_CLIP,
@@ -13,6 +13,7 @@ from odometry.modes.innovation_test import (
     Innovations,
     mode_fit,
 )
+from odometry.modes.misfits import misfits
 from odometry.modes.mode_set import NONE_OF_THESE, UNDETERMINED
 from odometry.modes.track import ModeTrack
 

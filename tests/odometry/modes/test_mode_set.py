@@ -7,13 +7,13 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from odometry.errors import ParameterError
-from odometry.modes.mode_set import (
+from odometry.modes.mode_set import ModeSet
+from odometry.modes.mode_set_file import (
     HEAD,
     KINDS,
     MODE,
     OPTIONAL,
     OPTIONAL_MODE,
-    ModeSet,
     read_mode_set,
     write_mode_set,
 )

@@ -9,7 +9,7 @@ from click.testing import CliRunner
 
 from odometry.errors import ParameterError, RunFolderError
 from odometry.io.run_folder import write_run_folder
-from odometry.modes.mode_set import write_mode_set
+from odometry.modes.mode_set_file import write_mode_set
 from terrain.cli.modes import modes
 from tests.odometry.modes.mode_examples import run_of, traction_set, velocity_set
 

@@ -1,0 +1,93 @@
+"""Answers against the modes that a run names: how soon, how often right."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import AnyArray, FloatArray
+from odometry.modes.answers import named_modes
+from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
+from odometry.modes.mode_track import ModeTrack
+from odometry.run import UNKNOWN
+
+
+@dataclass(frozen=True)
+class Detection:
+    """A stretch of one true mode, and how soon it was detected.
+
+    Attributes
+    ----------
+    mode : str
+    from_s, to_s : float
+    after_s : float
+        From its beginning to the first answer that names it; NaN where it never was named.
+    right, wrong, undetermined, none_of_these : float
+        Shares of the time after that: with its name, with another, with none, and where no mode
+        is said to fit. NaN where it was never named.
+    """
+
+    mode: str
+    from_s: float
+    to_s: float
+    after_s: float
+    right: float
+    wrong: float
+    undetermined: float
+    none_of_these: float
+
+
+def detections(track: ModeTrack, sure: float) -> tuple[Detection, ...]:
+    """One for each stretch of a label that is a mode."""
+    answers = named_modes(track, sure)
+    lasts_s = np.append(np.diff(track.stamps_s), 0.0)
+    cuts = np.flatnonzero(track.labels[1:] != track.labels[:-1]) + 1
+    found = []
+    for rows in np.split(np.arange(len(answers)), cuts):
+        mode = str(track.labels[rows[0]])
+        if mode == UNKNOWN or mode not in track.names:
+            continue
+        named = np.flatnonzero(answers[rows] == mode)
+        begin, end = float(track.stamps_s[rows[0]]), float(track.stamps_s[rows[-1]])
+        if not len(named):
+            found.append(Detection(mode, begin, end, *[float("nan")] * 5))
+            continue
+        after = rows[named[0] :]
+        shares = _shares(answers[after], lasts_s[after], mode)
+        found.append(Detection(mode, begin, end, float(track.stamps_s[after[0]]) - begin, *shares))
+    return tuple(found)
+
+
+def false_switches(track: ModeTrack, sure: float) -> int:
+    """How often the answer turned to a mode that is not the true one."""
+    answers = named_modes(track, sure)
+    rows = np.flatnonzero(~np.isin(answers, NO_MODES) & (track.labels != UNKNOWN))
+    names, truth = answers[rows], track.labels[rows]
+    turned = np.append(True, names[1:] != names[:-1])
+    return int((turned & (names != truth)).sum())
+
+
+def confusion(track: ModeTrack, sure: float, names: Sequence[str]) -> FloatArray:
+    """Seconds (M, M + 2) by true mode or label (row) and answer (column).
+
+    The last columns are "none of these" and "undetermined". `names` are the rows.
+    """
+    answers = named_modes(track, sure)
+    lasts_s = np.append(np.diff(track.stamps_s), 0.0)
+    columns = [*track.names, *NO_MODES]
+    return np.array(
+        [
+            [lasts_s[(track.labels == row) & (answers == column)].sum() for column in columns]
+            for row in names
+        ]
+    )
+
+
+def _shares(answers: AnyArray, lasts_s: FloatArray, mode: str) -> tuple[float, float, float, float]:
+    if not lasts_s.any():  # the last stamp alone
+        lasts_s = np.ones(len(answers))
+    whole = float(lasts_s.sum())
+    others = ~np.isin(answers, (mode, *NO_MODES))
+    chosen = (answers == mode, others, answers == UNDETERMINED, answers == NONE_OF_THESE)
+    right, wrong, open_, none = (float(lasts_s[of].sum()) / whole for of in chosen)
+    return right, wrong, open_, none
