@@ -16,11 +16,11 @@ class OdometryError(Exception):
 
 
 class RunFolderError(OdometryError):
-    """A run folder, or a file of one, is not as the format says."""
+    """A run folder, or a file of one, does not have the documented format."""
 
 
 class ParameterError(OdometryError):
-    """A parameter set, or one of its tables, is not as the format says."""
+    """A parameter set, or one of its tables, does not have the documented format."""
 
 
 class ConfigError(OdometryError):

@@ -17,7 +17,7 @@ VELOCITY_COLUMNS = ("vx", "vy", "wz")
 
 @dataclass(frozen=True)
 class Frame:
-    """All that a run says at one stamp.
+    """All measurements of a run at one stamp.
 
     Attributes
     ----------

@@ -31,7 +31,7 @@ def learned_parameters(
     run_name : str
         Named as the source.
     track_width_m : float, optional
-        Of the robot: [vehicle] gets it, where it says none.
+        Of the robot: [vehicle] gets it, where it has none.
     """
     terrains = dict(before.terrains)
     names, astride, accepted = np.array(replay.terrains), replay.is_astride, replay.accepted

@@ -180,7 +180,7 @@ def _first_estimate(run: Run, first: Frame, estimator: Estimator, terrain: str) 
 def _from_start(run: Run) -> Iterator[Frame]:
     """The frames from the first that can start a filter to the end of odometry.
 
-    A held speed goes on in a gap, as the best that is known; the frames say that it is one.
+    A held speed goes on in a gap, as the best that is known; the frames mark the gap.
     """
     gap_begins_s, gap_ends_s = odometry_gaps(run).spans_s.T
     for frame in _usable(run):

@@ -27,9 +27,9 @@ def without_pose_delay(run: Run, config: IcrEkfConfig) -> Moved:
     ----------
     run : Run
     config : IcrEkfConfig
-        `pose_delay_s` says by how much the stamps are late. With 0, and with `watch_sensors`, it
+        `pose_delay_s` is the delay of the stamps. With 0, and with `watch_sensors`, it
         is searched for unless `causal`: where the run has a gyroscope, by the correlation of its
-        yaw rate with that of the poses (`odometry.checks.timing`), and believed only where that
+        yaw rate with that of the poses (`odometry.checks.timing`), and used only where that
         is certain.
 
     Returns

@@ -23,7 +23,7 @@ def with_named_terrain(run: Run, given: str | None) -> Run:
 def row_terrains(run: Run) -> AnyArray:
     """Name of the terrain (N,) at each row of odometry.csv.
 
-    Its column `terrain` where there is one, else the run's; "unknown" where neither says.
+    Its column `terrain` where there is one, else the run's; "unknown" where neither names one.
     """
     usual = run.terrain or UNKNOWN
     if "terrain" not in run.odometry:

@@ -21,7 +21,7 @@ UNNAMED_TERRAIN = "ground"  # of a run that does not name its terrain; the name 
 
 @dataclass(frozen=True)
 class Robot:
-    """What `[robot]` of run.toml says, in metres and kilograms.
+    """The table `[robot]` of run.toml, in metres and kilograms.
 
     Examples
     --------
@@ -83,7 +83,7 @@ class Run:
         Raises
         ------
         RunFolderError
-            Naming the file, row and column that is not as the format says.
+            Naming the file, row and column that does not have the documented format.
         """
         folder = Path(folder)
         settings = read_settings(folder)
@@ -111,7 +111,7 @@ class Run:
 
     @property
     def sensors(self) -> Sensors:
-        """Where the sensors sit, as `[sensors]` of run.toml says."""
+        """Where the sensors are mounted: `[sensors]` of run.toml."""
         return sensors_of(self.settings, str(self.folder / "run.toml"))
 
     @property

@@ -1,4 +1,4 @@
-"""What is to be said of a filter once its run has ended."""
+"""Notes on a filter after the end of its run."""
 
 import numpy as np
 
@@ -71,7 +71,7 @@ def _bias(replay: Replay) -> list[FilterEvent]:
         if abs(off) <= FOLLOWED_SIGMAS * stated:
             return [FilterEvent(DRIFT_FOLLOWED, begin_s, end_s, f"{text}: the filter followed it")]
         text += (
-            f", and the one believed was off by {abs(off):.4f} rad/s in the mean, where the filter "
+            f", the estimated one was off by {abs(off):.4f} rad/s in the mean, where the filter "
             f"states {stated:.4f}: it was not followed"
         )
         return [FilterEvent("gyroscope_drift", begin_s, end_s, text)]
@@ -82,7 +82,7 @@ def _bias(replay: Replay) -> list[FilterEvent]:
 
 
 def bias_error(replay: Replay, first: int) -> float:
-    """Mean error of the bias believed since an estimate [rad/s].
+    """Mean error of the estimated bias since an estimate [rad/s].
 
     How much more the gyroscope less that bias turned than the estimate, which follows the poses.
     """
@@ -96,7 +96,7 @@ def bias_error(replay: Replay, first: int) -> float:
 
 
 def _off_at_end(run: Run, replay: Replay) -> list[FilterEvent]:
-    """The estimate ends farther from the poses than the ideal drive, which learns nothing."""
+    """The estimate ends farther from the poses than the ideal differential drive."""
     if run.pose is None or replay.estimates[-1].course is not None:
         return []
     measured = run.pose.stack("x", "y")

@@ -19,7 +19,7 @@ Triple = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Sensors:
-    """What `[sensors]` of run.toml says.
+    """The table `[sensors]` of run.toml.
 
     Attributes
     ----------

@@ -23,7 +23,7 @@ class Table:
     columns : Mapping[str, array (N,)]
         Numbers as float64, names as str. Not measured is NaN, or an empty name.
     lines : (N,)
-        Line of the file on which each row stands, header = 1.
+        Line number of each row in the file, header = 1.
     repeated_lines : (R,)
         Lines that were dropped: each repeated the stamp of the row before it.
     """

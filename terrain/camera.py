@@ -24,7 +24,7 @@ from terrain.errors import CameraError
 
 @dataclass(frozen=True, eq=False)
 class Camera:
-    """A pinhole camera with lens distortion above a flat ground.
+    """A pinhole camera with lens distortion above flat terrain.
 
     Make one with `from_mount`, `from_homography` or `from_table`. Pixels are (u, v), u to the
     right, v down, with (0, 0) at the centre of the top left pixel. Ground points are (x, y) in

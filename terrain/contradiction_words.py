@@ -1,4 +1,4 @@
-"""Contradictions as a table and as sentences that say what to do."""
+"""Contradictions as a table and as sentences with what to do."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -9,7 +9,7 @@ from terrain.contradictions import Contradiction
 from terrain.new_terrain import NEW
 from terrain.run_result import RunResult
 
-MOST = 4  # that are told in sentences
+MOST = 4  # that are given as sentences
 
 
 def contradiction_columns(found: Sequence[Contradiction]) -> dict[str, Any]:
@@ -66,9 +66,9 @@ def _is_new(result: RunResult, name: str) -> bool:
 
 def _told(one: Contradiction) -> str:
     named = [
-        (one.seen, "the camera saw", one.seen_probability),
-        (one.felt, "the robot felt", one.felt_probability),
-        (one.moved, "the motion says", float("nan")),
+        (one.seen, "the camera shows", one.seen_probability),
+        (one.felt, "by feel it is", one.felt_probability),
+        (one.moved, "by the motion it is", float("nan")),
     ]
     parts = []
     for name, words, probability in named:

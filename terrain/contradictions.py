@@ -1,4 +1,4 @@
-"""Where sight, feel and motion name different terrains for long, and what nobody knows."""
+"""Where camera, feel and motion name different terrains for long, and unknown terrain."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -15,11 +15,11 @@ from odometry.trajectory import Trajectory
 from terrain.image_label import ImageLabel
 
 STRETCH_S = 4.0  # of feel, half before a moment and half after
-BREAK_S = 2.5  # a shorter time between two stretches that are alike ends none
+BREAK_S = 2.5  # a shorter time between two equal stretches ends none
 LASTS_S = 5.0  # what is shorter is an edge between terrains, or chance
 
 
-Names = tuple[str, str, str]  # by sight, feel and motion
+Names = tuple[str, str, str]  # by camera, feel and motion
 
 
 @dataclass(frozen=True)
@@ -45,13 +45,13 @@ class Contradiction:
 
     @property
     def is_new(self) -> bool:
-        """Whether no source knows the terrain, and feel says so."""
+        """Whether no source knows the terrain, and it is unknown by feel."""
         return self.felt == UNKNOWN and self.seen in ("", UNKNOWN)
 
 
 @dataclass(frozen=True)
 class Beneath:
-    """What the camera said before of where the robot stands, at N moments: names and shares."""
+    """Earlier labels of the place where the robot is, at N moments: names and shares."""
 
     names: AnyArray
     probabilities: FloatArray

@@ -91,7 +91,7 @@ def _known(*distortion: float) -> tuple[FloatArray, float, float]:
 def _unfolded_radius(*coefficients: float) -> float:
     """Radius up to which the lens is far from any fold, so that no derivative has to be checked.
 
-    Between the places that are tried the determinant changes by much less than its limit;
+    Between the tested radii the determinant changes by much less than its limit;
     it is 1 on the axis.
     """
     lens = np.array(coefficients)

@@ -33,7 +33,7 @@ def remarks(
     off_m : Mapping of trajectory to float
         Distance from the reference at its last stamp, see `RunResult.off_at_the_end_m`.
     events : sequence of FilterEvent
-        Events shown beside: what one of them says of the estimate's end is not said again.
+        Events shown beside: what one of them has of the estimate's end is not repeated.
     """
     if any(event.kind == OFF_AT_END for event in events):
         off_m = {name: off for name, off in off_m.items() if name != "estimate"}

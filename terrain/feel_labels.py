@@ -14,7 +14,7 @@ from terrain.place_labels import PlaceLabel
 
 @dataclass(frozen=True)
 class FeelLabels:
-    """Windows that do not overlap and say something.
+    """Windows that do not overlap and have probabilities.
 
     Attributes
     ----------
@@ -24,7 +24,7 @@ class FeelLabels:
         Of the terrains that the camera can name.
     ends_s : (N,)
     probabilities : (N, K)
-        Of each terrain by one window, as often right as they say on runs held out.
+        Of each terrain by one window, calibrated on held-out runs.
     """
 
     names: tuple[str, ...]
@@ -39,13 +39,13 @@ class FeelLabels:
         rows = np.arange(0, len(windows), STEPS)
         rows = rows[windows.felt[rows] & (felt.answers[rows] != UNKNOWN)]
         given = felt.probabilities[rows]
-        given = given + felt.unknown[rows, None] / given.shape[1]  # of none: says nothing of any
+        given = given + felt.unknown[rows, None] / given.shape[1]  # of none: the same for all
         return cls(felt.model.names, seen_names, felt.stamps_s[rows], given)
 
     def between(
         self, after_s: float, upto_s: float, pose: FloatArray, travel_m: float
     ) -> Iterator[PlaceLabel]:
-        """Sights of the windows that ended after one stamp and up to another.
+        """Labels of the windows that ended after one stamp and up to another.
 
         Parameters
         ----------
@@ -74,7 +74,7 @@ class FeelLabels:
 
 
 def widened(given: Mapping[str, float], names: tuple[str, ...]) -> dict[str, float]:
-    """Probabilities with further terrains, of which nothing was said: these get the mean."""
+    """Probabilities with further terrains, without probabilities: these get the mean."""
     mean = sum(given.values()) / len(given)
     wider = {**given, **{name: mean for name in names if name not in given}}
     whole = sum(wider.values())

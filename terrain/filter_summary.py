@@ -10,7 +10,7 @@ from odometry.estimation.heading_search import INITIAL_YAW, LATER_YAW
 from odometry.estimation.transition import GYRO_BIAS
 from odometry.run_end import DRIFT_FOLLOWED
 
-HARMLESS = {  # kinds of events after which the filter may be believed all the same
+HARMLESS = {  # kinds of events after which the estimate is still valid
     DRIFT_FOLLOWED,
     INITIAL_YAW,
     LATER_YAW,
@@ -56,7 +56,7 @@ def filter_table(replay: Replay) -> dict[str, Any]:
 
 
 def misleading(replay: Replay) -> list[FilterEvent]:
-    """Events that say that the run misled the filter: what it learned is then in doubt."""
+    """Events that show that the run misled the filter: its estimates are then in doubt."""
     return [event for event in replay.events if event.kind not in HARMLESS]
 
 

@@ -10,7 +10,7 @@ from terrain.region import Region
 
 @dataclass(frozen=True)
 class ImageLabel:
-    """What one image said of the terrain ahead.
+    """The label of one image: the terrain ahead.
 
     Attributes
     ----------

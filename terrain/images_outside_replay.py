@@ -19,7 +19,7 @@ def add_images_outside(watcher: TerrainWatcher, run: Run, images: Table, replay:
     Parameters
     ----------
     watcher : TerrainWatcher
-        Told the terrain of the replay; its `image_labels` and `in_force` are completed.
+        Gets the terrain of the replay; its `image_labels` and `in_force` are completed.
     run : Run
     images : Table
         Of the run.

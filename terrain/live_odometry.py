@@ -93,7 +93,7 @@ class LiveOdometry:
     Raises
     ------
     OdometryError
-        If an input is not as its format says, or a model has no camera.
+        If an input does not have its documented format, or a model has no camera.
 
     Notes
     -----

@@ -174,7 +174,7 @@ def run_odometry(
 def _contradictions(
     felt: Felt, motion: NamedTerrain | None, watcher: TerrainWatcher | None, result: Replay
 ) -> tuple[Contradiction, ...]:
-    """Where sight, feel and motion differ for long."""
+    """Where camera, feel and motion differ for long."""
     seen = None
     if watcher is not None:
         seen = seen_beneath(

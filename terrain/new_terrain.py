@@ -19,7 +19,7 @@ NEW = "unknown {number}"
 
 @dataclass(frozen=True)
 class Renamed:
-    """What a filter was told in a replay before, but within spans another terrain.
+    """The terrain of an earlier replay, but within spans another terrain.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ def learned_apart(
 
     The run is replayed once more with that name in force there; the estimates stay those of the
     first replay. Nothing is learned where no pose was taken in, see `learned_parameters`. All
-    such stretches of a run get one name: feel cannot tell whether they are alike.
+    such stretches of a run get one name: feel does not determine whether they are the same.
     """
     if not spans_s:
         return learned

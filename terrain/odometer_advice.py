@@ -1,4 +1,4 @@
-"""What the check of the odometer's covariance means, and what to do about it, in words."""
+"""The check of the odometer's covariance as sentences, with what to do."""
 
 import math
 from collections.abc import Sequence
@@ -8,7 +8,7 @@ from odometry.evaluation.open_loop_consistency import DEGREES, OpenLoopConsisten
 
 
 def verdict(check: OpenLoopConsistency) -> str:
-    """Whether a covariance is as large as the errors, in words."""
+    """Whether a covariance is as large as the errors, as a sentence."""
     if check.is_consistent:
         return "consistent"
     return "too small" if check.mean > check.bounds[1] else "too large"

@@ -16,7 +16,7 @@ def late_by_s(other: Trajectory, odometer: Trajectory) -> float | None:
     """By how much a trajectory's stamps are late; None unless that is plain.
 
     Pieces of the time that both cover must have the same shift, far from zero by their own
-    scatter: a drive that hardly turns says nothing.
+    scatter: a drive that hardly turns determines none.
     """
     begin_s = max(each.stamps_s[0] for each in (other, odometer))
     end_s = min(each.stamps_s[-1] for each in (other, odometer))

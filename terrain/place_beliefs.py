@@ -16,7 +16,7 @@ LEAST = 2 / 3  # a terrain less probable is not known; one label of a place does
 
 @dataclass(frozen=True, eq=False)
 class PlaceBeliefs:
-    """What is believed of the labelled places.
+    """Probabilities of the labelled places.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class PlaceBeliefs:
         return np.where(beliefs.max(axis=1) > LEAST, beliefs.argmax(axis=1), len(self.names) - 1)
 
     def probability(self, belief: FloatArray, terrain: str) -> float:
-        """Of a terrain in a belief (k + 1,)."""
+        """Of a terrain in probabilities (k + 1,)."""
         return float(belief[self.names.index(terrain)]) if terrain in self.names else 0.0
 
     def first_label(self, place: int, terrain: str) -> PlaceLabel:

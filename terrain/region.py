@@ -17,9 +17,9 @@ from terrain.visible_terrain import largest_visible
 
 __all__ = ["NoRegion", "Rectangle", "Region", "RegionConfig", "predict_region"]
 
-STEPS = 200  # places tried along the predicted motion
+STEPS = 200  # places along the predicted motion
 GRADES = 4  # of the visible share, from all of the footprint to the least share
-TRIES = 10  # places of a grade that are tried for one that can be classified
+TRIES = 10  # places with the same share that are tested for one that can be classified
 COARSE = "the image is too coarse there"
 
 
@@ -127,7 +127,7 @@ def predict_region(
         Length and width default to the track width.
     camera : Camera
     twist : (3,)
-        Body twist that is believed at the commanded tread speeds.
+        Body twist that is predicted at the commanded tread speeds.
     wheel_speed_m_s : float
         Mean of |v_left| and |v_right|.
     config : RegionConfig

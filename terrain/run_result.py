@@ -66,7 +66,7 @@ class RunResult:
     source : str
         Source of the terrain: "camera", "labels", "modes", "feel", "none", or the user's own.
     contradictions : tuple of Contradiction
-        Where sight, feel and motion differ for long, or no source knows the terrain.
+        Where camera, feel and motion differ for long, or no source knows the terrain.
 
     Examples
     --------
@@ -121,7 +121,7 @@ class RunResult:
         """Distance of each trajectory, as delivered, from the reference at its last stamp.
 
         Where the reference is pose.csv the filter has used it, up to that pose: the distance of the
-        estimate is no measure of its error, but a large one says that the filter lost the poses.
+        estimate is no measure of its error, but a large one shows that the filter lost the poses.
         """
         delivered = dict(self.evaluated)
         if self.reference is not None:

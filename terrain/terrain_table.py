@@ -1,4 +1,4 @@
-"""The columns of terrain.csv: what was said of the terrain, and which one was in force."""
+"""The columns of terrain.csv: labels, and the terrain in force."""
 
 from typing import Any
 

@@ -164,7 +164,7 @@ class TerrainWatcher:
         """Classify the region ahead in the image of a frame.
 
         An image that cannot be read, a grey one where the classifier needs colour, or one of
-        another size among good ones, is a image label without a label, so that one bad file does
+        another size among good ones, is an image label without a name, so that one bad file does
         not end a long run.
 
         Raises

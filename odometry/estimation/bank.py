@@ -45,7 +45,7 @@ class Member(Protocol):
 
 @dataclass(frozen=True)
 class Members:
-    """A bank of any filters, asked one after the other."""
+    """A bank of any filters, run one after the other."""
 
     members: tuple[Member, ...]
 

@@ -12,15 +12,18 @@ from odometry.estimation.transition import GYRO_BIAS
 SPAN_S = 1.0  # over which gyroscope and poses are compared
 SPANS = 48  # that are remembered
 LEAST_SPANS, LEAST_RUNS = 10, 3  # from which on the scatter of runs of spans is known
-RUNS = (4, 8)  # numbers of last spans from which a bias is told
-SIGMAS, LEAST_RAD = 6.0, 0.08  # by which its turn over these must differ from the one believed
+RUNS = (4, 8)  # numbers of last spans from which a bias is determined
+SIGMAS, LEAST_RAD = (
+    6.0,
+    0.08,
+)  # by which its turn over these must differ from the estimated one
 TREADS_SHARE = 0.4  # of the difference that the treads must show too: else the poses are off
 OPEN_SHARE = 0.25  # of a change, by which it may be off: it began in the midst of a span
-POSE_S = 0.5  # since the last pose; then the yaw of the estimate tells nothing of the gyroscope
+POSE_S = 0.5  # since the last pose; the estimated yaw is of use only so long
 
 
 class Rates(NamedTuple):
-    """Yaw rates over a step [rad/s]: NaN where not told."""
+    """Yaw rates over a step [rad/s]: NaN where not known."""
 
     by_gyroscope: float
     by_poses: float
@@ -28,7 +31,7 @@ class Rates(NamedTuple):
 
 
 class BiasWatch(NamedTuple):
-    """What poses and gyroscope said of its bias.
+    """Evidence of poses and gyroscope on its bias.
 
     Attributes
     ----------
@@ -38,7 +41,7 @@ class BiasWatch(NamedTuple):
     biases_rad_s, by_treads_rad_s : tuple of float
         The same by time over the last spans.
     since : int
-        How many of them belong to the bias that is believed.
+        How many of them belong to the present bias.
     posed_s : float
         Stamp of the last pose that was accepted.
     walk : float
@@ -91,9 +94,9 @@ def watched(
 
 
 def told_bias(watch: BiasWatch, believed_rad_s: float) -> tuple[float, float] | None:
-    """The bias that the last spans tell where it is another, and its standard deviation [rad/s].
+    """The bias of the last spans where it is another, and its standard deviation [rad/s].
 
-    Runs of spans that follow each other tell how far the mean of one is off: by noise of poses,
+    Runs of spans that follow each other give the error of the mean of one: by noise of poses,
     delays and the gyroscope's scale, which differ by the recording.
     """
     biases = np.array(watch.biases_rad_s)
@@ -116,18 +119,18 @@ def told_bias(watch: BiasWatch, believed_rad_s: float) -> tuple[float, float] | 
 
 
 def treads_agree(watch: BiasWatch, count: int, bias_rad_s: float, believed_rad_s: float) -> bool:
-    """Whether the treads show in the last spans that the bias is another than believed."""
+    """Whether the treads show in the last spans that the bias is another than the estimated one."""
     past_treads = sum(watch.by_treads_rad_s[-count:]) / count
     return (past_treads - believed_rad_s) / (bias_rad_s - believed_rad_s) > TREADS_SHARE
 
 
-def changed(belief: Gaussian, told: tuple[float, float]) -> Gaussian:
-    """The belief with another bias; nothing else is known to go with it."""
+def changed(belief: Gaussian, bias_rad_s: tuple[float, float]) -> Gaussian:
+    """The state estimate with another bias, uncorrelated with the rest."""
     mean, covariance = belief[0].copy(), belief[1].copy()
-    mean[GYRO_BIAS] = told[0]
+    mean[GYRO_BIAS] = bias_rad_s[0]
     covariance[GYRO_BIAS], covariance[:, GYRO_BIAS] = 0.0, 0.0
-    change = (told[0] - float(belief[0][GYRO_BIAS])) * OPEN_SHARE
-    covariance[GYRO_BIAS, GYRO_BIAS] = told[1] ** 2 + change**2
+    change = (bias_rad_s[0] - float(belief[0][GYRO_BIAS])) * OPEN_SHARE
+    covariance[GYRO_BIAS, GYRO_BIAS] = bias_rad_s[1] ** 2 + change**2
     return mean, covariance
 
 
@@ -135,6 +138,6 @@ def change_event(believed_rad_s: float, bias_rad_s: float, stamp_s: float) -> Fi
     """The event of a bias that is another."""
     text = (
         f"the bias of the gyroscope changed from {believed_rad_s:.4f} to {bias_rad_s:.4f} rad/s, "
-        "as the poses tell: the filter took that one"
+        "by the poses: the filter took that one"
     )
     return FilterEvent("gyroscope_bias_changed", stamp_s, stamp_s, text, (bias_rad_s,))

@@ -16,7 +16,7 @@ class IcrEkfConfig:
     velocity_sigma_m_s, yaw_rate_sigma_rad_s : float
         Standard deviation of a measured velocity.
     pose_delay_s : float
-        By how much the stamps of pose.csv are late; with 0 a delay is searched for, and believed
+        By how much the stamps of pose.csv are late; with 0 a delay is searched for, and used
         where it is certain.
     position_noise, yaw_noise : float
         Process noise of the pose, standard deviation per square root of second: m, rad. A
@@ -41,7 +41,7 @@ class IcrEkfConfig:
         A pose is refused if a true one would be nearer with this probability; 1 refuses none.
     tail_probability : float
         Beyond the distance that a true measurement keeps with this probability, its weight falls
-        with the square of the distance (Huber); 1 weighs all alike.
+        with the square of the distance (Huber); 1 gives all the same weight.
     gate_patience : int
         After so many refusals that agree with each other the filter starts anew at the pose.
     adapt_rate : float
@@ -52,12 +52,12 @@ class IcrEkfConfig:
     watch_sensors : bool
         Whether spikes, stuck encoders and frozen poses are noticed, kept out and flagged.
     causal : bool
-        Whether nothing may speak of a moment that comes after it, as on a robot: no delay of poses
+        Whether nothing later than a moment is used for it, as on a robot: no delay of poses
         is searched for, no heading is looked for before the start, odometry has a gap where
-        its speeds are held for long whatever other files say later, and the filter itself undoes
+        its speeds are held for long whatever other files show later, and the filter itself undoes
         the lever arm of poses. A run and `terrain.LiveOdometry` then agree to the last bit.
     detect_jumps : bool
-        Reset the ICR covariance where the innovations say that the ICRs jumped.
+        Reset the ICR covariance where the innovations show that the ICRs jumped.
     jump_probability : float
         The mean of recent innovations would be smaller with this probability if nothing jumped.
     jump_window : int
@@ -66,7 +66,7 @@ class IcrEkfConfig:
     Notes
     -----
     Noises, prior and rates were chosen on the 19 recordings of data/motion that are not among
-    the seven by which the odometer is judged: by the mean error per metre of the odometer over
+    the seven on which the odometer is evaluated: by the mean error per metre of the odometer over
     5 m of wheel travel against that of the gyroscope with the mean wheel speed.
 
     Examples

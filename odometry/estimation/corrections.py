@@ -27,7 +27,7 @@ class Correction:
         True less recorded tread speeds, at each row of odometry.csv.
     twists : (N, 3)
         What effects on the motion add to the twist of the base at the true speeds and at the
-        parameters of the set. It stays while a filter learns other ICRs.
+        parameters of the set. It stays while a filter estimates other ICRs.
     """
 
     speeds_m_s: FloatArray

@@ -9,7 +9,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 
 LEAST_POSITIONS = 8
-LEAST_TRAVEL_M = 6.0  # turns to both sides, so that moving aside in them averages
+LEAST_TRAVEL_M = 6.0  # turns to both sides, so that sideways motion in them averages out
 CERTAIN_SIGMA_RAD = 0.05  # 2.9 degrees
 PATIENCE_M = 12.0  # of dead reckoning; after it less must do, or the search begins anew
 ENOUGH_SIGMA_RAD = 0.25  # without a gyroscope too: the filter finds the rest with the ICRs
@@ -56,7 +56,7 @@ class Course:
     travel_m : float
         Sum of the steps of q.
     step_square : float
-        Sum of (|step of p| - |step of q|)^2 [m^2]: whatever the heading, it tells the noise.
+        Sum of (|step of p| - |step of q|)^2 [m^2]: whatever the heading, it gives the noise.
     began_anew : bool
         Whether a search before this one found nothing.
     """
@@ -114,15 +114,15 @@ class Course:
         return self.travel_m >= PATIENCE_M
 
     def heading(self, position_sigma_m: float, *, by_gyroscope: bool) -> Heading | None:
-        """The turn that fits best; None while it cannot be told.
+        """The turn that fits best; None while it is undetermined.
 
         Least squares over rotations and one scale, for treads that slip, about the means (Umeyama
         1991 in the plane). Driving forward or
-        back makes no difference: dead reckoning knows the direction. The lengths of steps tell the
+        back makes no difference: dead reckoning knows the direction. The lengths of steps give the
         noise of positions where it is more than `position_sigma_m`. Residuals above it count as
-        errors of dead reckoning, which are of one piece: they do not average. The scale tells
+        errors of dead reckoning, which are of one piece: they do not average. The scale shows
         the slip of the treads, and so by how much the course may differ from the heading.
-        A gyroscope keeps the shape of the path, so that `CERTAIN_SIGMA_RAD` is asked for over
+        A gyroscope keeps the shape of the path, so that `CERTAIN_SIGMA_RAD` is required over
         `PATIENCE_M`; treads whose ICRs are not known yet do not keep it, nor does a robot that
         slides: `ENOUGH_SIGMA_RAD` must do then.
         """

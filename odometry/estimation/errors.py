@@ -4,4 +4,4 @@ from odometry.errors import OdometryError
 
 
 class EstimationError(OdometryError):
-    """A belief, a chain of modes or a filter is not as it must be."""
+    """An estimate, a chain of modes or a filter is invalid."""

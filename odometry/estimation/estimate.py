@@ -1,4 +1,4 @@
-"""What a filter believes at one stamp."""
+"""The estimate of a filter at one stamp."""
 
 import math
 from collections.abc import Mapping
@@ -66,7 +66,7 @@ class Crossing:
 
 
 class Innovation(NamedTuple):
-    """What one measured pose said against the prediction.
+    """A measured pose compared with the prediction.
 
     Attributes
     ----------
@@ -85,7 +85,7 @@ class Innovation(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """Belief of the filter at one stamp.
+    """State estimate of the filter at one stamp.
 
     Attributes
     ----------
@@ -114,9 +114,9 @@ class Estimate:
     jumped : bool
         Whether a jump of the ICRs was detected at this stamp.
     learned : Mapping[str, IcrBelief]
-        What was last believed on the terrains that were left.
+        The last estimates on the terrains that were left.
     crossing : Crossing or None
-        None while the robot stands on one terrain. Nothing that it learns astride an edge counts
+        None while the robot is on one terrain. Nothing that it learns astride an edge counts
         for the terrain that it leaves.
     scale : NoiseScale
         How much larger than stated the noises are.
@@ -165,17 +165,17 @@ class Estimate:
 
     @property
     def alphas(self) -> FloatArray:
-        """Slip factors (2,) believed."""
+        """Estimated slip factors (2,)."""
         return self.mean[ALPHAS]
 
     @property
     def gyro_bias_rad_s(self) -> float:
-        """Bias of the gyroscope believed."""
+        """Estimated bias of the gyroscope."""
         return float(self.mean[GYRO_BIAS])
 
     @property
     def belief(self) -> IcrBelief:
-        """What is believed of the ICRs now."""
+        """Estimated ICRs with their covariance."""
         covariance = self.covariance[np.ix_(OF_TERRAIN, OF_TERRAIN)]
         return IcrBelief(self.mean[ICRS], self.alphas, covariance)
 

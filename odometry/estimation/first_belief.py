@@ -1,4 +1,4 @@
-"""What a filter believes at its first frame."""
+"""The estimate of a filter at its first frame."""
 
 import math
 

@@ -22,7 +22,7 @@ HELD_S = 1.0  # for so long a value must repeat
 EXCESS_RAD = 0.3  # by which the treads must turn otherwise, beyond what is allowed ...
 SOUND, BANDED = (0.05, 0.03), (0.1, 0.1)  # ... in rad/s and as a share of speed over the width:
 DEAD_BAND_RAD_S = 0.05  # the more in a band where a sound gyroscope may repeat its value, ...
-NOISY_S = 10.0  # ... if it has not been seen to change from sample to sample for so long
+NOISY_S = 10.0  # ... if it has not changed from sample to sample for so long
 WIDTH_SIGMAS = 2.5  # ... besides what the uncertainty of the width explains
 
 
@@ -36,7 +36,7 @@ class GyroscopeHold(NamedTuple):
     same_since_s, off_since_s : float
         Stamps since when it repeats on one terrain, and since when the treads turn otherwise.
     before : (9,), (9, 9)
-        Mean and covariance believed at `same_since_s`.
+        State estimate at `same_since_s`.
     terrain : str
         In force then.
     excess_rad : float
@@ -81,7 +81,7 @@ def watched(
         [rad/s]; NaN where the gyroscope was silent.
     begin_s, stamp_s : float
     speeds_m_s : (2,)
-        Tread speeds believed over the step; NaN where they are not known.
+        Tread speeds used over the step; NaN where they are not known.
     belief : (9,), (9, 9)
         At the beginning of the step.
     terrain : str
@@ -134,7 +134,7 @@ def _difference(hold: GyroscopeHold, left: float, right: float) -> tuple[float, 
 
 
 def forgotten(belief: Gaussian, hold: GyroscopeHold, begin_s: float, posed_s: float) -> Gaussian:
-    """The belief at `begin_s` without what was learned since the value repeats.
+    """State estimate at `begin_s` without the corrections since the value repeats.
 
     The next step turns it by what is owed. Where a pose came since, at `posed_s`, that has told
     the yaw already, more or less.

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from odometry.estimation.filter_event import FilterEvent
 
 JUMP_RAD_S, JUMP_RAD_S2 = 1.5, 20.0  # a change of rate by more is held out ...
-HELD_OUT_S = 0.2  # ... for so long; after that it is believed
+HELD_OUT_S = 0.2  # ... for so long; after that it is used
 SILENT_S = 1.0
 
 
@@ -16,7 +16,7 @@ class GyroscopeWatch(NamedTuple):
     Attributes
     ----------
     last_rad_s, last_s : float
-        The last rate that was believed, and when; NaN before the first.
+        The last rate that was used, and when; NaN before the first.
     held_out_since_s : float
         Stamp since when rates are held out; NaN if they are not.
     largest_rad_s : float
@@ -32,7 +32,7 @@ class GyroscopeWatch(NamedTuple):
 def watched(
     watch: GyroscopeWatch, yaw_rate: float, begin_s: float, stamp_s: float
 ) -> tuple[GyroscopeWatch, float, tuple[FilterEvent, ...]]:
-    """The yaw rate to believe over a step from `begin_s` to `stamp_s`.
+    """The yaw rate to use over a step from `begin_s` to `stamp_s`.
 
     While a rate is held out, the last one goes on.
     """
@@ -49,7 +49,7 @@ def watched(
             return held, watch.last_rad_s, ()
     elif not math.isnan(watch.held_out_since_s):
         size = f"{watch.largest_rad_s:.2f} rad/s"
-        text = f"a yaw rate of {size} stands alone: the one before it was held"
+        text = f"a yaw rate of {size} is a single outlier: the one before it was held"
         events = (FilterEvent("gyroscope_spike", watch.held_out_since_s, begin_s, text),)
     return GyroscopeWatch(yaw_rate, stamp_s), yaw_rate, events
 

@@ -1,4 +1,4 @@
-"""A filter whose heading is not known yet, and what measured poses tell it."""
+"""A filter whose heading is not known yet, and how measured poses determine it."""
 
 import math
 from typing import NamedTuple
@@ -35,14 +35,14 @@ def searched(
 ) -> Searched:
     """Take in a pose (3,) whose yaw, or whose position, may be NaN; `pose_covariance` is (3, 3).
 
-    Dead reckoning has begun with a yaw of 0. A position adds to the search, and the belief goes
-    on from there, as its heading tells nothing; a measured yaw ends the search.
+    Dead reckoning has begun with a yaw of 0. A position adds to the search, and the estimate goes
+    on from there, as its heading means nothing; a measured yaw ends the search.
     """
     pose = frame.pose
     if pose is None:
         return Searched(belief, course)
     placed = bool(np.isfinite(pose[:2]).all())
-    # each position moved the belief to itself: dead reckoning is what it moved since
+    # each position moved the estimate to itself: dead reckoning is what it moved since
     reckoned_m = (
         course.last_reckoned_m + reference_point(belief[0], lever_m) - course.last_measured_m
     )
@@ -74,7 +74,7 @@ def searched(
 def _with_drift(heading: Heading, belief: Gaussian, lasted_s: float) -> Heading:
     """The heading with what the gyroscope's bias may have turned dead reckoning by meanwhile.
 
-    The course tells the yaw of about its middle; at either end it is off by half of that.
+    The course gives the yaw of about its middle; at either end it is off by half of that.
     """
     drift_rad = math.sqrt(float(belief[1][GYRO_BIAS, GYRO_BIAS])) * lasted_s / 2
     return heading._replace(sigma_rad=math.hypot(heading.sigma_rad, drift_rad))
@@ -94,7 +94,7 @@ def _event(course: Course, heading: Heading, frame: Frame, how: str) -> FilterEv
 
 
 def _turned(belief: Gaussian, heading: Heading, reckoned: FloatArray, lever_m: Place) -> Gaussian:
-    """The belief in the frame of the positions, its pose apart from the rest."""
+    """State estimate in the frame of the positions, its pose uncorrelated with the rest."""
     mean, covariance = belief[0].copy(), np.zeros((STATES, STATES))
     covariance[3:, 3:] = belief[1][3:, 3:]
     mean[:3], covariance[:3, :3] = aligned(heading, reckoned)
@@ -106,7 +106,7 @@ def _turned(belief: Gaussian, heading: Heading, reckoned: FloatArray, lever_m: P
 def _at(
     belief: Gaussian, position_m: FloatArray, pose_covariance: FloatArray, lever_m: Place
 ) -> Gaussian:
-    """The belief moved to a measured position, whose direction from the robot is not known."""
+    """State estimate moved to a measured position, whose direction from the robot is unknown."""
     mean, covariance = belief[0].copy(), belief[1].copy()
     mean[:2] += position_m - reference_point(mean, lever_m)
     covariance[:2], covariance[:, :2] = 0.0, 0.0

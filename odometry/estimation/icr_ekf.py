@@ -1,4 +1,4 @@
-"""Pose and ICR filter: an extended Kalman filter that is told the terrain (Chen 2023, 3.1-3.2)."""
+"""Pose and ICR filter: an extended Kalman filter that is given the terrain (Chen 2023, 3.1-3.2)."""
 
 import math
 from collections.abc import Mapping
@@ -126,7 +126,7 @@ class IcrEkf:
         )
 
     def step(self, estimate: Estimate, frame: Frame, terrain: str | Footing) -> Estimate:
-        """Predict to the frame's stamp, switch if the terrain is another, update by what it says.
+        """Predict to the frame's stamp, switch where the terrain changes, update by measurements.
 
         On shares of several terrains the ICRs lie between those known there.
 

@@ -1,4 +1,4 @@
-"""What is believed of a terrain's ICRs before any measurement there."""
+"""Prior estimate of a terrain's ICRs, before any measurement there."""
 
 import numpy as np
 
@@ -82,7 +82,7 @@ def _covariance(table: TerrainParameters, form: IcrForm, unstated: FloatArray) -
 
 
 def icr_form(table: TerrainParameters, where: str) -> IcrForm:
-    """The constant ICRs that a table stands for, its effects left out.
+    """The constant ICRs of a table, without its effects.
 
     Raises
     ------

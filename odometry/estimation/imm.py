@@ -55,7 +55,7 @@ class Imm:
         z: FloatArray | None,
         step_s: float,
     ) -> ModeBelief:
-        """Belief a step later: `predicted`, then `updated`.
+        """Estimate a step later: `predicted`, then `updated`.
 
         Parameters
         ----------
@@ -74,7 +74,7 @@ class Imm:
         return self.updated(self.predicted(belief, u, step_s), z)
 
     def predicted(self, belief: ModeBelief, u: FloatArray, step_s: float) -> ModeBelief:
-        """Belief a step later, before a measurement: Salvi 2024 eq. 4-7, then the models."""
+        """Estimate a step later, before a measurement: Salvi 2024 eq. 4-7, then the models."""
         log_joint = self._log_transition(belief, step_s) + belief.log_probabilities[:, None]
         log_predicted = log_sum(log_joint)  # eq. 5
         weights = _mixing_weights(log_joint, log_predicted)
@@ -85,7 +85,7 @@ class Imm:
         return ModeBelief(means, covariances, log_predicted)
 
     def updated(self, predicted: ModeBelief, z: FloatArray | None) -> ModeBelief:
-        """Belief after a measurement: eq. 8-9; without one, probabilities stay; see `step`."""
+        """Estimate after a measurement: eq. 8-9; without one, probabilities stay; see `step`."""
         if z is None or np.isnan(z).all():
             logs = floored(predicted.log_probabilities, self.floor)
             return replace(predicted, log_probabilities=logs)
@@ -117,7 +117,7 @@ class Imm:
         matrix, modes = self.transition(step_s), self.bank.modes
         if belief.modes != modes or matrix.shape != (modes, modes):
             raise EstimationError(
-                f"a belief of {belief.modes} modes and a transition matrix of shape "
+                f"an estimate of {belief.modes} modes and a transition matrix of shape "
                 f"{matrix.shape} for a bank of {modes} filters"
             )
         if matrix.min() < 0 or np.abs(matrix.sum(axis=1) - 1).max() > SUM_TOLERANCE:

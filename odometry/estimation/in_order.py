@@ -34,7 +34,7 @@ class InOrder:
 
     Notes
     -----
-    Each frame tells the speeds in force from its own stamp on and the mean yaw rate since the
+    Each frame holds the speeds in force from its own stamp on and the mean yaw rate since the
     frame before it, as `Run.frames` has them; so the answer after a late frame is exactly that of
     the same frames in order. Frames of one stamp keep the order in which they came.
     """

@@ -17,7 +17,7 @@ from odometry.estimation.transition import STATES, UNCHANGED
 
 
 class Updated(NamedTuple):
-    """What is believed after a measurement (m,).
+    """State estimate after a measurement (m,).
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ def predicted(covariance: FloatArray, jacobian: FloatArray, half_noise: FloatArr
 
 
 def updated(belief: Gaussian, measured: Measurement) -> Updated:
-    """The belief (9,), (9, 9) after a measurement: Chen 2023 eq. 14-16, in Joseph's form."""
+    """State estimate (9,), (9, 9) after a measurement: Chen 2023 eq. 14-16, in Joseph's form."""
     mean, covariance = belief
     residual, by_state, noise = measured
     shared = covariance.dot(by_state.T)
@@ -68,7 +68,7 @@ def updated(belief: Gaussian, measured: Measurement) -> Updated:
     if failed:
         raise EstimationError(
             f"an innovation {residual.tolist()} of a covariance that is not positive definite; "
-            "expected noise of measurements above the rounding of what is believed"
+            "expected noise of measurements above the rounding errors of the estimate"
         )
     weighed = dpotrs(factor, residual)[0]
     gain = gain_transposed.T
@@ -86,7 +86,7 @@ def updated(belief: Gaussian, measured: Measurement) -> Updated:
 def updated_by_number(
     belief: Gaussian, shared: FloatArray, residual: float, variance: float
 ) -> Gaussian:
-    """The belief after one number, of noise that is not far below what is believed of it.
+    """State estimate after one number, whose noise is not far below the predicted deviation.
 
     The covariance loses the square of one column, so that it stays symmetric to the last digit.
 
@@ -96,7 +96,7 @@ def updated_by_number(
     shared : (9,)
         Covariance of the state and the number.
     residual, variance : float
-        Measured less expected, and its variance: that of the belief and the noise.
+        Innovation, and its variance: that of the prediction plus the noise.
     """
     mean, covariance = belief
     column = (shared / math.sqrt(variance)).reshape(STATES, 1)

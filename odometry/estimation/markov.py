@@ -28,7 +28,7 @@ class ModeChain:
     Raises
     ------
     EstimationError
-        If a dwell time is not above zero, or the shares are not as said.
+        If a dwell time is not above zero, or the shares do not fit.
     """
 
     dwell_s: FloatArray

@@ -11,7 +11,7 @@ from odometry.frames import Frame
 
 
 class MeansKept:
-    """A filter that on another terrain goes on from the ICRs that it believes, less sure of them.
+    """A filter that keeps its estimated ICRs on another terrain, with a larger covariance.
 
     The covariance of the ICRs becomes the filter's P_B, `reset_sigma_widths`; what was learned
     on the terrain before is not taken up again.

@@ -26,7 +26,7 @@ Gaussian = tuple[FloatArray, FloatArray]
 
 
 class Measurement(NamedTuple):
-    """One measurement against the state that is believed.
+    """One measurement compared with the state estimate.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class Measurement(NamedTuple):
 
 
 class MeasuredNumber(NamedTuple):
-    """A measurement of one number against the state that is believed.
+    """A measurement of one number compared with the state estimate.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a bank of filters believes at one stamp."""
+"""The estimates of a bank of filters at one stamp."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ SUM_TOLERANCE = 1e-9
 
 @dataclass(frozen=True)
 class ModeInnovations:
-    """What one measurement said against the prediction of each mode.
+    """A measurement compared with the prediction of each mode.
 
     Attributes
     ----------

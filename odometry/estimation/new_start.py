@@ -18,7 +18,7 @@ LOST_YAW_RAD = 0.2  # how far the yaw may be off where positions alone were refu
 
 
 def agree(refused: Sequence[FloatArray], pose_covariance: FloatArray) -> bool:
-    """Whether refused poses say one thing, by their residuals (m,), rather than anything.
+    """Whether refused poses agree with each other, by their residuals (m,).
 
     Outliers differ from each other as much as from the filter; poses that jumped and stayed,
     or a filter that lost its way, differ by about the same from pose to pose.

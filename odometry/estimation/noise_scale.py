@@ -1,4 +1,4 @@
-"""How much larger than stated the noises of slip and of poses are, as the innovations tell."""
+"""Factors on the stated noise of slip and of poses, estimated from the innovations."""
 
 import math
 from typing import NamedTuple
@@ -46,7 +46,7 @@ def adapted(
     Innovations of a well-tuned filter are white and as large as it thinks. Larger ones call for
     more of both noises; ones that resemble those before them call for more slip and less pose
     noise, ones that alternate for the reverse (Mehra 1970, IEEE Transactions on Automatic
-    Control 15(2): correlations of innovations tell the two apart).
+    Control 15(2): correlations of innovations distinguish the two).
 
     Parameters
     ----------

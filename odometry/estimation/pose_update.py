@@ -69,7 +69,7 @@ class PoseUpdate:
         frame: Frame,
         recent: tuple[float, ...],
     ) -> Seen:
-        """What is believed after a measured pose (3,), parts of which may be NaN.
+        """State estimate after a measured pose (3,), parts of which may be NaN.
 
         Parameters
         ----------
@@ -111,7 +111,7 @@ class PoseUpdate:
         jumped, gate = False, self._gates[size]
         accepted = squared <= gate
         refused = () if accepted else (*estimate.refused, measured.residual)
-        # an outlier tells nothing of the noise; refused poses that agree tell that it is larger
+        # an outlier does not count for the noise; refused poses that agree show that it is larger
         if self.config.adapt_rate > 0 and (accepted or agree(refused[-2:], self.covariance)):
             rate = self.config.adapt_rate
             scale = adapted(scale, measured.residual, weighed, squared, rate)

@@ -19,7 +19,7 @@ from odometry.frames import Frame
 
 
 class Predicted(NamedTuple):
-    """What is believed at a frame's stamp before its pose and velocity are taken in.
+    """State estimate at a frame's stamp before its pose and velocity are used.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Predicted(NamedTuple):
 
 
 class Prediction:
-    """Carries a belief from one stamp to the next.
+    """Predicts the state estimate from one stamp to the next.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ class Prediction:
         self._noise = ProcessNoise(config, track_width)
 
     def at(self, frame: Frame, estimate: Estimate) -> Predicted:
-        """What is believed at a frame's stamp, given the estimate before it.
+        """Predict the state estimate at a frame's stamp from the one before it.
 
         Where a gyroscope turned the robot, the yaw rate of the treads over the same step is
         compared with it. Where the tread speeds are not known, nothing moves. Where the sensors
@@ -131,7 +131,7 @@ class Prediction:
         residual, by_state = tread_yaw_rate(
             mean, speeds, yaw_rate - float(estimate.added_twist[YAW])
         )
-        # the turn that the treads say: that of the gyroscope has their noise in it, and a weight
+        # the turn by the treads: that of the gyroscope has their noise in it, and a weight
         # that depends on the noise would bend the width
         variance = tread_variance(
             estimate.tread_speeds_m_s,
@@ -157,7 +157,7 @@ class Prediction:
 def _of_slip_factors(by_state: FloatArray, covariance: FloatArray) -> float:
     """Variance of the treads' yaw rate by what is not known of slip factors.
 
-    A yaw rate tells slip factors and y_left - y_right only as one ratio: where no pose has told
+    A yaw rate determines slip factors and y_left - y_right only as one ratio: where no pose gave
     how far the robot moves, it teaches the difference alone.
     """
     by_slip = by_state[ALPHA_LEFT:]

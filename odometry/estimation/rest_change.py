@@ -20,9 +20,9 @@ def followed_at_rest(
     pose_covariance: FloatArray,
     lever_m: Place,
 ) -> tuple[Seen, RestWatch | None]:
-    """What is believed after a pose, and the watch of a robot at rest; None while treads move.
+    """State estimate after a pose, and the watch of a stationary robot; None while treads move.
 
-    Where the poses show that it was moved, it is where they say, and all else is as it was when
+    Where the poses show that it was moved, its pose is theirs, and all else is as it was when
     the treads came to stand.
 
     Parameters
@@ -34,7 +34,7 @@ def followed_at_rest(
     stamp_s : float
         Of the end.
     after : Seen
-        What is believed there.
+        State estimate there.
     pose_covariance : (3, 3)
         Of a measured pose.
     lever_m : (x, y)

@@ -11,9 +11,12 @@ from odometry.estimation.measurement import Gaussian
 from odometry.estimation.noise_scale import NoiseScale
 from odometry.geometry.angles import wrap_one
 
-STILL_M_S = 0.01  # a tread that is slower stands
-SETTLED_S = 1.0  # after that a robot that braked, and poses that are late, stand too
-REFERENCE, IN_A_ROW = 3, 3  # poses that tell where it stands, and that must show another place
+STILL_M_S = 0.01  # a slower tread is stationary
+SETTLED_S = 1.0  # after that a robot that braked, and poses that are late, are stationary too
+REFERENCE, IN_A_ROW = (
+    3,
+    3,
+)  # poses for its place, and poses in a row that must show another
 MOVED_M, MOVED_RAD, SIGMAS = 0.15, 0.15, 4.0  # by the larger of these and of SIGMAS
 # resting robots of data/motion wander by at most 0.05 m in the poses
 
@@ -26,9 +29,9 @@ class RestWatch(NamedTuple):
     since_s : float
         Stamp since when they do.
     before : (9,), (9, 9)
-        Mean and covariance believed then.
+        State estimate then.
     scale : NoiseScale
-        Believed then.
+        Estimated then.
     poses : tuple of (x, y, yaw)
         The first ones that were measured since the robot has settled, or was moved last.
     away : tuple of (x, y, yaw)
@@ -64,7 +67,7 @@ def watched(
     ----------
     watch : RestWatch
     pose : (3,)
-        Its yaw may be NaN; without a position nothing is told.
+        Its yaw may be NaN; without a position it is not used.
     stamp_s : float
     pose_covariance : (3, 3)
         As the filter scales it.

@@ -52,7 +52,7 @@ class SensorWatch(NamedTuple):
 
     @property
     def is_doubtful(self) -> bool:
-        """Whether a tread contradicts the rest, so that nothing is to be learned of the ICRs."""
+        """Whether a tread contradicts the rest, so that the ICRs are not to be updated."""
         return self.treads.stuck >= 0 or not math.isnan(self.treads.off_since_s)
 
     @property
@@ -62,7 +62,7 @@ class SensorWatch(NamedTuple):
 
 
 class Sensed(NamedTuple):
-    """What is believed of the sensors over a step, and from its end on.
+    """The sensor values that are used over a step, and from its end on.
 
     Attributes
     ----------
@@ -119,7 +119,7 @@ def sensed(
     begin_s : float
         Stamp of the beginning of the step.
     speeds_m_s : (2,)
-        Tread speeds believed over it.
+        Tread speeds used over it.
     yaw_rate : float
         Of the gyroscope over it, as recorded [rad/s]; NaN where there is none.
     belief : (9,), (9, 9)
@@ -180,7 +180,7 @@ def _gap(since_s: float, frame: Frame, begin_s: float) -> tuple[float, Events]:
 def with_treads(
     before: Sensed, frame: Frame, speeds_m_s: FloatArray, belief: Gaussian, slip_scale: float
 ) -> tuple[SensorWatch, FloatArray, Events]:
-    """The watch, the speeds (2,) to believe from a frame on, and all events of the step to it.
+    """The watch, the speeds (2,) to use from a frame on, and all events of the step to it.
 
     Parameters
     ----------
@@ -188,11 +188,11 @@ def with_treads(
         Over the step.
     frame : Frame
     speeds_m_s : (2,)
-        Believed over it.
+        Used over it.
     belief : (9,), (9, 9)
         Predicted for its end.
     slip_scale : float
-        Factor on the variance of slip: where treads slip much, none can be told to be stuck.
+        Factor on the variance of slip: where treads slip much, a stuck one cannot be detected.
     """
     watch, yaw_rate = before.watch, before.yaw_rate_rad_s
     treads = watch.treads
@@ -209,7 +209,7 @@ def with_treads(
 
 
 def parted(belief: Gaussian, watch: SensorWatch, *, newly_stuck: bool) -> Gaussian:
-    """The belief whose pose says nothing of the rest, so that a pose teaches nothing.
+    """State estimate whose pose is uncorrelated with the rest: a pose then corrects the pose alone.
 
     Where a tread was found stuck, the rest is as it was before its reading stood still.
     """
@@ -238,5 +238,5 @@ def ongoing(watch: SensorWatch, stamp_s: float) -> Events:
 
 
 def _gap_event(begin_s: float, end_s: float) -> FilterEvent:
-    text = "odometry has a gap: the speed before it was held, and nothing was learned of the ICRs"
+    text = "odometry has a gap: the speed before it was held, and the ICRs were not updated"
     return FilterEvent("odometry_gap", begin_s, end_s, text)

@@ -1,4 +1,4 @@
-"""What is believed of ICRs and slip factors where the terrain under the robot changes."""
+"""Estimates of ICRs and slip factors where the terrain under the robot changes."""
 
 from collections.abc import Mapping
 
@@ -6,7 +6,6 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.estimation.config import IcrEkfConfig
-from odometry.estimation.crossing import crossed
 from odometry.estimation.estimate import OF_TERRAIN, Crossing, Estimate, IcrBelief
 from odometry.estimation.icr_prior import prior_belief
 from odometry.estimation.measurement import Gaussian
@@ -18,7 +17,7 @@ OF_TERRAIN_BLOCK = np.ix_(OF_TERRAIN, OF_TERRAIN)
 
 
 class TerrainBeliefs:
-    """ICRs known by terrain, and how a filter's belief moves from one terrain to another.
+    """ICRs known by terrain, and how a filter's estimate changes from one terrain to another.
 
     Parameters
     ----------
@@ -48,7 +47,7 @@ class TerrainBeliefs:
     def moved(
         self, belief: Gaussian, estimate: Estimate, footing: Footing
     ) -> tuple[Gaussian, Mapping[str, IcrBelief], Crossing | None]:
-        """The belief on another footing, what was learned before it, and the crossing that is on.
+        """State estimate on another terrain, estimates kept from before, and the present crossing.
 
         From whole to whole, from `unknown` and to it the ICRs change in one step (Chen 2023).
         """
@@ -102,3 +101,34 @@ class TerrainBeliefs:
 
 def _is_more_certain(one: IcrBelief, other: IcrBelief) -> bool:
     return bool(np.trace(one.covariance[:3, :3]) < np.trace(other.covariance[:3, :3]))
+
+
+def crossed(
+    belief: Gaussian,
+    known: Mapping[str, IcrBelief],
+    before: Mapping[str, float],
+    after: Mapping[str, float],
+    opened: Mapping[str, FloatArray],
+) -> Gaussian:
+    """Move a state estimate from some shares of terrains to others.
+
+    The mean moves by what each terrain gains or loses of its share, times the ICRs known there,
+    so that what was learned on the way stays. Whole to whole in many steps moves it as in one.
+
+    Parameters
+    ----------
+    belief : mean (9,), covariance (9, 9)
+    known : Mapping of terrain to IcrBelief
+        The ICRs of every terrain that has or had a share.
+    before, after : Mapping of terrain to share
+    opened : Mapping of terrain to (5, 5)
+        Covariance that a whole share gained adds to that of the ICRs and slip factors.
+    """
+    mean, covariance = belief[0].copy(), belief[1].copy()
+    block = np.ix_(OF_TERRAIN, OF_TERRAIN)
+    for name, of in known.items():
+        gained = after.get(name, 0.0) - before.get(name, 0.0)
+        mean[OF_TERRAIN] += gained * np.concatenate([of.icrs, of.alphas])
+        if gained > 0:
+            covariance[block] += gained * opened[name]
+    return mean, covariance

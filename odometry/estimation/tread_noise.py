@@ -16,7 +16,7 @@ def tread_variance(
 ) -> float:
     """Variance of the treads' yaw rate over a step [rad^2/s^2], of tread speeds (2,) [m/s].
 
-    Slip is correlated over `CORRELATED_S`: shorter steps say less each, so that the answer does
+    Slip is correlated over `CORRELATED_S`: shorter steps count less each, so that the result does
     not depend on how finely time is cut.
     """
     left, right = tread_speeds.tolist()

@@ -1,4 +1,4 @@
-"""Tread speeds that cannot be: a sample that stands alone, an encoder that is stuck."""
+"""Tread speeds that are impossible: a single outlying sample, an encoder that is stuck."""
 
 import math
 from typing import NamedTuple
@@ -14,7 +14,7 @@ JUMP_M_S, JUMP_M_S2 = 3.0, 10.0  # a change of speed by more needs a second row 
 SAME_S, CONTRADICTED_S = 0.5, 1.0  # for so long a reading must stay the same, then contradict
 OFF_M_S = 0.15  # by how much it must contradict them, and ...
 OFF_SHARE, SLIP_SHARE = 0.3, 0.15  # ... by these shares of the faster tread
-KNOWN_WIDTH = 0.2  # relative standard deviation below which the width tells a tread's speed
+KNOWN_WIDTH = 0.2  # relative standard deviation below which the width determines a tread's speed
 SIDES = ("left", "right")
 Speeds = tuple[float, float]
 
@@ -31,7 +31,7 @@ class TreadWatch(NamedTuple):
     same_since_s : (left, right)
         Stamp since when the reading of each tread is the same.
     before : (left, right)
-        What was believed then.
+        The estimate then.
     held_out : bool
         Whether the row is held out: it jumped from all before, and no second row agrees yet.
     off_since_s : float
@@ -61,7 +61,7 @@ def begun(frame: Frame, belief: Gaussian) -> TreadWatch:
 def watched(
     watch: TreadWatch, frame: Frame, step_s: float, believed_m_s: FloatArray, belief: Gaussian
 ) -> tuple[TreadWatch, FloatArray, tuple[FilterEvent, ...]]:
-    """The speeds (2,) to believe from a frame on, given those believed over the step to it.
+    """The speeds (2,) to use from a frame on, given those used over the step to it.
 
     A jump by more than `JUMP_M_S` and what `JUMP_M_S2` allows is held out until the next row
     confirms it.
@@ -88,7 +88,7 @@ def watched(
     returned = max(abs(left - was_left), abs(right - was_right)) > most
     if watch.held_out and not held_out and returned:
         fastest = was_left if abs(was_left) > abs(was_right) else was_right
-        text = f"a tread speed of {fastest:.2f} m/s stands alone: the one before it was held"
+        text = f"a tread speed of {fastest:.2f} m/s is a single outlier: the one before it was held"
         events = (FilterEvent("tread_spike", watch.row_s, stamp_s, text),)
     after = watch._replace(
         recorded_m_s=(left, right),
@@ -104,7 +104,7 @@ def watched(
 def contradicted(
     watch: TreadWatch, stamp_s: float, belief: Gaussian, yaw_rate: float, slip_scale: float
 ) -> TreadWatch:
-    """The watch after a step whose yaw rate the gyroscope told.
+    """The watch after a step whose yaw rate the gyroscope measured.
 
     An encoder is stuck where its reading stays exactly the same while the other tread and the
     gyroscope say, through the ICRs believed, that it moves otherwise by more than treads slip.
@@ -137,7 +137,7 @@ def freed(watch: TreadWatch, stamp_s: float) -> tuple[TreadWatch, tuple[FilterEv
         return watch, ()
     text = (
         f"the encoder of the {SIDES[watch.stuck]} tread was stuck: the other tread and the "
-        "gyroscope told its speed, and nothing was learned of the ICRs"
+        "gyroscope gave its speed, and the ICRs were not updated"
     )
     event = FilterEvent("stuck_tread", watch.off_since_s, stamp_s, text)
     return watch._replace(stuck=-1, off_since_s=math.nan), (event,)
@@ -156,7 +156,7 @@ def implied_speed(speeds: Speeds, tread: int, belief: Gaussian, yaw_rate: float)
 def with_implied(
     watch: TreadWatch, speeds_m_s: FloatArray, belief: Gaussian, yaw_rate: float
 ) -> FloatArray:
-    """Speeds (2,) with that of a stuck tread replaced; straight on where no yaw rate is told."""
+    """Speeds (2,) with that of a stuck tread replaced; straight on where no yaw rate is known."""
     left, right = speeds_m_s.tolist()
     replaced = speeds_m_s.copy()
     rate = float(belief[0][GYRO_BIAS]) if math.isnan(yaw_rate) else yaw_rate

@@ -1,10 +1,10 @@
-"""What an identification raises."""
+"""The error of an identification."""
 
 from odometry.errors import OdometryError
 
 
 class IdentificationError(OdometryError):
-    """Runs that do not tell what is asked of them.
+    """Runs that do not determine what is to be identified.
 
     Examples
     --------
@@ -15,5 +15,5 @@ class IdentificationError(OdometryError):
     ...     odometry.identify([still], "icr", terrain="yard").require_determined()
     ... except odometry.IdentificationError as error:
     ...     print(str(error)[:60])
-    1 windows cannot tell 5 parameters of 'icr'
+    1 windows do not determine 5 parameters of 'icr'
     """

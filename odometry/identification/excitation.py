@@ -1,4 +1,4 @@
-"""Which parameters, alone or together, the windows do not tell."""
+"""Which parameters, alone or together, the windows do not determine."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ SHOWN = 0.3  # a parameter is named if it has this share of a direction
 
 @dataclass(frozen=True)
 class Undetermined:
-    """A combination of parameters that the windows leave open.
+    """A combination of parameters that the windows do not determine.
 
     Attributes
     ----------

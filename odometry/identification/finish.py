@@ -1,4 +1,4 @@
-"""What a search found, as a fit: values, covariance, and what is open or at a bound."""
+"""The solution of a search as a fit: values, covariance, what is undetermined or at a bound."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from odometry.identification.start import Start, by_name
 from odometry.identification.uncertainty import Uncertainty
 from odometry.windows.stretch_noise import StretchNoise
 
-EDGE = 1e-3  # ordinary sizes from a bound, at which a parameter has ended there
+EDGE = 1e-3  # ordinary sizes: nearer to a bound than this, a parameter is at it
 
 
 def finished(
@@ -35,7 +35,7 @@ def finished(
     scale : float
         How many times larger the residuals are than the noise explains.
     noise : StretchNoise, optional
-        Where it was found, and all of the residuals with it: `scale` widens nothing then.
+        Where the noise was estimated from these residuals: `scale` widens nothing then.
 
     Raises
     ------

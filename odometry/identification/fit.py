@@ -1,15 +1,16 @@
 """Fit one model to windows: values, covariance, and what the windows leave open."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
-from odometry.identification.by_trial import try_values
+from odometry.arrays import FloatArray
 from odometry.identification.config import SolverConfig
 from odometry.identification.finish import finished
 from odometry.identification.fitted import Fit
-from odometry.identification.problem import PROBLEMS
-from odometry.identification.solve import solve
+from odometry.identification.problem import PROBLEMS, Problem
+from odometry.identification.solve import Solution, loss, solve
 from odometry.identification.start import start_of
 from odometry.identification.uncertainty import parameter_uncertainty, residual_scale
 from odometry.models.base import KinematicModel
@@ -73,3 +74,48 @@ def fit(
     uncertainty = parameter_uncertainty(problem, solution, sizes[problem.free])
     scale = residual_scale(problem, solution)
     return finished(start, problem, solution, uncertainty=uncertainty, scale=scale)
+
+
+COARSE, FINE = 9, 81  # numbers of values of a parameter that acts through a sign alone
+ALTERNATIONS = 5
+
+
+def try_values(
+    problem: Problem, solution: Solution, sizes: FloatArray, place: int, config: SolverConfig
+) -> tuple[Problem, Solution]:
+    """Search a parameter that acts through a sign alone: it has no derivative.
+
+    First with few values, then near the best one.
+
+    Near it, the best of many values and the search for the rest take turns.
+    """
+    parameter = problem.model.parameters[place]
+    ends = parameter.search or (parameter.low, parameter.high)
+    plain = replace(config, starts=1, loss="squares")
+    coarse = [
+        replace(problem, values=_put(problem.values, place, value))
+        for value in np.geomspace(*ends, COARSE)
+    ]
+    found = [solve(each, solution.chosen, sizes[problem.free], plain) for each in coarse]
+    best = int(np.argmin([each.cost for each in found]))
+    problem, chosen = coarse[best], found[best].chosen
+    for _ in range(ALTERNATIONS):
+        fine = [
+            replace(problem, values=_put(problem.values, place, value))
+            for value in np.geomspace(*ends, FINE)
+        ]
+        costs = np.array([loss(each, chosen, config) for each in fine])
+        equal = np.flatnonzero(costs <= costs.min() * (1 + 1e-9))
+        nearest = fine[int(equal[len(equal) // 2])]
+        if nearest.values[place] == problem.values[place]:
+            break
+        problem = nearest
+        chosen = solve(problem, chosen, sizes[problem.free], replace(config, starts=1)).chosen
+    final = solve(problem, chosen, sizes[problem.free], replace(config, starts=1))
+    return problem, replace(final, agreeing=solution.agreeing)
+
+
+def _put(values: FloatArray, place: int, value: float) -> FloatArray:
+    changed = values.copy()
+    changed[place] = value
+    return changed

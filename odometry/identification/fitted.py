@@ -1,4 +1,4 @@
-"""What a fit of one model to windows found."""
+"""The result of fitting one model to windows."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -32,11 +32,11 @@ class Fit:
     freedom : (F,)
         Degrees of freedom of the variances in it.
     undetermined : tuple of Undetermined
-        What the windows leave open.
+        What the windows do not determine.
     by_trial : tuple of str
         Identified by trying values, because they act through a sign alone: no variance.
     at_bound : tuple of str
-        Parameters that ended at the edge of where the search may look.
+        Parameters that ended at a bound of the search.
     residuals : (K, 3)
         Predicted less measured motion: along, across [m], yaw [rad]; of stretches (K, R), see
         `shape_residuals`.
@@ -90,7 +90,7 @@ class Fit:
 
     @property
     def open_names(self) -> frozenset[str]:
-        """Parameters of the combinations that the windows leave open: their sigmas mean nothing."""
+        """Parameters of the combinations that are undetermined: their sigmas mean nothing."""
         return frozenset(name for open_ in self.undetermined for name in open_.direction)
 
     @property
@@ -121,7 +121,7 @@ class Fit:
     def normal_covariance(self) -> FloatArray:
         """Covariance (F, F) of the normal distribution that has these intervals.
 
-        For whoever takes parameters as normal: filters, and readers of a parameter set.
+        For programs that take parameters as normally distributed: filters, readers of a set.
         """
         growth = np.maximum(deviations_within(self.freedom) / NORMAL, 1.0)
         return np.asarray(growth[:, None] * self.covariance * growth)

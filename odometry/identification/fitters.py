@@ -1,4 +1,4 @@
-"""The way of fitting that a model asks for: all parameters at once, or in stages."""
+"""How a model is fitted: all parameters at once, or in stages."""
 
 from collections.abc import Mapping
 from functools import partial

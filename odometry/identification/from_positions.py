@@ -1,4 +1,4 @@
-"""Runs of which positions without yaw were measured: how long stretches of them have to be."""
+"""Runs whose reference is positions without yaw: how long their stretches have to be."""
 
 from collections.abc import Sequence
 
@@ -16,11 +16,11 @@ from odometry.windows.stretches import MOST_POSITIONS, Stretches, stretches_of
 from odometry.windows.windows import Windows, windows_of
 
 LEAST_M = 2.0  # wheel travel of a stretch, in a short run
-USUAL_M, USUAL_BY_TREADS_M = 5.0, 10.0  # where treads alone tell turns, more
+USUAL_M, USUAL_BY_TREADS_M = 5.0, 10.0  # longer where turns are known from treads alone
 MOST_M = 50.0
 ENOUGH = 8  # stretches of all runs together
-DIRECTION_RAD = 0.02  # how well positions shall tell the direction of a stretch
-COARSE_RAD = 0.06  # and how well they must
+DIRECTION_RAD = 0.02  # accuracy aimed at for the direction of a stretch
+COARSE_RAD = 0.06  # least accuracy
 LINE = np.sqrt(12 / MOST_POSITIONS)  # of n evenly spaced positions, by noise over length
 SIMPLE = "icr_symmetric"  # the model under which the noise is found
 
@@ -33,7 +33,7 @@ def windows_or_stretches(runs: Sequence[Run], config: WindowConfig) -> Windows |
     WindowError
         See `windows_of` and `stretches_of`.
     IdentificationError
-        If the noise of the positions cannot be told.
+        If the noise of the positions cannot be estimated.
     """
     if not any(map(lacks_yaw, runs)):
         return windows_of(runs, config)
@@ -41,13 +41,13 @@ def windows_or_stretches(runs: Sequence[Run], config: WindowConfig) -> Windows |
 
 
 def stretches_for(runs: Sequence[Run], config: WindowConfig) -> Stretches:
-    """Stretches so long that their positions tell in which direction they lie.
+    """Stretches that are long enough for positions to determine their direction.
 
     The noise of the positions is found from a simple model on stretches of USUAL_BY_TREADS_M. A
     horizon of `config` that is longer than these stretches is taken instead.
     """
-    tried = stretches_of(runs, max(USUAL_BY_TREADS_M, config.horizon_m), config)
-    length_m = max(length_for(noise_of(tried, runs[0].robot), tried), config.horizon_m)
+    first = stretches_of(runs, max(USUAL_BY_TREADS_M, config.horizon_m), config)
+    length_m = max(length_for(noise_of(first, runs[0].robot), first), config.horizon_m)
     return stretches_of(runs, length_m, config)
 
 
@@ -60,10 +60,10 @@ def noise_of(of: Stretches, robot: Robot) -> StretchNoise:
 
 
 def length_for(noise: StretchNoise, of: Stretches) -> float:
-    """Wheel travel [m] over which positions of this noise tell a direction to DIRECTION_RAD.
+    """Wheel travel [m] over which positions of this noise determine a direction to DIRECTION_RAD.
 
-    They become no longer than that there are ENOUGH, whose spread shows how much a model errs
-    alike all along one, as long as the noise leaves a direction to COARSE_RAD.
+    Not longer than leaves ENOUGH stretches, whose spread shows the errors of a model that are the
+    same all along one, unless the noise would then exceed COARSE_RAD.
     """
     usual_m = USUAL_BY_TREADS_M if of.turns_rad is None else USUAL_M
     share_m = of.travel_m.sum() / ENOUGH
@@ -72,21 +72,21 @@ def length_for(noise: StretchNoise, of: Stretches) -> float:
     return float(np.clip(wanted_m, np.clip(share_m, LEAST_M, usual_m), MOST_M))
 
 
-def how_told(fit: Fit) -> tuple[str, ...]:
-    """Sentences for a reader: what a fit to positions rests on, and what these cannot tell."""
+def position_notes(fit: Fit) -> tuple[str, ...]:
+    """Sentences: what a fit to positions is based on, and what positions do not determine."""
     of, noise = fit.windows, fit.noise
     if noise is None or not isinstance(of, Stretches):
         return ()
     turns = "the treads alone" if of.turns_rad is None else "the gyroscope"
-    told = (
+    basis = (
         f"positions without yaw: the shapes of {len(of)} stretches of {of.travel_m.mean():.1f} m "
         f"count, for positions with a noise of {noise.position_m:.2g} m; between positions the "
         f"yaw is carried by {turns}"
     )
     if of.arm_stated:
-        return (told,)
+        return (basis,)
     return (
-        told,
+        basis,
         "[sensors] pose is not stated, so the antenna is taken to be at the robot's origin; an "
         "antenna ahead of it looks exactly like a smaller x_icr, one to the left like smaller "
         "y_left and y_right",

@@ -1,4 +1,4 @@
-"""Whether the halves of recordings tell one set of parameters, or the fit is an average of two."""
+"""Whether both halves of recordings give one set of parameters, or the fit averages two."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from odometry.windows.windows import Windows
 
 BY_CHANCE = 1e-6  # probability below which halves differ
 WORSE = 1.2  # how much farther off each half must be under the parameters of the other
-TOLD_SIGMAS = 3.0  # of a difference that is named
+NAMED_SIGMAS = 3.0  # of a difference that is named
 
 
 @dataclass(frozen=True)
@@ -34,11 +34,11 @@ class Halves:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Parameters that both tell."""
-        told = [
+        """Parameters that both halves determine."""
+        determined = [
             {*fit.names} - fit.open_names - {*fit.at_bound} for fit in (self.first, self.second)
         ]
-        return tuple(name for name in self.first.names if name in told[0] & told[1])
+        return tuple(name for name in self.first.names if name in determined[0] & determined[1])
 
     @property
     def by_chance(self) -> float:
@@ -69,10 +69,10 @@ class Halves:
         return min(shares)
 
     def note(self) -> str | None:
-        """What a reader should know where the halves tell different parameters, and what to do.
+        """A sentence where the halves give different parameters, and what to do.
 
         The probability was chosen on the 19 recordings of data/motion that are not among the
-        seven by which the odometer is judged: it is 5e-6 and more on each.
+        seven on which the odometer is evaluated: it is 5e-6 and more on each.
         """
         if self.by_chance >= BY_CHANCE or self.worse < WORSE:
             return None
@@ -81,10 +81,10 @@ class Halves:
         named = [
             f"{name} {self.first.values[name]:.3g} and {self.second.values[name]:.3g}"
             for name, size in zip(self.names, clear.tolist(), strict=True)
-            if size > min(TOLD_SIGMAS, clear.max() * 0.999)
+            if size > min(NAMED_SIGMAS, clear.max() * 0.999)
         ]
         return (
-            "the first and the second half of the runs tell different parameters "
+            "the first and the second half of the runs give different parameters "
             f"({', '.join(named)}); with those of the other, each half errs {self.worse:.1f} "
             "times as much: the values are an average of both. Identify parts alone (--from, "
             "--to), or name the terrain of each row (column terrain of odometry.csv)"

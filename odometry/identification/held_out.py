@@ -11,7 +11,7 @@ from odometry.windows.stretches import Stretches
 from odometry.windows.window_errors import WindowErrors, errors_over
 from odometry.windows.windows import Windows
 
-MOST_FOLDS = 10  # fits that judge a model: more cost time, and tell little more
+MOST_FOLDS = 10  # fits of an evaluation: more of them take time and change little
 
 
 def by_runs(windows: Windows | Stretches) -> IntArray:
@@ -68,5 +68,5 @@ def held_out_errors(
         fitted = fit_to(windows.where((parts >= 0) & ~here))
         errors = errors_over(fitted.model, fitted.packed, windows.where(here))
         translation[here], rotation[here] = errors.translation_per_m, errors.rotation_per_m
-    judged = parts >= 0
-    return WindowErrors(translation[judged], rotation[judged])
+    held_out = parts >= 0
+    return WindowErrors(translation[held_out], rotation[held_out])

@@ -4,21 +4,23 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from odometry.effects.tables import table_of
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
-from odometry.identification.from_stretches import contradicted, not_told
 from odometry.identification.halves import Halves
 from odometry.identification.plausibility import CAUSES, refusals
+from odometry.identification.stretch_uncertainty import FEWEST
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.run import Robot
 from odometry.windows.config import WindowConfig
-from odometry.windows.window_errors import WindowErrors
+from odometry.windows.window_errors import WindowErrors, errors_over
 
 
 @dataclass(frozen=True)
 class Identified:
-    """What runs tell of a model on one terrain.
+    """The parameters that runs determine of a model on one terrain.
 
     Attributes
     ----------
@@ -28,7 +30,7 @@ class Identified:
         None where a part alone cannot be fitted.
     held_out_by : str
         "runs": each by the others; "halves": each half of every run by the others, where a terrain
-        has one run or one run does not tell the model.
+        has one run or one run does not determine the model.
     ideal : WindowErrors
         Of the ideal differential drive on the same windows.
     given : Mapping of name to float
@@ -83,7 +85,7 @@ class Identification:
             for terrain, found in self.terrains.items()
             for words in (
                 *(open_.words() for open_ in found.fit.undetermined),
-                *not_told(found.fit, self.robot),
+                *undetermined_by_positions(found.fit, self.robot),
             )
         )
 
@@ -104,7 +106,7 @@ class Identification:
         """
         if self.left_open:
             raise IdentificationError(
-                "the runs cannot tell these parameters apart from others, or at all:\n  "
+                "the runs do not determine these parameters, or not separately:\n  "
                 + "\n  ".join(self.left_open)
                 + "\nAdd runs that excite them (turns both ways at several speeds; slopes), fix "
                 "values that are known, or choose a model with fewer parameters."
@@ -128,3 +130,55 @@ class Identification:
             terrains[terrain] = found.to_parameters(source)
         named = {"name": self.robot.name} if self.robot.name else {}
         return ParameterSet(terrains, named | {"track_width": self.robot.track_width})
+
+
+def undetermined_by_positions(fit: Fit, robot: Robot) -> tuple[str, ...]:
+    """What stretches of positions do not determine, a clause each; nothing of a fit to poses.
+
+    Too few stretches show no spread, so that their intervals rest on an assumption; and an
+    interval that is wider than the parameter is large does not determine it.
+    """
+    if fit.noise is None:
+        return ()
+    found = []
+    if len(fit.windows) < FEWEST:
+        found.append(
+            f"{len(fit.windows)} stretches of {fit.windows.travel_m.mean():.1f} m (positions "
+            f"have a noise of {fit.noise.position_m:.2g} m): fewer than {FEWEST} do not show the "
+            "errors of the model; drive farther"
+        )
+    sizes = fit.model.ordinary_sizes(robot)
+    intervals = fit.intervals
+    for parameter, size in zip(fit.model.parameters, sizes, strict=True):
+        if parameter.name in fit.names and parameter.name not in fit.open_names:
+            of = intervals[parameter.name]
+            if of.high - of.low > 2 * size:
+                found.append(
+                    f"{parameter.name}: 95 % interval {of.low:.3g} to {of.high:.3g} "
+                    f"{parameter.unit}, more than its ordinary size ({size:.2g}) to either side"
+                )
+    return tuple(found)
+
+
+def contradicted(fit: Fit, ideal: WindowErrors) -> tuple[str, ...]:
+    """A clause where the ideal differential drive has less of both errors than the fit.
+
+    The fit could have chosen that motion. Nothing of a fit to poses.
+
+    Parameters
+    ----------
+    fit : Fit
+    ideal : WindowErrors
+        Of the ideal differential drive on the stretches of the fit.
+    """
+    if fit.noise is None or not fit.names:
+        return ()
+    own = errors_over(fit.model, fit.packed, fit.windows)
+    pairs = (
+        (own.translation_per_m.mean(), ideal.translation_per_m.mean(), "m per m"),
+        (np.degrees(own.rotation_per_m.mean()), np.degrees(ideal.rotation_per_m.mean()), "deg/m"),
+    )
+    if any(mine <= other for mine, other, _ in pairs):
+        return ()
+    errors = " and ".join(f"{mine:.3g} against {other:.3g} {unit}" for mine, other, unit in pairs)
+    return (f"the ideal differential drive has smaller errors on the fitted stretches: {errors}",)

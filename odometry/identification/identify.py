@@ -10,7 +10,6 @@ from odometry.effects.corrected import Added
 from odometry.effects.measured import on_measurement, robot_run
 from odometry.effects.tables import effects_of
 from odometry.errors import ParameterError
-from odometry.identification.asked import Asked, Wanted, asked_on
 from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
@@ -19,6 +18,7 @@ from odometry.identification.from_positions import windows_or_stretches
 from odometry.identification.halves import Halves, halves_of
 from odometry.identification.held_out import MOST_FOLDS, by_halves, by_runs, held_out_errors
 from odometry.identification.identification import Identification, Identified
+from odometry.identification.terrain_model import TerrainModel, Wanted, model_on_terrain
 from odometry.models.catalogue import MODELS
 from odometry.row_terrains import with_named_terrain
 from odometry.run import UNKNOWN, Robot, Run
@@ -87,23 +87,24 @@ def identify(
     robot = robot_of(runs)
     named = [with_named_terrain(run, terrain) for run in runs]
     windows = windows_or_stretches(named, window_config)
-    asked = {
-        str(name): asked_on(str(name), model, robot) for name in dict.fromkeys(windows.terrain)
+    models = {
+        str(name): model_on_terrain(str(name), model, robot)
+        for name in dict.fromkeys(windows.terrain)
     }
-    by_ground = {
+    by_terrain = {
         name: _windows_on(name, effects_of(of.model), named, windows, window_config)
-        for name, of in asked.items()
+        for name, of in models.items()
     }
-    runs_by_ground = (len(set(here.run)) for here in by_ground.values())
-    fits = sum(3 + (min(count, MOST_FOLDS) if count > 1 else 0) for count in runs_by_ground)
+    runs_by_terrain = (len(set(here.run)) for here in by_terrain.values())
+    fits = sum(3 + (min(count, MOST_FOLDS) if count > 1 else 0) for count in runs_by_terrain)
     off = None if show_progress else True
     terrains = {}
     with tqdm(total=fits, unit="fit", disable=off) as bar:
-        for name, here in by_ground.items():
-            bar.set_description(asked[name].model.name)
-            given = _given(asked[name], fixed or {}, released)
+        for name, here in by_terrain.items():
+            bar.set_description(models[name].model.name)
+            given = _given(models[name], fixed or {}, released)
             fit_to = fitter(
-                asked[name].model,
+                models[name].model,
                 robot,
                 fixed=given,
                 released=frozenset(released),
@@ -115,30 +116,30 @@ def identify(
 
 
 def _given(
-    asked: Asked, fixed: Mapping[str, float], released: Sequence[str]
+    model: TerrainModel, fixed: Mapping[str, float], released: Sequence[str]
 ) -> Mapping[str, float]:
     """Parameters that are held: those of `fixed`, then what a set knows of the robot."""
-    known = {name: value for name, value in asked.known.items() if name not in released}
+    known = {name: value for name, value in model.known.items() if name not in released}
     return {**known, **fixed}
 
 
 def _windows_on(
-    ground: str,
+    terrain: str,
     effects: Sequence[Added],
     runs: Sequence[Run],
-    as_seen: Windows | Stretches,
+    as_measured: Windows | Stretches,
     config: WindowConfig,
 ) -> Windows | Stretches:
     """Windows on one terrain, with the poses of the robot where the sensor reports others."""
-    windows = as_seen
+    windows = as_measured
     if on_measurement(effects):
         if isinstance(windows, Stretches):
             raise IdentificationError(
-                f"[{ground}] the set has effects on the measured pose, which are undone where yaw "
+                f"[{terrain}] the set has effects on the measured pose, which are undone where yaw "
                 "was measured; pose.csv has positions alone: state [sensors] pose instead"
             )
         windows = windows_of([robot_run(run, effects) for run in runs], config)
-    return windows.where(windows.terrain == ground)
+    return windows.where(windows.terrain == terrain)
 
 
 def _counted(fit_to: FitTo, bar: tqdm) -> FitTo:
@@ -192,7 +193,7 @@ def _held_out(
 ) -> tuple[WindowErrors | None, str]:
     """Errors by runs, else by halves of every run, and which it was.
 
-    The fit to all windows tells where to search, and nothing else.
+    The fit to all windows is where these searches start, and nothing else.
     """
     try:
         by_run = held_out_errors(windows, by_runs(windows), lambda part: fit_to(part, near))

@@ -1,4 +1,4 @@
-"""Whether a fit is an answer: what is refused, and what a reader should doubt."""
+"""Whether a fit is plausible: reasons to refuse it, and notes of what is doubtful."""
 
 import numpy as np
 
@@ -16,7 +16,7 @@ CAUSES = (
 
 
 def refusals(fit: Fit) -> tuple[str, ...]:
-    """Why the parameters are no answer: those at a bound while the motion is far from predicted.
+    """Parameters at a bound while the predicted motion is far from the measured one.
 
     A search that would have gone on beyond its bound has not found a model of the motion. Where
     the residuals are as the noise explains, the bound is near enough to the truth, and a bound at
@@ -39,7 +39,7 @@ def _is_neutral(parameter: Parameter, value: float) -> bool:
 
 
 def notes(fit: Fit) -> tuple[str, ...]:
-    """What a reader should doubt, a sentence each."""
+    """What is doubtful, a sentence each."""
     found = []
     for parameter in fit.model.parameters:
         value = fit.values[parameter.name]
@@ -55,7 +55,7 @@ def notes(fit: Fit) -> tuple[str, ...]:
     found += [
         f"{name} ended at the edge of its search range"
         + (
-            ", where it has no effect: a model without it says the same"
+            ", where it has no effect: a model without it predicts the same"
             if _is_neutral(parameters[name], fit.values[name])
             else ""
         )

@@ -13,12 +13,12 @@ from odometry.windows.noise import window_covariances
 from odometry.windows.stretches import Stretches
 from odometry.windows.windows import Windows
 
-REMEMBERED = 2  # a search asks again at its last point, or the one before
+REMEMBERED = 2  # a search evaluates its last point again, or the one before
 
 
 @dataclass(frozen=True)
 class AnyProblem(ABC):
-    """Which parameters of a model are free, and the windows that shall tell them.
+    """Which parameters of a model are free, and the windows that determine them.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""How much residuals tell of the noise that made them."""
+"""Degrees of freedom with which residuals determine the noise."""
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -34,11 +34,11 @@ def residual_freedom(
     followed = noise.T @ by_parameters  # N' X
     inverted = np.linalg.pinv(by_parameters.T @ by_parameters, rcond=1e-14, hermitian=True)
     taken = inverted @ followed.T @ followed
-    alike = noise @ noise.T
+    shared = noise @ noise.T
     mean = float(noise.power(2).sum() - np.trace(taken))
     crossed = noise @ followed  # N N' X
     squares = float(
-        alike.power(2).sum()
+        shared.power(2).sum()
         - 2 * np.trace(inverted @ crossed.T @ crossed)
         + np.trace(taken @ taken)
     )

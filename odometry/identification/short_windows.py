@@ -1,4 +1,4 @@
-"""Windows that are shorter than was asked, and why."""
+"""Windows that are shorter than the horizon, and why."""
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from odometry.windows.left_out import (
 from odometry.windows.stretches import Stretches
 from odometry.windows.windows import Windows
 
-FEW = 0.5  # share of the windows that may be shorter without a word
+FEW = 0.5  # share of the windows that may be shorter without a note
 WHY = {
     CHANGE_OF_WINDOW: "`window` of pose.csv changes that often: its poses are chained in short "
     "stretches, and the motion from one to the next is less certain",
@@ -32,18 +32,18 @@ def short_windows(windows: Windows | Stretches, config: WindowConfig) -> str:
     """
     if isinstance(windows, Stretches):
         return ""
-    asked, unit, length = config.horizon_m, "m", windows.travel_m
+    wanted, unit, length = config.horizon_m, "m", windows.travel_m
     if config.horizon_s:
-        asked, unit, length = config.horizon_s, "s", _durations_s(windows)
-    short = length < asked * (1 - 1e-9)
+        wanted, unit, length = config.horizon_s, "s", _durations_s(windows)
+    short = length < wanted * (1 - 1e-9)
     if short.mean() <= FEW:
         return ""
     cuts = [reason for reason, _ in windows.left_out.most_common() if reason in WHY]
     why = WHY[cuts[0]] if cuts else "the runs have no more"
     return (
-        f"{short.sum()} of {len(windows)} windows are shorter than the {asked:g} {unit} asked for "
-        f"({length[short].mean():.2f} {unit} on average): {why}. No window goes across such a "
-        "place; a longer --horizon changes nothing"
+        f"{short.sum()} of {len(windows)} windows are shorter than the {wanted:g} {unit} of the "
+        f"horizon ({length[short].mean():.2f} {unit} on average): {why}. No window goes across "
+        "such a place; a longer --horizon changes nothing"
     )
 
 

@@ -41,8 +41,8 @@ def fit_in_two_stages(
     called flat may tilt a little, so the stages are repeated with what was found, until it stays.
 
     Parameters are those of `fit`, and the model's `stages`. Known parameters that the recording
-    tells are taken from it unless they are fixed or released. The covariance of the second stage
-    holds what the first one leaves uncertain.
+    determines are taken from it unless they are fixed or released. The covariance of the second
+    stage holds what the first one leaves uncertain.
 
     Raises
     ------
@@ -65,8 +65,8 @@ def fit_in_two_stages(
             solver_config=solver_config,
         )
 
-    told = model.told_by(windows.inputs)
-    held = {name: value for name, value in told.items() if name not in released} | dict(fixed)
+    known = model.told_by(windows.inputs)
+    held = {name: value for name, value in known.items() if name not in released} | dict(fixed)
     if not first_free:
         return stage(tilted, held, released)
     terms = {name: {**(near or {}), **held}.get(name, 0.0) for name in stages.tilted}

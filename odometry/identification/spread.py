@@ -1,4 +1,4 @@
-"""What runs, or stretches of a run, tell of the parameters' variances by how they differ."""
+"""Variances of parameters from the differences between runs, or stretches of a run."""
 
 import numpy as np
 
@@ -10,12 +10,12 @@ STRETCH = 5  # windows: some 20 s, over which slip wanders
 DETERMINED_ALONE = 1 - 1e-6  # a direction in which one group has all of the information
 
 
-def groups_alike(
+def correlated_groups(
     run: AnyArray, stretch: int = STRETCH, fewest: int = FEWEST_STRETCHES
 ) -> IntArray | None:
-    """Group (K,) of each window, in which a model may err alike: runs, else stretches of them.
+    """Group (K,) of each window, within which errors may be correlated: runs, else stretches.
 
-    None where there are too few of both to tell a spread.
+    None where there are too few of both to estimate a spread.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def spread_between(
     Parameters
     ----------
     groups : (K,)
-        Whose residuals may be alike.
+        Within which residuals may be correlated.
     jacobian : (K, 3, F)
         Whitened derivative of the residuals by the parameters.
     residuals : (K, 3)
@@ -60,8 +60,8 @@ def spread_between(
     count = jacobian.shape[-1]
     total = np.einsum("kif,kig->fg", jacobian, jacobian)
     sizes, axes = np.linalg.eigh(total)
-    told = sizes > sizes[-1] * len(jacobian) * np.finfo(float).eps
-    inverse = (axes[:, told] / np.sqrt(sizes[told])).T  # Z_g' = inverse X_g'
+    determined = sizes > sizes[-1] * len(jacobian) * np.finfo(float).eps
+    inverse = (axes[:, determined] / np.sqrt(sizes[determined])).T  # Z_g' = inverse X_g'
     scores, crossed, own = [], [], []
     for group in dict.fromkeys(groups.tolist()):
         here = groups == group
@@ -80,7 +80,7 @@ def spread_between(
 def _satterthwaite(crossed: FloatArray, own: FloatArray) -> FloatArray:
     """Degrees of freedom (F,) from what the groups' corrected scores have in common.
 
-    They are 0 where no group tells a parameter.
+    They are 0 where no group determines a parameter.
 
     Parameters
     ----------

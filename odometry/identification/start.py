@@ -52,7 +52,7 @@ class Start:
         """Raise IdentificationError where windows measure no more numbers than are free."""
         if per_window * count <= self.free.sum():
             raise IdentificationError(
-                f"{count} {noun} cannot tell {int(self.free.sum())} parameters of "
+                f"{count} {noun} do not determine {int(self.free.sum())} parameters of "
                 f"{self.model.name!r}"
             )
 

@@ -1,10 +1,10 @@
-"""How well stretches of positions tell the parameters."""
+"""How well stretches of positions determine the parameters."""
 
 import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.identification.solve import Solution
-from odometry.identification.spread import groups_alike, spread_between
+from odometry.identification.spread import correlated_groups, spread_between
 from odometry.identification.stretch_problem import StretchProblem
 from odometry.identification.uncertainty import Uncertainty, grown
 from odometry.windows.stretch_noise import StretchNoise, covariance_parts
@@ -43,7 +43,7 @@ def stretch_uncertainty(
     curvature = np.einsum("kif,kig->fg", whitened, whitened)
     inverse = np.linalg.pinv(curvature, rcond=1e-14, hermitian=True)
     covariance, freedom = inverse, _freedom(problem, root, whitened @ inverse, noise)
-    groups = groups_alike(problem.windows.run, 1, FEWEST)
+    groups = correlated_groups(problem.windows.run, 1, FEWEST)
     if groups is not None:
         found = np.einsum("kij,kj->ki", root, residuals)
         covariance, freedom = grown(covariance, freedom, *spread_between(groups, whitened, found))

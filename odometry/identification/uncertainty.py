@@ -1,4 +1,4 @@
-"""How well the windows tell the parameters."""
+"""How well the windows determine the parameters."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from odometry.arrays import FloatArray
 from odometry.identification.problem import Problem
 from odometry.identification.residual_freedom import residual_freedom
 from odometry.identification.solve import Solution
-from odometry.identification.spread import groups_alike, spread_between
+from odometry.identification.spread import correlated_groups, spread_between
 from odometry.windows.noise import score_covariance, window_covariances
 from odometry.windows.windows import Windows
 
@@ -83,7 +83,7 @@ def parameter_uncertainty(problem: Problem, solution: Solution, sizes: FloatArra
     shares = np.where(total > 0, variances / np.maximum(total, np.finfo(float).tiny), poses_alone)
     # Satterthwaite 1946 for a sum of independently estimated variances.
     freedom = 1 / np.sum(shares**2 / freedoms[:, None], axis=0)
-    groups = groups_alike(problem.windows.run)
+    groups = correlated_groups(problem.windows.run)
     if groups is not None:
         residuals = np.einsum("kij,kj->ki", near.root, near.residuals)
         between = spread_between(groups, near.root @ near.jacobian, residuals)
@@ -143,7 +143,7 @@ def _unexplained_per_m(
 
 
 def _overlap(windows: Windows) -> float:
-    """In how many windows a sample lies on average: their own errors are that much alike."""
+    """In how many windows a sample lies on average: their errors are correlated by that much."""
     depth = np.zeros(len(windows.steps_s) + 1)
     np.add.at(depth, windows.first, 1.0)
     np.add.at(depth, windows.last, -1.0)

@@ -30,7 +30,7 @@ class Parameter:
     default : float or None
         The value of a parameter set that does not name it; None where it must.
     known : bool
-        Measured on the robot or chosen, not identified from its motion unless asked to.
+        Measured on the robot or chosen, not identified from its motion unless released.
     search : (float, float) or None
         Where an identification looks; between the bounds where None.
     usual : (float, float) or None
@@ -133,7 +133,7 @@ class KinematicModel(ABC):
         """Every parameter, from what is known of a robot: where an identification starts."""
 
     def ordinary_sizes(self, robot: Robot) -> FloatArray:
-        """A size (P,) for every parameter, by which searches step and deviations are judged.
+        """A size (P,) for every parameter, the unit of search steps and of deviations.
 
         The guessed value; where that is 0, a quarter of the search range; and where there is no
         end to it, half the track width of what is in metres and 1 of anything else.
@@ -151,7 +151,7 @@ class KinematicModel(ABC):
         return np.array(sizes)
 
     def told_by(self, inputs: Inputs) -> dict[str, float]:  # noqa: ARG002 - of the interface
-        """Known parameters that recorded inputs (N,) tell, by name."""
+        """Known parameters that recorded inputs (N,) determine, by name."""
         return {}
 
     def icr_form(self, values: FloatArray) -> IcrForm:  # noqa: ARG002 - of the interface

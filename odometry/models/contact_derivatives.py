@@ -61,7 +61,7 @@ def _by_centre_of_mass(balance: Balance, axis: int) -> FloatArray:
 
 
 def _by_half_length(balance: Balance) -> FloatArray:
-    """The contacts move forward and backward, and with them all that is told in base units."""
+    """The contacts move forward and backward, and with them all quantities in base units."""
     forward, omega = balance.stance.layout.places[1], balance.omega
     moment = np.sum(balance.load * forward * balance.contact_wrenches[1], axis=0)
     contacts = balance.by_slip((0.0, omega * forward)) + _moment(moment)

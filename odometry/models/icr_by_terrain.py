@@ -67,7 +67,7 @@ class IcrByTerrain(Icr):
         return PLAIN.speed_jacobian(self._of_samples(values, inputs), inputs)
 
     def guess(self, robot: Robot) -> dict[str, float]:
-        """Those of `icr`, alike on all terrains."""
+        """Those of `icr`, the same on all terrains."""
         guess = PLAIN.guess(robot)
         names = [parameter.name for parameter in self.parameters]
         values = [guess[parameter.name] for parameter in Icr.parameters] * len(self.labels)

@@ -7,7 +7,7 @@ from odometry.arrays import FloatArray
 
 @dataclass(frozen=True)
 class IcrForm:
-    """A model with constant ICRs, said in the parameters of `icr`.
+    """A model with constant ICRs, in the parameters of `icr`.
 
     Attributes
     ----------

@@ -56,7 +56,7 @@ class Turn:
 
 
 class InertiaModel(KinematicModel):
-    """Tread ICRs by indices of the force of inertia; a subclass says how large that is.
+    """Tread ICRs by indices of the force of inertia; a subclass computes that force.
 
     The force is held at the robot's weight, more than which no ordinary ground can take up. H
     acts through the sign of V_l + H V_r alone: where that changes, the twist jumps, unless

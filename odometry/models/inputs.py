@@ -1,4 +1,4 @@
-"""What a kinematic model is told: tread speeds, attitude, accelerations."""
+"""Inputs of a kinematic model: tread speeds, attitude, accelerations."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
@@ -37,7 +37,7 @@ class Inputs:
     wheel_angles_rad : (..., 2) or None
         Turned since the start, left and right; None where the wheel radius is not stated.
     yaw_rate_rad_s : (...) or None
-        Of a gyroscope less its bias, for whoever carries the yaw by it; no model reads it.
+        Of a gyroscope less its bias, for programs that integrate the yaw with it; no model uses it.
     run_number : (...) of int or None
         Which of several runs a sample is of, from 0; that of one run where absent.
 

@@ -19,11 +19,19 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.geometry.angles import wrap
 from odometry.gyroscope import gyroscope_of
 from odometry.run import Run
-from odometry.windows.close_pairs import FASTEST, POSE_RAD, close_pairs, fastest_rad, unseen
+from odometry.windows.close_pairs import (
+    FASTEST,
+    LEAST_PAIRS,
+    POSE_RAD,
+    ClosePairs,
+    close_pairs,
+    fastest_rad,
+    unseen,
+)
 from odometry.windows.gaps import odometry_gaps
-from odometry.windows.tread_travel import tread_travel
+from odometry.windows.robust import slope
+from odometry.windows.tread_travel import TreadTravel, tread_travel
 from odometry.windows.turns_by_gyroscope import turns_by_gyroscope
-from odometry.windows.turns_by_treads import turn_per_metre, turns_by_treads
 
 LEAST_TURN = 0.1  # of that of treads that do not slip: less, or to the other side, is no width
 
@@ -101,3 +109,27 @@ def _predictions(
         yield turn, np.where(not_seen, np.inf, bound)
     fastest = fastest_rad(travel, width_m, stamps_s[:-1], stamps_s[1:]) * max(1.0, abs(of_ideal))
     yield np.zeros(len(fastest)), np.where(not_seen, np.inf, fastest + POSE_RAD)
+
+
+QUANTILE, MARGIN = 0.95, 2.0  # of the errors of close pairs, to what they may be elsewhere
+LEAST_SHARE = 0.1  # of all that the treads travel by the width: what may be off
+
+
+def turn_per_metre(travel: TreadTravel, pairs: ClosePairs) -> float | None:
+    """Turn [rad] by a metre of tread difference; None where the pairs turned too little."""
+    difference_m = travel.between(pairs.begin_s, pairs.end_s)[1]
+    if not pairs.tell_a_scale or np.count_nonzero(difference_m) < LEAST_PAIRS:
+        return None
+    return slope(pairs.turned_rad, difference_m)
+
+
+def turns_by_treads(
+    travel: TreadTravel, pairs: ClosePairs, stamps_s: FloatArray, rad_per_m: float
+) -> tuple[FloatArray, FloatArray]:
+    """Turns (M - 1,) between stamps (M,), and how far each may be off."""
+    _, difference_m, _, gross_m = travel.between(pairs.begin_s, pairs.end_s)
+    errors = np.abs(pairs.turned_rad - rad_per_m * difference_m)
+    shares = errors / (rad_per_m * gross_m + POSE_RAD)
+    share = max(LEAST_SHARE, MARGIN * float(np.quantile(shares, QUANTILE)))
+    _, difference_m, _, gross_m = travel.between(stamps_s[:-1], stamps_s[1:])
+    return rad_per_m * difference_m, POSE_RAD + share * rad_per_m * gross_m

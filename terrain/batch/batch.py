@@ -2,6 +2,8 @@
 
 import time
 from collections.abc import Iterator, Sequence
+from concurrent.futures import as_completed
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,10 +17,10 @@ from odometry.outputs.manifest import FINISHED, UNFINISHED, Manifest
 from odometry.outputs.output_folder import claim_folder
 from odometry.parameters import ParameterSet
 from terrain.batch.cluster import cluster_outcomes
-from terrain.batch.job import FAILED, KEPT, Job, Outcome
+from terrain.batch.job import FAILED, KEPT, Job, Outcome, run_job
 from terrain.batch.learned import LEARNED, Learned, merge, write_learned
-from terrain.batch.local import local_outcomes
 from terrain.batch.page import write_batch_page
+from terrain.batch.processes import pool
 from terrain.batch.row import Row, row_of, write_rows
 
 TABLE, PAGE, TIMES = "batch.csv", "report.html", "times.csv"
@@ -145,3 +147,34 @@ def _made(asked: Asked, outcomes: Sequence[Outcome]) -> Made:
 
 def _times_line(of: Outcome) -> str:
     return f"{of.job.name},{of.state},{of.wall_s:.3f},{of.cpu_s:.3f}\n"
+
+
+KILLED = "the process that replayed it was killed; was there too little memory?"
+
+
+def local_outcomes(jobs: Sequence[Job], processes: int) -> Iterator[Outcome]:
+    """Do the jobs, so many at a time; outcomes come as they are there.
+
+    With one process they are done in this one. Where one of several processes is killed, the jobs
+    that have no outcome yet are done one after another, so that the one to blame is known.
+    """
+    if processes == 1:
+        yield from map(run_job, jobs)
+        return
+    waiting = {job.name: job for job in jobs}
+    try:
+        for outcome in _pooled(jobs, processes):
+            del waiting[outcome.job.name]
+            yield outcome
+    except BrokenProcessPool:
+        for job in waiting.values():
+            try:
+                yield from _pooled([job], 1)
+            except BrokenProcessPool:
+                yield Outcome(job, FAILED, KILLED)
+
+
+def _pooled(jobs: Sequence[Job], processes: int) -> Iterator[Outcome]:
+    with pool(processes) as executor:
+        for future in as_completed([executor.submit(run_job, job) for job in jobs]):
+            yield future.result()

@@ -4,6 +4,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from odometry.checks.finding import CheckReport, Finding, Level
 from odometry.checks.recording import check_recording
 from odometry.errors import RunFolderError
@@ -12,12 +14,12 @@ from terrain.camera import Camera
 from terrain.checks.image_files import damaged, frozen, outside_of_odometry
 from terrain.checks.image_sizes import other_sizes
 from terrain.checks.image_values import Values, grey_of, image_values, values_of
-from terrain.checks.lens import lens
 from terrain.checks.region_ahead import region_ahead
 from terrain.checks.run_regions import straight_ahead
 from terrain.checks.sampled_images import DECODED, SampledImage, decode, sample_images, spread
 from terrain.checks.vision_model import vision_model
 from terrain.classification.classifier import TerrainClassifier
+from terrain.distortion import undistort
 from terrain.errors import CameraError
 from terrain.region import Region
 from terrain.warp import pixel_view
@@ -127,3 +129,36 @@ def _values(images: Sequence[SampledImage], camera: Camera | None, run: Run) -> 
 def _skipped(run: Run) -> Iterator[str]:
     if run.images is None:
         yield "no images: the camera was not checked"
+
+
+GRID = 21  # pixels tried along each side
+FOLDED = 0.02  # share of pixels without a ray: a good calibration has none, or a few in the corners
+TANGENTIAL = 0.02  # |p1|, |p2| of real lenses are about 0.001
+
+
+def lens(camera: Camera) -> Iterator[Finding]:
+    """Pixels that no ray reaches, and tangential coefficients that are radial ones."""
+    if not camera.distortion.any():
+        return
+    width, height = camera.image_size
+    u, v = np.meshgrid(np.linspace(0, width - 1, GRID), np.linspace(0, height - 1, GRID))
+    rays = np.stack([u.ravel(), v.ravel(), np.ones(u.size)], axis=-1)
+    normalised = np.asarray(np.linalg.solve(camera.matrix, rays.T).T[:, :2])
+    folded = float(np.isnan(undistort(normalised, camera.distortion)).any(axis=1).mean())
+    tangential = float(np.abs(camera.distortion[2:4]).max())
+    if folded <= FOLDED and tangential <= TANGENTIAL:
+        return
+    seen = f"distortion = {[float(f'{value:.4g}') for value in camera.distortion]}"
+    if folded > FOLDED:
+        seen += f" folds the image: {100 * folded:.0f} % of its pixels are of no ray"
+    if tangential > TANGENTIAL:
+        cause = (
+            "Coefficients are in another order than k1, k2, p1, p2, k3 (the third and the fourth "
+            "are about 0.001 in real lenses), or of another lens model (fisheye)"
+        )
+    else:
+        cause = (
+            "Coefficients are of another lens model (fisheye, division), of another camera, or "
+            "matrix has too short a focal length"
+        )
+    yield Finding("distortion", Level.WARNING, seen, cause, "Calibrate with OpenCV's lens model")

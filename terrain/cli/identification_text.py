@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 def print_identification(found: "Identification") -> None:
     """Print the report of each terrain; what to doubt goes to standard error."""
-    from odometry.identification.from_positions import how_told
+    from odometry.identification.from_positions import position_notes
     from odometry.identification.plausibility import notes
     from odometry.identification.report import report
     from odometry.identification.short_windows import short_windows
@@ -26,7 +26,7 @@ def print_identification(found: "Identification") -> None:
             of_terrain.halves and of_terrain.halves.note(),
             short,
         )
-        for doubt in filter(None, (*how_told(of_terrain.fit), *doubts)):
+        for doubt in filter(None, (*position_notes(of_terrain.fit), *doubts)):
             click.echo(f"Note: {doubt}", err=True)
     if found.left_out:
         click.echo(f"Note: {words(found.left_out)}", err=True)
@@ -42,7 +42,7 @@ def require_determined(found: "Identification") -> None:
     from odometry.checks.finding import Level
     from odometry.identification.errors import IdentificationError
     from odometry.identification.report import in_short
-    from odometry.identification.told_instead import SIMPLE, told_instead
+    from odometry.identification.simpler_model import SIMPLE, simpler_model
     from odometry.windows.left_out import words
     from terrain.cli.recordings import checks_made
 
@@ -59,7 +59,7 @@ def require_determined(found: "Identification") -> None:
         lines += ["Nothing is written. The fit that is refused:"]
         lines += [f"  {in_short(name, one)}" for name, one in found.terrains.items()]
         lines += [f"  {words(found.left_out)}"] if found.left_out else []
-        simpler = told_instead(found)
+        simpler = simpler_model(found)
         if simpler is not None:
             lines += [f"The same runs determine a model with fewer parameters: --model {SIMPLE}"]
             lines += [f"  {in_short(name, one)}" for name, one in simpler.terrains.items()]

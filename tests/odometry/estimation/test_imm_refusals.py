@@ -19,7 +19,7 @@ def test_a_floor_that_cannot_hold_is_refused(floor):
 @pytest.mark.parametrize(
     ("transition", "message"),
     [
-        (np.eye(3), r"belief of 2 modes and a transition matrix of shape \(3, 3\)"),
+        (np.eye(3), r"an estimate of 2 modes and a transition matrix of shape \(3, 3\)"),
         ([[0.9, 0.4], [0.1, 0.6]], "rows .from. that sum to 1"),
         ([[1.1, -0.1], [0.1, 0.9]], "rows .from. that sum to 1"),
     ],
@@ -54,5 +54,5 @@ def test_likelihoods_that_judge_nothing_are_refused(said):
 def test_another_number_of_modes_is_refused():
     imm, _ = two_rates(EVEN)
     three = ModeBelief.alike(np.zeros(1), np.eye(1), np.full(3, 1 / 3))
-    with pytest.raises(EstimationError, match=r"a belief of 3 modes .* bank of 2 filters"):
+    with pytest.raises(EstimationError, match=r"an estimate of 3 modes .* bank of 2 filters"):
         imm.step(three, NOTHING, None, 0.1)

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from odometry.identification.by_trial import try_values
 from odometry.identification.config import SolverConfig
-from odometry.identification.fit import fit
+from odometry.identification.fit import fit, try_values
 from odometry.identification.problem import Problem
 from odometry.identification.solve import solve
 from odometry.models.catalogue import MODELS

@@ -68,7 +68,7 @@ def test_on_the_spot_the_icrs_are_told_once_the_slip_is_fixed(excited_by):
 
 
 def test_one_circle_only_leaves_something_open(excited_by):
-    """Three numbers (forward, sideways, turn) cannot tell five."""
+    """Three numbers (forward, sideways, turn) do not determine five."""
     found = excited_by(lambda _: (0.3, 0.6))
     assert len(found.undetermined) == 2
 

@@ -151,7 +151,9 @@ def test_what_is_open_goes_by_the_stated_noise_where_the_residuals_are_smaller(
 
 def test_too_few_windows_tell_how_many_there_are(fitted):
     config = WindowConfig(horizon_m=100.0, shortest=0.5)
-    with pytest.raises(IdentificationError, match="1 windows cannot tell 5 parameters of 'icr'"):
+    with pytest.raises(
+        IdentificationError, match="1 windows do not determine 5 parameters of 'icr'"
+    ):
         fitted(config=config)
     found = fitted("icr_symmetric", config=config)
     assert found.names == ("alpha", "b_hat")

@@ -7,7 +7,7 @@ import pytest
 
 from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
-from odometry.identification.from_positions import how_told, windows_or_stretches
+from odometry.identification.from_positions import position_notes, windows_or_stretches
 from odometry.identification.identify import identify
 from odometry.identification.profile import with_profiles
 from odometry.windows.config import WindowConfig
@@ -98,7 +98,7 @@ def test_the_noise_is_found_and_more_of_it_needs_longer_stretches(noise_m):
     assert found.noise.position_m == pytest.approx(noise_m, rel=0.3)
     expected_m = np.clip(noise_m * np.sqrt(12 / 25) / 0.02, 10.0, 50.0)
     assert found.windows.travel_m.mean() == pytest.approx(expected_m, rel=0.4)
-    words = how_told(found)
+    words = position_notes(found)
     assert "the treads alone" in words[0]
     assert "[sensors] pose is not stated" in words[1]
 

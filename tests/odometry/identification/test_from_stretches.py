@@ -1,4 +1,4 @@
-"""Fits to positions without yaw that are no answer, and what is told instead."""
+"""Fits to positions without yaw that are refused, and the simpler model given instead."""
 
 from dataclasses import replace
 
@@ -6,9 +6,9 @@ import pytest
 
 from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
-from odometry.identification.from_stretches import contradicted, not_told
+from odometry.identification.identification import contradicted, undetermined_by_positions
 from odometry.identification.identify import identify
-from odometry.identification.told_instead import told_instead
+from odometry.identification.simpler_model import simpler_model
 from tests.odometry.positions_drives import ICR, ROBOT, drive, emptied
 
 
@@ -34,24 +34,24 @@ def test_an_interval_wider_than_the_parameter_is_large_is_refused(noisy):
     assert noisy.unexplained == ()
 
 
-def test_two_factors_are_told_instead_and_hold_the_truth(noisy):
-    simpler = told_instead(noisy)
+def test_two_factors_are_given_instead_and_hold_the_truth(noisy):
+    simpler = simpler_model(noisy)
     intervals = only(simpler).fit.intervals
     assert intervals["b_hat"].low < ICR["y_left"] - ICR["y_right"] < intervals["b_hat"].high
     assert intervals["alpha"].low < (ICR["alpha_left"] + ICR["alpha_right"]) / 2
     assert intervals["alpha"].high > (ICR["alpha_left"] + ICR["alpha_right"]) / 2
 
 
-def test_what_a_simpler_model_cannot_tell_either_is_not_offered():
+def test_a_simpler_model_that_is_not_determined_either_is_not_offered():
     straight = found(emptied(drive(8, most_turn=0.0, noise_m=0.02)))
     assert straight.left_open
-    assert told_instead(straight) is None
-    assert told_instead(found(emptied(drive(8, most_turn=0.0)), "icr_symmetric")) is None
+    assert simpler_model(straight) is None
+    assert simpler_model(found(emptied(drive(8, most_turn=0.0)), "icr_symmetric")) is None
 
 
 def test_few_stretches_show_no_spread():
     short = found(emptied(drive(14, noise_m=0.02, duration_s=9.0)))
-    assert any("do not show how much the model errs" in words for words in short.left_open)
+    assert any("do not show the errors of the model" in words for words in short.left_open)
     longer = found(emptied(drive(14, noise_m=0.02, duration_s=25.0)))
     assert longer.left_open == ()
 
@@ -62,11 +62,11 @@ def test_values_that_the_ideal_drive_beats_are_refused():
     assert contradicted(ground.fit, ground.ideal) == ()
     off = replace(ground.fit, values={"alpha": 1.5, "b_hat": 0.4})
     (words,) = contradicted(off, ground.ideal)
-    assert words.startswith("the ideal drive, without any fit, errs less")
+    assert words.startswith("the ideal differential drive has smaller errors")
 
 
 def test_fits_to_poses_are_judged_by_their_stated_noise():
     ground = only(found(drive(14), "icr_symmetric"))
     off = replace(ground.fit, values={"alpha": 1.5, "b_hat": 0.4})
     assert contradicted(off, ground.ideal) == ()
-    assert not_told(ground.fit, ROBOT) == ()
+    assert undetermined_by_positions(ground.fit, ROBOT) == ()

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.identification.identify import identify
-from odometry.identification.report import report
-from odometry.identification.short_recording import STEADY_S
+from odometry.identification.report import STEADY_S, report
 
 
 @pytest.fixture(scope="module")

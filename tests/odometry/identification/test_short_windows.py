@@ -28,7 +28,7 @@ def test_half_may_be_shorter_without_a_word(windows, stated):
         said = short_windows(replace(windows, travel_m=travel_m), stated)
         assert (said == "") == silent
     assert said.startswith(
-        f"{few + 1} of {count} windows are shorter than the 2 m asked for (0.50 m"
+        f"{few + 1} of {count} windows are shorter than the 2 m of the horizon (0.50 m"
     )
 
 
@@ -50,4 +50,4 @@ def test_windows_by_time_are_judged_by_time(winding, stated):
     lasted_s = [
         windows.steps_s[a:b].sum() for a, b in zip(windows.first, windows.last, strict=True)
     ]
-    assert f"than the 30 s asked for ({np.mean(lasted_s):.2f} s on average)" in said
+    assert f"than the 30 s of the horizon ({np.mean(lasted_s):.2f} s on average)" in said

@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 from scipy.linalg import sqrtm
 
-from odometry.identification.spread import groups_alike, spread_between
+from odometry.identification.spread import correlated_groups, spread_between
 
 
 def test_groups_are_runs_else_stretches_of_five_windows_or_more():
     runs = np.repeat(np.array(["a", "b", "c"], dtype=object), [4, 9, 30])
-    assert groups_alike(runs).tolist() == [0] * 4 + [1] * 9 + [2] * 30
-    two = groups_alike(runs[runs != "a"])
+    assert correlated_groups(runs).tolist() == [0] * 4 + [1] * 9 + [2] * 30
+    two = correlated_groups(runs[runs != "a"])
     assert np.all(np.diff(two) >= 0)
     assert np.unique(two, return_counts=True)[1].min() >= 5 - 1
     assert not set(two[:9]) & set(two[9:])
     assert len(set(two)) == 1 + 6
-    assert groups_alike(runs[runs == "b"]) is None
+    assert correlated_groups(runs[runs == "b"]) is None
 
 
 def printed(groups, design, residuals):

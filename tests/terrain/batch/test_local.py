@@ -7,8 +7,8 @@ from contextlib import suppress
 from multiprocessing import active_children
 from pathlib import Path
 
+from terrain.batch.batch import KILLED, local_outcomes
 from terrain.batch.job import FAILED, REPLAYED
-from terrain.batch.local import KILLED, local_outcomes
 from terrain.batch.processes import pool
 from terrain.config import Config
 from tests.terrain.batch.deadly import Deadly

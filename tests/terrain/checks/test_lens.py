@@ -3,7 +3,7 @@
 import pytest
 
 from terrain.camera import Camera
-from terrain.checks.lens import lens
+from terrain.checks.recording import lens
 
 MOUNT = [0.0, 0.0, 1.0, 0.0, 0.6, 0.0]
 

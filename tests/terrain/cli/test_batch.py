@@ -180,13 +180,13 @@ def test_an_interrupt_leaves_what_is_whole_and_goes_on_from_there(here, monkeypa
             raise KeyboardInterrupt
         return kept(job)
 
-    monkeypatch.setattr("terrain.batch.local.run_job", stop)
+    monkeypatch.setattr("terrain.batch.batch.run_job", stop)
     answer = call(batch, *NAMES, "--processes", "1")
     assert answer.exit_code != 0
     manifest = read_manifest(here / "out")
     assert (manifest.verb, manifest.state) == ("batch", "unfinished")
     assert not list((here / "out").glob(".*"))
-    monkeypatch.setattr("terrain.batch.local.run_job", kept)
+    monkeypatch.setattr("terrain.batch.batch.run_job", kept)
     assert call(batch, *NAMES, "--processes", "1").exit_code == 0
     assert replayed(here / "out") == NAMES
     assert read_manifest(here / "out").state == "finished"

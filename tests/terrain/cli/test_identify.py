@@ -129,7 +129,7 @@ def test_windows_that_are_shorter_than_asked_are_explained(command, curvy_run, t
     (chained / "pose.csv").write_text("\n".join([f"{header},window", *rows]) + "\n")
     code, _, messages = command(chained, "--starts", "1")
     assert code == 0
-    assert "windows are shorter than the 2 m asked for (0." in messages
+    assert "windows are shorter than the 2 m of the horizon (0." in messages
     assert "`window` of pose.csv changes that often" in messages
 
 

@@ -40,7 +40,7 @@ def test_a_refusal_begins_with_the_reason_and_ends_with_the_fit_in_a_line(comman
     _, output, messages = command(across_run, *SHORT)
     assert output == ""
     said = messages[messages.index("Error: ") :].rstrip().splitlines()
-    assert said[0].startswith("Error: the runs cannot tell these parameters apart")
+    assert said[0].startswith("Error: the runs do not determine these parameters")
     place = said.index("Nothing is written. The fit that is refused:")
     assert re.match(
         r"  \[ground\] icr, \d+ windows, residuals .*y_left = .* \(open\)", said[place + 1]

@@ -14,8 +14,8 @@ Wanted = str | KinematicModel | ParameterSet
 
 
 @dataclass(frozen=True)
-class Asked:
-    """A model to be identified on one terrain.
+class TerrainModel:
+    """The model that is identified on one terrain.
 
     Attributes
     ----------
@@ -28,8 +28,8 @@ class Asked:
     known: Mapping[str, float] = field(default_factory=dict)
 
 
-def asked_on(ground: str, wanted: Wanted, robot: Robot) -> Asked:
-    """The model for a terrain: of a parameter set, that of its table, its effects held.
+def model_on_terrain(terrain: str, wanted: Wanted, robot: Robot) -> TerrainModel:
+    """Find the model for a terrain: of a parameter set that of its table, with its effects fixed.
 
     A set with one table is for every terrain.
 
@@ -39,19 +39,19 @@ def asked_on(ground: str, wanted: Wanted, robot: Robot) -> Asked:
         If there is no such model or effect, or a set with several tables has none of the terrain.
     """
     if isinstance(wanted, KinematicModel):
-        return Asked(wanted)
+        return TerrainModel(wanted)
     if isinstance(wanted, str):
-        return Asked(model_named(wanted))
-    name, table = _table(ground, wanted)
+        return TerrainModel(model_named(wanted))
+    name, table = _table(terrain, wanted)
     model = model_of(table, robot, f"[terrain.{name}]")
     known = {p.name for p in model.parameters if p.known}
-    return Asked(model, {key: value for key, value in table.values.items() if key in known})
+    return TerrainModel(model, {key: value for key, value in table.values.items() if key in known})
 
 
-def _table(ground: str, parameters: ParameterSet) -> tuple[str, TerrainParameters]:
+def _table(terrain: str, parameters: ParameterSet) -> tuple[str, TerrainParameters]:
     terrains = parameters.terrains
     if len(terrains) == 1:
         return next(iter(terrains.items()))
-    if ground not in terrains:
-        raise ParameterError(f"the set has no terrain {ground!r}; it has {', '.join(terrains)}")
-    return ground, terrains[ground]
+    if terrain not in terrains:
+        raise ParameterError(f"the set has no terrain {terrain!r}; it has {', '.join(terrains)}")
+    return terrain, terrains[terrain]

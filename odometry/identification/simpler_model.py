@@ -1,4 +1,4 @@
-"""A model with fewer parameters, where runs tell these and not all that were asked for."""
+"""A model with fewer parameters, where the runs determine these and not all of the model's."""
 
 from dataclasses import replace
 
@@ -12,14 +12,14 @@ from odometry.models.catalogue import MODELS
 SIMPLE = "icr_symmetric"  # two factors: a scale and an effective width
 
 
-def told_instead(found: Identification) -> Identification | None:
+def simpler_model(found: Identification) -> Identification | None:
     """`SIMPLE` on the same windows, where a refused identification left parameters open.
 
-    None where the model asked for does not explain the runs, has effects or is as simple, or
-    where the runs do not tell this one either. Nothing is held out.
+    None where the identified model does not explain the runs, has effects or is as simple, or
+    where the runs do not determine this one either. Nothing is held out.
     """
-    asked = [one.fit.model for one in found.terrains.values()]
-    if found.unexplained or any(model.name == SIMPLE or effects_of(model) for model in asked):
+    models = [one.fit.model for one in found.terrains.values()]
+    if found.unexplained or any(model.name == SIMPLE or effects_of(model) for model in models):
         return None
     fit_to = fitter(
         MODELS[SIMPLE],

@@ -8,9 +8,9 @@ import pytest
 
 from odometry.effects.tables import effects_of
 from odometry.errors import ParameterError
-from odometry.identification.asked import asked_on
 from odometry.identification.config import SolverConfig
 from odometry.identification.identify import identify
+from odometry.identification.terrain_model import model_on_terrain
 from odometry.models.catalogue import MODELS
 from odometry.parameters import (
     ParameterSet,
@@ -140,8 +140,8 @@ def test_each_ground_has_the_model_of_its_table(synthetic, tmp_path):
 
 
 def test_the_only_table_of_a_set_is_for_every_ground():
-    asked = asked_on("anywhere", set_of(SCALE), Robot(0.5))
+    asked = model_on_terrain("anywhere", set_of(SCALE), Robot(0.5))
     assert effects_of(asked.model)[0].by_name == SCALE["parameters"]
     tables = {"a": TerrainParameters("icr", OLD), "b": TerrainParameters("icr", OLD)}
     with pytest.raises(ParameterError, match="no terrain 'c'; it has a, b"):
-        asked_on("c", ParameterSet(tables), Robot(0.5))
+        model_on_terrain("c", ParameterSet(tables), Robot(0.5))
