@@ -51,10 +51,13 @@ class ClockDrift(MeasurementEffect):
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
-        """See `Effect.parameters`; `offset` is that at the start of a run."""
+        """See `Effect.parameters`; `offset` is that at the start of a run.
+
+        A clock that is off by a hundredth is none: a scale of all speeds looks the same.
+        """
         return (
             EffectParameter("offset", "s", -1.0, 1.0, 0.0, 0.02),
-            EffectParameter("rate", "", -0.05, 0.05, 0.0, 1e-4),
+            EffectParameter("rate", "", -0.01, 0.01, 0.0, 1e-4),
         )
 
     def delay_s(self, values: FloatArray, stamps_s: FloatArray) -> FloatArray:

@@ -7,6 +7,7 @@ import numpy as np
 from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual
 from odometry.gap.config import GapConfig
+from odometry.gap.contest import Judged
 from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitter
 from odometry.gap.next_drives import NextDrive, next_drives
@@ -65,10 +66,14 @@ def named_outliers(outliers: Outliers, before_m: float, after_m: float) -> Named
 
 
 def drives_apart(
-    found: Explanation, equivalent: Collection[str], fitter: Fitter, config: GapConfig
+    found: Explanation,
+    candidates: Sequence[Judged],
+    equivalent: Collection[str],
+    fitter: Fitter,
+    config: GapConfig,
 ) -> tuple[NextDrive, ...]:
     """What would tell the first effect, in the form that was chosen, from what came as near."""
-    fits = {one.effect.name: one.fitted for one in reversed(found.first)}
+    fits = {one.effect.name: one.fitted for one in reversed(candidates)}
     rivals = {name: fits[name] for name in equivalent if name in fits}
     if not rivals or found.names[0] not in fits:
         return ()

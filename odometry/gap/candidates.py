@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from odometry.effects.base import Effect
 from odometry.effects.catalogue import EFFECTS
+from odometry.effects.headings import FEW_HEADINGS
 from odometry.effects.recorded import Recorded, labels_of
 from odometry.gap.calibration import Calibration
 from odometry.gap.own_moments import observed_s
@@ -12,14 +13,30 @@ from odometry.windows.dense import DenseWindows
 
 def offered_effects(scenes: Sequence[DenseWindows], calibration: Calibration) -> tuple[Effect, ...]:
     """Effects of the catalogue that the measured runs could tell, in its order."""
+    offered = _of_catalogue(scenes, calibration)
+    return tuple(e for e in offered if told_by(e, scenes, calibration))
+
+
+def effects_of_one_heading(
+    scenes: Sequence[DenseWindows], calibration: Calibration
+) -> tuple[Effect, ...]:
+    """Those that the measured runs could tell if the robot looked in more directions."""
+    base = calibration.base
+    return tuple(
+        e
+        for e in _of_catalogue(scenes, calibration)
+        if all(e.lacks(scene.inputs, base) == FEW_HEADINGS for scene in scenes)
+    )
+
+
+def _of_catalogue(scenes: Sequence[DenseWindows], calibration: Calibration) -> list[Effect]:
     recorded = Recorded(
         calibration.base,
         tuple(scene.inputs for scene in scenes),
         tuple(observed_s(scene) for scene in scenes),
         frozenset().union(*(labels_of(scene.inputs) for _, scene in calibration.held_back)),
     )
-    offered = [effect for form in EFFECTS for effect in form.offered(recorded)]
-    return tuple(e for e in offered if told_by(e, scenes, calibration))
+    return [effect for form in EFFECTS for effect in form.offered(recorded)]
 
 
 def quick_effects(scenes: Sequence[DenseWindows], calibration: Calibration) -> tuple[Effect, ...]:

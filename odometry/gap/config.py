@@ -43,6 +43,8 @@ class GapConfig:
     equivalent_margin : float
         Of evidence: less says nothing of which of two candidates it is (a ratio of likelihoods
         of twenty).
+    least_of_rival : float
+        Share of what a name gains that another must gain to be as near: it is not compared else.
     general_margin : float
         Of evidence by which a smooth function must beat names to stand in their place.
     least_better : float
@@ -118,6 +120,7 @@ class GapConfig:
     sure: float = 3.0
     near_bound: float = 0.1
     equivalent_margin: float = 6.0
+    least_of_rival: float = 0.5
     general_margin: float = 6.0
     least_better: float = 0.005
     least_beside: float = 0.5

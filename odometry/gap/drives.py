@@ -40,7 +40,7 @@ class Drive:
 
 
 def drives_of(scenes: Sequence[DenseWindows], base: Base) -> tuple[Drive, ...]:
-    """A handful, at the speeds and on the slopes that the robot has driven."""
+    """A handful at the speeds and on the slopes that the robot has driven, most varied first."""
     treads = np.concatenate([scene.inputs.tread_speeds_m_s for scene in scenes])
     fast = float(np.percentile(np.abs(treads), 95))
     width = _effective_width_m(base)
@@ -53,15 +53,15 @@ def drives_of(scenes: Sequence[DenseWindows], base: Base) -> tuple[Drive, ...]:
         scale = min(1.0, fast / max(float(np.abs(speeds).max()), 1e-9))
         return Drive(words, scale * speeds, level, level)
 
-    found = [made(f"spins to both sides, treads at {fast:.2g} m/s", level, 2 * fast * turn)]
+    stepped = fast * np.array(STEPS)[(time_s // STEP_S).astype(np.int64) % len(STEPS)]
+    curved = 0.4 * stepped * turn
+    found = [made(f"curves with steps of speed up to {fast:.2g} m/s", stepped, curved)]
     for radius_m in RADII_M:
         inner = fast / (1 + width / (2 * radius_m))
         words = f"circles of {radius_m:g} m radius to both sides at {inner:.2g} m/s"
         found.append(made(words, level + inner, inner * width / radius_m * turn))
-    stepped = fast * np.array(STEPS)[(time_s // STEP_S).astype(np.int64) % len(STEPS)]
     found.append(made(f"straights with steps of speed up to {fast:.2g} m/s", stepped, level))
-    curved = 0.4 * stepped * turn
-    found.append(made(f"curves with steps of speed up to {fast:.2g} m/s", stepped, curved))
+    found.append(made(f"spins to both sides, treads at {fast:.2g} m/s", level, 2 * fast * turn))
     return (*found, *_on_slopes(scenes, found))
 
 

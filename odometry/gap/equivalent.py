@@ -1,39 +1,106 @@
 """Effects that the data cannot separate from those named."""
 
+from collections.abc import Sequence
+
+import numpy as np
+
+from odometry.arrays import FloatArray
 from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual
+from odometry.gap.candidates import effects_of_one_heading
 from odometry.gap.config import GapConfig
+from odometry.gap.contest import Judged, judge, margin_of, penalty, sure_sum
 from odometry.gap.explanation import Explanation
+from odometry.gap.fit import Fitter
+from odometry.gap.input_noise import noise_of_windows
 from odometry.gap.result import Equivalent
 
+SURE = 1.645  # standard deviations of a lower bound of 95 %
 TELL_APART = "a run in which the two differ: other speeds, turns or terrain"
 
 
-def equivalents(found: Explanation, config: GapConfig) -> tuple[Equivalent, ...]:
+def rivals_of_one_heading(
+    found: Explanation, fitter: Fitter, config: GapConfig
+) -> tuple[Judged, ...]:
+    """What a robot on few headings cannot tell from the first name, in its place.
+
+    These are no candidates there, because their own parameters could not be told from each other.
+    """
+    if not found.names or isinstance(found.effects[0], Residual):
+        return ()
+    absent = effects_of_one_heading(fitter.measured.scenes, fitter.calibration)
+    return tuple(judge(fitter, found.start, absent, config, lambda: None))
+
+
+def equivalents(
+    found: Explanation, more: Sequence[Judged], fitter: Fitter, config: GapConfig
+) -> tuple[Equivalent, ...]:
     """What is alike by its equations, and what came as near in the contest for the same place.
 
     An effect that includes another has values to spare for whatever else is imperfect: the other
-    is as near where it closes nearly as much.
+    is as near where it closes nearly as much. `more` are rivals of the first name that were no
+    candidates.
     """
     alike: dict[str, Equivalent] = {}
     for added in found.fitted.effects:
         _add_same(alike, added)
-    for step in found.steps:
+    for place, step in enumerate(found.steps):
         if isinstance(step.effect, Residual):
             continue
-        rivals = found.contests.get(step.effect.name, ())
+        rivals = (*found.contests.get(step.effect.name, ()), *(() if place else more))
         best = next((one for one in rivals if one.effect.name == step.effect.name), step)
-        for rival in rivals:
-            if rival.effect.name == step.effect.name or rival.effect.name in alike:
+        for rival in _as_near(best, rivals, fitter, config):
+            if rival.effect.name in alike:
                 continue
-            is_part = rival.effect.name in best.effect.includes
-            closes_as_much = is_part and rival.gain > config.mostly_closed * best.gain
-            if closes_as_much or best.evidence - rival.evidence < config.equivalent_margin:
-                reasons = {**best.effect.alike, **best.effect.includes}
-                reason = reasons.get(rival.effect.name, TELL_APART)
-                alike[rival.effect.name] = Equivalent(rival.effect.name, best.effect.name, reason)
-                _add_same(alike, rival.fitted.effects[-1])
+            reasons = {**best.effect.alike, **best.effect.includes}
+            reason = reasons.get(rival.effect.name, TELL_APART)
+            alike[rival.effect.name] = Equivalent(rival.effect.name, best.effect.name, reason)
+            _add_same(alike, rival.fitted.effects[-1])
     return tuple(one for name, one in alike.items() if name not in found.names)
+
+
+def _as_near(
+    best: Judged, rivals: Sequence[Judged], fitter: Fitter, config: GapConfig
+) -> list[Judged]:
+    """Rivals of another name that do not surely explain less than the best, in their order."""
+    others = [
+        one
+        for one in rivals
+        if one.effect.name != best.effect.name and one.gain > config.least_of_rival * best.gain
+    ]
+    if not others:
+        return []
+    own, *of_others = noise_of_windows([one.fitted for one in (best, *others)], fitter.measured)
+    margin = margin_of(config, fitter.spread(best.fitted), best.gain)
+    return [
+        rival
+        for rival, noise in zip(others, of_others, strict=True)
+        if _is_part(rival, best, config)
+        or best.evidence - rival.evidence < config.equivalent_margin
+        or _surely_lost(rival, best, noise - own, fitter, config) < margin
+    ]
+
+
+def _is_part(rival: Judged, best: Judged, config: GapConfig) -> bool:
+    included = rival.effect.name in best.effect.includes
+    return included and rival.gain > config.mostly_closed * best.gain
+
+
+def _surely_lost(
+    rival: Judged, best: Judged, kept_out: FloatArray, fitter: Fitter, config: GapConfig
+) -> float:
+    """Evidence that a rival loses, at the lower bound, noise of the tread speeds apart.
+
+    `kept_out` (K,) is the chi-squared of each window that this noise makes of the rival and not of
+    the best, which explains nothing by it. Of residuals with such noise and without, the sums of
+    squares differ by that of the noise, with twice its root as standard deviation.
+    """
+    less = rival.fitted.held_out - best.fitted.held_out - kept_out
+    scatter = 2 * SURE * float(np.sqrt(max(0.0, kept_out.sum())))
+    paid = penalty(rival.fitted.freedom - best.fitted.freedom, best.fitted)
+    moved = rival.fitted.base_moved - best.fitted.base_moved
+    spread = max(1.0, fitter.spread(best.fitted))
+    return (sure_sum(fitter.by_piece(less), config.trimmed) - scatter + moved) / spread + paid
 
 
 def _add_same(alike: dict[str, Equivalent], added: Added) -> None:

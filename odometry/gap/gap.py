@@ -14,7 +14,7 @@ from odometry.gap.answer import (
 from odometry.gap.calibration import calibrated
 from odometry.gap.calibration_by_terrain import by_terrain
 from odometry.gap.config import GapConfig
-from odometry.gap.equivalent import equivalents
+from odometry.gap.equivalent import equivalents, rivals_of_one_heading
 from odometry.gap.errors import GapError
 from odometry.gap.fit import Fitter
 from odometry.gap.horizon import for_chains, for_positions
@@ -125,7 +125,8 @@ def find_gap(
     named = named_effects(found, effects, believed_m)
     if outliers is not None:
         named = (named_outliers(outliers, closings[0].before.value, believed_m), *named)
-    equivalent = equivalents(found, config)
+    more = rivals_of_one_heading(found, fitter, config)
+    equivalent = equivalents(found, more, fitter, config)
     return GapResult(
         verdict=named[0].added.effect.name if named else verdict_of(found, closings[1]),
         effects=named,
@@ -140,7 +141,9 @@ def find_gap(
         holdout_scenes=tuple(held_scenes),
         horizon_s=config.horizon_s,
         notes=headings.notes,
-        next_drives=drives_apart(found, [one.name for one in equivalent], fitter, config),
+        next_drives=drives_apart(
+            found, (*found.first, *more), [one.name for one in equivalent], fitter, config
+        ),
         refusals=found.refusals,
         holdout_before=() if outliers is None else tuple(raw_scenes[1]),
     )

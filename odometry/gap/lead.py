@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from odometry.effects.residual import Residual
 from odometry.gap.quantities import metres, percent, with_interval
 from odometry.gap.region_words import noun_of_residual
-from odometry.gap.result import GapResult
+from odometry.gap.result import Equivalent, GapResult
 from odometry.gap.share_closed import Share, held_out_share
 from odometry.gap.verdict import Refusal
 
@@ -33,9 +33,21 @@ def _missing(result: GapResult) -> str:
     names = listed([f"{e.added.effect.in_words} ({e.added.effect.name})" for e in named])
     if rest:
         names += f", and something unknown that depends on {listed(rest)}"
+    untold = "".join(
+        f"; these runs do not tell {name} from {listed(others, 'or')}"
+        for name, others in _instead(result.equivalent).items()
+    )
     if all(effect.added.effect.of_reference for effect in named) and not rest:
-        return f"A sensor is at fault, not the robot: {names}."
-    return f"Missing in {model}: {names}."
+        return f"A sensor is at fault, not the robot: {names}{untold}."
+    return f"Missing in {model}: {names}{untold}."
+
+
+def _instead(equivalent: Sequence[Equivalent]) -> dict[str, list[str]]:
+    """Names of equivalents, by the name in whose place each may be."""
+    places: dict[str, list[str]] = {}
+    for one in equivalent:
+        places.setdefault(one.instead_of, []).append(one.name)
+    return places
 
 
 def _nothing_named(result: GapResult, model: str) -> str:
@@ -75,15 +87,19 @@ def _how_sure(result: GapResult, share: Share | None) -> str:
     if held.after.is_above(held.noise_floor):
         left = metres(held.after.value - held.noise_floor.value)
         said += f" and {left} stays unexplained"
-    others = [f"{one.name} instead of {one.instead_of}" for one in result.equivalent]
-    return f"{said}. It may as well be {listed(others, 'or')}." if others else f"{said}."
+    return f"{said}."
 
 
 def _what_to_do(result: GapResult) -> str:
+    between: dict[str, list[str]] = {}
+    odds: dict[str, float] = {}
+    for drive in result.next_drives:
+        between.setdefault(drive.words, [drive.between[0]]).append(drive.between[1])
+        odds[drive.words] = min(drive.odds, odds.get(drive.words, 1.0))
     drives = [
-        f"To tell {' from '.join(one.between)}: {one.words}, for a minute (decides in "
-        f"{100 * one.odds:.0f} % of cases)."
-        for one in result.next_drives
+        f"To tell {name} from {listed(others, 'or')}: {words}, for a minute (decides in "
+        f"{100 * odds[words]:.0f} % of cases)."
+        for words, (name, *others) in between.items()
     ]
     decided = {name for one in result.next_drives for name in one.between}
     measures = [

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
 from scipy.stats.contingency import association, crosstab
 
 from odometry.effects.base_model import Base
@@ -88,10 +89,12 @@ def locate(
 
 
 def _unlike(variables: Sequence[Variable]) -> list[Variable]:
-    """Those that are not alike to one before them."""
+    """Those that vary and are not alike to one before them."""
     kept: list[Variable] = []
     for variable in variables:
         groups = groups_of(variable)
-        if all(association(crosstab(groups, groups_of(o)).count) < ALIKE for o in kept):
+        if len(np.unique(groups)) > 1 and all(
+            association(crosstab(groups, groups_of(o)).count) < ALIKE for o in kept
+        ):
             kept.append(variable)
     return kept

@@ -28,6 +28,7 @@ from odometry.gap.solve import differences
 from odometry.windows.dense import DenseWindows
 
 LEAST_ODDS = 0.6  # of a drive that is worth a minute
+SURE_ODDS = 0.98  # of one than which none needs to be better
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,10 @@ def next_drives(
     calibration: Calibration,
     config: GapConfig,
 ) -> tuple[NextDrive, ...]:
-    """The best drive for each rival of a named effect; none where no drive is worth it.
+    """A drive for each rival of a named effect, one for all where there is such; none, if in vain.
+
+    Of drives that decide as well, it is the one of more different motions: what is true may be
+    none of these effects.
 
     Parameters
     ----------
@@ -74,15 +78,21 @@ def next_drives(
     scenes : sequence of DenseWindows
         Measured: speeds, slopes and pose rate are theirs.
     """
-    drives = drives_of(scenes, calibration.base)
     (name, named), *others = ((key, rivalling(fit)) for key, fit in rivals.items())
+    drives, odds = drives_of(scenes, calibration.base), []
+    for drive in drives:
+        pairs = [(named, rival) for _, rival in others]
+        odds.append([_odds(drive, pair, scenes[0], calibration, config) for pair in pairs])
+        if min(odds[-1]) >= SURE_ODDS:
+            break
+    table = np.array(odds)
+    for_all = int(np.argmax(table.mean(axis=1).round(1)))
     found = []
-    for other, rival in others:
-        pair = (named, rival)
-        odds = [_odds(one, pair, scenes[0], calibration, config) for one in drives]
-        best = int(np.argmax(odds))
-        if odds[best] >= LEAST_ODDS:
-            found.append(NextDrive(drives[best].words, (name, other), odds[best]))
+    for column, (other, _) in enumerate(others):
+        its_best = int(np.argmax(table[:, column]))
+        best = for_all if table[for_all, column] >= LEAST_ODDS else its_best
+        if table[best, column] >= LEAST_ODDS:
+            found.append(NextDrive(drives[best].words, (name, other), float(table[best, column])))
     return tuple(found)
 
 

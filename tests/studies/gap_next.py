@@ -42,8 +42,15 @@ SHAPES = {
     "straights with steps": "steps",
     "curves with steps": "curves",
 }
-# An arm ahead moves the sensor exactly as ICRs behind move the robot; no drive tells them apart.
-ALIKE = {"sensor place": ("sideways",), "sideways": ("sensor place",)}
+# What no drive tells apart, by the equations: an arm ahead moves the sensor as ICRs behind move the
+# robot; a constant loss of traction is a change of the ICRs, and one of distance alone a map of
+# another scale; without gyroscope commands that are late are stamps that are late.
+ALIKE = {
+    "sensor place": ("sideways",),
+    "sideways": ("sensor place",),
+    "traction": ("terrain", "reference"),
+    "late stamps": ("late commands",),
+}
 COLUMNS = (
     *("pair", "truth", "seed", "true", "rival", "first", "equivalent", "proposed", "between"),
     *("odds", "then", "then_equivalent", "score", "apart", "cpu_s", "error"),
@@ -120,7 +127,9 @@ def judged(case: RivalCase, folder: Path) -> dict[str, str]:
 
 def apart(case: RivalCase, found: dict[str, Any]) -> dict[str, str]:
     """Score of the first name, and whether it is right and the rival is out."""
-    scored = score(found["verdict"], "", ((case.true, *ALIKE.get(case.true, ())),), ())
+    true = ((case.true, *ALIKE.get(case.true, ())),)
+    near = [one["name"] for one in found["equivalent"]]
+    scored = score(found["verdict"], "", true, (), near)
     rivals = {one["name"] for one in found["equivalent"]} & set(MEANING[case.rival])
     return {"score": scored, "apart": f"{int(scored == 'right' and not rivals)}"}
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tests.blind.commands import ACCELERATION_M_S2
+from tests.blind.commands import ACCELERATION_M_S2, RATE_HZ
 from tests.blind.ground import Ground
 from tests.blind.hidden.scene import STEP_S, Drive
 
@@ -65,7 +65,14 @@ def drive_of(rng, scene, proposal):
     heading = rng.uniform(-np.pi, np.pi) if proposal.heading_rad is None else proposal.heading_rad
     place = rng.uniform(-20.0, 20.0, 2)
     ground = Ground((float(np.tan(proposal.slope_rad)), 0.0)) if proposal.slope_rad else Ground()
-    return Drive(_from_rest(wanted), ground, (*map(float, place), float(heading)), None)
+    asked = as_held(_from_rest(wanted), scene)
+    return Drive(asked, ground, (*map(float, place), float(heading)), None)
+
+
+def as_held(asked, scene):
+    """Speeds that change where odometry has a row, as those of the calibration do."""
+    held = scene.sensors.odometry_rows * round(1 / (RATE_HZ * STEP_S))
+    return np.repeat(asked[::held], held, axis=0)[: len(asked)]
 
 
 def _wanted(p, width):

@@ -8,7 +8,7 @@ import numpy as np
 from tests.blind.formula import force_of_inertia, half_width_by_curvature, icr_twist
 from tests.blind.hidden.courses import sign
 from tests.blind.hidden.scene import Drive
-from tests.blind.rivals.drives import Proposal, drive_of, waves
+from tests.blind.rivals.drives import Proposal, as_held, drive_of, waves
 
 # given: (shape of the drive, whether it is on a slope)
 GIVEN = {
@@ -94,7 +94,7 @@ class Given:
         drive = drive_of(rng, scene, asked)
         if shape != "waves":
             return drive
-        return Drive(waves(asked), drive.ground, drive.start, None)
+        return Drive(as_held(waves(asked), scene), drive.ground, drive.start, None)
 
     def _treads(self, scene):
         half = self.speed_m_s / self.radius_m * scene.base.width / 2

@@ -12,6 +12,7 @@ from odometry.effects.heading_offset import HeadingOffset
 from odometry.effects.lever_arm import LeverArm
 from odometry.effects.terrain import NewIcrs
 from odometry.effects.time_offset import TimeOffset
+from odometry.gap import equivalent
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import Judged
 from odometry.gap.equivalent import equivalents
@@ -22,18 +23,47 @@ from odometry.models.inputs import Inputs
 SHIFT = np.array([0.05, 0.05, -0.3, 0.0, 0.0])
 
 
+PIECES = 30
+
+
+class Alone:
+    """A fitter whose windows are pieces of their own, all as noise makes them."""
+
+    measured = None
+
+    def by_piece(self, of_windows):
+        return of_windows
+
+    def spread(self, fit):  # noqa: ARG002 - of the face
+        return 1.0
+
+
 def judged(effect, evidence, gain):
-    fitted = SimpleNamespace(effects=(Added(effect, np.zeros(len(effect.parameters))),))
+    """A candidate that gains as much in each piece, and pays the difference for its freedom."""
+    fitted = SimpleNamespace(
+        effects=(Added(effect, np.zeros(len(effect.parameters))),),
+        held_out=np.full(PIECES, -gain / PIECES),
+        freedom=(gain - evidence) / np.log(PIECES),
+        base_moved=0.0,
+    )
     return Judged(effect, fitted, gain, evidence, evidence, 0.1)
 
 
-def names_beside(*candidates):
-    best = candidates[0]
-    found = Explanation(None, (best,), candidates, {best.effect.name: candidates})
-    return [one.name for one in equivalents(found, GapConfig())]
+@pytest.fixture
+def names_beside(monkeypatch):
+    """Names of the equivalents of the first of candidates, on speeds without noise."""
+    silent = np.zeros(PIECES)
+    monkeypatch.setattr(equivalent, "noise_of_windows", lambda fits, _: [silent for _ in fits])
+
+    def names(*candidates):
+        best = candidates[0]
+        found = Explanation(None, (best,), candidates, {best.effect.name: candidates})
+        return [one.name for one in equivalents(found, (), Alone(), GapConfig())]
+
+    return names
 
 
-def test_one_of_near_evidence_is_equivalent():
+def test_one_of_near_evidence_is_equivalent(names_beside):
     first = judged(TimeOffset(), 100.0, 104.0)
     assert names_beside(first, judged(HeadingOffset(), 95.0, 103.0)) == ["heading_offset"]
     assert names_beside(first, judged(HeadingOffset(), 93.0, 103.0)) == []
@@ -42,7 +72,9 @@ def test_one_of_near_evidence_is_equivalent():
 @pytest.mark.parametrize(
     ("gain", "expected"), [(620.0, ["lever_arm", "lateral_skid"]), (590.0, [])]
 )
-def test_what_new_icrs_include_is_as_near_where_it_closes_nearly_as_much(gain, expected):
+def test_what_new_icrs_include_is_as_near_where_it_closes_nearly_as_much(
+    names_beside, gain, expected
+):
     """Of 740 the arm closes 84 or 79 %; what it leaves the other values may have fitted.
 
     An arm ahead is a skid.
@@ -66,7 +98,7 @@ def test_what_is_included_is_in_the_catalogue():
     assert all(set(effect.includes) <= names for effect in EFFECTS)
 
 
-def test_what_does_the_same_as_an_equivalent_is_one_too():
+def test_what_does_the_same_as_an_equivalent_is_one_too(names_beside):
     """Late stamps are as near as late commands, and those do what slip by force does."""
     names = names_beside(judged(TimeOffset(), 100.0, 104.0), judged(CommandDelay(), 99.0, 103.0))
     assert names == ["command_delay", "tread_slip"]

@@ -68,6 +68,19 @@ def test_no_drive_tells_what_is_equal_by_its_equations(scenes, known, fit):
     assert not next_drives({"lever_arm": arm, "lateral_skid": skid}, scenes, known, CONFIG)
 
 
+def test_the_most_varied_drive_is_proposed_for_all_that_it_decides(scenes, known, fit):
+    """Of a speed lost, any drive tells a yaw that is off; none tells equal equations."""
+    rivals = {
+        "lateral_skid": fit(LateralSkid(), [-0.1], 1e-4),
+        "lever_arm": fit(LeverArm(), [0.1, 0.0], 1e-4),
+        "wheel_scale": fit(WheelScale(), [0.9, 0.9], 1e-4),
+        "actuator_lag": fit(ActuatorLag(), [0.2], 1e-4),
+    }
+    found = next_drives(rivals, scenes, known, CONFIG)
+    assert [one.between[1] for one in found] == ["wheel_scale", "actuator_lag"]
+    assert {one.words.split()[0] for one in found} == {"curves"}
+
+
 def test_slopes_are_told_from_wheels_on_a_slope_alone(scenes, known, fit):
     """On level ground the one does nothing; sizes are known to next to nothing."""
     slope = fit(SlopeByIcr(0.3, 0.3), [1.0, 1.0, 2.0], 1e-2)
