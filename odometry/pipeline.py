@@ -148,7 +148,7 @@ def stepped(
 
 def can_start(frame: Frame, *, at_pose: bool) -> bool:
     """Whether a filter can start at a frame: its speeds are known and, if wanted, a position."""
-    if not np.all(np.isfinite(frame.tread_speeds_m_s)):
+    if not np.isfinite(frame.tread_speeds_m_s).all():
         return False
     return not at_pose or (frame.pose is not None and bool(np.all(np.isfinite(frame.pose[:2]))))
 
@@ -185,7 +185,7 @@ def _from_start(run: Run) -> Iterator[Frame]:
     gap_begins_s, gap_ends_s = odometry_gaps(run).spans_s.T
     for frame in _usable(run):
         in_gap = (gap_begins_s < frame.stamp_s) & (frame.stamp_s <= gap_ends_s)
-        yield replace(frame, in_gap=bool(in_gap.any()))
+        yield replace(frame, in_gap=True) if in_gap.any() else frame
 
 
 def _frames_so_far(run: Run) -> Iterator[Frame]:
@@ -202,5 +202,5 @@ def _usable(run: Run) -> Iterator[Frame]:
         is_on = is_on or can_start(frame, at_pose=has_pose)
         if is_on:
             yield frame
-            if not np.all(np.isfinite(frame.tread_speeds_m_s)):
+            if not np.isfinite(frame.tread_speeds_m_s).all():
                 return

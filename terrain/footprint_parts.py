@@ -14,6 +14,7 @@ from terrain.rectangle import Rectangle
 from terrain.visible_terrain import is_visible
 
 POINTS = 7  # along each side of the footprint; odd, so that its middle is one of them
+TOGETHER = 100  # poses; the first that shows all is seldom far along
 FEW = [0, POINTS - 1, POINTS**2 // 2, POINTS**2 - POINTS, POINTS**2 - 1]  # corners and middle
 
 
@@ -79,8 +80,10 @@ def first_whole(
     """The first of poses (N, 3) at which all points of all parts are visible."""
     points = np.concatenate([part.points for part in parts])
     few = np.concatenate([part.points[FEW] for part in parts])
-    maybe = is_visible(camera, se2.transform(poses[:, None], few), coarsest_m).all(axis=1)
-    for place in np.flatnonzero(maybe):
-        if is_visible(camera, se2.transform(poses[place], points), coarsest_m).all():
-            return int(place)
+    for start in range(0, len(poses), TOGETHER):
+        tried = poses[start : start + TOGETHER]
+        maybe = is_visible(camera, se2.transform(tried[:, None], few), coarsest_m).all(axis=1)
+        for place in np.flatnonzero(maybe):
+            if is_visible(camera, se2.transform(tried[place], points), coarsest_m).all():
+                return start + int(place)
     return None

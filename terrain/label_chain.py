@@ -145,4 +145,5 @@ def carried(belief: FloatArray, stay: FloatArray) -> FloatArray:
 
     The transition is symmetric, so that it carries likelihoods back as well.
     """
-    return np.asarray(stay * belief + (1 - stay) * belief.mean(axis=-1, keepdims=True))
+    mean = np.add.reduce(belief, axis=-1, keepdims=True) / belief.shape[-1]
+    return np.asarray(stay * belief + (1 - stay) * mean)

@@ -49,7 +49,9 @@ class PlaceBeliefs:
 
     def probable(self, beliefs: FloatArray) -> IntArray:
         """Columns (m,) of the terrains that beliefs (m, k + 1) make probable; else the last."""
-        return np.where(beliefs.max(axis=1) > LEAST, beliefs.argmax(axis=1), len(self.names) - 1)
+        best: IntArray = beliefs.argmax(axis=1)
+        best[np.maximum.reduce(beliefs, axis=1, initial=0.0) <= LEAST] = len(self.names) - 1
+        return best
 
     def probability(self, belief: FloatArray, terrain: str) -> float:
         """Of a terrain in probabilities (k + 1,)."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from odometry.arrays import ByteImage, FloatArray
 from odometry.estimation.estimate import Estimate
-from odometry.estimation.transition import transition
+from odometry.estimation.transition import moved_pose
 from odometry.footing import Footing
 from odometry.frames import Frame
 from odometry.geometry import se2
@@ -149,7 +149,8 @@ class TerrainWatcher:
         before, self._frame = self._frame, frame
         if before is None:
             return 0.0
-        travel_m = float(np.abs(before.tread_speeds_m_s).mean()) * (frame.stamp_s - before.stamp_s)
+        left, right = before.tread_speeds_m_s.tolist()
+        travel_m = (abs(left) + abs(right)) / 2 * (frame.stamp_s - before.stamp_s)
         return travel_m if math.isfinite(travel_m) else 0.0
 
     def _pose_at(self, frame: Frame, estimate: Estimate) -> FloatArray:
@@ -235,17 +236,17 @@ def _carried(
     pose: FloatArray, estimate: Estimate, stamp_s: float, yaw_rate_rad_s: float
 ) -> FloatArray:
     """A pose (3,) of the odometry frame at an estimate, carried to a later stamp."""
-    if not np.all(np.isfinite(estimate.tread_speeds_m_s)):
+    if not math.isfinite(sum(estimate.tread_speeds_m_s.tolist())):
         return pose
-    state, _ = transition(
-        np.concatenate([pose, estimate.mean[3:]]),
+    return moved_pose(
+        pose,
+        estimate.mean,
         estimate.tread_speeds_m_s,
         stamp_s - estimate.stamp_s,
         yaw_rate_rad_s=yaw_rate_rad_s,
         added_speeds=estimate.added_speeds_m_s,
         added_twist=estimate.added_twist,
     )
-    return state[:3]
 
 
 def _place_label(

@@ -12,8 +12,7 @@ from odometry.estimation.estimate import Estimate, Innovation
 from odometry.estimation.noise_scale import NoiseScale
 from odometry.estimation.transition import STATES
 
-BLOCK = 2048  # estimates that are read at a time
-UNWRITTEN = 256  # the latest, which wait to be written together
+BLOCK = 256  # estimates that are written together, each number beside its own kind
 SIZES = {
     "stamp_s": 1,
     "mean": STATES,
@@ -56,7 +55,7 @@ class KeptEstimates(Sequence[Estimate]):
     def __init__(self, estimates: Iterable[Estimate] = ()) -> None:
         self._file = TemporaryFile()  # noqa: SIM115 - open as long as the sequence
         weakref.finalize(self, self._file.close)
-        self._unwritten = np.empty((UNWRITTEN, WIDTH))
+        self._unwritten = np.empty((WIDTH, BLOCK))
         self._count = 0
         self._lasting: list[tuple[int, _Lasting]] = []
         self._last: Estimate | None = None
@@ -65,11 +64,11 @@ class KeptEstimates(Sequence[Estimate]):
 
     def append(self, estimate: Estimate) -> None:
         """Add the next estimate."""
-        self._unwritten[self._count % UNWRITTEN] = _row(estimate)
+        self._unwritten[:, self._count % BLOCK] = _row(estimate)
         self._last = estimate
         self._note(estimate, self._count)
         self._count += 1
-        if self._count % UNWRITTEN == 0:
+        if self._count % BLOCK == 0:
             self._file.write(self._unwritten.tobytes())
 
     def end_with(self, last: Estimate) -> None:
@@ -81,8 +80,9 @@ class KeptEstimates(Sequence[Estimate]):
         """One of `SIZES` of all estimates, (N,) or (N, size)."""
         place = PLACES[name]
         found = np.empty((self._count, place.stop - place.start))
-        for start, rows in self._blocks():
-            found[start : start + len(rows)] = rows[:, place]
+        for start in range(0, self._count, BLOCK):
+            numbers = self._read(start, place)
+            found[start : start + BLOCK] = numbers[:, : self._count - start].T
         return found[:, 0] if SIZES[name] == 1 else found
 
     def lasting(self, name: str) -> Iterator[tuple[range, Any]]:
@@ -104,15 +104,16 @@ class KeptEstimates(Sequence[Estimate]):
         place = range(self._count)[index]
         if place == self._count - 1 and self._last is not None:
             return self._last
-        (row,) = self._read(place, 1)
+        row = self._read(place - place % BLOCK, slice(0, WIDTH))[:, place % BLOCK]
         after = np.searchsorted([first for first, _ in self._lasting], place, side="right")
         return _estimate(row, self._lasting[int(after) - 1][1])
 
     def __iter__(self) -> Iterator[Estimate]:
         stretches = iter([*self._lasting[1:], (self._count, None)])
         lasting, (until, after) = self._lasting[0][1] if self._lasting else None, next(stretches)
-        for start, rows in self._blocks():
-            for place, row in enumerate(rows, start):
+        for start in range(0, self._count, BLOCK):
+            rows = self._read(start, slice(0, WIDTH)).T[: self._count - start]
+            for place, row in enumerate(np.ascontiguousarray(rows), start):
                 if place == until and after is not None:
                     lasting, (until, after) = after, next(stretches)
                 if place == self._count - 1 and self._last is not None:
@@ -130,21 +131,15 @@ class KeptEstimates(Sequence[Estimate]):
         if not self._lasting or not _alike(self._lasting[-1][1], lasting):
             self._lasting.append((place, lasting))
 
-    def _blocks(self) -> Iterator[tuple[int, FloatArray]]:
-        for start in range(0, self._count, BLOCK):
-            yield start, self._read(start, min(BLOCK, self._count - start))
-
-    def _read(self, start: int, count: int) -> FloatArray:
-        written = self._count - self._count % UNWRITTEN
-        if start >= written:
-            return self._unwritten[start - written : start - written + count]
-        self._file.seek(start * WIDTH * 8)
-        rows = np.frombuffer(self._file.read(min(count, written - start) * WIDTH * 8))
+    def _read(self, start: int, numbers: slice) -> FloatArray:
+        """Some numbers (size, BLOCK) of the block that starts at an estimate."""
+        if start + BLOCK > self._count:
+            return self._unwritten[numbers]
+        size = numbers.stop - numbers.start
+        self._file.seek((start * WIDTH + numbers.start * BLOCK) * 8)
+        found = np.frombuffer(self._file.read(size * BLOCK * 8)).reshape(size, BLOCK)
         self._file.seek(0, 2)
-        rows = rows.reshape(-1, WIDTH)
-        if len(rows) < count:
-            rows = np.concatenate((rows, self._unwritten[: count - len(rows)]))
-        return rows
+        return found
 
 
 def _alike(one: _Lasting, other: _Lasting) -> bool:

@@ -119,6 +119,39 @@ def transition(
     return np.array([*ends, y_left, y_right, x_icr, bias, alpha_left, alpha_right]), jacobian
 
 
+def moved_pose(
+    pose: FloatArray,
+    state: FloatArray,
+    tread_speeds: FloatArray,
+    step_s: float,
+    *,
+    yaw_rate_rad_s: float = math.nan,
+    added_speeds: FloatArray = NO_SPEEDS,
+    added_twist: FloatArray = NO_TWIST,
+) -> FloatArray:
+    """The pose (3,) that `transition` carries another pose (3,) to, without the derivative.
+
+    The parameters are those of `transition`; of the state all but the pose counts.
+    """
+    x, y, yaw = pose.tolist()
+    _, _, _, y_left, y_right, x_icr, bias, alpha_left, alpha_right = state.tolist()
+    left, right = (tread_speeds + added_speeds).tolist()
+    added_x, added_y, added_omega = added_twist.tolist()
+    if math.isnan(yaw_rate_rad_s):
+        omega = (alpha_right * right - alpha_left * left) / (y_left - y_right)
+    else:
+        omega = yaw_rate_rad_s - bias - added_omega
+    ahead = (alpha_left * left + alpha_right * right) / 2 + (y_left + y_right) / 2 * omega + added_x
+    angle = (omega + added_omega) * step_s
+    along, across = ahead * step_s, (added_y - x_icr * omega) * step_s
+    sine_ratio, cosine_ratio, _, _ = _arc(angle)
+    cosine, sine = math.cos(yaw), math.sin(yaw)
+    end_x = sine_ratio * along - cosine_ratio * across
+    end_y = cosine_ratio * along + sine_ratio * across
+    moved_x, moved_y = cosine * end_x - sine * end_y, sine * end_x + cosine * end_y
+    return np.array([x + moved_x, y + moved_y, wrap_one(yaw + angle)])
+
+
 def _arc(angle: float) -> tuple[float, float, float, float]:
     """sin(a)/a, (1 - cos(a))/a, and their derivatives by a."""
     if abs(angle) < SMALL_ANGLE:

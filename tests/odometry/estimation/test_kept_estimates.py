@@ -37,10 +37,9 @@ def same(one, other):
     return str(first) == str(second) and str(residuals[0]) == str(residuals[1])
 
 
-@pytest.mark.parametrize("unwritten", [1, 7, 256, 1000])
-def test_they_come_back(estimates, monkeypatch, unwritten):
-    monkeypatch.setattr(kept_estimates, "UNWRITTEN", unwritten)
-    monkeypatch.setattr(kept_estimates, "BLOCK", 64)
+@pytest.mark.parametrize("block", [1, 7, 256, 600, 1000])
+def test_they_come_back(estimates, monkeypatch, block):
+    monkeypatch.setattr(kept_estimates, "BLOCK", block)
     kept = KeptEstimates(estimates)
     assert len(kept) == len(estimates)
     assert all(map(same, kept, estimates))

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.estimation.transition import STATES, transition
+from odometry.estimation.transition import STATES, moved_pose, transition
 from odometry.geometry import se2
 from odometry.models.icr import icr_twist, icr_twist_jacobian
 
@@ -32,6 +32,14 @@ def difference(one, other):
     delta = one - other
     delta[2] = np.angle(np.exp(1j * delta[2]))
     return delta
+
+
+@given(states, tread_speeds, steps_s, yaw_rates, added)
+def test_a_pose_moves_as_the_state_does(state, speeds, step_s, yaw_rate, effects):
+    given_too = {"yaw_rate_rad_s": yaw_rate, **effects}
+    moved, _ = transition(state, speeds, step_s, **given_too)
+    pose = moved_pose(state[:3], state * [0, 0, 0, 1, 1, 1, 1, 1, 1], speeds, step_s, **given_too)
+    np.testing.assert_array_equal(pose, moved[:3])
 
 
 @given(states, tread_speeds, steps_s, yaw_rates, added)
