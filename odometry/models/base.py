@@ -91,6 +91,8 @@ class KinematicModel(ABC):
         None where all parameters are identified at once.
     has_constant_icrs : bool
         Whether there is an `icr_form`.
+    is_linear_in_speeds : bool
+        Whether the twist is a matrix times the tread speeds, the same for all samples.
     """
 
     name: str
@@ -98,6 +100,7 @@ class KinematicModel(ABC):
     parameters: tuple[Parameter, ...]
     stages: ClassVar[Stages | None] = None
     has_constant_icrs: ClassVar[bool] = False
+    is_linear_in_speeds: ClassVar[bool] = False
 
     @abstractmethod
     def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:

@@ -27,6 +27,7 @@ class FullLinear(KinematicModel):
         Parameter("gamma_31", "1/m", high=0.0),  # bounds of Table I: a left turn is omega > 0
         Parameter("gamma_32", "1/m", low=0.0),
     )
+    is_linear_in_speeds = True
 
     def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.twist`."""

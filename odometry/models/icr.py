@@ -88,6 +88,7 @@ class Icr(InvertibleModel):
         Parameter("alpha_right", "", 0.0, 2.0, default=1.0, usual=USUAL_GAIN),
     )
     has_constant_icrs = True
+    is_linear_in_speeds = True
 
     def check(self, values: FloatArray) -> None:
         """y_left must exceed y_right."""

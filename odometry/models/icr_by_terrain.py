@@ -29,6 +29,7 @@ class IcrByTerrain(Icr):
     """
 
     has_constant_icrs = False
+    is_linear_in_speeds = False
 
     def __init__(self, labels: Sequence[str]) -> None:
         self.labels = tuple(labels)

@@ -19,6 +19,7 @@ class DifferentialDrive(InvertibleModel):
     source = "Baril 2020, eq. 3"
     parameters = (Parameter("track_width", "m", 1e-3, known=True),)
     has_constant_icrs = True
+    is_linear_in_speeds = True
 
     def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.twist`."""
@@ -62,6 +63,7 @@ class IcrSymmetric(InvertibleModel):
         Parameter("b_hat", "m", 1e-3),
     )
     has_constant_icrs = True
+    is_linear_in_speeds = True
 
     def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.twist`."""

@@ -28,6 +28,7 @@ class TractionMode(InvertibleModel):
         Parameter("track_width", "m", 1e-3, known=True),
     )
     has_constant_icrs = True
+    is_linear_in_speeds = True
 
     def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.twist`."""

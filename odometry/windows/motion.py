@@ -5,9 +5,6 @@ to the samples. It is done for some thousand samples at a time, whose arrays fit
 inside with the samples last, so that sums along them are fast.
 """
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-from itertools import pairwise
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -16,11 +13,11 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.geometry import se2
 from odometry.geometry.angles import sine_and_cosine
 from odometry.geometry.levelled import Tilt, level_step_jacobian, level_steps
-from odometry.models.base import Linearised
+from odometry.models.base import KinematicModel, Linearised
 from odometry.models.inputs import Inputs
+from odometry.windows.blocks import Block, blocks
+from odometry.windows.linear_motion import linear_window_motion
 from odometry.windows.windows import Windows
-
-BLOCK = 16384  # samples at a time
 
 
 class Moving(Protocol):
@@ -64,11 +61,14 @@ def linearised_window_motion(
     model: Moving, values: FloatArray, windows: Windows
 ) -> tuple[FloatArray, FloatArray]:
     """`window_motion` (K, 3), to rounding, and its derivative (K, 3, P) by the parameters."""
+    is_level = windows.inputs.tilt is None
+    if is_level and isinstance(model, KinematicModel) and model.is_linear_in_speeds:
+        return linear_window_motion(model, values, windows)
     twists, by_parameters = model.linearised(values, windows.inputs)
     columns = np.ascontiguousarray(np.moveaxis(by_parameters, 0, -1))  # (3, P, N)
     motion = np.empty((len(windows), 3))
     derivative = np.empty((len(windows), *by_parameters.shape[1:]))
-    for block in _blocks(windows):
+    for block in blocks(windows):
         arcs, by_arc = se2.linearised_exp(twists[block.samples] * block.steps_s[:, None])
         steps = _level(arcs, block.tilt)
         yaw = _summed(steps[:, 2])[:-1]
@@ -84,44 +84,6 @@ def linearised_window_motion(
 def window_motion_jacobian(model: Moving, values: FloatArray, windows: Windows) -> FloatArray:
     """Derivative (K, 3, P) of `window_motion` by the parameters."""
     return linearised_window_motion(model, values, windows)[1]
-
-
-@dataclass(frozen=True)
-class _Block:
-    """Some windows, and the samples from the first one's start to the last one's end."""
-
-    windows: slice
-    samples: slice
-    ends: IntArray  # (2 K,), where each window starts and ends among these samples, in turn
-    steps_s: FloatArray
-    tilt: Tilt | None
-
-    @property
-    def first(self) -> IntArray:
-        """Samples (K,) at which the windows start."""
-        return self.ends[::2]
-
-    @property
-    def last(self) -> IntArray:
-        """Samples (K,) at which they end."""
-        return self.ends[1::2]
-
-
-def _blocks(windows: Windows) -> Iterator[_Block]:
-    """The windows in their order; those that start near each other are taken together."""
-    tilt = windows.inputs.tilt
-    begins = np.flatnonzero(np.diff(windows.first // BLOCK, prepend=-1))
-    for begin, end in pairwise([*begins, len(windows)]):
-        chosen = slice(begin, end)
-        first, last = windows.first[chosen], windows.last[chosen]
-        samples = slice(first.min(), last.max() + 1)
-        yield _Block(
-            chosen,
-            samples,
-            np.stack([first, last], axis=-1).ravel() - samples.start,
-            windows.steps_s[samples],
-            None if tilt is None else Tilt(*(part[samples] for part in tilt)),
-        )
 
 
 class _Path(NamedTuple):
@@ -165,12 +127,12 @@ def _by_displacement(
     return np.stack([*x, *y, yaw])
 
 
-def _moved(by_twist: FloatArray, changes: FloatArray, path: _Path, block: _Block) -> FloatArray:
+def _moved(by_twist: FloatArray, changes: FloatArray, path: _Path, block: Block) -> FloatArray:
     """Change (K, 3) of the windows' motion when the twists change (3, N)."""
     v_x, v_y, omega = changes
     x_by, y_by, yaw_by = by_twist[:3], by_twist[3:6], by_twist[6]
     x, y, yaw = (
-        _within(step, block)
+        block.within(step)
         for step in (
             x_by[0] * v_x + x_by[1] * v_y + x_by[2] * omega,
             y_by[0] * v_x + y_by[1] * v_y + y_by[2] * omega,
@@ -182,11 +144,6 @@ def _moved(by_twist: FloatArray, changes: FloatArray, path: _Path, block: _Block
     start = path.poses[block.first, 2]
     cosine, sine = np.cos(start), np.sin(start)
     return np.stack([cosine * x + sine * y, cosine * y - sine * x, yaw], axis=-1)
-
-
-def _within(steps: FloatArray, block: _Block) -> FloatArray:
-    """Sums (K,) of steps (N,) from the first to before the last sample of each window."""
-    return np.asarray(np.add.reduceat(steps, block.ends)[::2])
 
 
 def _between(path: FloatArray, first: IntArray, last: IntArray) -> FloatArray:

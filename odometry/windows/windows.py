@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -60,6 +61,11 @@ class Windows:
 
     def __len__(self) -> int:
         return len(self.first)
+
+    @cached_property
+    def tread_travel_m(self) -> FloatArray:
+        """What the treads travel while each sample is in force (2, N), left and right."""
+        return np.ascontiguousarray(self.inputs.tread_speeds_m_s.T) * self.steps_s
 
     def integrated(self, rates: FloatArray) -> FloatArray:
         """Integral (K,) of rates (N,) over the samples of each window."""

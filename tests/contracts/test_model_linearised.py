@@ -39,6 +39,22 @@ def test_stacks_give_what_the_other_faces_give(model, rng):
 
 
 @each_model
+def test_what_calls_itself_linear_is_a_matrix_times_the_speeds(model, rng):
+    """For accelerations, attitudes and speeds of both signs; the others are no such matrix."""
+    values = values_of(model, rng.uniform(-1, 1, 12))
+    inputs = Inputs(
+        rng.uniform(-2, 2, (50, 2)), *rng.uniform(-0.4, 0.4, (2, 50)), rng.uniform(-9, 9, (50, 2))
+    )
+    at_one = model.linearised(values, Inputs(np.eye(2), 0.0, 0.0, np.zeros((2, 2))))
+    found = model.linearised(values, inputs)
+    is_linear = all(
+        np.allclose(np.tensordot(inputs.tread_speeds_m_s, one, 1), all_of, rtol=1e-9, atol=1e-12)
+        for one, all_of in zip(at_one, found, strict=True)
+    )
+    assert is_linear == model.is_linear_in_speeds
+
+
+@each_model
 def test_stages_share_out_all_that_is_identified(model):
     if model.stages is None:
         return

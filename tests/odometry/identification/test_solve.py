@@ -153,7 +153,7 @@ def with_outliers(problem, rng):
     wrong = rng.choice(len(windows), count, replace=False)
     measured = windows.measured.copy()
     measured[wrong] += [0.5, -0.4, 1.0]
-    spoilt = type(windows)(**{**vars(windows), "measured": measured})
+    spoilt = replace(windows, measured=measured)
     return Problem(problem.model, spoilt, problem.values, problem.free, problem.variances), wrong
 
 

@@ -9,7 +9,7 @@ from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr
 from odometry.models.inputs import Inputs
 from odometry.run import Robot, Run
-from odometry.windows import motion
+from odometry.windows import blocks
 from odometry.windows.config import WindowConfig
 from odometry.windows.motion import (
     linearised_window_motion,
@@ -144,7 +144,7 @@ def test_jacobian_is_the_derivative(model, tilt, winding):
         *(tilt * rng.uniform(-1, 1, (2, count))),
         rng.uniform(-2, 2, (count, 2)),
     )
-    windows = Windows(**{**vars(plain), "inputs": inputs})
+    windows = replace(plain, inputs=inputs)
     sizes = model.ordinary_sizes(ROBOT)
     values = model.pack(model.guess(ROBOT))
     free = [p.name not in COUNTED for p in model.parameters]
@@ -173,6 +173,26 @@ def test_linearised_has_the_motion_of_the_other_face(model, driven):
     np.testing.assert_array_equal(derivative, window_motion_jacobian(model, values, windows))
 
 
+LINEAR = {name: model for name, model in MODELS.items() if model.is_linear_in_speeds}
+
+
+@pytest.mark.parametrize("model", LINEAR.values(), ids=LINEAR)
+def test_sums_that_serve_all_parameters(model, driven, monkeypatch):
+    """The same as with the derivative of each sample; speeds of turns from none to three."""
+    windows = windows_of([driven], WindowConfig(horizon_m=1.5, stride=0.6))
+    speeds = np.random.default_rng(3).uniform(-1, 1, (len(windows.steps_s), 2))
+    speeds[::3, 1] = speeds[::3, 0]
+    speeds[1::3, 1] = speeds[1::3, 0] * (1 + 3e-4)
+    speeds[2::30] *= 300
+    windows = replace(windows, inputs=Inputs(speeds))
+    values = model.pack(model.guess(ROBOT)) * 1.1
+    found = linearised_window_motion(model, values, windows)
+    monkeypatch.setattr(type(model), "is_linear_in_speeds", False)
+    expected = linearised_window_motion(model, values, windows)
+    for one, other in zip(found, expected, strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-12, atol=1e-12 * np.abs(other).max())
+
+
 @pytest.mark.parametrize("order", [1, -1], ids=["in order", "backwards"])
 def test_blocks_make_no_difference(driven, monkeypatch, order):
     """Windows of one block, of many that overlap, and of many in any order."""
@@ -180,7 +200,7 @@ def test_blocks_make_no_difference(driven, monkeypatch, order):
     fields = ("first", "last", "measured")
     windows = replace(windows, **{name: getattr(windows, name)[::order] for name in fields})
     whole = linearised_window_motion(Icr(), SPINNING, windows)
-    monkeypatch.setattr(motion, "BLOCK", 7)
+    monkeypatch.setattr(blocks, "BLOCK", 7)
     apart = linearised_window_motion(Icr(), SPINNING, windows)
     for one, other in zip(whole, apart, strict=True):
         np.testing.assert_allclose(one, other, rtol=0, atol=1e-12)
