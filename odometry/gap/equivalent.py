@@ -62,7 +62,10 @@ def equivalents(
 def _as_near(
     best: Judged, rivals: Sequence[Judged], fitter: Fitter, config: GapConfig
 ) -> list[Judged]:
-    """Rivals of another name that do not surely explain less than the best, in their order."""
+    """Rivals of another name that do not surely explain less than the best, in their order.
+
+    What includes the best has to have as much evidence: it explains no less, with more freedom.
+    """
     others = [
         one
         for one in rivals
@@ -77,7 +80,10 @@ def _as_near(
         for rival, noise in zip(others, of_others, strict=True)
         if _is_part(rival, best, config)
         or best.evidence - rival.evidence < config.equivalent_margin
-        or _surely_lost(rival, best, noise - own, fitter, config) < margin
+        or (
+            best.effect.name not in rival.effect.includes
+            and _surely_lost(rival, best, noise - own, fitter, config) < margin
+        )
     ]
 
 

@@ -107,7 +107,10 @@ def _what_to_do(result: GapResult) -> str:
         for one in result.equivalent
         if one.name not in decided
     ]
-    return " ".join([_remedy(result), *drives, *measures])
+    remedy = _remedy(result)
+    if drives:
+        remedy = f"If it is {result.verdict}: {remedy[0].lower()}{remedy[1:]}"
+    return " ".join([*drives, remedy, *measures])
 
 
 def _remedy(result: GapResult) -> str:

@@ -103,6 +103,7 @@ def gap(
 
 
 def _print_result(result: "GapResult") -> None:
+    from odometry.gap.lead import listed
     from odometry.gap.words import sentences
 
     rows = [("effect", "form", "gap before [m]", "gap after [m]", "evidence")]
@@ -116,7 +117,8 @@ def _print_result(result: "GapResult") -> None:
         )
         for effect in result.effects
     ]
-    click.echo(f"Verdict: {result.verdict}")
+    others = [one.name for one in result.equivalent if one.instead_of == result.verdict]
+    click.echo(f"Verdict: {listed([result.verdict, *others], 'or')}")
     if result.effects:
         print_table(rows)
     for sentence in sentences(result):

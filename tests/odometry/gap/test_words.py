@@ -67,7 +67,7 @@ def test_a_drive_for_all_rivals_is_said_once(scaled_result):
     todo = sentences(replace(scaled_result, next_drives=tuple(drives)))[2]
     assert (
         "To tell wheel_scale from traction_loss or tread_slip: spins, for a minute (decides in "
-        "70 % of cases)." in todo
+        "70 % of cases). If it is wheel_scale: measure" in todo
     )
 
 
