@@ -26,18 +26,32 @@ class TrajectoryFormat:
     Attributes
     ----------
     about : str
+    numbers : int
+        Of a row, by which the format of a file is recognised.
     axes : str
-        Which its files have unless someone says otherwise.
+        Of its files unless the caller states others.
     read : callable
         Of the file and the file of its stamps, None where there is none.
     write : callable
         Into a folder, by the trajectory's name; the files that it wrote.
+    separator : str or None
+        Between numbers; white space where None.
+    more : bool
+        Whether a row may have further numbers.
     """
 
     about: str
+    numbers: int
     axes: str
     read: Callable[[Path, Path | None], SpatialTrajectory]
     write: Callable[[Path, str, SpatialTrajectory], tuple[Path, ...]]
+    separator: str | None = None
+    more: bool = False
+
+    def has(self, row: str) -> bool:
+        """Whether a row of text has as many numbers as this format."""
+        count = len(row.split(self.separator))
+        return count == self.numbers or (self.more and count > self.numbers)
 
 
 def read_trajectory(
@@ -112,21 +126,19 @@ def format_of(file: Path) -> str:
     """
     with opened_lines(file, TrajectoryError) as lines:
         row = next((line for line in lines if line.strip() and not line.startswith("#")), "")
-    if len(row.split(",")) >= 8:
-        return "euroc"
     if not row.strip():
         raise TrajectoryError(f"{file}: there is no pose in it")
-    found = {8: "tum", 12: "kitti"}.get(len(row.split()))
+    found = next((name for name, one in FORMATS.items() if one.has(row)), None)
     if found is None:
+        known = "; ".join(f"{name}: {one.about}" for name, one in FORMATS.items())
         raise TrajectoryError(
-            f"{file}: the first row {row.strip()[:60]!r} is of no known format; expected 8 numbers "
-            "(tum: stamp x y z qx qy qz qw), 12 (kitti), or 8 and more with commas (euroc)"
+            f"{file}: the first row {row.strip()[:60]!r} is of no known format; expected {known}"
         )
     return found
 
 
 def from_optical(trajectory: SpatialTrajectory) -> SpatialTrajectory:
-    """Poses whose body and fixed frame have optical axes, said in robot axes: C^T T C."""
+    """Poses whose body and fixed frame have optical axes, in robot axes: C^T T C."""
     turn = se3.pose(np.zeros(3), OPTICAL_FROM_CAMERA)
     return SpatialTrajectory(trajectory.stamps_s, turn.T @ trajectory.poses @ turn)
 
@@ -166,18 +178,26 @@ def _write_euroc(folder: Path, name: str, trajectory: SpatialTrajectory) -> tupl
 
 FORMATS = {
     "tum": TrajectoryFormat(
-        "stamp x y z qx qy qz qw", ROBOT, lambda file, _: read_spatial_tum(file), _write_tum
+        "8 numbers (stamp x y z qx qy qz qw)",
+        8,
+        ROBOT,
+        lambda file, _: read_spatial_tum(file),
+        _write_tum,
     ),
     "kitti": TrajectoryFormat(
-        "twelve numbers a pose, stamps in a second file, optical axes",
+        "12 numbers a pose in optical axes, stamps in a second file",
+        12,
         OPTICAL,
         _read_kitti,
         _write_kitti,
     ),
     "euroc": TrajectoryFormat(
-        "nanoseconds, position, quaternion w first, with commas",
+        "8 numbers and more with commas (nanoseconds, position, quaternion w first)",
+        8,
         ROBOT,
         lambda file, _: read_euroc(file),
         _write_euroc,
+        separator=",",
+        more=True,
     ),
 }
