@@ -23,7 +23,12 @@ MODES_NAMES = (
     *("modes.csv", "modes_with_sight.csv", "result.json", "report.html"),
     *("figures/modes.png", "figures/path.png"),
 )
-TRAJECTORY_ENDS = (".tum", "_kitti.txt", "_times.txt", "_euroc.csv")
+TRAJECTORY_ENDS = (
+    ".tum",
+    "_kitti.txt",
+    "_times.txt",
+    "_euroc.csv",
+)
 RECORDING_NAMES = tuple(f"{name}.csv" for name in ("odometry", "pose", "truth", "images"))
 NAMES: dict[str, tuple[str, ...]] = {
     "run": RUN_NAMES,
