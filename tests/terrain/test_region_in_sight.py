@@ -113,6 +113,15 @@ def test_the_region_is_the_first_that_can_be_classified():
         ROBOT, AHEAD, forward, 1.0, RegionConfig(), scale_mismatch=lambda _: "no"
     )
     assert never == NoRegion("no")
+    of_left_tread = predict_region(
+        ROBOT,
+        AHEAD,
+        forward,
+        1.0,
+        RegionConfig(per_tread=True),
+        scale_mismatch=lambda part: "left" if part.y_max > 0.15 else "right",
+    )
+    assert of_left_tread == NoRegion("left")
 
 
 def test_coarse_ground_is_as_good_as_out_of_sight():

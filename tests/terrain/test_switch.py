@@ -159,6 +159,28 @@ def test_ground_without_a_label_for_long_is_no_longer_known():
     assert after.footing.terrain == "unknown"  # one label of something else is no support
 
 
+def test_before_the_first_label_no_travel_is_without_support():
+    switch = start().at(0.0, np.zeros(3), 5.0)
+    assert (switch.supported_m, switch.unsupported_m) == (5.0, 0.0)
+
+
+@pytest.mark.parametrize("yaw", [0.0, np.pi])
+def test_the_terrain_in_force_is_supported_by_the_middle_of_the_footprint(yaw):
+    """Grass under the middle, and gravel under the front or under the rear."""
+    switch = start()
+    for k in range(12):
+        switch = switch.add_label(seen_at(0.25 * k - 1.0, "grass" if k < 6 else "gravel"))
+    switch = switch.at(9.0, np.array([1.3, 0.0, yaw]), 3.0)
+    assert set(switch.shares) == {"grass", "gravel"}
+    assert switch.supported_m == 3.0
+
+
+def test_a_terrain_that_no_label_names_has_the_probability_zero():
+    beliefs = start().add_label(seen_at(0.0, "gravel")).place_beliefs
+    assert beliefs.probability(beliefs.beliefs[0], "gravel") > 0.4
+    assert beliefs.probability(beliefs.beliefs[0], "sand") == 0.0
+
+
 def test_a_terrain_that_no_label_names_has_what_is_not_reached():
     switch = dataclasses.replace(start(), before="gravel")
     switch = switch.add_label(seen_at(0.0, "gravel")).at(0.0, np.zeros(3), 0.0)

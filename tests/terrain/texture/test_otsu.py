@@ -5,7 +5,7 @@ from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from skimage.data import brick, grass, gravel
 from skimage.filters import threshold_multiotsu
@@ -100,6 +100,18 @@ def test_recursive_thresholds_of_two_heaps_by_hand():
     """Any split between 10 and 20 is as good: bins 11 to 20 of the published code, mean 15.5."""
     two_heaps = histogram_of({10: 4, 20: 4})
     np.testing.assert_allclose(recursive_otsu(two_heaps, 1), [(1 + 15.5) * 255 / 256])
+
+
+@settings(max_examples=60)
+@given(st.dictionaries(st.integers(0, 255), st.integers(1, 40), min_size=2, max_size=9))
+def test_one_recursive_threshold_is_the_middle_of_the_best_ones(pixels_by_grey):
+    """Bins count from 1, and the search begins at bin 1: two more than the grey."""
+    greys = range(min(pixels_by_grey), max(pixels_by_grey))
+    sums = [between_class_sum(pixels_by_grey, [grey]) for grey in greys]
+    best = [grey for grey, of in zip(greys, sums, strict=True) if of == max(sums)]
+    assume(best[-1] - best[0] == len(best) - 1)  # floats settle ties between other cuts
+    (found,) = recursive_otsu(histogram_of(pixels_by_grey), 1)
+    assert found * 256 / 255 - 2 == pytest.approx(np.mean(best), abs=1e-9)
 
 
 def test_recursive_thresholds_of_a_flat_image_follow_the_published_code():
