@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from terrain.cli.options import OUTPUT, RunFolder, processes_option, scheduler_option
+from terrain.cli.options import OUTPUT, processes_option, run_folders, scheduler_option
 from terrain.cli.run_options import run_options
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def _prepared(command: Callable[..., None]) -> Callable[..., None]:
 
 
 @click.command()
-@click.argument("folders", metavar="RUN...", nargs=-1, required=True, type=RunFolder())
+@run_folders
 @click.option("--out", required=True, metavar="DIR", type=OUTPUT, help="Folder for the results.")
 @_prepared
 @run_options

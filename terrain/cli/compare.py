@@ -6,7 +6,14 @@ from typing import TYPE_CHECKING
 import click
 
 from terrain.cli.comparison_text import print_comparison
-from terrain.cli.options import MODEL_NAMES, OUTPUT, RunFolder, require_model, window_options
+from terrain.cli.options import (
+    MODEL_NAMES,
+    OUTPUT,
+    RunFolder,
+    require_model,
+    run_folders,
+    window_options,
+)
 from terrain.cli.recordings import span_options
 from terrain.cli.results import print_written
 
@@ -19,7 +26,7 @@ FOLDER = RunFolder()
 
 
 @click.command()
-@click.argument("folders", metavar="RUN...", nargs=-1, required=True, type=FOLDER)
+@run_folders
 @click.option(
     "--model",
     "models",

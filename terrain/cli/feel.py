@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import OUTPUT, Positive, RunFolder
+from terrain.cli.options import OUTPUT, Positive, run_folders
 from terrain.cli.recordings import span_options
 from terrain.cli.results import print_table, print_written
 
@@ -19,7 +19,7 @@ HEADER = ("run", "answer", "probability", "unknown", "windows")
 
 
 @click.command()
-@click.argument("folders", metavar="RUN...", nargs=-1, required=True, type=RunFolder())
+@run_folders
 @click.option(
     "--model", required=True, metavar="FEEL", type=FILE, help="Model made by `identify-feel`."
 )

@@ -11,9 +11,9 @@ from terrain.cli.identify_files import claimed, draw, require_icr_form, write_ro
 from terrain.cli.options import (
     MODEL_NAMES,
     OUTPUT,
-    RunFolder,
     assignments,
     require_model,
+    run_folders,
     window_options,
 )
 from terrain.cli.recordings import span_options
@@ -25,13 +25,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument(
-    "folders",
-    metavar="RUN...",
-    nargs=-1,
-    required=True,
-    type=RunFolder(),
-)
+@run_folders
 @click.option(
     "--model",
     required=True,

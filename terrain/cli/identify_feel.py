@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import OUTPUT, Positive, RunFolder
+from terrain.cli.options import OUTPUT, Positive, run_folders
 from terrain.cli.recordings import span_options
 from terrain.cli.results import print_table
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @click.command(name="identify-feel")
-@click.argument("folders", metavar="RUN...", nargs=-1, required=True, type=RunFolder())
+@run_folders
 @click.option("--out", required=True, metavar="FEEL", type=OUTPUT, help="Model to write.")
 @click.option(
     "--window",

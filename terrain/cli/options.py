@@ -55,6 +55,13 @@ class RunFolder(click.Path):
         return super().convert(value, param, ctx)
 
 
+def run_folders(command: Callable[..., None]) -> Callable[..., None]:
+    """Add the run folders RUN...; the command gets them as `folders`."""
+    return click.argument("folders", metavar="RUN...", nargs=-1, required=True, type=RunFolder())(
+        command
+    )
+
+
 class Positive(click.FloatRange):
     """A number well above zero that is finite: click lets nan and inf pass."""
 

@@ -3,7 +3,6 @@
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
-from matplotlib.patches import Polygon
 from matplotlib.patheffects import withStroke
 
 from odometry.arrays import FloatArray
@@ -11,7 +10,7 @@ from odometry.run import Robot
 from terrain.camera import Camera
 from terrain.checks.drawn_images import ShownImage
 from terrain.region import Rectangle, Region
-from terrain.report.plots import plot_image
+from terrain.report.plots import draw_outline, plot_image
 from terrain.whole_image import outline
 
 GRID = "#FFFFFF"
@@ -103,10 +102,7 @@ def _outlined(axes: Axes, camera: Camera, rectangle: Rectangle, name: str) -> No
     """Draw the part of a rectangle that the image shows."""
     shape = camera.ground_to_pixels(outline(rectangle))
     if camera.in_image(shape).any():
-        for colour, width_pt in (("black", 3.6), (_OUTLINES[name], 2.2)):
-            axes.add_patch(
-                Polygon(shape, fill=False, edgecolor=colour, linewidth=width_pt, gid=name)
-            )
+        draw_outline(axes, shape, _OUTLINES[name], name)
 
 
 def plot_ground(axes: Axes, robot: Robot, shown: ShownImage) -> None:

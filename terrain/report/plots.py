@@ -12,7 +12,6 @@ from odometry.evaluation.stretches import Stretch
 from odometry.run import UNKNOWN
 from terrain.camera import Camera
 from terrain.image_label import ImageLabel
-from terrain.region import Rectangle
 from terrain.whole_image import Cell, outline
 
 NO_LABEL = "no label"
@@ -44,7 +43,8 @@ def draw_region(
     if image_label.region is None:
         return
     colour = tints.get(image_label.label, "#FFFFFF")
-    shape = _outlined(axes, camera, image_label.region.rectangle, colour)
+    shape = camera.ground_to_pixels(outline(image_label.region.rectangle))
+    draw_outline(axes, shape, colour)
     name = image_label.label or NO_LABEL
     sure = f" {image_label.confidence:.0%}" if np.isfinite(image_label.confidence) else ""
     _write_inside(axes, shape, f"{name}{sure}", 10.0)
@@ -151,11 +151,10 @@ def plot_confusion(axes: Axes, counts: IntArray, names: Sequence[str], said: Seq
     axes.tick_params(length=0)
 
 
-def _outlined(axes: Axes, camera: Camera, rectangle: Rectangle, colour: str) -> FloatArray:
-    shape = camera.ground_to_pixels(outline(rectangle))
-    axes.add_patch(Polygon(shape, fill=False, edgecolor="black", linewidth=3.6))
-    axes.add_patch(Polygon(shape, fill=False, edgecolor=colour, linewidth=2.2))
-    return shape
+def draw_outline(axes: Axes, shape: FloatArray, colour: str, name: str | None = None) -> None:
+    """Draw a polygon (N, 2) [px] in a colour, with a black edge that shows on any image."""
+    for of, width_pt in (("black", 3.6), (colour, 2.2)):
+        axes.add_patch(Polygon(shape, fill=False, edgecolor=of, linewidth=width_pt, gid=name))
 
 
 def _write_inside(axes: Axes, shape: FloatArray, text: str, size_pt: float) -> None:
