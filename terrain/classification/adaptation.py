@@ -1,4 +1,4 @@
-"""A trained model and a few labelled photographs of a new camera: what of both to learn from."""
+"""A trained model and a few labelled photographs of a new camera: which samples to train on."""
 
 from collections import Counter
 from dataclasses import dataclass, replace
@@ -54,11 +54,11 @@ def adapt(
     processes: int = 1,
     show_progress: bool = False,
 ) -> Adaptation:
-    """Learn from the photographs of a folder, with the samples of an old model where they help.
+    """Train on the photographs of a folder, with the samples of an old model where they help.
 
     Whether they do is decided by cross-validation that holds whole new photographs out: nothing of
-    an old photograph is judged. Where a terrain has one photograph alone that cannot be told, and
-    the new photographs alone are learned from.
+    an old photograph is evaluated. Where a terrain has one photograph alone this is undetermined,
+    and only the new photographs are trained on.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def _as_it_is(old: TerrainClassifier, patches: LabelledPatches) -> float:
 
 
 def _in_parts(patches: LabelledPatches) -> LabelledPatches:
-    """Halves of photographs as groups, so that something can be held out for k and rejection."""
+    """Halves of photographs as groups, so that parts can be held out for k and rejection."""
     seen: Counter[str] = Counter()
     total = Counter(patches.groups)
     groups = []

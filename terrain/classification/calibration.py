@@ -1,4 +1,4 @@
-"""Probabilities that mean what they say: one temperature, and how far they are off."""
+"""Calibrated probabilities: one temperature, and the calibration error."""
 
 from dataclasses import dataclass
 

@@ -42,12 +42,12 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
         calibrated, in cross-validation. ``fast`` does so with eight of the copies, for small
         computers.
     colour : bool
-        Add SFTA of two colour differences (not with ``chen2023``). Off by default: colour tells
-        of camera, white balance and light, and where each class came from a camera of its own it
-        recognises the camera. Use it where training and use share one camera. It stays off if
-        the training patches are grey; see `colour_`.
+        Add SFTA of two colour differences (not with ``chen2023``). Off by default: colour depends
+        on camera, white balance and light, and where each class was photographed by another
+        camera, the classifier recognises the camera. Use it where training and use share one
+        camera. It stays off if the training patches are grey; see `colour_`.
     metres_per_pixel : float, optional
-        The scale of the patches on the ground; kept for those who cut patches for it.
+        The scale of the patches on the terrain; kept for programs that cut patches.
     rejected_share : float
         The share of known terrain that may be called unknown: the rejection distance is this
         upper quantile of out-of-fold distances. In the ``default`` preset the median of several
@@ -141,7 +141,7 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
         processes: int = 1,
         scheduler: str | None = None,
     ) -> Self:
-        """Learn from labelled patches.
+        """Train on labelled patches.
 
         Parameters
         ----------
@@ -150,14 +150,14 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
         y : sequence of str
             The terrain of each patch.
         groups : sequence of str, optional
-            The photograph (or part of one) that each patch is of; by default each is of its own.
+            The photograph (or part of one) of each patch; by default each patch has its own.
             k and the rejection distance are chosen by cross-validation that keeps groups whole.
         copies : LabelledPatches, optional
             Altered patches of the same photographs, see `augmentation`, where X is images: they
-            are learned from, and never judged. With ``chen2023`` there are none.
+            are trained on, and never held out. With ``chen2023`` there are none.
         beside : OldSamples, optional
             Samples of a model for another camera: moved to the features of this one they are
-            learned from, and never judged. Of terrains in `y` alone.
+            trained on, and never held out. Of terrains in `y` alone.
         progress : bool
             Show a progress bar.
         trained_on : TrainedOn, optional
@@ -224,7 +224,7 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
         if self.preset not in PRESETS:
             raise ConfigError(f"preset '{self.preset}' is not one of {', '.join(sorted(PRESETS))}")
         if self.features is not None and self.preset != "default":
-            raise ConfigError(f"the preset '{self.preset}' has features of its own; leave one out")
+            raise ConfigError(f"the preset '{self.preset}' makes its own features; leave one out")
         if not 0 < self.rejected_share < 1:
             raise ConfigError(f"rejected_share is {self.rejected_share}, expected between 0 and 1")
         scale = self.metres_per_pixel

@@ -24,7 +24,7 @@ def balanced_accuracy(codes: IntArray, answers: IntArray) -> float:
 def photo_votes(
     codes: IntArray, probabilities: FloatArray, photos: AnyArray
 ) -> tuple[IntArray, IntArray, AnyArray]:
-    """Let the patches of each photograph vote with their probabilities.
+    """Average the probabilities of the patches of each photograph.
 
     Parameters
     ----------

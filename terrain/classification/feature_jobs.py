@@ -27,7 +27,7 @@ def shared_feature_matrix(
     scheduler: str | None = None,
     show_progress: bool = False,
 ) -> FloatArray:
-    """Return the features of each patch as a row, the same whoever computes them.
+    """Return the features of each patch as a row, the same for any number of processes.
 
     Parameters
     ----------

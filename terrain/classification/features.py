@@ -1,4 +1,4 @@
-"""Feature vectors of ground patches: SFTA of the grey image and of filtered copies of it."""
+"""Feature vectors of patches: SFTA of the grey image and of filtered copies of it."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -85,7 +85,7 @@ class FeatureSettings:
         unknown = (set(grey) - set(GREY_COPIES)) | (set(colour) - set(COLOUR_COPIES))
         if unknown:
             raise ValueError(f"copies that this program does not know: {sorted(unknown)}")
-        greys = int(table.get("filtered_greys", ALL_GREYS))  # files of version 0.9 do not say
+        greys = int(table.get("filtered_greys", ALL_GREYS))  # files of version 0.9 have none
         if greys not in {ALL_GREYS, FEWER_GREYS}:
             raise ValueError(f"filtered_greys = {greys}, expected {ALL_GREYS} or {FEWER_GREYS}")
         n_thresholds, per_area = int(table["n_thresholds"]), bool(table["counts_per_area"])

@@ -13,7 +13,7 @@ from terrain.images import to_grey
 
 
 class Transformer(Protocol):
-    """Whatever makes features of images, as scikit-learn's transformers do."""
+    """Makes features of images, as transformers of scikit-learn do."""
 
     def transform(self, X: Iterable[AnyArray]) -> AnyArray:
         """Features (n, F) of images, grey (H, W) or RGB (H, W, 3)."""
@@ -28,7 +28,7 @@ class Transformed:
     transformer : Transformer
         Fitted.
     colour : bool
-        Whether it sees colour; else it sees grey patches.
+        Whether it gets colour; else it gets grey patches.
     """
 
     transformer: Transformer

@@ -1,4 +1,4 @@
-"""Filtered copies of a grey patch: what each shows is a texture of its own for SFTA.
+"""Filtered copies of a grey patch: SFTA describes each as a texture.
 
 Every filter takes the `Scales` of a grey patch, or its RGB image, and returns an 8-bit image.
 Gains are fixed where the contrast of the ground is told by them, and relative to the patch

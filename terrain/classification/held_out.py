@@ -18,7 +18,7 @@ from terrain.images import read_image
 
 @dataclass(frozen=True)
 class LabelledAnswer:
-    """What a classifier said of a labelled photograph.
+    """The label that a classifier gives to a labelled photograph.
 
     Attributes
     ----------

@@ -26,7 +26,7 @@ PATCHES_PER_PHOTO = 12
 MOST_PATCHES = 2000
 NEAREST = 3
 FEWEST_IMAGES = 5
-# chosen with ground/, pavements/ and frames of other cameras in sight, so no clean test of them;
+# chosen on ground/, pavements/ and frames of other cameras, so these are no independent test;
 UNLIKE_RANK, UNLIKE_RANK_IN_CLASS = 0.75, 0.7
 MOST_WORDS = 3
 WORTH_NAMING = 0.5  # deviations within a terrain
@@ -54,7 +54,7 @@ class Likeness:
 
     @classmethod
     def of(cls, ranks: Sequence[tuple[float, float]], how: tuple[str, ...] = ()) -> Self:
-        """What the `TrainingLook.ranks` of images say together."""
+        """The summary of the `TrainingLook.ranks` of images."""
         if not ranks:
             return cls(0, float("nan"), float("nan"), ())
         among_all, in_class = zip(*ranks, strict=True)
@@ -62,14 +62,14 @@ class Likeness:
 
     @property
     def is_unlike(self) -> bool | None:
-        """None where there are too few images to tell."""
+        """None where there are too few images."""
         if self.images < FEWEST_IMAGES:
             return None
         return self.rank > UNLIKE_RANK and self.rank_in_class > UNLIKE_RANK_IN_CLASS
 
     @property
     def note(self) -> str | None:
-        """What to say before any label is trusted; None where there is nothing to say."""
+        """A warning where labels are in doubt; else None."""
         if not self.is_unlike:
             return None
         how = f" ({', '.join(self.how)})" if self.how else ""
@@ -100,7 +100,7 @@ class TrainingLook:
 
     @classmethod
     def of(cls, patches: Sequence[ByteImage], codes: IntArray, groups: AnyArray) -> Self:
-        """Learn from square patches, terrains (n,) and photographs (n,), at least two of each."""
+        """Of square patches with terrains (n,) and photographs (n,), at least two of each."""
         rows = spread_rows(groups)
         looks, codes, groups = (
             np.array([look_of(patches[i]) for i in rows]),

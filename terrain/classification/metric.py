@@ -24,7 +24,7 @@ class ClippedScaler(StandardScaler):  # type: ignore[misc]
     """
 
     def transform(self, X: FloatArray, copy: bool | None = None) -> FloatArray:  # noqa: ARG002
-        """Map features (n, F) to the same shape; without a look at whether they are numbers."""
+        """Map features (n, F) to the same shape; whether they are finite is not checked."""
         return np.asarray(np.clip((X - self.mean_) / self.scale_, -CLIP, CLIP))
 
 
@@ -45,12 +45,12 @@ class DiscriminantMetric(TransformerMixin, BaseEstimator):  # type: ignore[misc]
     """
 
     def fit(self, X: FloatArray, y: AnyArray) -> Self:
-        """Learn the projection from features `X` (n, F) and labels `y` (n,).
+        """Fit the projection to features `X` (n, F) and labels `y` (n,).
 
         Raises
         ------
         LinAlgError
-            If the samples of each class are all alike.
+            If the samples within each class are all equal.
         """
         classes, codes, counts = np.unique(y, return_inverse=True, return_counts=True)
         means = np.array([X[codes == c].mean(axis=0) for c in range(len(classes))])
@@ -77,7 +77,7 @@ class AppearanceMetric(TransformerMixin, BaseEstimator):  # type: ignore[misc]
     """
 
     def fit(self, X: FloatArray, y: AnyArray | None = None) -> Self:  # noqa: ARG002
-        """Learn the components of features `X` (n, F)."""
+        """Fit the components to features `X` (n, F)."""
         analysis = PCA(min(APPEARANCE_DIMENSIONS, *X.shape), svd_solver="covariance_eigh").fit(X)
         spread = np.sqrt(analysis.explained_variance_)
         kept = spread > 1e-6 * spread[0]

@@ -1,4 +1,4 @@
-"""The nearest of a set of points, by one matrix product for all that is asked."""
+"""The nearest of a set of points, by one matrix product for all queries."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from odometry.arrays import FloatArray, IntArray
 
 
 def nearest(points: FloatArray, asked: FloatArray, k: int) -> tuple[FloatArray, IntArray]:
-    """The k nearest points of each row that is asked, nearest first.
+    """The k nearest points of each query, nearest first.
 
     Parameters
     ----------

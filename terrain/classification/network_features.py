@@ -71,7 +71,7 @@ class NetworkFeatures(ImageTransformer):
         Names of layers (nodes or tensors) whose outputs are maps; by default the first four of
         those that a stride makes smaller and what the network gives, where that is a map.
     input_range : (float, float)
-        The values that 0 and 255 become before the network sees them, as it was trained.
+        The values that 0 and 255 become at the input of the network, as it was trained.
 
     Attributes
     ----------
@@ -94,7 +94,7 @@ class NetworkFeatures(ImageTransformer):
     References
     ----------
     Cimpoi, Maji, Kokkinos and Vedaldi 2016, "Deep filter banks for texture recognition": pooled
-    responses of early layers tell textures.
+    responses of early layers distinguish textures.
     """
 
     def __init__(
@@ -182,7 +182,7 @@ class NetworkFeatures(ImageTransformer):
 
     @property
     def described(self) -> str:
-        """Network, layers and number of features in words, once that is read."""
+        """Network, layers and number of features as a text, once the network is read."""
         return (
             f"mean and deviation of the {sum(self.channels_)} channels of layers "
             f"{', '.join(self.layers_)} of {self.part_.name}"

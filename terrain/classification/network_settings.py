@@ -1,4 +1,4 @@
-"""What a model file says of features, and the image network that it holds where one makes them."""
+"""Settings of features in a model file, and the image network in it where one makes them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -9,7 +9,7 @@ import numpy as np
 from odometry.arrays import AnyArray, FloatArray, IntArray
 from terrain.classification.validation import Samples
 
-LEAST_SPREAD = 1e-9  # of a feature, so that one that never varies stays finite
+LEAST_SPREAD = 1e-9  # of a feature: one that does not vary stays finite
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class OldSamples:
 
 @dataclass(frozen=True)
 class SamplesBesideOld(Samples):
-    """Samples of a new camera, and old ones that are always learned from and never judged.
+    """Samples of a new camera, and old ones that are always trained on and never held out.
 
     Old samples are moved to where the new camera would have put them: each feature gets the mean
     and the deviation that the new samples have that are learned from, terrains in equal parts.

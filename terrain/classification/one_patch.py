@@ -8,7 +8,7 @@ from terrain.classification.classifier import Classification, TerrainClassifier
 
 
 class OnePatchClassifier:
-    """Names what one patch in the middle of an image is most like; it never says `unknown`.
+    """Labels an image by one patch in its middle; the label is never `unknown`.
 
     Parameters
     ----------

@@ -61,9 +61,9 @@ class Moments:
 def own_weight(neighbours: DiscriminantNeighbours, moments: Moments) -> float:
     """How much a camera's own statistics count, from 0 (those of training) to 1.
 
-    Patches of one terrain differ as patches within a class do, and their mean says what terrain
-    it is, not what camera: the weight is the share of the variance between classes of training
-    that is seen, and grows with the number of patches.
+    Patches of one terrain vary as patches within a class do, and their mean depends on the terrain
+    more than on the camera: the weight is the share of the training variance between classes
+    that the images have, and grows with the number of patches.
     """
     points, codes = neighbours.samples()
     of_class = [points[codes == code] for code in np.unique(codes)]
@@ -87,11 +87,11 @@ def own_scaler(scaler: ClippedScaler, moments: Moments, weight: float) -> Clippe
 
 
 class OwnStatisticsClassifier:
-    """A terrain classifier whose features are standardised by the images that it has seen.
+    """A terrain classifier whose features are standardised by the images classified so far.
 
     Means and deviations of features are those of training, drawn towards those of the images so
-    far with `weight`. It helps with a camera unlike that of training which sees several terrains;
-    with the camera of training it can harm, where a run sees only a few of the terrains.
+    far with `weight`. It helps with a camera unlike that of training that images several terrains;
+    with the camera of training it can harm, where a run has only a few of the terrains.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ class OwnStatisticsClassifier:
     weight : float
         After the latest image, see `own_weight`.
     patches : int
-        Seen so far.
+        Classified so far.
 
     Raises
     ------
@@ -146,14 +146,14 @@ class OwnStatisticsClassifier:
         return features
 
     def standardised(self) -> TerrainClassifier:
-        """The classifier with the statistics so far; that of training where none was seen."""
+        """The classifier with the statistics so far; that of training before the first image."""
         if self._moments is None:
             return self._classifier
         scaler = own_scaler(self._neighbours.scaler, self._moments, self.weight)
         return self._classifier.with_neighbours(self._neighbours.rescaled(scaler))
 
     def classify(self, images: Sequence[ByteImage]) -> list[Classification]:
-        """Classify images by all that were seen, these included.
+        """Classify images by the statistics of all so far, these included.
 
         Raises
         ------

@@ -19,7 +19,7 @@ def write_model(
 ) -> None:
     """Write settings (JSON values) and arrays (numeric); the same content gives the same bytes.
 
-    `made` says what made the model; it is kept in the header, and no reader needs it.
+    `made` says what made the model; it is kept in the header, for people alone.
     """
     write_array_file(path, CLASSIFIER, settings, arrays, made)
 

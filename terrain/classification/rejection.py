@@ -1,4 +1,4 @@
-"""From what distance on an image is unknown, by how many patches were seen of it."""
+"""The distance above which an image is unknown, by its number of patches."""
 
 from collections.abc import Sequence
 
@@ -22,7 +22,7 @@ def rejection_distances(
     distances : FloatArray, shape (n,)
         Of patches that were held out.
     groups : array, shape (n,)
-        The photograph of each patch; one with fewer patches than asked for gives all of them.
+        The photograph of each patch; one with fewer patches than required gives all of them.
     rejected_share : float
         The share of known terrain that lies beyond.
 

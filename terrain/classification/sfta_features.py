@@ -14,7 +14,7 @@ from terrain.texture.image_transformer import ImageTransformer, listed_images, n
 class SftaFeatures(ImageTransformer):
     """What `TerrainClassifier` computes of an image, as a step of a pipeline.
 
-    It learns nothing: `fit` only checks its input and may be left out. An image is one row,
+    It has no state: `fit` only checks its input and may be left out. An image is one row,
     whatever its size; counts are by area in the default preset, so that sizes may differ.
 
     Parameters

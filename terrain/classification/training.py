@@ -88,7 +88,7 @@ def train(
     Raises
     ------
     PatchError
-        If the folder is not as the format says, or has too few photographs of a class.
+        If the folder does not have the documented format, or too few photographs of a class.
     ImageError
         If a photograph cannot be read.
     ExtraError, BatchError

@@ -1,4 +1,4 @@
-"""What labelled patches must be before a classifier learns from them."""
+"""Requirements on labelled patches before training."""
 
 from collections.abc import Hashable, Sequence
 from typing import TypeGuard
@@ -26,7 +26,7 @@ def common_size(images: Sequence[ByteImage]) -> int:
 
 
 def check_labels(n_images: int, labels: AnyArray, groups: AnyArray) -> None:
-    """Raise PatchError unless there are two classes of two groups each, named lawfully."""
+    """Raise PatchError unless there are two classes of two groups each, with allowed names."""
     if not n_images == len(labels) == len(groups):
         raise PatchError(f"{n_images} images, {len(labels)} labels and {len(groups)} groups")
     if UNKNOWN in labels.tolist():
@@ -38,7 +38,7 @@ def check_labels(n_images: int, labels: AnyArray, groups: AnyArray) -> None:
         seen = ", ".join(f"{label} {len(members)}" for label, members in photos.items())
         raise PatchError(
             "training needs at least 2 classes with patches of at least 2 photographs each, "
-            f"so that some can be held back; photographs seen: {seen or 'none'}"
+            f"so that some can be held out; photographs found: {seen or 'none'}"
         )
 
 
@@ -49,7 +49,7 @@ def check_codes(codes: AnyArray, classes: int) -> None:
 
 
 def has_colour(images: Sequence[ByteImage], labels: AnyArray) -> bool:
-    """Tell whether every image has channels, and most of each class differ between them.
+    """Whether every image has channels, and most of each class differ between them.
 
     A few colourless photographs are nothing unusual; a colourless class would make colour a
     mark of its camera.

@@ -17,14 +17,14 @@ MOST_FOLDS = 5
 
 @dataclass(frozen=True)
 class CrossValidation:
-    """Out-of-fold answers: each patch is judged by a classifier that never saw its photograph.
+    """Out-of-fold answers: each patch is classified by one that was trained without its photograph.
 
     Attributes
     ----------
     n_neighbors : int
-        The k of best balanced accuracy; of equals the largest.
+        The k of best balanced accuracy; the largest of several equal ones.
     rows : IntArray, shape (n,)
-        The patches that were judged; all but those whose fold left a class without training.
+        The patches that were held out; all but those whose fold left a class without training.
     codes : IntArray, shape (n,)
         True classes.
     probabilities : FloatArray, shape (n, classes)
@@ -93,7 +93,7 @@ def best_way(
     *,
     calibrates: bool = False,
 ) -> tuple[Callable[[], Neighbours], CrossValidation]:
-    """The way of best balanced accuracy by `cross_validate`, of equals the first, and its answers.
+    """The option of best balanced accuracy by `cross_validate`, the first of equal ones.
 
     These are a little too good where ways are close: a study nests this choice in its folds.
     """
@@ -115,7 +115,7 @@ def cross_validate(
     *,
     calibrates: bool = False,
 ) -> CrossValidation:
-    """Judge every patch out of fold and choose k.
+    """Classify every patch out of fold and choose k.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def cross_validate(
     samples : Samples
         At least two groups per class.
     copies : Samples, optional
-        Altered copies: they are learned from where their group is, and never judged.
+        Altered copies: trained on where their group is, and never held out.
     calibrates : bool
         Whether a temperature is fitted to the votes.
     """

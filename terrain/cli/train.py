@@ -95,7 +95,7 @@ def train(
     """Train a terrain classifier on PATCHES/<terrain>/*.jpg or *.png.
 
     Photographs are cut to patches of one size, overlapping by half, at most 60 a photograph.
-    Those that share a photo_id in manifest.csv (in PATCHES or beside it) are held back together
+    Those that share a photo_id in manifest.csv (in PATCHES or beside it) are held out together
     in cross-validation.
 
     \b

@@ -1,4 +1,4 @@
-"""What scikit-learn transformers of images share: they check their input and learn nothing."""
+"""What scikit-learn transformers of images share: they check their input and have no state."""
 
 from abc import abstractmethod
 from collections.abc import Iterable, Iterator
@@ -17,7 +17,7 @@ class ImageTransformer(TransformerMixin, BaseEstimator):  # type: ignore[misc]
     """A step of a pipeline whose rows are images; `fit` may be left out."""
 
     def fit(self, X: Iterable[AnyArray], y: object = None) -> Self:  # noqa: ARG002
-        """Check that there are images to transform; learn nothing.
+        """Check that there are images to transform.
 
         Parameters
         ----------

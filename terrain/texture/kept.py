@@ -11,7 +11,7 @@ _OF_THREAD = threading.local()
 
 
 def kept(use: str, shape: tuple[int, ...]) -> ByteImage:
-    """Bytes for one use, of any content; they serve the next who asks for the same use.
+    """Bytes of any content for one use; the next call with this use gets the same ones.
 
     Parameters
     ----------

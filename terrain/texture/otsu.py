@@ -63,7 +63,7 @@ def _best_scores(pixels: FloatArray, sums: FloatArray, n_classes: int) -> FloatA
 
     A strip of v at a time: its scores stay in the cache while they serve every c. S^2 / W has the
     inverse quadrangle inequality, so that the best last class of more greys begins no earlier
-    than that of fewer: nothing before the beginning at the end of one strip is tried in the next.
+    than that of fewer: the next strip tests no earlier beginning than that at the end of one.
     """
     best = np.full((n_classes, pixels.size), -np.inf)
     best[0, 1:] = sums[1:] ** 2 / pixels[1:]

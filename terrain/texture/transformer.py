@@ -13,7 +13,7 @@ from terrain.texture.variants import VariantName
 class SFTA(ImageTransformer):
     """SFTA features of many images, as a step of a pipeline.
 
-    It learns nothing: `fit` only checks its input and may be left out.
+    It has no state: `fit` only checks its input and may be left out.
 
     Parameters
     ----------

@@ -8,7 +8,7 @@ GREYS = np.arange(256.0)
 
 
 def chen2023_members(thresholds: FloatArray) -> BoolArray:
-    """Tell the greys of the 2 n_t binary images of Chen 2023, eq. 19 and 20.
+    """The greys of the 2 n_t binary images of Chen 2023, eq. 19 and 20.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ def chen2023_members(thresholds: FloatArray) -> BoolArray:
 
 
 def costa2012_members(thresholds: FloatArray) -> BoolArray:
-    """Tell the greys of the 2 n_t - 1 binary images of SFTA's published code.
+    """The greys of the 2 n_t - 1 binary images of SFTA's published code.
 
     Parameters
     ----------

@@ -157,7 +157,7 @@ def test_what_is_no_table_of_numbers_is_refused(training_patches, table, message
 
 
 def test_the_paper_has_its_own_features(training_patches):
-    with pytest.raises(ConfigError, match="'chen2023' has features of its own"):
+    with pytest.raises(ConfigError, match="'chen2023' makes its own features"):
         TerrainClassifier("chen2023", features=TINY).fit(*training_patches)
 
 
@@ -210,7 +210,7 @@ def test_processes_that_share_the_patches_give_the_same_model(trained, training_
         (["--input-range", "1"], 2, "expected LOW:HIGH"),
         (["--input-range", "1:0"], 1, "expected low and high"),
         (["--no-network", "--layers", "r1"], 2, "--layers is of a network"),
-        (["--preset", "chen2023"], 1, "'chen2023' has features of its own"),
+        (["--preset", "chen2023"], 1, "'chen2023' makes its own features"),
     ],
 )
 def test_train_refuses_what_is_no_choice_of_layers(photos, tmp_path, options, code, message):
