@@ -5,41 +5,35 @@ import numpy as np
 from odometry.arrays import AnyArray, BoolArray
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
 from odometry.modes.mode_track import ModeTrack
+from odometry.modes.refusals import refusals
 from odometry.run import UNKNOWN
-
-AGREED = 0.6  # probability from which on the rolling test takes a mode for the one that fits
 
 
 def named_modes(track: ModeTrack, sure: float) -> AnyArray:
     """The answer (N,): a mode, "none of these", or "undetermined".
 
-    A mode is named whose probability among the modes is `sure` or more, and against "none of
-    these" as well; which the rolling test takes for the one that fits, too; and whose bias of the
-    gyroscope is one that is expected. Neither turns to one side nor the distance that was measured
-    contradict it. A gyroscope whose scale is off tells no mode, and where every mode travels by
-    another distance than was measured none fits.
+    A mode is named that no test refuses (see `refusals`). None fits where the rolling test says so
+    with a probability of `sure`, where the gyroscope's scale is off, where every mode travels by
+    another distance than was measured, and where the robot turns by more than one mode and by less
+    than the next.
     """
     most = track.probabilities.argmax(axis=1)
-    named = track.probabilities.max(axis=1) >= sure
-    none = np.zeros(len(most), dtype=np.bool_)
-    if track.fit is not None:
-        of_most = (np.arange(len(most)), most)
-        named &= track.fit.against_none[of_most] >= sure
-        named &= np.exp(track.fit.log_probabilities[of_most]) >= AGREED
-        named &= ~track.fit.lasts
-        none = track.fit.none >= sure
-    if track.gyroscope is not None:
-        named &= ~track.gyroscope.bias_is_open
-        none = none | np.isfinite(track.gyroscope.scale)
-    if track.alike is not None:
-        named &= ~track.alike.any(axis=1)
-    if track.turns_are_off is not None:
-        named &= ~track.turns_are_off
-    if track.travel is not None:
-        named &= ~track.travel.off[np.arange(len(most)), most]
-        none = none | track.travel.off.all(axis=1)
+    named = ~np.any(list(refusals(track, sure).values()), axis=0)
     answers = np.where(named, np.array(track.names, dtype=object)[most], UNDETERMINED)
-    return np.where(none, NONE_OF_THESE, answers)
+    return np.where(_none_fits(track, sure), NONE_OF_THESE, answers)
+
+
+def _none_fits(track: ModeTrack, sure: float) -> BoolArray:
+    none = np.zeros(len(track.stamps_s), dtype=np.bool_)
+    if track.fit is not None:
+        none |= track.fit.none >= sure
+    if track.gyroscope is not None:
+        none |= np.isfinite(track.gyroscope.scale)
+    if track.travel is not None:
+        none |= track.travel.off.all(axis=1)
+    if track.between is not None:
+        none |= track.between.holds
+    return none
 
 
 def candidates(track: ModeTrack, sure: float) -> BoolArray:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import BoolArray
+from odometry.modes.between_modes import BetweenModes
 from odometry.modes.followed import Followed
 from odometry.modes.mode_set import UNDETERMINED
 
@@ -84,6 +85,8 @@ def _of_motion(followed: Followed, undetermined: BoolArray) -> list[Doubt]:
                 _share(followed, off),
             )
         )
+    if track.between is not None and track.between.holds.any():
+        found.append(_between(followed, track.between))
     if track.travel is not None:
         most = track.probabilities.argmax(axis=1)
         off = track.travel.off[np.arange(len(most)), most]
@@ -98,6 +101,20 @@ def _of_motion(followed: Followed, undetermined: BoolArray) -> list[Doubt]:
                 )
             )
     return found
+
+
+def _between(followed: Followed, between: BetweenModes) -> Doubt:
+    """The pair between which the robot turned for longest."""
+    longest = int(np.bincount(between.place[between.holds]).argmax())
+    rows = between.place == longest
+    first, second = between.pairs[longest]
+    return Doubt(
+        f"the robot turns by more than {first} and by less than {second}, "
+        f"{np.median(between.share[rows]):.1f} of the way, {_when(followed, rows)}: none of these, "
+        "between the two",
+        "identify a mode for this terrain and load; check the gyroscope's scale and both treads",
+        _share(followed, rows),
+    )
 
 
 def _share(followed: Followed, rows: BoolArray) -> float:

@@ -17,6 +17,7 @@ from odometry.modes.followed import Followed
 from odometry.modes.innovation_test import ModeFit
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE
 from odometry.modes.mode_track import ModeTrack
+from odometry.modes.not_checked import not_checked
 from odometry.modes.words import answer_words
 from odometry.run import UNKNOWN
 
@@ -29,7 +30,7 @@ MEASURED = {"velocity": ("vx", "wz"), "traction": ("x", "y", "yaw", "wz")}
 def write_modes(
     followed: Followed, out: Path, about: Mapping[str, Any] | None = None
 ) -> list[Path]:
-    """Write modes.csv and result.json, with sight also modes_with_sight.csv.
+    """Write modes.csv and result.json, modes_with_sight.csv and modes_with_feel.csv with these.
 
     Parameters
     ----------
@@ -54,6 +55,12 @@ def write_modes(
         seen = {"seen": np.where(followed.seen_labels == UNKNOWN, "", followed.seen_labels)}
         write_csv_table(sighted, columns_of(followed, followed.sighted) | seen)
         written.append(sighted)
+    with_feel = out / "modes_with_feel.csv"
+    if followed.felt is None:
+        with_feel.unlink(missing_ok=True)
+    else:
+        write_csv_table(with_feel, columns_of(followed, followed.felt))
+        written.append(with_feel)
     text = json.dumps(content_of(followed) | dict(about or {}), indent=2, allow_nan=False)
     with atomic_write(written[1]) as part:
         part.write_text(text + "\n", encoding="utf-8")
@@ -91,7 +98,24 @@ def columns_of(followed: Followed, track: ModeTrack) -> dict[str, AnyArray]:
         **dict(zip(states, track.means.T, strict=True)),
         **{f"sigma_{name}": column for name, column in zip(states, track.sigmas.T, strict=True)},
         **({} if track.fit is None else _fit_columns(track.fit, measured)),
+        **_between_columns(track),
+        **_feel_columns(track),
     }
+
+
+def _between_columns(track: ModeTrack) -> dict[str, AnyArray]:
+    """Between which two modes the robot turns where that is the answer, and how far."""
+    if track.between is None:
+        return {}
+    words = np.array(["", *(" and ".join(pair) for pair in track.between.pairs)], dtype=object)
+    return {"between": words[track.between.place + 1], "between_share": track.between.share}
+
+
+def _feel_columns(track: ModeTrack) -> dict[str, AnyArray]:
+    """The probability of each mode by feel alone."""
+    if track.felt is None:
+        return {}
+    return {f"feel_{name}": of for name, of in zip(track.names, track.felt.T, strict=True)}
 
 
 def _fit_columns(fit: ModeFit, measured: Sequence[str]) -> dict[str, AnyArray]:
@@ -133,7 +157,9 @@ def content_of(followed: Followed) -> dict[str, Any]:
             {"reason": one.reason, "remedy": one.remedy, "share": one.share}
             for one in doubts(followed)
         ],
+        "not_checked": list(not_checked(followed)),
         "motion": _track(followed, followed.motion),
+        "feel": None if followed.felt is None else _track(followed, followed.felt),
         "sight": None if sighted is None else _track(followed, sighted),
         "disagreements": [
             {"from_s": from_s, "to_s": to_s, "seen": seen, "felt": felt}

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import AnyArray, IntArray
+from odometry.feel.model import FeelModel
 from odometry.modes.answers import candidates, disagreements, named_modes
+from odometry.modes.feel_source import feel_source
 from odometry.modes.misfits import Misfit, misfits
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED, ModeSet
 from odometry.modes.mode_track import ModesConfig, ModeTrack
@@ -16,7 +18,7 @@ from odometry.modes.signals import Signals
 from odometry.modes.track import follow_signals, judged_signals
 from odometry.run import UNKNOWN, Run
 
-MOTION, SIGHTED = "motion alone", "motion and sight"
+MOTION, FELT, SIGHTED = "motion alone", "motion and feel", "motion and sight"
 
 
 @dataclass(frozen=True)
@@ -33,8 +35,10 @@ class Followed:
     motion : ModeTrack
         By motion alone.
     sighted : ModeTrack or None
-        By motion and sight; None without sight.
+        By motion and sight, and feel where there is a model of it; None without sight.
     seen : tuple of SeenGround
+    felt : ModeTrack or None
+        By motion and feel; None without a model of feel.
     """
 
     run: Run
@@ -44,17 +48,18 @@ class Followed:
     motion: ModeTrack
     sighted: ModeTrack | None = None
     seen: tuple[SeenGround, ...] = ()
+    felt: ModeTrack | None = None
 
     @property
     def tracks(self) -> Mapping[str, ModeTrack]:
-        """By name: MOTION, and SIGHTED where there was sight."""
-        sighted = {} if self.sighted is None else {SIGHTED: self.sighted}
-        return {MOTION: self.motion, **sighted}
+        """By name: MOTION, FELT and SIGHTED where there was feel or sight."""
+        every = {MOTION: self.motion, FELT: self.felt, SIGHTED: self.sighted}
+        return {name: track for name, track in every.items() if track is not None}
 
     @property
     def last_track(self) -> ModeTrack:
         """The one that uses all there is."""
-        return self.sighted or self.motion
+        return self.sighted or self.felt or self.motion
 
     @property
     def seen_labels(self) -> AnyArray:
@@ -134,9 +139,10 @@ def followed(
     config: ModesConfig | None = None,
     seen: Sequence[SeenGround] = (),
     *,
+    feel: FeelModel | None = None,
     show_progress: bool = False,
 ) -> Followed:
-    """Follow a run by motion alone, and where vision saw something, with sight.
+    """Follow a run by motion alone, with feel where there is a model, and with sight where it saw.
 
     See `follow_modes`.
 
@@ -152,7 +158,12 @@ def followed(
     config = config or ModesConfig()
     signals = judged_signals(run, mode_set)
     motion = follow_signals(signals, mode_set, config, show_progress=show_progress)
-    sighted = None
+    source, felt, sighted = None, None, None
+    if feel is not None:
+        source = feel_source(run, feel, mode_set.names, mode_set.dwell_s)
+        felt = follow_signals(signals, mode_set, config, feel=source, show_progress=show_progress)
     if seen:
-        sighted = follow_signals(signals, mode_set, config, seen, show_progress=show_progress)
-    return Followed(run, mode_set, config, signals, motion, sighted, tuple(seen))
+        sighted = follow_signals(
+            signals, mode_set, config, seen, feel=source, show_progress=show_progress
+        )
+    return Followed(run, mode_set, config, signals, motion, sighted, tuple(seen), felt)

@@ -7,6 +7,7 @@ import numpy as np
 from odometry.modes.doubts import LEAST_DOUBT, Doubt, doubts
 from odometry.modes.followed import Followed
 from odometry.modes.mode_set import UNDETERMINED
+from odometry.modes.not_checked import not_checked
 from odometry.modes.words import FEW, LEAST_SHARE, SCALE, percent, scale_word, signal_of
 
 MOSTLY = 0.5  # of the time
@@ -50,6 +51,14 @@ def _shares_said(shares: Mapping[str, float]) -> str:
 
 
 def _how_sure(followed: Followed) -> str:
+    """How well modes fit, and whether nothing checked the scale of the gyroscope."""
+    said = _fit_said(followed)
+    if followed.signals.heading_check is None:
+        said += "".join(f" Not checked: {what}." for what in not_checked(followed)[:1])
+    return said
+
+
+def _fit_said(followed: Followed) -> str:
     named = f"a mode is named from a probability of {percent(followed.config.sure)} on"
     doubt = _first_doubt(followed)
     if doubt is not None:

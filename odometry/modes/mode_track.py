@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray
 from odometry.config import require, require_positive
+from odometry.modes.between_modes import BetweenModes
 from odometry.modes.gyroscope_trust import GyroscopeTrust
 from odometry.modes.innovation_test import ModeFit
 from odometry.modes.travel_check import TravelCheck
@@ -69,6 +70,10 @@ class ModeTrack:
         Where turns to one side or to both contradict the most probable mode; without it nowhere.
     travel : TravelCheck or None
         Modes that travel by another distance than was measured; without it none do.
+    between : BetweenModes or None
+        Where the robot turns by more than one mode and by less than the next; without it nowhere.
+    felt : (N, M) or None
+        Probability of each mode by feel alone; None without a model of feel.
 
     Examples
     --------
@@ -92,3 +97,5 @@ class ModeTrack:
     alike: BoolArray | None = None
     turns_are_off: BoolArray | None = None
     travel: TravelCheck | None = None
+    between: BetweenModes | None = None
+    felt: FloatArray | None = None

@@ -10,8 +10,10 @@ from tqdm import tqdm
 from odometry.arrays import FloatArray
 from odometry.estimation.ekf_bank import EkfBank
 from odometry.estimation.imm import Imm
+from odometry.estimation.markov import ModeChain
 from odometry.estimation.mode_belief import ModeBelief
 from odometry.modes.bias_reading import bias_readings, with_reading
+from odometry.modes.feel_source import FeelSource, with_evidence
 from odometry.modes.innovation_test import Innovations, mode_fit
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.mode_track import ModesConfig, ModeTrack
@@ -34,6 +36,7 @@ def follow_modes(
     config: ModesConfig | None = None,
     seen: Sequence[SeenGround] = (),
     *,
+    feel: FeelSource | None = None,
     show_progress: bool = False,
 ) -> ModeTrack:
     """Run the interacting multiple model estimator over a run.
@@ -45,6 +48,8 @@ def follow_modes(
     config : ModesConfig, optional
     seen : sequence of SeenGround
         What vision saw; without it motion alone decides.
+    feel : FeelSource, optional
+        What the run feels like.
     show_progress : bool
 
     Raises
@@ -64,7 +69,7 @@ def follow_modes(
     1085
     """
     signals = judged_signals(run, mode_set)
-    return follow_signals(signals, mode_set, config, seen, show_progress=show_progress)
+    return follow_signals(signals, mode_set, config, seen, feel=feel, show_progress=show_progress)
 
 
 def judged_signals(run: Run, mode_set: ModeSet) -> Signals:
@@ -82,6 +87,7 @@ def follow_signals(
     config: ModesConfig | None = None,
     seen: Sequence[SeenGround] = (),
     *,
+    feel: FeelSource | None = None,
     show_progress: bool = False,
 ) -> ModeTrack:
     """The same over inputs and measurements."""
@@ -90,7 +96,7 @@ def follow_signals(
     chains = mode_chains(seen, mode_set.names, mode_set.dwell_s)
     in_force = np.searchsorted([one.stamp_s for one in seen], signals.stamps_s, side="right")
     independent = independent_share(signals, modes.errors_last_s)
-    states = modes.model().states
+    size, states = len(signals), modes.model().states
     lasting = np.zeros((count, states))
     lasting[:, :-1] = (1 - independent) * modes.measurement_variance
     held = np.append(np.ones(states - 1), independent)  # share of each variance that filters hold
@@ -108,10 +114,10 @@ def follow_signals(
     gap_ends = np.searchsorted(signals.stamps_s, signals.gaps_s[:, 1])
     measured = usable_measurements(signals, gap_ends, modes.fastest_m_s)
     readings = bias_readings(signals)
+    felt = {} if feel is None else feel.at(signals.stamps_s)
     first = chains[in_force[0]].transition(SETTLED_S).mean(axis=0)
     merged = modes.start(signals, independent)
     belief = alone = ModeBelief.alike(*merged, first)
-    size = len(signals)
     probabilities, squared = np.empty((size, count)), np.empty(size)
     means, sigmas = np.empty((2, size, states))
     innovations = np.full((size, count, measured.shape[1]), np.nan)
@@ -122,15 +128,16 @@ def follow_signals(
         if row:
             u = signals.tread_speeds_m_s[row - 1]
             step_s = float(signals.stamps_s[row] - signals.stamps_s[row - 1])
-            belief = with_shared_bias(imm.step(belief, u, measured[row], step_s), independent)
+            stepped = with_shared_bias(imm.step(belief, u, measured[row], step_s), independent)
+            belief = with_evidence(stepped, felt.get(row), config.floor)
             own = OwnFilters(imm.bank, filters(rough))
             alone, innovations[row] = own.step(alone, u, measured[row], step_s)
             merged = imm.merged(belief)
             if row in readings:
                 merged = with_reading(*merged, readings[row], independent)
                 belief = with_bias(belief, *merged)
-            led = with_lead(alone, belief, int(probabilities[row - 1].argmax()))
-            alone = with_bias(led, *merged)
+            led = int(probabilities[row - 1].argmax())
+            alone = with_bias(with_lead(alone, belief, led), *merged)
         if row in gap_ends:  # what moved in a gap tells nothing of the modes
             begun = ModeBelief.alike(
                 *modes.start(signals.after(row), independent), belief.probabilities
@@ -138,9 +145,8 @@ def follow_signals(
             belief = alone = with_bias(begun, *merged)
             merged = imm.merged(belief)
         probabilities[row] = belief.probabilities
-        mean, covariance = merged
-        variances = np.diag(covariance) / held + probabilities[row] @ lasting
-        means[row], sigmas[row] = mean, np.sqrt(variances)
+        variances = np.diag(merged[1]) / held + probabilities[row] @ lasting
+        means[row], sigmas[row] = merged[0], np.sqrt(variances)
         squared[row] = _normalised_squared(belief, measured[row])
     leading = probabilities.argmax(axis=1)
     left = Innovations(innovations, leading, signals.stamps_s, independent)
@@ -154,7 +160,8 @@ def follow_signals(
         signals.labels,
         mode_fit(left, mode_set.dwell_s, config.misfit_share),
         gyroscope_trust_of(signals, mode_set, means[:, -1], sigmas[:, -1]),
-        *contradictions(replace(signals, measured=measured), mode_set, left),
+        *contradictions(replace(signals, measured=measured), mode_set, left, means[:, -1]),
+        felt=_by_feel_alone(feel, signals, mode_set, config),
     )
 
 
@@ -164,3 +171,13 @@ def _normalised_squared(belief: ModeBelief, measured: FloatArray) -> float:
         return float("nan")
     of_mode = belief.innovations.normalised_squared[belief.log_probabilities.argmax()]
     return float(of_mode / np.isfinite(measured).sum())
+
+
+def _by_feel_alone(
+    feel: FeelSource | None, signals: Signals, mode_set: ModeSet, config: ModesConfig
+) -> FloatArray | None:
+    """Probabilities (N, M) that nothing but feel gives."""
+    if feel is None:
+        return None
+    chain = ModeChain(mode_set.dwell_s)
+    return feel.alone(signals.stamps_s, chain.transition, config.floor)

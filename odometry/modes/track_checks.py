@@ -4,6 +4,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.modes.alike import alike_modes
+from odometry.modes.between_modes import BetweenModes, between_modes
 from odometry.modes.bias_reading import bias_readings
 from odometry.modes.gyroscope_trust import GyroscopeTrust, gyroscope_trust
 from odometry.modes.innovation_test import Innovations
@@ -24,13 +25,17 @@ def gyroscope_trust_of(
 
 
 def contradictions(
-    signals: Signals, mode_set: ModeSet, left: Innovations
-) -> tuple[BoolArray | None, BoolArray | None, TravelCheck | None]:
-    """Modes alike, turns that contradict, and travel; None of modes that hear poses themselves."""
+    signals: Signals, mode_set: ModeSet, left: Innovations, biases_rad_s: FloatArray
+) -> tuple[BoolArray | None, BoolArray | None, TravelCheck | None, BetweenModes | None]:
+    """Modes alike, turns that contradict, travel, and turns between two modes.
+
+    None of modes that hear poses themselves.
+    """
     modes = mode_set.modes
     if not isinstance(modes, VelocityModes):
-        return None, None, None
+        return None, None, None, None
     asked = modes.steady_yaw_rates(signals.tread_speeds_m_s)
     before = np.vstack([np.zeros(asked.shape[1]), asked[:-1]])
     alike = alike_modes(signals, modes, left.leading)
-    return alike, turns_are_off(left, before), travel_check(signals, modes)
+    between = between_modes(signals, modes, biases_rad_s, left.independent)
+    return alike, turns_are_off(left, before), travel_check(signals, modes), between

@@ -6,12 +6,14 @@ import numpy as np
 
 from odometry.modes.detections import Detection
 from odometry.modes.doubts import doubts
-from odometry.modes.followed import SIGHTED, Followed
+from odometry.modes.followed import FELT, MOTION, SIGHTED, Followed
 from odometry.modes.misfits import Misfit
 from odometry.modes.mode_set import NO_MODES
 from odometry.modes.mode_track import ModeTrack
+from odometry.modes.not_checked import not_checked
 from odometry.modes.score import Score
 
+WHOSE = {MOTION: "", FELT: " with feel", SIGHTED: " with sight"}
 FEW = 4  # stretches, or answers, that are said one by one
 LEAST_SHARE = 0.005  # less is not said
 LEAST_OPEN = 0.1  # of the undetermined time: sets of modes that are said
@@ -67,13 +69,17 @@ def _more(followed: Followed) -> Iterator[str]:
     yield from _open_words(followed)
     for one in doubts(followed):
         yield f"No mode is named where {one.reason}."
+    for what in not_checked(followed):
+        yield f"Not checked: {what}."
+    if followed.felt is not None:
+        yield f"With feel: {answer_words(followed, followed.felt)}"
     if followed.sighted is not None:
         yield f"With sight: {answer_words(followed, followed.sighted)}"
     for name, track in followed.tracks.items():
         count = followed.score(track).false_switches
         if count:
             times = "once" if count == 1 else f"{count} times"
-            whose = " with sight" if name == SIGHTED else ""
+            whose = WHOSE[name]
             yield f"The answer{whose} turned to a wrong mode {times}."
     if followed.foreign_labels:
         yield (

@@ -11,6 +11,7 @@ from terrain.cli.recordings import span_options
 from terrain.cli.results import print_written
 
 if TYPE_CHECKING:
+    from odometry.feel.model import FeelModel
     from odometry.modes.followed import Followed
     from odometry.modes.mode_set import ModeSet
     from odometry.modes.track import ModesConfig
@@ -38,6 +39,12 @@ FOLDER = RunFolder()
     help="Labels of vision for the one RUN: terrain.csv of `run`.",
 )
 @click.option(
+    "--feel",
+    metavar="MODEL",
+    type=FILE,
+    help="Model of `identify-feel`: what the robot feels is used beside its motion.",
+)
+@click.option(
     "--sure",
     type=click.FloatRange(0.5, 1.0, min_open=True, max_open=True),
     default=0.9,
@@ -51,6 +58,7 @@ def modes(
     models: Path,
     out: Path,
     seen: Path | None,
+    feel: Path | None,
     sure: float,
     span: "Span",
 ) -> None:
@@ -59,14 +67,17 @@ def modes(
     Writes the probability of each mode over time, the answers, and how soon and how often they
     were right where the run says what is true. "none of these" is the answer where no mode fits,
     with the signal that contradicts it. With --seen, the labels of vision are used too, and long
-    disagreements of vision and motion are reported. Several runs get a folder each; one that
-    cannot be used becomes a row of runs.csv that says why, and the exit code is then 1.
+    disagreements of vision and motion are reported; with --feel, so is what the robot feels.
+    Several runs get a folder each; one that cannot be used becomes a row of runs.csv that says why,
+    and the exit code is then 1.
 
     \b
     Example:
       terrain-odometry modes my_run --models set.toml --out modes
       terrain-odometry modes my_run --models set.toml --seen results/terrain.csv --out modes
+      terrain-odometry modes my_run --models set.toml --feel my_robot.feel --out modes
     """
+    from odometry.feel.model_file import read_feel_model
     from odometry.modes.mode_set_file import read_mode_set
     from odometry.modes.track import ModesConfig
     from terrain.cli.outputs import claim_folder
@@ -75,10 +86,11 @@ def modes(
         raise click.UsageError(f"--seen is of one run; there are {len(folders)}")
     output = claim_folder(out)
     mode_set, config = read_mode_set(models), ModesConfig(sure=sure)
+    of_feel = None if feel is None else read_feel_model(feel)
     if len(folders) == 1:
-        _one(folders[0], mode_set, config, output, seen=seen, span=span)
+        _one(folders[0], mode_set, config, output, seen=seen, feel=of_feel, span=span)
     else:
-        _several(folders, mode_set, config, output, span=span)
+        _several(folders, mode_set, config, output, feel=of_feel, span=span)
 
 
 def _one(
@@ -88,6 +100,7 @@ def _one(
     output: "OutputFolder",
     *,
     seen: Path | None,
+    feel: "FeelModel | None",
     span: "Span",
 ) -> None:
     from odometry.modes.files import write_modes
@@ -96,7 +109,7 @@ def _one(
     from odometry.report.modes_page import write_modes_report
     from terrain.cli.outputs import about
 
-    result = _followed(folder, mode_set, config, seen=seen, span=span)
+    result = _followed(folder, mode_set, config, seen=seen, feel=feel, span=span)
     with output.writing() as part:
         write_modes(result, part, about(output.made))
         write_modes_report(result, part)
@@ -114,6 +127,7 @@ def _several(
     config: "ModesConfig",
     output: "OutputFolder",
     *,
+    feel: "FeelModel | None",
     span: "Span",
 ) -> None:
     """A folder for each run, and runs.csv; a run that fails is a row."""
@@ -129,7 +143,7 @@ def _several(
     with output.writing() as part:
         for name, folder in zip(folder_names(folders), folders, strict=True):
             try:
-                result = _followed(folder, mode_set, config, seen=None, span=span)
+                result = _followed(folder, mode_set, config, seen=None, feel=feel, span=span)
             except OdometryError as error:
                 rows[name] = str(error)
                 click.echo(f"{name}: failed: {error}")
@@ -153,6 +167,7 @@ def _followed(
     config: "ModesConfig",
     *,
     seen: Path | None,
+    feel: "FeelModel | None",
     span: "Span",
 ) -> "Followed":
     from odometry.errors import RunFolderError
@@ -165,4 +180,4 @@ def _followed(
     grounds = () if seen is None else seen_grounds(seen, run)
     if seen is not None and not grounds:
         raise RunFolderError(f"{seen}: vision named no terrain that {folder} gets to")
-    return followed(run, mode_set, config, grounds, show_progress=True)
+    return followed(run, mode_set, config, grounds, feel=feel, show_progress=True)

@@ -12,6 +12,7 @@ from odometry.modes.answers import candidates, disagreements, named_modes
 from odometry.modes.detections import confusion, detections, false_switches
 from odometry.modes.innovation_test import ModeFit
 from odometry.modes.mode_set import UNDETERMINED
+from odometry.modes.refusals import refusals
 from tests.odometry.modes.mode_examples import track
 
 NAMES = ("a", "b", "c")
@@ -22,6 +23,44 @@ def test_a_mode_is_named_from_the_given_probability():
     known = track(["a", "b", ""], ["a"] * 3, probability=0.95)
     assert named_modes(known, 0.95).tolist() == ["a", "b", UNDETERMINED]
     assert named_modes(known, 0.951).tolist() == [UNDETERMINED] * 3
+
+
+def with_probabilities(of_a):
+    of_a = np.array(of_a)
+    rows = np.column_stack([of_a, 1 - of_a, 0 * of_a])
+    return replace(track(["a"] * len(of_a), ["a"] * len(of_a)), probabilities=rows)
+
+
+def test_a_named_mode_stays_named_until_it_is_twice_as_doubtful():
+    known = with_probabilities([0.85, 0.91, 0.85, 0.81, 0.79, 0.85, 0.92])
+    named = ["a" if named else UNDETERMINED for named in (0, 1, 1, 1, 0, 0, 1)]
+    assert named_modes(known, 0.9).tolist() == named
+
+
+def test_another_mode_that_leads_must_be_sure_by_itself():
+    known = with_probabilities([0.95, 0.15, 0.09, 0.15])
+    assert named_modes(known, 0.9).tolist() == ["a", UNDETERMINED, "b", "b"]
+
+
+def test_each_test_that_refuses_is_said_by_name():
+    off = np.array([False, True])
+    known = replace(track(["a", "a"], ["a"] * 2), turns_are_off=off, alike=off[:, None])
+    found = refusals(known, 0.9)
+    assert {name: of.tolist() for name, of in found.items()} == {
+        "probability": [False, False],
+        "alike": [False, True],
+        "turns": [False, True],
+    }
+
+
+def test_feel_says_which_of_modes_that_are_alike_it_is():
+    """Not where feel is for another one, nor against what turns say."""
+    alike = np.ones((2, 1), dtype=bool)
+    felt = np.array([[0.7, 0.2, 0.1], [0.2, 0.7, 0.1]])
+    known = replace(track(["a", "a"], ["a"] * 2), alike=alike, felt=felt)
+    assert named_modes(known, 0.9).tolist() == ["a", UNDETERMINED]
+    contradicted = replace(known, turns_are_off=np.array([True, True]))
+    assert named_modes(contradicted, 0.9).tolist() == [UNDETERMINED] * 2
 
 
 def test_time_to_detection_and_the_shares_after_it():

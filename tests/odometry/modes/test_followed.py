@@ -156,6 +156,7 @@ def test_a_row_for_each_stamp(halves, tmp_path):
         *("t", "probability_ice", "probability_tar", "answer", "candidates", "label"),
         *("vx", "wz", "gyro_bias", "sigma_vx", "sigma_wz", "sigma_gyro_bias"),
         *("probability_none of these", "innovation_vx", "innovation_wz"),
+        *("between", "between_share"),
     ]
     assert len(rows) == len(halves.motion.stamps_s)
     assert [row["answer"] for row in rows] == halves.answers(halves.motion).tolist()

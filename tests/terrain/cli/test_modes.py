@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+import odometry
 from odometry.errors import ParameterError, RunFolderError
 from odometry.io.run_folder import write_run_folder
 from odometry.modes.mode_set_file import write_mode_set
@@ -108,6 +109,30 @@ def test_what_was_seen_makes_a_second_track(with_sight):
     assert content["sight"]["told"] == 2
     assert "Sight and motion disagree nowhere for 2 s or longer." in answer.stdout
     assert (out / "modes_with_sight.csv").exists()
+
+
+def test_feel_makes_a_second_track(tmp_path):
+    shipped, out = odometry.shipped_data(), tmp_path / "out"
+    models, feel = shipped / "modes" / "demo.toml", shipped / "feel" / "demo.feel"
+    given = ("--models", models, "--feel", feel, "--out", out)
+    answer = invoke(shipped / "runs" / "demo", *given)
+    assert answer.exit_code == 0, answer.output
+    assert "With feel: " in answer.stdout
+    assert json.loads((out / "result.json").read_text())["feel"]["shares_of_time"]
+    with (out / "modes_with_feel.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    of_feel = [float(rows[-1][f"feel_{name}"]) for name in ("grass", "gravel")]
+    assert sum(of_feel) == pytest.approx(1.0)
+    assert "feel_grass" not in (out / "modes.csv").read_text().splitlines()[0]
+
+
+def test_what_no_pose_can_check_is_said(make, models, tmp_path):
+    with_poses = invoke(make("with"), "--models", models, "--out", tmp_path / "one")
+    without = invoke(make("without", poses=False), "--models", models, "--out", tmp_path / "two")
+    assert "Not checked: the scale of the gyroscope" not in with_poses.stdout
+    assert "Not checked: the scale of the gyroscope, without measured headings" in without.stdout
+    assert "Not checked: the distance, without measured positions" in without.stdout
+    assert len(json.loads((tmp_path / "two" / "result.json").read_text())["not_checked"]) == 2
 
 
 def test_a_sight_that_lies_is_reported(with_sight):

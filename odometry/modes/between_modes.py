@@ -1,0 +1,131 @@
+"""A terrain that was not calibrated, whose turns lie between those of two modes that were.
+
+The measured yaw rate is held against a mixture of what two neighbouring modes say: with
+`w = w_A + s (w_B - w_A) + b`, the share s and a bias b of the gyroscope are estimated over a window
+by linear least squares. Where s lies between 0 and 1 beyond its errors, the terrain is neither A
+nor B. A change from A to B within the window leaves such a mean as well, so that both halves of
+the window must lie between the two by themselves.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.modes.first_order_lag import lagged
+from odometry.modes.innovation_test import windowed
+from odometry.modes.response import SLOWEST_HZ
+from odometry.modes.signals import Signals
+from odometry.modes.velocity import VelocityModes
+
+WINDOW_S = 16.0
+BOUND, HALF_BOUND = 3.0, 2.0  # standard deviations from 0 and 1, of a window and of its halves
+TOLERANCE = 0.01  # of the yaw rate: no mode is identified better
+LEAST_INFORMATION = 1.0  # on the share: less tells nothing
+LEFT_BIAS_RAD_S = 0.003  # standard deviation of the bias beyond what filters believe
+"""Chosen on clean runs of seeds 50, 51 and 60 to 63 of `tests/studies/modes_faults.py`, of which
+none is taken for a terrain between two; windows of 10 and 12 s take one of 18."""
+
+
+@dataclass(frozen=True)
+class BetweenModes:
+    """At the N stamps of a track.
+
+    Attributes
+    ----------
+    pairs : tuple of (str, str)
+        Modes that are next to each other by how much they turn, the one that turns less first.
+    place : (N,)
+        Of the pair between which the robot turns; -1 where it does not.
+    share : (N,)
+        How far from the first to the second it turns, 0 to 1; NaN where between no pair.
+    """
+
+    pairs: tuple[tuple[str, str], ...]
+    place: IntArray
+    share: FloatArray
+
+    @property
+    def holds(self) -> BoolArray:
+        """Where (N,) the robot turns between two modes."""
+        return np.asarray(self.place >= 0)
+
+
+def between_modes(
+    signals: Signals, modes: VelocityModes, biases_rad_s: FloatArray, independent: float
+) -> BetweenModes | None:
+    """Follow where turns lie between two modes.
+
+    Parameters
+    ----------
+    signals : Signals
+        Measured where it says something of the modes.
+    modes : VelocityModes
+    biases_rad_s : (N,)
+        That filters believe.
+    independent : float
+        Share of a measurement that is news.
+
+    Returns
+    -------
+    BetweenModes or None
+        None of a single mode.
+    """
+    gains = modes.steady_gains()[:, 1] @ [-0.5, 0.5]
+    order = np.argsort(gains)
+    pairs = list(zip(order[:-1].tolist(), order[1:].tolist(), strict=True))
+    if not pairs:
+        return None
+    said = _said_rad_s(signals, modes)
+    measured = signals.measured[:, 1] - biases_rad_s
+    half = np.searchsorted(signals.stamps_s, signals.stamps_s - WINDOW_S / 2, side="right") - 1
+    place, share = np.full(len(signals), -1), np.full(len(signals), np.nan)
+    for row, (first, second) in enumerate(pairs):
+        apart, off = said[:, second] - said[:, first], measured - said[:, first]
+        worth = independent / modes.measurement_variance[[first, second], 1].max()
+        error = TOLERANCE * gains[second] / max(gains[second] - gains[first], 1e-12)
+        whole, late = (
+            _sums(apart, off, signals.stamps_s, window_s) * worth
+            for window_s in (WINDOW_S, WINDOW_S / 2)
+        )
+        early = np.where(half >= 0, late[:, half], np.nan)
+        holds = _inside(whole, error, BOUND)
+        for part in (early, late):
+            holds &= _inside(part, error, HALF_BOUND)
+        place[holds], share[holds] = row, _share(whole)[0][holds]
+    names = tuple((modes.names[first], modes.names[second]) for first, second in pairs)
+    return BetweenModes(names, place, share)
+
+
+def _said_rad_s(signals: Signals, modes: VelocityModes) -> FloatArray:
+    """Yaw rates (N, M) of each mode, which follow the treads late and are not corrected."""
+    steady = modes.steady_yaw_rates(signals.tread_speeds_m_s)
+    lags_s = 1 / np.maximum(-modes.A[:, 1, 1], SLOWEST_HZ)
+    columns = [
+        lagged(column, signals.stamps_s, float(lag_s))
+        for column, lag_s in zip(steady.T, lags_s, strict=True)
+    ]
+    return np.column_stack(columns)
+
+
+def _sums(apart: FloatArray, off: FloatArray, stamps_s: FloatArray, window_s: float) -> FloatArray:
+    """Sums (5, N) of the normal equations over a window up to each stamp."""
+    known = np.isfinite(off)
+    d, y = np.where(known, apart, 0.0), np.where(known, off, 0.0)
+    return windowed(np.column_stack([known, d, d * d, y, d * y]), stamps_s, window_s).T
+
+
+def _share(sums: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Share (N,) and its variance from sums (5, N) times their worth; NaN: cannot be told."""
+    count, d, dd, y, dy = sums
+    of_bias = count + LEFT_BIAS_RAD_S**-2
+    left = dd - d**2 / of_bias
+    left = np.where(left > LEAST_INFORMATION, left, np.nan)
+    return (dy - d * y / of_bias) / left, 1 / left
+
+
+def _inside(sums: FloatArray, error: float, bound: float) -> BoolArray:
+    """Where (N,) the share lies between 0 and 1, farther than errors that stay and that do not."""
+    share, variance = _share(sums)
+    margin = bound * np.sqrt(variance + error**2)
+    return np.asarray((share - margin > 0) & (share + margin < 1))

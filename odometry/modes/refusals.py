@@ -1,0 +1,60 @@
+"""The tests that refuse to name the most probable mode, each by itself."""
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.modes.mode_track import ModeTrack
+
+AGREED = 0.6  # probability from which on the rolling test, or feel, takes a mode for the one
+MOST_DOUBT = 2.0  # times that at which a mode is named: more, and it is named no longer
+
+
+def refusals(track: ModeTrack, sure: float) -> dict[str, BoolArray]:
+    """Where (N,) each test refuses; a mode is named where none does.
+
+    "probability" is that of the mode among the modes and against "none of these": `sure` or more
+    where a mode begins to be named, and from there on, while that mode leads, down to MOST_DOUBT
+    times the doubt. In "alike" motion cannot tell the modes apart: where feel says which it is,
+    that test does not refuse, nor does "rolling test" because another mode fits as well.
+
+    Parameters
+    ----------
+    track : ModeTrack
+    sure : float
+        Probability from which a mode is named.
+    """
+    most = track.probabilities.argmax(axis=1)
+    of_most = (np.arange(len(most)), most)
+    confirmed = np.zeros(len(most), dtype=np.bool_)
+    if track.felt is not None:
+        confirmed = track.felt[of_most] >= AGREED
+    least = track.probabilities[of_most]
+    found = {}
+    if track.fit is not None:
+        least = np.minimum(least, track.fit.against_none[of_most])
+        agreed = np.exp(track.fit.log_probabilities[of_most]) >= AGREED
+        found["rolling test"] = ~(agreed | confirmed)
+        found["six seconds"] = track.fit.lasts
+    found["probability"] = ~_held(least, most, sure)
+    if track.gyroscope is not None:
+        found["bias of the gyroscope"] = track.gyroscope.bias_is_open
+    if track.alike is not None:
+        found["alike"] = track.alike.any(axis=1) & ~confirmed
+    if track.turns_are_off is not None:
+        found["turns"] = track.turns_are_off
+    if track.travel is not None:
+        found["travel"] = track.travel.off[of_most]
+    return found
+
+
+def _held(probabilities: FloatArray, most: IntArray, sure: float) -> BoolArray:
+    """Where (N,) a probability of the leading mode reached `sure` and did not fall far since.
+
+    A threshold with hysteresis (Schmitt 1938): near one threshold an answer comes and goes.
+    """
+    rows = np.arange(len(most))
+    kept = max(1 - MOST_DOUBT * (1 - sure), 0.5)
+    led = np.append(False, most[1:] != most[:-1])
+    begun = np.maximum.accumulate(np.where(probabilities >= sure, rows, -1))
+    ended = np.maximum.accumulate(np.where((probabilities < kept) | led, rows, -1))
+    return np.asarray((begun >= ended) & (begun >= 0))
