@@ -37,3 +37,11 @@ class OutputError(OdometryError):
 
 class ExtraError(OdometryError):
     """An optional package is needed and not installed."""
+
+
+class BagError(OdometryError):
+    """A bag, or a map of its topics, cannot be used as it is."""
+
+
+class ExportError(OdometryError):
+    """A parameter set or a result does not hold what a format needs."""

@@ -47,3 +47,7 @@ class ResultError(TerrainError):
 
 class BatchError(TerrainError):
     """Many jobs cannot be done together, or not where they were sent."""
+
+
+class CalibrationError(CameraError):
+    """The input does not determine the lens or the mount."""

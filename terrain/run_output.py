@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from odometry.checks.finding import CheckReport
-from odometry.outputs.about import about_result
+from odometry.outputs.made import about_result
 from odometry.outputs.output_folder import OutputFolder
 from terrain.report import page
 from terrain.results import write_results

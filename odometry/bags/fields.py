@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from odometry.bags.errors import BagError
+from odometry.errors import BagError
 
 STEP = re.compile(r"([A-Za-z_]\w*)|\[(-?\d+)\]")
 DEEPEST, LONGEST_ARRAY = 4, 16  # limits of the search for numbers

@@ -7,9 +7,9 @@ import numpy as np
 
 from odometry.arrays import AnyArray
 from odometry.bags.connection import Buffer
-from odometry.bags.errors import BagError
 from odometry.bags.message_kinds import COMPRESSED_IMAGE
 from odometry.bags.ordered_rows import seconds
+from odometry.errors import BagError
 
 JPEG, PNG = b"\xff\xd8\xff", b"\x89PNG\r\n\x1a\n"
 CHANNELS = {"mono8": 1, "8UC1": 1, "bgr8": 3, "rgb8": 3, "8UC3": 3, "bgra8": 4, "rgba8": 4}

@@ -11,7 +11,6 @@ import tomli_w
 from odometry.arrays import FloatArray
 from odometry.bags.attitudes import Attitudes
 from odometry.bags.connection import Connection, Message
-from odometry.bags.errors import BagError
 from odometry.bags.losses import Losses
 from odometry.bags.make_streams import make_streams
 from odometry.bags.message_types import MessageTypes
@@ -21,6 +20,7 @@ from odometry.bags.run_settings import run_settings
 from odometry.bags.speeds import FASTEST_M_S
 from odometry.bags.streams import Stream
 from odometry.bags.survey import REPORT_EVERY, Progress, Survey
+from odometry.errors import BagError
 
 MOST_REASONS = 3
 

@@ -15,9 +15,9 @@ from typing import BinaryIO, NamedTuple
 
 from odometry.bags.compression import decompressed
 from odometry.bags.connection import Connection, Message, ros2_name
-from odometry.bags.errors import BagError
 from odometry.bags.losses import Losses
 from odometry.bags.windows import windows
+from odometry.errors import BagError
 
 MAGIC = b"\x89MCAP0\r\n"
 SCHEMA, CHANNEL, MESSAGE, CHUNK, DATA_END = 0x03, 0x04, 0x05, 0x06, 0x0F

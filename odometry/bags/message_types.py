@@ -17,7 +17,7 @@ from rosbags.typesys import (
 )
 
 from odometry.bags.connection import READABLE, Buffer, Connection, Message
-from odometry.bags.errors import BagError
+from odometry.errors import BagError
 
 Reader = Callable[[Buffer, str], Any]
 

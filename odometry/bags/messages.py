@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from odometry.bags.bag_files import bag_files
-from odometry.bags.errors import BagError
 from odometry.bags.losses import Losses
 from odometry.bags.topic import header_ns
+from odometry.errors import BagError
 from odometry.extras import extra_module
 
 

@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from odometry.bags.errors import BagError
 from odometry.bags.message_kinds import (
     FIX,
     IMAGES,
@@ -28,6 +27,7 @@ from odometry.bags.topic_roles import (
     topic_named,
 )
 from odometry.bags.wheel_source import WheelSource, wheel_source
+from odometry.errors import BagError
 
 REFERENCES = (*POSES, FIX, POINT, *TRANSFORM_LISTS)
 NO_SPEEDS = (

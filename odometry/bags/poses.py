@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
-from odometry.bags.errors import BagError
 from odometry.bags.message_kinds import POSES
+from odometry.errors import BagError
 from odometry.geometry import se3
 
 Row = tuple[float, ...]

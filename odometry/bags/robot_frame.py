@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.bags.errors import BagError
 from odometry.bags.robot_messages import RobotMessages
 from odometry.bags.wheel_names import is_wheel, side_of
+from odometry.errors import BagError
 
 BASES = ("base_footprint", "base_link", "base", "chassis_link", "body", "trunk")
 HOW_TRACK = "measure from the middle of the left wheels (or tracks) to the middle of the right ones"

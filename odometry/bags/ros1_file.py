@@ -13,7 +13,6 @@ from typing import BinaryIO
 
 from odometry.bags.compression import decompressed
 from odometry.bags.connection import Connection, Message
-from odometry.bags.errors import BagError
 from odometry.bags.losses import Losses
 from odometry.bags.ros1_records import (
     DamageError,
@@ -24,6 +23,7 @@ from odometry.bags.ros1_records import (
     record_start,
 )
 from odometry.bags.windows import windows
+from odometry.errors import BagError
 
 MAGIC = b"#ROSBAG V2.0\n"
 MESSAGE, BAG_HEADER, CHUNK, CONNECTION = 2, 3, 5, 7

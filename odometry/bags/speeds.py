@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.bags.errors import BagError
 from odometry.bags.fields import number_at
 from odometry.bags.message_kinds import TWISTS
 from odometry.bags.wheel_source import WheelSource
+from odometry.errors import BagError
 from odometry.geometry.angles import wrap
 
 FASTEST_M_S = 50.0  # no robot's tread is faster: an encoder was reset, or a number is broken

@@ -11,9 +11,9 @@ from urllib.parse import quote
 
 from odometry.bags.compression import ZSTD_MAGIC, decompressed
 from odometry.bags.connection import Connection, Message, ros2_name
-from odometry.bags.errors import BagError
 from odometry.bags.losses import Losses
 from odometry.bags.sqlite_pages import Row, rows_of_pages
+from odometry.errors import BagError
 
 MAGIC = b"SQLite format 3\0"
 ROWS = "SELECT id, topic_id, timestamp, data FROM messages ORDER BY id"

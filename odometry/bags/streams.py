@@ -6,11 +6,11 @@ from collections.abc import Callable
 from typing import Any
 
 from odometry.bags.connection import Message
-from odometry.bags.errors import BagError
 from odometry.bags.image_files import ImageFiles
 from odometry.bags.ordered_rows import OrderedRows
 from odometry.bags.topic import header_ns
 from odometry.bags.transforms import TransformPoses
+from odometry.errors import BagError
 
 Row = tuple[float, ...]
 

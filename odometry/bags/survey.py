@@ -8,13 +8,13 @@ from typing import Any
 
 from odometry.bags.bag_files import BagFile
 from odometry.bags.connection import Connection, Message
-from odometry.bags.errors import BagError
 from odometry.bags.losses import Losses
 from odometry.bags.message_kinds import IMAGES, JOINTS
 from odometry.bags.message_types import MessageTypes
 from odometry.bags.robot_messages import ROBOT_TYPES, RobotMessages
 from odometry.bags.topic import MOVING_TYPES, Ranges, Topic, header_ns, widen
 from odometry.bags.wheel_names import sided
+from odometry.errors import BagError
 
 REPORT_EVERY = 1000  # messages
 Progress = Callable[[int], None]

@@ -6,7 +6,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from odometry.bags.errors import BagError
+from odometry.errors import BagError
 from odometry.io.structured import read_toml
 
 TIMES = ("auto", "header", "log")

@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from typing import Any
 
-from odometry.bags.errors import BagError
 from odometry.bags.message_kinds import CAMERA_INFO, POSES
 from odometry.bags.topic import Topic
 from odometry.bags.topic_guess import best, guess
 from odometry.bags.topic_map import NONE
+from odometry.errors import BagError
 
 SAME_CLOCK_S = 2.0  # header stamps and times of reception that differ by less share a clock
 

@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from odometry.bags.errors import BagError
+from odometry.errors import BagError
 
 WHEEL = re.compile(r"wheel|track|tread|tyre|tire|drive|motor|sprocket|whl", re.IGNORECASE)
 NO_WHEEL = re.compile(

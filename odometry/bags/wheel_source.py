@@ -5,12 +5,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from odometry.bags.errors import BagError
 from odometry.bags.fields import number_at, number_paths
 from odometry.bags.message_kinds import JOINTS, NO_WHEELS, ODOMETRY, TWISTS
 from odometry.bags.topic import PLACE, VELOCITY, Topic, moved
 from odometry.bags.topic_guess import SIMPLE_ARRAY, unit_of
 from odometry.bags.wheel_names import UNITS, check_unit, gear_of, side_of, sided
+from odometry.errors import BagError
 
 HOW_RADIUS = (
     "roll the robot straight ahead for ten turns of a wheel, and divide the way by 62.83; or "

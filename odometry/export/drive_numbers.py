@@ -26,7 +26,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
 from odometry.estimation.icr_prior import icr_form
-from odometry.identification.intervals import NORMAL
+from odometry.identification.fitted import NORMAL
 from odometry.models.catalogue import model_named
 from odometry.parameters import TerrainParameters
 

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
-from odometry.export.errors import ExportError
+from odometry.errors import ExportError
 from odometry.export.source import ExportSource
 from odometry.extras import extra_module
 from odometry.geometry import se2, se3

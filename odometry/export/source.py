@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from odometry.errors import ParameterError
-from odometry.export.errors import ExportError
+from odometry.errors import ExportError, ParameterError
 from odometry.export.motion_errors import MotionErrors, Pace
 from odometry.io.csv_table import read_csv_table
 from odometry.io.structured import read_json

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
-from odometry.export.errors import ExportError
+from odometry.errors import ExportError
 from odometry.export.source import ExportSource
 from odometry.geometry import se2
 from odometry.trajectory import Trajectory

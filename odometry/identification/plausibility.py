@@ -3,7 +3,7 @@
 import numpy as np
 
 from odometry.identification.fit import Fit
-from odometry.identification.intervals import NORMAL, deviations_within
+from odometry.identification.fitted import NORMAL, deviations_within
 from odometry.models.base import Parameter
 
 FEW_FREEDOM = 5.0

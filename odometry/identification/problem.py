@@ -10,6 +10,8 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.models.base import KinematicModel
 from odometry.windows.motion import linearised_window_motion, window_motion
 from odometry.windows.noise import window_covariances
+from odometry.windows.stretch_motion import linearised_shape_residuals, shape_residuals
+from odometry.windows.stretch_noise import covariance_parts, known_covariance, whitening
 from odometry.windows.stretches import Stretches
 from odometry.windows.windows import Windows
 
@@ -148,3 +150,31 @@ PROBLEMS: dict[str, type[Problem]] = {
     "squares": Problem,
     "linear": PaperProblem,
 }
+
+
+@dataclass(frozen=True)
+class StretchProblem(AnyProblem):
+    """As `Problem`, of K stretches with n ways each; `variances` are those of `StretchNoise`."""
+
+    windows: Stretches
+
+    @property
+    def numbers_per_window(self) -> int:
+        """See `AnyProblem.numbers_per_window`: the direction of a stretch takes one."""
+        of = self.windows
+        return (2 if of.turns_rad is None else 3) * of.steps - 1
+
+    @cached_property
+    def noise_whitening(self) -> FloatArray:
+        """Matrices (K, R, R) of `stretch_noise.whitening`."""
+        of = self.windows
+        return whitening(of, self.variances, covariance_parts(of), known_covariance(of))
+
+    def _residuals(self, chosen: FloatArray) -> FloatArray:
+        return shape_residuals(self.model, self.complete(chosen), self.windows)
+
+    def _linearised(self, chosen: FloatArray) -> tuple[FloatArray, FloatArray]:
+        found, by_values = linearised_shape_residuals(
+            self.model, self.complete(chosen), self.windows
+        )
+        return found, by_values[..., self.free]

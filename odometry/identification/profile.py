@@ -9,10 +9,9 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
+from odometry.identification.fitted import Interval, deviations_within
 from odometry.identification.identification import Identification
-from odometry.identification.intervals import Interval, deviations_within
-from odometry.identification.problem import PROBLEMS, AnyProblem
-from odometry.identification.stretch_problem import StretchProblem
+from odometry.identification.problem import PROBLEMS, AnyProblem, StretchProblem
 from odometry.run import Robot
 from odometry.windows.config import WindowConfig
 from odometry.windows.noise import pose_variances

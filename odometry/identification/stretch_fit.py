@@ -10,9 +10,9 @@ from odometry.identification.config import SolverConfig
 from odometry.identification.errors import IdentificationError
 from odometry.identification.finish import finished
 from odometry.identification.fitted import LEAST_POSITION_M, Fit
+from odometry.identification.problem import StretchProblem
 from odometry.identification.solve import Solution, solve
 from odometry.identification.start import start_of
-from odometry.identification.stretch_problem import StretchProblem
 from odometry.identification.stretch_uncertainty import stretch_uncertainty
 from odometry.models.base import KinematicModel
 from odometry.run import Robot

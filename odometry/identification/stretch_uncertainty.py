@@ -3,9 +3,9 @@
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.identification.problem import StretchProblem
 from odometry.identification.solve import Solution
 from odometry.identification.spread import correlated_groups, spread_between
-from odometry.identification.stretch_problem import StretchProblem
 from odometry.identification.uncertainty import Uncertainty, grown
 from odometry.windows.stretch_noise import StretchNoise, covariance_parts
 

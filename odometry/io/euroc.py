@@ -11,8 +11,7 @@ from pathlib import Path
 from odometry.io.csv_columns import LARGEST, LARGEST_BY_NAME
 from odometry.io.files import atomic_write
 from odometry.io.nanoseconds import NANOSECONDS, nanoseconds, seconds
-from odometry.io.number_rows import Column, read_rows, require_increasing
-from odometry.io.quaternion_rows import poses_of
+from odometry.io.number_rows import Column, poses_of, read_rows, require_increasing
 from odometry.spatial_trajectory import SpatialTrajectory
 
 HEADER = (

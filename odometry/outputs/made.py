@@ -2,12 +2,13 @@
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
+from odometry.checks.finding import CheckReport
 from odometry.outputs.formats import PROGRAM
 
 PACKAGES = ("numpy", "scipy", "scikit-learn", "scikit-image", "filterpy")
@@ -90,3 +91,8 @@ def installed_packages() -> dict[str, str]:
 def _one_line(text: str) -> str:
     """Control characters, which a TOML comment may not hold, as escapes."""
     return "".join(c if c.isprintable() or c == " " else ascii(c)[1:-1] for c in text)
+
+
+def about_result(made: Made, reports: Sequence[CheckReport]) -> dict[str, Any]:
+    """Keys that are added to a result file, of plain values."""
+    return {"made": made.to_table(), "check": [report.to_table() for report in reports]}

@@ -4,7 +4,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from terrain.calibration.chessboard import BoardViews
-from terrain.calibration.errors import CalibrationError
+from terrain.errors import CalibrationError
 
 FEWEST_VIEWS, ENOUGH_VIEWS = 5, 12
 ALIKE_PX = 0.02  # of the image's diagonal: views nearer to each other than this are one

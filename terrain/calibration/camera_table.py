@@ -11,7 +11,7 @@ import tomli_w
 
 from odometry.io.files import atomic_write
 from odometry.io.structured import read_toml
-from terrain.calibration.errors import CalibrationError
+from terrain.errors import CalibrationError
 
 KEYS = ("image_size", "matrix", "distortion", "mount", "ground_to_image")
 HEADER = re.compile(r"^\s*\[\[?[^\[\],]+\]?\]\s*(#.*)?$")

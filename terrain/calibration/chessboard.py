@@ -9,8 +9,7 @@ import numpy as np
 from tqdm import tqdm
 
 from odometry.arrays import ByteImage, FloatArray
-from terrain.calibration.errors import CalibrationError
-from terrain.errors import ImageError
+from terrain.errors import CalibrationError, ImageError
 from terrain.images import read_image, to_grey
 
 SUFFIXES = (".jpg", ".jpeg", ".png", ".bmp", ".tif", ".tiff")

@@ -13,8 +13,8 @@ from terrain.calibration.board_variety import (
     what_next,
 )
 from terrain.calibration.chessboard import BoardViews, Chessboard
-from terrain.calibration.errors import CalibrationError
 from terrain.camera_files.calibration import Lens
+from terrain.errors import CalibrationError
 
 WIDEST_FOCUS = 0.02  # of a focal length, half of its 95 % interval
 WORST_RMS_PX = 2.0

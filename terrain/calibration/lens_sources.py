@@ -5,12 +5,11 @@ from pathlib import Path
 
 from odometry.run import Run
 from terrain.calibration.chessboard import BoardViews, Chessboard, find_boards, photo_files
-from terrain.calibration.errors import CalibrationError
 from terrain.calibration.first_image import first_image, require_size
 from terrain.calibration.lens_from_boards import LensFit, lens_from_boards
 from terrain.camera_files.calibration import Calibration, Lens
 from terrain.camera_files.read import read_calibration
-from terrain.errors import CameraError
+from terrain.errors import CalibrationError, CameraError
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.io.csv_cells import opened_csv
-from terrain.calibration.errors import CalibrationError
+from terrain.errors import CalibrationError
 
 COLUMNS = ("u", "v", "x", "y")
 

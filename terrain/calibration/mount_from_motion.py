@@ -8,13 +8,13 @@ import numpy as np
 from scipy.stats import t as student
 
 from odometry.arrays import BoolArray, FloatArray
-from terrain.calibration.errors import CalibrationError
 from terrain.calibration.flow_solver import Solution, solve_mount
 from terrain.calibration.ground_flow import GroundFlow
 from terrain.calibration.mount_fit import MountFit, too_wide
 from terrain.calibration.tracks import Tracks
 from terrain.camera_files.calibration import Lens
 from terrain.checks.sampled_images import spread
+from terrain.errors import CalibrationError
 
 AGAIN = 2  # features are tracked again with the mount found
 FEWEST_PAIRS = 16

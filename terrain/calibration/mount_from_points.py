@@ -8,10 +8,10 @@ from scipy.stats import t as student
 from odometry.arrays import FloatArray
 from odometry.geometry import se3
 from odometry.geometry.optical_frame import mount_of_optical, optical_of_mount
-from terrain.calibration.errors import CalibrationError
 from terrain.calibration.marked_points import MarkedPoints
 from terrain.calibration.mount_fit import NAMES, MountFit, too_wide
 from terrain.camera_files.calibration import Lens
+from terrain.errors import CalibrationError
 
 FARTHEST_M = 5.0  # no skid-steer robot carries its camera as far from its centre
 FEWEST = 4  # three leave up to four mounts

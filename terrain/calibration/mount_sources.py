@@ -10,7 +10,6 @@ from odometry.arrays import FloatArray
 from odometry.geometry import se3
 from odometry.geometry.optical_frame import mount_of_optical
 from odometry.run import Run
-from terrain.calibration.errors import CalibrationError
 from terrain.calibration.lens_sources import LensSource
 from terrain.calibration.marked_points import MarkedPoints, read_marked_points
 from terrain.calibration.mount_fit import MountFit
@@ -21,7 +20,7 @@ from terrain.camera import Camera
 from terrain.camera_files.calibration import Lens
 from terrain.camera_files.transforms import ROBOT, mount_in, read_transforms
 from terrain.camera_values import finite_array
-from terrain.errors import CameraError
+from terrain.errors import CalibrationError, CameraError
 from terrain.main_job import run_odometry
 
 

@@ -10,12 +10,11 @@ from odometry.arrays import ByteImage, FloatArray, IntArray
 from odometry.geometry import se2
 from odometry.run import Run
 from odometry.trajectory import Trajectory
-from terrain.calibration.errors import CalibrationError
 from terrain.calibration.followed import followed
 from terrain.calibration.warp import Warp
 from terrain.camera_files.calibration import Lens
 from terrain.checks.sampled_images import spread
-from terrain.errors import ImageError
+from terrain.errors import CalibrationError, ImageError
 from terrain.images import read_image, to_grey
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ import numpy as np
 
 from terrain.camera_files.calibration import Calibration
 from terrain.camera_files.models import lens_of
-from terrain.camera_files.rigid import rigid
+from terrain.camera_files.transforms import rigid
 from terrain.camera_files.values import matrix, numbers
 from terrain.errors import CameraError
 

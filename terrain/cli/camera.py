@@ -197,8 +197,8 @@ def _placed(
 
 def _write(run_folder: Path, placed: "MountSource | None") -> None:
     from terrain.calibration.camera_table import write_camera
-    from terrain.calibration.errors import CalibrationError
     from terrain.cli.camera_advice import is_no_mount
+    from terrain.errors import CalibrationError
 
     if placed is None:
         raise CalibrationError(

@@ -38,8 +38,7 @@ def classify(model: Path, images: tuple[Path, ...], *, as_json: bool, own_statis
       terrain-odometry classify terrain.model other_photos
     """
     from terrain.classification.classifier import TerrainClassifier
-    from terrain.cli.labelled_images import print_held_out
-    from terrain.cli.likeness_note import print_likeness
+    from terrain.cli.labelled_images import print_held_out, print_likeness
 
     classifier = TerrainClassifier.load(model)
     folders = [path for path in images if path.is_dir()]

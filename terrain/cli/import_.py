@@ -163,13 +163,13 @@ def _value(name: str, said: Any) -> Any:
 
 
 def _list(bags: tuple[Path, ...]) -> None:
-    from odometry.bags.errors import BagError
     from odometry.bags.message_kinds import NO_WHEELS
     from odometry.bags.message_types import MessageTypes
     from odometry.bags.plan import NO_SPEEDS, make_plan
     from odometry.bags.topic_guess import best
     from odometry.bags.topic_list import topic_lines
     from odometry.bags.topic_map import TopicMap
+    from odometry.errors import BagError
 
     found = _surveyed(bags, MessageTypes())
     for line in topic_lines(found):

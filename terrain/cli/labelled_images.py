@@ -1,6 +1,7 @@
 """What `classify` prints of a folder of labelled images."""
 
 import json
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -31,7 +32,7 @@ def print_held_out(
     """
     from terrain.classification.held_out import answer_photos, held_out_score
     from terrain.classification.patches import find_photos
-    from terrain.cli.likeness_note import print_likeness
+    from terrain.cli.labelled_images import print_likeness
     from terrain.errors import PatchError
 
     answers, unusable = answer_photos(classifier, find_photos(folder))
@@ -143,3 +144,26 @@ def _json(score: "HeldOutScore", answers: "list[LabelledAnswer]") -> dict[str, A
         "balanced_accuracy_interval": score.interval,
         "balanced_accuracy_of_named": score.of_named,
     }
+
+
+if TYPE_CHECKING:
+    from odometry.arrays import ByteImage
+    from terrain.classification.classifier import TerrainClassifier
+
+
+def print_likeness(classifier: "TerrainClassifier", paths: Sequence[Path]) -> None:
+    """Say so where the images that can be read are unlike, as a whole; nothing else."""
+    likeness = classifier.likeness(_readable(paths))
+    if likeness is not None and likeness.note is not None:
+        click.echo(f"Note: {likeness.note}", err=True)
+
+
+def _readable(paths: Sequence[Path]) -> Iterator["ByteImage"]:
+    from contextlib import suppress
+
+    from terrain.errors import ImageError
+    from terrain.images import read_image
+
+    for path in paths:
+        with suppress(ImageError):
+            yield read_image(path)

@@ -98,7 +98,7 @@ def about(made: "Made", folder: Path | None = None) -> dict[str, Any]:
     folder : Path, optional
         The one run of the result; else it is of all that were read.
     """
-    from odometry.outputs.about import about_result
+    from odometry.outputs.made import about_result
 
     return about_result(made, [one for one in checks_made() if folder in (None, one.folder)])
 

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from odometry import extras
-from odometry.bags.errors import BagError
 from odometry.bags.messages import bag_messages
-from odometry.errors import ExtraError
+from odometry.errors import BagError, ExtraError
 from tests.odometry.bags.made_bags import BEGIN_NS, Bag, name_of
 
 

@@ -5,9 +5,9 @@ import zipfile
 import numpy as np
 import pytest
 
-from odometry.bags.errors import BagError
 from odometry.bags.topic_map import read_topic_map
 from odometry.checks.recording import check_recording
+from odometry.errors import BagError
 from tests.odometry.bags.imports import imported, looked_at
 from tests.odometry.bags.made_bags import RADIUS_M, Bag, course, half_turn
 

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.bags.errors import BagError
-from odometry.errors import RunFolderError
+from odometry.errors import BagError, RunFolderError
 from tests.odometry.bags.imports import imported
 from tests.odometry.bags.made_bags import KINDS, RADIUS_M, Bag, course, name_of
 

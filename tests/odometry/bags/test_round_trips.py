@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from odometry.bags.errors import BagError
+from odometry.errors import BagError
 from tests.odometry.bags.imports import imported
 from tests.odometry.bags.made_bags import (
     BEGIN_NS,

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from odometry.bags.errors import BagError
 from odometry.bags.topic_map import TopicMap
+from odometry.errors import BagError
 from tests.odometry.bags.imports import imported
 from tests.odometry.bags.made_bags import RADIUS_M, TRACK_M, Bag, course, half_turn
 

@@ -5,9 +5,8 @@ import sys
 import numpy as np
 import pytest
 
-from odometry.errors import ExtraError
+from odometry.errors import ExportError, ExtraError
 from odometry.export import mcap
-from odometry.export.errors import ExportError
 from odometry.export.source import read_export_source
 from odometry.geometry import se2
 from odometry.io.csv_table import write_csv_table

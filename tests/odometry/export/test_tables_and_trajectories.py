@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from odometry.errors import ExportError
 from odometry.export import parquet, trajectory_formats
-from odometry.export.errors import ExportError
 from odometry.export.source import read_export_source
 from odometry.io.csv_table import read_csv_table
 from odometry.io.trajectory_files import FORMATS, read_trajectory

@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 
+from odometry.errors import ExportError
 from odometry.export import terrain_map
-from odometry.export.errors import ExportError
 from odometry.export.source import read_export_source
 from odometry.export.terrain_cells import terrain_cells
 from odometry.io.csv_table import read_csv_table

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from terrain.calibration.camera_table import replaced, write_camera
-from terrain.calibration.errors import CalibrationError
+from terrain.errors import CalibrationError
 
 NEW = {"image_size": [640, 480], "matrix": [[1.0, 0.0, 2.0], [0.0, 1.0, 3.0], [0.0, 0.0, 1.0]],
        "distortion": [], "mount": [0.1, 0.0, 0.5, 0.0, 0.3, 0.0]}  # fmt: skip

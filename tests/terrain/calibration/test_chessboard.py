@@ -12,8 +12,8 @@ from terrain.calibration.chessboard import (
     find_boards,
     photo_files,
 )
-from terrain.calibration.errors import CalibrationError
 from terrain.calibration.lens_from_boards import lens_from_boards
+from terrain.errors import CalibrationError
 from tests.terrain.calibration.conftest import BOARD, CAMERA, SQUARE_M
 from tests.terrain.calibration.rendered import bend, board_poses
 

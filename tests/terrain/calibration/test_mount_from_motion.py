@@ -6,11 +6,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from odometry.run import Run
-from terrain.calibration.errors import CalibrationError
 from terrain.calibration.mount_from_motion import mount_from_motion
 from terrain.calibration.mount_sources import mount_of_motion
 from terrain.calibration.tracks import Tracks
 from terrain.camera_files.calibration import Lens
+from terrain.errors import CalibrationError
 from tests.terrain.calibration.rendered import OPTICAL, rotation
 
 LENS = Lens.of((640, 480), [[460.0, 0, 319.5], [0, 460.0, 239.5], [0, 0, 1]])

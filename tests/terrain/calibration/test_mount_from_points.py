@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from terrain.calibration.errors import CalibrationError
 from terrain.calibration.marked_points import MarkedPoints, read_marked_points
 from terrain.calibration.mount_from_points import mount_from_points
 from terrain.camera_files.calibration import Lens
+from terrain.errors import CalibrationError
 from tests.terrain.calibration.rendered import ground_behind, marked
 
 CAMERA = {

@@ -7,12 +7,12 @@ import cv2
 import numpy as np
 import pytest
 
-from terrain.calibration.errors import CalibrationError
 from terrain.calibration.mount_fit import MountFit
 from terrain.calibration.mount_sources import MountSource
 from terrain.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.cli.camera import _write
+from terrain.errors import CalibrationError
 from tests.terrain.calibration.rendered import marked
 from tests.terrain.cli.verb_calls import verb
 
