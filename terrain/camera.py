@@ -16,6 +16,7 @@ from terrain.camera_values import (
     intrinsic_matrix,
     lens_coefficients,
     pose_key,
+    signed_homography,
     size_in_pixels,
 )
 from terrain.distortion import distort, undistort
@@ -118,12 +119,7 @@ class Camera:
             If a shape or value is wrong, or the homography is singular.
         """
         intrinsics = intrinsic_matrix(matrix)
-        homography = finite_array("ground_to_image", ground_to_image, (3, 3))
-        condition = float(np.linalg.cond(np.linalg.solve(intrinsics, homography)))
-        if not condition < 1e8:
-            raise CameraError(f"ground_to_image is singular (condition number {condition:.1e})")
-        # H = s K R [e1 e2 -c] has the determinant -s^3 fx fy c_z: s > 0 above the ground
-        homography = homography * -np.sign(np.linalg.det(homography))
+        homography = signed_homography(ground_to_image, intrinsics)
         return cls(
             size_in_pixels(image_size), intrinsics, lens_coefficients(distortion), homography
         )

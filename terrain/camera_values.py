@@ -100,3 +100,13 @@ def _rotation(mount: FloatArray) -> FloatArray:
     pitch = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
     yaw = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]])
     return np.asarray(yaw @ pitch @ roll)
+
+
+def signed_homography(ground_to_image: ArrayLike, intrinsics: FloatArray) -> FloatArray:
+    """A homography (3, 3) of any scale and sign with the sign of positive depth."""
+    homography = finite_array("ground_to_image", ground_to_image, (3, 3))
+    condition = float(np.linalg.cond(np.linalg.solve(intrinsics, homography)))
+    if not condition < 1e8:
+        raise CameraError(f"ground_to_image is singular (condition number {condition:.1e})")
+    # H = s K R [e1 e2 -c] has the determinant -s^3 fx fy c_z: s > 0 above the ground
+    return np.asarray(homography * -np.sign(np.linalg.det(homography)))
