@@ -9,6 +9,7 @@ import pytest
 
 from odometry.errors import ParameterError
 from odometry.models.catalogue import MODELS, PARAMETER_NAMES
+from odometry.models.inputs import Inputs
 from odometry.run import Robot
 
 # Names as the table in data/README.md spells them, units, and an ordinary value with a spread.
@@ -145,3 +146,30 @@ def test_no_value_is_nan_or_out_of_bounds(model):
             if not np.isinf(value):
                 with pytest.raises(ParameterError, match=parameter.name):
                     model.pack({**named, parameter.name: value})
+
+
+@each_model
+def test_a_neutral_value_is_a_bound_of_the_search(model):
+    for parameter in model.parameters:
+        if parameter.neutral is not None:
+            assert parameter.neutral in (parameter.search or (parameter.low, parameter.high))
+
+
+@each_model
+def test_a_guess_is_of_a_robot_that_is_the_same_on_both_sides(model):
+    """Exchanged tread speeds mirror the motion on level terrain."""
+    values = model.pack(model.guess(Robot(0.5)))
+    speeds, still = np.array([0.3, 0.7]), np.zeros(2)
+    one, other = (
+        model.twist(values, Inputs(treads, accelerations_m_s2=still))
+        for treads in (speeds, speeds[::-1])
+    )
+    np.testing.assert_allclose(other, one * [1, -1, -1], atol=1e-12)
+
+
+def test_sizes_of_coefficients_of_a_force_are_those_at_1_m_s2():
+    model = MODELS["icr_inertia"]
+    light, heavy = (model.ordinary_sizes(Robot(0.5, mass=mass)) for mass in (10.0, 20.0))
+    powers = {"m/N": 2.0, "1/N": 2.0, "1/N^2": 4.0, "kg": 0.5}
+    expected = [powers.get(parameter.unit, 1.0) for parameter in model.parameters]
+    np.testing.assert_allclose(light / heavy, expected)

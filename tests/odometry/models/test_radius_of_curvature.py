@@ -91,3 +91,4 @@ def test_a_width_that_falls_to_zero_is_refused():
     """beta_1 = -0.5, beta_2 = -0.1: zero width at sqrt(lambda) = 5."""
     with pytest.raises(ParameterError, match=r"beta_1 = -0.5 and beta_2 = -0.1"):
         MODEL.pack({"alpha": 1.0, "beta_1": -0.5, "beta_2": -0.1, "track_width": 1.0})
+    assert MODEL.pack({"alpha": 1.0, "beta_1": -0.5, "beta_2": 0.1, "track_width": 1.0})[1] == -0.5
