@@ -1,17 +1,19 @@
 """What a run feels like, as evidence of the mode it is in."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
+from odometry.estimation.markov import ModeChain
 from odometry.estimation.mixture import floored, log_sum
-from odometry.estimation.mode_belief import ModeBelief
 from odometry.feel.follow import Felt, follow_feel
 from odometry.feel.model import FeelModel
 from odometry.feel.windows import STEPS
+from odometry.modes.mode_track import ModesConfig, ModeTrack
+from odometry.modes.refusals import AGREED
 from odometry.run import UNKNOWN, Run
 
 
@@ -87,12 +89,34 @@ def feel_source(
     return FeelSource(felt.stamps_s[rows], worth / STEPS * np.log(likelihoods))
 
 
-def with_evidence(belief: ModeBelief, log_evidence: FloatArray | None, floor: float) -> ModeBelief:
-    """The belief with further evidence (M,) of its modes, where there is some."""
-    if log_evidence is None:
-        return belief
-    logs = floored(belief.log_probabilities + log_evidence, floor)
-    return ModeBelief(belief.means, belief.covariances, logs, belief.innovations)
+def with_feel(
+    track: ModeTrack, source: FeelSource, dwell_s: FloatArray, config: ModesConfig
+) -> ModeTrack:
+    """The track of modes that last `dwell_s` (M,), with what the run feels like.
+
+    The probabilities of motion and of feel, each by a Markov chain of its own, are multiplied. What
+    motion cannot tell is left to feel: modes that answer alike are as probable as their mean by
+    motion, and where the rolling test does not agree with motion it says nothing.
+    """
+    felt = source.alone(track.stamps_s, ModeChain(dwell_s).transition, config.floor)
+    product = felt * _told_by_motion(track)
+    probabilities = product / product.sum(axis=1, keepdims=True)
+    return replace(track, probabilities=probabilities, felt=felt, alike=None)
+
+
+def _told_by_motion(track: ModeTrack) -> FloatArray:
+    """Probabilities (N, M) among modes that motion can tell apart."""
+    most = track.probabilities.argmax(axis=1)
+    of_most = (np.arange(len(most)), most)
+    told = track.probabilities.copy()
+    if track.alike is not None:
+        one = track.alike.copy()
+        one[of_most] = True
+        means = (told * one).sum(axis=1) / one.sum(axis=1)
+        told = np.where(one, means[:, None], told)
+    if track.fit is not None:
+        told[np.exp(track.fit.log_probabilities[of_most]) < AGREED] = 1 / told.shape[1]
+    return told
 
 
 def _of_modes(felt: Felt, names: Sequence[str]) -> FloatArray:

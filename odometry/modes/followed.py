@@ -8,7 +8,7 @@ import numpy as np
 from odometry.arrays import AnyArray, IntArray
 from odometry.feel.model import FeelModel
 from odometry.modes.answers import candidates, disagreements, named_modes
-from odometry.modes.feel_source import feel_source
+from odometry.modes.feel_source import feel_source, with_feel
 from odometry.modes.misfits import Misfit, misfits
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED, ModeSet
 from odometry.modes.mode_track import ModesConfig, ModeTrack
@@ -158,12 +158,13 @@ def followed(
     config = config or ModesConfig()
     signals = judged_signals(run, mode_set)
     motion = follow_signals(signals, mode_set, config, show_progress=show_progress)
-    source, felt, sighted = None, None, None
+    felt = sighted = None
+    if seen:
+        sighted = follow_signals(signals, mode_set, config, seen, show_progress=show_progress)
     if feel is not None:
         source = feel_source(run, feel, mode_set.names, mode_set.dwell_s)
-        felt = follow_signals(signals, mode_set, config, feel=source, show_progress=show_progress)
-    if seen:
-        sighted = follow_signals(
-            signals, mode_set, config, seen, feel=source, show_progress=show_progress
+        felt, sighted = (
+            None if track is None else with_feel(track, source, mode_set.dwell_s, config)
+            for track in (motion, sighted)
         )
     return Followed(run, mode_set, config, signals, motion, sighted, tuple(seen), felt)

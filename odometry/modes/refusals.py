@@ -14,8 +14,8 @@ def refusals(track: ModeTrack, sure: float) -> dict[str, BoolArray]:
 
     "probability" is that of the mode among the modes and against "none of these": `sure` or more
     where a mode begins to be named, and from there on, while that mode leads, down to MOST_DOUBT
-    times the doubt. In "alike" motion cannot tell the modes apart: where feel says which it is,
-    that test does not refuse, nor does "rolling test" because another mode fits as well.
+    times the doubt. In "alike" motion cannot tell the modes apart. The "rolling test" does not
+    refuse a mode because another fits as well where feel says which it is.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def refusals(track: ModeTrack, sure: float) -> dict[str, BoolArray]:
     if track.gyroscope is not None:
         found["bias of the gyroscope"] = track.gyroscope.bias_is_open
     if track.alike is not None:
-        found["alike"] = track.alike.any(axis=1) & ~confirmed
+        found["alike"] = track.alike.any(axis=1)
     if track.turns_are_off is not None:
         found["turns"] = track.turns_are_off
     if track.travel is not None:

@@ -10,10 +10,8 @@ from tqdm import tqdm
 from odometry.arrays import FloatArray
 from odometry.estimation.ekf_bank import EkfBank
 from odometry.estimation.imm import Imm
-from odometry.estimation.markov import ModeChain
 from odometry.estimation.mode_belief import ModeBelief
 from odometry.modes.bias_reading import bias_readings, with_reading
-from odometry.modes.feel_source import FeelSource, with_evidence
 from odometry.modes.innovation_test import Innovations, mode_fit
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.mode_track import ModesConfig, ModeTrack
@@ -36,7 +34,6 @@ def follow_modes(
     config: ModesConfig | None = None,
     seen: Sequence[SeenGround] = (),
     *,
-    feel: FeelSource | None = None,
     show_progress: bool = False,
 ) -> ModeTrack:
     """Run the interacting multiple model estimator over a run.
@@ -48,8 +45,6 @@ def follow_modes(
     config : ModesConfig, optional
     seen : sequence of SeenGround
         What vision saw; without it motion alone decides.
-    feel : FeelSource, optional
-        What the run feels like.
     show_progress : bool
 
     Raises
@@ -69,7 +64,7 @@ def follow_modes(
     1085
     """
     signals = judged_signals(run, mode_set)
-    return follow_signals(signals, mode_set, config, seen, feel=feel, show_progress=show_progress)
+    return follow_signals(signals, mode_set, config, seen, show_progress=show_progress)
 
 
 def judged_signals(run: Run, mode_set: ModeSet) -> Signals:
@@ -87,7 +82,6 @@ def follow_signals(
     config: ModesConfig | None = None,
     seen: Sequence[SeenGround] = (),
     *,
-    feel: FeelSource | None = None,
     show_progress: bool = False,
 ) -> ModeTrack:
     """The same over inputs and measurements."""
@@ -114,7 +108,6 @@ def follow_signals(
     gap_ends = np.searchsorted(signals.stamps_s, signals.gaps_s[:, 1])
     measured = usable_measurements(signals, gap_ends, modes.fastest_m_s)
     readings = bias_readings(signals)
-    felt = {} if feel is None else feel.at(signals.stamps_s)
     first = chains[in_force[0]].transition(SETTLED_S).mean(axis=0)
     merged = modes.start(signals, independent)
     belief = alone = ModeBelief.alike(*merged, first)
@@ -128,8 +121,7 @@ def follow_signals(
         if row:
             u = signals.tread_speeds_m_s[row - 1]
             step_s = float(signals.stamps_s[row] - signals.stamps_s[row - 1])
-            stepped = with_shared_bias(imm.step(belief, u, measured[row], step_s), independent)
-            belief = with_evidence(stepped, felt.get(row), config.floor)
+            belief = with_shared_bias(imm.step(belief, u, measured[row], step_s), independent)
             own = OwnFilters(imm.bank, filters(rough))
             alone, innovations[row] = own.step(alone, u, measured[row], step_s)
             merged = imm.merged(belief)
@@ -161,7 +153,6 @@ def follow_signals(
         mode_fit(left, mode_set.dwell_s, config.misfit_share),
         gyroscope_trust_of(signals, mode_set, means[:, -1], sigmas[:, -1]),
         *contradictions(replace(signals, measured=measured), mode_set, left, means[:, -1]),
-        felt=_by_feel_alone(feel, signals, mode_set, config),
     )
 
 
@@ -171,13 +162,3 @@ def _normalised_squared(belief: ModeBelief, measured: FloatArray) -> float:
         return float("nan")
     of_mode = belief.innovations.normalised_squared[belief.log_probabilities.argmax()]
     return float(of_mode / np.isfinite(measured).sum())
-
-
-def _by_feel_alone(
-    feel: FeelSource | None, signals: Signals, mode_set: ModeSet, config: ModesConfig
-) -> FloatArray | None:
-    """Probabilities (N, M) that nothing but feel gives."""
-    if feel is None:
-        return None
-    chain = ModeChain(mode_set.dwell_s)
-    return feel.alone(signals.stamps_s, chain.transition, config.floor)

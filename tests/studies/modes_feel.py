@@ -20,7 +20,7 @@ from odometry.feel.folds import stratified_folds
 from odometry.feel.identify_feel import identify_feel
 from odometry.feel.scores import class_weights
 from odometry.modes.answers import named_modes
-from odometry.modes.feel_source import feel_source
+from odometry.modes.feel_source import feel_source, with_feel
 from odometry.modes.identify_velocity import identify_velocity_modes
 from odometry.modes.mode_set import DWELL_S, NO_MODES, ModeSet
 from odometry.modes.mode_track import ModesConfig, ModeTrack
@@ -53,7 +53,7 @@ def main() -> None:
         for place in np.flatnonzero(fold_of == fold):
             source = feel_source(runs[place], feel, mode_set.names, mode_set.dwell_s)
             motion = follow_modes(runs[place], mode_set)
-            both = follow_modes(runs[place], mode_set, feel=source)
+            both = with_feel(motion, source, mode_set.dwell_s, ModesConfig())
             shares[place] = [
                 of_answers(motion, named_modes(motion, ModesConfig().sure), motion.probabilities),
                 of_feel(both),

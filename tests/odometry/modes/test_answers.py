@@ -53,11 +53,12 @@ def test_each_test_that_refuses_is_said_by_name():
     }
 
 
-def test_feel_says_which_of_modes_that_are_alike_it_is():
+def test_feel_says_which_of_modes_that_fit_as_well_it_is():
     """Not where feel is for another one, nor against what turns say."""
-    alike = np.ones((2, 1), dtype=bool)
+    logs = np.log(np.tile([0.4, 0.4, 0.199, 0.001], (2, 1)))
+    fit = ModeFit(np.zeros((2, 3, 1)), np.zeros((2, 1)), logs)
     felt = np.array([[0.7, 0.2, 0.1], [0.2, 0.7, 0.1]])
-    known = replace(track(["a", "a"], ["a"] * 2), alike=alike, felt=felt)
+    known = replace(track(["a", "a"], ["a"] * 2), fit=fit, felt=felt)
     assert named_modes(known, 0.9).tolist() == ["a", UNDETERMINED]
     contradicted = replace(known, turns_are_off=np.array([True, True]))
     assert named_modes(contradicted, 0.9).tolist() == [UNDETERMINED] * 2

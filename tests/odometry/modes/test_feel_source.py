@@ -10,11 +10,14 @@ from odometry.estimation.markov import ModeChain
 from odometry.feel.identify_feel import identify_feel
 from odometry.feel.windows import STEPS
 from odometry.modes.answers import named_modes
-from odometry.modes.feel_source import FeelSource, feel_source
+from odometry.modes.feel_source import FeelSource, feel_source, with_feel
 from odometry.modes.followed import followed
 from odometry.modes.identify_velocity import identify_velocity_modes
+from odometry.modes.innovation_test import ModeFit
 from odometry.modes.mode_set import ModeSet
+from odometry.modes.mode_track import ModesConfig
 from tests.odometry.feel.feel_drives import TERRAINS, drive, drives, with_imu
+from tests.odometry.modes.mode_examples import track
 
 DWELL_S = np.array([20.0, 20.0])
 NAMES = ("grates", "tiles")
@@ -92,6 +95,41 @@ def test_terrains_that_are_no_modes_say_nothing_of_any(model):
 def test_modes_that_feel_does_not_know_are_refused(model):
     with pytest.raises(ParameterError, match="expected terrains in common"):
         feel_source(drive("grates", 901), model, ("ice", "mud"), DWELL_S)
+
+
+def by_motion(probabilities, **others):
+    known = track(["a"] * len(probabilities), ["a"] * len(probabilities))
+    return replace(known, probabilities=np.array(probabilities), **others)
+
+
+NEVER = FeelSource(np.array([0.0]), np.log([[0.6, 0.3, 0.1]]))  # of a chain that never changes
+
+
+def with_that(motion):
+    return with_feel(motion, NEVER, np.full(3, np.inf), ModesConfig(floor=0.0))
+
+
+def test_probabilities_of_motion_and_feel_are_multiplied():
+    both = with_that(by_motion([[0.5, 0.25, 0.25]]))
+    product = np.array([0.3, 0.075, 0.025])
+    np.testing.assert_allclose(both.probabilities, [product / product.sum()])
+    np.testing.assert_allclose(both.felt, [[0.6, 0.3, 0.1]])
+
+
+def test_what_motion_cannot_tell_is_left_to_feel():
+    """b leads and is like a, of which feel says more; c is ruled out by motion."""
+    alike = np.array([[True, False, False]])
+    both = with_that(by_motion([[0.1, 0.9, 0.0]], alike=alike))
+    np.testing.assert_allclose(both.probabilities, [[2 / 3, 1 / 3, 0.0]])
+    assert both.alike is None
+
+
+def test_motion_says_nothing_where_the_rolling_test_does_not_agree():
+    logs = np.log([[0.3, 0.3, 0.399, 0.001], [0.7, 0.2, 0.099, 0.001]])
+    fit = ModeFit(np.zeros((2, 3, 1)), np.zeros((2, 1)), logs)
+    both = with_that(by_motion([[0.9, 0.05, 0.05]] * 2, fit=fit))
+    np.testing.assert_allclose(both.probabilities[0], [0.6, 0.3, 0.1])
+    assert both.probabilities[1, 0] > 0.9
 
 
 @pytest.mark.parametrize("terrain", NAMES)
