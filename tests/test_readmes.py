@@ -150,7 +150,9 @@ def run_blocks(readme: Path) -> dict[str, object]:
 
 def test_the_python_of_the_guides(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As it stands there, on a shorter run and fewer patches."""
-    small = terrain.synthetic.SynthesisConfig(zone_length_m=4.0, patches_per_terrain=16)
+    small = terrain.synthetic.SynthesisConfig(
+        zone_length_m=3.0, patches_per_terrain=12, image_rate_hz=2.0
+    )
     monkeypatch.setattr(terrain, "synthesise", partial(terrain.synthetic.synthesise, config=small))
     monkeypatch.chdir(tmp_path)
     as_bag(odometry.Run.read(ROOT / "data/runs/demo"), tmp_path / "drive.bag")

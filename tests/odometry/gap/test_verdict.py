@@ -16,6 +16,7 @@ from odometry.gap.config import GapConfig
 from odometry.gap.contest import sure_sum
 from odometry.gap.effect_values import is_the_effect, is_there, within_bounds
 from odometry.gap.fit import Fitted
+from odometry.gap.pieces import numbered_pieces
 from odometry.gap.predictors import Predictor
 from odometry.gap.statistic import Gap
 from odometry.gap.verdict import (
@@ -100,6 +101,18 @@ def test_a_name_must_close_what_was_held_out(make_scene, known, factor, stands):
     reason = closes_held_out((known.base, ()), (known.base, (scale,)), held, CONFIG)
     assert (reason == "") == stands
     assert factor < 1.1 or "gets worse" in reason
+
+
+@pytest.mark.parametrize(("gain_m", "reason"), [(0.05, ""), (0.009, "which may be chance")])
+def test_a_gain_that_may_be_chance_closes_nothing(make_scene, monkeypatch, gain_m, reason):
+    """Errors of 0.2 m that get better by a little, and scatter by 0.05 m from piece to piece."""
+    scene = make_scene(4, lambda _, twist: twist)
+    piece = numbered_pieces([scene], CONFIG.part_s)
+    scatter = np.random.default_rng(0).normal(scale=0.05, size=piece.max() + 1)
+    errors = iter([np.full(len(piece), 0.2), 0.2 - gain_m + (scatter - scatter.mean())[piece]])
+    monkeypatch.setattr("odometry.gap.verdict.squared_errors", lambda *_: next(errors) ** 2)
+    found = closes_held_out((None, ()), (None, ()), [scene], CONFIG)
+    assert found == reason if not reason else reason in found
 
 
 def test_a_sum_is_sure_where_it_is_alike_or_lasts_without_the_best():

@@ -70,3 +70,11 @@ def test_a_difference_that_hardly_moves_the_robot_is_not_noted(recorded):
     """By precise poses everything differs; half a percent is no other terrain."""
     halves = found_in([with_faster_second_half(recorded, 1.001)]).halves
     assert halves.note() is None
+
+
+def test_only_parameters_that_both_halves_determine_are_compared(recorded):
+    halves = found_in([recorded]).halves
+    open_in_one = replace(halves.first, at_bound=("x_icr",))
+    rest = ("y_left", "y_right", "alpha_left", "alpha_right")
+    assert Halves(open_in_one, halves.second).names == rest
+    assert Halves(halves.second, open_in_one).names == rest

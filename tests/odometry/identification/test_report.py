@@ -8,6 +8,7 @@ import pytest
 from odometry.identification.config import SolverConfig
 from odometry.identification.identify import identify
 from odometry.identification.report import correlations, in_short, report
+from odometry.windows.stretch_noise import UNKNOWN_NOISE
 
 
 @pytest.fixture(scope="module")
@@ -78,3 +79,18 @@ def test_a_fit_in_short_names_what_is_identified_and_what_to_doubt(found):
         f"alpha_right = {of['alpha_right']:.4g}",
         "x_icr = 0.06 (by trial)",
     ]
+
+
+def test_residuals_are_compared_with_the_noise_that_is_known(found):
+    """That of positions has a least value: residuals of SLAM are smoother than its errors."""
+    assert found.fit.compared_with == "the poses' stated noise"
+    for position_m, words in ((0.05, "positions (0.05 m)"), (0.001, "0.02 m (the noise found")):
+        noise = replace(UNKNOWN_NOISE, variances=np.array([position_m**2, 0.0, 0.0]))
+        assert words in replace(found.fit, noise=noise).compared_with
+
+
+def test_statistics_stand_in_two_columns(found):
+    lines = report("gravel", found)
+    rows = lines[2 : lines.index("  Variables")]
+    begins = {len(row) - len(row[4:].split("  ", 1)[1].lstrip()) for row in rows}
+    assert len(begins) == 1
