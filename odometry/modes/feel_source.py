@@ -99,24 +99,24 @@ def with_feel(
     motion, and where the rolling test does not agree with motion it says nothing.
     """
     felt = source.alone(track.stamps_s, ModeChain(dwell_s).transition, config.floor)
-    product = felt * _told_by_motion(track)
+    product = felt * _by_motion(track)
     probabilities = product / product.sum(axis=1, keepdims=True)
     return replace(track, probabilities=probabilities, felt=felt, alike=None)
 
 
-def _told_by_motion(track: ModeTrack) -> FloatArray:
+def _by_motion(track: ModeTrack) -> FloatArray:
     """Probabilities (N, M) among modes that motion can tell apart."""
     most = track.probabilities.argmax(axis=1)
     of_most = (np.arange(len(most)), most)
-    told = track.probabilities.copy()
+    by_motion = track.probabilities.copy()
     if track.alike is not None:
         one = track.alike.copy()
         one[of_most] = True
-        means = (told * one).sum(axis=1) / one.sum(axis=1)
-        told = np.where(one, means[:, None], told)
+        means = (by_motion * one).sum(axis=1) / one.sum(axis=1)
+        by_motion = np.where(one, means[:, None], by_motion)
     if track.fit is not None:
-        told[np.exp(track.fit.log_probabilities[of_most]) < AGREED] = 1 / told.shape[1]
-    return told
+        by_motion[np.exp(track.fit.log_probabilities[of_most]) < AGREED] = 1 / by_motion.shape[1]
+    return by_motion
 
 
 def _of_modes(felt: Felt, names: Sequence[str]) -> FloatArray:
