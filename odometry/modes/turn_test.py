@@ -16,7 +16,7 @@ CLIP = 3.0  # of one innovation
 LEAST_RAD_S = 0.05  # asked for: less is no turn
 BOUND = 3.5  # standard deviations of a sum beyond which no mode is named
 HOLDS_S = 3.0  # after a contradiction, in which no mode is named either
-"""Chosen on seeds 50, 51 and 60 to 63 of `tests/studies/modes_faults.py`: of 18 clean runs 5 have a
+"""Chosen on seeds 50, 51 and 60 to 63 of `tests/studies/modes_faults.py`: of 18 clean runs 3 have a
 sum beyond 3.5 somewhere."""
 
 
