@@ -38,6 +38,13 @@ def test_one_strength_with_noise_is_one(rng, noise):
     assert found.probability > 1e-3
 
 
+def test_with_equal_weights_it_is_the_variance_less_that_of_noise():
+    """DerSimonian and Laird's estimate is then s^2 - 1/w, here of all but the last piece."""
+    strengths, weight = np.array([0.1, 0.5, 1.1, 1.9, 40.0]), 4.0
+    found = between_pieces(strengths, np.full(5, weight), np.arange(5))
+    assert found.share**2 == pytest.approx(np.var(strengths[:-1], ddof=1) - 1 / weight)
+
+
 def test_one_piece_alone_says_nothing(rng):
     strengths, weights = drawn(rng, 0.0, 1.0)
     found = between_pieces(strengths + 3.0 * (PIECES == 7), weights, PIECES)
