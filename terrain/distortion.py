@@ -71,10 +71,10 @@ def distort(points: FloatArray, distortion: FloatArray) -> FloatArray:
     """
     points = np.asarray(points, dtype=np.float64)
     coefficients, limit, unfolded = _known(*distortion.tolist())
-    radius = np.hypot(points[:, 0], points[:, 1])
-    within = np.where((radius <= limit)[:, None], points, np.nan)
+    square = points[:, 0] ** 2 + points[:, 1] ** 2
+    within = np.where((square <= limit**2)[:, None], points, np.nan)
     image = _tilt(_lens(within, coefficients[:12]), coefficients[12:])
-    doubtful = radius > unfolded
+    doubtful = square > unfolded**2
     if doubtful.any():
         jacobian = _derivatives(within[doubtful], coefficients)
         image[doubtful] = _without_folds(image[doubtful], jacobian)

@@ -82,8 +82,9 @@ def first_whole(
     few = np.concatenate([part.points[FEW] for part in parts])
     for start in range(0, len(poses), TOGETHER):
         tried = poses[start : start + TOGETHER]
-        maybe = is_visible(camera, se2.transform(tried[:, None], few), coarsest_m).all(axis=1)
-        for place in np.flatnonzero(maybe):
+        places = se2.transform(tried[:, None], few)
+        inside = np.flatnonzero(is_visible(camera, places).all(axis=1))
+        for place in inside[is_visible(camera, places[inside], coarsest_m).all(axis=1)]:
             if is_visible(camera, se2.transform(tried[place], points), coarsest_m).all():
                 return start + int(place)
     return None

@@ -116,13 +116,15 @@ def _both_ways(
     stay with the probabilities `same` (2, n).
     """
     ahead, after = np.empty_like(evidence), np.empty_like(evidence)
-    ahead[0] = _step(first, appearances, drawn, *same[:, 0])
+    ahead[0] = _step(first, appearances, drawn, same[:, 0], 1 - same[:, 0])
     after[-1] = evidence[-1]
     state = np.stack([evidence[0] * ahead[0], after[-1]])
     there_and_back = np.stack([evidence, evidence[::-1]], axis=1)
     both = np.stack([same, np.roll(same[:, ::-1], 1, axis=1)], axis=2)[..., None, None]
+    changed = 1 - both
     for place in range(1, len(evidence)):
-        state = _step(state, appearances, drawn, *both[:, place])  # eq. 20 and 25
+        stays = both[:, place], changed[:, place]
+        state = _step(state, appearances, drawn, *stays)  # eq. 20 and 25
         ahead[place] = state[0]
         state *= there_and_back[place]
         state /= np.add.reduce(state, axis=(1, 2), keepdims=True)
@@ -131,13 +133,22 @@ def _both_ways(
 
 
 def _step(
-    state: FloatArray, appearances: FloatArray, drawn: FloatArray, stays: AnyArray, alike: AnyArray
+    state: FloatArray,
+    appearances: FloatArray,
+    drawn: FloatArray,
+    stays: AnyArray,
+    changes: AnyArray,
 ) -> FloatArray:
-    """Likelihood (..., k + 1, k) by terrain and appearance, a step on."""
+    """Likelihood (..., k + 1, k) by terrain and appearance, a step on.
+
+    `stays` and `changes` (2, ...) are the probabilities that terrain and appearance do so.
+    """
     terrain = np.add.reduce(appearances * state, axis=-1, keepdims=True)
-    same = alike * state + (1 - alike) * terrain
-    anew = np.add.reduce(drawn * terrain, axis=-2, keepdims=True)
-    return np.asarray(stays * same + (1 - stays) * anew)
+    ahead = stays[1] * state
+    ahead += changes[1] * terrain
+    ahead *= stays[0]
+    ahead += changes[0] * np.add.reduce(drawn * terrain, axis=-2, keepdims=True)
+    return np.asarray(ahead)
 
 
 def carried(belief: FloatArray, stay: FloatArray) -> FloatArray:

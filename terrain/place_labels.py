@@ -100,7 +100,7 @@ def nearest(
         Index of the place, and the distance with what the odometer drifted since [m].
     """
     x, y = (points[:, None, axis] - places[:, axis] for axis in (0, 1))
-    apart = np.hypot(x, y) + DRIFT * since_m
+    apart = np.sqrt(x * x + y * y) + DRIFT * since_m
     index = apart.argmin(axis=1)
     return index, apart[np.arange(len(points)), index]
 

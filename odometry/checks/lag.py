@@ -120,8 +120,15 @@ def _rate(heading: Signal, at_s: FloatArray, width_s: float) -> FloatArray:
 
 def _correlations(one: FloatArray, others: FloatArray) -> FloatArray:
     """`_correlation` of one signal (n,) with each of others (m, n)."""
-    if not (np.isfinite(one).all() and np.isfinite(others).all()):
-        return np.array([_correlation(one, other) for other in others])
+    whole = np.isfinite(one).all() & np.isfinite(others).all(axis=1)
+    correlations = np.full(len(others), np.nan)
+    correlations[~whole] = [_correlation(one, other) for other in others[~whole]]
+    correlations[whole] = _of_whole(one, others[whole])
+    return correlations
+
+
+def _of_whole(one: FloatArray, others: FloatArray) -> FloatArray:
+    """The same of signals without gaps."""
     a = one - one.mean()
     correlations = np.full(len(others), np.nan)
     for of in range(0, len(others), TOGETHER_ROWS):

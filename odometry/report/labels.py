@@ -10,6 +10,7 @@ from scipy.optimize import isotonic_regression
 
 from odometry.arrays import FloatArray
 from odometry.report.palette import LineStyle
+from odometry.report.thinned import thinned
 
 HALO = (withStroke(linewidth=2.5, foreground="white"),)
 _LINE_PT = 12.0
@@ -20,7 +21,11 @@ _LETTERS = 25  # of a line of a label
 def draw_line(axes: Axes, x: FloatArray, y: FloatArray, name: str, style: LineStyle) -> None:
     """Draw a line (N,) in its style; `name` is its label in matplotlib's sense."""
     axes.plot(
-        x, y, color=style.colour, linestyle=style.dashes, linewidth=style.width_pt, label=name
+        *thinned(x, y),
+        color=style.colour,
+        linestyle=style.dashes,
+        linewidth=style.width_pt,
+        label=name,
     )
 
 

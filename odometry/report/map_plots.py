@@ -11,6 +11,7 @@ from odometry.evaluation.stretches import Stretch
 from odometry.report.labels import HALO, draw_line, label_points, last_point
 from odometry.report.outages import broken_at_outages
 from odometry.report.palette import LineStyle
+from odometry.report.thinned import thinned
 from odometry.trajectory import Trajectory
 
 
@@ -38,7 +39,11 @@ def plot_ground(
             continue
         colour = tints[stretch.terrain]
         band = LineCollection(
-            [points], colors=[colour], linewidths=15.0, capstyle="butt", zorder=0.5
+            [np.column_stack(thinned(*points.T))],
+            colors=[colour],
+            linewidths=15.0,
+            capstyle="butt",
+            zorder=0.5,
         )
         axes.add_collection(band, autolim=False)
         if stretch is longest[stretch.terrain]:

@@ -11,6 +11,7 @@ from odometry.arrays import FloatArray
 from odometry.evaluation.stretches import Stretch
 from odometry.report.labels import draw_line, label_points, last_point
 from odometry.report.palette import LineStyle
+from odometry.report.thinned import thinned
 
 LOGARITHMIC_FROM = 8.0  # times the smallest median
 MANY_TICKS_FROM = 100.0  # times the left end of a logarithmic axis
@@ -40,13 +41,15 @@ def plot_icr(
     """
     for label, (stamps_s, values, sigmas) in estimates.items():
         style = styles[label]
-        band = (values - 2 * sigmas, values + 2 * sigmas)
-        axes.fill_between(stamps_s, *band, color=style.colour, alpha=0.16, linewidth=0)
+        at_s, below, above = thinned(stamps_s, values - 2 * sigmas, values + 2 * sigmas)
+        axes.fill_between(at_s, below, above, color=style.colour, alpha=0.16, linewidth=0)
         draw_line(axes, stamps_s, values, label, style)
     lines = {label: (stamps_s, values) for label, (stamps_s, values, _) in estimates.items()}
     if truth is not None:
         lines["truth"] = truth
-        axes.plot(*truth, color=styles["truth"].colour, linestyle=(0, (4, 2)), label="truth")
+        axes.plot(
+            *thinned(*truth), color=styles["truth"].colour, linestyle=(0, (4, 2)), label="truth"
+        )
     values = np.concatenate([line[1] for line in lines.values()])
     low, high = float(np.min(values)), float(np.max(values))
     room = max(0.25 * (high - low), 0.01)

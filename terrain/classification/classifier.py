@@ -39,7 +39,7 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
         neighbours. ``default`` takes SFTA of 19 filtered copies of the grey image, counts by
         area, scaled and projected on shrunk discriminants before the neighbours vote. Whether
         discriminants may curve (random Fourier features) is chosen, and probabilities are
-        calibrated, in cross-validation. ``fast`` does so with eight of the copies, for small
+        calibrated, in cross-validation. ``fast`` does so with four of the copies, for small
         computers.
     colour : bool
         Add SFTA of two colour differences (not with ``chen2023``). Off by default: colour depends

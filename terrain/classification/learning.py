@@ -45,6 +45,7 @@ class LearningClassifier(TrainedClassifier):
     @one_thread()  # more add up in another order: the last bits of a model are those of the machine
     def _learn(self, samples: Samples, copies: Samples) -> None:
         preset = PRESETS[self.preset]
+        self.one_patch_ = preset.one_patch
         counts = (self.n_neighbors,) if self.n_neighbors else preset.neighbour_counts
         try:
             way, found = best_way(

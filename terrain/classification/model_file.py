@@ -38,6 +38,7 @@ class ModelFile:
     rejection_distance_: float
     rejection_distances_: tuple[float, ...]
     temperature_: float | None
+    one_patch_: bool
     trained_on_: TrainedOn | None
     training_look_: TrainingLook | None
     old_samples_: OldSamples | None
@@ -87,6 +88,7 @@ class ModelFile:
             self.trained_on_,
             self.rejection_distances_,
             self.temperature_,
+            self.one_patch_,
         )
         write_model(Path(path), settings.to_table(), arrays, made)
 
@@ -125,6 +127,7 @@ class ModelFile:
             model._features = features
         model.rejection_distances_ = settings.rejection_distances
         model.temperature_ = settings.temperature
+        model.one_patch_ = settings.one_patch
         model.trained_on_ = settings.trained_on
         model.old_samples_ = OldSamples.from_arrays(arrays, model.classes_)
         model.training_look_ = TrainingLook.from_arrays(arrays, len(settings.classes))

@@ -28,6 +28,7 @@ class ModelSettings:
     trained_on: TrainedOn | None = None
     rejection_distances: tuple[float, ...] = ()
     temperature: float | None = None
+    one_patch: bool = False
 
     def to_table(self) -> dict[str, Any]:
         """Turn into values that JSON can hold."""
@@ -80,7 +81,15 @@ class ModelSettings:
             raise ValueError(f"rejection_distances = {limits}")
         if table.get("temperature") is not None:
             values["temperature"] = _within(table["temperature"], *TEMPERATURES)
+        # files of version 0.11 do not say
+        values["one_patch"] = _is_true(table.get("one_patch", False))
         return cls(**values)
+
+
+def _is_true(value: object) -> bool:
+    if not isinstance(value, bool):
+        raise TypeError(f"one_patch is {value!r}")
+    return value
 
 
 def _within(value: object, low: float, high: float) -> float:

@@ -34,6 +34,8 @@ class Preset:
     as_published : bool
         Votes are the probabilities, nothing but the photographs is learned from, and one distance
         rejects whatever the number of patches.
+    one_patch : bool
+        Of the region in an image of a run the patch in its middle alone is looked at.
     """
 
     features: FeatureSettings
@@ -42,21 +44,13 @@ class Preset:
     ways: tuple[Callable[[], Neighbours], ...]
     neighbour_counts: tuple[int, ...]
     as_published: bool = False
+    one_patch: bool = False
 
 
 _CHEN2023 = FeatureSettings(("grey",), (), n_thresholds=4, counts_per_area=False)
 _ALL_GREY = tuple(GREY_COPIES)
 _ALL_COLOUR = tuple(COLOUR_COPIES)
-_FEW_GREY = (
-    "grey",
-    "grey_2",
-    "grey_4",
-    "magnitude_0.7",
-    "orientation_0.7",
-    "coherence_0.7",
-    "contrast_5.6",
-    "band_2",
-)
+_FEW_GREY = ("grey", "magnitude_0.7", "coherence_0.7", "band_2")  # chosen one after another
 _DISCRIMINANT = (
     DiscriminantNeighbours,
     (linear_neighbours, DiscriminantNeighbours),
@@ -70,7 +64,7 @@ def _of(grey_copies: tuple[str, ...], colour_copies: tuple[str, ...] = ()) -> Fe
 
 PRESETS = {
     "default": Preset(_of(_ALL_GREY), _of(_ALL_GREY, _ALL_COLOUR), *_DISCRIMINANT),
-    "fast": Preset(_of(_FEW_GREY), _of(_FEW_GREY, _ALL_COLOUR), *_DISCRIMINANT),
+    "fast": Preset(_of(_FEW_GREY), _of(_FEW_GREY, _ALL_COLOUR), *_DISCRIMINANT, one_patch=True),
     "chen2023": Preset(
         _CHEN2023,
         _CHEN2023,

@@ -51,9 +51,11 @@ class TrainedClassifier(ModelFile):
         return [self.classify_features(self.patch_features(image)) for image in images]
 
     def middle_used(self, shape: tuple[int, int]) -> tuple[int, int]:
-        """Rows and columns in the middle of an image of such a shape: whole patches."""
-        rows, columns = (length - length % self.patch_size_px for length in shape)
-        return rows, columns
+        """Rows and columns in the middle of an image of such a shape: whole patches, or one."""
+        size = self.patch_size_px
+        if self.one_patch_:
+            return min(shape[0], size), min(shape[1], size)
+        return shape[0] - shape[0] % size, shape[1] - shape[1] % size
 
     def patch_features(self, image: ByteImage) -> FloatArray:
         """Features (patches, F) of the patches that an image is cut into.

@@ -6,6 +6,7 @@ from odometry.arrays import FloatArray
 from terrain.texture.otsu import TIE, multilevel_otsu
 
 TOGETHER = 80  # histograms; their scores stay in the cache
+FEW = 8  # histograms; fewer are faster one by one
 STRIP = 6
 NOT_BEFORE = np.triu(np.ones((STRIP, STRIP), np.bool_))
 LEAST_PIXELS = 0.5  # of a class, so that an empty one adds nothing
@@ -30,12 +31,12 @@ def coarse_otsu(histograms: FloatArray, n_thresholds: int, n_bins: int) -> Float
     width = histograms.shape[1] // n_bins
     binned = histograms.reshape(-1, n_bins, width).sum(axis=2)
     bins = np.empty((len(binned), n_thresholds))
-    has_enough = np.count_nonzero(binned, axis=1) > n_thresholds
-    for row in np.flatnonzero(~has_enough):
+    in_stack = (np.count_nonzero(binned, axis=1) > n_thresholds) & (len(binned) >= FEW)
+    for row in np.flatnonzero(~in_stack):
         bins[row] = multilevel_otsu(binned[row], n_thresholds)
-    enough = np.flatnonzero(has_enough)
-    for start in range(0, len(enough), TOGETHER):
-        of = enough[start : start + TOGETHER]
+    stacked = np.flatnonzero(in_stack)
+    for start in range(0, len(stacked), TOGETHER):
+        of = stacked[start : start + TOGETHER]
         bins[of] = _of_stack(binned[of], n_thresholds)
     return np.asarray(bins * width + (width - 1))
 
