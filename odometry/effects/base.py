@@ -69,6 +69,8 @@ class Effect(ABC):
     mimicked_by : str
         What a robot may do that looks the same in whatever a run holds. Such an effect is never
         named; where it explains most, no other effect is named either.
+    essential : tuple of str
+        Parameters without which it is another effect: most of what it does must be theirs.
     constant_names : tuple of str
         Known numbers that a parameter set holds among the parameters; arguments to make it.
     course : str
@@ -93,6 +95,7 @@ class Effect(ABC):
     includes: ClassVar[Mapping[str, str]] = {}
     of_reference: ClassVar[bool] = False
     mimicked_by: ClassVar[str] = ""
+    essential: ClassVar[tuple[str, ...]] = ()
     constant_names: ClassVar[tuple[str, ...]] = ()
     course: ClassVar[str] = ""
     slow: ClassVar[bool] = False

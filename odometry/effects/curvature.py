@@ -24,6 +24,7 @@ class Curvature(MotionEffect):
     source = "Baril 2020 eq. 10-11"
     looks_like = "tight turns too far, wide turns not far enough, or the reverse"
     remedy = "keep it in the model, or drive turns of one radius"
+    essential = ("beta_1",)
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:

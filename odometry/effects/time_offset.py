@@ -48,6 +48,7 @@ class ClockDrift(MeasurementEffect):
     looks_like = "errors along the path where speed changes, that grow over the run"
     remedy = "synchronise the clocks, or divide the stamps of the poses by 1 + rate"
     of_reference = True
+    includes: ClassVar[Mapping[str, str]] = {"command_delay": BY_GYROSCOPE}
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:

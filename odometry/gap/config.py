@@ -67,6 +67,8 @@ class GapConfig:
         names close 0.22 at least, a loss of traction in the place of slippery patches 0.05.
     least_of_all : float
         Share of what names and smooth functions close together that names must close alone.
+    most_without : float
+        Share of what a name closes that it may close without its essential parameters.
     most_beaten : float
         Share of what a name closes by which a candidate that is refused may close more.
     events_told : float
@@ -131,6 +133,7 @@ class GapConfig:
     bursts_closed: float = 0.93
     least_held_out: float = 0.1
     least_of_all: float = 0.7
+    most_without: float = 0.8
     most_beaten: float = 0.1
     events_told: float = 0.85
     uneven: float = 0.3
@@ -166,7 +169,7 @@ class GapConfig:
             "first_share",
             "mostly_closed",
             "bursts_closed",
-            *("events_told", "least_held_out", "least_of_all", "most_beaten"),
+            *("events_told", "least_held_out", "least_of_all", "most_without", "most_beaten"),
             "least_better",
             "least_beside",
             "base_probability",

@@ -11,14 +11,16 @@ import numpy as np
 
 from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual
+from odometry.effects.time_course import FromAMoment
 from odometry.gap.config import GapConfig
-from odometry.gap.contest import cost_of, margin_of
+from odometry.gap.contest import cost_of, margin_of, penalty
+from odometry.gap.course import CHOSEN, best_course
 from odometry.gap.effect_values import is_meant
 from odometry.gap.evenness import unevenness
 from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitted, Fitter
 from odometry.gap.search import Search
-from odometry.gap.verdict import is_even, is_special
+from odometry.gap.verdict import is_abrupt, is_by_its_essence, is_even, is_special
 
 PROMISING = 2  # smooth functions that are fitted in full
 
@@ -36,7 +38,14 @@ def of_their_form(search: Search, found: Explanation, smooth: Sequence[Residual]
         place = names.index(effect)
         instead = smooth_in_place(search.fitter, alone, place, smooth, search.config)
         of = unevenness(search.fitter, found.fitted, found.effects.index(effect))
-        reason = is_special(instead) or is_even(of, search.config) or is_meant(alone.effects[place])
+        added = alone.effects[place]
+        reason = (
+            is_special(instead)
+            or is_even(of, search.config)
+            or is_meant(added)
+            or is_by_its_essence(without_essence(search.fitter, alone, place), added, search.config)
+            or slow_course_in_place(search, alone, place)
+        )
         if not reason:
             continue
         search.refuse(effect, reason)
@@ -45,6 +54,39 @@ def of_their_form(search: Search, found: Explanation, smooth: Sequence[Residual]
             return replace(found, steps=())
         found = search.in_order(found, [*others, instead] if instead else others)
     return found
+
+
+def without_essence(fitter: Fitter, fit: Fitted, place: int) -> float:
+    """Share of what an effect closes that it closes without its essential parameters."""
+    added = fit.effects[place]
+    if not added.effect.essential:
+        return 0.0
+    absent = [
+        float(value if p.absent is None or p.name not in added.effect.essential else p.absent)
+        for p, value in zip(added.effect.parameters, added.values, strict=True)
+    ]
+    around = fit.effects[:place], fit.effects[place + 1 :]
+    tried = ((added,), (Added(added.effect, np.array(absent)),), ())
+    whole, without, none = (
+        float(np.sum(fitter.measured.rows(fit.base, (*around[0], *one, *around[1])) ** 2))
+        for one in tried
+    )
+    return (none - without) / (none - whole)
+
+
+def slow_course_in_place(search: Search, names: Fitted, place: int) -> str:
+    """Why a name has no moment: the same freedom in time, without one, explains more."""
+    if names.effects[place].effect.course != FromAMoment.name:
+        return ""
+    others = [*names.effects[:place], *names.effects[place + 1 :]]
+    before = _fit(search.fitter, others)
+    course = best_course(search.fitter, before, search.held_out, search.config)
+    if course is None:
+        return ""
+    spread = search.fitter.spread(course.fitted)
+    closed = cost_of(before) - cost_of(names)
+    of_course = course.fitted.cost + penalty(before.freedom + CHOSEN, before)
+    return is_abrupt(of_course, cost_of(names), margin_of(search.config, spread, closed))
 
 
 def names_alone(fitter: Fitter, found: Explanation) -> Fitted:

@@ -53,6 +53,23 @@ def general_candidates(
     return tuple(found)
 
 
+def shares_of_motion(
+    scenes: Sequence[DenseWindows], base: Base, config: GapConfig
+) -> tuple[Residual, ...]:
+    """Shares of each tread's speed, or of the forward speed, as functions of every variable.
+
+    Most names take away a share of a motion: functions that cannot are no rivals of them.
+    """
+    found: list[Residual] = []
+    for name, knots in knots_of_variables(scenes, base, config).items():
+        functions = len(knots) or 2 * HARMONICS + 1
+        if name != "time":
+            found.append(Residual(name, _every(TREADS, functions), "speed", knots))
+        if name not in OF_TREADS:
+            found.append(Residual(name, _every(("v_x",), functions), "v_x", knots))
+    return tuple(found)
+
+
 def single_candidates(
     scenes: Sequence[DenseWindows], base: Base, config: GapConfig
 ) -> tuple[Residual, ...]:

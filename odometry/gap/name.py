@@ -12,7 +12,7 @@ from odometry.gap.config import GapConfig
 from odometry.gap.contest import cost_of, margin_of
 from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitter
-from odometry.gap.general import general_candidates
+from odometry.gap.general import general_candidates, shares_of_motion
 from odometry.gap.search import Search
 from odometry.gap.simpler import by_fewer, by_parts, simplest, without_idle
 from odometry.gap.standing import Standing
@@ -52,7 +52,8 @@ def explained(
         options.append(without_idle(search, alone))
     if options:
         found = _better(search, found, options)
-    return search.that_stand(_names_first(search, found), smooth)
+    shares = shares_of_motion(scenes, fitter.calibration.base, config)
+    return search.that_stand(_names_first(search, found), (*smooth, *shares))
 
 
 def _better(search: Search, names: Explanation, others: Sequence[Explanation]) -> Explanation:

@@ -154,6 +154,23 @@ def is_special(instead: Residual | None) -> str:
     return f"a smooth function of {noun_of(instead.variable)} explains more in its place"
 
 
+def is_abrupt(cost_of_course: float, cost: float, margin: float) -> str:
+    """Whether a name with a moment explains as much as a motion that comes and goes slowly."""
+    if cost - cost_of_course < margin:
+        return ""
+    return "a slow course in run time explains more in its place: there is no moment"
+
+
+def is_by_its_essence(without: float, added: Added, config: GapConfig) -> str:
+    """Whether a name closes most by the parameters that make it what it is, not by others."""
+    if without <= config.most_without:
+        return ""
+    return (
+        f"it closes {100 * without:.0f} % of that without {', '.join(added.effect.essential)}: "
+        "another effect"
+    )
+
+
 def is_even(of: Unevenness, config: GapConfig) -> str:
     """Whether an effect has one strength, in all pieces of the runs."""
     if of.share <= config.uneven or of.probability >= config.uneven_probability:

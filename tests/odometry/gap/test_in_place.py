@@ -1,0 +1,116 @@
+"""What may stand in the place of a name: a slow course, a part of itself, shares of motion."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from odometry.effects.curvature import Curvature
+from odometry.effects.in_course import in_course
+from odometry.effects.residual import ANGLES, OF_TREADS, TREADS, VARIABLES
+from odometry.effects.time_course import FromAMoment, InBursts
+from odometry.effects.traction_loss import TractionLoss
+from odometry.gap.burst_variable import variable_of_events
+from odometry.gap.config import GapConfig
+from odometry.gap.fit import Fitter
+from odometry.gap.form import slow_course_in_place, without_essence
+from odometry.gap.general import shares_of_motion
+from odometry.gap.measured import measured_of
+from odometry.gap.own_moments import observed_s
+from odometry.gap.verdict import come_by_themselves, is_by_its_essence
+
+CONFIG = GapConfig()
+
+
+@pytest.fixture(scope="module")
+def asked_for_a_moment(make_scene, known):
+    """Why a loss of traction from a moment is none, where the truth keeps shares of all motion."""
+
+    def of(kept):
+        def planted(columns, twist):
+            return kept(columns["t"])[:, None] * twist
+
+        scene = make_scene(8, planted).numbered(0)
+        fitter = Fitter(known, measured_of([scene], known, CONFIG))
+        loss = in_course(TractionLoss(), FromAMoment((observed_s(scene),)))
+        search = SimpleNamespace(fitter=fitter, held_out=(scene,), config=CONFIG)
+        return slow_course_in_place(search, fitter.fit([loss]), 0)
+
+    return of
+
+
+def test_what_is_lost_at_once_has_a_moment(asked_for_a_moment):
+    assert not asked_for_a_moment(lambda t: np.where(t < 70.0, 1.0, 0.8))
+
+
+def test_what_comes_and_goes_slowly_has_none(asked_for_a_moment):
+    reason = asked_for_a_moment(lambda t: 0.8 + 0.2 * np.cos(2 * np.pi * t / 160.0))
+    assert "no moment" in reason
+
+
+@pytest.fixture(scope="module")
+def curved(make_scene, known):
+    """The effect of a width fitted where the truth turns by shares that speeds say."""
+
+    def of(share):
+        def planted(columns, twist):
+            turned = twist.copy()
+            turned[:, 1:] *= share(columns["v_left"], columns["v_right"])[:, None]
+            turned[:, 0] += 0.015 * (turned[:, 2] - twist[:, 2])  # of the eccentric ICRs
+            return turned
+
+        fitter = Fitter(known, measured_of([make_scene(9, planted)], known, CONFIG))
+        fit = fitter.fit([Curvature()])
+        return without_essence(fitter, fit, 0), fit.effects[0]
+
+    return of
+
+
+def test_a_width_that_is_the_same_everywhere_is_no_curvature(curved):
+    share, added = curved(lambda left, _: np.full(len(left), 0.7))
+    assert share > 0.95
+    assert "without beta_1" in is_by_its_essence(share, added, CONFIG)
+
+
+def test_a_width_that_shrinks_towards_the_straight_is(curved):
+    def share(left, right):
+        radius = np.abs(left + right) / np.maximum(np.abs(right - left), 1e-6)
+        return 1 / (0.9 * (1 + 0.8 / (1 + np.sqrt(radius))))
+
+    closed, added = curved(share)
+    assert not is_by_its_essence(closed, added, CONFIG)
+
+
+def test_what_needs_nothing_is_not_asked(make_scene, known):
+    fitter = Fitter(known, measured_of([make_scene(9)], known, CONFIG))
+    loss = in_course(TractionLoss(), FromAMoment())
+    assert without_essence(fitter, fitter.fit([loss]), 0) == 0.0
+
+
+def test_shares_of_motion_follow_every_variable(make_scene, known):
+    found = shares_of_motion([make_scene(70, lambda _, twist: twist)], known.base, CONFIG)
+    of_treads = {one.variable for one in found if one.by == "speed"}
+    forward = {one.variable for one in found if one.by == "v_x"}
+    assert of_treads == set(VARIABLES) - {"time"}  # that is among the general ones
+    assert forward == set(VARIABLES) - set(OF_TREADS)
+    for one in found:
+        added_to = {component for component, _ in one.terms}
+        assert added_to == (set(TREADS) if one.by == "speed" else {"v_x"})
+        assert bool(one.knots) == (one.variable not in ANGLES)
+
+
+@pytest.mark.parametrize(("where", "by_themselves"), [("sand", False), ("both", True)])
+def test_events_on_one_terrain_depend_on_it(make_scene, known, where, by_themselves):
+    """Twelve short events in 160 s, on sand alone, which is half of the time, or anywhere."""
+
+    def terrain(t):
+        return np.where(t % 40 < 20, "sand", "grass")
+
+    scene = make_scene(71, terrain=terrain).numbered(0)
+    begins_s = 13.3 * np.arange(12)
+    if where == "sand":
+        begins_s = np.array([40 * number + at for number in range(4) for at in (2, 8, 15)])
+    course = InBursts((tuple((begin, begin + 1.0) for begin in begins_s.tolist()),))
+    name, area = variable_of_events(course, [scene], known.base)
+    assert bool(come_by_themselves(name, area, CONFIG)) != by_themselves
+    assert (name == "terrain") != by_themselves
