@@ -10,7 +10,7 @@ import numpy as np
 from tests.blind.commands import RATE_HZ
 from tests.blind.faults.catalogue import FAULTS
 from tests.blind.faults.recordings import read_recording, write_recording
-from tests.blind.modes import worlds
+from tests.blind.modes import further_faults, worlds
 from tests.blind.modes.more_faults import MORE
 
 
@@ -210,26 +210,30 @@ OF_DRIVE = {
     "double_speed": double_speed,
     "slope": slope,
     "own_ripple": _effect("unknown_ripple", amplitude_rad_m=(0.15, 0.6), phase_rad=(-np.pi, np.pi)),
-}
-OF_RECORD = {
-    "gyro_bias": _whole("gyro_bias"),
-    "gyro_scale": _gyro(_scaled),
-    "gyro_spikes": _gyro(_spiky),
-    "gyro_frozen": _gyro(_frozen),
-    "poses_late": poses_late,
-    "treads_swapped": _whole("treads_swapped"),
-    "wheel_scale": wheel_scale,
-    "dropouts": dropouts,
-    "gyro_in_degrees": _whole("gyro_in_degrees"),
-    "own_gyro_noise": _gyro(_noisy),
-    "own_gyro_clipped": _gyro(_clipped),
-    "own_gyro_drift": _gyro(_drifting),
-    "own_gyro_late": _gyro(_delayed),
-    "own_gyro_sign": _whole("gyro_reversed"),
-    "own_stuck_tread": stuck_tread,
-    "own_tread_offset": _whole("tread_offset"),
-    "own_treads_late": treads_delayed,
-} | MORE
+} | further_faults.OF_DRIVE
+OF_RECORD = (
+    {
+        "gyro_bias": _whole("gyro_bias"),
+        "gyro_scale": _gyro(_scaled),
+        "gyro_spikes": _gyro(_spiky),
+        "gyro_frozen": _gyro(_frozen),
+        "poses_late": poses_late,
+        "treads_swapped": _whole("treads_swapped"),
+        "wheel_scale": wheel_scale,
+        "dropouts": dropouts,
+        "gyro_in_degrees": _whole("gyro_in_degrees"),
+        "own_gyro_noise": _gyro(_noisy),
+        "own_gyro_clipped": _gyro(_clipped),
+        "own_gyro_drift": _gyro(_drifting),
+        "own_gyro_late": _gyro(_delayed),
+        "own_gyro_sign": _whole("gyro_reversed"),
+        "own_stuck_tread": stuck_tread,
+        "own_tread_offset": _whole("tread_offset"),
+        "own_treads_late": treads_delayed,
+    }
+    | MORE
+    | further_faults.OF_RECORD
+)
 NAMED = (
     "gyro_bias",
     "gyro_scale",
