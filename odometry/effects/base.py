@@ -1,4 +1,4 @@
-"""The face of every effect that can be added to a kinematic model."""
+"""The interface of every effect that can be added to a kinematic model."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
@@ -30,7 +30,7 @@ class EffectParameter:
     scale : float
         A small change of it that matters: the measure of steps.
     absent : float or None
-        The value at which the effect does nothing; None where another parameter says that.
+        The value at which the effect does nothing; None where another parameter decides that.
     """
 
     name: str
@@ -55,15 +55,15 @@ class Effect(ABC):
         "commands", "motion" or "measurement".
     equation, source : str
     looks_like : str
-        How a person would notice it.
+        How a person would notice it in a recording.
     remedy : str
         What to do about it.
     needs : str
         Which data it needs.
     alike : Mapping of name to str
-        Effects that it may be mistaken for, and what tells them apart.
+        Effects that it may be mistaken for, and what distinguishes them.
     includes : Mapping of name to str
-        Effects that are this one at some values, and what tells them apart.
+        Effects that are this one at some values, and what distinguishes them.
     of_reference : bool
         Whether it is a fault of the reference sensor, not of the robot.
     mimicked_by : str
@@ -103,7 +103,7 @@ class Effect(ABC):
 
     @classmethod
     def offered(cls, recorded: Recorded) -> "tuple[Effect, ...]":  # noqa: ARG003 - of the interface
-        """Candidates of this form that measured runs may tell."""
+        """Candidates of this form that measured runs may determine."""
         return (cls(),)
 
     @property
@@ -112,7 +112,7 @@ class Effect(ABC):
         """Its parameters, in order."""
 
     def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the interface
-        """Which data a recording lacks to tell it, "" where it has them."""
+        """The data that a recording lacks to determine it, "" where it has them."""
         return ""
 
     def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the interface
@@ -125,11 +125,11 @@ class Effect(ABC):
         return np.zeros(count), np.full(count, np.inf)
 
     def same_as(self, values: FloatArray) -> Mapping[str, str]:  # noqa: ARG002 - of the interface
-        """Effects that do exactly the same at these values, and what would tell them apart."""
+        """Effects that do exactly the same at these values, and what would distinguish them."""
         return {}
 
     def is_meant(self, values: FloatArray) -> bool:  # noqa: ARG002 - of the interface
-        """Whether values (P,) describe what the name says, where a search may leave that."""
+        """Whether values (P,) agree with the name, where a search may leave that."""
         return True
 
     def pack(self, values: Mapping[str, float], where: str) -> FloatArray:

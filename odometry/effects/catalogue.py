@@ -143,7 +143,7 @@ def _added(table: Mapping[str, Any], where: str) -> Added:
 def _course(
     kind: tuple[str, str], values: Mapping[str, Any], settings: dict[str, Any], where: str
 ) -> Course | None:
-    """The course that settings say, taken out of them; sets of version 0.6 said a moment alone."""
+    """The course of the settings, taken out of them; sets of version 0.6 had a moment alone."""
     if "course" in settings:
         return course_of(settings, where)
     if kind == ("traction_loss", "k_m") and "moment" in values:

@@ -1,4 +1,4 @@
-"""What a force changes of the balance of ground contacts: shared by slope sliding and inertia.
+"""The change of the contact force balance by one more force: for slope sliding and inertia.
 
 Not the balance itself is the effect but the change that gravity along the slope, or inertia,
 makes to it: on level ground and slow the base stays as it was calibrated. Both change

@@ -18,7 +18,7 @@ COURSES = (FromAMoment.name, Gradual.name, InBursts.name)
 
 
 def course_of(settings: dict[str, Any], where: str) -> Course:
-    """The course that settings of a parameter set say; its keys are taken out of them.
+    """The course of the settings of a parameter set; its keys are taken out of them.
 
     Raises
     ------

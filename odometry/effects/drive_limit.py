@@ -11,9 +11,9 @@ from odometry.effects.held_commands import held_spans
 from odometry.effects.recorded import Recorded
 from odometry.models.inputs import Inputs
 
-EDGE_M_S = 0.005  # over which a command begins to act: a derivative sees samples on the edge
+EDGE_M_S = 0.005  # over which a command begins to act: samples there have a derivative
 HARDEST_M_S2 = 20.0
-REMEMBERED = 64  # answers: an effect fitted beside others is asked for the same again and again
+REMEMBERED = 64  # results: beside other effects one is evaluated with the same values again
 
 
 class DriveLimit(CommandEffect):

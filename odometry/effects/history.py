@@ -1,4 +1,4 @@
-"""A part of the motion that follows what the treads were told before or will be told after."""
+"""A part of the motion that follows earlier or later tread speeds."""
 
 from dataclasses import dataclass
 
@@ -23,7 +23,7 @@ class History(Residual):
 
     Delays, lags, swings and means over a while are all of this form, and none of them by name.
     Of `Residual`, `variable` is HISTORY, `knots` are the lags [s], a term is (BOTH or a tread,
-    number of the lag), and `by` says nothing.
+    number of the lag), and `by` is not used.
     """
 
     variable: str = HISTORY

@@ -10,7 +10,7 @@ from odometry.effects.contact_following import followed
 from odometry.effects.recorded import Recorded
 from odometry.models.inputs import Inputs
 
-LATERAL_M_S2 = 0.3  # less is nothing that contact forces are worth trying for
+LATERAL_M_S2 = 0.3  # with less the contact model is not fitted
 STEP = 1e-5  # of a parameter, for a derivative
 SLOW = 0.02  # of the speeds: centrifugal force is 0.0004 of its own
 

@@ -1,4 +1,4 @@
-"""A robot that turns about a point further ahead or behind than the model says."""
+"""A robot that turns about a point further ahead or behind than in the model."""
 
 from collections.abc import Mapping
 from typing import ClassVar

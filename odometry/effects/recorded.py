@@ -1,4 +1,4 @@
-"""What was recorded of the measured runs, of which effects may be told."""
+"""The recorded data of the measured runs, from which effects are determined."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,7 +17,7 @@ class Recorded:
     Attributes
     ----------
     base : Base
-        The model believed, and its robot.
+        The base model, and its robot.
     inputs : tuple of Inputs
         Of each run (N,).
     observed_s : tuple of (float, float)

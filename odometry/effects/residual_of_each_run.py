@@ -1,4 +1,4 @@
-"""A smooth function whose coefficients are each run's own: what one run says not of the next."""
+"""A smooth function whose coefficients are each run's own, and do not apply to the next run."""
 
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
@@ -15,7 +15,7 @@ from odometry.models.inputs import Inputs
 
 @dataclass(frozen=True)
 class ResidualOfEachRun(Residual):
-    """The same terms in each run, with coefficients of its own; nothing in runs beyond these.
+    """The same terms in each run, with its own coefficients; nothing in runs beyond these.
 
     Attributes
     ----------

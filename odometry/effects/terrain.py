@@ -49,9 +49,9 @@ class Terrain(MotionEffect):
 
     @classmethod
     def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
-        """Those that the calibration has not seen together, and each that it has seen by itself.
+        """Those that the calibration does not have, together, and each that it has by itself.
 
-        One that it has seen and that is everywhere is a set for whole runs, see `NewIcrs`.
+        One that it has and that is everywhere is a set for whole runs, see `NewIcrs`.
         """
         new = tuple(label for label in recorded.labels if label not in recorded.calibrated)
         changed = [label for label in recorded.labels if label in recorded.calibrated]

@@ -1,6 +1,6 @@
 """How much of an effect there is over time: from a moment on, gradually, or in bursts.
 
-The course of each run is its own: a moment of one run says nothing of another.
+The course of each run is its own: a moment of one run does not apply to another.
 """
 
 from abc import ABC, abstractmethod
@@ -44,7 +44,7 @@ class Course(ABC):
         return np.empty((1, 0))
 
     def is_meant(self, values: FloatArray) -> bool:  # noqa: ARG002 - of the interface
-        """Whether something was measured on both sides of what the values (P,) say."""
+        """Whether something was measured on both sides of the values (P,)."""
         return True
 
     def settings(self) -> dict[str, Any]:
@@ -157,7 +157,7 @@ class InBursts(Course):
 
     @property
     def searched(self) -> int:
-        """Numbers that say when each event begins and ends."""
+        """The numbers of the begin and the end of each event."""
         return sum(2 * len(events) for events in self.events_s)
 
     def with_events(self, events_s: Spans, number: int) -> "InBursts":

@@ -1,4 +1,4 @@
-"""The answer: the verdict, effects with their intervals, and what would tell rivals apart."""
+"""The answer: the verdict, effects with their intervals, and drives that distinguish rivals."""
 
 from collections.abc import Collection, Sequence
 
@@ -72,7 +72,7 @@ def drives_apart(
     fitter: Fitter,
     config: GapConfig,
 ) -> tuple[NextDrive, ...]:
-    """What would tell the first effect, in the form that was chosen, from what came as near."""
+    """Drives that distinguish the first effect, in its form, from those that came as near."""
     fits = {one.effect.name: one.fitted for one in reversed(candidates)}
     rivals = {name: fits[name] for name in equivalent if name in fits}
     if not rivals or found.names[0] not in fits:

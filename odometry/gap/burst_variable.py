@@ -21,7 +21,7 @@ BY_CHANCE = 0.001  # probability of as many events on one terrain
 def variable_of_events(
     course: InBursts, scenes: Sequence[DenseWindows], base: Base
 ) -> tuple[str, float]:
-    """The variable that tells best when the events are, and how well.
+    """The variable that predicts best when the events are, and how well.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def variable_of_events(
     name : str
     area : float
         Under the receiver operating characteristic of "the variable, or its size, is large" or
-        "is small", by time: 0.5 to 1; 0.5 tells nothing.
+        "is small", by time: 0.5 to 1; 0.5 predicts nothing.
     """
     inside = np.concatenate([course.share(np.empty(0), one.inputs) for one in scenes]) > 0.5
     steps_s = np.concatenate([one.steps_s for one in scenes])
@@ -52,7 +52,7 @@ def variable_of_events(
 def _variables(scenes: Sequence[DenseWindows], base: Base) -> Iterator[tuple[str, FloatArray]]:
     """Of all runs (N,), where all have them; of each tread by itself; with sign and without.
 
-    Angles come round again: neither large nor small says anything of them.
+    Angles are periodic: neither large nor small has a meaning.
     """
     of_scenes = [variables_of(s.inputs, base.model.twist(base.values, s.inputs)) for s in scenes]
     for name in of_scenes[0]:

@@ -55,7 +55,7 @@ def burst_effects(fitter: Fitter, before: Fitted) -> tuple[Effect, ...]:
 def _best_events(
     scene: DenseWindows, calibration: Calibration, before: Fitted, sides: tuple[float, float]
 ) -> Spans:
-    """Events of a run, with the strength that goes with them."""
+    """Events of a run, with their strength."""
     steps = _steps(with_fewer_poses(scene, STEPS))
     if not len(steps):
         return ()
@@ -84,7 +84,7 @@ def with_events_of_run(
 ) -> list[Added]:
     """Effects that know the events of one run more, as strong as they are.
 
-    By the poses within its windows: the first and the last, by which the gap is judged, are not
+    By the poses within its windows: the first and the last, by which the gap is evaluated, are not
     used.
     """
     steps = _steps(_within(with_fewer_poses(scene, STEPS)))

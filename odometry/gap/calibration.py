@@ -1,4 +1,4 @@
-"""The model believed so far: its values, how sure they are, and what noise explains."""
+"""The base model: its values, their covariance, and the errors that noise explains."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -27,7 +27,7 @@ from odometry.windows.dense import DenseWindows
 from odometry.windows.dense_noise import Noise, estimated_noise, whitening
 
 LEAST_WINDOWS = 20
-TOGETHER_S = 10.0  # within which errors are taken as alike
+TOGETHER_S = 10.0  # within which errors are taken as correlated
 ROUNDS = 3  # of values and noise in turn
 ITERATIONS = 8
 STARTS_WITH = Noise(0.02, 0.01, 0.02, 0.02)
@@ -60,7 +60,7 @@ class Calibration:
 
     @property
     def base(self) -> Base:
-        """The model believed so far."""
+        """The base model."""
         return self.uncertain.base
 
 
@@ -107,7 +107,7 @@ def calibrated(
 
 
 def _doubted(noise: Noise, config: GapConfig) -> tuple[Noise, float]:
-    """Noise in which a second of the gyroscope is worth no more than a measured yaw.
+    """Noise with which a second of the gyroscope counts no more than a measured yaw.
 
     And the chi-squared that is then expected of its residuals. A gyroscope is so much more exact
     than any model that it alone would decide, and what it says of time and of itself it still
@@ -175,8 +175,8 @@ def _fit(
 def _information(solved: Solved, scenes: Sequence[DenseWindows]) -> FloatArray:
     """Inverse covariance (F, F), divided by the design effect of pieces of the runs.
 
-    Errors that last for longer than a window say less than as many independent ones: the scores
-    of pieces scatter by more than the normal matrix says (Liang and Zeger 1986, eq. 9, here one
+    Errors that last for longer than a window count less than as many independent ones: the scores
+    of pieces scatter by more than the normal matrix states (Liang and Zeger 1986, eq. 9, here one
     factor for all numbers), or the residuals by more than noise.
     """
     normal = solved.jacobian.T @ solved.jacobian

@@ -18,7 +18,7 @@ from odometry.models.icr import Icr
 from odometry.models.icr_by_terrain import IcrByTerrain
 from odometry.windows.dense import DenseWindows
 
-LEAST_S = 20.0  # on a terrain, for ICRs of its own
+LEAST_S = 20.0  # on a terrain, for its own ICRs
 
 
 def by_terrain(

@@ -12,7 +12,7 @@ from odometry.windows.dense import DenseWindows
 
 
 def offered_effects(scenes: Sequence[DenseWindows], calibration: Calibration) -> tuple[Effect, ...]:
-    """Effects of the catalogue that the measured runs could tell, in its order."""
+    """Effects of the catalogue that the measured runs could determine, in its order."""
     offered = _of_catalogue(scenes, calibration)
     return tuple(e for e in offered if told_by(e, scenes, calibration))
 
@@ -20,7 +20,7 @@ def offered_effects(scenes: Sequence[DenseWindows], calibration: Calibration) ->
 def effects_of_one_heading(
     scenes: Sequence[DenseWindows], calibration: Calibration
 ) -> tuple[Effect, ...]:
-    """Those that the measured runs could tell if the robot looked in more directions."""
+    """Those that the measured runs could determine if the robot had more headings."""
     base = calibration.base
     return tuple(
         e

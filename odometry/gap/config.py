@@ -17,7 +17,7 @@ class GapConfig:
     least_covered : float
         Share of the most poses in windows that the chosen duration must keep.
     folds : int
-        Parts of the measured runs; a candidate is judged on each by a fit to the others.
+        Parts of the measured runs; a candidate is evaluated on each by a fit to the others.
     part_s : float
         Length of the pieces that are dealt out to the folds, or held back.
     held_back : int
@@ -41,7 +41,7 @@ class GapConfig:
     near_bound : float
         In scales of a parameter: nearer to a bound than this it is at the bound.
     equivalent_margin : float
-        Of evidence: less says nothing of which of two candidates it is (a ratio of likelihoods
+        Of evidence: less does not decide between two candidates (a ratio of likelihoods
         of twenty).
     least_of_rival : float
         Share of what a name gains that another must gain to be as near: it is not compared else.
@@ -84,7 +84,7 @@ class GapConfig:
     brought_back : float
         Share of the base's move that may be left where a name explains nothing but this move.
     contact_spread : float
-        Chi-squared a degree of freedom that the quick forms must leave before slow ones are tried.
+        Chi-squared per degree of freedom that quick forms must leave before slow ones are fitted.
     gyro_least_of_yaw : float
         Least noise of the gyroscope's turn over a second, as a share of that of a measured yaw.
     gyro_bias_drift_rad_s : float
@@ -92,7 +92,7 @@ class GapConfig:
     knots, tread_knots : int
         Of a smooth function; of that of a tread's own motion, to each side of zero.
     most_effects, most_smooth : int
-        Names, and smooth functions where no name stands.
+        Names, and smooth functions where no name is accepted.
     outlier_sigmas : float
         Standard deviations by which a single pose must be off its neighbours to be an outlier.
     least_outliers : int

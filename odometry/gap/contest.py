@@ -65,7 +65,7 @@ def ranked(
     """Fits of one effect more, most evidence first.
 
     Log-likelihoods are divided by what chi-squared a degree of freedom the best of all leaves
-    (at least 1): where nothing explains all, less is believed. Where evidence is equal but for
+    (at least 1): where nothing explains all, evidence counts less. Where evidence is equal but for
     rounding, more at its lower bound goes first, then fewer parameters.
     """
     rows = fitter.measured.expected

@@ -1,6 +1,6 @@
-"""Whether the values of an effect are what its name says, within what was searched, and known.
+"""Whether the values of an effect agree with its name, lie within the search, and are determined.
 
-Each gate returns "" where the effect passes, else the reason in words.
+Each gate returns "" where the effect passes, else the reason as a clause.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ WITHIN_95 = 1.96  # standard deviations
 
 
 def is_the_effect(fit: Fitted, config: GapConfig) -> str:
-    """Whether the last effect of a fit is what its name says, and is known to be there."""
+    """Whether the last effect of a fit agrees with its name, and is significant."""
     added = fit.effects[-1]
     if reason := is_meant(added):
         return reason
@@ -25,7 +25,7 @@ def is_the_effect(fit: Fitted, config: GapConfig) -> str:
 
 
 def is_meant(added: Added) -> str:
-    """Whether an effect is what its name says and nothing else, beside all others too."""
+    """Whether an effect agrees with its name and with no other, beside all others too."""
     if rival := added.effect.mimicked_by:
         return f"{added.effect.in_words}, or {rival}: no data of a run tell them apart"
     if added.effect.is_meant(added.values):
@@ -54,7 +54,7 @@ def is_there(fit: Fitted, config: GapConfig) -> bool:
 
 
 def within_bounds(fit: Fitted, config: GapConfig) -> str:
-    """No parameter that says how strong the effect is may end at a bound, nor span the bounds.
+    """No parameter of the effect's strength may end at a bound, nor its interval span the bounds.
 
     Where an effect does nothing at a bound, to end there is an answer; those that shape an effect
     may be open as long as its strength is known.

@@ -22,9 +22,9 @@ TELL_APART = "a run in which the two differ: other speeds, turns or terrain"
 def rivals_of_one_heading(
     found: Explanation, fitter: Fitter, config: GapConfig
 ) -> tuple[Judged, ...]:
-    """What a robot on few headings cannot tell from the first name, in its place.
+    """Effects that few headings do not distinguish from the first name, fitted in its place.
 
-    These are no candidates there, because their own parameters could not be told from each other.
+    These are no candidates there, because their own parameters could not be determined separately.
     """
     if not found.names or isinstance(found.effects[0], Residual):
         return ()
@@ -35,7 +35,7 @@ def rivals_of_one_heading(
 def equivalents(
     found: Explanation, more: Sequence[Judged], fitter: Fitter, config: GapConfig
 ) -> tuple[Equivalent, ...]:
-    """What is alike by its equations, and what came as near in the contest for the same place.
+    """Effects that are equal by their equations, and those that came as near in the same contest.
 
     An effect that includes another has values to spare for whatever else is imperfect: the other
     is as near where it closes nearly as much. `more` are rivals of the first name that were no

@@ -12,7 +12,7 @@ from scipy.stats import chi2
 from odometry.arrays import FloatArray, IntArray
 from odometry.gap.fit import Fitted, Fitter
 
-LEAST_SHARE = 1e-6  # of what an effect does: a piece in which it does less says nothing
+LEAST_SHARE = 1e-6  # of what an effect does: a piece in which it does less does not count
 LEAST_PIECES = 3
 
 

@@ -11,7 +11,7 @@ from odometry.gap.verdict import Refusal
 
 @dataclass(frozen=True)
 class Explanation:
-    """Effects in the order added, each as it was judged when it was added.
+    """Effects in the order added, each as it was evaluated when it was added.
 
     Attributes
     ----------
@@ -25,7 +25,7 @@ class Explanation:
     refusals : tuple of Refusal
         Names that had evidence and do not stand.
     base_closes : bool
-        Whether no effect stands, and the base closes some of the gap by leaving its calibration.
+        Whether no effect is accepted, and the base closes some of the gap with other values.
     unexplained : bool
         Whether there is a gap that noise does not explain, and nothing earned a name.
     """

@@ -93,7 +93,7 @@ def extended_model(result: GapResult) -> ParameterSet:
     """The base and its effects as a parameter set, one table a terrain that any run names.
 
     Terrains whose ICRs and slip differ are tables of their own; all other effects stand in each,
-    as they were at the end of their course: a moment of one run says nothing of the next, nor do
+    as they were at the end of their course: a moment of one run does not apply to the next, nor do
     coefficients or events that are each run's own.
     """
     effects = tuple(

@@ -103,10 +103,10 @@ def smooth_in_place(
     smooth: Sequence[Residual],
     config: GapConfig,
 ) -> Residual | None:
-    """The smooth function that stands in the place of one name with more evidence.
+    """The smooth function that takes the place of one name with more evidence.
 
     None where no function beats the name by the margin, or where the name still closes its share
-    beside the best: then the function stands for something else.
+    beside the best: then the function describes something else.
     """
     others = [*names.effects[:place], *names.effects[place + 1 :]]
     before = _fit(fitter, others)

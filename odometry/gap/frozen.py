@@ -40,17 +40,17 @@ def frozen(scene: DenseWindows, calibration: Calibration, config: GapConfig) -> 
 
 
 def frozen_steps(running: FloatArray, standing: FloatArray, least: float) -> BoolArray:
-    """Whether the reference stands in each step (S,): events that end in a jump, of least cost.
+    """Whether the reference is frozen in each step (S,): events that end in a jump, of least cost.
 
     Parameters
     ----------
     running, standing : (S,)
         Chi-squared of each step by the treads, and by no motion.
     least : float
-        By which an event must be better by standing than by running, jump left out.
+        By which an event must be better frozen than running, without its jump.
     """
     turn = float(np.log(len(running)))
-    # States: by the treads, standing, the jump at its end; from each row to each column.
+    # States: by the treads, frozen, the jump at its end; from each row to each column.
     paid = np.array([[0.0, turn, np.inf], [np.inf, 0.0, turn], [0.0, np.inf, np.inf]])
     own = np.stack([running, standing, np.zeros_like(running)], axis=-1)
     cost, came = np.array([0.0, turn, np.inf]), np.zeros((len(own), 3), dtype=np.int64)

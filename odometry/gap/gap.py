@@ -52,11 +52,11 @@ def find_gap(
     calibration : sequence of Run
         Runs on which the base is identified (unless `given`), and the noise.
     holdout : sequence of Run
-        Runs on which the answer is judged; pieces of the measured runs where there are none.
+        Runs on which the answer is evaluated; pieces of the measured runs where there are none.
     model : KinematicModel, optional
         The base, `icr` when absent.
     given : Mapping of name to float, optional
-        Parameters of the base, believed as they are.
+        Parameters of the base, taken as they are.
     config : GapConfig, optional
     show_progress : bool
         Whether to draw a bar on standard error.

@@ -11,13 +11,13 @@ from odometry.run import Run
 from odometry.windows.dense import covered_s
 
 SHORTER = (1.0, 0.75, 0.5)  # of the usual duration of windows, where stretches ask for it
-SLOWEST_M_S = 0.05  # of a mean speed: a robot that stands has no horizon
+SLOWEST_M_S = 0.05  # of a mean speed: a stationary robot has no horizon
 
 
 def for_chains(config: GapConfig, runs: Sequence[Run]) -> GapConfig:
     """Shorter windows where poses are chained in stretches that longer ones do not fit into.
 
-    The longest of those tried that leave out hardly more of the poses than the best does.
+    The longest of these that leaves out hardly more of the poses than the best one does.
     """
     tried_s = [share * config.horizon_s for share in SHORTER]
     covered = np.sum([covered_s(run, tried_s) for run in runs], axis=0)

@@ -143,7 +143,7 @@ class Hypothesis:
 
 
 def own_values(effects: Sequence[Effect]) -> tuple[bool, ...]:
-    """Whether each effect has values of its own: none before it is of the same physics."""
+    """Whether each effect has its own values: none before it is of the same physics."""
     before = [{one.physics for one in effects[:place]} for place in range(len(effects))]
     return tuple(
         not effect.physics or effect.physics not in earlier

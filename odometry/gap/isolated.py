@@ -1,7 +1,7 @@
 """Single poses of the reference that are far off their neighbours.
 
 What the poses drift away from the treads is a slow curve, whatever effect is missing: a pose that
-stands off the median of its neighbours on that curve has jumped there and back.
+lies far from the median of its neighbours on that curve has jumped there and back.
 """
 
 from dataclasses import dataclass

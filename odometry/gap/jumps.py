@@ -2,8 +2,8 @@
 
 A tread that slips leaves a robot behind by no more than the tread travelled; a pose that goes
 farther, or aside, has jumped. What follows a jump is as good as what went before. While a tread
-reports rest for a short time between motion, an encoder may have dropped out, and nothing is said
-of the poses.
+reports rest for a short time between motion, an encoder may have dropped out, and no jump of
+the poses is reported.
 """
 
 from dataclasses import dataclass, replace

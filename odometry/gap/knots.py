@@ -11,7 +11,7 @@ from odometry.gap.config import GapConfig
 from odometry.windows.dense import DenseWindows
 
 INNER = (0.02, 0.98)  # quantiles between which knots lie
-LEAST_RANGE = 1e-3  # of a variable that says anything
+LEAST_RANGE = 1e-3  # of a variable that can explain anything
 SINCE_REVERSAL_M = (0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.8)  # gears, tracks and casters settle
 STATED = {
     "travel_since_reversal": SINCE_REVERSAL_M,

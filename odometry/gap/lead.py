@@ -9,7 +9,7 @@ from odometry.gap.result import Equivalent, GapResult
 from odometry.gap.share_closed import Share, held_out_share
 from odometry.gap.verdict import Refusal
 
-REFUSED = 2  # that are said
+REFUSED = 2  # reasons that are given
 
 
 def lead(result: GapResult) -> tuple[str, str, str]:
@@ -34,7 +34,7 @@ def _missing(result: GapResult) -> str:
     if rest:
         names += f", and something unknown that depends on {listed(rest)}"
     untold = "".join(
-        f"; these runs do not tell {name} from {listed(others, 'or')}"
+        f"; these runs do not distinguish {name} from {listed(others, 'or')}"
         for name, others in _instead(result.equivalent).items()
     )
     if all(effect.added.effect.of_reference for effect in named) and not rest:
@@ -58,7 +58,7 @@ def _nothing_named(result: GapResult, model: str) -> str:
         )
     if not result.measured.before.has_interval:
         return (
-            f"Whether something is missing in {model} cannot be told: the measured windows are "
+            f"Whether something is missing in {model} is undetermined: the measured windows are "
             "one stretch, of which the gap has no interval."
         )
     if _is_doubtful(result):
@@ -97,13 +97,13 @@ def _what_to_do(result: GapResult) -> str:
         between.setdefault(drive.words, [drive.between[0]]).append(drive.between[1])
         odds[drive.words] = min(drive.odds, odds.get(drive.words, 1.0))
     drives = [
-        f"To tell {name} from {listed(others, 'or')}: {words}, for a minute (decides in "
+        f"To distinguish {name} from {listed(others, 'or')}: {words}, for a minute (decides in "
         f"{100 * odds[words]:.0f} % of cases)."
         for words, (name, *others) in between.items()
     ]
     decided = {name for one in result.next_drives for name in one.between}
     measures = [
-        f"What tells {one.instead_of} from {one.name}: {one.told_apart_by}."
+        f"What distinguishes {one.instead_of} from {one.name}: {one.told_apart_by}."
         for one in result.equivalent
         if one.name not in decided
     ]
@@ -119,8 +119,8 @@ def _remedy(result: GapResult) -> str:
             return "Look at the worst stretches in report.html, and record what may differ there."
         if _is_doubtful(result):
             return (
-                "Do not rely on this: hold out whole runs that drive alike (--holdout), and ask "
-                "again."
+                "Do not rely on this: hold out whole runs with the same kind of drive "
+                "(--holdout), and try again."
             )
         return "Keep the model as it is."
     remedies = dict.fromkeys(effect.added.effect.remedy for effect in result.effects)

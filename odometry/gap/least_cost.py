@@ -8,7 +8,7 @@ from odometry.gap.solve import Found, Solved, least_squares, with_jacobian
 
 ITERATIONS = 12
 SEARCHED = 2  # of several starts: the best ones
-JUMPS = (-4.0, -2.0, -1.0, -0.5, 0.5, 1.0, 2.0, 4.0)  # tried, in scales of a parameter
+JUMPS = (-4.0, -2.0, -1.0, -0.5, 0.5, 1.0, 2.0, 4.0)  # in scales of a parameter
 MOST_JUMPS = 4
 
 
@@ -38,7 +38,7 @@ def _search(hypothesis: Hypothesis, start: FloatArray, iterations: int, held: Bo
 
 
 def _after_jumps(hypothesis: Hypothesis, found: Found, held: BoolArray) -> Found:
-    """Search on from jumps of the values that derivatives say little of."""
+    """Search on from jumps of the values whose derivatives are small."""
     places = np.flatnonzero(hypothesis.jumps & ~held)
     unit = np.diag(hypothesis.scales)
     steps = [jump * unit[place] for place in places for jump in JUMPS]

@@ -18,7 +18,7 @@ from odometry.windows.dense import DenseWindows
 
 __all__ = ["Location", "Predictor", "Region", "locate"]
 
-ALIKE = 0.5  # Cramer's V from which two variables are two names of one thing
+ALIKE = 0.5  # Cramer's V from which two variables are taken as one
 SHOWN = 2  # variables of a map
 # Of two alike and about as strong, the one that stands first is the one that a person reads more
 # easily. "turn" is in "omega".
@@ -40,7 +40,7 @@ class Location:
     regions : tuple of Region
         Largest share of the excess first; none where the gap is nowhere above the noise floor.
     strongest : tuple of str
-        Up to two variables over which the gap is best seen, not two names of one thing.
+        Up to two variables over which the gap varies most, not correlated with each other.
     """
 
     predictors: tuple[Predictor, ...]
@@ -72,7 +72,7 @@ def locate(
         The noise floor: the RMS position error on held-back stretches of the calibration.
     config : GapConfig
     calibration : Calibration
-        Says what noise explains of each window, and what is open of the base.
+        Gives the error that noise explains in each window, and the covariance of the base.
     """
     ends = ends_of(base, effects, scenes, calibration, config.part_s)
     variables = {v.name: v for v in window_variables(base, effects, scenes)}
@@ -89,7 +89,7 @@ def locate(
 
 
 def _unlike(variables: Sequence[Variable]) -> list[Variable]:
-    """Those that vary and are not alike to one before them."""
+    """Those that vary and are not associated with one before them."""
     kept: list[Variable] = []
     for variable in variables:
         groups = groups_of(variable)

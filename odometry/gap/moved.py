@@ -7,7 +7,7 @@ import numpy as np
 from odometry.effects.base_model import Base
 from odometry.gap.calibration import Calibration
 
-FAR = 3.0  # standard deviations, from which a move is said
+FAR = 3.0  # standard deviations, from which a change is reported
 RIDGE = 1e-9  # the calibration may leave a number open
 
 

@@ -19,7 +19,7 @@ from odometry.gap.standing import Standing
 from odometry.gap.statistic import Gap
 from odometry.windows.dense import DenseWindows
 
-BESIDE = 3  # names that are tried beside a smooth function: those of most evidence without it
+BESIDE = 3  # names that are tested beside a smooth function: those of most evidence without it
 
 
 def explained(
@@ -33,8 +33,8 @@ def explained(
 
     The catalogue alone explains what it can. Then the best smooth function is added to that, and
     the catalogue to the best smooth function; what does not pay beside the others is left out.
-    Of these explanations the one of least cost stands; names go first where they lose by less
-    than a margin. At last each is judged on held-out data. `floors` are those of the measured
+    Of these explanations the one of least cost is taken; names go first where they lose by less
+    than a margin. At last each is evaluated on held-out data. `floors` are those of the measured
     and of the held-out windows.
     """
     search = Standing(fitter, fitter.fit([]), tuple(held_out), *floors, config, progress)
@@ -65,6 +65,6 @@ def _better(search: Search, names: Explanation, others: Sequence[Explanation]) -
 
 
 def _names_first(search: Search, found: Explanation) -> Explanation:
-    """Smooth functions last: whether the names stand without them is judged next."""
+    """Smooth functions last: whether the names are accepted without them is tested next."""
     effects = sorted(found.effects, key=lambda effect: isinstance(effect, Residual))
     return found if tuple(effects) == found.effects else search.in_order(found, effects)

@@ -27,13 +27,13 @@ from odometry.gap.simulate import simulated_poses
 from odometry.gap.solve import differences
 from odometry.windows.dense import DenseWindows
 
-LEAST_ODDS = 0.6  # of a drive that is worth a minute
+LEAST_ODDS = 0.6  # of a drive that is proposed
 SURE_ODDS = 0.98  # of one than which none needs to be better
 
 
 @dataclass(frozen=True)
 class NextDrive:
-    """A drive that would tell two effects apart.
+    """A drive that would distinguish two effects.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class NextDrive:
     between : (str, str)
         Names of the effects.
     odds : float
-        Probability that the right one of them then stands by the margin of a name, whichever it
+        Probability that the right one of them then leads by the margin of a name, whichever it
         is.
     """
 
@@ -74,7 +74,7 @@ def next_drives(
     Parameters
     ----------
     rivals : Mapping of name to Fitted
-        The named effect first, then those that the recordings do not tell from it, in its place.
+        The named effect first, then those that the recordings do not distinguish from it.
     scenes : sequence of DenseWindows
         Measured: speeds, slopes and pose rate are theirs.
     """

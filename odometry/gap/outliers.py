@@ -20,7 +20,7 @@ from odometry.gap.pieces import pieces
 from odometry.gap.simulate import residuals
 from odometry.windows.dense import DenseWindows
 
-PLACES = 2  # numbers that say where a pose is
+PLACES = 2  # numbers of a position
 
 
 KINDS: tuple[tuple[type[ReferenceOutliers], Callable[..., Isolated]], ...] = (

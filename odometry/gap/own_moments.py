@@ -1,4 +1,4 @@
-"""Effects on runs that were not fitted, where each run has a moment, or values, of its own."""
+"""Effects on held-out runs, where each run has its own moment or values."""
 
 from collections.abc import Sequence
 
@@ -15,7 +15,7 @@ from odometry.gap.own_values import OWN, with_values_of_run
 from odometry.gap.statistic import squared_errors
 from odometry.windows.dense import DenseWindows
 
-SPACING_S = 1.0  # of the moments that are tried
+SPACING_S = 1.0  # of the moments that are searched
 TIED = 1e-9  # share: losses nearer than this are equal, so that rounding does not choose a moment
 InCourse = CommandsInCourse | MotionInCourse
 
@@ -32,12 +32,12 @@ def with_own_moments(
     fitted: Sequence[DenseWindows],
     calibration: Calibration,
 ) -> tuple[tuple[Added, ...], list[DenseWindows]]:
-    """Effects that know what is each held-out run's own, too, and the windows to judge them by.
+    """Effects with each held-out run's own values, and the windows to evaluate them on.
 
-    A moment, and coefficients, are searched on every other window of a run, and judged on the
+    A moment, and coefficients, are searched on every other window of a run, and evaluated on the
     rest. Pieces of the fitted runs themselves know theirs, and are judged whole, as all are where
     nothing is a run's own. Events of a burst are searched on the poses within the windows, and
-    judged by those at their ends.
+    evaluated by those at their ends.
     """
     for scene in held_out if any(is_in_bursts(one.effect) for one in effects) else ():
         effects = with_events_of_run(base, effects, scene, calibration)

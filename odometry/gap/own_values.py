@@ -34,7 +34,7 @@ def damped(jacobian: FloatArray, rows: FloatArray, spread: float) -> FloatArray:
 def with_values_of_each_run(fitter: Fitter, before: Fitted, effect: ResidualOfEachRun) -> Fitted:
     """A fit and one smooth function more, whose coefficients are each run's own; all else stays.
 
-    What it leaves on windows not fitted is judged by turns: each window by a fit to its neighbours.
+    Its residuals on held-out windows are found in turn: of each window by a fit to its neighbours.
     """
     measured = fitter.measured
     simulated = simulated_scenes(before.base, before.effects, measured.scenes)

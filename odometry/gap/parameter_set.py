@@ -1,4 +1,4 @@
-"""The model believed so far, by its name or from a parameter set."""
+"""The base model, by its name or from a parameter set."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -33,7 +33,7 @@ def believed_model(
         wanted = next(iter(terrains))
     if wanted is None or wanted not in terrains:
         raise GapError(
-            f"{name}: no terrain {wanted!r}; it has {', '.join(terrains)}; say which with --terrain"
+            f"{name}: no terrain {wanted!r}; it has {', '.join(terrains)}; name one with --terrain"
         )
     table = terrains[wanted]
     if table.effects:

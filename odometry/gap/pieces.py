@@ -1,4 +1,4 @@
-"""Pieces of runs that are held back, dealt to folds or drawn together."""
+"""Pieces of runs that are held out, dealt to folds or drawn together."""
 
 from collections.abc import Sequence
 
@@ -26,9 +26,9 @@ def numbered_pieces(scenes: Sequence[DenseWindows], part_s: float) -> IntArray:
 
 
 def held_back(scene: DenseWindows, part_s: float, one_in: int) -> BoolArray:
-    """Whether each window (K,) is held back: one piece in so many of those in which treads move.
+    """Whether each window (K,) is held out: one piece in so many of those in which treads move.
 
-    Pieces at rest agree with any model: an answer judged on them says nothing.
+    Stationary pieces agree with any model: an evaluation on them means nothing.
     """
     number = pieces(scene, part_s)
     ends_s = scene.pose_s[scene.windows[:, [0, -1]]]

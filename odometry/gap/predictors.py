@@ -4,7 +4,7 @@ A variable is cut into groups (quantiles, sectors of the circle, labels), and th
 of Kruskal and Wallis 1952 (J. Am. Stat. Assoc. 47(260)), the largest over four residuals: size,
 along, across, turn, in standard deviations of noise. Neighbouring windows share a pose and are
 not independent, so that it is judged not by its usual distribution, but by draws in which the
-pieces of the runs change places: what is alike within a piece stays together. To each draw an
+pieces of the runs change places: what is correlated within a piece stays together. To each draw an
 error is added that the calibration leaves open, lest it be taken for a finding. Over all
 variables false discoveries are controlled after Benjamini and Hochberg 1995 (J. R. Stat. Soc. B
 57(1)).
@@ -37,7 +37,7 @@ class Predictor:
     p_value : float
         Of "it predicts nothing".
     discovered : bool
-        Whether it stands when false discoveries among all variables are held at 5 %.
+        Whether it is significant where false discoveries among all variables are held at 5 %.
     strength : float
         Share (0 to 1) of the variance of ranks that it explains, of the residual of which it
         explains most; what chance explains is taken off.

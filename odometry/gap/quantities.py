@@ -20,7 +20,7 @@ def with_interval(gap: Gap) -> str:
 
 
 def percent(share: Share) -> str:
-    """A share and its 95 % interval, as `with_interval` says it."""
+    """A share and its 95 % interval, as `with_interval` writes it."""
     interval = f"{100 * share.low:.0f} to {100 * share.high:.0f}"
     return f"{100 * share.value:.0f} % ({_interval(interval, share.pieces)})"
 
@@ -38,7 +38,7 @@ def rounded(value: float, low: float, high: float) -> tuple[str, str, str]:
 
 
 def evidence_words(evidence: float) -> str:
-    """A scale in words for twice a gain of log-likelihood.
+    """A word for twice a gain of log-likelihood.
 
     Kass and Raftery 1995, J. Am. Stat. Assoc. 90(430), p. 777.
     """

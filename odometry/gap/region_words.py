@@ -1,4 +1,4 @@
-"""Bounds of variables in words."""
+"""Bounds of variables as text."""
 
 import math
 from collections.abc import Mapping
@@ -12,7 +12,7 @@ EVERYWHERE = "everywhere"
 
 @dataclass(frozen=True)
 class Signed:
-    """A variable whose two signs have words of their own.
+    """A variable whose two signs have their own words.
 
     Attributes
     ----------
@@ -24,7 +24,7 @@ class Signed:
     scale : float
         From the variable's unit to the one written.
     slight : float
-        Bounds nearer to zero (in the variable's unit) are not worth a number.
+        Bounds nearer to zero (in the variable's unit) get no number.
     """
 
     positive: str
@@ -62,7 +62,7 @@ class Signed:
 
 @dataclass(frozen=True)
 class Plain:
-    """A variable said by its name."""
+    """A variable by its name."""
 
     noun: str
     unit: str
@@ -130,12 +130,12 @@ def words_of(bounds: Mapping[str, tuple[float | None, float | None]]) -> str:
 
 
 def noun_of(name: str) -> str:
-    """A variable in words."""
+    """A variable as text."""
     return SPOKEN[name].noun if name in SPOKEN else NAMES.get(name, name)
 
 
 def noun_of_residual(residual: Residual) -> str:
-    """What a smooth function depends on, in words."""
+    """What a smooth function depends on, as text."""
     noun = noun_of(residual.variable)
     own = isinstance(residual, ResidualOfEachRun)
     return f"{noun} (in each run by its own)" if own else noun

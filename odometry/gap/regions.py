@@ -1,4 +1,4 @@
-"""Regions in which the gap lies: few bounds, drawn on one half of a run, judged on the other."""
+"""Regions in which the gap lies: few bounds, found on one half of a run, tested on the other."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -43,7 +43,7 @@ class Region:
 
 
 def regions(variables: Sequence[Variable], ends: Ends, floor_m: float) -> tuple[Region, ...]:
-    """Bounds of the variables within which the excess is alike; the largest share first.
+    """Bounds of the variables within which the excess is about the same; the largest share first.
 
     A regression tree of depth 2 at most is fitted to the position errors of every other piece:
     to their size, lest a few large squares decide. All figures are those of the other pieces, on
@@ -129,7 +129,7 @@ def _within(features: Mapping[str, FloatArray], bounds: Bounds, among: BoolArray
 
 
 def _is_above(excess_m2: FloatArray, deviation_m2: FloatArray) -> bool:
-    """Whether the mean of judged windows is more than noise makes of it."""
+    """Whether the mean of tested windows is above that of noise."""
     if not len(excess_m2):
         return False
     return bool(excess_m2.sum() > SURE * np.sqrt((deviation_m2**2).sum()))

@@ -56,7 +56,7 @@ class Rival:
 
 @dataclass(frozen=True)
 class Equivalent:
-    """An effect that the data cannot tell from a named one."""
+    """An effect that the data do not distinguish from a named one."""
 
     name: str
     instead_of: str
@@ -94,7 +94,7 @@ class GapResult:
         On the measured runs, fitted; and on those held out.
     rivals : tuple of Rival
     calibration : Calibration
-        The model believed so far.
+        The base model.
     base : Base
         The same, moved within what its calibration leaves open.
     measured_scenes, holdout_scenes : tuple of DenseWindows
@@ -102,7 +102,7 @@ class GapResult:
     notes : tuple of str
         What a reader should know of the runs.
     next_drives : tuple of NextDrive
-        What would tell the first effect from those that the data do not tell from it.
+        Drives that would distinguish the first effect from those that the data do not.
     refusals : tuple of Refusal
         Names that had evidence and do not stand, and why.
     holdout_before : tuple of DenseWindows

@@ -1,4 +1,4 @@
-"""Windows of the runs: to fit effects to, to judge them by, and without poses that are far off."""
+"""Windows of the runs: to fit effects to, to evaluate them, and without poses that are far off."""
 
 from collections.abc import Sequence
 
@@ -29,7 +29,7 @@ def scene_of(run: Run, config: GapConfig) -> DenseWindows:
 def scenes_of(
     measured: Sequence[Run], holdout: Sequence[Run], config: GapConfig
 ) -> tuple[list[DenseWindows], list[DenseWindows]]:
-    """Scenes to fit and scenes to judge by."""
+    """Scenes to fit and scenes to evaluate."""
     scenes = [scene_of(run, config).numbered(number) for number, run in enumerate(measured)]
     if holdout:
         held = [

@@ -1,4 +1,4 @@
-"""Effects added one by one, each judged on windows that it was not fitted to."""
+"""Effects added one by one, each evaluated on held-out windows."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
@@ -60,7 +60,7 @@ class Search:
         return found
 
     def in_order(self, found: Explanation, effects: Sequence[Effect]) -> Explanation:
-        """These effects, judged as they are added one by one."""
+        """These effects, evaluated as they are added one by one."""
         steps: tuple[Judged, ...] = ()
         for effect in effects:
             before = steps[-1].fitted if steps else self.start
@@ -185,7 +185,7 @@ class Search:
         """Enough evidence, in more than one moment, and enough of the excess closed.
 
         The excess is that before any effect, of the gap above the noise floor or of chi-squared
-        above what noise explains: a better heading is worth as much as a better place.
+        above what noise explains: a better heading counts as much as a better place.
         """
         if not self.has_excess(before) or one.least <= self.config.least_evidence:
             return False

@@ -12,7 +12,7 @@ from odometry.gap.fit import Fitted, Fitter
 def sparse_residual(fitter: Fitter, fit: Fitted) -> Residual:
     """The last effect of a fit, a `Residual`, with the terms that the lasso keeps by BIC.
 
-    All other parameters are projected out, so that no term stands in for them.
+    All other parameters are projected out, so that no term takes their place.
     """
     residual = fit.effects[-1].effect
     if not isinstance(residual, Residual):

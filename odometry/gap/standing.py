@@ -24,13 +24,13 @@ from odometry.gap.verdict import (
 
 
 class Standing(Search):
-    """Keeps what stands of the effects found."""
+    """Keeps the effects that are accepted."""
 
     def that_stand(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
         """The effects that close the gap where they were not fitted, and leave noise alone.
 
         Where no name does, one in bursts may; else smooth functions do as far as they can, and
-        what they leave may follow a course in time that each run has of its own.
+        their residuals may follow a course in time that is each run's own.
         """
         found = self._less_doubtful(self._of_their_form(found, smooth))
         if not _named(found):
@@ -67,7 +67,7 @@ class Standing(Search):
         return found
 
     def _without_structure(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
-        """Without any name where all close little, or leave structure of its own."""
+        """Without any name where all close little, or leave structure."""
         share = self._held_out_share(found) if _named(found) else 1.0
         if share >= self._most(found.effects):
             return found

@@ -18,7 +18,7 @@ class Uncertain:
 
     The latency is the delay that robot and recording always have: inertia and drives make every
     robot follow its wheels' record a little late. It is identified with the base, so that it is
-    not taken for an effect that is missing. A gyroscope has a latency of its own: it feels what
+    not taken for an effect that is missing. A gyroscope has its own latency: it measures what
     the drives do late, and not what the stamps of poses are late.
 
     Attributes

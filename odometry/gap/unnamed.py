@@ -131,7 +131,7 @@ def last_of_each_run(search: Search, found: Explanation) -> Explanation | None:
 
 
 def with_course(search: Search, found: Explanation) -> Explanation:
-    """And a course in run time, which each run has of its own, if it pays."""
+    """And a course in run time, each run's own, if it pays."""
     if not search.has_excess(found.fitted):
         return found
     best: Judged | None = best_course(search.fitter, found.fitted, search.held_out, search.config)

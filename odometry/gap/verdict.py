@@ -1,6 +1,6 @@
 """What a name must pass, each gate with the reason that it gives where it refuses.
 
-A gate takes what it judges and returns "" where the name passes, else the reason in words.
+A gate returns "" where the name passes, else the reason as a clause.
 Every number is one of `GapConfig`.
 """
 
@@ -97,11 +97,11 @@ def leaves_noise(spread: float, closed: float, left_over: float, most: float) ->
 
 
 def come_by_themselves(variable: str, area: float, config: GapConfig) -> str:
-    """Whether no recorded variable tells when events are."""
+    """Whether no recorded variable predicts when events are."""
     if area <= config.events_told:
         return ""
     return (
-        f"{noun_of(variable)} says when its events are (area {area:.2f} under the receiver "
+        f"{noun_of(variable)} predicts when its events are (area {area:.2f} under the receiver "
         "operating characteristic): it depends on that, and does not come in bursts"
     )
 

@@ -1,4 +1,4 @@
-"""What a gap result says in sentences."""
+"""A gap result as sentences."""
 
 from collections.abc import Iterator, Sequence
 
@@ -9,8 +9,8 @@ from odometry.gap.quantities import evidence_words, metres, rounded, with_interv
 from odometry.gap.region_words import EVERYWHERE, noun_of, noun_of_residual
 from odometry.gap.result import GapResult, NamedEffect
 
-REGIONS, VARIABLES = 2, 4  # said of them all
-SHORT = 4  # parameters that are said one by one
+REGIONS, VARIABLES = 2, 4  # that are named
+SHORT = 4  # parameters that are given one by one
 
 
 def sentences(result: GapResult) -> tuple[str, ...]:
@@ -59,7 +59,7 @@ def _where(result: GapResult) -> Iterator[str]:
         yield "None of the recorded variables predicts the disagreement beyond chance."
     for number, region in enumerate(location.regions[:REGIONS]):
         if region.words == EVERYWHERE:
-            yield f"It is alike everywhere: {metres(region.excess_m)} above the noise floor."
+            yield f"It is the same everywhere: {metres(region.excess_m)} above the noise floor."
             continue
         which = "The largest part of it" if number == 0 else "The next part"
         yield (

@@ -1,4 +1,4 @@
-"""Skid modes: which terrain, or which slipping wheels, the motion itself speaks for.
+"""Skid modes: which terrain, or which slipping wheels, the motion supports.
 
 Names are imported when they are first used.
 """

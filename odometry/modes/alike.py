@@ -1,7 +1,7 @@
-"""Modes that the way driven cannot tell apart, because they answer alike within their own errors.
+"""Modes that the drive does not distinguish: their predictions are equal within their errors.
 
 Errors of a model that last as long as a turn do not average out: two modes whose yaw rates differ
-by less than that would be told apart by these errors, surer with every second.
+by less than that would be distinguished by these errors, with more confidence every second.
 """
 
 import numpy as np
@@ -16,10 +16,10 @@ APART_SIGMAS = 2.0  # of what lasts of the errors of a mode
 
 
 def alike_modes(signals: Signals, modes: VelocityModes, leading: IntArray) -> BoolArray:
-    """Modes (N, M) that nothing driven in the last DWELL_S tells from the leading one (N,).
+    """Modes (N, M) that the last DWELL_S do not distinguish from the leading one (N,).
 
-    What is not measured, or tells nothing of the modes, is not in the signals. Modes of one model
-    are told apart by their noise.
+    What is not measured, or does not depend on the modes, is not in the signals. Modes of one model
+    are distinguished by their noise.
     """
     gains = modes.steady_gains()[:, 1]
     asked = modes.steady_yaw_rates(signals.tread_speeds_m_s)

@@ -1,4 +1,4 @@
-"""What the probabilities of modes say: a mode, none of these, or undetermined; and how well."""
+"""Answers by the probabilities of modes: a mode, none of these, or undetermined; their scores."""
 
 import numpy as np
 
@@ -12,10 +12,10 @@ from odometry.run import UNKNOWN
 def named_modes(track: ModeTrack, sure: float) -> AnyArray:
     """The answer (N,): a mode, "none of these", or "undetermined".
 
-    A mode is named that no test refuses (see `refusals`). None fits where the rolling test says so
-    with a probability of `sure`, where the gyroscope's scale is off, where every mode travels by
-    another distance than was measured, and where the robot turns by more than one mode and by less
-    than the next.
+    A mode is named that no test refuses (see `refusals`). None fits where the rolling test refuses
+    all with a probability of `sure`, where the gyroscope's scale is off, where every mode travels
+    by another distance than was measured, and where the robot turns by more than one mode and by
+    less than the next.
     """
     most = track.probabilities.argmax(axis=1)
     named = ~np.any(list(refusals(track, sure).values()), axis=0)
@@ -49,16 +49,16 @@ def candidates(track: ModeTrack, sure: float) -> BoolArray:
 def disagreements(
     track: ModeTrack, sight: AnyArray, sure: float, lasting_s: float
 ) -> tuple[tuple[float, float, str, str], ...]:
-    """Where sight and feel name different terrains for long: from, to [s], seen, felt.
+    """Where camera and feel name different terrains for long: from, to [s], seen, felt.
 
-    While one of them says nothing, a disagreement neither ends nor lasts.
+    While one of them has no answer, a disagreement neither ends nor lasts.
 
     Parameters
     ----------
     track : ModeTrack
         Of motion alone.
     sight : (N,) of str
-        The terrain that vision says the robot is on; "unknown" where it says nothing.
+        The terrain under the robot by the camera; "unknown" where there is no label.
     sure, lasting_s : float
     """
     felt = named_modes(track, sure)

@@ -21,8 +21,8 @@ from odometry.modes.velocity import VelocityModes
 WINDOW_S = 16.0
 BOUND, HALF_BOUND = 3.0, 2.0  # standard deviations from 0 and 1, of a window and of its halves
 TOLERANCE = 0.01  # of the yaw rate: no mode is identified better
-LEAST_INFORMATION = 1.0  # on the share: less tells nothing
-LEFT_BIAS_RAD_S = 0.003  # standard deviation of the bias beyond what filters believe
+LEAST_INFORMATION = 1.0  # on the share: less determines none
+LEFT_BIAS_RAD_S = 0.003  # standard deviation of the bias beyond that of the filters
 """Chosen on clean runs of seeds 50, 51 and 60 to 63 of `tests/studies/modes_faults.py`, of which
 none is taken for a terrain between two; windows of 10 and 12 s take one of 18."""
 
@@ -59,10 +59,10 @@ def between_modes(
     Parameters
     ----------
     signals : Signals
-        Measured where it says something of the modes.
+        Measured where it depends on the modes.
     modes : VelocityModes
     biases_rad_s : (N,)
-        That filters believe.
+        Of the filters.
     independent : float
         Share of a measurement that is news.
 
@@ -116,7 +116,7 @@ def _sums(apart: FloatArray, off: FloatArray, stamps_s: FloatArray, window_s: fl
 
 
 def _share(sums: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Share (N,) and its variance from sums (5, N) times their worth; NaN: cannot be told."""
+    """Share (N,) and its variance from weighted sums (5, N); NaN: undetermined."""
     count, d, dd, y, dy = sums
     of_bias = count + LEFT_BIAS_RAD_S**-2
     left = dd - d**2 / of_bias

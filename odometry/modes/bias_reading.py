@@ -1,4 +1,4 @@
-"""The bias of the gyroscope as something tells it apart from the modes: standing, or headings."""
+"""The bias of the gyroscope where the modes do not matter: from rest, or from headings."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.modes.signals import BIAS_SIGMA_RAD_S, Signals
 from odometry.modes.standing_bias import standing_biases
 
-JUMP_SIGMAS = 4.0  # from the bias believed: it is another one since
+JUMP_SIGMAS = 4.0  # from the estimated bias: farther off it is another one
 OPEN_SIGMAS = 3.0  # of BIAS_SIGMA_RAD_S, from what was read last: nothing confirms that
 
 
@@ -22,7 +22,7 @@ class BiasReading:
     bias_rad_s, variance : float
         Mean and its variance.
     tolerance_rad_s : float
-        A belief that is no farther off stays: models of modes turn by as much too far on straights.
+        An estimate that is no farther off stays: models of modes turn as much too far on straights.
     """
 
     bias_rad_s: float
@@ -50,7 +50,7 @@ def with_reading(
 ) -> tuple[FloatArray, FloatArray]:
     """Mean (n,) and covariance (n, n) over all modes with a reading; the bias is the last entry.
 
-    What was read is weighed with what is believed; where the two are JUMP_SIGMAS apart the bias is
+    The reading is weighed with the estimate; where the two are JUMP_SIGMAS apart the bias is
     another one, and what was believed counts no more. A filter holds the variance of the bias less
     by the share `independent` (see `start` of the modes).
     """
@@ -68,10 +68,10 @@ def with_reading(
 
 
 def bias_is_open(biases_rad_s: FloatArray, readings: Mapping[int, BiasReading]) -> BoolArray:
-    """Where (N,) the bias that filters believe (N,) lies beyond what is expected of it.
+    """Where (N,) the estimated bias (N,) of the filters lies beyond its expected range.
 
     That is 0, and after a reading what was read. A mode that is not the true one explains a turn
-    by such a bias, and nothing but that mode says that there is one.
+    by such a bias, and nothing but that mode is evidence of one.
     """
     expected = np.zeros(len(biases_rad_s))
     for row in sorted(readings):

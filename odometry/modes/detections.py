@@ -24,7 +24,7 @@ class Detection:
         From its beginning to the first answer that names it; NaN where it never was named.
     right, wrong, undetermined, none_of_these : float
         Shares of the time after that: with its name, with another, with none, and where no mode
-        is said to fit. NaN where it was never named.
+        is the answer. NaN where it was never named.
     """
 
     mode: str

@@ -1,4 +1,4 @@
-"""Why no mode is named although one is probable: gyroscope, modes alike, turns or travel."""
+"""Why no mode is named although one is probable: gyroscope, equal modes, turns or travel."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from odometry.modes.between_modes import BetweenModes
 from odometry.modes.followed import Followed
 from odometry.modes.mode_set import UNDETERMINED
 
-LEAST_DOUBT = 0.1  # of the time: less is not said
+LEAST_DOUBT = 0.1  # of the time: less is not reported
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ def doubts(followed: Followed) -> tuple[Doubt, ...]:
                 Doubt(
                     f"a mode would ask for a gyroscope bias of {track.means[open_, -1][-1]:.3f} "
                     f"rad/s {_when(followed, open_)}, which nothing else confirms",
-                    "let the robot stand for a second: that tells the bias",
+                    "let the robot rest for a second: that determines the bias",
                     _share(followed, open_),
                 )
             )
@@ -60,7 +60,7 @@ def doubts(followed: Followed) -> tuple[Doubt, ...]:
         alike = track.alike.any(axis=1) & sure & undetermined
         found.append(
             Doubt(
-                "the most probable mode and another answer alike for "
+                "the drive does not distinguish the most probable mode from another for "
                 f"{round(100 * _share(followed, alike))} % of the time",
                 "drive turns of several radii to both sides: there modes differ most",
                 _share(followed, alike),
@@ -72,14 +72,14 @@ def doubts(followed: Followed) -> tuple[Doubt, ...]:
 
 
 def _of_motion(followed: Followed, undetermined: BoolArray) -> list[Doubt]:
-    """What turns and measured travel say against the most probable mode."""
+    """Turns and measured travel that contradict the most probable mode."""
     track, found = followed.last_track, []
     sure = track.probabilities.max(axis=1) >= followed.config.sure
     if track.turns_are_off is not None:
         off = track.turns_are_off & sure & undetermined
         found.append(
             Doubt(
-                "the robot turns by more or by less than the most probable mode says for "
+                "the robot turns by more or by less than the most probable mode predicts for "
                 f"{round(100 * _share(followed, off))} % of the time",
                 "identify a mode for this terrain and load, and check the counts of both treads",
                 _share(followed, off),

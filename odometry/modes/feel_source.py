@@ -26,7 +26,7 @@ class FeelSource:
     stamps_s : (K,)
         From when on each window is known.
     log_evidence : (K, M)
-        Log likelihood of each mode, up to a constant, as much as a window is worth: what windows
+        Log likelihood of each mode, up to a constant, times the weight of a window: what windows
         were worth on runs held out, and n that follow one another count as fewer (see
         `odometry.feel.evidence.Calibration`).
     """
@@ -66,7 +66,7 @@ def feel_source(
 ) -> FeelSource:
     """Follow a run by feel, for modes `names` that last `dwell_s` (M,).
 
-    A terrain that is no mode says nothing of any, nor does a window that is like no terrain of the
+    A terrain that is no mode is no evidence on any, nor is a window unlike all terrains of the
     model; a mode that the model does not know is as probable as the mean of its terrains.
 
     Raises

@@ -17,7 +17,7 @@ def felt_terrain(
     *,
     show_progress: bool = False,
 ) -> NamedTerrain:
-    """What the motion says of the terrain; where it names none, the one in force stays.
+    """The terrain by the motion; where it names none, the one in force stays.
 
     Each answer is made from what was measured up to its stamp.
 

@@ -1,4 +1,4 @@
-"""A run whose modes were followed, by motion alone and with sight, and how well."""
+"""A run whose modes were followed, by motion alone and with the camera, and its scores."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -35,7 +35,7 @@ class Followed:
     motion : ModeTrack
         By motion alone.
     sighted : ModeTrack or None
-        By motion and sight, and feel where there is a model of it; None without sight.
+        By motion and camera, and feel where there is a model of it; None without images.
     seen : tuple of SeenGround
     felt : ModeTrack or None
         By motion and feel; None without a model of feel.
@@ -52,7 +52,7 @@ class Followed:
 
     @property
     def tracks(self) -> Mapping[str, ModeTrack]:
-        """By name: MOTION, FELT and SIGHTED where there was feel or sight."""
+        """By name: MOTION, FELT and SIGHTED where there was feel or a camera."""
         every = {MOTION: self.motion, FELT: self.felt, SIGHTED: self.sighted}
         return {name: track for name, track in every.items() if track is not None}
 
@@ -63,23 +63,23 @@ class Followed:
 
     @property
     def seen_labels(self) -> AnyArray:
-        """What vision says (N,) of the terrain below the robot; "unknown" where nothing."""
+        """The terrain (N,) under the robot by the camera; "unknown" where there is no label."""
         return seen_labels(self.seen, self.motion.stamps_s)
 
     @property
     def disagreements(self) -> tuple[tuple[float, float, str, str], ...]:
-        """Lasting ones of sight and feel: from, to [s], seen, felt."""
+        """Lasting ones of camera and feel: from, to [s], seen, felt."""
         config = self.config
         return disagreements(self.motion, self.seen_labels, config.sure, config.lasting_s)
 
     @property
     def foreign_labels(self) -> tuple[str, ...]:
-        """What the run names and is no mode: it cannot be judged."""
+        """Terrains of the run that are no mode: answers on them are not scored."""
         return tuple(sorted(set(self.motion.labels.tolist()) - {UNKNOWN, *self.mode_set.names}))
 
     @property
     def misfits(self) -> tuple[Misfit, ...]:
-        """Stretches in which motion says that no mode fits."""
+        """Stretches in which no mode fits the motion."""
         return misfits(self.motion, self.config.sure)
 
     def answers(self, track: ModeTrack) -> AnyArray:
@@ -142,7 +142,7 @@ def followed(
     feel: FeelModel | None = None,
     show_progress: bool = False,
 ) -> Followed:
-    """Follow a run by motion alone, with feel where there is a model, and with sight where it saw.
+    """Follow a run by motion alone, and with feel and camera where there is a model and labels.
 
     See `follow_modes`.
 

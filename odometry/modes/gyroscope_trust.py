@@ -1,4 +1,4 @@
-"""Whether the gyroscope can be trusted so far that its yaw rates tell the modes apart."""
+"""Whether the gyroscope is good enough for its yaw rates to distinguish the modes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from odometry.modes.bias_reading import JUMP_SIGMAS, BiasReading, bias_is_open
 from odometry.modes.heading_check import WINDOW_S, HeadingCheck
 from odometry.modes.signals import Signals
 
-HOLDS_S = 2 * WINDOW_S  # what a window says of the scale where later ones say nothing
+HOLDS_S = 2 * WINDOW_S  # the scale of a window where later ones determine none
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class GyroscopeTrust:
     Attributes
     ----------
     bias_is_open : (N,)
-        Whether the bias lies beyond what is expected of it, and nothing but a mode says so; or
+        Whether the bias lies beyond its expected range, by the evidence of a mode alone; or
         measured headings contradict it.
     scale : (N,)
         The gyroscope reads so many times what measured headings turn; NaN where they do not say
@@ -37,7 +37,7 @@ def gyroscope_trust(
     sigmas_rad_s: FloatArray,
     readings: Mapping[int, BiasReading],
 ) -> GyroscopeTrust:
-    """Of the biases (N,) that filters believe with deviations (N,), and what was read of them."""
+    """Of the estimated biases (N,) with deviations (N,) of the filters, and of their readings."""
     open_, stamps_s = bias_is_open(biases_rad_s, readings), signals.stamps_s
     check = signals.heading_check
     if check is None:
@@ -51,9 +51,9 @@ def gyroscope_trust(
 
 
 def scale_in_force(check: HeadingCheck) -> FloatArray:
-    """The scale (K,) of the last window that said it is off.
+    """The scale (K,) of the last window in which it is off.
 
-    NaN once a later one said not, or none said so for HOLDS_S.
+    NaN once a later one shows it right, or none showed it off for HOLDS_S.
     """
     says = check.scale_is_off | check.scale_is_right
     last = np.maximum.accumulate(np.where(says, np.arange(len(says)), 0))

@@ -24,9 +24,9 @@ MOST_CORRELATED = 0.95  # of neighbouring residuals
 GYROSCOPE_RAD = 0.02  # by which what a gyroscope turned in a window is off for other reasons
 BIAS_ERROR_RAD_S = 0.0015  # of a window's bias, for the same reasons
 USEFUL_BIAS_RAD_S = 0.0025  # standard deviation up to which a bias is taken
-MOST_LATE_S = 0.1  # of poses: later ones tell no bias, the fit is linear in the delay
+MOST_LATE_S = 0.1  # of poses: later ones determine no bias, the fit is linear in the delay
 SCALE_TOLERANCE, SCALE_SIGMAS = 0.05, 4.0  # beyond both a scale is off
-TOGETHER_S = 15.0  # for which windows tell the scale together, too
+TOGETHER_S = 15.0  # for which windows determine the scale together, too
 """Round numbers by which the scale is taken for off in 1 % of the windows of data/motion."""
 
 
@@ -52,14 +52,14 @@ class HeadingCheck:
 
     @property
     def scale_is_off(self) -> BoolArray:
-        """Where (K,) the headings of a window, or of some seconds, say that the scale is not 1."""
+        """Where (K,) the headings of a window, or of some seconds, show that the scale is not 1."""
         pairs = ((self.scale, self.scale_sigma), self.scale_together)
         off = [np.abs(scale - 1) > SCALE_TOLERANCE + SCALE_SIGMAS * of for scale, of in pairs]
         return np.asarray(off[0] | off[1])
 
     @property
     def scale_is_right(self) -> BoolArray:
-        """Where (K,) the headings say that the scale is 1."""
+        """Where (K,) the headings show that the scale is 1."""
         off = np.abs(self.scale - 1)
         return np.asarray(off + self.scale_sigma < 2 * SCALE_TOLERANCE) & ~self.scale_is_off
 
@@ -67,7 +67,7 @@ class HeadingCheck:
     def scale_together(self) -> tuple[FloatArray, FloatArray]:
         """Mean (K,) of the scales of TOGETHER_S, weighted, and its standard deviation.
 
-        Windows overlap: as many as lie in one are worth one.
+        Windows overlap: as many as lie in one count as one.
         """
         weights = self.scale_sigma**-2.0
         first = np.searchsorted(self.stamps_s, self.stamps_s - TOGETHER_S + 1e-9)
@@ -79,7 +79,7 @@ class HeadingCheck:
 
     @property
     def bias_windows(self) -> IntArray:
-        """Places of windows, none of which overlap, that tell the bias."""
+        """Places of windows, none of which overlap, that determine the bias."""
         useful = (self.bias_sigma_rad_s <= USEFUL_BIAS_RAD_S) & ~self.scale_is_off
         chosen: list[int] = []
         for place in np.flatnonzero(useful):
@@ -143,7 +143,7 @@ def _least_squares(
 ) -> tuple[FloatArray, FloatArray]:
     """Values (3,) and their standard deviations, which hold what is left.
 
-    Residuals that go together count as first-order autoregression: n of them are worth
+    Correlated residuals count as first-order autoregression: n of them count as
     n (1 - r) / (1 + r) independent ones.
     """
     covariance = np.linalg.inv(inputs.T @ inputs / sigma_rad**2 + np.diag(prior**-2.0))

@@ -15,7 +15,7 @@ from odometry.run import UNKNOWN, Run
 
 LEAST_S = 10.0  # of a terrain
 SPEED, OMEGA = range(2)  # rows of A and B, columns of a record
-FOLLOWS_SIGMA = 0.05  # error [m/s] of a speed that only the wheels tell
+FOLLOWS_SIGMA = 0.05  # error [m/s] of a speed that only the wheels measure
 FOLLOWING = 10.0 * np.array([[-1.0, 0.0, 0.5, 0.5], [0.0] * 4])  # which follows them in 0.1 s
 CORRECTED_S = 2.0  # within which measurements correct the state of a model that is a little off
 
@@ -40,7 +40,7 @@ def identify_velocity_modes(
         One A and B for all terrains, which then differ in their noise alone (the paper's other
         approach).
     common_noise : bool
-        The median noise for all terrains: then only the answer to the treads tells them apart, and
+        The median noise for all terrains: then the response to the treads distinguishes them, and
         not how fast or how roughly the runs on each were driven.
     show_progress : bool
 

@@ -76,7 +76,7 @@ def _fit_said(followed: Followed) -> str:
     others = f" and in {more} shorter stretch{'es' if more > 1 else ''}" if more else ""
     return (
         f"{named}; no mode fits from {worst.from_s:.1f} s to {worst.to_s:.1f} s{others}: the "
-        f"{signal_of(followed, worst)} is {scale_word(worst.sigmas)} what the nearest mode says."
+        f"{signal_of(followed, worst)} is {scale_word(worst.sigmas)} that of the nearest mode."
     )
 
 
@@ -93,7 +93,7 @@ def _to_do(followed: Followed) -> str:
         )
     if worst is not None or followed.doubtful(followed.last_track) >= LEAST_DOUBT:
         return (
-            "look at what is left of each signal (innovations.png): where it keeps its sign, "
+            "look at the innovations of each signal (innovations.png): where it keeps its sign, "
             "identify the modes again on longer runs that are driven as this one was."
         )
     if followed.shares(followed.last_track).get(UNDETERMINED, 0.0) > MOSTLY:

@@ -151,7 +151,7 @@ def _log_likelihoods(squared: FloatArray, most: float) -> FloatArray:
     least = squared.min(axis=1)
     variance = SPREAD**2
     none = (-(least / variance + np.log(variance)) / 2 * measured).sum(axis=1)
-    # in a window in which the mode changes, no mode fits: that says little
+    # in a window in which the mode changes, no mode fits: that means little
     of_modes = np.maximum(of_modes, none[:, None] - most)
     return np.column_stack([of_modes, none])
 

@@ -1,4 +1,4 @@
-"""What measured poses say the robot travelled, step by step, in its own frame."""
+"""Travel of the robot by measured poses, step by step, in its own frame."""
 
 from dataclasses import dataclass
 
@@ -25,7 +25,7 @@ class MeasuredTravel:
     ahead_m : (K,)
         Forward by the measured heading; NaN where it was not measured.
     turned_m : (K, 2)
-        In a frame that turns as the gyroscope says, from an unknown direction on; NaN without a
+        In a frame that turns by the gyroscope, from an unknown direction on; NaN without a
         gyroscope.
     noise_m : float
         Standard deviation of a position.

@@ -31,7 +31,7 @@ class Misfit:
 
 
 def misfits(track: ModeTrack, sure: float) -> tuple[Misfit, ...]:
-    """The stretches in which the rolling test says "none of these"."""
+    """The stretches in which the answer of the rolling test is "none of these"."""
     if track.fit is None:
         return ()
     none, best = track.fit.none, track.fit.best

@@ -20,14 +20,14 @@ TRIED_S = np.geomspace(0.01, 1e4, 601)
 
 @dataclass(frozen=True)
 class Pair:
-    """Two modes, and the driving that it takes to tell the second from the first [s]."""
+    """Two modes, and the time of driving that distinguishes the second from the first [s]."""
 
     names: tuple[str, str]
     seconds: float
 
 
 def pairs(modes: VelocityModes | TractionModes, runs: Sequence[Run]) -> tuple[Pair, ...]:
-    """All pairs of modes, the most alike first.
+    """All pairs of modes, the most similar first.
 
     How long the treads must turn as in the runs until the log-odds of the right mode are expected
     to be those of SURE, if models and noise are as identified: the Kullback-Leibler divergence of

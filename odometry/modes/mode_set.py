@@ -10,7 +10,7 @@ from odometry.run import UNKNOWN
 
 UNDETERMINED, NONE_OF_THESE = "undetermined", "none of these"
 NO_MODES = (NONE_OF_THESE, UNDETERMINED)  # answers that name none
-DWELL_S = 20.0  # of a mode of which nothing else is said
+DWELL_S = 20.0  # of a mode without a stated one
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ class ModesConfig:
     sure : float
         The probability from which a mode is named; below it the answer is "undetermined".
     lasting_s : float
-        A disagreement of sight and feel that lasts so long is reported.
+        A disagreement of camera and feel that lasts so long is reported.
     misfit_share : float
         Share of the time in which no mode of the set fits, before anything was measured.
     """
@@ -65,7 +65,7 @@ class ModeTrack:
     gyroscope : GyroscopeTrust or None
         Whether the gyroscope can be trusted; without it it is.
     alike : (N, M) or None
-        Modes that what was driven cannot tell from the most probable one; without it none are.
+        Modes that the drive does not distinguish from the most probable one; None: not tested.
     turns_are_off : (N,) or None
         Where turns to one side or to both contradict the most probable mode; without it nowhere.
     travel : TravelCheck or None

@@ -1,4 +1,4 @@
-"""The windows of runs, and the stretches heard, from which a traction mode is identified."""
+"""Windows of runs, and stretches with a gyroscope, that identify a traction mode."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -64,7 +64,7 @@ def _fewer_poses(scene: DenseWindows) -> DenseWindows:
 
 
 def heard_by_mode(runs: Sequence[Run]) -> dict[str, list[Heard]]:
-    """Stretches of each mode that a gyroscope heard."""
+    """Stretches of each mode with a gyroscope."""
     found: dict[str, list[Heard]] = {}
     for run in runs:
         for name, rows in stretches_by_label(run, row_terrains(run)):
@@ -74,7 +74,7 @@ def heard_by_mode(runs: Sequence[Run]) -> dict[str, list[Heard]]:
 
 
 def _check(name: str, scenes: Sequence[DenseWindows], *, paper: bool) -> None:
-    """Whether there is enough to tell all gains."""
+    """Whether there is enough to determine all gains."""
     lasts_s, left_s, right_s = np.sum([(0.0, 0.0, 0.0), *map(_driven_s, scenes)], axis=0)
     if lasts_s < LEAST_S:
         raise IdentificationError(

@@ -1,11 +1,11 @@
-"""What a run gives no means to check, so that a mode may be named for another reason."""
+"""Checks that the data of a run do not allow: a mode may then be named for another reason."""
 
 from odometry.modes.followed import Followed
 from odometry.modes.velocity import VelocityModes
 
 
 def not_checked(followed: Followed) -> tuple[str, ...]:
-    """Sentences without their full stop; of velocity modes alone, which hear no poses.
+    """Sentences without their full stop; of velocity modes alone, which use no poses.
 
     To a yaw rate a gyroscope whose scale is off is another terrain, and so is a load on both tyres.
     """
@@ -16,7 +16,7 @@ def not_checked(followed: Followed) -> tuple[str, ...]:
     if signals.heading_check is None:
         found.append(
             "the scale of the gyroscope, without measured headings: one that is off turns as "
-            "another terrain does, and yaw rate alone cannot tell the two"
+            "another terrain does, and yaw rate alone does not distinguish the two"
         )
     if signals.travel is None or modes.speed_power is None:
         missing = "measured positions" if signals.travel is None else "measured speeds in the set"

@@ -32,7 +32,7 @@ class OwnFilters:
     def step(
         self, belief: ModeBelief, u: FloatArray, z: FloatArray, step_s: float
     ) -> tuple[ModeBelief, FloatArray]:
-        """The belief a step later, and normalised innovations (M, m), NaN where not measured."""
+        """The estimate a step later, and normalised innovations (M, m), NaN where not measured."""
         means, covariances = self.bank.predicted(belief.means, belief.covariances, u, step_s)
         innovations = self.filters.innovations(means, covariances, z)
         if np.isfinite(z).any():
@@ -41,7 +41,7 @@ class OwnFilters:
 
 
 def with_lead(alone: ModeBelief, belief: ModeBelief, led: int) -> ModeBelief:
-    """The belief of own filters, that of a mode which takes the lead begun anew.
+    """The estimate of own filters; that of a mode which takes the lead begins anew.
 
     While the mode did not hold, its own filter went astray. `led` is the most probable mode before.
     """
@@ -54,7 +54,7 @@ def with_lead(alone: ModeBelief, belief: ModeBelief, led: int) -> ModeBelief:
 
 
 def with_bias(belief: ModeBelief, mean: FloatArray, covariance: FloatArray) -> ModeBelief:
-    """A belief with the bias, the last entry, of a mean (n,) and covariance (n, n).
+    """An estimate with the bias, the last entry, of a mean (n,) and covariance (n, n).
 
     It is one of the gyroscope: no mode has its own.
     """
@@ -66,12 +66,12 @@ def with_bias(belief: ModeBelief, mean: FloatArray, covariance: FloatArray) -> M
 
 
 def with_shared_bias(belief: ModeBelief, independent: float) -> ModeBelief:
-    """A belief with one bias, the last entry, for all modes: its mean and variance over them.
+    """An estimate with one bias, the last entry, for all modes: its mean and variance over them.
 
-    It is one of the gyroscope. With a bias of its own each mode would explain the same turn; while
-    modes are not told apart, what these biases differ by would count as uncertainty of the bias,
+    It is one of the gyroscope. With its own bias each mode would explain the same turn; while
+    modes are not distinguished, what these biases differ by would count as uncertainty of the bias,
     and make them differ more. Filters hold its variance by the share `independent`, so that what
-    their means differ by counts by as much. What a mode says of the rest, given the bias, stays.
+    their means differ by counts by as much. The rest of a mode's estimate, given the bias, stays.
     """
     weights, biases = belief.probabilities, belief.means[:, -1]
     variances = belief.covariances[:, -1, -1]

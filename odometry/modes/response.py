@@ -11,7 +11,7 @@ from odometry.arrays import FloatArray, IntArray
 
 SLOWEST_HZ, FASTEST_HZ = 0.3, 30.0
 RIDGE = 1e-3  # of the mean square of an input: what inputs that go together leave open is small
-BLOCK_S = 2.0  # over which errors of a model are alike
+BLOCK_S = 2.0  # over which errors of a model are correlated
 LEAST_VARIANCE = 1e-10
 
 
@@ -86,7 +86,7 @@ class Errors:
 
 
 def errors_of(records: Sequence[Record], row: int, response: Response) -> Errors:
-    """Errors of the simulation of whole records; they last, and `power` says how long."""
+    """Errors of the simulation of whole records; they last, and `power` states how long."""
     left = [_left(record, row, response) for record in records]
     blocks = [
         block_powers(errors, record.step_s) for errors, record in zip(left, records, strict=True)

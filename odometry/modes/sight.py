@@ -1,4 +1,4 @@
-"""What vision says of the terrain, as a prior on the modes."""
+"""The terrain by the camera as a prior on the modes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,8 +13,8 @@ from odometry.io.csv_table import read_csv_table
 from odometry.run import UNKNOWN, Run
 
 NO_LABELS = ("", "nan", UNKNOWN)  # a column without any is one of numbers
-BLIND_LENGTHS = 3.0  # of the robot, after which a sight is of another place
-PULLED_S = 1.0  # within which a mode that vision is sure of comes true, if motion says nothing
+BLIND_LENGTHS = 3.0  # of the robot, after which a label is of another place
+PULLED_S = 1.0  # within which a mode of confidence 1 becomes probable where motion is no evidence
 
 
 @dataclass(frozen=True)
@@ -24,9 +24,9 @@ class SeenGround:
     Attributes
     ----------
     stamp_s : float
-        When the robot gets there: the place was ahead when it was seen.
+        When the robot gets there: the place was ahead in the image.
     label : str
-        A mode, or "unknown": from here on vision says nothing.
+        A mode, or "unknown": from here on there is no label.
     confidence : float
         Probability of the label, 0 to 1.
     """
@@ -40,7 +40,7 @@ def seen_grounds(file: Path, run: Run) -> tuple[SeenGround, ...]:
     """What `terrain-odometry run` saw along a run: its terrain.csv.
 
     A label belongs to the place that it was read from: it counts when the wheels have gone there,
-    and no longer when they have gone on by BLIND_LENGTHS of the robot without another sight.
+    and no longer when they have gone on by BLIND_LENGTHS of the robot without another label.
     Places that overlap one of the same label that counts are not news, and are left out.
 
     Raises
@@ -75,7 +75,7 @@ def _when(run: Run, place_m: float) -> float:
 
 
 def seen_labels(seen: Sequence[SeenGround], stamps_s: FloatArray) -> AnyArray:
-    """The terrain (N,) that vision says the robot is on; "unknown" before the first."""
+    """The terrain (N,) under the robot by the camera; "unknown" before the first label."""
     labels = np.array([UNKNOWN, *(one.label for one in seen)], dtype=object)
     return labels[np.searchsorted([one.stamp_s for one in seen], stamps_s, side="right")]
 
@@ -83,12 +83,12 @@ def seen_labels(seen: Sequence[SeenGround], stamps_s: FloatArray) -> AnyArray:
 def mode_chains(
     seen: Sequence[SeenGround], names: Sequence[str], dwell_s: FloatArray
 ) -> tuple[ModeChain, ...]:
-    """How modes change before the first sight, and from each sight on.
+    """How modes change before the first label, and from each label on.
 
-    Sight is a prior on where modes change to: from the place that was seen on, every other mode
-    leads to the one seen, within PULLED_S where vision is certain, and as before where its
-    confidence is that of chance. So it decides where motion says nothing, and yields to motion
-    that speaks against it for long.
+    A label is a prior on where modes change to: from the labelled place on, every other mode
+    leads to the labelled one, within PULLED_S where the label is certain, and as before where its
+    confidence is that of chance. So it decides where motion is no evidence, and yields to motion
+    that contradicts it for long.
 
     Returns
     -------

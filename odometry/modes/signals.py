@@ -32,13 +32,13 @@ class Signals:
     measured : (N, m)
         NaN where an entry was not measured.
     labels : (N,) of str
-        Ground or mode that the run names, for identification and scoring.
+        Terrain or mode that the run names, for identification and scoring.
     gaps_s : (G, 2)
         Between which stamps the speeds in force are not known.
     heading_check : HeadingCheck or None
-        What measured headings say of the gyroscope, where they are no measurement of the filters.
+        The gyroscope against measured headings, where these are no measurement of the filters.
     travel : MeasuredTravel or None
-        What measured positions say, where they are no measurement of the filters.
+        Measured positions, where they are no measurement of the filters.
     """
 
     stamps_s: FloatArray
@@ -75,7 +75,7 @@ def velocity_signals(run: Run) -> Signals:
     """Speed and yaw rate (N, 2) at the stamps of odometry.csv.
 
     The yaw rate is that of the gyroscope, or wz of velocity.csv; the speed is vx of velocity.csv,
-    and else not measured: what wheels say of it is the input.
+    and else not measured: that of the wheels is the input.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The bias of the gyroscope while the robot stands: what it reads is the bias."""
+"""The bias of the gyroscope while the robot is stationary: its reading."""
 
 import numpy as np
 
@@ -11,13 +11,13 @@ MOST_RAD_S = 0.1  # of a bias: more is another fault, or the robot turns though 
 
 
 def moving(signals: Signals) -> BoolArray:
-    """Where (N,) a tread turned before the stamp: who stands learns nothing of the terrain."""
+    """Where (N,) a tread turned before the stamp: at rest nothing depends on the terrain."""
     turning = np.abs(signals.tread_speeds_m_s).max(axis=1) > STANDING_M_S
     return np.append(False, turning[:-1])
 
 
 def standing_biases(signals: Signals) -> dict[int, tuple[float, float]]:
-    """Mean and its variance, by the last row of each stand that is long enough to tell.
+    """Mean and its variance, by the last row of each rest that is long enough.
 
     None of a value that is held. The yaw rate is the last measured entry.
     """

@@ -1,4 +1,4 @@
-"""A bank whose measurements say less than they seem to."""
+"""A bank whose measurements are correlated: their likelihoods get a power below 1."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from odometry.arrays import FloatArray
 from odometry.estimation.bank import Bank
 from odometry.estimation.ekf_model import wrapped
 
-OUTLIERS = 1e-3  # share of measurements that are no better than a Cauchy distribution says
+OUTLIERS = 1e-3  # share of measurements that follow a Cauchy distribution
 MOST_SIGMAS = 5.0  # root mean square of an innovation beyond which it pulls no more
 
 
@@ -17,10 +17,10 @@ class TemperedBank:
     """A bank with log-likelihoods times `independent`, the share of them that is news.
 
     Innovations of models that are not exact go together over time; their likelihoods multiplied
-    say too much. The power that makes them honest is that of composite likelihoods (Varin, Reid,
+    count too much. The power that corrects this is that of composite likelihoods (Varin, Reid,
     Firth 2011, Statistica Sinica 21).
 
-    A single outlier says next to nothing: the likelihood is that of a Gaussian contaminated by a
+    A single outlier hardly counts: the likelihood is that of a Gaussian contaminated by a
     distribution with the tails of Cauchy's (Huber and Ronchetti 2009, section 1.5), and what an
     innovation corrects is bounded by MOST_SIGMAS.
     """

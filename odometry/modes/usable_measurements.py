@@ -1,4 +1,4 @@
-"""Which measurements say something of the modes, and how much of it is news."""
+"""The measurements that depend on the modes, and how independent they are."""
 
 import numpy as np
 
@@ -7,13 +7,13 @@ from odometry.modes.signals import Signals
 from odometry.modes.standing_bias import moving
 from odometry.windows.spans import touched
 
-MOST_FASTER = 1.2  # times the fastest run of identification: beyond, models say nothing
+MOST_FASTER = 1.2  # times the fastest run of identification: beyond, models are not valid
 
 
 def usable_measurements(signals: Signals, gap_ends: IntArray, fastest_m_s: float) -> FloatArray:
-    """What is measured (N, m) where it tells of the modes.
+    """Measurements (N, m) where they depend on the modes.
 
-    Not while standing, nor in a gap, nor far above the speeds that the modes were identified at.
+    Not while stationary, nor in a gap, nor far above the speeds that the modes were identified at.
     """
     faster = np.abs(signals.tread_speeds_m_s).max(axis=1) > MOST_FASTER * fastest_m_s
     tells = moving(signals) & ~np.append(False, faster[:-1])

@@ -38,10 +38,10 @@ class VelocityModes:
     measurement_variance : (M, 2)
         Variance of a measured speed and yaw rate.
     errors_last_s : float
-        For how long errors of a model are alike: of what is measured within that time, all
+        For how long errors of a model are correlated: of what is measured within that time, all
         together counts once.
     fastest_m_s : float
-        Largest speed of a tread in the runs identified from: the models say nothing of speeds far
+        Largest speed of a tread in the runs identified from: the models are not valid at speeds far
         above it.
     speed_power : (M, 2) or None
         Power at low frequency of errors of the forward speed [m^2/s]: on a straight, and what each

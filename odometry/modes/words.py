@@ -14,9 +14,9 @@ from odometry.modes.not_checked import not_checked
 from odometry.modes.score import Score
 
 WHOSE = {MOTION: "", FELT: " with feel", SIGHTED: " with sight"}
-FEW = 4  # stretches, or answers, that are said one by one
-LEAST_SHARE = 0.005  # less is not said
-LEAST_OPEN = 0.1  # of the undetermined time: sets of modes that are said
+FEW = 4  # stretches, or answers, that are given one by one
+LEAST_SHARE = 0.005  # less is not reported
+LEAST_OPEN = 0.1  # of the undetermined time: sets of modes that are named
 SIGNALS = {
     "velocity": ("forward speed", "yaw rate"),
     "traction": ("position", "position", "heading", "yaw rate"),
@@ -55,14 +55,16 @@ def scale_word(sigmas: float) -> str:
 
 
 def percent(share: float) -> str:
-    """A share as words."""
+    """A share as text."""
     return "-" if np.isnan(share) else f"{round(100 * share)} %"
 
 
 def disagreement_words(one: tuple[float, float, str, str]) -> str:
-    """When sight and motion said what."""
+    """Where camera and motion disagree."""
     from_s, to_s, seen, felt = one
-    return f"From {from_s:.1f} s to {to_s:.1f} s sight says {seen}, and motion says {felt}."
+    return (
+        f"From {from_s:.1f} s to {to_s:.1f} s it is {seen} by the camera and {felt} by the motion."
+    )
 
 
 def _more(followed: Followed) -> Iterator[str]:
@@ -74,7 +76,7 @@ def _more(followed: Followed) -> Iterator[str]:
     if followed.felt is not None:
         yield f"With feel: {answer_words(followed, followed.felt)}"
     if followed.sighted is not None:
-        yield f"With sight: {answer_words(followed, followed.sighted)}"
+        yield f"With the camera: {answer_words(followed, followed.sighted)}"
     for name, track in followed.tracks.items():
         count = followed.score(track).false_switches
         if count:
@@ -84,14 +86,14 @@ def _more(followed: Followed) -> Iterator[str]:
     if followed.foreign_labels:
         yield (
             f"The run names {', '.join(followed.foreign_labels)}, which is no mode: the answers "
-            "there were not judged."
+            "there were not scored."
         )
     if followed.seen:
         argued = followed.disagreements
         yield from map(disagreement_words, argued)
         if not argued:
             lasting_s = followed.config.lasting_s
-            yield f"Sight and motion disagree nowhere for {lasting_s:g} s or longer."
+            yield f"Camera and motion disagree nowhere for {lasting_s:g} s or longer."
 
 
 def _open_words(followed: Followed) -> Iterator[str]:

@@ -14,12 +14,12 @@ from odometry.modes.traction_gains import twists_of
 from odometry.run import Run
 
 LASTING_S = 5.0  # for which an error of gains may stay the same: as long as a turn
-NOT_MEASURED = 1.0  # [rad^2/s^2] where no run has a gyroscope: it says next to nothing
+NOT_MEASURED = 1.0  # [rad^2/s^2] where no run has a gyroscope: it hardly counts
 
 
 @dataclass(frozen=True)
 class Heard:
-    """A stretch of one mode that a gyroscope heard.
+    """A stretch of one mode with a gyroscope.
 
     Attributes
     ----------
@@ -94,7 +94,7 @@ def heard_of(run: Run, rows: IntArray) -> Heard | None:
 def estimated_yaw_rate_noise(stretches: Sequence[tuple[Heard, FloatArray]]) -> YawRateNoise:
     """White noise with as much power as the errors (K,) of stretches have that last.
 
-    Taken as noise of the variance that they have at each sample, fifty samples a second would say
+    Taken as noise of the variance that they have at each sample, fifty samples a second would count
     too much.
     """
     whole = [(one, errors) for one, errors in stretches if len(errors) * one.step_s >= BLOCK_S]

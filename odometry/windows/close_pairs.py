@@ -1,4 +1,4 @@
-"""Poses so close that their measured yaws tell the turn between them, whole turns and all."""
+"""Poses so close that their measured yaws determine the turn between them, with whole turns."""
 
 from dataclasses import dataclass
 
@@ -14,12 +14,12 @@ SKEWED = 0.1  # of the treads' travel by the width: a turn while both treads are
 POSE_RAD = 0.2  # by which measured yaws may be off
 CLOSE_S = 5.0  # longest pair from which something is learned
 LEAST_PAIRS = 8
-LEAST_TURNED_RAD = 2.0  # over all pairs: less tells no scale
+LEAST_TURNED_RAD = 2.0  # over all pairs: less determines no scale
 
 
 @dataclass(frozen=True)
 class ClosePairs:
-    """Turns (C,) that measured yaws tell by themselves, from stamps (C,) to others."""
+    """Turns (C,) that measured yaws determine by themselves, from stamps (C,) to others."""
 
     begin_s: FloatArray
     end_s: FloatArray

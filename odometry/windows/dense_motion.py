@@ -1,4 +1,4 @@
-"""What a path over the samples of a run says of its dense windows."""
+"""The motion of dense windows from a path over the samples of a run."""
 
 import numpy as np
 

@@ -4,4 +4,4 @@ from odometry.errors import OdometryError
 
 
 class WindowError(OdometryError):
-    """A recording that cannot be cut into the windows that are asked for."""
+    """A recording that cannot be cut into the required windows."""

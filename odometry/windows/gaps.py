@@ -1,7 +1,7 @@
 """Gaps of odometry.csv: long holds of a speed that was not the true one.
 
 data/README.md: a tread speed holds until the next stamp, however long; it is a gap only where other
-files contradict the held speed, or where it lasts long, the treads turn, and nothing else speaks.
+files contradict the held speed, or where it lasts long, the treads turn, and nothing confirms it.
 """
 
 from dataclasses import dataclass
@@ -12,13 +12,13 @@ from odometry.arrays import AnyArray, FloatArray
 from odometry.run import Run
 from odometry.windows.held_speeds import gyroscope_evidence, pose_evidence
 
-HOLD_PERIODS = 5.0  # usual periods up to which nobody asks whether a step is a hold or a gap
-LONG_S, LONG_PERIODS = 1.0, 20.0  # beyond both a held speed needs something else that says so
+HOLD_PERIODS = 5.0  # usual periods up to which a step is a hold
+LONG_S, LONG_PERIODS = 1.0, 20.0  # beyond both a held speed needs another sensor that confirms it
 STANDING_M_S = 0.01  # of a tread, or less
 REPEATS = 0.05  # share of the rows: a log that repeats its row so often is not one of changes
 BY_GYROSCOPE = "the gyroscope contradicts the held speed"
 BY_POSES = "the poses contradict the held speed"
-SILENT = "nothing else says that the held speed lasted"
+SILENT = "nothing else confirms that the held speed lasted"
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ def odometry_gaps(run: Run) -> Gaps:
 
     - where the gyroscope or the poses contradict the held speeds, see `held_speeds`;
     - where it is longer than 1 s and than 20 usual periods, a tread turns, and nothing says that
-      it went on so. Poses do, all along it; a gyroscope, which hears turns alone, only where
+      it went on so. Poses do, all along it; a gyroscope, which measures turns alone, only where
       odometry.csv is a log of changes: one that repeats its row now and then would have done so.
     """
     stamps_s, speeds = run.odometry.stamps_s, run.odometry.stack("v_left", "v_right")

@@ -1,4 +1,4 @@
-"""The yaw rate of a gyroscope less its bias, which positions tell."""
+"""The yaw rate of a gyroscope less its bias, which positions determine."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ from odometry.windows.record import Record
 
 ComplexArray = NDArray[np.complex128]
 LARGEST_BIAS_RAD_S = 0.04
-COARSE, FINE = 41, 21  # biases tried
+COARSE, FINE = 41, 21  # numbers of biases
 LENGTH_M = 80.0  # of the pieces of path that are compared: of 5 to 80 m the best on 19 recordings
 TINY = np.finfo(float).tiny
 LONGEST_SILENCE_S = 1.0  # of the gyroscope, over all of the run

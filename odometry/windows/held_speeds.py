@@ -1,4 +1,4 @@
-"""What gyroscope and poses say of tread speeds that were held for long.
+"""Gyroscope and poses against tread speeds that were held for long.
 
 Measured motion over blocks of half a second is compared with that of the tread speeds, by a scale
 and a width that fit the run. How far the two are off in ordinary moments of the run, in which
@@ -21,11 +21,11 @@ from odometry.windows.tread_travel import tread_travel
 
 BLOCK_S = 0.5  # over which motions are compared
 LONGEST_S = 2.0  # between two poses that are compared
-LEAST_BLOCKS = 20  # ordinary ones: fewer tell no limit
+LEAST_BLOCKS = 20  # ordinary ones: fewer determine no limit
 QUANTILE, MARGIN = 0.99, 1.5  # of the ordinary errors: the limit of what is no contradiction
 SLIP = 0.3  # of a speed: treads may slip more at a held speed than in ordinary moments
 LEAST_RAD_S, LEAST_M_S = 0.15, 0.15  # an error below it contradicts nothing
-UNKNOWN_RAD_S, UNKNOWN_M_S = 1.0, 1.0  # the limits where ordinary moments tell none
+UNKNOWN_RAD_S, UNKNOWN_M_S = 1.0, 1.0  # the limits where ordinary moments determine none
 AGREED_RAD_S, AGREED_M_S = 0.3, 0.3  # errors up to which a measurement agrees
 STRAIGHT_M_S = 0.02  # of a difference of the treads, at which the yaw rate is the bias
 

@@ -24,7 +24,7 @@ from odometry.windows.measured_poses import measured_poses, measured_positions
 from odometry.windows.spans import touched
 from odometry.windows.turns import counted_turns
 
-LEAST_POSITIONS = 4  # of a shape: three tell a bend and nothing of how it goes on
+LEAST_POSITIONS = 4  # of a shape: three determine one bend and no change of it
 POSE_PERIODS = 5.0  # poses farther apart than this many usual periods are a gap
 
 

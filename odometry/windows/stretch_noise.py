@@ -2,7 +2,7 @@
 
 Three variances make the covariance of a stretch: of a measured position, and of what a metre of
 wheel travel adds to the place and to the yaw. The direction in which a stretch starts is not
-measured: what lies along it tells nothing, and is taken out.
+measured: what lies along it is no evidence, and is taken out.
 """
 
 from dataclasses import dataclass

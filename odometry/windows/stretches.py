@@ -19,7 +19,7 @@ from odometry.windows.left_out import FEW_POSES, straddling, summed, words
 from odometry.windows.record import LEAST_POSITIONS, Record, position_record_of
 from odometry.windows.windows import Windows, laid_together
 
-MOST_POSITIONS = 25  # of a stretch; the covariance of more costs time and tells little more
+MOST_POSITIONS = 25  # of a stretch; the covariance of more takes time and adds little
 FEW = 0.1  # share of the stretches that may be lost for having fewer positions than the others
 
 
@@ -115,7 +115,7 @@ def stretches_of(runs: Sequence[Run], length_m: float, config: WindowConfig) -> 
     length_m : float
         Wheel travel of a stretch.
     config : WindowConfig
-        Says what a gap is, and how short a stretch may be.
+        Defines a gap, and how short a stretch may be.
 
     Raises
     ------

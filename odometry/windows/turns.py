@@ -2,7 +2,7 @@
 
 A measured yaw tells a turn but for whole turns. The number of these between two poses is the one
 that is nearest to a predicted turn, and it is known where the prediction, with its bound, stays
-within half a turn of it. Three predictions are asked in this order:
+within half a turn of it. Three predictions are used in this order:
 
 - the gyroscope, less its bias, where it agrees with turns that poses measured;
 - the difference of the tread speeds over an effective width, found from the same turns;

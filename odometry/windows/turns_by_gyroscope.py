@@ -15,7 +15,7 @@ UNLIKE = 0.3  # of all turns measured: what one of these scales may leave
 SCALE_OFF = 0.03  # by a rad turned: what is left open of its scale
 DRIFT_RAD_S = 0.005  # of its bias over a run
 SIGMAS = 3.0  # of what scatters
-UNKNOWN_SCALE, UNKNOWN_BIAS_RAD_S = 0.1, 0.1  # off by, where close pairs tell neither; then
+UNKNOWN_SCALE, UNKNOWN_BIAS_RAD_S = 0.1, 0.1  # off by, where close pairs determine neither; then
 AGREES_FROM_RAD, LEAST_AGREEING, AGREEING = 1.0, 10, 0.8  # most turns must agree but for counts
 
 
@@ -23,7 +23,7 @@ AGREES_FROM_RAD, LEAST_AGREEING, AGREEING = 1.0, 10, 0.8  # most turns must agre
 class _Calibration:
     """Bias and scale of a gyroscope, how far they may be off, and measured yaws.
 
-    `unlike` is the share of measured turns that it did not hear.
+    `unlike` is the share of measured turns that it did not measure.
     """
 
     bias_rad_s: float
@@ -54,7 +54,7 @@ def turns_by_gyroscope(
 
 
 def _calibrated(gyroscope: Gyroscope, pairs: ClosePairs) -> _Calibration | None:
-    """What the pairs say of a gyroscope; None where they are few or turned too little."""
+    """Scale and bias of a gyroscope by the pairs; None where they are few or turned too little."""
     turn, _, _, silent_s = gyroscope.between(pairs.begin_s, pairs.end_s)
     heard = pairs.where(silent_s == 0)
     if not heard.tell_a_scale:

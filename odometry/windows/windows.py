@@ -18,7 +18,7 @@ from odometry.windows.errors import WindowError
 from odometry.windows.left_out import STATIONARY, straddling, summed, words
 from odometry.windows.record import Record, record_of
 
-STANDING_M = 1e-3  # less wheel travel than this says nothing of a model
+STANDING_M = 1e-3  # less wheel travel than this is no evidence on a model
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Windows:
         Wheel travel.
     start_s : (K,)
     run, terrain : (K,) of str
-        Name of the run (its path where names are alike), and of the terrain.
+        Name of the run (its path where names are equal), and of the terrain.
     left_out : Counter of str
         How many windows of the runs there are not, by reason (`odometry.windows.left_out`).
     """

@@ -24,8 +24,8 @@ def test_a_named_effect_with_its_numbers(scaled_result):
     said = sentences(scaled_result)
     assert said[0] == (
         "Missing in icr: wheels of another size, or constant slip (wheel_scale) and a reference "
-        "that is not at the robot's origin (lever_arm); these runs do not tell wheel_scale from "
-        "traction_loss."
+        "that is not at the robot's origin (lever_arm); these runs do not distinguish "
+        "wheel_scale from traction_loss."
     )
     share, closing = held_out_share(scaled_result), scaled_result.holdout
     for part in (
@@ -35,7 +35,7 @@ def test_a_named_effect_with_its_numbers(scaled_result):
     ):
         assert part in said[1]
     assert said[2].startswith("Measure the wheels")
-    assert "What tells wheel_scale from traction_loss: a free wheel." in said[2]
+    assert "What distinguishes wheel_scale from traction_loss: a free wheel." in said[2]
     whole = text(scaled_result)
     assert with_interval(scaled_result.measured.before) in whole
     assert "c_l = 0.800 (0.790 to 0.820), c_r = 0.800 (0.790 to 0.820)" in whole
@@ -53,8 +53,8 @@ def test_a_drive_that_decides_goes_before_another_measurement(scaled_result):
     drive = NextDrive("spins to both sides", ("wheel_scale", "traction_loss"), 0.934)
     todo = sentences(replace(scaled_result, next_drives=(drive,)))[2]
     assert (
-        "To tell wheel_scale from traction_loss: spins to both sides, for a minute (decides in "
-        "93 % of cases)." in todo
+        "To distinguish wheel_scale from traction_loss: spins to both sides, for a minute "
+        "(decides in 93 % of cases)." in todo
     )
     assert "a free wheel" not in todo
 
@@ -66,8 +66,8 @@ def test_a_drive_for_all_rivals_is_said_once(scaled_result):
     ]
     todo = sentences(replace(scaled_result, next_drives=tuple(drives)))[2]
     assert (
-        "To tell wheel_scale from traction_loss or tread_slip: spins, for a minute (decides in "
-        "70 % of cases). If it is wheel_scale: measure" in todo
+        "To distinguish wheel_scale from traction_loss or tread_slip: spins, for a minute "
+        "(decides in 70 % of cases). If it is wheel_scale: measure" in todo
     )
 
 
@@ -196,5 +196,5 @@ def test_one_measured_stretch_says_neither_nothing_nor_something(none_result):
     one = Gap(0.2, 0.2, 0.2, 1)
     measured = replace(none_result.measured, before=one, after=one)
     said = sentences(replace(none_result, measured=measured))
-    assert said[0].startswith("Whether something is missing in icr cannot be told")
+    assert said[0].startswith("Whether something is missing in icr is undetermined")
     assert "0.2 m (no interval from one stretch) from the measured" in said[3]

@@ -82,7 +82,7 @@ def test_sight_that_lies_is_argued_with():
     assert {(seen, felt) for _, _, seen, felt in argued} == {("tar", "ice")}
     assert sum(to_s - from_s for from_s, to_s, _, _ in argued) > 5.0
     said = sentences(lie)
-    assert any(s.endswith("sight says tar, and motion says ice.") for s in said)
+    assert any(s.endswith("it is tar by the camera and ice by the motion.") for s in said)
     assert content_of(lie)["disagreements"] == [
         {"from_s": from_s, "to_s": to_s, "seen": "tar", "felt": "ice"}
         for from_s, to_s, _, _ in argued

@@ -55,7 +55,7 @@ def test_where_a_probable_mode_does_not_fit_well_it_is_said_why_it_is_not_named(
     assert answers.doubtful(answers.motion) == pytest.approx(0.5)
     _, how_sure, to_do = in_short(answers)
     assert "50 % of the time one is as probable and is not named" in how_sure
-    assert to_do.startswith("look at what is left of each signal")
+    assert to_do.startswith("look at the innovations of each signal")
 
 
 def test_where_modes_are_alike_none_is_doubtful():
@@ -64,7 +64,7 @@ def test_where_modes_are_alike_none_is_doubtful():
     assert "fits all along. Not checked: the scale of " in in_short(answers)[1]
 
 
-@pytest.mark.parametrize(("sigmas", "begins"), [(2.5, "look at what is left"), (3.5, "check ")])
+@pytest.mark.parametrize(("sigmas", "begins"), [(2.5, "look at the innovations"), (3.5, "check ")])
 def test_a_slight_misfit_asks_for_longer_runs_and_a_clear_one_for_checks(sigmas, begins):
     """None of these for 2 s, and what is left of the nearest mode by so many deviations."""
     size = 5

@@ -122,7 +122,7 @@ def test_a_page_of_velocity_modes(grounds, tmp_path):
     assert short == sorted(short)
     assert short[-1] < page.index("<img")
     assert "Where the answer is none of these" not in page
-    assert "With sight: " in page
+    assert "With the camera: " in page
     assert "By motion alone." in page
     assert "By motion and sight." in page
 

@@ -104,10 +104,10 @@ def test_how_sure_one_must_be_is_an_option(make, models, tmp_path):
 def test_what_was_seen_makes_a_second_track(with_sight):
     answer, out = with_sight(SEEN)
     assert answer.exit_code == 0, answer.output
-    assert "With sight: ice: detected after" in answer.stdout
+    assert "With the camera: ice: detected after" in answer.stdout
     content = json.loads((out / "result.json").read_text())
     assert content["sight"]["told"] == 2
-    assert "Sight and motion disagree nowhere for 2 s or longer." in answer.stdout
+    assert "Camera and motion disagree nowhere for 2 s or longer." in answer.stdout
     assert (out / "modes_with_sight.csv").exists()
 
 
@@ -138,7 +138,7 @@ def test_what_no_pose_can_check_is_said(make, models, tmp_path):
 def test_a_sight_that_lies_is_reported(with_sight):
     answer, out = with_sight(SEEN.replace("6,tar", "6,ice"))
     assert answer.exit_code == 0, answer.output
-    assert "sight says ice, and motion says tar." in answer.stdout
+    assert "it is ice by the camera and tar by the motion." in answer.stdout
     content = json.loads((out / "result.json").read_text())
     assert {(one["seen"], one["felt"]) for one in content["disagreements"]} == {("ice", "tar")}
 
