@@ -4,8 +4,11 @@ An effect that no catalogue has still follows something: run time, a tread's own
 heading. Each function of one variable is a candidate, with as many numbers as it needs.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
+import numpy as np
+
+from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
 from odometry.effects.history import BOTH, LAGS_S, History
 from odometry.effects.residual import (
@@ -15,10 +18,10 @@ from odometry.effects.residual import (
     OF_TREADS,
     TREADS,
     Residual,
+    variables_of,
 )
 from odometry.effects.residual_variables import WHAT_WENT_BEFORE
 from odometry.gap.config import GapConfig
-from odometry.gap.knots import knots_of_variables
 from odometry.windows.dense import DenseWindows
 
 MOTIONS = (  # components, each by what it may grow with
@@ -93,3 +96,45 @@ def single_candidates(
 
 def _every(components: Sequence[str], functions: int) -> tuple[tuple[str, int], ...]:
     return tuple((component, k) for component in components for k in range(functions))
+
+
+INNER = (0.02, 0.98)  # quantiles between which knots lie
+LEAST_RANGE = 1e-3  # of a variable that can explain anything
+SINCE_REVERSAL_M = (0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.8)  # gears, tracks and casters settle
+STATED = {
+    "travel_since_reversal": SINCE_REVERSAL_M,
+    "tread_travel_since_reversal": SINCE_REVERSAL_M,
+}
+
+
+def knots_of_variables(
+    scenes: Sequence[DenseWindows], base: Base, config: GapConfig
+) -> Mapping[str, tuple[float, ...]]:
+    """Knots of every variable that all runs have and that varies; none of angles."""
+    of_scenes = [variables_of(s.inputs, base.model.twist(base.values, s.inputs)) for s in scenes]
+    shared = [name for name in of_scenes[0] if all(name in other for other in of_scenes)]
+    found = {}
+    for name in shared:
+        values = np.concatenate([of[name].ravel() for of in of_scenes])
+        knots = () if name in ANGLES else _knots(values, name, config)
+        if name in ANGLES or len(knots) > 1:
+            found[name] = knots
+    return found
+
+
+def _knots(values: FloatArray, name: str, config: GapConfig) -> tuple[float, ...]:
+    """Even in the share of samples between them; none where the variable hardly varies.
+
+    Those of a tread's motion are even about zero, where what drives do changes its sign.
+    """
+    if name in STATED:
+        return STATED[name]
+    if name in OF_TREADS:
+        largest = max(float(np.quantile(np.abs(values), INNER[1])), LEAST_RANGE / 2)
+        half = np.geomspace(largest / 16, largest, config.tread_knots)
+        places = np.concatenate([-np.flip(half), [0.0], half])
+    else:
+        places = np.unique(np.quantile(values, np.linspace(*INNER, config.knots)))
+    if len(places) < 2 or np.ptp(places) <= LEAST_RANGE:
+        return ()
+    return tuple(float(place) for place in places)

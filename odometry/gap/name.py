@@ -7,6 +7,7 @@ import numpy as np
 
 from odometry.effects.history import History
 from odometry.effects.residual import Residual
+from odometry.gap.accepted_effects import Standing
 from odometry.gap.candidates import quick_effects
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import cost_of, margin_of
@@ -15,7 +16,6 @@ from odometry.gap.fit import Fitter
 from odometry.gap.general import general_candidates, shares_of_motion
 from odometry.gap.search import Search
 from odometry.gap.simpler import by_fewer, by_parts, simplest, without_idle
-from odometry.gap.standing import Standing
 from odometry.gap.statistic import Gap
 from odometry.windows.dense import DenseWindows
 

@@ -3,13 +3,13 @@
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.modes.alike import alike_modes
 from odometry.modes.between_modes import BetweenModes, between_modes
 from odometry.modes.bias_reading import bias_readings
 from odometry.modes.gyroscope_trust import GyroscopeTrust, gyroscope_trust
 from odometry.modes.innovation_test import Innovations
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.signals import Signals
+from odometry.modes.similar_modes import similar_modes
 from odometry.modes.travel_check import TravelCheck, travel_check
 from odometry.modes.turn_test import turns_are_off
 from odometry.modes.velocity import VelocityModes
@@ -36,6 +36,6 @@ def contradictions(
         return None, None, None, None
     asked = modes.steady_yaw_rates(signals.tread_speeds_m_s)
     before = np.vstack([np.zeros(asked.shape[1]), asked[:-1]])
-    alike = alike_modes(signals, modes, left.leading)
+    alike = similar_modes(signals, modes, left.leading)
     between = between_modes(signals, modes, biases_rad_s, left.independent)
     return alike, turns_are_off(left, before), travel_check(signals, modes), between

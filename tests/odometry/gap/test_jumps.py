@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from odometry.effects.reference_outliers import JumpingPoses
-from odometry.gap.cleaned import cleaned_runs
 from odometry.gap.config import GapConfig
 from odometry.gap.jumps import jumps
 from odometry.gap.outliers import closes, outliers_of
+from odometry.gap.scenes import cleaned_runs
 from odometry.windows.dense import dense_windows_of
 
 CONFIG = GapConfig()

@@ -6,12 +6,12 @@ import numpy as np
 
 from odometry.effects.corrected import Added
 from odometry.effects.history import History
+from odometry.gap.accepted_effects import Standing
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import ranked
 from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitter
 from odometry.gap.measured import measured_of
-from odometry.gap.standing import Standing
 from odometry.gap.statistic import floor_of
 from odometry.gap.unnamed import last_of_each_run
 

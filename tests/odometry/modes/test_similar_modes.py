@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from odometry.modes.alike import APART_SIGMAS, alike_modes
 from odometry.modes.answers import named_modes
 from odometry.modes.mode_set import DWELL_S, UNDETERMINED, ModeSet
 from odometry.modes.response import BLOCK_S
 from odometry.modes.signals import Signals
+from odometry.modes.similar_modes import APART_SIGMAS, similar_modes
 from odometry.modes.track import follow_signals
 from odometry.modes.velocity import VelocityModes
 
@@ -38,7 +38,7 @@ def drive(differences, omega=None):
 def test_modes_are_alike_up_to_some_deviations_of_what_lasts(factor, expected):
     """Yaw rates differ by 0.5 times the difference of treads."""
     signals = drive(np.full(500, factor * APART_SIGMAS * LASTING_RAD_S / 0.5))
-    alike = alike_modes(signals, modes(1.0, 1.5), np.zeros(500, dtype=int))
+    alike = similar_modes(signals, modes(1.0, 1.5), np.zeros(500, dtype=int))
     assert not alike[:, 0].any()
     assert (alike[200:, 1] == expected).all()
 
@@ -47,7 +47,7 @@ def test_a_turn_tells_modes_apart_until_they_have_dwelt_for_long():
     turn = np.zeros(3000)
     turn[500:700] = 1.0
     signals = drive(turn)
-    alike = alike_modes(signals, modes(1.0, 2.0), np.ones(3000, dtype=int))[:, 0]
+    alike = similar_modes(signals, modes(1.0, 2.0), np.ones(3000, dtype=int))[:, 0]
     assert alike[:500].all()
     assert not alike[610:1700].any()
     assert alike[800 + round(DWELL_S / STEP_S) :].all()
@@ -55,7 +55,7 @@ def test_a_turn_tells_modes_apart_until_they_have_dwelt_for_long():
 
 def test_only_the_modes_near_the_leading_one_are_alike():
     signals = drive(np.ones(500))
-    alike = alike_modes(signals, modes(1.0, 1.02, 2.0), np.repeat([0, 2], 250))
+    alike = similar_modes(signals, modes(1.0, 1.02, 2.0), np.repeat([0, 2], 250))
     np.testing.assert_array_equal(alike[249], [False, True, False])
     np.testing.assert_array_equal(alike[499], [False, False, False])
 
@@ -76,11 +76,11 @@ def test_modes_within_an_error_of_each_other_are_not_named_however_long_one_fits
 def test_turns_that_are_not_measured_tell_nothing():
     signals = drive(np.ones(500))
     signals.measured[:250] = np.nan
-    alike = alike_modes(signals, modes(1.0, 2.0), np.zeros(500, dtype=int))[:, 1]
+    alike = similar_modes(signals, modes(1.0, 2.0), np.zeros(500, dtype=int))[:, 1]
     assert alike[:250].all()
     assert not alike[400:].any()
 
 
 def test_modes_of_one_model_are_told_apart_by_their_noise():
-    alike = alike_modes(drive(np.ones(500)), modes(1.0, 1.0, 1.01), np.zeros(500, dtype=int))
+    alike = similar_modes(drive(np.ones(500)), modes(1.0, 1.0, 1.01), np.zeros(500, dtype=int))
     np.testing.assert_array_equal(alike[-1], [False, False, True])

@@ -15,7 +15,7 @@ from odometry.modes.velocity import VelocityModes
 APART_SIGMAS = 2.0  # of what lasts of the errors of a mode
 
 
-def alike_modes(signals: Signals, modes: VelocityModes, leading: IntArray) -> BoolArray:
+def similar_modes(signals: Signals, modes: VelocityModes, leading: IntArray) -> BoolArray:
     """Modes (N, M) that the last DWELL_S do not distinguish from the leading one (N,).
 
     What is not measured, or does not depend on the modes, is not in the signals. Modes of one model

@@ -5,13 +5,17 @@ from dataclasses import replace
 
 from odometry.effects.base import Effect
 from odometry.effects.residual import Residual
+from odometry.gap.config import GapConfig
+from odometry.gap.end_residuals import ends_of
 from odometry.gap.explanation import Explanation
+from odometry.gap.fit import Fitted, Fitter
 from odometry.gap.form import names_alone, of_their_form
 from odometry.gap.own_moments import with_own_moments
+from odometry.gap.predictors import Predictor, predictors
 from odometry.gap.search import Search
 from odometry.gap.statistic import gap_of
-from odometry.gap.structure import structure_left
 from odometry.gap.unnamed import grown, in_bursts, last_of_each_run, with_course
+from odometry.gap.variables import window_variables
 from odometry.gap.verdict import (
     closes_a_part,
     closes_held_out,
@@ -166,3 +170,10 @@ class Standing(Search):
 
 def _named(found: Explanation) -> bool:
     return any(not isinstance(effect, Residual) for effect in found.effects)
+
+
+def structure_left(fitter: Fitter, fit: Fitted, config: GapConfig) -> tuple[Predictor, ...]:
+    """By the same tests that locate a gap, of the residuals beside the effects of a fit."""
+    scenes = fitter.measured.scenes
+    ends = ends_of(fit.base, fit.effects, scenes, fitter.calibration, config.part_s)
+    return predictors(window_variables(fit.base, fit.effects, scenes), ends)
