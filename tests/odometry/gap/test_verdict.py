@@ -115,6 +115,19 @@ def test_a_gain_that_may_be_chance_closes_nothing(make_scene, monkeypatch, gain_
     assert found == reason if not reason else reason in found
 
 
+def test_a_gain_counts_by_the_mean_error_where_a_few_pieces_hold_the_squares(
+    make_scene, monkeypatch
+):
+    """Two pieces with errors of 3 m, one better and one worse, do not hide a fifth everywhere."""
+    scene = make_scene(4, lambda _, twist: twist)
+    piece = numbered_pieces([scene], CONFIG.part_s)
+    before, after = np.where(piece < 2, 3.0, 0.1), np.where(piece < 2, 3.0, 0.08)
+    after = after - 0.02 * (piece == 0) + 0.019 * (piece == 1)
+    errors = iter([before, after])
+    monkeypatch.setattr("odometry.gap.verdict.squared_errors", lambda *_: next(errors) ** 2)
+    assert closes_held_out((None, ()), (None, ()), [scene], CONFIG) == ""
+
+
 def test_a_sum_is_sure_where_it_is_alike_or_lasts_without_the_best():
     alike = np.full(10, 4.0)
     assert sure_sum(alike, 2) == pytest.approx(40.0)
