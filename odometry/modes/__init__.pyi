@@ -1,4 +1,4 @@
-from .detections import detections
+from .detection import detections
 from .files import write_modes
 from .mode_set import DWELL_S, UNDETERMINED
 from .sight import SeenGround

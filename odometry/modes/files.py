@@ -11,7 +11,7 @@ import numpy as np
 from odometry.arrays import AnyArray
 from odometry.io.csv_table import write_csv_table
 from odometry.io.files import atomic_write
-from odometry.modes.detections import Detection, confusion
+from odometry.modes.detection import Detection, confusion
 from odometry.modes.doubts import doubts
 from odometry.modes.followed import Followed
 from odometry.modes.innovation_test import ModeFit

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.modes.detections import Detection, confusion, detections, false_switches
+from odometry.modes.detection import Detection, confusion, detections, false_switches
 from odometry.modes.mode_track import ModeTrack
 
 

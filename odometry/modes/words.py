@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from odometry.modes.detections import Detection
+from odometry.modes.detection import Detection
 from odometry.modes.doubts import doubts
 from odometry.modes.followed import FELT, MOTION, SIGHTED, Followed
 from odometry.modes.misfits import Misfit

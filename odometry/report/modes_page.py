@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from odometry.modes.detections import confusion
+from odometry.modes.detection import confusion
 from odometry.modes.followed import Followed
 from odometry.modes.in_short import in_short
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED

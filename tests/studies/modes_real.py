@@ -21,7 +21,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from odometry.arrays import FloatArray
-from odometry.modes.detections import confusion
+from odometry.modes.detection import confusion
 from odometry.modes.identify_traction import identify_traction_modes
 from odometry.modes.identify_velocity import identify_velocity_modes
 from odometry.modes.mode_set import DWELL_S, NO_MODES, ModeSet

@@ -31,7 +31,7 @@ from tqdm import tqdm
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from odometry.modes.answers import named_modes
-from odometry.modes.detections import detections, false_switches
+from odometry.modes.detection import detections, false_switches
 from odometry.modes.identify_traction import identify_traction_modes
 from odometry.modes.identify_velocity import identify_velocity_modes
 from odometry.modes.mode_set import DWELL_S, NO_MODES, UNDETERMINED, ModeSet

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from odometry.modes.answers import candidates, disagreements, named_modes
-from odometry.modes.detections import confusion, detections, false_switches
+from odometry.modes.detection import confusion, detections, false_switches
 from odometry.modes.innovation_test import ModeFit
 from odometry.modes.mode_set import UNDETERMINED
 from odometry.modes.refusals import refusals
