@@ -1,7 +1,7 @@
 """The file beside labelled photographs that groups them and states their scale."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -34,6 +34,9 @@ class Manifest:
 def read_manifest(root: Path) -> Manifest | None:
     """The manifest in `root` or its parent; None where neither has one with path and photo_id.
 
+    The parent's is about other folders if it names no file by a name that lies in
+    ``root/<class>/``; then there is none.
+
     Raises
     ------
     PatchError
@@ -43,9 +46,17 @@ def read_manifest(root: Path) -> Manifest | None:
     for file in (root / "manifest.csv", root.parent / "manifest.csv"):
         if file.exists() and (table := _columns(file)):
             columns, lines = table
+            if file.parent != root and not _names_files_in(root, columns["path"]):
+                continue
             runs = tuple(sorted({*columns.get("run", ())} - {""}))
             return Manifest(file, _photo_ids(file, columns, lines), _scale(file, columns), runs)
     return None
+
+
+def _names_files_in(root: Path, paths: Sequence[str]) -> bool:
+    """Whether a path ends in the name of a file in ``root/<class>/``, wherever it leads."""
+    named = {path.replace("\\", "/").rpartition("/")[2] for path in paths}
+    return any(file.name in named for file in root.glob("*/*"))
 
 
 def _columns(file: Path) -> tuple[dict[str, list[str]], list[int]] | None:

@@ -56,7 +56,8 @@ def find_photos(root: Path) -> list[LabelledPhoto]:
     """Return the photographs of ``root/<class>/*.jpg|png``, sorted by path.
 
     Photographs are grouped by the ``photo_id`` of ``manifest.csv`` in `root` or its parent;
-    a photograph that no manifest names is a group of its own.
+    a photograph that no manifest names is a group of its own. Hidden files and folders, whose
+    names begin with a dot, are no photographs.
 
     Raises
     ------
@@ -66,7 +67,8 @@ def find_photos(root: Path) -> list[LabelledPhoto]:
     """
     if not root.is_dir():
         raise PatchError(f"{root} is not a folder; expected {root}/<class>/*.jpg or *.png")
-    paths = [path for path in sorted(root.glob("*/*")) if path.suffix.lower() in SUFFIXES]
+    found = sorted(path for path in root.glob("*/*") if path.suffix.lower() in SUFFIXES)
+    paths = [path for path in found if not _is_hidden(path)]
     if not paths:
         raise PatchError(f"{root} holds no photographs; expected {root}/<class>/*.jpg or *.png")
     groups = _photo_ids(read_manifest(root), paths)
@@ -77,6 +79,10 @@ def find_photos(root: Path) -> list[LabelledPhoto]:
     if any(photo.label == UNKNOWN for photo in photos):
         raise PatchError(f"{root / UNKNOWN}: the name '{UNKNOWN}' is reserved")
     return photos
+
+
+def _is_hidden(photo: Path) -> bool:
+    return photo.name.startswith(".") or photo.parent.name.startswith(".")
 
 
 def cut_patches(image: ByteImage, size_px: int, stride_px: int | None = None) -> list[ByteImage]:

@@ -11,9 +11,12 @@ from odometry.shipped import shipped_data
 from terrain.classification import feature_jobs
 from terrain.classification.feature_jobs import shared_feature_matrix
 from terrain.classification.features import feature_matrix
+from terrain.classification.features_of import Transformed, features_of
+from terrain.classification.network_features import Network, NetworkFeatures
 from terrain.classification.presets import PRESETS
 from terrain.cli.train import train
 from terrain.errors import BatchError
+from tests.terrain.classification.onnx_bytes import tiny_network
 from tests.terrain.dask_processes import started_scheduler, started_workers
 
 GREY = PRESETS["default"].features
@@ -82,6 +85,15 @@ def test_workers_share_the_patches_though_one_is_killed(cluster, images, monkeyp
     assert far.tobytes() == feature_matrix(images, GREY).tobytes()
     with pytest.raises(BatchError, match=r"^--scheduler tcp://\S+: \w*Error: "):
         shared_feature_matrix(["no image"] * 3, GREY, processes=1, scheduler=scheduler)
+
+
+@pytest.mark.parametrize("colour", [False, True])
+def test_workers_run_an_image_network(cluster, images, colour):
+    shown = np.stack([images] * 3, axis=-1) if colour else images
+    network = NetworkFeatures(Network("tiny.onnx", tiny_network()), layers=("r1",)).fit(shown)
+    made_by = Transformed(network, colour)
+    far = shared_feature_matrix(shown, made_by, processes=1, scheduler=cluster[0])
+    assert far.tobytes() == features_of(shown, made_by).tobytes()
 
 
 def test_a_model_has_the_same_bytes_whoever_computed_it(cluster, tmp_path, monkeypatch):

@@ -70,6 +70,34 @@ def test_the_folders_own_manifest_goes_before_its_parents(tmp_path):
     assert [p.group for p in find_photos(tmp_path / "set")] == ["own"]
 
 
+def test_a_parents_manifest_of_other_folders_says_nothing(tmp_path):
+    for name in ("street/grass/a.jpg", "set/grass/b.jpg"):
+        photo(tmp_path / name)
+    manifest = tmp_path / "manifest.csv"
+    manifest.write_text("path,photo_id,metres_per_pixel\nset/grass/b.jpg,look,0.002\n")
+    (of_street,) = find_photos(tmp_path / "street")
+    assert of_street.group == str(tmp_path / "street/grass/a.jpg")
+    assert stated_metres_per_pixel(tmp_path / "street") is None
+    assert [p.group for p in find_photos(tmp_path / "set")] == ["look"]
+    assert stated_metres_per_pixel(tmp_path / "set") == 0.002
+
+
+@pytest.mark.parametrize("path", ["grass/a.jpg", "old_name/grass/a.jpg", "set\\grass\\a.jpg"])
+def test_a_parents_manifest_with_the_names_of_photographs_must_lead_to_them(tmp_path, path):
+    photo(tmp_path / "set/grass/a.jpg")
+    (tmp_path / "manifest.csv").write_text(f"path,photo_id\n{path},look\n")
+    with pytest.raises(PatchError, match=r"manifest\.csv: none of its 1 paths"):
+        find_photos(tmp_path / "set")
+
+
+def test_hidden_files_are_no_photographs(tmp_path):
+    for name in ("grass/a.jpg", "grass/._a.jpg", ".thumbnails/a.jpg", ".a.jpg"):
+        photo(tmp_path / name)
+    assert [p.path for p in find_photos(tmp_path)] == [tmp_path / "grass/a.jpg"]
+    photo(tmp_path / ".hidden_root/sand/b.jpg")
+    assert [p.label for p in find_photos(tmp_path / ".hidden_root")] == ["sand"]
+
+
 def test_a_manifest_without_photo_id_groups_nothing(tmp_path):
     photo(tmp_path / "grass/a.jpg")
     photo(tmp_path / "grass/b.jpg")
