@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import OUTPUT, Positive, RunFolder
+from terrain.cli.options import OUTPUT, Positive, run_folders
 from terrain.cli.recordings import span_options
 from terrain.cli.results import print_table
 
@@ -21,13 +21,7 @@ SLOW_TIGHT_TURNS_M_S = ((0.05, 0.15), (0.15, 0.05))  # to the left, to the right
 
 
 @click.command(name="identify-modes")
-@click.argument(
-    "folders",
-    metavar="RUN...",
-    nargs=-1,
-    required=True,
-    type=RunFolder(),
-)
+@run_folders
 @click.option(
     "--out",
     required=True,
