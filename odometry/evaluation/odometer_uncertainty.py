@@ -14,7 +14,7 @@ from odometry.evaluation.open_loop_consistency import (
     consistency_by_halves,
     open_loop_consistency,
 )
-from odometry.evaluation.open_loop_errors import OpenLoopPath
+from odometry.evaluation.open_loop_errors import TOGETHER, OpenLoopPath
 from odometry.geometry import se2
 from odometry.models.icr import icr_speed_matrix, icr_twist_jacobian
 from odometry.run import Run
@@ -166,18 +166,28 @@ def learning_covariances(replay: Replay, path: OpenLoopPath) -> FloatArray:
     found = np.zeros((len(variances), 3, 3))
     for parameter in range(slopes.shape[-1]):
         moved = path.moved_by(slopes[..., parameter])
-        found += moved[:, :, None] * moved[:, None, :]
+        for some in (slice(at, at + TOGETHER) for at in range(0, len(moved), TOGETHER)):
+            found[some] += moved[some, :, None] * moved[some, None, :]
     return found
 
 
 def _twist_slopes(replay: Replay) -> FloatArray:
     """Derivatives (N - 1, 3, 6) of twists by y_left, y_right, x_icr, bias, alphas."""
-    icrs, bias, alphas = np.split(replay.means[:-1, Y_LEFT:], [3, 4], axis=1)
+    means, believed = replay.means[:-1, Y_LEFT:], replay.believed_yaw_rates_rad_s
     speeds = np.nan_to_num((replay.tread_speeds_m_s + replay.added_speeds_m_s)[:-1])
     slopes = np.zeros((len(speeds), 3, STATES - Y_LEFT))
+    for some in (slice(at, at + TOGETHER) for at in range(0, len(speeds), TOGETHER)):
+        _fill_slopes(slopes[some], means[some], speeds[some], believed[some])
+    return slopes
+
+
+def _fill_slopes(
+    slopes: FloatArray, means: FloatArray, speeds: FloatArray, believed: FloatArray
+) -> None:
+    """Put the derivatives of some twists in place, by the gyroscope where it turned the robot."""
+    icrs, bias, alphas = np.split(means, [3, 4], axis=1)
     slopes[..., :3] = icr_twist_jacobian(icrs, alphas * speeds)
     slopes[..., 4:] = icr_speed_matrix(icrs) * speeds[:, None, :]
-    believed = replay.believed_yaw_rates_rad_s
     told = np.isfinite(believed)
     omega = (believed - bias[:, 0])[told]
     by_gyroscope = np.zeros((len(omega), 3, STATES - Y_LEFT))
@@ -188,4 +198,3 @@ def _twist_slopes(replay: Replay) -> FloatArray:
     by_gyroscope[:, 2, 3] = -1.0
     by_gyroscope[:, 0, 4:] = speeds[told] / 2
     slopes[told] = by_gyroscope
-    return slopes

@@ -24,6 +24,7 @@ SOURCES = tuple(
     for component in COMPONENTS
     for amount in AMOUNTS
 )
+TOGETHER = 4096  # poses whose matrices are multiplied at a time
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,8 @@ class OpenLoopPath:
 
         Parameters
         ----------
-        first, last : (K,)
+        first : (K,) or (1,)
+        last : (K,)
 
         Returns
         -------
@@ -68,7 +70,10 @@ class OpenLoopPath:
         back = _turns(-self.poses[first, 2])
 
         def of_first(world: FloatArray) -> FloatArray:
-            return np.asarray(back @ world @ np.swapaxes(back, -1, -2))
+            for some in (slice(at, at + TOGETHER) for at in range(0, len(world), TOGETHER)):
+                own = back[some] if len(back) > 1 else back
+                world[some] = own @ world[some] @ np.swapaxes(own, -1, -2)
+            return world
 
         random_by = (np.diff(self.travel_m), np.abs(turn))
         for direction in (along, across):
@@ -90,9 +95,9 @@ class OpenLoopPath:
 
     def covariances(self, variances: FloatArray, first: IntArray, last: IntArray) -> FloatArray:
         """Covariances (K, 3, 3) of motions in the frame of their first pose, by variances (12,)."""
-        found = np.zeros((len(first), 3, 3))
+        found = np.zeros((len(last), 3, 3))
         for variance, unit in zip(variances, self._units(first, last), strict=True):
-            found += variance * unit
+            found += np.multiply(unit, variance, out=unit)
         return found
 
     def moved_by(self, errors: FloatArray) -> FloatArray:
@@ -132,13 +137,16 @@ class OpenLoopPath:
         variances : (12,)
         """
         count = len(self.poses)
-        motion = self.covariances(variances, np.zeros(count, np.int64), np.arange(count))
+        found = self.covariances(variances, np.zeros(1, np.int64), np.arange(count))
         turn = _turns(self.poses[:1, 2])
-        by_start = np.tile(np.eye(3), (count, 1, 1))
-        by_start[:, 0, 2] = self.poses[0, 1] - self.poses[:, 1]
-        by_start[:, 1, 2] = self.poses[:, 0] - self.poses[0, 0]
-        held = by_start @ start @ np.swapaxes(by_start, -1, -2)
-        return np.asarray(held + turn @ motion @ np.swapaxes(turn, -1, -2))
+        for some in (slice(at, at + TOGETHER) for at in range(0, count, TOGETHER)):
+            poses = self.poses[some]
+            by_start = np.tile(np.eye(3), (len(poses), 1, 1))
+            by_start[:, 0, 2] = self.poses[0, 1] - poses[:, 1]
+            by_start[:, 1, 2] = poses[:, 0] - self.poses[0, 0]
+            held = by_start @ start @ np.swapaxes(by_start, -1, -2)
+            found[some] = held + turn @ found[some] @ np.swapaxes(turn, -1, -2)
+        return found
 
 
 def _of_places(covariances: FloatArray) -> FloatArray:
@@ -162,7 +170,7 @@ def _random_yaw(
     levers = total * ends[:, :, None] * ends[:, None, :] - crossed
     levers += squares - np.swapaxes(crossed, -1, -2)
     quarter = np.array([[0.0, -1.0], [1.0, 0.0]])
-    found = np.zeros((len(first), 3, 3))
+    found = np.zeros((len(last), 3, 3))
     found[:, :2, :2] = quarter @ levers @ quarter.T
     found[:, :2, 2] = found[:, 2, :2] = lever @ quarter.T
     found[:, 2, 2] = total[:, 0, 0]

@@ -1,5 +1,6 @@
 """The options of a replay, which `run` and `batch` share."""
 
+import sys
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
@@ -77,6 +78,7 @@ def run_options(command: Callable[..., None]) -> Callable[..., None]:
     ) -> None:
         from dataclasses import replace
 
+        say_that_it_begins()
         from terrain.classifier_config import ClassifierConfig
         from terrain.config import Config
         from terrain.run_options import RunOptions
@@ -106,3 +108,9 @@ def run_options(command: Callable[..., None]) -> Callable[..., None]:
         command(options=options, **others)
 
     return with_options
+
+
+def say_that_it_begins() -> None:
+    """On a terminal, before the libraries are loaded: that alone takes seconds."""
+    if sys.stderr.isatty():
+        click.echo("Loading libraries, reading the run ...", err=True)
