@@ -7,16 +7,11 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
-from odometry.feel.design import SHAPE
+from odometry.feel.design import CROSS, SHAPE
+from odometry.feel.evidence import calibrated_windows
 from odometry.feel.folds import FOLDS, stratified_folds
-from odometry.feel.held_out import (
-    HeldOut,
-    held_out,
-    names_of,
-    put_together,
-    told_of,
-    windows_alone,
-)
+from odometry.feel.held_out import HeldOut, by_length, held_out, names_of, told_of
+from odometry.feel.limits import STRETCH_S
 from odometry.feel.members import Choice, averaged_sets
 from odometry.feel.scores import (
     balanced_accuracy,
@@ -24,11 +19,10 @@ from odometry.feel.scores import (
     calibration_error,
     confusion,
 )
-from odometry.feel.selection import SHRINKAGES, STRETCH_S, Selected, main_labels, selected
+from odometry.feel.selection import SHRINKAGES, Selected, main_labels, selected
 from odometry.feel.speed_alone import speed_alone
+from odometry.feel.strangeness import LENGTHS
 from odometry.feel.table import FeelTable
-
-LENGTHS = ("window", "stretch", "run")
 
 
 @dataclass(frozen=True)
@@ -142,21 +136,14 @@ def choice_words(window_s: float, choice: Choice) -> str:
 
 
 def _answers(table: FeelTable, told: HeldOut, best: Selected) -> dict[str, Answers]:
-    windows, limits, strangeness = best.calibration, best.limits, best.strangeness
-    lengths = (
-        (windows_alone(table, told, windows), limits.window, strangeness.window),
-        (put_together(table, told, windows, STRETCH_S), limits.stretch, strangeness.stretch),
-        (put_together(table, told, windows, np.inf), limits.stretch, strangeness.stretch),
-    )
-    strange = (limits.strange_window, limits.strange_stretch, limits.strange_stretch)
     return {
         name: Answers(
             of.labels,
             of.runs,
             best.calibration.probabilities(of.evidence, of.windows),
-            (of.novelty > limit) | (best.log_odds(of, weights) > most),
+            best.limits.refused(of.windows, of.novelty, of.offsets),
         )
-        for name, (of, limit, weights), most in zip(LENGTHS, lengths, strange, strict=True)
+        for name, of in by_length(table, told, best.calibration, STRETCH_S).items()
     }
 
 
@@ -174,14 +161,16 @@ def _by_groups(table: FeelTable, folds: IntArray) -> dict[str, float]:
     present = table.design.groups
     sets = {"all": present}
     if len(present) > 1:
-        sets |= {f"{one} alone": (one,) for one in present if one != SHAPE}
+        sets |= {f"{one} alone": (one,) for one in present if one not in (SHAPE, CROSS)}
         sets |= {f"without {one}": tuple(o for o in present if o != one) for one in present}
     everyone = np.ones(len(folds), dtype=bool)
     found = {}
     for name, groups in sets.items():
         choice = Choice(averaged_sets(groups), SHRINKAGES[0])
         (told,) = held_out(table, folds, everyone, [choice])
-        best = np.array(table.names, dtype=object)[told.scores.log_likelihoods.argmax(axis=1)]
         labels = table.labels[told.rows]
+        _, calibration = calibrated_windows(told.scores.log_likelihoods, labels, table.names)
+        evidence = calibration.evidence(told.scores.log_likelihoods)
+        best = np.array(table.names, dtype=object)[evidence.argmax(axis=1)]
         found[name] = balanced_accuracy(labels, best == labels)
     return found | {"speed alone": speed_alone(table, folds)}

@@ -1,21 +1,28 @@
-"""The columns that distinguish windows: bands of several widths, shape, and motion."""
+"""The columns that distinguish windows: bands, shape, how axes go together, and motion."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import RunFolderError
-from odometry.feel.spectra import LOWEST_HZ, band_edges_hz, band_powers, shapes
+from odometry.feel.spectra import (
+    LOWEST_HZ,
+    band_edges_hz,
+    band_powers,
+    log_correlations,
+    pair_rows,
+    shapes,
+)
 from odometry.feel.windows import FeelWindows
 
-LAYOUTS = (6, 8, 10, 12)  # bands of an axis; a discriminant of each is averaged
+BANDS = 8  # of an axis
 LEAST_STEPS = 2  # of frequency in a band
 SLOWER_SHARE = 0.96  # of the highest frequency: a run that carries a little less will do
 SPECTRAL = ("gyro", "accel")
-SHAPE = "shape"
+SHAPE, CROSS = "shape", "cross"
 SHAPE_WORDS = ("flatness", "bandwidth")  # of the spectrum of an axis
 
 
@@ -33,9 +40,12 @@ class Design:
     top_hz : float
         Upper edge of the highest band.
     layouts : tuple of int
-        Numbers of bands; none where no axis has a band.
+        Numbers of bands, a table of columns each; 0 where no axis has a band. Files of older
+        versions hold several.
     shaped : bool
         Whether the flatness and the bandwidth of each axis' spectrum are columns, too.
+    crossed : bool
+        Whether the correlations of axes in each band are columns, too.
     """
 
     window_s: float
@@ -44,6 +54,7 @@ class Design:
     top_hz: float
     layouts: tuple[int, ...]
     shaped: bool
+    crossed: bool = False
 
     @classmethod
     def shared(cls, windows: Sequence[FeelWindows]) -> "Design":
@@ -53,15 +64,17 @@ class Design:
         top_hz = min(one.top_hz for one in windows)
         step_hz = max(one.step_hz for one in windows)
         most = int((top_hz - LOWEST_HZ) / (LEAST_STEPS * step_hz))
-        layouts = tuple(dict.fromkeys(min(bands, most) for bands in LAYOUTS)) if most > 0 else ()
-        axes = axes if layouts else ()
-        return cls(windows[0].window_s, axes, motion, top_hz, layouts or (0,), bool(axes))
+        bands = max(min(BANDS, most), 0)
+        axes = axes if bands else ()
+        crossed = len(axes) > 1
+        return cls(windows[0].window_s, axes, motion, top_hz, (bands,), bool(axes), crossed)
 
     @property
     def groups(self) -> tuple[str, ...]:
-        """Groups of columns: of SPECTRAL, SHAPE, and motion."""
+        """Groups of columns: of SPECTRAL, SHAPE, CROSS, and motion."""
         spectral = [kind for kind in SPECTRAL if any(a.startswith(kind) for a in self.axes)]
-        return (*spectral, *([SHAPE] if self.shaped else []), *self.motion)
+        more = [SHAPE] * self.shaped + [CROSS] * self.crossed
+        return (*spectral, *more, *self.motion)
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -71,12 +84,13 @@ class Design:
         return (*self.axes, *yaw, *currents)
 
     def only(self, groups: Sequence[str]) -> "Design":
-        """The same with some of the groups."""
+        """The same with some of the groups; without an axis, CROSS is not among them."""
         axes = tuple(axis for axis in self.axes if axis.partition("_")[0] in groups)
         motion = tuple(one for one in self.motion if one in groups)
         layouts = self.layouts if axes else (0,)
         shaped = self.shaped and bool(axes) and SHAPE in groups
-        return Design(self.window_s, axes, motion, self.top_hz, layouts, shaped)
+        crossed = self.crossed and axes == self.axes and CROSS in groups
+        return Design(self.window_s, axes, motion, self.top_hz, layouts, shaped, crossed)
 
     def places(self, of: "Design", layout: int) -> list[int]:
         """Where the columns of a smaller design stand among the columns of this one."""
@@ -86,19 +100,28 @@ class Design:
             at = self.axes.index(axis) * width
             found += range(at, at + (width if of.shaped else bands))
         at = len(self.axes) * width
+        width = bands * len(self.pairs)
+        found += range(at, at + width) if of.crossed else []
+        at += width
         for one in self.motion:
             width = WIDTHS[one]
             found += range(at, at + width) if one in of.motion else []
             at += width
         return found
 
+    @property
+    def pairs(self) -> tuple[tuple[str, str], ...]:
+        """Axes whose correlations are columns."""
+        return tuple(combinations(self.axes, 2)) if self.crossed else ()
+
     def names(self, layout: int) -> tuple[str, ...]:
         """What each column is, in words."""
         edges = band_edges_hz(self.layouts[layout], self.top_hz) if self.axes else np.empty(0)
         words = [f"{a:.0f} to {b:.0f} Hz" for a, b in pairwise(edges)]
-        words += SHAPE_WORDS if self.shaped else ()
-        spectral = [f"{axis} {word}" for axis in self.axes for word in words]
-        return (*spectral, *(word for one in self.motion for word in WORDS[one]))
+        shape = SHAPE_WORDS if self.shaped else ()
+        spectral = [f"{axis} {word}" for axis in self.axes for word in (*words, *shape)]
+        crossed = [f"{one} with {other} {word}" for one, other in self.pairs for word in words]
+        return (*spectral, *crossed, *(word for one in self.motion for word in WORDS[one]))
 
     def check(self, windows: FeelWindows, where: str) -> None:
         """Raise RunFolderError unless a run has all columns, fast enough."""
@@ -121,12 +144,14 @@ class Design:
         if self.axes:
             rows = [windows.axes.index(axis) for axis in self.axes]
             edges = band_edges_hz(self.layouts[layout], self.top_hz)
-            densities = windows.densities[:, rows]
+            both = windows.densities[:, pair_rows(len(windows.axes), rows)]
+            densities = both[:, np.equal(*np.triu_indices(len(rows)))]
             spectral = band_powers(densities, windows.step_hz, edges)
             if self.shaped:
                 shape = shapes(densities, windows.step_hz, self.top_hz)
                 spectral = np.concatenate([spectral, shape], axis=2)
-            parts = [spectral.reshape(len(windows), -1), *parts]
+            crossed = [log_correlations(both, windows.step_hz, edges)] if self.crossed else []
+            parts = [*(one.reshape(len(windows), -1) for one in (spectral, *crossed)), *parts]
         return np.concatenate(parts, axis=1)
 
 

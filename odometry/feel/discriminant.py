@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 from odometry.arrays import FloatArray
 from odometry.feel.moments import Moments
@@ -117,7 +118,7 @@ def fitted_discriminant(of: Pooled, covariates: int, shrinkage: float) -> Discri
     correlation = (1 - shrinkage) * residual / np.outer(scale, scale)
     correlation[np.diag_indices(size)] = 1.0
     lower = np.linalg.cholesky(correlation + 1e-9 * np.eye(size))
-    whitening = np.asarray(np.linalg.solve(lower, np.diag(1 / scale)))
+    whitening = np.asarray(solve_triangular(lower, np.diag(1 / scale), lower=True))
     centres = np.asarray(means[:, :size] - means[:, size:] @ slopes)
     return Discriminant(slopes, centres, whitening)
 

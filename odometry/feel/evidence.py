@@ -9,7 +9,6 @@ from odometry.feel.scores import class_weights
 
 TEMPERATURES = np.geomspace(0.5, 30.0, 40)
 OUTLIERS = (0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3)
-LEAST = 1e-12  # probability, below a logarithm
 CORRELATIONS = (0.0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
 
 
@@ -19,8 +18,8 @@ class Calibration:
 
     Attributes
     ----------
-    temperature : float
-        By which the log likelihoods of a window are divided.
+    temperatures : tuple of float
+        By which the log likelihoods of a window are divided, one a kind of classifier.
     outliers : float
         Share of the windows that say nothing of the terrain: every terrain is as probable then.
     correlation : float
@@ -32,7 +31,7 @@ class Calibration:
     sampling" (design effect).
     """
 
-    temperature: float
+    temperatures: tuple[float, ...]
     outliers: float
     correlation: float
 
@@ -43,10 +42,11 @@ class Calibration:
     def evidence(self, log_likelihoods: FloatArray) -> FloatArray:
         """Log of the probabilities of K terrains (N, K) by one window, each as probable before.
 
-        Bounded by the outliers: one window that errs cannot outvote many.
+        From log likelihoods (N, F, K) by F kinds of classifiers. Bounded by the outliers: one
+        window that errs cannot outvote many.
         """
-        told = softmax(log_likelihoods / self.temperature)
-        return np.asarray(np.log((1 - self.outliers) * told + self.outliers / told.shape[1]))
+        among = softmax((log_likelihoods / np.array(self.temperatures)[:, None]).sum(axis=1))
+        return np.asarray(np.log((1 - self.outliers) * among + self.outliers / among.shape[1]))
 
     def probabilities(self, evidence: FloatArray, windows: FloatArray) -> FloatArray:
         """Of K terrains (N, K) from the mean `evidence` of so many windows (N,)."""
@@ -63,8 +63,10 @@ class Stretches:
         Terrain, number of the run, and how many windows, without their overlap.
     evidence : (N, K)
         Mean over its windows.
-    novelty, nearness : (N,)
-        Means over its windows, see `held_out.Scores`.
+    novelty : (N,)
+        Mean over its windows, see `held_out.Scores`.
+    offsets : (N, K, C)
+        The same.
     """
 
     labels: AnyArray
@@ -72,7 +74,7 @@ class Stretches:
     windows: FloatArray
     evidence: FloatArray
     novelty: FloatArray
-    nearness: FloatArray
+    offsets: FloatArray
 
     def __len__(self) -> int:
         return len(self.labels)
@@ -83,16 +85,20 @@ def gathered(windows: Stretches, parts: IntArray, steps: int) -> Stretches:
     _, first, places, counts = np.unique(
         parts, return_index=True, return_inverse=True, return_counts=True
     )
-    sums = np.zeros((len(counts), windows.evidence.shape[1]))
-    np.add.at(sums, places, windows.evidence)
     return Stretches(
         windows.labels[first],
         windows.runs[first],
         np.maximum((counts + steps - 1) / steps, 1.0),
-        sums / counts[:, None],
-        np.bincount(places, weights=windows.novelty) / counts,
-        np.bincount(places, weights=windows.nearness) / counts,
+        _means(windows.evidence, places, counts),
+        _means(windows.novelty, places, counts),
+        _means(windows.offsets, places, counts),
     )
+
+
+def _means(values: FloatArray, places: IntArray, counts: IntArray) -> FloatArray:
+    sums = np.zeros((len(counts), *values.shape[1:]))
+    np.add.at(sums, places, values)
+    return np.asarray((sums.T / counts).T)
 
 
 def stretch_numbers(
@@ -111,23 +117,47 @@ def stretch_numbers(
 def calibrated_windows(
     log_likelihoods: FloatArray, labels: AnyArray, names: tuple[str, ...]
 ) -> tuple[float, Calibration]:
-    """Temperature and outliers by windows (W, K).
+    """Temperatures and outliers by windows (W, F, K).
+
+    Each kind of classifier is brought to its own temperature; then all have one more in common.
 
     Returns
     -------
     (float, Calibration)
-        The least log loss, every terrain counting alike, and what has it.
+        The least Brier score, every terrain counting alike, and what has it.
     """
     codes, weights = _codes(labels, names), class_weights(labels)
-    rows, best = np.arange(len(codes)), (np.inf, Calibration(1.0, OUTLIERS[0], 0.0))
+    own = [_best(one, codes, weights)[1] for one in np.moveaxis(log_likelihoods, 1, 0)]
+    joined = (log_likelihoods / np.array(own)[:, None]).sum(axis=1)
+    loss, temperature, outliers = _best(joined, codes, weights)
+    return loss, Calibration(tuple(temperature * one for one in own), outliers, 0.0)
+
+
+def _best(
+    log_likelihoods: FloatArray, codes: IntArray, weights: FloatArray
+) -> tuple[float, float, float]:
+    """The least Brier score of windows (W, K), with its temperature and outliers."""
+    found, true = list[tuple[float, float, float]](), np.eye(log_likelihoods.shape[1])[codes]
+    shares = np.array(OUTLIERS)
     for temperature in TEMPERATURES.tolist():
-        true = softmax(log_likelihoods / temperature)[rows, codes]
-        for outliers in OUTLIERS:
-            told = (1 - outliers) * true + outliers / log_likelihoods.shape[1]
-            loss = float(-weights @ np.log(told))
-            if loss < best[0]:
-                best = loss, Calibration(temperature, outliers, 0.0)
-    return best
+        plain = softmax(log_likelihoods / temperature)
+        off, flatter = plain - true, 1 / plain.shape[1] - plain
+        terms = [
+            weights @ (one * other).sum(axis=1)
+            for one, other in ((off, off), (off, flatter), (flatter, flatter))
+        ]
+        scores = terms[0] + 2 * shares * terms[1] + shares**2 * terms[2]  # of off + share * flatter
+        found += [(one, temperature, of) for one, of in zip(scores.tolist(), OUTLIERS, strict=True)]
+    return min(found)
+
+
+def _brier(probabilities: FloatArray, codes: IntArray, weights: FloatArray) -> float:
+    """Brier 1950, "Verification of forecasts expressed in terms of probability", eq. 2.
+
+    A few windows that err while sure decide the log loss, but not this.
+    """
+    true = np.eye(probabilities.shape[1])[codes]
+    return float(weights @ ((probabilities - true) ** 2).sum(axis=1))
 
 
 def calibrated_stretches(
@@ -135,11 +165,11 @@ def calibrated_stretches(
 ) -> tuple[float, Calibration]:
     """The correlation by stretches whose evidence `windows` gave; the same return."""
     codes, weights = _codes(stretches.labels, names), class_weights(stretches.labels)
-    rows, tried = np.arange(len(codes)), list[tuple[float, Calibration]]()
+    tried = list[tuple[float, Calibration]]()
     for correlation in CORRELATIONS:
         one = replace(windows, correlation=correlation)
-        true = one.probabilities(stretches.evidence, stretches.windows)[rows, codes]
-        tried.append((float(-weights @ np.log(true + LEAST)), one))
+        among = one.probabilities(stretches.evidence, stretches.windows)
+        tried.append((_brier(among, codes, weights), one))
     return min(tried, key=lambda pair: pair[0])
 
 

@@ -71,7 +71,9 @@ def columns_of(felt: Felt) -> dict[str, AnyArray]:
         "window_label": felt.answers,
         **_named("window_probability", names, felt.probabilities),
         "window_probability_unknown": felt.unknown,
-        "novelty": felt.scores.novelty / felt.model.limits.window,
+        "novelty": felt.model.limits.excess(
+            np.ones(len(felt.windows)), felt.scores.novelty, felt.scores.offsets
+        ),
         "speed": felt.windows.speeds_m_s,
         "true_label": np.where(felt.windows.labels == UNKNOWN, "", felt.windows.labels),
     }

@@ -5,12 +5,12 @@ from functools import cached_property
 
 import numpy as np
 
-from odometry.arrays import AnyArray, BoolArray, FloatArray
+from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.config import require, require_positive
 from odometry.errors import RunFolderError
 from odometry.feel.held_out import Scores
 from odometry.feel.model import FeelModel
-from odometry.feel.probabilities import Probabilities
+from odometry.feel.probabilities import Probabilities, Summed
 from odometry.feel.windows import FeelWindows, feel_windows
 from odometry.run import UNKNOWN, Run
 
@@ -104,9 +104,7 @@ class Felt:
     @cached_property
     def of_run(self) -> tuple[dict[str, float], bool]:
         """Probability of each terrain if the run is of one, and whether it is like none."""
-        felt = self.windows.felt
-        summed = np.concatenate([self._evidence[felt].sum(axis=0), [felt.sum()]])[None]
-        of = self._probabilities(summed)
+        of = self._over(np.array([[0, len(self.windows)]]))
         names = self.model.names
         found = dict(zip(names, of.probabilities[0].tolist(), strict=True))
         return found, bool(of.is_novel[0])
@@ -133,28 +131,22 @@ class Felt:
         return np.asarray(outside & self.windows.felt)
 
     @cached_property
-    def _evidence(self) -> FloatArray:
-        """Bounded log probabilities, novelty and nearness (W, K + 2)."""
-        bounded = self.model.calibration.evidence(self.scores.log_likelihoods)
-        return np.column_stack([bounded, self.scores.novelty, self.scores.nearness])
-
-    @cached_property
     def _windows(self) -> Probabilities:
-        felt = self.windows.felt[:, None]
-        return self._probabilities(np.column_stack([self._evidence, np.ones(len(felt))]) * felt)
+        rows = np.arange(len(self.windows))
+        return self._over(np.column_stack([rows, rows + 1]))
 
     @cached_property
     def _lasting(self) -> Probabilities:
-        felt, ends_s = self.windows.felt, self.stamps_s
-        first = np.searchsorted(self.windows.begins_s, ends_s - self.config.stretch_s - 1e-6)
-        upto = np.arange(1, len(ends_s) + 1)
-        first = np.minimum(first, upto - 1)
-        table = np.column_stack([self._evidence, np.ones(len(felt))]) * felt[:, None]
-        summed = np.vstack([np.zeros(table.shape[1]), np.cumsum(table, axis=0)])
-        return self._probabilities(summed[upto] - summed[first])
+        begins_s, ends_s = self.windows.begins_s, self.stamps_s
+        end = np.arange(1, len(ends_s) + 1)
+        first = np.searchsorted(begins_s, ends_s - self.config.stretch_s - 1e-6)
+        return self._over(np.column_stack([np.minimum(first, end - 1), end]))
 
-    def _probabilities(self, summed: FloatArray) -> Probabilities:
+    def _over(self, spans: IntArray) -> Probabilities:
+        """Put windows together from the first to before the end of spans (N, 2)."""
         share = self.config.unknown_share or self.model.strangeness.share
+        evidence = self.model.calibration.evidence(self.scores.log_likelihoods)
+        summed = Summed.over(evidence, self.scores, self.windows.felt, spans)
         return Probabilities.of(self.model, summed, share)
 
     def _answers(self, of: Probabilities) -> AnyArray:

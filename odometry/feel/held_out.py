@@ -1,17 +1,15 @@
 """What windows get from discriminants that never saw their run."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.feel.evidence import Calibration, Stretches, gathered, stretch_numbers
-from odometry.feel.members import Choice, Members, columns_of, fitted_members, pools_of
+from odometry.feel.members import Choice, Members, fitted_members
 from odometry.feel.table import FeelTable
 from odometry.feel.windows import STEPS
-
-LEAST_DISTANCE = 1e-6  # added, so that a window on a mean has a logarithm
 
 
 @dataclass(frozen=True)
@@ -20,23 +18,35 @@ class Scores:
 
     Attributes
     ----------
-    log_likelihoods : (W, K)
+    log_likelihoods : (W, F, K)
+        By F kinds of classifiers.
     novelty : (W,)
         Squared distance to the nearest terrain by column.
-    nearness : (W,)
-        Log of the squared distance to the nearest terrain in the space of the discriminants.
+    offsets : (W, K, C)
+        From each terrain in the space of the discriminants, see `Members`.
     """
 
     log_likelihoods: FloatArray
     novelty: FloatArray
-    nearness: FloatArray
+    offsets: FloatArray
 
     @classmethod
     def of(cls, members: Members, tables: Sequence[FloatArray]) -> "Scores":
         """By the columns of each discriminant."""
-        squared, within = members.distances(tables)
-        nearness = np.log(within.min(axis=1) + LEAST_DISTANCE)
-        return cls(-squared / 2, squared.min(axis=1) / members.columns, nearness)
+        squared, offsets = members.offsets(tables)
+        likelihoods = members.log_likelihoods(squared, tables)
+        return cls(likelihoods, squared.min(axis=1) / members.columns, offsets)
+
+    def among(self, places: IntArray, count: int) -> "Scores":
+        """The same among `count` terrains, of which these stand at `places`.
+
+        The others are as improbable as the worst of these, and infinitely far.
+        """
+        likelihoods = np.tile(self.log_likelihoods.min(axis=2)[..., None], count)
+        likelihoods[..., places] = self.log_likelihoods
+        offsets = np.full((len(self.novelty), count, self.offsets.shape[2]), np.inf)
+        offsets[:, places] = self.offsets
+        return Scores(likelihoods, self.novelty, offsets)
 
 
 @dataclass(frozen=True)
@@ -54,9 +64,17 @@ class HeldOut:
             Scores(
                 np.concatenate([part.scores.log_likelihoods for part in parts]),
                 np.concatenate([part.scores.novelty for part in parts]),
-                np.concatenate([part.scores.nearness for part in parts]),
+                _stacked([part.scores.offsets for part in parts]),
             ),
         )
+
+
+def _stacked(offsets: Sequence[FloatArray]) -> FloatArray:
+    """Offsets of several folds: zeros where a fold with fewer terrains has fewer directions."""
+    most = max(one.shape[2] for one in offsets)
+    return np.concatenate(
+        [np.pad(one, ((0, 0), (0, 0), (0, most - one.shape[2]))) for one in offsets]
+    )
 
 
 def told_of(
@@ -64,20 +82,18 @@ def told_of(
 ) -> list[HeldOut]:
     """Fit each choice to runs (R,) and judge windows of others; none where nothing is to judge.
 
-    Windows of a terrain that the fitted runs do not hold are left out; a terrain that they do not
-    hold is as improbable as the worst of the others.
+    Windows of a terrain that the fitted runs do not hold are left out.
     """
     names = names_of(table, fitted)
     rows = np.flatnonzero(judged[table.runs])
     rows = rows[np.isin(table.labels[rows].astype(str), names)]
     if not len(rows) or len(names) < 2:
         return []
-    places, found = np.searchsorted(table.names, names), []
-    for scores in scored(table, fitted, names, rows, choices):
-        among = np.tile(scores.log_likelihoods.min(axis=1)[:, None], len(table.names))
-        among[:, places] = scores.log_likelihoods
-        found.append(HeldOut(rows, replace(scores, log_likelihoods=among)))
-    return found
+    places = np.searchsorted(table.names, names)
+    return [
+        HeldOut(rows, scores.among(places, len(table.names)))
+        for scores in scored(table, fitted, names, rows, choices)
+    ]
 
 
 def scored(
@@ -88,10 +104,11 @@ def scored(
     choices: Sequence[Choice],
 ) -> list[Scores]:
     """Fit K terrains to runs (R,) and judge rows of the table, whatever their terrain."""
-    pools, tables = pools_of(table, fitted, names), [one[rows] for one in table.tables]
+    tables = [one[rows] for one in table.tables]
+    members = fitted_members(table, fitted, names, choices)
     return [
-        Scores.of(fitted_members(table, pools, one), columns_of(tables, table.design, one))
-        for one in choices
+        Scores.of(of, one.columns(tables, table.design))
+        for of, one in zip(members, choices, strict=True)
     ]
 
 
@@ -119,7 +136,7 @@ def windows_alone(table: FeelTable, told: HeldOut, calibration: Calibration) -> 
         np.ones(len(told.rows)),
         calibration.evidence(told.scores.log_likelihoods),
         told.scores.novelty,
-        told.scores.nearness,
+        told.scores.offsets,
     )
 
 
@@ -131,3 +148,14 @@ def put_together(
     begins_s = table.begins_s[told.rows]
     parts = stretch_numbers(begins_s, windows.runs, windows.labels, stretch_s)
     return gathered(windows, parts, STEPS)
+
+
+def by_length(
+    table: FeelTable, told: HeldOut, calibration: Calibration, stretch_s: float
+) -> dict[str, Stretches]:
+    """Windows alone, by stretches, and by run, under LENGTHS."""
+    return {
+        "window": windows_alone(table, told, calibration),
+        "stretch": put_together(table, told, calibration, stretch_s),
+        "run": put_together(table, told, calibration, np.inf),
+    }

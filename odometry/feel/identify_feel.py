@@ -8,7 +8,7 @@ from odometry.config import require
 from odometry.feel.assessment import assessed, choice_words
 from odometry.feel.design import Design
 from odometry.feel.folds import days_of, fold_groups
-from odometry.feel.members import fitted_members, pools_of
+from odometry.feel.members import fitted_members
 from odometry.feel.model import FeelModel
 from odometry.feel.notes import notes_of
 from odometry.feel.selection import main_labels, selected
@@ -28,8 +28,8 @@ def identify_feel(
     """Identify how the terrains that runs name feel on one robot.
 
     Log power of bands of the IMU's axes, yaw response and motor currents of windows, whichever all
-    runs have; the effect of speed is taken out; shrunk linear discriminants. Which of the columns
-    (see `menu`), shrinkage, what evidence is worth, and from where on nothing known fits are found
+    runs have; the effect of speed is taken out; shrunk linear discriminants and a logistic
+    regression. Shrinkage, what evidence is worth, and from where on nothing known fits are found
     on runs held out, and the figures of `report` on runs that all of that never saw.
 
     Parameters
@@ -83,7 +83,7 @@ def identify_feel(
         table.names,
         table.design,
         best.choice,
-        fitted_members(table, pools_of(table, everyone, table.names), best.choice),
+        fitted_members(table, everyone, table.names, [best.choice])[0],
         best.calibration,
         best.strangeness,
         best.limits,

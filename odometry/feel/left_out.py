@@ -4,12 +4,20 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.arrays import BoolArray, IntArray
 from odometry.feel.evidence import Calibration, Stretches
-from odometry.feel.held_out import HeldOut, names_of, put_together, scored, windows_alone
+from odometry.feel.held_out import HeldOut, by_length, names_of, scored
 from odometry.feel.members import Choice
 from odometry.feel.scores import class_weights
-from odometry.feel.strangeness import Strangeness, Unseen, fitted_weights, modest_share, terms
+from odometry.feel.strangeness import (
+    LENGTHS,
+    Strangeness,
+    Unseen,
+    farness,
+    fitted_weights,
+    modest_share,
+    terms,
+)
 from odometry.feel.table import FeelTable
 
 
@@ -31,28 +39,18 @@ def fitted_strangeness(
         With the length of a stretch [s].
     """
     choice, calibration, stretch_s = how
-    parts: tuple[list[Unseen], list[Unseen]] = ([], [])
+    parts: dict[str, list[Unseen]] = {length: [] for length in LENGTHS}
     for name in names_of(table, known):
         told = _without(table, folds, known, name, choice)
         if told is None:
             continue
-        lengths = (
-            windows_alone(table, told, calibration),
-            put_together(table, told, calibration, stretch_s),
-        )
-        for found, one in zip(parts, lengths, strict=True):
-            found.append(_unseen(one, calibration, name))
-    if not parts[0]:
+        for length, one in by_length(table, told, calibration, stretch_s).items():
+            parts[length].append(_unseen(one, calibration, name))
+    if not parts["window"]:
         return Strangeness.none()
-    weights = [fitted_weights(of) for of in parts]
-    share = max(modest_share(of, one) for of, one in zip(parts, weights, strict=True))
-    return Strangeness(weights[0], weights[1], share)
-
-
-def terms_of(told: Stretches, calibration: Calibration) -> FloatArray:
-    """The terms of strangeness of stretches (N, TERMS)."""
-    probabilities = calibration.probabilities(told.evidence, told.windows)
-    return terms(probabilities, told.novelty, told.nearness)
+    weights = {length: fitted_weights(of) for length, of in parts.items()}
+    share = max(modest_share(of, weights[length]) for length, of in parts.items())
+    return Strangeness(weights, share)
 
 
 def _without(
@@ -82,4 +80,4 @@ def _unseen(told: Stretches, calibration: Calibration, name: str) -> Unseen:
     weights[is_unseen] = 0.5 / is_unseen.sum()
     weights[~is_unseen] = 0.5 * class_weights(told.labels[~is_unseen])
     sure = calibration.probabilities(told.evidence, told.windows).max(axis=1)
-    return Unseen(terms_of(told, calibration), is_unseen, weights, sure)
+    return Unseen(terms(farness(told.offsets)), is_unseen, weights, sure)

@@ -1,4 +1,4 @@
-"""Discriminants of several layouts of bands and sets of features: their evidence is averaged."""
+"""Classifiers of several sets of features, whose evidence is put together."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,99 +6,151 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.feel.design import SHAPE, SPECTRAL, Design
+from odometry.feel.design import CROSS, SHAPE, SPECTRAL, Design
 from odometry.feel.discriminant import Discriminant, Pooled, fitted_discriminant, pooled
+from odometry.feel.logistic import Logistic, fitted_logistic
 from odometry.feel.motion_features import SPEED_NAMES
 from odometry.feel.table import FeelTable
 
 
 @dataclass(frozen=True)
 class Choice:
-    """Which discriminants there are.
+    """Which classifiers there are.
 
     Attributes
     ----------
     sets : tuple of tuple of str
         Groups of features, one discriminant a set and layout of bands.
     shrinkage : float
+        Of the discriminants.
+    logistic : bool
+        Whether a logistic regression is beside them; files of older versions hold none.
     """
 
     sets: tuple[tuple[str, ...], ...]
     shrinkage: float
+    logistic: bool = True
 
     def parts(self, design: Design) -> list[tuple[int, list[int]]]:
-        """The layout of each discriminant, and where its columns stand in that layout."""
+        """The layout of each classifier, and where its columns stand in that layout.
+
+        The logistic regression is the last, with all groups but CROSS.
+        """
         found = []
         for groups in self.sets:
             small = design.only(groups)
             layouts = range(len(design.layouts)) if small.axes else range(1)
             found += [(layout, design.places(small, layout)) for layout in layouts]
+        if self.logistic:
+            some = {group for groups in self.sets for group in groups} - {CROSS}
+            found.append((0, design.places(design.only(tuple(some)), 0)))
         return found
+
+    def columns(self, tables: Sequence[FloatArray], design: Design) -> list[FloatArray]:
+        """Columns and covariates (W, d + q) of each classifier, from one table a layout."""
+        return [
+            tables[layout][:, [*places, *_covariates(tables[layout].shape[1])]]
+            for layout, places in self.parts(design)
+        ]
 
 
 def averaged_sets(groups: Sequence[str]) -> tuple[tuple[str, ...], ...]:
-    """Vibration with its shape, alone and with each other group: one that misleads is outvoted."""
-    base = tuple(one for one in groups if one in (*SPECTRAL, SHAPE))
+    """Vibration, alone and with each other group: one that misleads is outvoted."""
+    base = tuple(one for one in groups if one in (*SPECTRAL, SHAPE, CROSS))
     others = [one for one in groups if one not in base]
     return (*([base] if base else []), *((*base, one) for one in others))
 
 
 @dataclass(frozen=True)
 class Members:
-    """Discriminants of the same classes.
+    """Classifiers of the same K classes.
 
     Attributes
     ----------
     discriminants : tuple of Discriminant
     usual : tuple of (d + q,)
-        What stands for a number that is missing in a window, one a discriminant.
+        What stands for a number that is missing in a window, one a classifier.
+    logistic : Logistic or None
     """
 
     discriminants: tuple[Discriminant, ...]
     usual: tuple[FloatArray, ...]
+    logistic: Logistic | None = None
 
-    def distances(self, tables: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
-        """Squared Mahalanobis distances (W, K) to each class, the means over discriminants.
+    def offsets(self, tables: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
+        """How far windows are from each class, in standard deviations of a new run's window.
 
-        In all columns, and within the space of the K - 1 discriminants.
+        Returns
+        -------
+        (W, K), (W, K, C)
+            Squared distance in all columns, the mean over discriminants, and the offset in the
+            spaces of all discriminants, one beside the other: the sum of the squares of an offset
+            is the mean over discriminants of the squared distance.
         """
         whole, within = [], []
-        for one, table, usual in zip(self.discriminants, tables, self.usual, strict=True):
-            left = one.left(np.where(np.isfinite(table), table, usual))
+        for one, table, usual in zip(self.discriminants, tables, self.usual, strict=False):
+            left = one.left(filled(table, usual))
             whole.append((left**2).sum(axis=2))
-            within.append(((left @ one.between.T) ** 2).sum(axis=2))
-        return np.asarray(np.mean(whole, axis=0)), np.asarray(np.mean(within, axis=0))
+            within.append(left @ one.between.T)
+        joined = np.concatenate(within, axis=2) / np.sqrt(len(within))
+        return np.asarray(np.mean(whole, axis=0)), np.asarray(joined)
+
+    def log_likelihoods(self, squared: FloatArray, tables: Sequence[FloatArray]) -> FloatArray:
+        """Of W windows by each kind of classifier (W, F, K), with their distances (W, K)."""
+        found = [-squared / 2]
+        if self.logistic is not None:
+            found.append(self.logistic.log_likelihoods(filled(tables[-1], self.usual[-1])))
+        return np.stack(found, axis=1)
 
     @property
     def columns(self) -> float:
-        """Mean number of columns."""
+        """Mean number of columns of a discriminant."""
         return float(np.mean([one.means.shape[1] for one in self.discriminants]))
 
 
-def pools_of(table: FeelTable, runs: BoolArray, names: tuple[str, ...]) -> tuple[Pooled, ...]:
-    """Moments of windows of some of the runs (R,), one a layout."""
-    return tuple(pooled(of.where(runs[of.runs]), names) for of in table.moments)
+def filled(table: FloatArray, usual: FloatArray) -> FloatArray:
+    """A table (W, D) with usual numbers (D,) for NaN."""
+    return np.where(np.isfinite(table), table, usual)
 
 
-def fitted_members(table: FeelTable, pools: Sequence[Pooled], choice: Choice) -> Members:
-    """Fit to the windows of `pools_of` the same table."""
-    parts = [
-        pools[layout].columns([*places, *_covariates(table.tables[layout])])
-        for layout, places in choice.parts(table.design)
-    ]
-    return Members(
-        tuple(fitted_discriminant(one, table.covariates, choice.shrinkage) for one in parts),
-        tuple(one.usual for one in parts),
-    )
+def fitted_members(
+    table: FeelTable, runs: BoolArray, names: tuple[str, ...], choices: Sequence[Choice]
+) -> list[Members]:
+    """Fit each choice to the windows of K terrains in some of the runs (R,).
+
+    A logistic regression is fitted once for all choices that differ in shrinkage alone.
+    """
+    pools = [pooled(of.where(runs[of.runs]), names) for of in table.moments]
+    regressions, found = dict[object, Logistic](), []
+    for choice in choices:
+        of = [
+            pools[layout].columns([*places, *_covariates(table.tables[layout].shape[1])])
+            for layout, places in choice.parts(table.design)
+        ]
+        if choice.logistic and choice.sets not in regressions:
+            regressions[choice.sets] = _regression(table, runs, names, choice, of[-1])
+        discriminants = tuple(
+            fitted_discriminant(one, table.covariates, choice.shrinkage)
+            for one in of[: len(of) - choice.logistic]
+        )
+        regression = regressions[choice.sets] if choice.logistic else None
+        found.append(Members(discriminants, tuple(one.usual for one in of), regression))
+    return found
 
 
-def columns_of(tables: Sequence[FloatArray], design: Design, choice: Choice) -> list[FloatArray]:
-    """The columns of each discriminant and the covariates (W, d + q), from one table a layout."""
-    return [
-        tables[layout][:, [*places, *_covariates(tables[layout])]]
-        for layout, places in choice.parts(design)
-    ]
+def _regression(
+    table: FeelTable, runs: BoolArray, names: tuple[str, ...], choice: Choice, of: Pooled
+) -> Logistic:
+    """Every terrain counts alike, and every run of a terrain."""
+    rows = np.flatnonzero(runs[table.runs] & np.isin(table.labels.astype(str), names))
+    codes = np.searchsorted(names, table.labels[rows].astype(str))
+    parts = np.unique(np.column_stack([codes, table.runs[rows]]), axis=0, return_inverse=True)
+    terrain, part = parts[0][:, 0], parts[1].ravel()
+    shares = 1 / (np.bincount(part) * np.bincount(terrain)[terrain] * len(names))
+    columns = choice.columns([one[rows] for one in table.tables], table.design)[-1]
+    columns = filled(columns, of.usual)
+    return fitted_logistic(columns, codes, shares[part], of, table.covariates)
 
 
-def _covariates(table: FloatArray) -> range:
-    return range(table.shape[1] - len(SPEED_NAMES), table.shape[1])
+def _covariates(width: int) -> range:
+    return range(width - len(SPEED_NAMES), width)

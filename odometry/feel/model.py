@@ -11,7 +11,7 @@ from odometry.feel.design import Design
 from odometry.feel.evidence import Calibration
 from odometry.feel.held_out import Scores
 from odometry.feel.limits import Limits
-from odometry.feel.members import Choice, Members, columns_of
+from odometry.feel.members import Choice, Members
 from odometry.feel.strangeness import Strangeness
 from odometry.feel.windows import FeelWindows
 
@@ -61,12 +61,16 @@ class FeelModel:
     def scores(self, windows: FeelWindows) -> Scores:
         """Of W windows; rows of windows that are not felt are zeros."""
         felt, count = windows.felt, len(windows)
-        found = Scores(np.zeros((count, len(self.names))), np.zeros(count), np.zeros(count))
-        if felt.any():
-            scores = Scores.of(self.members, [one[felt] for one in self._tables(windows)])
-            found.log_likelihoods[felt] = scores.log_likelihoods
-            found.novelty[felt] = scores.novelty
-            found.nearness[felt] = scores.nearness
+        scores = Scores.of(self.members, [one[felt] for one in self._tables(windows)])
+        found = Scores(
+            *(
+                np.zeros((count, *one.shape[1:]))
+                for one in (scores.log_likelihoods, scores.novelty, scores.offsets)
+            )
+        )
+        found.log_likelihoods[felt] = scores.log_likelihoods
+        found.novelty[felt] = scores.novelty
+        found.offsets[felt] = scores.offsets
         return found
 
     def farthest_columns(self, windows: FeelWindows, most: int = 3) -> tuple[str, ...]:
@@ -84,4 +88,4 @@ class FeelModel:
             np.hstack([self.design.matrix(windows, layout), windows.covariates])
             for layout in range(len(self.design.layouts))
         ]
-        return columns_of(tables, self.design, self.choice)
+        return self.choice.columns(tables, self.design)

@@ -1,6 +1,7 @@
 """A model of feel as a file of arrays and JSON, and back."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +12,12 @@ from odometry.errors import OdometryError
 from odometry.feel.design import Design
 from odometry.feel.discriminant import Discriminant
 from odometry.feel.evidence import Calibration
-from odometry.feel.limits import Limits
+from odometry.feel.limits import NEVER, Limits
+from odometry.feel.logistic import Logistic
 from odometry.feel.members import Choice, Members
 from odometry.feel.model import FeelModel
 from odometry.feel.motion_features import SPEED_NAMES
-from odometry.feel.strangeness import TERMS, Strangeness
+from odometry.feel.strangeness import LENGTHS, TERMS, Strangeness
 from odometry.io.array_file import FileKind, read_array_file, write_array_file
 
 
@@ -23,7 +25,7 @@ class FeelFileError(OdometryError):
     """A file of how terrains feel is damaged, foreign, or newer than this program."""
 
 
-FEEL = FileKind("terrain-odometry feel", 2, "model of feel", FeelFileError)
+FEEL = FileKind("terrain-odometry feel", 3, "model of feel", FeelFileError)
 
 
 def write_feel_model(
@@ -43,18 +45,19 @@ def write_feel_model(
     ('grass', 'gravel')
     """
     arrays: dict[str, AnyArray] = {}
-    pairs = zip(model.members.discriminants, model.members.usual, strict=True)
-    for place, (one, usual) in enumerate(pairs):
+    for place, one in enumerate(model.members.discriminants):
         arrays |= {
             f"slopes_{place}": one.slopes,
             f"means_{place}": one.means,
             f"whitening_{place}": one.whitening,
-            f"usual_{place}": usual,
         }
-    arrays |= {
-        "strangeness_window": model.strangeness.window,
-        "strangeness_stretch": model.strangeness.stretch,
-    }
+    arrays |= {f"usual_{place}": usual for place, usual in enumerate(model.members.usual)}
+    if model.members.logistic is not None:
+        arrays |= {
+            "logistic_weights": model.members.logistic.weights,
+            "logistic_levels": model.members.logistic.levels,
+        }
+    arrays |= {f"strangeness_{name}": of for name, of in model.strangeness.weights.items()}
     write_array_file(Path(path), FEEL, _settings(model), arrays, made)
 
 
@@ -100,11 +103,12 @@ def _settings(model: FeelModel) -> dict[str, Any]:
         "top_hz": model.design.top_hz,
         "layouts": list(model.design.layouts),
         "shaped": model.design.shaped,
+        "crossed": model.design.crossed,
         "sets": [list(one) for one in model.choice.sets],
         "shrinkage": model.choice.shrinkage,
         "unknown_share": model.strangeness.share,
         "calibration": vars(model.calibration),
-        "limits": vars(model.limits),
+        "limits": asdict(model.limits),
         "track_width_m": model.track_width_m,
         "robot": model.robot,
         "source": model.source,
@@ -121,29 +125,18 @@ def _model(settings: dict[str, Any], arrays: dict[str, AnyArray]) -> FeelModel:
         float(settings["top_hz"]),
         tuple(map(int, settings["layouts"])),
         bool(settings.get("shaped", False)),
+        bool(settings.get("crossed", False)),
     )
     sets = tuple(tuple(map(str, one)) for one in settings["sets"])
-    choice = Choice(sets, float(settings["shrinkage"]))
-    discriminants, usual = [], []
-    for place, (_, columns) in enumerate(choice.parts(design)):
-        size, covariates = len(columns), len(SPEED_NAMES)
-        shapes = {
-            "slopes": (covariates, size),
-            "means": (len(names), size),
-            "whitening": (size, size),
-            "usual": (size + covariates,),
-        }
-        of = {name: _array(arrays, f"{name}_{place}", shape) for name, shape in shapes.items()}
-        discriminants.append(Discriminant(of["slopes"], of["means"], of["whitening"]))
-        usual.append(of["usual"])
+    choice = Choice(sets, float(settings["shrinkage"]), "logistic_weights" in arrays)
     return FeelModel(
         names,
         design,
         choice,
-        Members(tuple(discriminants), tuple(usual)),
-        Calibration(**{name: float(one) for name, one in settings["calibration"].items()}),
+        _members(arrays, [len(columns) for _, columns in choice.parts(design)], len(names)),
+        _calibration(settings["calibration"]),
         _strangeness(settings, arrays),
-        Limits(**{name: float(one) for name, one in settings["limits"].items()}),
+        _limits(settings["limits"], design.window_s),
         float(settings["track_width_m"]),
         str(settings["robot"]),
         str(settings["source"]),
@@ -152,11 +145,56 @@ def _model(settings: dict[str, Any], arrays: dict[str, AnyArray]) -> FeelModel:
 
 
 def _strangeness(settings: dict[str, Any], arrays: Mapping[str, AnyArray]) -> Strangeness:
-    """Version 1 had none."""
-    if "strangeness_window" not in arrays:
+    """Those of versions 1 and 2 were none, or of other terms."""
+    if "strangeness_run" not in arrays:
         return Strangeness.none()
-    weights = [_array(arrays, f"strangeness_{one}", (TERMS,)) for one in ("window", "stretch")]
-    return Strangeness(weights[0], weights[1], float(settings["unknown_share"]))
+    weights = {name: _array(arrays, f"strangeness_{name}", (TERMS,)) for name in LENGTHS}
+    return Strangeness(weights, float(settings["unknown_share"]))
+
+
+def _members(arrays: Mapping[str, AnyArray], sizes: Sequence[int], terrains: int) -> Members:
+    """Discriminants, and the logistic regression as the last where there is one."""
+    covariates, with_logistic = len(SPEED_NAMES), "logistic_weights" in arrays
+    usual = [
+        _array(arrays, f"usual_{place}", (size + covariates,)) for place, size in enumerate(sizes)
+    ]
+    discriminants = [
+        Discriminant(
+            _array(arrays, f"slopes_{place}", (covariates, size)),
+            _array(arrays, f"means_{place}", (terrains, size)),
+            _array(arrays, f"whitening_{place}", (size, size)),
+        )
+        for place, size in enumerate(sizes[: len(sizes) - with_logistic])
+    ]
+    logistic = None
+    if with_logistic:
+        logistic = Logistic(
+            _array(arrays, "logistic_weights", (sizes[-1] + covariates, terrains)),
+            _array(arrays, "logistic_levels", (terrains,)),
+        )
+    return Members(tuple(discriminants), tuple(usual), logistic)
+
+
+def _calibration(settings: Mapping[str, Any]) -> Calibration:
+    """Versions 1 and 2 had one kind of classifier."""
+    one = [settings["temperature"]] if "temperature" in settings else settings["temperatures"]
+    return Calibration(
+        tuple(map(float, one)), float(settings["outliers"]), float(settings["correlation"])
+    )
+
+
+def _limits(settings: Mapping[str, Any], window_s: float) -> Limits:
+    """Versions 1 and 2 knew no distance of the mean, and judged runs as stretches."""
+    more = (float(settings["slowest_m_s"]), float(settings["fastest_m_s"]), window_s)
+    if "novelty" in settings:
+        novelty, farness = (
+            {name: float(settings[kind][name]) for name in LENGTHS}
+            for kind in ("novelty", "farness")
+        )
+        return Limits(novelty, farness, *more)
+    window, stretch = float(settings["window"]), float(settings["stretch"])
+    novelty = {"window": window, "stretch": stretch, "run": stretch}
+    return Limits(novelty, dict.fromkeys(LENGTHS, NEVER), *more)
 
 
 def _array(arrays: Mapping[str, AnyArray], name: str, shape: tuple[int, ...]) -> FloatArray:

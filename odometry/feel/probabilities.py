@@ -4,10 +4,49 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray
+from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.feel.held_out import Scores
 from odometry.feel.model import FeelModel
-from odometry.feel.strangeness import terms, unknown_probability
+from odometry.feel.strangeness import unknown_probability
 from odometry.feel.windows import STEPS
+
+
+@dataclass(frozen=True)
+class Summed:
+    """Sums over windows, for N answers.
+
+    Attributes
+    ----------
+    evidence, novelty, offsets : (N, K), (N,), (N, K, C)
+        See `evidence.Stretches`.
+    counts : (N,)
+        Of windows; where it is 0 nothing is said.
+    """
+
+    evidence: FloatArray
+    novelty: FloatArray
+    offsets: FloatArray
+    counts: FloatArray
+
+    @classmethod
+    def over(
+        cls, evidence: FloatArray, scores: Scores, felt: BoolArray, spans: IntArray
+    ) -> "Summed":
+        """Over those of W windows that are felt, from the first to before the end of spans (N, 2).
+
+        `evidence` (W, K) is bounded, see `Calibration`.
+        """
+
+        def of(values: FloatArray) -> FloatArray:
+            kept = (values.T * felt).T
+            upto = np.concatenate([np.zeros((1, *values.shape[1:])), np.cumsum(kept, axis=0)])
+            return np.asarray(upto[spans[:, 1]] - upto[spans[:, 0]])
+
+        return cls(of(evidence), of(scores.novelty), of(scores.offsets), of(np.ones(len(felt))))
+
+    def mean(self, sums: FloatArray) -> FloatArray:
+        """Of the windows."""
+        return np.asarray((sums.T / np.maximum(self.counts, 1)).T)
 
 
 @dataclass(frozen=True)
@@ -29,26 +68,13 @@ class Probabilities:
     is_novel: BoolArray
 
     @classmethod
-    def of(cls, model: FeelModel, summed: FloatArray, unknown_share: float) -> "Probabilities":
-        """From sums over overlapping windows, and of what is probable before anything is felt.
-
-        Parameters
-        ----------
-        model : FeelModel
-        summed : (N, K + 3)
-            Of bounded evidence, novelty and nearness, and the number of windows; where that is 0
-            nothing is said.
-        unknown_share : float
-        """
-        counts, limits, weights = summed[:, -1], model.limits, model.strangeness
-        means = summed[:, :-1] / np.maximum(counts, 1)[:, None]
-        windows = np.maximum((counts + STEPS - 1) / STEPS, 1.0)
-        among = model.calibration.probabilities(means[:, :-2], windows)
-        novelty, nearness = means[:, -2], means[:, -1]
-        single, any_felt = counts <= 1, counts > 0
-        rows = terms(among, novelty, nearness)
-        odds = np.where(single, rows @ weights.window, rows @ weights.stretch)
-        far = novelty > np.where(single, limits.window, limits.stretch)
-        strange = odds > np.where(single, limits.strange_window, limits.strange_stretch)
+    def of(cls, model: FeelModel, summed: Summed, unknown_share: float) -> "Probabilities":
+        """From sums over overlapping windows, and of what is probable before anything is felt."""
+        windows = np.maximum((summed.counts + STEPS - 1) / STEPS, 1.0)
+        among = model.calibration.probabilities(summed.mean(summed.evidence), windows)
+        novelty, offsets = summed.mean(summed.novelty), summed.mean(summed.offsets)
+        odds = model.limits.log_odds(model.strangeness, windows, offsets)
+        any_felt = summed.counts > 0
         unknown = unknown_probability(np.where(any_felt, odds, 0.0), unknown_share)
-        return cls(among * (1 - unknown)[:, None], unknown, any_felt & (far | strange))
+        refused = model.limits.refused(windows, novelty, offsets)
+        return cls(among * (1 - unknown)[:, None], unknown, any_felt & refused)

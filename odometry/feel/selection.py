@@ -5,23 +5,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
-from odometry.feel.evidence import (
-    Calibration,
-    Stretches,
-    calibrated_stretches,
-    calibrated_windows,
-)
+from odometry.arrays import AnyArray, BoolArray, IntArray
+from odometry.feel.evidence import Calibration, calibrated_stretches, calibrated_windows
 from odometry.feel.folds import FOLDS, stratified_folds
-from odometry.feel.held_out import HeldOut, held_out, put_together, windows_alone
-from odometry.feel.left_out import fitted_strangeness, terms_of
-from odometry.feel.limits import Limits
+from odometry.feel.held_out import HeldOut, by_length, held_out, put_together
+from odometry.feel.left_out import fitted_strangeness
+from odometry.feel.limits import STRETCH_S, Limits
 from odometry.feel.members import Choice, averaged_sets
 from odometry.feel.strangeness import Strangeness
 from odometry.feel.table import FeelTable
 
 SHRINKAGES = (0.03, 0.1, 0.3)
-STRETCH_S = 10.0
 MOST_FOLDS = 60  # of runs held out one by one; more runs are dealt into so many folds
 
 
@@ -65,10 +59,6 @@ class Selected:
     strangeness: Strangeness
     limits: Limits
 
-    def log_odds(self, told: Stretches, weights: FloatArray) -> FloatArray:
-        """Of "never felt" (N,), by weights of `strangeness`."""
-        return np.asarray(terms_of(told, self.calibration) @ weights)
-
 
 def selected(
     tables: Sequence[FeelTable], groups: IntArray, known: BoolArray, rng: np.random.Generator
@@ -94,7 +84,9 @@ def selected(
     left_out = _folds(table, groups, known, FOLDS, rng)
     how = (best.choice, best.calibration, STRETCH_S)
     strangeness = fitted_strangeness(table, left_out, known, how)
-    limits = _limits(table, known, best, strangeness)
+    lengths = by_length(table, best.told, best.calibration, STRETCH_S)
+    speeds_m_s = table.speeds_m_s[known[table.runs]]
+    limits = Limits.of(lengths, speeds_m_s, table.design.window_s)
     return Selected(place, best.choice, best.calibration, strangeness, limits)
 
 
@@ -113,16 +105,6 @@ def _best(table: FeelTable, folds: IntArray, known: BoolArray) -> Judged:
     told = held_out(table, folds, known, choices)
     tried = [judged(table, of, one) for of, one in zip(told, choices, strict=True)]
     return min(tried, key=lambda one: one.window_loss)
-
-
-def _limits(table: FeelTable, known: BoolArray, best: Judged, strangeness: Strangeness) -> Limits:
-    windows = windows_alone(table, best.told, best.calibration)
-    stretches = put_together(table, best.told, best.calibration, STRETCH_S)
-    sides = [
-        (told.labels, told.novelty, terms_of(told, best.calibration) @ weights)
-        for told, weights in ((windows, strangeness.window), (stretches, strangeness.stretch))
-    ]
-    return Limits.of(sides[0], sides[1], table.speeds_m_s[known[table.runs]])
 
 
 def _folds(

@@ -1,6 +1,6 @@
-"""How much more a window looks like those of terrains that a model does not know."""
+"""How much more probable a terrain that a model does not know is, by how far windows are."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,10 +9,11 @@ from scipy.special import expit
 
 from odometry.arrays import BoolArray, FloatArray
 
-RIDGE = 1e-2  # on the weights of standardised terms
+LENGTHS = ("window", "stretch", "run")
+RIDGE = 1e-2  # on the weight of the standardised distance
 LEAST = 1e-12  # added below logarithms
-TERMS = 4
-LEAST_SCALE = 0.3  # of a term: one that hardly varies gets no steep weight
+TERMS = 2
+LEAST_SCALE = 0.3  # of the distance: one that hardly varies gets no steep weight
 SHARES = (0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5)  # the least one that keeps the two below
 BOLD = 0.9  # probability of a known terrain which
 MOST_BOLD = 0.05  # of the windows of a terrain left out may get
@@ -20,29 +21,28 @@ MOST_BOLD = 0.05  # of the windows of a terrain left out may get
 
 @dataclass(frozen=True)
 class Strangeness:
-    """What tells terrains that a model does not know.
+    """What distinguishes terrains that a model does not know.
 
     Attributes
     ----------
-    window, stretch : (TERMS,)
-        Weights of `terms`, of single windows and of stretches. Zeros: cannot be told.
+    weights : Mapping of str to (TERMS,)
+        Weights of `terms` for each of LENGTHS. Zeros: cannot be distinguished.
     share : float
         How probable such a terrain is before anything is felt.
     """
 
-    window: FloatArray
-    stretch: FloatArray
+    weights: Mapping[str, FloatArray]
     share: float
 
     @classmethod
     def none(cls) -> "Strangeness":
         """Where nothing is known of it."""
-        return cls(np.zeros(TERMS), np.zeros(TERMS), SHARES[0])
+        return cls({name: np.zeros(TERMS) for name in LENGTHS}, SHARES[0])
 
 
 @dataclass(frozen=True)
 class Unseen:
-    """Terms of N windows or stretches while one terrain was left out.
+    """Terms of N windows, stretches or runs while one terrain was left out.
 
     Attributes
     ----------
@@ -61,14 +61,21 @@ class Unseen:
     sure: FloatArray
 
 
-def terms(probabilities: FloatArray, novelty: FloatArray, nearness: FloatArray) -> FloatArray:
-    """What grows with strangeness (N, TERMS), from probabilities (N, K) and distances (N,).
+def terms(farness: FloatArray) -> FloatArray:
+    """A constant and the logarithm of the squared distance (N, TERMS), see `farness`."""
+    return np.column_stack([np.ones(len(farness)), np.log(farness + LEAST)])
 
-    A constant, the distance in all columns, that in the space of the discriminants, and the doubt
-    among the known terrains.
+
+def farness(offsets: FloatArray) -> FloatArray:
+    """Squared distance (N,) of the mean of windows to the nearest terrain.
+
+    Parameters
+    ----------
+    offsets : (N, K, C)
+        From each terrain in the space of discriminants, means over windows: what windows of one
+        stretch have in common stays, while what differs between them averages out.
     """
-    doubt = -np.log(probabilities.max(axis=1) + LEAST)
-    return np.column_stack([np.ones(len(doubt)), np.log(novelty + LEAST), nearness, doubt])
+    return np.asarray((offsets**2).sum(axis=2).min(axis=1))
 
 
 def fitted_weights(parts: Sequence[Unseen]) -> FloatArray:

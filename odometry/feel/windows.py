@@ -8,7 +8,7 @@ from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.errors import RunFolderError
 from odometry.feel.motion_features import current_features, speed_covariates, yaw_features
 from odometry.feel.signals import AXES, FeelSignals, feel_signals
-from odometry.feel.spectra import power_densities
+from odometry.feel.spectra import cross_densities
 from odometry.run import UNKNOWN, Run
 
 SHORTEST_S, LONGEST_S = 1.0, 5.0
@@ -37,8 +37,8 @@ class FeelWindows:
         Mean size of the tread speeds.
     covariates : (W, 4)
         How it was driven, see `speed_covariates`.
-    densities : (W, A, F)
-        Power spectral densities of `axes`, steps of `step_hz`.
+    densities : (W, A (A + 1) / 2, F)
+        Cross spectral densities of `axes`, see `spectra`; steps of `step_hz`.
     motion : dict of str to (W, f)
         "yaw" and "currents", where the run has them.
     axes : tuple of str
@@ -140,7 +140,7 @@ def feel_windows(run: Run, window_s: float = 2.0) -> FeelWindows:
 def _densities(signals: FeelSignals, axes: tuple[str, ...], rows: IntArray) -> FloatArray:
     table = np.stack([signals.axes[name] for name in axes])
     parts = [
-        power_densities(np.swapaxes(table[:, rows[at : at + CHUNK]], 0, 1), signals.rate_hz)
+        cross_densities(np.swapaxes(table[:, rows[at : at + CHUNK]], 0, 1), signals.rate_hz)
         for at in range(0, max(len(rows), 1), CHUNK)
     ]
     return np.concatenate(parts)

@@ -62,6 +62,11 @@ def _more(felt: Felt) -> Iterator[str]:
         share = (felt.answers == name).mean()
         if share > OFTEN:
             yield f"In {100 * share:.0f} % of the windows {word}."
+    if felt.model.members.logistic is None:
+        yield (
+            "The model is of an older version, which hardly distinguishes terrains that it does "
+            "not know: identify it again."
+        )
     robot = felt.run.robot.name
     if robot and felt.model.robot and robot != felt.model.robot:
         yield f"The model is of {felt.model.robot!r}, the run of {robot!r}: be wary of the answers."

@@ -71,6 +71,7 @@ def test_terrains_that_were_driven_at_their_own_speed_are_said():
 def test_a_terrain_never_felt_is_unknown(model):
     felt = follow_feel(drive("grates", 700), model)
     assert (felt.answers == UNKNOWN).mean() > 0.9
+    assert felt.answer_of_run[0] == UNKNOWN
     assert is_unlike(felt)
     assert any("nothing that the model" in line for line in sentences(felt))
 

@@ -1,5 +1,6 @@
 import json
 import zipfile
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,11 +13,14 @@ from odometry.feel.model_file import (
     read_feel_model,
     write_feel_model,
 )
+from odometry.feel.words import sentences
 from odometry.io.csv_table import read_csv_table
 from odometry.report.feel_page import write_feel_report
 from odometry.run import Run
 from odometry.shipped import shipped_data
 from tests.odometry.feel.feel_drives import drive
+
+FIRST_ROWS, FIRST_GIVEN = [0, 10, 30, 50], [0.44364731, 0.44957747, 0.45369787, 0.46806786]
 
 
 def test_a_model_comes_back_and_answers_alike(model, tmp_path):
@@ -31,14 +35,27 @@ def test_a_model_comes_back_and_answers_alike(model, tmp_path):
     assert (tmp_path / "a.feel").read_bytes() == (tmp_path / "b.feel").read_bytes()
 
 
-def test_a_model_of_the_first_version_is_read_and_is_modest():
-    """Written by 0.10, which knew no strangeness."""
-    old = read_feel_model(shipped_data() / "feel" / "demo.feel")
-    assert not old.strangeness.window.any()
+def test_a_model_of_the_first_version_is_read_and_is_modest(tmp_path):
+    """Written by 0.10, which knew no distance of the mean: its answers are those that it gave."""
+    old = read_feel_model(Path(__file__).parent / "version_0_10.feel")
+    assert not any(of.any() for of in old.strangeness.weights.values())
+    assert old.members.logistic is None
     run = Run.read(shipped_data() / "runs" / "demo")
     felt = follow_feel(run, old)
     np.testing.assert_allclose(felt.unknown, 0.1)
     np.testing.assert_allclose(felt.probabilities.sum(axis=1), 0.9)
+    np.testing.assert_allclose(felt.probabilities[FIRST_ROWS, 0], FIRST_GIVEN, atol=1e-6)
+    assert any("older version" in line for line in sentences(felt))
+    write_feel_model(tmp_path / "again.feel", old)
+    again = follow_feel(run, read_feel_model(tmp_path / "again.feel"))
+    np.testing.assert_array_equal(again.lasting_probabilities, felt.lasting_probabilities)
+
+
+def test_the_shipped_model_is_of_this_version():
+    model = read_feel_model(shipped_data() / "feel" / "demo.feel")
+    run = Run.read(shipped_data() / "runs" / "demo")
+    assert model.members.logistic is not None
+    assert not any("older version" in one for one in sentences(follow_feel(run, model)))
 
 
 def test_damage_is_told(model, tmp_path):
@@ -61,8 +78,8 @@ def test_what_was_felt_is_written_and_shown(model, tmp_path):
     write_feel_report(felt, tmp_path)
     table = read_csv_table(tmp_path / "feel.csv", ("t", "label", "probability_snow"))
     assert len(table) == len(felt.windows)
-    told = [table[name] for name in table.columns if name.startswith("probability_")]
-    np.testing.assert_allclose(np.sum(told, axis=0), 1.0, atol=1e-6)
+    columns = [table[name] for name in table.columns if name.startswith("probability_")]
+    np.testing.assert_allclose(np.sum(columns, axis=0), 1.0, atol=1e-6)
     result = json.loads((tmp_path / "result.json").read_text())
     assert result["run_probabilities"]["snow"] > 0.8
     assert result["balanced_accuracy"]["stretch"] > 0.8
