@@ -86,11 +86,11 @@ def contradictions(
         Contradiction(
             float(moments_s[first]),
             float(moments_s[last]),
-            *told,
+            *by_source,
             _mean(share[first : last + 1]),
             _mean(sure[first : last + 1]),
         )
-        for told, first, last in _spans(moments_s, list(rows))
+        for by_source, first, last in _spans(moments_s, list(rows))
     ]
     return tuple(found)
 
@@ -162,14 +162,18 @@ def _names_at(motion: NamedTerrain, moments_s: FloatArray) -> AnyArray:
 def _spans(moments_s: FloatArray, rows: Sequence[Names]) -> Iterator[tuple[Names, int, int]]:
     """Where sources differ: what they name, first and last row; short breaks are bridged."""
     found: list[tuple[Names, int, int]] = []
-    for told, group in groupby(range(len(rows)), key=lambda row: rows[row]):
-        if not differ(*told):
+    for by_source, group in groupby(range(len(rows)), key=lambda row: rows[row]):
+        if not differ(*by_source):
             continue
         first, *others = group
         last = others[-1] if others else first
-        if found and found[-1][0] == told and moments_s[first] <= moments_s[found[-1][2]] + BREAK_S:
+        if (
+            found
+            and found[-1][0] == by_source
+            and moments_s[first] <= moments_s[found[-1][2]] + BREAK_S
+        ):
             first = found.pop()[1]
-        found.append((told, first, last))
+        found.append((by_source, first, last))
     yield from (one for one in found if moments_s[one[2]] - moments_s[one[1]] >= LASTS_S)
 
 

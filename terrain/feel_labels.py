@@ -20,7 +20,7 @@ class FeelLabels:
     ----------
     names : tuple of str
         Of the terrains of the model of feel.
-    seen_names : tuple of str
+    image_names : tuple of str
         Of the terrains that the camera can name.
     ends_s : (N,)
     probabilities : (N, K)
@@ -28,19 +28,19 @@ class FeelLabels:
     """
 
     names: tuple[str, ...]
-    seen_names: tuple[str, ...]
+    image_names: tuple[str, ...]
     ends_s: FloatArray
     probabilities: FloatArray
 
     @classmethod
-    def of(cls, felt: Felt, seen_names: tuple[str, ...] = ()) -> "FeelLabels":
+    def of(cls, felt: Felt, image_names: tuple[str, ...] = ()) -> "FeelLabels":
         """Windows that do not overlap; those that fit no terrain are none."""
         windows = felt.windows
         rows = np.arange(0, len(windows), STEPS)
         rows = rows[windows.felt[rows] & (felt.answers[rows] != UNKNOWN)]
         given = felt.probabilities[rows]
         given = given + felt.unknown[rows, None] / given.shape[1]  # of none: the same for all
-        return cls(felt.model.names, seen_names, felt.stamps_s[rows], given)
+        return cls(felt.model.names, image_names, felt.stamps_s[rows], given)
 
     def between(
         self, after_s: float, upto_s: float, pose: FloatArray, travel_m: float
@@ -64,7 +64,7 @@ class FeelLabels:
                 travel_m,
                 pose[:2],
                 0.0,
-                widened(given, self.seen_names),
+                widened(given, self.image_names),
                 by_feel=True,
             )
 

@@ -10,7 +10,7 @@ from odometry.arrays import AnyArray, FloatArray, IntArray
 from odometry.feel.design import CROSS, SHAPE
 from odometry.feel.evidence import calibrated_windows
 from odometry.feel.folds import FOLDS, stratified_folds
-from odometry.feel.held_out import HeldOut, by_length, held_out, names_of, told_of
+from odometry.feel.held_out import HeldOut, by_length, held_out, judged_runs, names_of
 from odometry.feel.limits import STRETCH_S
 from odometry.feel.members import Choice, averaged_sets
 from odometry.feel.scores import (
@@ -44,14 +44,14 @@ class Answers:
 
     def right(self, names: Sequence[str]) -> AnyArray:
         """Whether the most probable terrain (N,) is the true one."""
-        told = np.array(names, dtype=object)[self.probabilities.argmax(axis=1)]
-        return np.asarray(told == self.labels)
+        answers = np.array(names, dtype=object)[self.probabilities.argmax(axis=1)]
+        return np.asarray(answers == self.labels)
 
     def to_table(self, names: Sequence[str]) -> dict[str, Any]:
         """The figures, as plain values."""
         right = self.right(names)
-        told = np.array(names, dtype=object)[self.probabilities.argmax(axis=1)]
-        counts = confusion(self.labels, told, names)
+        answers = np.array(names, dtype=object)[self.probabilities.argmax(axis=1)]
+        counts = confusion(self.labels, answers, names)
         rows = sorted(set(self.labels.tolist()))
         return {
             "answers": len(right),
@@ -119,12 +119,12 @@ def assessed(
             continue
         best = selected(tables, groups, known, rng)
         table = tables[best.place]
-        judged = told_of(table, known, ~known, [best.choice])
+        judged = judged_runs(table, known, ~known, [best.choice])
         if not judged:
             continue
-        (told,) = judged
+        (held,) = judged
         choices.append((table.design.window_s, best.choice))
-        for name, one in _answers(table, told, best).items():
+        for name, one in _answers(table, held, best).items():
             parts[name].append(one)
     joined = {name: _joined(of) for name, of in parts.items()}
     return Assessment(names, joined, tuple(choices), _by_groups(tables[0], fold_of))
@@ -135,7 +135,7 @@ def choice_words(window_s: float, choice: Choice) -> str:
     return f"windows of {window_s:g} s, shrinkage {choice.shrinkage:g}"
 
 
-def _answers(table: FeelTable, told: HeldOut, best: Selected) -> dict[str, Answers]:
+def _answers(table: FeelTable, held: HeldOut, best: Selected) -> dict[str, Answers]:
     return {
         name: Answers(
             of.labels,
@@ -143,7 +143,7 @@ def _answers(table: FeelTable, told: HeldOut, best: Selected) -> dict[str, Answe
             best.calibration.probabilities(of.evidence, of.windows),
             best.limits.refused(of.windows, of.novelty, of.offsets),
         )
-        for name, of in by_length(table, told, best.calibration, STRETCH_S).items()
+        for name, of in by_length(table, held, best.calibration, STRETCH_S).items()
     }
 
 
@@ -167,10 +167,10 @@ def _by_groups(table: FeelTable, folds: IntArray) -> dict[str, float]:
     found = {}
     for name, groups in sets.items():
         choice = Choice(averaged_sets(groups), SHRINKAGES[0])
-        (told,) = held_out(table, folds, everyone, [choice])
-        labels = table.labels[told.rows]
-        _, calibration = calibrated_windows(told.scores.log_likelihoods, labels, table.names)
-        evidence = calibration.evidence(told.scores.log_likelihoods)
+        (held,) = held_out(table, folds, everyone, [choice])
+        labels = table.labels[held.rows]
+        _, calibration = calibrated_windows(held.scores.log_likelihoods, labels, table.names)
+        evidence = calibration.evidence(held.scores.log_likelihoods)
         best = np.array(table.names, dtype=object)[evidence.argmax(axis=1)]
         found[name] = balanced_accuracy(labels, best == labels)
     return found | {"speed alone": speed_alone(table, folds)}

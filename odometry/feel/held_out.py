@@ -77,7 +77,7 @@ def _stacked(offsets: Sequence[FloatArray]) -> FloatArray:
     )
 
 
-def told_of(
+def judged_runs(
     table: FeelTable, fitted: BoolArray, judged: BoolArray, choices: Sequence[Choice]
 ) -> list[HeldOut]:
     """Fit each choice to runs (R,) and judge windows of others; none where nothing is to judge.
@@ -122,40 +122,40 @@ def held_out(
 ) -> list[HeldOut]:
     """Hold out each fold (R,) of the `known` runs (R,) in turn; one a choice."""
     parts = [
-        told_of(table, known & (folds != fold), known & (folds == fold), choices)
+        judged_runs(table, known & (folds != fold), known & (folds == fold), choices)
         for fold in np.unique(folds[known])
     ]
     return [HeldOut.joined(of) for of in zip(*(part for part in parts if part), strict=True)]
 
 
-def windows_alone(table: FeelTable, told: HeldOut, calibration: Calibration) -> Stretches:
+def windows_alone(table: FeelTable, held: HeldOut, calibration: Calibration) -> Stretches:
     """Each window by itself."""
     return Stretches(
-        table.labels[told.rows],
-        table.runs[told.rows],
-        np.ones(len(told.rows)),
-        calibration.evidence(told.scores.log_likelihoods),
-        told.scores.novelty,
-        told.scores.offsets,
+        table.labels[held.rows],
+        table.runs[held.rows],
+        np.ones(len(held.rows)),
+        calibration.evidence(held.scores.log_likelihoods),
+        held.scores.novelty,
+        held.scores.offsets,
     )
 
 
 def put_together(
-    table: FeelTable, told: HeldOut, calibration: Calibration, stretch_s: float
+    table: FeelTable, held: HeldOut, calibration: Calibration, stretch_s: float
 ) -> Stretches:
     """Windows by stretches; with `stretch_s` infinite, by run and terrain."""
-    windows = windows_alone(table, told, calibration)
-    begins_s = table.begins_s[told.rows]
+    windows = windows_alone(table, held, calibration)
+    begins_s = table.begins_s[held.rows]
     parts = stretch_numbers(begins_s, windows.runs, windows.labels, stretch_s)
     return gathered(windows, parts, STEPS)
 
 
 def by_length(
-    table: FeelTable, told: HeldOut, calibration: Calibration, stretch_s: float
+    table: FeelTable, held: HeldOut, calibration: Calibration, stretch_s: float
 ) -> dict[str, Stretches]:
     """Windows alone, by stretches, and by run, under LENGTHS."""
     return {
-        "window": windows_alone(table, told, calibration),
-        "stretch": put_together(table, told, calibration, stretch_s),
-        "run": put_together(table, told, calibration, np.inf),
+        "window": windows_alone(table, held, calibration),
+        "stretch": put_together(table, held, calibration, stretch_s),
+        "run": put_together(table, held, calibration, np.inf),
     }

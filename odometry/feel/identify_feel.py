@@ -1,4 +1,4 @@
-"""Identify how terrains feel from runs, and how well that is told on runs held out."""
+"""Identify how terrains feel from runs, and how well they are distinguished on runs held out."""
 
 from collections.abc import Sequence
 

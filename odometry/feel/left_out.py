@@ -41,10 +41,10 @@ def fitted_strangeness(
     choice, calibration, stretch_s = how
     parts: dict[str, list[Unseen]] = {length: [] for length in LENGTHS}
     for name in names_of(table, known):
-        told = _without(table, folds, known, name, choice)
-        if told is None:
+        held = _without(table, folds, known, name, choice)
+        if held is None:
             continue
-        for length, one in by_length(table, told, calibration, stretch_s).items():
+        for length, one in by_length(table, held, calibration, stretch_s).items():
             parts[length].append(_unseen(one, calibration, name))
     if not parts["window"]:
         return Strangeness.none()
@@ -74,10 +74,10 @@ def _parts(
             yield HeldOut(rows, scored(table, fitted, others, rows, [choice])[0])
 
 
-def _unseen(told: Stretches, calibration: Calibration, name: str) -> Unseen:
-    is_unseen = told.labels == name
-    weights = np.zeros(len(told))
+def _unseen(held: Stretches, calibration: Calibration, name: str) -> Unseen:
+    is_unseen = held.labels == name
+    weights = np.zeros(len(held))
     weights[is_unseen] = 0.5 / is_unseen.sum()
-    weights[~is_unseen] = 0.5 * class_weights(told.labels[~is_unseen])
-    sure = calibration.probabilities(told.evidence, told.windows).max(axis=1)
-    return Unseen(terms(farness(told.offsets)), is_unseen, weights, sure)
+    weights[~is_unseen] = 0.5 * class_weights(held.labels[~is_unseen])
+    sure = calibration.probabilities(held.evidence, held.windows).max(axis=1)
+    return Unseen(terms(farness(held.offsets)), is_unseen, weights, sure)

@@ -46,11 +46,11 @@ def bootstrap_interval(
     return float(low), float(high)
 
 
-def confusion(labels: AnyArray, told: AnyArray, columns: Sequence[str]) -> IntArray:
+def confusion(labels: AnyArray, answers: AnyArray, columns: Sequence[str]) -> IntArray:
     """Counts by true name and answer, (rows, columns); the rows are the first names."""
     names = sorted(set(labels.astype(str).tolist()))
     return np.array(
-        [[np.sum((labels == name) & (told == one)) for one in columns] for name in names]
+        [[np.sum((labels == name) & (answers == one)) for one in columns] for name in names]
     )
 
 

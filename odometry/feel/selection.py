@@ -29,14 +29,14 @@ class Judged:
     calibration : Calibration
     window_loss, stretch_loss : float
         Log loss, every terrain counting alike.
-    told : HeldOut
+    held : HeldOut
     """
 
     choice: Choice
     calibration: Calibration
     window_loss: float
     stretch_loss: float
-    told: HeldOut
+    held: HeldOut
 
 
 @dataclass(frozen=True)
@@ -84,26 +84,26 @@ def selected(
     left_out = _folds(table, groups, known, FOLDS, rng)
     how = (best.choice, best.calibration, STRETCH_S)
     strangeness = fitted_strangeness(table, left_out, known, how)
-    lengths = by_length(table, best.told, best.calibration, STRETCH_S)
+    lengths = by_length(table, best.held, best.calibration, STRETCH_S)
     speeds_m_s = table.speeds_m_s[known[table.runs]]
     limits = Limits.of(lengths, speeds_m_s, table.design.window_s)
     return Selected(place, best.choice, best.calibration, strangeness, limits)
 
 
-def judged(table: FeelTable, told: HeldOut, choice: Choice) -> Judged:
+def judged(table: FeelTable, held: HeldOut, choice: Choice) -> Judged:
     """A choice with its calibration, by windows held out."""
-    labels = table.labels[told.rows]
-    loss, windows = calibrated_windows(told.scores.log_likelihoods, labels, table.names)
-    stretches = put_together(table, told, windows, STRETCH_S)
+    labels = table.labels[held.rows]
+    loss, windows = calibrated_windows(held.scores.log_likelihoods, labels, table.names)
+    stretches = put_together(table, held, windows, STRETCH_S)
     stretch_loss, both = calibrated_stretches(windows, stretches, table.names)
-    return Judged(choice, both, loss, stretch_loss, told)
+    return Judged(choice, both, loss, stretch_loss, held)
 
 
 def _best(table: FeelTable, folds: IntArray, known: BoolArray) -> Judged:
     sets = averaged_sets(table.design.groups)
     choices = [Choice(sets, one) for one in SHRINKAGES]
-    told = held_out(table, folds, known, choices)
-    tried = [judged(table, of, one) for of, one in zip(told, choices, strict=True)]
+    held = held_out(table, folds, known, choices)
+    tried = [judged(table, of, one) for of, one in zip(held, choices, strict=True)]
     return min(tried, key=lambda one: one.window_loss)
 
 

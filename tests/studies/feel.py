@@ -14,7 +14,7 @@ from odometry.feel.assessment import LENGTHS, assessed
 from odometry.feel.design import Design
 from odometry.feel.folds import stratified_folds
 from odometry.feel.follow import FeelConfig
-from odometry.feel.held_out import HeldOut, by_length, scored, told_of, windows_alone
+from odometry.feel.held_out import HeldOut, by_length, judged_runs, scored, windows_alone
 from odometry.feel.limits import STRETCH_S
 from odometry.feel.scores import area, balanced_accuracy, bootstrap_interval
 from odometry.feel.selection import main_labels, selected
@@ -152,15 +152,15 @@ def other_speeds(table, runs):
     for name, fitted in (("slow", slow), ("fast", ~slow)):
         known = set(table.labels[fitted[table.runs]].tolist())
         best = selected([table], groups, fitted, np.random.default_rng(0))
-        (judged,) = told_of(table, fitted, ~fitted, [best.choice])
-        told = windows_alone(table, judged, best.calibration)
-        answer = np.array(table.names, dtype=object)[told.evidence.argmax(axis=1)]
-        right = answer == told.labels
-        low, high = bootstrap_interval(told.labels, right, told.runs)
-        own = balanced_accuracy(told.labels, right)
+        (judged,) = judged_runs(table, fitted, ~fitted, [best.choice])
+        held = windows_alone(table, judged, best.calibration)
+        answer = np.array(table.names, dtype=object)[held.evidence.argmax(axis=1)]
+        right = answer == held.labels
+        low, high = bootstrap_interval(held.labels, right, held.runs)
+        own = balanced_accuracy(held.labels, right)
         print(
             f"{name} runs train ({', '.join(sorted(known))}), the others are judged: {own:.3f} "
-            f"({low:.3f} to {high:.3f}), of {len(set(told.labels.tolist()))} terrains; speed alone "
+            f"({low:.3f} to {high:.3f}), of {len(set(held.labels.tolist()))} terrains; speed alone "
             f"{speed_alone(table, fitted.astype(int)):.3f} (both ways)"
         )
 

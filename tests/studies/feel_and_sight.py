@@ -77,7 +77,7 @@ def main():
                     for seed, course, of in zip(seeds, courses, felt, strict=True)
                 ]
             )
-            told(f"sight right {name} of the time", shares)
+            say(f"sight right {name} of the time", shares)
 
 
 def shaken(course, seed):
@@ -137,7 +137,7 @@ def judged(course, felt, accuracy, seed):
     return found
 
 
-def told(title, shares):
+def say(title, shares):
     """Means, and what both gain over each with 5 to 95 % over drives."""
     rng = np.random.default_rng(0)
     drawn = shares[rng.integers(len(shares), size=(2000, len(shares)))].mean(axis=1)

@@ -18,11 +18,11 @@ NAMES = ("a", "b", "c")
 @given(st.integers(0, 1000))
 def test_balanced_accuracy_and_area_are_those_of_scikit_learn(seed):
     rng = np.random.default_rng(seed)
-    labels, told = (rng.choice(NAMES, size=60, p=[0.6, 0.3, 0.1]) for _ in range(2))
+    labels, answers = (rng.choice(NAMES, size=60, p=[0.6, 0.3, 0.1]) for _ in range(2))
     if len(set(labels)) == len(NAMES):
-        expected = balanced_accuracy_score(labels, told)
-        assert balanced_accuracy(labels, labels == told) == pytest.approx(expected)
-        assert confusion(labels, told, NAMES).sum() == 60
+        expected = balanced_accuracy_score(labels, answers)
+        assert balanced_accuracy(labels, labels == answers) == pytest.approx(expected)
+        assert confusion(labels, answers, NAMES).sum() == 60
     scores, unknown = rng.integers(0, 8, size=60).astype(float), np.arange(60) < 20
     expected = roc_auc_score(unknown, scores)
     assert area(scores[~unknown], scores[unknown]) == pytest.approx(expected)
