@@ -9,6 +9,7 @@ from copy import copy
 from typing import Protocol, Self
 
 import numpy as np
+from scipy.spatial.distance import cdist
 from sklearn.neighbors import KNeighborsClassifier
 from sklearn.pipeline import make_pipeline
 
@@ -16,7 +17,7 @@ from odometry.arrays import AnyArray, FloatArray, IntArray
 from terrain.classification.fourier import MOST, FourierFeatures
 from terrain.classification.metric import AppearanceMetric, ClippedScaler, DiscriminantMetric
 from terrain.classification.nearest import nearest
-from terrain.classification.novelty import NEIGHBOURS, LocalSparsity
+from terrain.classification.novelty import ASKED, NEIGHBOURS, LocalSparsity, classes_left_open
 
 
 class Neighbours(Protocol):
@@ -107,13 +108,18 @@ class DiscriminantNeighbours:
     The discriminants are linear in scaled features and, where they may curve, in random Fourier
     features of these.
 
-    A distance is the mean distance to the nearest samples among the discriminants, times the
-    local sparsity among whitened principal components. The first factor asks whether a patch is
-    like any class in what tells classes apart, the second whether it looks like anything seen.
-    Altered copies vote, but only what was really seen makes a patch familiar.
+    A distance is that to the nearest mean of a class among the discriminants, times the number of
+    classes that the neighbours' vote leaves open, times the square of the local sparsity among
+    whitened principal components. The first asks whether a patch is like any class in what tells
+    classes apart, the second whether its neighbours agree, the third whether it looks like
+    anything seen. Altered copies vote, but only what was really seen makes a patch familiar.
+
+    Models of files before version 0.12 have no `class_means_`: their distance is the mean distance
+    to the nearest samples among the discriminants, times the local sparsity.
     """
 
     class_weights_: FloatArray
+    class_means_: FloatArray | None
 
     def __init__(self, cosines: int = MOST) -> None:
         self._cosines = cosines
@@ -125,7 +131,12 @@ class DiscriminantNeighbours:
         )
         self.pipeline_.fit(features, codes)
         self.class_weights_ = 1.0 / np.bincount(codes)
-        scaled = self.pipeline_[0].transform(features[: len(features) - copies])
+        seen = len(features) - copies
+        places = self.samples()[0][:seen]
+        self.class_means_ = np.array(
+            [places[codes[:seen] == c].mean(axis=0) for c in range(len(self.class_weights_))]
+        )
+        scaled = self.pipeline_[0].transform(features[:seen])
         self.appearance_ = AppearanceMetric().fit(scaled)
         self.sparsity_ = LocalSparsity().fit(self.appearance_.transform(scaled))
         return self
@@ -135,7 +146,7 @@ class DiscriminantNeighbours:
         return self.labels_and_distances(features, k)[0]
 
     def distances(self, features: FloatArray) -> FloatArray:
-        """Return discriminant distance times local sparsity, (n,)."""
+        """Return the distances to the nearest class, (n,)."""
         return self.labels_and_distances(features, 1)[1]
 
     def labels_and_distances(self, features: FloatArray, k: int) -> tuple[IntArray, FloatArray]:
@@ -144,8 +155,15 @@ class DiscriminantNeighbours:
         scaled = place = scaler.transform(features)
         for step in others:
             place = step.transform(place)
-        labels, distances = _labels_and_distances(knn, place, k, len(self.sparsity_.points_))
-        return labels, distances * self.sparsity_.sparsity(self.appearance_.transform(scaled))
+        sparsity = self.sparsity_.sparsity(self.appearance_.transform(scaled))
+        if self.class_means_ is None:
+            labels, distances = _labels_and_distances(knn, place, k, len(self.sparsity_.points_))
+            return labels, distances * sparsity
+        _, rows = nearest(knn._fit_X, place, min(max(k, ASKED), knn.n_samples_fit_))
+        labels = np.asarray(knn._y[rows], dtype=np.int64)
+        left_open = classes_left_open(vote(labels[:, :ASKED], self.class_weights_))
+        to_mean = cdist(place, self.class_means_).min(axis=1)
+        return labels[:, :k], to_mean * left_open * sparsity**2
 
     @property
     def scaler(self) -> ClippedScaler:
@@ -170,7 +188,7 @@ class DiscriminantNeighbours:
     def arrays(self) -> dict[str, AnyArray]:
         """Return everything learned."""
         scaler, fourier, metric, knn = (step for _, step in self.pipeline_.steps)
-        return {
+        arrays = {
             "scaler_mean": scaler.mean_,
             "scaler_scale": scaler.scale_,
             "frequencies": fourier.frequencies_,
@@ -183,6 +201,9 @@ class DiscriminantNeighbours:
             "appearance_points": self.sparsity_.points_,
             "appearance_spacings": self.sparsity_.spacings_,
         }
+        if self.class_means_ is not None:
+            arrays["class_means"] = self.class_means_
+        return arrays
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, AnyArray]) -> Self:
@@ -196,6 +217,7 @@ class DiscriminantNeighbours:
         knn = _knn().fit(arrays["points"], arrays["codes"])
         model.pipeline_ = make_pipeline(scaler, fourier, metric, knn)
         model.class_weights_ = 1.0 / np.bincount(arrays["codes"])
+        model.class_means_ = arrays.get("class_means")
         model.appearance_ = AppearanceMetric()
         model.appearance_.offset_ = arrays["appearance_offset"]
         model.appearance_.projection_ = arrays["appearance_projection"]

@@ -1,4 +1,4 @@
-"""How much sparser training samples lie around a sample than around its neighbours."""
+"""How unlike training samples a sample is: sparsity around it, and classes that are left open."""
 
 from typing import Self
 
@@ -10,6 +10,16 @@ from terrain.classification.nearest import nearest
 
 NEIGHBOURS = 5
 SMALLEST_SHARE_OF_MEAN = 0.01
+ASKED = 25  # neighbours whose vote says how many classes are left open, whatever the k
+
+
+def classes_left_open(votes: FloatArray) -> FloatArray:
+    """How many classes votes (n, classes) leave open, (n,): exp(H) with the entropy H of a vote.
+
+    It is 1 where all neighbours agree, and the number of classes where they are split evenly.
+    """
+    logarithms = np.log(np.where(votes > 0, votes, 1.0))
+    return np.asarray(np.exp(-(votes * logarithms).sum(axis=1)))
 
 
 class LocalSparsity:

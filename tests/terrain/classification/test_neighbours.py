@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from scipy.stats import entropy
 from sklearn.neighbors import KNeighborsClassifier
 
 from terrain.classification.neighbours import DiscriminantNeighbours, PlainNeighbours, vote
@@ -52,18 +53,46 @@ def test_altered_copies_vote_and_make_nothing_familiar(samples, rng):
     np.testing.assert_array_equal(again.distances(altered), model.distances(altered))
 
 
-def test_distance_is_discriminant_distance_times_sparsity(samples, rng):
-    model = DiscriminantNeighbours().fit(*samples)
-    queries = rng.normal(size=(30, 8))
+def projected_by_hand(model, samples, queries):
+    """Scaled features and discriminants of queries."""
     scaled = ((queries - samples[0].mean(axis=0)) / samples[0].std(axis=0)).clip(-3, 3)
-    points = model.arrays()["points"]
     arrays = model.arrays()
     cosines = np.sqrt(2) * np.cos(scaled @ arrays["frequencies"] + arrays["phases"])
-    projected = np.hstack([scaled, cosines]) @ arrays["discriminants"]
-    gaps = np.linalg.norm(projected[:, None] - points, axis=2)
+    return scaled, np.hstack([scaled, cosines]) @ arrays["discriminants"]
+
+
+def test_distance_is_by_class_means_open_classes_and_sparsity(samples, rng):
+    model = DiscriminantNeighbours().fit(*samples)
+    queries = rng.normal(size=(30, 8))
+    scaled, places = projected_by_hand(model, samples, queries)
+    points, codes = model.arrays()["points"], model.arrays()["codes"]
+    means = np.array([points[codes == code].mean(axis=0) for code in range(3)])
+    to_mean = np.linalg.norm(places[:, None] - means, axis=2).min(axis=1)
+    nearest_25 = np.linalg.norm(places[:, None] - points, axis=2).argsort(axis=1)[:, :25]
+    votes = np.stack([(codes[nearest_25] == code).mean(axis=1) for code in range(3)], axis=1)
+    votes /= np.bincount(codes)
+    left_open = np.exp(entropy(votes, axis=1))
+    sparsity = model.sparsity_.sparsity(model.appearance_.transform(scaled))
+    expected = to_mean * left_open * sparsity**2
+    for k in (1, 7, 50):
+        labels, distances = model.labels_and_distances(queries, k)
+        np.testing.assert_allclose(distances, expected, rtol=1e-6)
+        assert labels.shape == (30, k)
+
+
+def test_files_without_class_means_keep_their_distances(samples, rng):
+    fitted = DiscriminantNeighbours().fit(*samples)
+    arrays = fitted.arrays()
+    del arrays["class_means"]
+    model = DiscriminantNeighbours.from_arrays(arrays)
+    queries = rng.normal(size=(30, 8))
+    scaled, places = projected_by_hand(fitted, samples, queries)
+    gaps = np.linalg.norm(places[:, None] - arrays["points"], axis=2)
     near = np.sort(gaps, axis=1)[:, :5].mean(axis=1)
     sparsity = model.sparsity_.sparsity(model.appearance_.transform(scaled))
     np.testing.assert_allclose(model.distances(queries), near * sparsity, rtol=1e-6)
+    assert "class_means" not in model.arrays()
+    np.testing.assert_array_equal(model.labels(queries, 7), fitted.labels(queries, 7))
 
 
 def test_unlike_samples_are_farther_by_either_factor(samples):

@@ -1,6 +1,6 @@
 import numpy as np
 
-from terrain.classification.novelty import LocalSparsity
+from terrain.classification.novelty import LocalSparsity, classes_left_open
 
 
 def by_loops(points, queries, k=5):
@@ -47,3 +47,9 @@ def test_repeated_samples_leave_the_ratio_finite():
 def test_two_samples_suffice():
     sparsity = LocalSparsity().fit(np.array([[0.0], [2.0]]))
     np.testing.assert_allclose(sparsity.sparsity(np.array([[3.0]])), 0.5)
+
+
+def test_classes_left_open_by_hand():
+    votes = np.array([[1, 0, 0, 0], [0.5, 0, 0.5, 0], [0.25, 0.25, 0.25, 0.25]])
+    np.testing.assert_allclose(classes_left_open(votes), [1, 2, 4])
+    assert 1 < classes_left_open(np.array([[0.9, 0.1]]))[0] < 2
