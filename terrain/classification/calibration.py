@@ -5,11 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from odometry.arrays import FloatArray, IntArray
+from odometry.arrays import AnyArray, FloatArray, IntArray
 
 FLOOR = 0.01  # of a vote: no neighbour of a class does not make it impossible
 TEMPERATURES = (0.1, 10.0)
 BINS = 10
+DRAWS = 200
 
 
 def tempered(votes: FloatArray, temperature: float | None) -> FloatArray:
@@ -87,3 +88,30 @@ def reliability(codes: IntArray, probabilities: FloatArray) -> Reliability:
     with np.errstate(invalid="ignore"):
         means = (np.bincount(bins, of, minlength=BINS) / counts for of in (confidence, right))
         return Reliability(counts, *means)
+
+
+def expected_error_if_calibrated(
+    probabilities: FloatArray, groups: AnyArray, seed: int = 0
+) -> float:
+    """The expected calibration error to expect of probabilities that are exactly right.
+
+    It is not zero: few answers in a tenth are right in another share than their probability by
+    chance alone. Answers are drawn 200 times, right with their own probability; those of a group
+    are drawn together, by one number, so that they are right and wrong as a whole.
+
+    Parameters
+    ----------
+    probabilities : FloatArray, shape (n, classes)
+    groups : array, shape (n,)
+        All different where answers are independent; photographs where their patches are alike.
+    seed : int
+    """
+    confidence = probabilities.max(axis=1)
+    _, group = np.unique(groups, return_inverse=True)
+    rng = np.random.default_rng(seed)
+    errors = []
+    for _ in range(DRAWS):
+        right = rng.random(int(group.max()) + 1)[group] < confidence
+        answers = np.where(right, probabilities.argmax(axis=1), -1)
+        errors.append(reliability(answers, probabilities).expected_error)
+    return float(np.mean(errors))

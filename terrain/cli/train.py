@@ -184,7 +184,7 @@ def _origin(patches: "LabelledPatches") -> str:
 def _summary(classifier: "TerrainClassifier", patches: "LabelledPatches") -> str:
     import numpy as np
 
-    from terrain.classification.calibration import reliability
+    from terrain.classification.calibration import expected_error_if_calibrated, reliability
     from terrain.classification.evaluation import (
         balanced_accuracy,
         confusion,
@@ -198,6 +198,10 @@ def _summary(classifier: "TerrainClassifier", patches: "LabelledPatches") -> str
     photo_codes, photo_answers, _ = photo_votes(found.codes, found.probabilities, names)
     table = confusion(found.codes, answers, len(classifier.classes_))
     chosen = "given" if classifier.n_neighbors else "chosen"
+    independent, together = (
+        expected_error_if_calibrated(found.probabilities, groups)
+        for groups in (np.arange(len(names)), names)
+    )
     return (
         f"{len(patches.photos)} patches of {classifier.patch_size_px} px from {_origin(patches)} "
         "(true terrain down, answer across, %):\n\n"
@@ -205,7 +209,9 @@ def _summary(classifier: "TerrainClassifier", patches: "LabelledPatches") -> str
         f"balanced accuracy by patch {balanced_accuracy(found.codes, answers):.3f}, by vote of a "
         f"photograph's patches {balanced_accuracy(photo_codes, photo_answers):.3f}; probabilities "
         f"are off by {reliability(found.codes, found.probabilities).expected_error:.3f} in the "
-        "mean (expected calibration error)\n"
+        f"mean (expected calibration error; exact ones would seem off by {independent:.3f} if "
+        f"patches were independent, by {together:.3f} if those of a photograph were right or wrong "
+        "together)\n"
         f"{chosen} k {classifier.n_neighbors_}, rejection threshold "
         f"{classifier.rejection_distance_:.4g} ({100 * classifier.rejected_share:g} % of known "
         "terrain lies beyond)"

@@ -2,9 +2,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.stats import binom
 
 from terrain.classification.calibration import (
     FLOOR,
+    expected_error_if_calibrated,
     fitted_temperature,
     reliability,
     tempered,
@@ -46,3 +48,22 @@ def test_expected_error_in_closed_form():
 def test_a_class_without_a_neighbour_stays_possible():
     given_ = tempered(np.array([[1.0, 0.0]]), 1.0)
     assert given_[0, 1] == pytest.approx(FLOOR / (1 + 2 * FLOOR))
+
+
+def test_the_error_of_exact_probabilities_in_closed_form():
+    """n answers of one probability p: the mean of |share right - p| over the binomial."""
+    n, p = 12, 0.75
+    shares = np.arange(n + 1)
+    expected = binom(n, p).pmf(shares) @ np.abs(shares / n - p)
+    probabilities = np.tile([p, 1 - p], (n, 1))
+    found = expected_error_if_calibrated(probabilities, np.arange(n))
+    assert found == pytest.approx(expected, abs=4 * 0.125 * 0.6 / np.sqrt(200))
+    together = expected_error_if_calibrated(probabilities, np.zeros(n))
+    assert together == pytest.approx(2 * p * (1 - p), abs=4 * 0.22 / np.sqrt(200))
+
+
+def test_exact_probabilities_are_no_farther_off_than_expected(rng):
+    probabilities = rng.dirichlet(np.ones(4), 3000)
+    codes = (rng.random(3000)[:, None] > probabilities.cumsum(axis=1)).sum(axis=1)
+    expected = expected_error_if_calibrated(probabilities, np.arange(3000))
+    assert reliability(codes, probabilities).expected_error < 2 * expected < 0.04
