@@ -32,6 +32,8 @@ class ImageLabel:
     class_distance : float
         Distance to the nearest class, which is compared with the rejection threshold; of tread
         strips classified apart the larger one. NaN without a label.
+    patches : int
+        That the region was cut into, where it was classified as one.
     """
 
     stamp_s: float
@@ -44,6 +46,7 @@ class ImageLabel:
     right: str = ""
     probabilities: Mapping[str, float] = field(default_factory=dict)
     class_distance: float = float("nan")
+    patches: int = 1
 
 
 def answered(
@@ -60,6 +63,7 @@ def answered(
             region,
             probabilities=answer.probabilities,
             class_distance=answer.distance,
+            patches=answer.patches,
         )
     distance = max(answer.distance for answer in answers)
     left, right = (answer.label for answer in answers)

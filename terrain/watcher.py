@@ -16,6 +16,7 @@ from odometry.geometry import se2
 from odometry.run import Robot
 from terrain.camera import Camera
 from terrain.classification.classifier import Classifier
+from terrain.distance_track import DistanceTrack
 from terrain.feel_labels import FeelLabels
 from terrain.image_label import ImageLabel
 from terrain.image_labeller import ImageLabeller
@@ -77,6 +78,7 @@ class TerrainWatcher:
         self.classifier = classifier
         self._labeller = ImageLabeller(robot, camera, classifier, region, folder)
         self.seen = self._labeller.seen
+        self._track = DistanceTrack(classifier)
         self._keep = keep
         self._felt = felt
         self._felt_upto_s = -math.inf
@@ -100,7 +102,7 @@ class TerrainWatcher:
         if frame.in_gap:
             self._switch = self._switch.without_labels()
         if frame.image is not None:
-            image_label = self.look(frame, estimate)
+            image_label = self._track.judged(self.look(frame, estimate), travel_m)
             self.image_labels.append(image_label)
             if image_label.label and image_label.region is not None:
                 given = self.seen.weighed(image_label.label, image_label.probabilities)

@@ -22,6 +22,8 @@ class Classification:
         `TerrainClassifier.rejection_distance_`.
     probabilities : dict of str to float
         One per known terrain; they add up to 1.
+    patches : int
+        That the image was cut into.
 
     Examples
     --------
@@ -35,6 +37,7 @@ class Classification:
     confidence: float
     distance: float
     probabilities: dict[str, float]
+    patches: int = 1
 
 
 class Classifier(Protocol):

@@ -128,6 +128,7 @@ class OwnStatisticsClassifier:
         self.patch_size_px = classifier.patch_size_px
         self.metres_per_pixel = classifier.metres_per_pixel
         self.rejection_distance_ = classifier.rejection_distance_
+        self.rejection_distances_ = classifier.rejection_distances_
         self.training_look_ = classifier.training_look_
 
     def see(self, image: ByteImage) -> FloatArray:

@@ -43,10 +43,15 @@ def rejection_distances(
     return tuple(np.minimum.accumulate(limits).tolist())
 
 
+def rejection_limit(patches: int, limits: Sequence[float]) -> float:
+    """The distance beyond which the median of so many patches is unknown."""
+    return float(np.interp(np.log(patches), np.log(PATCHES[: len(limits)]), limits))
+
+
 def as_of_one_patch(distance: float, patches: int, limits: Sequence[float]) -> float:
     """The median distance of some patches, on the scale of the distance of one patch.
 
     It is beyond the limit of one patch where the median is beyond that of so many patches.
     """
-    limit = float(np.interp(np.log(patches), np.log(PATCHES[: len(limits)]), limits))
+    limit = rejection_limit(patches, limits)
     return distance * limits[0] / limit if limit > 0 else distance

@@ -86,6 +86,7 @@ class TrainedClassifier(ModelFile):
             float(probabilities[best]),
             distance,
             dict(zip(names, probabilities.tolist(), strict=True)),
+            len(features),
         )
 
     @property
