@@ -1,4 +1,4 @@
-"""Terrain by feel: what vibration, currents and yaw response say of the terrain underneath.
+"""Terrain by feel: from vibration, motor currents and yaw response.
 
 Names are imported when they are first used.
 """

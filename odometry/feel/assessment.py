@@ -131,7 +131,7 @@ def assessed(
 
 
 def choice_words(window_s: float, choice: Choice) -> str:
-    """A choice in words."""
+    """A choice as text."""
     return f"windows of {window_s:g} s, shrinkage {choice.shrinkage:g}"
 
 

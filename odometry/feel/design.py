@@ -115,7 +115,7 @@ class Design:
         return tuple(combinations(self.axes, 2)) if self.crossed else ()
 
     def names(self, layout: int) -> tuple[str, ...]:
-        """What each column is, in words."""
+        """Each column as text."""
         edges = band_edges_hz(self.layouts[layout], self.top_hz) if self.axes else np.empty(0)
         words = [f"{a:.0f} to {b:.0f} Hz" for a, b in pairwise(edges)]
         shape = SHAPE_WORDS if self.shaped else ()

@@ -50,13 +50,13 @@ class Discriminant:
 
 @dataclass(frozen=True)
 class Pooled:
-    """Moments of K classes in D columns and covariates, of which every run counts alike.
+    """Moments of K classes in D columns and covariates, of which every run has the same weight.
 
     Attributes
     ----------
     means : (K, D)
     whole : (D, D)
-        Covariance of a window of a run that was never seen.
+        Covariance of a window of a new run.
     usual : (D,)
         Mean over runs.
     """
@@ -72,9 +72,9 @@ class Pooled:
 
 
 def pooled(moments: Moments, names: tuple[str, ...]) -> Pooled:
-    """Pool the moments of K classes, each class alike.
+    """Pool the moments of K classes with equal weights.
 
-    The covariance is that of a window of a run that was never seen: within runs, plus that of run
+    The covariance is that of a window of a new run: within runs, plus that of run
     means B (1 + 1 / n), n runs of a class.
     """
     rows = [np.flatnonzero(moments.labels == name) for name in names]
@@ -92,7 +92,7 @@ def pooled(moments: Moments, names: tuple[str, ...]) -> Pooled:
 
 
 def fitted_discriminant(of: Pooled, covariates: int, shrinkage: float) -> Discriminant:
-    """Fit a discriminant in which every run of a class, and every class, counts alike.
+    """Fit a discriminant in which all runs of a class, and all classes, have equal weights.
 
     Covariates are taken out by their slopes within classes (analysis of covariance), and what they
     say of a class themselves is not used; then correlations are shrunk towards none.

@@ -1,4 +1,4 @@
-"""Evidence of windows put together, and probabilities that are as often right as they say."""
+"""Evidence of several windows, and calibrated probabilities."""
 
 from dataclasses import dataclass, replace
 
@@ -14,14 +14,14 @@ CORRELATIONS = (0.0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0
 
 @dataclass(frozen=True)
 class Calibration:
-    """How much the evidence of windows is worth.
+    """The weight of the evidence of windows.
 
     Attributes
     ----------
     temperatures : tuple of float
         By which the log likelihoods of a window are divided, one a kind of classifier.
     outliers : float
-        Share of the windows that say nothing of the terrain: every terrain is as probable then.
+        Share of the windows without evidence on the terrain: every terrain is as probable then.
     correlation : float
         Of the evidence of windows of one run: n of them count as n / (1 + (n - 1) correlation).
 

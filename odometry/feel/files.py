@@ -1,4 +1,4 @@
-"""What was felt of a run as files."""
+"""Terrain by feel of a run as files."""
 
 import json
 from collections.abc import Mapping, Sequence

@@ -30,7 +30,7 @@ class FeelConfig:
     sure : float
         The probability from which a terrain is named; below it the answer is "undetermined".
     unknown_share : float, optional
-        How probable a terrain is, before anything is felt, that the model does not know; by
+        Prior probability of a terrain that the model does not know; by
         default what kept the model modest on terrains that were left out.
     """
 
@@ -57,7 +57,7 @@ class Felt:
     config : FeelConfig
     windows : FeelWindows
     scores : Scores
-        Of W windows; zeros where one says nothing.
+        Of W windows; zeros where one has no evidence.
     """
 
     run: Run
@@ -158,7 +158,7 @@ class Felt:
 
 
 def follow_feel(run: Run, model: FeelModel, config: FeelConfig | None = None) -> Felt:
-    """Tell what a run feels like.
+    """Name the terrain of a run by feel.
 
     Parameters
     ----------

@@ -80,7 +80,7 @@ def _stacked(offsets: Sequence[FloatArray]) -> FloatArray:
 def judged_runs(
     table: FeelTable, fitted: BoolArray, judged: BoolArray, choices: Sequence[Choice]
 ) -> list[HeldOut]:
-    """Fit each choice to runs (R,) and judge windows of others; none where nothing is to judge.
+    """Fit each choice to runs (R,) and evaluate windows of others; none where there are none.
 
     Windows of a terrain that the fitted runs do not hold are left out.
     """
@@ -103,7 +103,7 @@ def scored(
     rows: IntArray,
     choices: Sequence[Choice],
 ) -> list[Scores]:
-    """Fit K terrains to runs (R,) and judge rows of the table, whatever their terrain."""
+    """Fit K terrains to runs (R,) and evaluate rows of the table, of any terrain."""
     tables = [one[rows] for one in table.tables]
     members = fitted_members(table, fitted, names, choices)
     return [

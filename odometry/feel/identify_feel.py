@@ -18,7 +18,7 @@ from odometry.identification.errors import IdentificationError
 from odometry.identification.identify import robot_of
 from odometry.run import Run
 
-LEAST_RUNS = 2  # of a terrain: one to fit, one to judge
+LEAST_RUNS = 2  # of a terrain: one to fit, one to hold out
 LEAST_WINDOWS = 5  # of a terrain and run on the average
 
 
@@ -47,7 +47,7 @@ def identify_feel(
         If fewer than two terrains are named, a terrain has fewer than two runs, or next to none of
         the time was driven.
     RunFolderError
-        If a run lacks what is felt; see `feel_signals`.
+        If a run lacks the signals; see `feel_signals`.
 
     Examples
     --------

@@ -10,7 +10,7 @@ from odometry.errors import RunFolderError
 GRAVITY_M_S2 = 9.81
 GRAVITY_SHARE = 0.15  # by which the mean size may differ
 MOST_TILT_RAD = 0.79  # of gravity from the robot's z: 45 degrees are no slope that one drives
-MOST_YAW_GAIN = 5.0  # yaw rate over what the treads say; a skid-steer robot has less than 1.2
+MOST_YAW_GAIN = 5.0  # yaw rate over that of the treads; a skid-steer robot has less than 1.2
 LEAST_TURN_RAD_S = 0.05  # of the treads, root mean square, for its gain to be determined
 
 

@@ -1,4 +1,4 @@
-"""What terrains get from models that never felt them: each is left out in turn."""
+"""Scores of terrains by models that do not know them: each is left out in turn."""
 
 from collections.abc import Iterator
 
@@ -27,7 +27,7 @@ def fitted_strangeness(
     known: BoolArray,
     how: tuple[Choice, Calibration, float],
 ) -> Strangeness:
-    """Log odds of "never felt" by terrains left out, on runs (R,) held out as well.
+    """Log odds of "unknown" by terrains left out, on held-out runs (R,).
 
     Parameters
     ----------

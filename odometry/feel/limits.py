@@ -99,7 +99,7 @@ class Limits:
 
 
 def quantile(values: FloatArray, labels: AnyArray, share: float) -> float:
-    """Value (N,) up to which so much of the weight lies, every terrain counting alike."""
+    """Value (N,) up to which so much of the weight lies, with equal weights of terrains."""
     order = np.argsort(values)
     reached: AnyArray = np.cumsum(class_weights(labels)[order])
     place = min(int(np.searchsorted(reached, share)), len(order) - 1)

@@ -1,4 +1,4 @@
-"""A model of how terrains feel, and what it says of windows."""
+"""A model of terrain by feel, and its scores of windows."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -59,7 +59,7 @@ class FeelModel:
     report: Mapping[str, Any] = field(default_factory=dict)
 
     def scores(self, windows: FeelWindows) -> Scores:
-        """Of W windows; rows of windows that are not felt are zeros."""
+        """Of W windows; rows of windows without signals are zeros."""
         felt, count = windows.felt, len(windows)
         scores = Scores.of(self.members, [one[felt] for one in self._tables(windows)])
         found = Scores(

@@ -31,7 +31,7 @@ FEEL = FileKind("terrain-odometry feel", 3, "model of feel", FeelFileError)
 def write_feel_model(
     path: str | Path, model: FeelModel, made: Mapping[str, Any] | None = None
 ) -> None:
-    """Write a model, whole or not at all; `made` says what made it, and no reader needs it.
+    """Write a model, whole or not at all; `made` states what made it, for people alone.
 
     Examples
     --------

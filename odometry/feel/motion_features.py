@@ -1,11 +1,11 @@
-"""What treads, currents and the yaw rate say in a window, beside vibration."""
+"""Features of treads, currents and yaw rate in a window, beside vibration."""
 
 import numpy as np
 
 from odometry.arrays import FloatArray
 
 LEAST_SPEED_M_S = 0.02  # added below logarithms
-TURN_SIGMA_RAD_S = 0.05  # turns of the treads below this tell no gain
+TURN_SIGMA_RAD_S = 0.05  # turns of the treads below this determine no gain
 USUAL_GAIN = 0.7  # of a skid-steer robot, where a window has no turn
 LEAST_YAW_RATE_RAD_S = 0.003
 LEAST_CURRENT_A = 0.3

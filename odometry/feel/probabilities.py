@@ -1,4 +1,4 @@
-"""Evidence of windows as probabilities, among them that of a terrain never felt."""
+"""Evidence of windows as probabilities, among them that of an unknown terrain."""
 
 from dataclasses import dataclass
 
@@ -60,7 +60,7 @@ class Probabilities:
     unknown : (N,)
         Of a terrain that it does not know; adds up to 1 with them.
     is_novel : (N,)
-        Whether each is beyond the limits of what was felt.
+        Whether each is beyond the limits of the training windows.
     """
 
     probabilities: FloatArray
@@ -69,7 +69,7 @@ class Probabilities:
 
     @classmethod
     def of(cls, model: FeelModel, summed: Summed, unknown_share: float) -> "Probabilities":
-        """From sums over overlapping windows, and of what is probable before anything is felt."""
+        """From sums over overlapping windows, and prior probabilities."""
         windows = np.maximum((summed.counts + STEPS - 1) / STEPS, 1.0)
         among = model.calibration.probabilities(summed.mean(summed.evidence), windows)
         novelty, offsets = summed.mean(summed.novelty), summed.mean(summed.offsets)

@@ -12,7 +12,7 @@ BINS = 10  # of probability
 
 
 def class_weights(labels: AnyArray) -> FloatArray:
-    """Weights (N,) that add up to 1 and give every class alike."""
+    """Weights (N,) that add up to 1, the same for every class."""
     names, places, counts = np.unique(labels.astype(str), return_inverse=True, return_counts=True)
     return np.asarray(1 / (len(names) * counts[places]))
 
@@ -55,7 +55,7 @@ def confusion(labels: AnyArray, answers: AnyArray, columns: Sequence[str]) -> In
 
 
 def calibration_error(labels: AnyArray, probabilities: FloatArray, names: Sequence[str]) -> float:
-    """Expected calibration error of the most probable answer, every class counting alike.
+    """Expected calibration error of the most probable answer, with equal weights of classes.
 
     Mean over BINS of equal width of |share right - mean probability|.
 

@@ -1,4 +1,4 @@
-"""What is chosen for a model by runs held out: windows, shrinkage, and what evidence is worth."""
+"""Choices of a model by held-out runs: windows, shrinkage, and the weight of evidence."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ class Judged:
     choice : Choice
     calibration : Calibration
     window_loss, stretch_loss : float
-        Log loss, every terrain counting alike.
+        Log loss, with equal weights of terrains.
     held : HeldOut
     """
 

@@ -28,7 +28,7 @@ class Strangeness:
     weights : Mapping of str to (TERMS,)
         Weights of `terms` for each of LENGTHS. Zeros: cannot be distinguished.
     share : float
-        How probable such a terrain is before anything is felt.
+        Prior probability of such a terrain.
     """
 
     weights: Mapping[str, FloatArray]
@@ -50,7 +50,7 @@ class Unseen:
     is_unseen : (N,)
         Whether each is of that terrain.
     weights : (N,)
-        Half for both kinds, every terrain alike.
+        Half for both kinds, with equal weights of terrains.
     sure : (N,)
         Greatest probability of the terrains that were not left out.
     """
@@ -79,12 +79,12 @@ def farness(offsets: FloatArray) -> FloatArray:
 
 
 def fitted_weights(parts: Sequence[Unseen]) -> FloatArray:
-    """Log odds of "never felt", both as probable before: a logistic regression, none falling.
+    """Log odds of "unknown" with equal priors: a logistic regression without negative weights.
 
     Parameters
     ----------
     parts : sequence of Unseen
-        One a terrain that was left out; they count alike.
+        One a terrain that was left out; they have equal weights.
 
     Returns
     -------
@@ -126,5 +126,5 @@ def modest_share(parts: Sequence[Unseen], weights: FloatArray) -> float:
 
 
 def unknown_probability(log_odds: FloatArray, share: float) -> FloatArray:
-    """Probability (N,) of "never felt" where it was as probable as `share` before."""
+    """Probability (N,) of "unknown" with the prior `share`."""
     return np.asarray(expit(log_odds + np.log(share / (1 - share))))

@@ -69,7 +69,7 @@ class FeelTable:
 
     @property
     def covariates(self) -> int:
-        """How many of the last columns say how a window was driven."""
+        """How many of the last columns describe how a window was driven."""
         return int(self.tables[0].shape[1]) - len(self.design.names(0))
 
     @cached_property

@@ -1,4 +1,4 @@
-"""Windows of a run, and what is felt in each."""
+"""Windows of a run, and the features of each."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ from odometry.feel.spectra import cross_densities
 from odometry.run import UNKNOWN, Run
 
 SHORTEST_S, LONGEST_S = 1.0, 5.0
-STANDING_M_S = 0.03  # mean speed of the treads in a window; below it the robot stands
+STANDING_M_S = 0.03  # mean speed of the treads in a window; below it the robot is stationary
 STEPS = 2  # windows begin after 1 / STEPS of their length
 AVERAGE_S = 0.15  # of the yaw rate
 CHUNK = 256  # windows of which spectra are made at once
@@ -32,7 +32,7 @@ class FeelWindows:
     whole : (W,)
         Whether nothing is missing in it; the others hold no features.
     standing : (W,)
-        Whether the robot stands.
+        Whether the robot is stationary.
     speeds_m_s : (W,)
         Mean size of the tread speeds.
     covariates : (W, 4)
@@ -70,7 +70,7 @@ class FeelWindows:
 
     @property
     def felt(self) -> BoolArray:
-        """Windows (W,) that say something: whole, and the robot moves."""
+        """Windows (W,) with evidence: whole, and the robot moves."""
         return self.whole & ~self.standing
 
     @property
@@ -160,7 +160,7 @@ def _motion(
 
 
 def _filled(felt: BoolArray, values: FloatArray) -> FloatArray:
-    """Values of the windows that are felt, zeros in the others."""
+    """Values of the windows with evidence, zeros in the others."""
     table = np.zeros((len(felt), *values.shape[1:]))
     table[felt] = values
     return table

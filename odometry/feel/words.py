@@ -1,4 +1,4 @@
-"""What was felt of a run in sentences."""
+"""Terrain by feel of a run as sentences."""
 
 from collections.abc import Iterator
 
@@ -8,7 +8,7 @@ from odometry.feel.follow import NOT_MEASURED, SILENT, STATIONARY, Felt
 from odometry.run import UNKNOWN
 
 UNLIKE_SHARE = 0.5  # of the windows: a run with more that are unknown is unlike those of the model
-OFTEN = 0.05  # share of the windows from which something is said
+OFTEN = 0.05  # share of the windows from which a sentence is written
 
 
 def sentences(felt: Felt) -> tuple[str, ...]:
