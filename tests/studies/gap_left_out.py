@@ -25,7 +25,7 @@ from joblib import Parallel, delayed
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from odometry.effects.catalogue import EFFECTS
-from odometry.gap import candidates, search, standing
+from odometry.gap import accepted_effects, candidates, search
 from tests.blind.cases import Case, make_case
 from tests.studies.gap_cases import NOISES, answer, judged, read
 from tests.studies.gap_names import COURSES, MEANING
@@ -119,7 +119,7 @@ def answered(case: Case, hidden: Sequence[str], out: Path) -> dict[str, str]:
 def gates() -> Iterator[dict[str, str]]:
     """What two gates are given: shares of what names close, "" where a gate was not asked."""
     given = {"main_part": "", "beaten": ""}
-    main_part, unbeaten = standing.is_the_main_part, search.is_unbeaten
+    main_part, unbeaten = accepted_effects.is_the_main_part, search.is_unbeaten
 
     def noted_part(of_names, of_all, config):  # type: ignore[no-untyped-def]
         given["main_part"] = f"{of_names / of_all:.4f}"
@@ -130,7 +130,7 @@ def gates() -> Iterator[dict[str, str]]:
         return unbeaten(gain, refused, of_refused, margin)
 
     with (
-        patch.object(standing, "is_the_main_part", noted_part),
+        patch.object(accepted_effects, "is_the_main_part", noted_part),
         patch.object(search, "is_unbeaten", noted_beaten),
     ):
         yield given
