@@ -146,6 +146,7 @@ class LabellingWatcher(TerrainWatcher):
             switch=config.switch,
         )
         self._course, self._accuracy, self._held_m = course, accuracy, held_m
+        self._ahead = config.region
         self._rng = np.random.default_rng(seed)
         self._wrong, self._wrong_until_m, self._looked_m = "", -1.0, 0.0
 
@@ -154,9 +155,10 @@ class LabellingWatcher(TerrainWatcher):
         name = frame.image.name
         commanded = replace(estimate, tread_speeds_m_s=frame.tread_speeds_m_s)
         speed_m_s = float(np.abs(frame.tread_speeds_m_s).mean())
-        region = predict_region(self._robot, self._camera, commanded.twist, speed_m_s, self._region)
+        robot, camera = self._course.run.robot, self._course.config.camera
+        region = predict_region(robot, camera, commanded.twist, speed_m_s, self._ahead)
         if isinstance(region, NoRegion):
-            return ImageLabel(frame.stamp_s, name, reason=region)
+            return ImageLabel(frame.stamp_s, name, reason=region.reason)
         true = self._course.true_terrain(frame.stamp_s, region.place)
         label = self._label(true, self._travel_m)
         return ImageLabel(frame.stamp_s, name, label, self._accuracy, region)
