@@ -108,11 +108,13 @@ class DiscriminantNeighbours:
     The discriminants are linear in scaled features and, where they may curve, in random Fourier
     features of these.
 
-    A distance is that to the nearest mean of a class among the discriminants, times the number of
-    classes that the neighbours' vote leaves open, times the square of the local sparsity among
-    whitened principal components. The first asks whether a patch is like any class in what tells
-    classes apart, the second whether its neighbours agree, the third whether it looks like
-    anything seen. Altered copies vote, but only what was really seen makes a patch familiar.
+    A distance is the product of four: that to the nearest samples and that to the nearest mean of a
+    class among the discriminants, the number of classes that the neighbours' vote leaves open, and
+    the cube of the local sparsity among whitened principal components. The first two ask whether a
+    patch is like any class in what tells classes apart, the third whether its neighbours agree, the
+    last whether it looks like anything seen. The mean and the vote tell another terrain, the
+    samples what is far from all (sky, blur). Altered copies vote, but only what was really seen
+    makes a patch familiar.
 
     Models of files before version 0.12 have no `class_means_`: their distance is the mean distance
     to the nearest samples among the discriminants, times the local sparsity.
@@ -159,11 +161,12 @@ class DiscriminantNeighbours:
         if self.class_means_ is None:
             labels, distances = _labels_and_distances(knn, place, k, len(self.sparsity_.points_))
             return labels, distances * sparsity
-        _, rows = nearest(knn._fit_X, place, min(max(k, ASKED), knn.n_samples_fit_))
-        labels = np.asarray(knn._y[rows], dtype=np.int64)
+        labels, to_samples = _labels_and_distances(
+            knn, place, min(max(k, ASKED), knn.n_samples_fit_), len(self.sparsity_.points_)
+        )
         left_open = classes_left_open(vote(labels[:, :ASKED], self.class_weights_))
         to_mean = cdist(place, self.class_means_).min(axis=1)
-        return labels[:, :k], to_mean * left_open * sparsity**2
+        return labels[:, :k], to_samples * to_mean * left_open * sparsity**3
 
     @property
     def scaler(self) -> ClippedScaler:

@@ -32,13 +32,14 @@ from terrain.classification.validation import grouped_folds
 PER_PHOTO, FOLDS, GREY = 12, 2, slice(0, 456)
 REJECTED = 0.05  # of known patches, and of known photographs, at the limit of the last columns
 SAMPLES_AND_SPARSITY = (1.0, 0.0, 1.0, 0.0)  # of version 0.11
-IN_USE = (0.0, 1.0, 2.0, 1.0)
+IN_USE = (1.0, 1.0, 3.0, 1.0)
 CANDIDATES = (
     SAMPLES_AND_SPARSITY,
     (1.0, 0.0, 0.0, 0.0),
     (0.0, 1.0, 0.0, 0.0),
     (0.0, 0.0, 1.0, 0.0),
     (1.0, 0.0, 1.0, 0.5),
+    IN_USE,
     *((0.0, 1.0, sparsity, left_open) for sparsity, left_open in product((1.0, 2.0), (0.0, 1.0))),
     (0.0, 1.0, 1.0, 0.5),
     (0.0, 1.0, 2.0, 2.0),

@@ -61,19 +61,21 @@ def projected_by_hand(model, samples, queries):
     return scaled, np.hstack([scaled, cosines]) @ arrays["discriminants"]
 
 
-def test_distance_is_by_class_means_open_classes_and_sparsity(samples, rng):
+def test_distance_is_by_samples_class_means_open_classes_and_sparsity(samples, rng):
     model = DiscriminantNeighbours().fit(*samples)
     queries = rng.normal(size=(30, 8))
     scaled, places = projected_by_hand(model, samples, queries)
     points, codes = model.arrays()["points"], model.arrays()["codes"]
     means = np.array([points[codes == code].mean(axis=0) for code in range(3)])
     to_mean = np.linalg.norm(places[:, None] - means, axis=2).min(axis=1)
-    nearest_25 = np.linalg.norm(places[:, None] - points, axis=2).argsort(axis=1)[:, :25]
+    to_points = np.linalg.norm(places[:, None] - points, axis=2)
+    to_samples = np.sort(to_points, axis=1)[:, :5].mean(axis=1)
+    nearest_25 = to_points.argsort(axis=1)[:, :25]
     votes = np.stack([(codes[nearest_25] == code).mean(axis=1) for code in range(3)], axis=1)
     votes /= np.bincount(codes)
     left_open = np.exp(entropy(votes, axis=1))
     sparsity = model.sparsity_.sparsity(model.appearance_.transform(scaled))
-    expected = to_mean * left_open * sparsity**2
+    expected = to_samples * to_mean * left_open * sparsity**3
     for k in (1, 7, 50):
         labels, distances = model.labels_and_distances(queries, k)
         np.testing.assert_allclose(distances, expected, rtol=1e-6)
