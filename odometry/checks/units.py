@@ -56,7 +56,9 @@ def units(evidence: Evidence) -> Iterator[Finding]:
     if width is not None and width < WIDTH[0] and (mean := holds_the_mean(evidence)):
         yield disagreement(mean)
     elif width is not None and not WIDTH[0] <= width <= WIDTH[1]:
-        yield _across(evidence, forward, width, turn_tight)
+        # one scale of the treads lengthens their way and widens the robot alike
+        if forward is None or low <= forward or not WIDTH[0] <= width * forward <= WIDTH[1]:
+            yield _across(evidence, forward, width, turn_tight)
     elif evidence.fastest_m_s > PLAUSIBLE_M_S and forward is None:
         yield too_fast(evidence)
     elif (stated := track_against_body(evidence)) is not None:

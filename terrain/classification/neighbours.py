@@ -112,7 +112,7 @@ class DiscriminantNeighbours:
     class among the discriminants, the number of classes that the neighbours' vote leaves open, and
     the cube of the local sparsity among whitened principal components. The first two ask whether a
     patch is like any class in what tells classes apart, the third whether its neighbours agree, the
-    last whether it looks like anything seen. The mean and the vote tell another terrain, the
+    last whether it looks like anything seen. The mean and the vote detect another terrain, the
     samples what is far from all (sky, blur). Altered copies vote, but only what was really seen
     makes a patch familiar.
 

@@ -12,7 +12,7 @@ from odometry.checks.recording import check_recording
 from odometry.checks.relation import relation
 from odometry.run import Robot, Run
 from odometry.table import Table
-from tests.odometry.checks.faulty import gyroscope, put
+from tests.odometry.checks.faulty import gyroscope, put, treads
 
 PERIOD_S = 0.05
 WIDTH_M = 0.9  # effective, of a track width of 0.6 m
@@ -128,3 +128,11 @@ def test_a_drive_between_two_stops_is_no_outlier():
     assert not pose_outliers(positions).any()
     positions[20] = 9.0
     assert np.flatnonzero(pose_outliers(positions)).tolist() == [20]
+
+
+def test_a_scale_of_the_treads_does_not_accuse_the_track_width():
+    """It lengthens the way of the treads and widens the robot by the same factor."""
+    run = treads(winding(), lambda left, right: (7.3 * left, 7.3 * right))
+    names = {finding.name for finding in check_recording(run).at(Level.WARNING)}
+    assert names & {"scale", "slip", "tread_unit"}
+    assert "track_width" not in names
