@@ -92,6 +92,31 @@ def test_slip_is_none(make_scene, known):
     assert isolated(make_scene(32, slipping), known, CONFIG).off.sum() <= 1
 
 
+@pytest.mark.parametrize("delay_s", [0.2, 0.33])
+def test_short_commands_of_which_treads_are_late_are_none(plain, known, delay_s):
+    """Exact poses of a robot that follows short commands late, and one that jumps."""
+    run = plain.run
+    t = run.odometry.stamps_s
+    pulses = np.where((t - t[0]) % 8.0 < 0.2, 0.7, 0.1)
+    odometry = {**run.odometry.columns, "v_left": pulses, "v_right": pulses}
+    travelled_m = np.concatenate([[0.0], np.cumsum(pulses[:-1] * np.diff(t))])
+    x = np.interp(run.pose.stamps_s - delay_s, t, travelled_m)
+    jumps = np.zeros_like(x)
+    jumps[300] = 0.5
+    still = np.zeros_like(x)
+    scenes = []
+    for places in (x, x + jumps):
+        pose = {**run.pose.columns, "x": places, "y": still, "yaw": still}
+        late = replace(
+            run,
+            odometry=replace(run.odometry, columns=odometry),
+            pose=replace(run.pose, columns=pose),
+        )
+        scenes.append(dense_windows_of(late, CONFIG.horizon_s))
+    assert not isolated(scenes[0], known, CONFIG).off.any()
+    assert np.flatnonzero(isolated(scenes[1], known, CONFIG).off).tolist() == [300]
+
+
 @pytest.mark.parametrize("noise_m", [0.0, 0.01])
 def test_poses_that_repeat_the_last_one_are_found(plain, known, rng, noise_m):
     held = np.arange(len(plain.pose_s))
