@@ -106,8 +106,8 @@ def find_gap(
     fitter = Fitter(known, measured_of(fitted_scenes, known, config))
     with tqdm(desc="candidates", unit="fit", disable=None if show_progress else True) as bar:
         floors = (
-            floor_there(floor, known, fitted_scenes),
-            floor_there(floor, known, held_scenes),
+            floor_there(floor, known, fitted_scenes, config),
+            floor_there(floor, known, held_scenes, config),
         )
         found = explained(fitter, held_scenes, floors, config, _counting(bar))
     fit = found.fitted
@@ -117,7 +117,7 @@ def find_gap(
         Closing(
             gap_of(known.base, (), scenes if outliers is None else raw, config.part_s),
             gap_of(base, effects, scenes, config.part_s),
-            floor_there(floor, known, scenes),
+            floor_there(floor, known, scenes, config),
         )
         for scenes, raw in zip((fitted_scenes, held_scenes), raw_scenes, strict=True)
     ]

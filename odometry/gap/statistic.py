@@ -9,10 +9,12 @@ from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.gap.calibration import Calibration
+from odometry.gap.config import GapConfig
 from odometry.gap.end_residuals import mean_variance_m2
 from odometry.gap.pieces import numbered_pieces
 from odometry.gap.simulate import residuals
 from odometry.windows.dense import DenseWindows
+from odometry.windows.noise_factors import added_travel_m
 
 RESAMPLES = 1000
 SEED = 0
@@ -65,14 +67,20 @@ def floor_of(held_back: Sequence[tuple[Base, DenseWindows]], part_s: float) -> G
     return _pooled([(squared_errors(base, (), scene), scene) for base, scene in held_back], part_s)
 
 
-def floor_there(floor: Gap, calibration: Calibration, scenes: Sequence[DenseWindows]) -> Gap:
+def floor_there(
+    floor: Gap, calibration: Calibration, scenes: Sequence[DenseWindows], config: GapConfig
+) -> Gap:
     """The noise floor as it would be on other runs.
 
-    Faster ones wander further in a window, and an uncertain calibration leads further off.
+    Faster ones wander further in a window, and an uncertain calibration leads further off. Never
+    less than a share of the way: stamps and held speeds are rounded even where nothing is noisy.
     """
     here = mean_variance_m2([scene for _, scene in calibration.held_back], calibration)
     ratio = float(np.sqrt(mean_variance_m2(scenes, calibration) / here))
-    return Gap(ratio * floor.value, ratio * floor.low, ratio * floor.high, floor.pieces)
+    travels_m = np.concatenate([added_travel_m(scene).sum(axis=1) for scene in scenes])
+    least_m = config.least_floor * float(np.sqrt(np.mean(travels_m**2)))
+    raised = [max(ratio * of, least_m) for of in (floor.value, floor.low, floor.high)]
+    return Gap(*raised, floor.pieces)
 
 
 def _pooled(errors: Sequence[tuple[FloatArray, DenseWindows]], part_s: float) -> Gap:

@@ -61,7 +61,7 @@ def test_the_floor_reported_is_that_of_the_runs_beside_which_it_stands(studied):
         (result.measured, result.measured_scenes),
         (result.holdout, result.holdout_scenes),
     ):
-        assert closing.noise_floor == floor_there(floor, result.calibration, scenes)
+        assert closing.noise_floor == floor_there(floor, result.calibration, scenes, GapConfig())
         assert abs(closing.noise_floor.value / floor.value - 1) > 1e-3
 
 
