@@ -79,8 +79,8 @@ def floor_there(
     ratio = float(np.sqrt(mean_variance_m2(scenes, calibration) / here))
     travels_m = np.concatenate([added_travel_m(scene).sum(axis=1) for scene in scenes])
     least_m = config.least_floor * float(np.sqrt(np.mean(travels_m**2)))
-    raised = [max(ratio * of, least_m) for of in (floor.value, floor.low, floor.high)]
-    return Gap(*raised, floor.pieces)
+    value, low, high = (max(ratio * of, least_m) for of in (floor.value, floor.low, floor.high))
+    return Gap(value, low, high, floor.pieces)
 
 
 def _pooled(errors: Sequence[tuple[FloatArray, DenseWindows]], part_s: float) -> Gap:
