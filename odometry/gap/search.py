@@ -20,6 +20,7 @@ from odometry.gap.verdict import (
     Refusal,
     base_left_calibration,
     closes_held_out,
+    is_resolved,
     is_unbeaten,
 )
 from odometry.windows.dense import DenseWindows
@@ -166,7 +167,9 @@ class Search:
         for one in judged:
             if not self.pays(one, before):
                 continue
-            reason = is_the_effect(one.fitted, self.config)
+            reason = is_the_effect(one.fitted, self.config) or is_resolved(
+                one.fitted.effects[-1], before.effects, self.fitter.measured.scenes
+            )
             beaten = "" if reason or refused is None else self._beaten(one, refused)
             if not reason and not beaten:
                 return one

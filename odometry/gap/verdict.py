@@ -10,9 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
+from odometry.effects.base import CommandEffect
 from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added
+from odometry.effects.corrected import Added, delay_s
 from odometry.effects.residual import Residual
+from odometry.effects.time_offset import TimeOffset
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import sure_sum
 from odometry.gap.evenness import Unevenness
@@ -168,6 +170,24 @@ def is_by_its_essence(without: float, added: Added, config: GapConfig) -> str:
     return (
         f"it closes {100 * without:.0f} % of that without {', '.join(added.effect.essential)}: "
         "another effect"
+    )
+
+
+def is_resolved(added: Added, before: Sequence[Added], scenes: Sequence[DenseWindows]) -> str:
+    """Whether stamps of poses are off by more than the period of the recorded speeds.
+
+    Beside treads that act late: when within a period they changed their speed is not recorded.
+    """
+    late = any(isinstance(one.effect, CommandEffect) for one in before)
+    if not late or added.effect.name != TimeOffset.name:
+        return ""
+    periods_s = [float(np.median(np.diff(one.run.odometry.stamps_s))) for one in scenes]
+    off_s = max(float(np.abs(delay_s((added,), one.pose_s)).max()) for one in scenes)
+    if off_s > max(periods_s):
+        return ""
+    return (
+        f"{1e3 * off_s:.0f} ms are less than the {1e3 * max(periods_s):.0f} ms from one recorded "
+        "speed to the next: beside treads that act late they cannot be told"
     )
 
 

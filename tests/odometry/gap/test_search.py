@@ -38,7 +38,8 @@ def test_a_move_is_explained_by_what_brings_the_base_back(
 
 
 def candidate(effect, gain, reason):
-    return SimpleNamespace(effect=effect, gain=gain, fitted=reason)
+    fitted = SimpleNamespace(reason=reason, effects=(SimpleNamespace(effect=effect),))
+    return SimpleNamespace(effect=effect, gain=gain, fitted=fitted)
 
 
 @pytest.mark.parametrize(("of_refused", "expected"), [(120.0, None), (104.0, "wheel_scale")])
@@ -46,11 +47,11 @@ def test_a_name_does_not_stand_where_a_refused_candidate_gains_much_more(
     monkeypatch, of_refused, expected
 ):
     """A loss of traction that is a gain explains more: something began then, and no wheel is it."""
-    monkeypatch.setattr("odometry.gap.search.is_the_effect", lambda reason, _: reason)
-    fitter = SimpleNamespace(spread=lambda _: 1.0)
+    monkeypatch.setattr("odometry.gap.search.is_the_effect", lambda fit, _: fit.reason)
+    fitter = SimpleNamespace(spread=lambda _: 1.0, measured=SimpleNamespace(scenes=()))
     search = Search(fitter, None, (), None, None, GapConfig(), lambda: None)
     monkeypatch.setattr(search, "pays", lambda *_: True)
     judged = [candidate(TractionLoss(), of_refused, "a gain"), candidate(WheelScale(), 100.0, "")]
-    best = search.best_earner(judged, None)
+    best = search.best_earner(judged, SimpleNamespace(effects=()))
     assert (best and best.effect.name) == expected
     assert "traction_loss" in search.refusals

@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 
 from odometry.effects.base_model import Base
+from odometry.effects.command_delay import CommandDelay
 from odometry.effects.corrected import Added
 from odometry.effects.curvature import Curvature
 from odometry.effects.heading_offset import HeadingOffset
 from odometry.effects.in_course import in_course
 from odometry.effects.slope_icr import SlopeByIcr
 from odometry.effects.time_course import FromAMoment
+from odometry.effects.time_offset import ClockDrift, TimeOffset
 from odometry.effects.traction_loss import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
@@ -23,6 +25,7 @@ from odometry.gap.verdict import (
     base_left_calibration,
     closes_a_part,
     closes_held_out,
+    is_resolved,
     is_the_main_part,
     is_unbeaten,
     leaves_no_structure,
@@ -180,6 +183,26 @@ def test_a_name_closes_more_than_a_small_part(share, stands):
 @pytest.mark.parametrize(("of_refused", "stands"), [(115.0, False), (105.0, True), (90.0, True)])
 def test_a_refused_candidate_that_explains_more_refuses_the_next(of_refused, stands):
     assert (is_unbeaten(100.0, "traction_loss", of_refused, 10.0) == "") == stands
+
+
+@pytest.mark.parametrize(
+    ("effect", "values", "stands"),
+    [
+        (TimeOffset(), [-0.03], False),
+        (TimeOffset(), [-0.08], True),
+        (ClockDrift(), [0.0, 2e-4], False),  # 32 ms at the end of 160 s
+        (ClockDrift(), [0.0, -5e-4], True),
+        (HeadingOffset(), [0.03], True),
+    ],
+)
+def test_stamps_off_by_less_than_a_period_are_no_name_beside_late_treads(
+    make_scene, effect, values, stands
+):
+    """Speeds are recorded every 50 ms."""
+    added, scenes = Added(effect, np.array(values)), [make_scene(1)]
+    late = Added(CommandDelay(), np.array([0.2]))
+    assert (is_resolved(added, [late], scenes) == "") is stands
+    assert is_resolved(added, [], scenes) == ""
 
 
 @pytest.mark.parametrize(("of_names", "stands"), [(63.0, False), (77.0, True), (100.0, True)])
