@@ -2,8 +2,6 @@
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from odometry.arrays import FloatArray
 from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual
@@ -12,10 +10,9 @@ from odometry.gap.config import GapConfig
 from odometry.gap.contest import Judged, judge, margin_of, penalty, sure_sum
 from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitter
-from odometry.gap.input_noise import noise_of_windows
+from odometry.gap.input_noise import noise_of_windows, scatter_of_noise
 from odometry.gap.result import Equivalent
 
-SURE = 1.645  # standard deviations of a lower bound of 95 %
 TELL_APART = "a run in which the two differ: other speeds, turns or terrain"
 
 
@@ -98,11 +95,10 @@ def _surely_lost(
     """Evidence that a rival loses, at the lower bound, noise of the tread speeds apart.
 
     `kept_out` (K,) is the chi-squared of each window that this noise makes of the rival and not of
-    the best, which explains nothing by it. Of residuals with such noise and without, the sums of
-    squares differ by that of the noise, with twice its root as standard deviation.
+    the best, which explains nothing by it.
     """
     less = rival.fitted.held_out - best.fitted.held_out - kept_out
-    scatter = 2 * SURE * float(np.sqrt(max(0.0, kept_out.sum())))
+    scatter = scatter_of_noise(float(kept_out.sum()))
     paid = penalty(rival.fitted.freedom - best.fitted.freedom, best.fitted)
     moved = rival.fitted.base_moved - best.fitted.base_moved
     spread = max(1.0, fitter.spread(best.fitted))

@@ -19,6 +19,7 @@ from odometry.gap.effect_values import is_meant
 from odometry.gap.evenness import unevenness
 from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitted, Fitter
+from odometry.gap.input_noise import surely_dearer
 from odometry.gap.search import Search
 from odometry.gap.verdict import is_abrupt, is_by_its_essence, is_even, is_special
 
@@ -122,7 +123,8 @@ def smooth_in_place(
     best = min(fits, key=lambda function: cost_of(fits[function]))
     cost = cost_of(fits[best])
     closed = cost_of(before) - cost_of(names)
-    if cost_of(names) - cost < margin_of(config, fitter.spread(fits[best]), closed):
+    margin = margin_of(config, fitter.spread(fits[best]), closed)
+    if surely_dearer(names, fits[best], fitter.measured) < margin:
         return None
     both = _fit(fitter, [*fits[best].effects, names.effects[place]])
     still = (cost - cost_of(both)) / closed

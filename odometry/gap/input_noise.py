@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.gap.contest import cost_of
 from odometry.gap.fit import Fitted
 from odometry.gap.measured import Measured
 from odometry.run import Run
@@ -20,6 +21,7 @@ SEED = 0
 ORDER = 3  # of differences: a speed that changes steadily leaves none
 DIFFERENCE = np.sqrt(20.0)  # of white noise of 1, deviation of its differences of this order
 NORMAL = 0.6745  # of a normal variable, the median of its size
+SURE = 1.645  # standard deviations of a lower bound of 95 %
 
 
 def tread_noise_m_s(run: Run) -> FloatArray:
@@ -54,3 +56,22 @@ def noise_of_windows(fits: Sequence[Fitted], measured: Measured) -> list[FloatAr
         measured.by_window(again.rows(fit.base, fit.effects) - measured.rows(fit.base, fit.effects))
         for fit in fits
     ]
+
+
+def surely_dearer(fit: Fitted, other: Fitted, measured: Measured) -> float:
+    """By how much a fit surely costs more than another, noise of the tread speeds apart.
+
+    Of what the other keeps out of the motion nothing counts: a smooth function of the speeds at
+    which a robot drove all the time follows their noise.
+    """
+    own, of_other = (of.sum() for of in noise_of_windows([fit, other], measured))
+    kept_out = max(0.0, float(own - of_other))
+    return cost_of(fit) - cost_of(other) - kept_out - scatter_of_noise(kept_out)
+
+
+def scatter_of_noise(kept_out: float) -> float:
+    """Bound of 95 % on how sums of squares with noise of such a chi-squared and without scatter.
+
+    They differ by that of the noise, with twice its root as standard deviation.
+    """
+    return 2 * SURE * float(np.sqrt(max(0.0, kept_out)))

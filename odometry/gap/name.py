@@ -14,6 +14,7 @@ from odometry.gap.contest import cost_of, margin_of
 from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitter
 from odometry.gap.general import general_candidates, shares_of_motion
+from odometry.gap.input_noise import surely_dearer
 from odometry.gap.search import Search
 from odometry.gap.simpler import by_fewer, by_parts, simplest, without_idle
 from odometry.gap.statistic import Gap
@@ -61,7 +62,9 @@ def _better(search: Search, names: Explanation, others: Sequence[Explanation]) -
     best = min(others, key=lambda one: one.cost)
     closed = cost_of(search.start) - names.cost
     margin = margin_of(search.config, search.spread_of(best), closed)
-    return names if names.steps and names.cost - best.cost < margin else best
+    if names.steps and surely_dearer(names.fitted, best.fitted, search.fitter.measured) < margin:
+        return names
+    return best
 
 
 def _names_first(search: Search, found: Explanation) -> Explanation:

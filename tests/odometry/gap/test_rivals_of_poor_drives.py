@@ -7,11 +7,12 @@ import pytest
 
 from odometry.gap.candidates import quick_effects
 from odometry.gap.config import GapConfig
-from odometry.gap.contest import judge
+from odometry.gap.contest import cost_of, judge
 from odometry.gap.equivalent import equivalents, rivals_of_one_heading
 from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitter
-from odometry.gap.input_noise import noise_of_windows, noisier, tread_noise_m_s
+from odometry.gap.general import shares_of_motion
+from odometry.gap.input_noise import noise_of_windows, noisier, surely_dearer, tread_noise_m_s
 from odometry.gap.measured import measured_of
 from odometry.run import Run
 from odometry.windows.averaged import averaged_windows
@@ -23,13 +24,17 @@ NOISE_M_S = 0.004
 KEPT = 0.96
 
 
-def straight(seed, speeds_m_s, *, kept=KEPT, yaw_error_rad=0.0):
-    """Windows of a drive ahead of which a share is lost, with noise of the encoders."""
+def straight(seed, speeds_m_s, *, kept=KEPT, yaw_error_rad=0.0, noise_m_s=NOISE_M_S, turned=0.0):
+    """Windows of a drive ahead of which a share is lost, with noise of the encoders.
+
+    `turned` [m/s] is recorded as half of a difference of the treads that the robot does not follow.
+    """
     rng = np.random.default_rng(seed)
     t = PERIOD_S * np.arange(len(speeds_m_s))
     twist = np.column_stack([kept * speeds_m_s, 0 * t, 0 * t])
     x, y, yaw = (integrated(twist) + rng.normal(size=(len(t), 3)) * [0.01, 0.01, 0.004])[::4].T
-    treads = speeds_m_s + NOISE_M_S * rng.standard_normal((2, len(t)))
+    treads = speeds_m_s + noise_m_s * rng.standard_normal((2, len(t)))
+    treads += np.array([[-1.0], [1.0]]) * turned
     level = {"roll": 0 * t, "pitch": 0 * t}
     columns = {"t": t, "v_left": treads[0], "v_right": treads[1], **level}
     pose = {"t": t[::4], "x": x, "y": y, "yaw": yaw + yaw_error_rad}
@@ -109,3 +114,30 @@ def test_a_limit_keeps_the_noise_out(known):
     limit = next(e for e in quick_effects(measured.scenes, known) if e.key == LIMIT)
     base, limited = noise_of_windows([fitter.fit([]), fitter.fit([limit])], measured)
     assert limited.sum() < 0.1 * base.sum()
+
+
+def costs_more(scene, known):
+    """By how much wheels cost more than a share by the difference of the speeds, both ways."""
+    fitter = Fitter(known, measured_of([scene], known, CONFIG))
+    wheels = next(e for e in quick_effects([scene], known) if e.name == "wheel_scale")
+    shares = shares_of_motion([scene], known.base, CONFIG)
+    share = next(e for e in shares if e.variable == "speed_difference" and e.by == "speed")
+    fits = fitter.fit([wheels]), fitter.fit([share])
+    costs = [cost_of(fit) for fit in fits]
+    return costs[0] - costs[1], surely_dearer(*fits, fitter.measured)
+
+
+def test_a_function_that_follows_the_noise_of_the_treads_is_no_better(known):
+    """The robot drives straight whatever the encoders say of the difference of its treads."""
+    plain, apart = costs_more(straight(4, np.full(1800, 0.8), noise_m_s=0.02), known)
+    assert plain > CONFIG.general_margin
+    assert apart < CONFIG.general_margin
+
+
+def test_a_function_that_is_true_stays_better(known):
+    """A share that is lost by turns differs with the difference that the treads then have."""
+    t = PERIOD_S * np.arange(1800)
+    turned = np.where(t % 20 < 10, 0.05, -0.05)
+    kept = np.where(turned > 0, 0.9, 1.0)
+    plain, apart = costs_more(straight(4, np.full(1800, 0.8), kept=kept, turned=turned), known)
+    assert plain > apart > 100
