@@ -29,9 +29,8 @@ from odometry.errors import OdometryError
 from odometry.gap.files import write_gap
 from odometry.gap.gap import find_gap
 from odometry.run import Run
-from tests.blind.rivals.cases import RivalCase, make_rivals
+from tests.blind.rivals.cases import EVERY_PAIR, RivalCase, make_rivals
 from tests.blind.rivals.drives import Proposal
-from tests.blind.rivals.pairs import PAIRS
 from tests.studies.gap_cases import read
 from tests.studies.gap_names import MEANING, score
 from tests.studies.gap_table import with_interval
@@ -62,7 +61,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=1)
     parser.add_argument("--first-seed", type=int, default=0)
-    parser.add_argument("--pairs", nargs="*", choices=tuple(PAIRS), default=list(PAIRS))
+    parser.add_argument("--pairs", nargs="*", choices=tuple(EVERY_PAIR), default=list(EVERY_PAIR))
     parser.add_argument("--out", type=Path, default=Path("gap_next"))
     parser.add_argument("--jobs", type=int, default=2)
     arguments = parser.parse_args()

@@ -17,12 +17,14 @@ from tests.blind.hidden.scene import RUNS, Scene, draw_drive, draw_scene
 from tests.blind.hidden.size import size_between, size_of_floor
 from tests.blind.rivals.drives import Proposal, drive_of, handful
 from tests.blind.rivals.given import Given, draw_given
+from tests.blind.rivals.more_pairs import MORE_PAIRS
 from tests.blind.rivals.pairs import PAIRS
 
 SIZES_OF_FLOOR = (2.0, 10.0)
 MOST_BETWEEN = 0.5
 LEAST_APART = 1.0
 ATTEMPTS = 60
+EVERY_PAIR = {**PAIRS, **MORE_PAIRS}
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +81,7 @@ def make_rivals(pair: str, truth: int, seed: int, folder: Path) -> RivalCase:
         run: record(Path(folder) / run, motion, drawn.scene, rng=rng, noise=1.0)
         for run, motion in zip(RUNS, motions, strict=True)
     }
-    names = PAIRS[pair].names
+    names = EVERY_PAIR[pair].names
     return RivalCase(
         pair, names[truth], names[1 - truth], **folders, drawn=drawn, truth=truth, rng=rng
     )
@@ -87,7 +89,7 @@ def make_rivals(pair: str, truth: int, seed: int, folder: Path) -> RivalCase:
 
 def draw_rivals(pair: str, truth: int, rng) -> tuple[DrawnRivals, list[Motion]]:
     """Rivals, and two motions with the truth, in which it shows and the other is as good."""
-    row, seen = PAIRS[pair], []
+    row, seen = EVERY_PAIR[pair], []
     for _ in range(ATTEMPTS):
         scene = _of_unit_factors(draw_scene(rng, Kind(row.match)), row.gyroscope)
         given = draw_given(rng, scene, row.given)

@@ -8,7 +8,9 @@ from tests.blind.commands import ACCELERATION_M_S2, RATE_HZ
 from tests.blind.ground import Ground
 from tests.blind.hidden.scene import STEP_S, Drive
 
-SHAPES = ("spin", "spins", "circle", "circles", "straight", "steps", "curves", "slope")
+SHAPES = (
+    *("spin", "spins", "circle", "circles", "straight", "shuttle", "steps", "curves", "slope"),
+)
 STEPS_OF_SPEED = (1.0, 0.4, 0.0, 0.7, -0.6, 0.0)  # each held for STEP_HELD_S
 STEP_HELD_S = 3.0
 SIDE_HELD_S = 10.0
@@ -23,8 +25,8 @@ class Proposal:
     ----------
     shape : str
         spin, circle (to one side); spins, circles (to both, by turns); straight (forward at one
-        speed); steps, curves (straights or bends with steps of speed, also backward); slope
-        (straights with quarter turns between).
+        speed); shuttle (forward and backward at one speed, by turns); steps, curves (straights or
+        bends with steps of speed, also backward); slope (straights with quarter turns between).
     speed_m_s : float
         Of the middle; of each tread in a spin.
     radius_m : float
@@ -86,6 +88,8 @@ def _wanted(p, width):
         speed, omega = 0 * speed, omega + side * 2 * p.speed_m_s / width
     elif p.shape in ("circle", "circles"):
         omega = omega + (sides if p.shape == "circles" else 1.0) * p.speed_m_s / p.radius_m
+    elif p.shape == "shuttle":
+        speed = speed * sides
     elif p.shape in ("steps", "curves"):
         speed = speed * steps
         omega = speed * sides / (3 * width) if p.shape == "curves" else omega

@@ -19,6 +19,9 @@ GIVEN = {
     "one_heading": ("straight", False),
     "contour": ("straight", True),
     "climb": ("straight", True),
+    "shuttle": ("shuttle", False),
+    "reverse": ("straight", False),
+    "eight": ("circles", False),
 }
 
 
@@ -31,7 +34,7 @@ class Given:
     name : str
         Of `GIVEN`.
     speed_m_s : float
-        Of the middle; of each tread in a spin.
+        Of the middle, negative backward; of each tread in a spin.
     radius_m : float
         Of a circle, to the left where it is positive.
     heading_rad : float or None
@@ -65,7 +68,7 @@ class Given:
             "beta_2": beta_2,
             "track_width": body.track_width,
         }
-        left, right = (np.array([speed]) for speed in self._treads(scene))
+        left, right = (np.array([speed]) for speed in self.treads(scene))
         return float(2 * half_width_by_curvature(left, right, p)[0] / base.width)
 
     def force_n(self, scene, wider=1.0):
@@ -96,7 +99,8 @@ class Given:
             return drive
         return Drive(as_held(waves(asked), scene), drive.ground, drive.start, None)
 
-    def _treads(self, scene):
+    def treads(self, scene):
+        """Speeds of the left and the right one [m/s]."""
         half = self.speed_m_s / self.radius_m * scene.base.width / 2
         return self.speed_m_s - half, self.speed_m_s + half
 
@@ -104,20 +108,22 @@ class Given:
         base = scene.base
         if math.isinf(self.radius_m):
             return self.speed_m_s * base.alpha_left, 0.0, 0.0
-        return icr_twist(*self._treads(scene), base.y_left, base.y_right, base.x_icr)
+        return icr_twist(*self.treads(scene), base.y_left, base.y_right, base.x_icr)
 
 
 def draw_given(rng, scene, name):
     """Sizes that a driver might choose; a spin and left turns are to the left."""
     shape, sloped = GIVEN[name]
-    side = 1.0 if shape in ("spin", "circle") else sign(rng)
+    side = 1.0 if shape in ("spin", "circle", "circles") else sign(rng)
     heading = float(rng.uniform(-math.pi, math.pi)) if name == "one_heading" else None
     if sloped:
         heading = -side * math.pi / 2 if name == "contour" else 0.0
+    speed = float(rng.uniform(0.3, 0.5) if shape == "spin" else rng.uniform(0.7, 1.0))
+    round_ = shape in ("circle", "circles")
     return Given(
         name,
-        speed_m_s=float(rng.uniform(0.3, 0.5) if shape == "spin" else rng.uniform(0.7, 1.0)),
-        radius_m=float(rng.uniform(1.2, 2.5) * scene.base.width) if shape == "circle" else math.inf,
+        speed_m_s=-speed if name == "reverse" else speed,
+        radius_m=float(rng.uniform(1.2, 2.5) * scene.base.width) if round_ else math.inf,
         heading_rad=heading,
         slope_rad=float(np.deg2rad(rng.uniform(4.0, 8.0))) if sloped else 0.0,
         side=side,

@@ -7,34 +7,11 @@ straight on one heading, a line on a slope.
 # ruff: noqa: ARG001 - all have one face, and few need all of it
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
 
 from tests.blind.hidden.courses import sign
 from tests.blind.rivals import laws
 from tests.blind.rivals.given import Given
-
-
-@dataclass(frozen=True, eq=False)
-class Pair:
-    """Two rivals.
-
-    Attributes
-    ----------
-    names : (str, str)
-        In plain words, families of `tests/studies/gap_names.py`.
-    given : str
-        The drive that cannot tell them apart: a name of `given.GIVEN`.
-    match : callable
-        rng, scene, given to (hide, hide): the makers of both.
-    gyroscope : bool
-        Whether it is recorded; where it alone would tell them apart, it is not.
-    """
-
-    names: tuple[str, str]
-    given: str
-    match: Callable
-    gyroscope: bool = True
+from tests.blind.rivals.pair import Pair
 
 
 def wheels_or_slip(rng, scene, g: Given):
