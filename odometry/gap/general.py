@@ -10,6 +10,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
+from odometry.effects.headings import all_round
 from odometry.effects.history import BOTH, LAGS_S, History
 from odometry.effects.residual import (
     ANGLES,
@@ -110,9 +111,15 @@ STATED = {
 def knots_of_variables(
     scenes: Sequence[DenseWindows], base: Base, config: GapConfig
 ) -> Mapping[str, tuple[float, ...]]:
-    """Knots of every variable that all runs have and that varies; none of angles."""
+    """Knots of every variable that all runs have and that varies; none of angles.
+
+    On headings over less than half a turn what follows them is something else: on one straight,
+    the noise of the measured heading.
+    """
     of_scenes = [variables_of(s.inputs, base.model.twist(base.values, s.inputs)) for s in scenes]
     shared = [name for name in of_scenes[0] if all(name in other for other in of_scenes)]
+    if all(all_round(scene.inputs) for scene in scenes):
+        shared = [name for name in shared if name != "heading"]
     found = {}
     for name in shared:
         values = np.concatenate([of[name].ravel() for of in of_scenes])

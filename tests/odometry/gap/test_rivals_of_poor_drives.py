@@ -11,7 +11,7 @@ from odometry.gap.contest import cost_of, judge
 from odometry.gap.equivalent import equivalents, rivals_of_one_heading
 from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitter
-from odometry.gap.general import shares_of_motion
+from odometry.gap.general import knots_of_variables, shares_of_motion
 from odometry.gap.input_noise import noise_of_windows, noisier, surely_dearer, tread_noise_m_s
 from odometry.gap.measured import measured_of
 from odometry.run import Run
@@ -141,3 +141,10 @@ def test_a_function_that_is_true_stays_better(known):
     kept = np.where(turned > 0, 0.9, 1.0)
     plain, apart = costs_more(straight(4, np.full(1800, 0.8), kept=kept, turned=turned), known)
     assert plain > apart > 100
+
+
+def test_on_one_straight_nothing_follows_the_heading(known):
+    """Where each window begins, its measured heading is off by the noise of its turn."""
+    all_round = [scene for _, scene in known.held_back]
+    assert "heading" not in knots_of_variables([at_one_speed(1)], known.base, CONFIG)
+    assert "heading" in knots_of_variables(all_round, known.base, CONFIG)
