@@ -1,6 +1,6 @@
 """The answer: the verdict, effects with their intervals, and drives that distinguish rivals."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from odometry.gap.fit import Fitter
 from odometry.gap.next_drives import NextDrive, next_drives
 from odometry.gap.outliers import Outliers
 from odometry.gap.own_moments import SPACING_S
-from odometry.gap.result import Closing, NamedEffect, Rival
+from odometry.gap.result import Closing, Equivalent, NamedEffect, Rival
 
 WITHIN_95 = 1.96  # standard deviations
 MOMENT_KNOWN_S = SPACING_S  # the moment of a run held out is known as well as it was searched
@@ -68,13 +68,14 @@ def named_outliers(outliers: Outliers, before_m: float, after_m: float) -> Named
 def drives_apart(
     found: Explanation,
     candidates: Sequence[Judged],
-    equivalent: Collection[str],
+    equivalent: Sequence[Equivalent],
     fitter: Fitter,
     config: GapConfig,
 ) -> tuple[NextDrive, ...]:
     """Drives that distinguish the first effect, in its form, from those that came as near."""
     fits = {one.effect.name: one.fitted for one in reversed(candidates)}
-    rivals = {name: fits[name] for name in equivalent if name in fits}
+    names = [one.name for one in equivalent if not one.by_equation]
+    rivals = {name: fits[name] for name in names if name in fits}
     if not rivals or found.names[0] not in fits:
         return ()
     of_form = {one.effect.key: one.fitted for one in found.first}

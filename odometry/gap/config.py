@@ -92,6 +92,19 @@ class GapConfig:
         Least noise of the gyroscope's turn over a second, as a share of that of a measured yaw.
     gyro_bias_drift_rad_s : float
         By how much the bias of a gyroscope differs from one recording to another.
+    promising : int
+        Smooth functions that are fitted in full where one is asked for: in full, those that leave
+        least to first order seldom change their order.
+    beside : int
+        Names that are tested beside a smooth function: those of most evidence without it.
+    least_range : float
+        Range of a variable, in its unit, below which it explains nothing: less is rounding.
+    least_odds, sure_odds : float
+        Odds at which a drive is proposed, better than even for the worse of two rivals; and those
+        at which no better drive is looked for.
+    least_tilt_rad : float
+        Steepest terrain measured, below which no drive on a slope is proposed: nobody could
+        find it.
     knots, tread_knots : int
         Of a smooth function; of that of a tread's own motion, to each side of zero.
     most_effects, most_smooth : int
@@ -147,6 +160,12 @@ class GapConfig:
     contact_spread: float = 1.1
     gyro_least_of_yaw: float = 1.0
     gyro_bias_drift_rad_s: float = 0.01
+    promising: int = 2
+    beside: int = 3
+    least_range: float = 1e-3
+    least_odds: float = 0.6
+    sure_odds: float = 0.98
+    least_tilt_rad: float = 0.03
     knots: int = 5
     tread_knots: int = 4
     most_effects: int = 3
@@ -183,7 +202,7 @@ class GapConfig:
             ),
             "least_better",
             "least_beside",
-            "base_probability",
+            *("base_probability", "least_odds", "sure_odds"),
         ):
             value = getattr(self, name)
             require(0 <= value < 1, f"{name} = {value}, expected 0 to 1")

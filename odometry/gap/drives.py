@@ -7,6 +7,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
 from odometry.effects.base_model import Base
+from odometry.gap.config import GapConfig
 from odometry.models.inputs import Inputs
 from odometry.run import UNKNOWN
 from odometry.windows.dense import DenseWindows
@@ -15,7 +16,6 @@ from odometry.windows.motion import level_path
 LASTING_S = 60.0
 PERIOD_S = 0.05
 RADII_M = (1.0, 2.5, 6.0)
-LEAST_TILT_RAD = 0.03  # of the steepest terrain measured: less is no slope to drive on
 STEP_S = 4.0  # between steps of speed, and between changes of the sense of turns
 STEPS = (0.3, 1.0, 0.0, 0.6, -0.6, 1.0, 0.15, 0.8)  # of the speed
 
@@ -39,7 +39,7 @@ class Drive:
     pitch_rad: FloatArray
 
 
-def drives_of(scenes: Sequence[DenseWindows], base: Base) -> tuple[Drive, ...]:
+def drives_of(scenes: Sequence[DenseWindows], base: Base, config: GapConfig) -> tuple[Drive, ...]:
     """A handful at the speeds and on the slopes that the robot has driven, most varied first."""
     treads = np.concatenate([scene.inputs.tread_speeds_m_s for scene in scenes])
     fast = float(np.percentile(np.abs(treads), 95))
@@ -62,14 +62,16 @@ def drives_of(scenes: Sequence[DenseWindows], base: Base) -> tuple[Drive, ...]:
         found.append(made(words, level + inner, inner * width / radius_m * turn))
     found.append(made(f"straights with steps of speed up to {fast:.2g} m/s", stepped, level))
     found.append(made(f"spins to both sides, treads at {fast:.2g} m/s", level, 2 * fast * turn))
-    return (*found, *_on_slopes(scenes, found))
+    return (*found, *_on_slopes(scenes, found, config.least_tilt_rad))
 
 
-def _on_slopes(scenes: Sequence[DenseWindows], level: Sequence[Drive]) -> list[Drive]:
+def _on_slopes(
+    scenes: Sequence[DenseWindows], level: Sequence[Drive], least_rad: float
+) -> list[Drive]:
     """Spins and curves across the steepest terrain measured, where attitude was recorded."""
     tilts = [np.hypot(scene.inputs.roll_rad, scene.inputs.pitch_rad) for scene in scenes]
     steep_rad = float(np.percentile(np.concatenate(tilts), 95))
-    if steep_rad < LEAST_TILT_RAD:
+    if steep_rad < least_rad:
         return []
     found = []
     for one in (level[0], level[-1]):

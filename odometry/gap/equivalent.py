@@ -40,7 +40,7 @@ def equivalents(
     """
     alike: dict[str, Equivalent] = {}
     for added in found.fitted.effects:
-        _add_same(alike, added)
+        _add_same(alike, added, by_equation=True)
     for place, step in enumerate(found.steps):
         if isinstance(step.effect, Residual):
             continue
@@ -105,7 +105,8 @@ def _surely_lost(
     return (sure_sum(fitter.by_piece(less), config.trimmed) - scatter + moved) / spread + paid
 
 
-def _add_same(alike: dict[str, Equivalent], added: Added) -> None:
+def _add_same(alike: dict[str, Equivalent], added: Added, *, by_equation: bool = False) -> None:
     """What does the same as an effect named, or as an equivalent of one."""
     for name, told_apart_by in added.effect.same_as(added.values).items():
-        alike.setdefault(name, Equivalent(name, added.effect.name, told_apart_by))
+        one = Equivalent(name, added.effect.name, told_apart_by, by_equation)
+        alike.setdefault(name, one)

@@ -48,7 +48,12 @@ def content_of(result: GapResult) -> dict[str, Any]:
         "verdict": result.verdict,
         "effects": [_effect(effect) for effect in result.effects],
         "equivalent": [
-            {"name": one.name, "instead_of": one.instead_of, "told_apart_by": one.told_apart_by}
+            {
+                "name": one.name,
+                "instead_of": one.instead_of,
+                "told_apart_by": one.told_apart_by,
+                "by_equation": one.by_equation,
+            }
             for one in result.equivalent
         ],
         "where": [_region(region) for region in result.location.regions],

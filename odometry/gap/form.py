@@ -23,8 +23,6 @@ from odometry.gap.input_noise import surely_dearer
 from odometry.gap.search import Search
 from odometry.gap.verdict import is_abrupt, is_by_its_essence, is_even, is_special
 
-PROMISING = 2  # smooth functions that are fitted in full
-
 
 def of_their_form(search: Search, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
     """Without names that do not have it: with the function that does better in the place of one.
@@ -112,7 +110,7 @@ def smooth_in_place(
     others = [*names.effects[:place], *names.effects[place + 1 :]]
     before = _fit(fitter, others)
     losses = fitter.linear_losses(before, smooth)
-    promising = np.argsort(losses, kind="stable")[:PROMISING]
+    promising = np.argsort(losses, kind="stable")[: config.promising]
     fits = {
         smooth[i]: fitter.fit([*(one.effect for one in others), smooth[i]], others, pin_slow=True)
         for i in promising

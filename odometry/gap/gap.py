@@ -141,9 +141,7 @@ def find_gap(
         holdout_scenes=tuple(held_scenes),
         horizon_s=config.horizon_s,
         notes=headings.notes,
-        next_drives=drives_apart(
-            found, (*found.first, *more), [one.name for one in equivalent], fitter, config
-        ),
+        next_drives=drives_apart(found, (*found.first, *more), equivalent, fitter, config),
         refusals=found.refusals,
         holdout_before=() if outliers is None else tuple(raw_scenes[1]),
     )

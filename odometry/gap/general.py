@@ -100,7 +100,6 @@ def _every(components: Sequence[str], functions: int) -> tuple[tuple[str, int], 
 
 
 INNER = (0.02, 0.98)  # quantiles between which knots lie
-LEAST_RANGE = 1e-3  # of a variable that can explain anything
 SINCE_REVERSAL_M = (0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.8)  # gears, tracks and casters settle
 STATED = {
     "travel_since_reversal": SINCE_REVERSAL_M,
@@ -137,11 +136,11 @@ def _knots(values: FloatArray, name: str, config: GapConfig) -> tuple[float, ...
     if name in STATED:
         return STATED[name]
     if name in OF_TREADS:
-        largest = max(float(np.quantile(np.abs(values), INNER[1])), LEAST_RANGE / 2)
+        largest = max(float(np.quantile(np.abs(values), INNER[1])), config.least_range / 2)
         half = np.geomspace(largest / 16, largest, config.tread_knots)
         places = np.concatenate([-np.flip(half), [0.0], half])
     else:
         places = np.unique(np.quantile(values, np.linspace(*INNER, config.knots)))
-    if len(places) < 2 or np.ptp(places) <= LEAST_RANGE:
+    if len(places) < 2 or np.ptp(places) <= config.least_range:
         return ()
     return tuple(float(place) for place in places)

@@ -20,8 +20,6 @@ from odometry.gap.simpler import by_fewer, by_parts, simplest, without_idle
 from odometry.gap.statistic import Gap
 from odometry.windows.dense import DenseWindows
 
-BESIDE = 3  # names that are tested beside a smooth function: those of most evidence without it
-
 
 def explained(
     fitter: Fitter,
@@ -49,7 +47,7 @@ def explained(
     options = [] if rest is None else [without_idle(search, found.with_step(rest))]
     if best is not None:
         names = [one.effect for one in found.first if one.evidence > config.least_evidence]
-        alone = search.stepwise(names[:BESIDE], replace(found, steps=(best,)))
+        alone = search.stepwise(names[: config.beside], replace(found, steps=(best,)))
         options.append(without_idle(search, alone))
     if options:
         found = _better(search, found, options)

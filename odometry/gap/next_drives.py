@@ -27,9 +27,6 @@ from odometry.gap.simulate import simulated_poses
 from odometry.gap.solve import differences
 from odometry.windows.dense import DenseWindows
 
-LEAST_ODDS = 0.6  # of a drive that is proposed
-SURE_ODDS = 0.98  # of one than which none needs to be better
-
 
 @dataclass(frozen=True)
 class NextDrive:
@@ -79,19 +76,19 @@ def next_drives(
         Measured: speeds, slopes and pose rate are theirs.
     """
     (name, named), *others = ((key, rivalling(fit)) for key, fit in rivals.items())
-    drives, odds = drives_of(scenes, calibration.base), []
+    drives, odds = drives_of(scenes, calibration.base, config), []
     for drive in drives:
         pairs = [(named, rival) for _, rival in others]
         odds.append([_odds(drive, pair, scenes[0], calibration, config) for pair in pairs])
-        if min(odds[-1]) >= SURE_ODDS:
+        if min(odds[-1]) >= config.sure_odds:
             break
     table = np.array(odds)
     for_all = int(np.argmax(table.mean(axis=1).round(1)))
     found = []
     for column, (other, _) in enumerate(others):
         its_best = int(np.argmax(table[:, column]))
-        best = for_all if table[for_all, column] >= LEAST_ODDS else its_best
-        if table[best, column] >= LEAST_ODDS:
+        best = for_all if table[for_all, column] >= config.least_odds else its_best
+        if table[best, column] >= config.least_odds:
             found.append(NextDrive(drives[best].words, (name, other), float(table[best, column])))
     return tuple(found)
 

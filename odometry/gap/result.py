@@ -56,11 +56,21 @@ class Rival:
 
 @dataclass(frozen=True)
 class Equivalent:
-    """An effect that the data do not distinguish from a named one."""
+    """An effect that the data do not distinguish from a named one.
+
+    Attributes
+    ----------
+    name, instead_of : str
+    told_apart_by : str
+        Measure or drive.
+    by_equation : bool
+        Whether the equations are those of the named effect: no drive distinguishes them.
+    """
 
     name: str
     instead_of: str
     told_apart_by: str
+    by_equation: bool = False
 
 
 @dataclass(frozen=True)

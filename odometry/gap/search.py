@@ -25,8 +25,6 @@ from odometry.gap.verdict import (
 )
 from odometry.windows.dense import DenseWindows
 
-PROMISING = 2  # smooth functions that are fitted in full
-
 
 @dataclass
 class Search:
@@ -79,7 +77,7 @@ class Search:
         if not candidates or not self.has_excess(before):
             return None
         losses = self.fitter.linear_losses(before, candidates)
-        order = np.argsort(losses, kind="stable")[:PROMISING]
+        order = np.argsort(losses, kind="stable")[: self.config.promising]
         promising = [candidates[i] for i in order if losses[i] < below]
         judged = judge(self.fitter, before, promising, self.config, self.progress)
         sparse = [sparse_residual(self.fitter, one.fitted) for one in judged]

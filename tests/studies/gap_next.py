@@ -5,8 +5,9 @@
 `tests/blind/rivals` writes runs about which two hypotheses say the same; one of them is the truth.
 The gap workflow proposes a drive in words; it is driven with the truth for as long as it is meant
 to last, and the workflow is asked again with it. They are apart where the first name is then
-right and the rival is not among the equivalents. A row of FOLDER/cases.csv is a case; cases that
-are in it are not done again.
+right and the rival is not among the equivalents of the data: one that has the equations of the
+name, as slip has those of one factor of both wheels, stays beside it on any drive. A row of
+FOLDER/cases.csv is a case; cases that are in it are not done again.
 """
 
 import argparse
@@ -129,7 +130,8 @@ def apart(case: RivalCase, found: dict[str, Any]) -> dict[str, str]:
     true = ((case.true, *ALIKE.get(case.true, ())),)
     near = [one["name"] for one in found["equivalent"]]
     scored = score(found["verdict"], "", true, (), near)
-    rivals = {one["name"] for one in found["equivalent"]} & set(MEANING[case.rival])
+    data = [one["name"] for one in found["equivalent"] if not one["by_equation"]]
+    rivals = set(data) & set(MEANING[case.rival])
     return {"score": scored, "apart": f"{int(scored == 'right' and not rivals)}"}
 
 

@@ -9,10 +9,11 @@ from odometry.effects.catalogue import EFFECTS
 from odometry.effects.command_delay import CommandDelay
 from odometry.effects.corrected import Added
 from odometry.effects.heading_offset import HeadingOffset
+from odometry.effects.lateral_skid import LateralSkid
 from odometry.effects.lever_arm import LeverArm
 from odometry.effects.terrain import NewIcrs
 from odometry.effects.time_offset import TimeOffset
-from odometry.gap import equivalent
+from odometry.gap import answer, equivalent
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import Judged
 from odometry.gap.equivalent import equivalents
@@ -50,17 +51,24 @@ def judged(effect, evidence, gain):
 
 
 @pytest.fixture
-def names_beside(monkeypatch):
-    """Names of the equivalents of the first of candidates, on speeds without noise."""
+def beside(monkeypatch):
+    """Equivalents of the first of candidates, on speeds without noise."""
     silent = np.zeros(PIECES)
     monkeypatch.setattr(equivalent, "noise_of_windows", lambda fits, _: [silent for _ in fits])
 
-    def names(*candidates):
-        best = candidates[0]
-        found = Explanation(None, (best,), candidates, {best.effect.name: candidates})
-        return [one.name for one in equivalents(found, (), Alone(), GapConfig())]
+    return lambda *candidates: equivalents(explained_by(*candidates), (), Alone(), GapConfig())
 
-    return names
+
+@pytest.fixture
+def names_beside(beside):
+    """Their names."""
+    return lambda *candidates: [one.name for one in beside(*candidates)]
+
+
+def explained_by(*candidates):
+    """By the first of candidates."""
+    best = candidates[0]
+    return Explanation(None, (best,), candidates, {best.effect.name: candidates})
 
 
 def test_one_of_near_evidence_is_equivalent(names_beside):
@@ -124,3 +132,17 @@ def test_a_short_delay_is_slip_in_proportion_to_force():
 
     assert error(0.2) < 0.03
     assert error(0.2) / error(0.1) == pytest.approx(4.0, rel=0.2)
+
+
+def test_no_drive_distinguishes_what_has_the_equations_of_the_name(beside, monkeypatch):
+    """An arm ahead is a skid, as near as it may be on the data; other rivals can be told by one."""
+    candidates = judged(LeverArm(), 90.0, 104.0), judged(LateralSkid(), 89.0, 101.0)
+    candidates = (*candidates, judged(TimeOffset(), 88.0, 103.0))
+    found = beside(*candidates)
+    by_equation = {one.name: one.by_equation for one in found}
+    assert by_equation == {"lateral_skid": True, "time_offset": False}
+    asked = []
+    monkeypatch.setattr(answer, "next_drives", lambda rivals, *_: asked.extend(rivals))
+    fitter = SimpleNamespace(measured=SimpleNamespace(scenes=()), calibration=None)
+    answer.drives_apart(explained_by(*candidates), candidates, found, fitter, GapConfig())
+    assert asked == ["lever_arm", "time_offset"]

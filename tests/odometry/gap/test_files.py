@@ -33,7 +33,7 @@ FORM = {
             "evidence": NUMBER,
         }
     ],
-    "equivalent": [{"name": str, "told_apart_by": str}],
+    "equivalent": [{"name": str, "told_apart_by": str, "by_equation": bool}],
     "where": [{"words": str, "bounds": dict, "excess": NUMBER, "share": NUMBER}],
     "gap": {"before": NUMBER, "after": NUMBER, "noise_floor": NUMBER, "unit": str},
     "holdout": {"before": NUMBER, "after": NUMBER, "noise_floor": NUMBER, "unit": str},

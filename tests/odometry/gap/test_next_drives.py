@@ -86,7 +86,7 @@ def test_slopes_are_told_from_wheels_on_a_slope_alone(scenes, known, fit):
     slope = fit(SlopeByIcr(0.3, 0.3), [1.0, 1.0, 2.0], 1e-2)
     wheels = fit(WheelScale(), [1.0, 1.0], SURE)
     pair = (slope, wheels)
-    for drive in drives_of(scenes, known.base):
+    for drive in drives_of(scenes, known.base, CONFIG):
         chi_squared = left(pair, scene_of(drive, known.base, scenes[0]), known)
         assert (chi_squared > 1.0) == ("slope" in drive.words)
     (found,) = next_drives({"slope_sliding": slope, "wheel_scale": wheels}, scenes, known, CONFIG)
@@ -97,7 +97,7 @@ def test_slopes_are_told_from_wheels_on_a_slope_alone(scenes, known, fit):
 
 def test_what_is_open_of_a_rival_is_fitted_to_the_drive(scenes, known, fit):
     """Factors that are not known at all take the place of any other factors."""
-    scene = scene_of(drives_of(scenes, known.base)[-1], known.base, scenes[0])
+    scene = scene_of(drives_of(scenes, known.base, CONFIG)[-1], known.base, scenes[0])
     true = fit(WheelScale(), [0.98, 0.99])
     surely = left((true, fit(WheelScale(), [1.0, 1.0])), scene, known)
     openly = left((true, fit(WheelScale(), [1.0, 1.0], 1.0)), scene, known)
@@ -109,13 +109,13 @@ def test_a_lag_shows_where_speed_changes(scenes, known, fit):
     pair = (fit(ActuatorLag(), [0.2]), fit(WheelScale(), [1.0, 1.0], 1e-4))
     by_words = {
         drive.words.split(" ")[0]: left(pair, scene_of(drive, known.base, scenes[0]), known)
-        for drive in drives_of(scenes, known.base)
+        for drive in drives_of(scenes, known.base, CONFIG)
     }
     assert by_words["straights"] > 100
 
 
 def test_a_drive_is_cut_as_the_measured_ones(scenes, known, fit):
-    for drive in drives_of(scenes, known.base):
+    for drive in drives_of(scenes, known.base, CONFIG):
         scene = scene_of(drive, known.base, scenes[0])
         assert scene.windows.shape[1] == scenes[0].windows.shape[1]
         assert (scene.windows < len(scene.poses)).all()
