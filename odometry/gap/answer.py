@@ -72,8 +72,11 @@ def drives_apart(
     fitter: Fitter,
     config: GapConfig,
 ) -> tuple[NextDrive, ...]:
-    """Drives that distinguish the first effect, in its form, from those that came as near."""
-    fits = {one.effect.name: one.fitted for one in reversed(candidates)}
+    """Drives that distinguish the first effect, in its form, from those that came as near.
+
+    Of each name it is the form of most evidence: on one heading, some have been no candidates.
+    """
+    fits = {one.effect.name: one.fitted for one in sorted(candidates, key=_evidence)}
     names = [one.name for one in equivalent if not one.by_equation]
     rivals = {name: fits[name] for name in names if name in fits}
     if not rivals or found.names[0] not in fits:
@@ -81,6 +84,10 @@ def drives_apart(
     of_form = {one.effect.key: one.fitted for one in found.first}
     first = {found.names[0]: of_form.get(found.effects[0].key, found.steps[0].fitted)}
     return next_drives({**first, **rivals}, fitter.measured.scenes, fitter.calibration, config)
+
+
+def _evidence(one: Judged) -> float:
+    return one.evidence
 
 
 def rivals_of(found: Explanation) -> tuple[Rival, ...]:

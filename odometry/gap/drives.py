@@ -15,8 +15,10 @@ from odometry.windows.motion import level_path
 
 LASTING_S = 60.0
 PERIOD_S = 0.05
-RADII_M = (1.0, 2.5, 6.0)
+TIGHT_M = 1.0  # on circles of this radius a robot looks all round in a few seconds
+RADII_M = (TIGHT_M, 2.5, 6.0)
 STEP_S = 4.0  # between steps of speed, and between changes of the sense of turns
+SIDE_S = 12.0  # of circles with steps of speed
 STEPS = (0.3, 1.0, 0.0, 0.6, -0.6, 1.0, 0.15, 0.8)  # of the speed
 
 
@@ -31,12 +33,15 @@ class Drive:
     speeds_m_s : (N, 2)
         Of the treads.
     roll_rad, pitch_rad : (N,)
+    all_round : bool
+        Whether whoever drives it looks in all directions: not so where the words leave it open.
     """
 
     words: str
     speeds_m_s: FloatArray
     roll_rad: FloatArray
     pitch_rad: FloatArray
+    all_round: bool = False
 
 
 def drives_of(scenes: Sequence[DenseWindows], base: Base, config: GapConfig) -> tuple[Drive, ...]:
@@ -46,6 +51,7 @@ def drives_of(scenes: Sequence[DenseWindows], base: Base, config: GapConfig) -> 
     width = _effective_width_m(base)
     time_s = PERIOD_S * np.arange(round(LASTING_S / PERIOD_S))
     turn = np.where(np.floor(time_s / STEP_S) % 2 == 0, 1.0, -1.0)
+    side = np.where(np.floor(time_s / SIDE_S) % 2 == 0, 1.0, -1.0)
     level = np.zeros_like(time_s)
 
     def made(words: str, forward: FloatArray, difference: FloatArray) -> Drive:
@@ -55,13 +61,21 @@ def drives_of(scenes: Sequence[DenseWindows], base: Base, config: GapConfig) -> 
 
     stepped = fast * np.array(STEPS)[(time_s // STEP_S).astype(np.int64) % len(STEPS)]
     curved = 0.4 * stepped * turn
-    found = [made(f"curves with steps of speed up to {fast:.2g} m/s", stepped, curved)]
+    tight = stepped / (1 + width / (2 * TIGHT_M))
+    words = f"circles of {TIGHT_M:g} m radius to both sides with steps of speed up to "
+    circles = made(f"{words}{tight.max():.2g} m/s", tight, tight * width / TIGHT_M * side)
+    found = [
+        made(f"curves with steps of speed up to {fast:.2g} m/s", stepped, curved),
+        replace(circles, all_round=True),
+    ]
     for radius_m in RADII_M:
         inner = fast / (1 + width / (2 * radius_m))
         words = f"circles of {radius_m:g} m radius to both sides at {inner:.2g} m/s"
-        found.append(made(words, level + inner, inner * width / radius_m * turn))
+        circles = made(words, level + inner, inner * width / radius_m * turn)
+        found.append(replace(circles, all_round=radius_m == TIGHT_M))
     found.append(made(f"straights with steps of speed up to {fast:.2g} m/s", stepped, level))
-    found.append(made(f"spins to both sides, treads at {fast:.2g} m/s", level, 2 * fast * turn))
+    spins = made(f"spins to both sides, treads at {fast:.2g} m/s", level, 2 * fast * turn)
+    found.append(replace(spins, all_round=True))
     return (*found, *_on_slopes(scenes, found, config.least_tilt_rad))
 
 

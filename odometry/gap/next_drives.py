@@ -16,6 +16,7 @@ from scipy.stats import norm
 from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added, corrected_twist, reported_yaw_rate
+from odometry.effects.headings import FEW_HEADINGS
 from odometry.effects.in_course import lasting
 from odometry.gap.calibration import Calibration
 from odometry.gap.config import GapConfig
@@ -66,7 +67,7 @@ def next_drives(
     """A drive for each rival of a named effect, one for all where there is such; none, if in vain.
 
     Of drives that decide as well, it is the one of more different motions: what is true may be
-    none of these effects.
+    none of these effects. Effects that follow the heading need a drive that looks all round.
 
     Parameters
     ----------
@@ -77,9 +78,17 @@ def next_drives(
     """
     (name, named), *others = ((key, rivalling(fit)) for key, fit in rivals.items())
     drives, odds = drives_of(scenes, calibration.base, config), []
+    pairs = [(named, rival) for _, rival in others]
+    of_headings = [any(_lacks_headings(one, scenes) for one in pair) for pair in pairs]
     for drive in drives:
-        pairs = [(named, rival) for _, rival in others]
-        odds.append([_odds(drive, pair, scenes[0], calibration, config) for pair in pairs])
+        odds.append(
+            [
+                _odds(drive, pair, scenes[0], calibration, config)
+                if drive.all_round or not all_round
+                else 0.0
+                for pair, all_round in zip(pairs, of_headings, strict=True)
+            ]
+        )
         if min(odds[-1]) >= config.sure_odds:
             break
     table = np.array(odds)
@@ -91,6 +100,14 @@ def next_drives(
         if table[best, column] >= config.least_odds:
             found.append(NextDrive(drives[best].words, (name, other), float(table[best, column])))
     return tuple(found)
+
+
+def _lacks_headings(one: Rivalling, scenes: Sequence[DenseWindows]) -> bool:
+    """Whether its effects follow the heading, and no run looks all round."""
+    return any(
+        all(added.effect.lacks(scene.inputs, one.base) == FEW_HEADINGS for scene in scenes)
+        for added in one.effects
+    )
 
 
 def odds_of(chi_squared: float, margin: float) -> float:

@@ -161,7 +161,9 @@ def proposal_of(words: str) -> Proposal:
         unit: re.search(rf"([\d.]+) {unit}", words) for unit in ("m radius", "m/s", "degrees")
     }
     speed, radius = numbers["m/s"], numbers["m radius"]
-    if shape is None or speed is None or (shape == "circles" and radius is None):
+    if shape == "circles" and "steps" in words:
+        shape = "stepped circles"
+    if shape is None or speed is None or ("circles" in shape and radius is None):
         raise ValueError(f"words = {words!r}, expected one of {', '.join(SHAPES)} with a speed")
     slope = numbers["degrees"]
     return Proposal(

@@ -9,7 +9,8 @@ from tests.blind.ground import Ground
 from tests.blind.hidden.scene import STEP_S, Drive
 
 SHAPES = (
-    *("spin", "spins", "circle", "circles", "straight", "shuttle", "steps", "curves", "slope"),
+    *("spin", "spins", "circle", "circles", "stepped circles", "straight", "shuttle", "steps"),
+    *("curves", "slope"),
 )
 STEPS_OF_SPEED = (1.0, 0.4, 0.0, 0.7, -0.6, 0.0)  # each held for STEP_HELD_S
 STEP_HELD_S = 3.0
@@ -25,8 +26,9 @@ class Proposal:
     ----------
     shape : str
         spin, circle (to one side); spins, circles (to both, by turns); straight (forward at one
-        speed); shuttle (forward and backward at one speed, by turns); steps, curves (straights or
-        bends with steps of speed, also backward); slope (straights with quarter turns between).
+        speed); shuttle (forward and backward at one speed, by turns); steps, curves, stepped
+        circles (straights, bends or circles with steps of speed, also backward); slope
+        (straights with quarter turns between).
     speed_m_s : float
         Of the middle; of each tread in a spin.
     radius_m : float
@@ -90,9 +92,10 @@ def _wanted(p, width):
         omega = omega + (sides if p.shape == "circles" else 1.0) * p.speed_m_s / p.radius_m
     elif p.shape == "shuttle":
         speed = speed * sides
-    elif p.shape in ("steps", "curves"):
+    elif p.shape in ("steps", "curves", "stepped circles"):
         speed = speed * steps
-        omega = speed * sides / (3 * width) if p.shape == "curves" else omega
+        bends = {"steps": 0.0, "curves": 1 / (3 * width)}
+        omega = speed * sides * (bends[p.shape] if p.shape in bends else 1 / p.radius_m)
     elif p.shape == "slope":
         turning = (times_s % 8.0) > 6.0
         omega = np.where(turning, np.pi / 2 / 2.0, 0.0)

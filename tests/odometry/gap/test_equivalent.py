@@ -141,8 +141,24 @@ def test_no_drive_distinguishes_what_has_the_equations_of_the_name(beside, monke
     found = beside(*candidates)
     by_equation = {one.name: one.by_equation for one in found}
     assert by_equation == {"lateral_skid": True, "time_offset": False}
-    asked = []
-    monkeypatch.setattr(answer, "next_drives", lambda rivals, *_: asked.extend(rivals))
+    assert asked_about(candidates, found, monkeypatch).keys() == {"lever_arm", "time_offset"}
+
+
+def test_a_drive_is_for_the_form_of_most_evidence(beside, monkeypatch):
+    """On one heading a form that came as near may have been no candidate."""
+    first, far, near = (judged(HeadingOffset(), 90.0, 104.0), *ICRS)
+    found = beside(first, near)
+    assert asked_about((first, far, near), found, monkeypatch)["terrain"] is near.fitted
+
+
+ICRS = judged(NewIcrs(), 20.0, 50.0), judged(NewIcrs(), 89.0, 103.0)
+
+
+def asked_about(candidates, found, monkeypatch):
+    """The fits that drives are proposed for, by name."""
+    asked = {}
+    monkeypatch.setattr(answer, "next_drives", lambda rivals, *_: asked.update(rivals))
     fitter = SimpleNamespace(measured=SimpleNamespace(scenes=()), calibration=None)
-    answer.drives_apart(explained_by(*candidates), candidates, found, fitter, GapConfig())
-    assert asked == ["lever_arm", "time_offset"]
+    explained = explained_by(*candidates)
+    answer.drives_apart(explained, candidates, found, fitter, GapConfig())
+    return asked

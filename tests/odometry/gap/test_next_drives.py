@@ -1,13 +1,17 @@
 """Which drive tells two effects apart, and with what odds."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from odometry.effects.actuator_lag import ActuatorLag
 from odometry.effects.corrected import Added
+from odometry.effects.heading_offset import HeadingOffset
 from odometry.effects.in_course import in_course
 from odometry.effects.lateral_skid import LateralSkid
 from odometry.effects.lever_arm import LeverArm
+from odometry.effects.reference_fault import Compass
 from odometry.effects.slope_icr import SlopeByIcr
 from odometry.effects.time_course import FromAMoment
 from odometry.effects.traction_loss import TractionLoss
@@ -79,6 +83,24 @@ def test_the_most_varied_drive_is_proposed_for_all_that_it_decides(scenes, known
     found = next_drives(rivals, scenes, known, CONFIG)
     assert [one.between[1] for one in found] == ["wheel_scale", "actuator_lag"]
     assert {one.words.split()[0] for one in found} == {"curves"}
+
+
+def test_what_follows_the_heading_needs_a_drive_that_looks_all_round(known, fit, make_scene):
+    """On one straight a compass that is off by the heading is a yaw that is off."""
+    straight = make_scene(71, lambda _, twist: twist * [1.0, 0.0, 0.0], duration_s=60.0)
+    straight = replace(
+        straight, inputs=replace(straight.inputs, heading_rad=0.0 * straight.inputs.time_s)
+    )
+    rivals = {
+        "heading_offset": fit(HeadingOffset(), [0.06], 1e-6),
+        "reference_fault": fit(Compass(), [0.0, 0.06], 1e-6),
+    }
+    (found,) = next_drives(rivals, [straight], known, CONFIG)
+    assert found.words.startswith("circles of 1 m radius to both sides with steps")
+    del rivals["reference_fault"]
+    rivals["lateral_skid"] = fit(LateralSkid(), [-0.1], 1e-4)
+    (found,) = next_drives(rivals, [straight], known, CONFIG)
+    assert found.words.startswith("curves")
 
 
 def test_slopes_are_told_from_wheels_on_a_slope_alone(scenes, known, fit):
