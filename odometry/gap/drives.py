@@ -15,6 +15,7 @@ from odometry.windows.motion import level_path
 
 LASTING_S = 60.0
 PERIOD_S = 0.05
+REST_S = 1.0  # at the begin and the end: no delay is longer
 TIGHT_M = 1.0  # on circles of this radius a robot looks all round in a few seconds
 RADII_M = (TIGHT_M, 2.5, 6.0)
 STEP_S = 4.0  # between steps of speed, and between changes of the sense of turns
@@ -52,12 +53,13 @@ def drives_of(scenes: Sequence[DenseWindows], base: Base, config: GapConfig) -> 
     time_s = PERIOD_S * np.arange(round(LASTING_S / PERIOD_S))
     turn = np.where(np.floor(time_s / STEP_S) % 2 == 0, 1.0, -1.0)
     side = np.where(np.floor(time_s / SIDE_S) % 2 == 0, 1.0, -1.0)
+    driving = (time_s >= REST_S) & (time_s < LASTING_S - REST_S)
     level = np.zeros_like(time_s)
 
     def made(words: str, forward: FloatArray, difference: FloatArray) -> Drive:
         speeds = np.stack([forward - difference / 2, forward + difference / 2], axis=-1)
         scale = min(1.0, fast / max(float(np.abs(speeds).max()), 1e-9))
-        return Drive(words, scale * speeds, level, level)
+        return Drive(words, scale * speeds * driving[:, None], level, level)
 
     stepped = fast * np.array(STEPS)[(time_s // STEP_S).astype(np.int64) % len(STEPS)]
     curved = 0.4 * stepped * turn

@@ -20,6 +20,7 @@ from odometry.windows.dense import DenseWindows
 SEED = 0
 ORDER = 3  # of differences: a speed that changes steadily leaves none
 DIFFERENCE = np.sqrt(20.0)  # of white noise of 1, deviation of its differences of this order
+PART = 0.1  # of the noise
 NORMAL = 0.6745  # of a normal variable, the median of its size
 SURE = 1.645  # standard deviations of a lower bound of 95 %
 
@@ -34,10 +35,10 @@ def tread_noise_m_s(run: Run) -> FloatArray:
     return np.asarray(median / (NORMAL * DIFFERENCE))
 
 
-def noisier(scene: DenseWindows, rng: np.random.Generator) -> DenseWindows:
-    """The scene with as much noise of the tread speeds again, drawn for each recorded row."""
+def noisier(scene: DenseWindows, rng: np.random.Generator, times: float = 1.0) -> DenseWindows:
+    """The scene with so many times its noise of the tread speeds again, drawn for each row."""
     stamps_s = scene.run.odometry.stamps_s - scene.run.odometry.stamps_s[0]
-    drawn = tread_noise_m_s(scene.run) * rng.standard_normal((len(stamps_s), 2))
+    drawn = times * tread_noise_m_s(scene.run) * rng.standard_normal((len(stamps_s), 2))
     travelled = np.cumsum(drawn[:-1] * np.diff(stamps_s)[:, None], axis=0)
     travelled = np.concatenate([np.zeros((1, 2)), travelled])
     at = np.column_stack([np.interp(scene.time_s, stamps_s, one) for one in travelled.T])
@@ -49,11 +50,17 @@ def noisier(scene: DenseWindows, rng: np.random.Generator) -> DenseWindows:
 
 
 def noise_of_windows(fits: Sequence[Fitted], measured: Measured) -> list[FloatArray]:
-    """Chi-squared (K,) of each window that noise of the tread speeds makes, of each fit."""
+    """Chi-squared (K,) of each window that noise of the tread speeds makes, of each fit.
+
+    By a small part of it: a function that follows the noise does so only as far as it was recorded.
+    """
     rng = np.random.default_rng(SEED)
-    again = replace(measured, scenes=tuple(noisier(scene, rng) for scene in measured.scenes))
+    scenes = tuple(noisier(scene, rng, PART) for scene in measured.scenes)
+    again = replace(measured, scenes=scenes)
     return [
-        measured.by_window(again.rows(fit.base, fit.effects) - measured.rows(fit.base, fit.effects))
+        measured.by_window(
+            (again.rows(fit.base, fit.effects) - measured.rows(fit.base, fit.effects)) / PART
+        )
         for fit in fits
     ]
 

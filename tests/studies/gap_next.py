@@ -49,7 +49,10 @@ ALIKE = {
     "sensor place": ("sideways",),
     "sideways": ("sensor place",),
     "traction": ("terrain", "reference"),
+}
+ALIKE_WITHOUT_GYROSCOPE = {
     "late stamps": ("late commands",),
+    "late commands": ("late stamps",),
 }
 COLUMNS = (
     *("pair", "truth", "seed", "true", "rival", "first", "equivalent", "proposed", "between"),
@@ -127,7 +130,10 @@ def judged(case: RivalCase, folder: Path) -> dict[str, str]:
 
 def apart(case: RivalCase, found: dict[str, Any]) -> dict[str, str]:
     """Score of the first name, and whether it is right and the rival is out."""
-    true = ((case.true, *ALIKE.get(case.true, ())),)
+    alike = ALIKE.get(case.true, ())
+    if not case.drawn.scene.sensors.gyroscope:
+        alike = (*alike, *ALIKE_WITHOUT_GYROSCOPE.get(case.true, ()))
+    true = ((case.true, *alike),)
     near = [one["name"] for one in found["equivalent"]]
     scored = score(found["verdict"], "", true, (), near)
     data = [one["name"] for one in found["equivalent"] if not one["by_equation"]]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.effects.actuator_lag import ActuatorLag
+from odometry.effects.command_delay import CommandDelay
 from odometry.effects.corrected import Added
 from odometry.effects.heading_offset import HeadingOffset
 from odometry.effects.in_course import in_course
@@ -14,6 +15,7 @@ from odometry.effects.lever_arm import LeverArm
 from odometry.effects.reference_fault import Compass
 from odometry.effects.slope_icr import SlopeByIcr
 from odometry.effects.time_course import FromAMoment
+from odometry.effects.time_offset import TimeOffset
 from odometry.effects.traction_loss import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
@@ -70,6 +72,17 @@ def test_no_drive_tells_what_is_equal_by_its_equations(scenes, known, fit):
     arm = fit(LeverArm(), [0.1, 0.0], 1e-4)
     skid = fit(LateralSkid(), [-0.1], 1e-4)
     assert not next_drives({"lever_arm": arm, "lateral_skid": skid}, scenes, known, CONFIG)
+
+
+def test_without_gyroscope_late_commands_are_late_stamps(scenes, known, fit):
+    """From rest to rest; on a slope the attitude says when the robot turned, as a gyroscope does."""
+    rivals = {
+        "time_offset": fit(TimeOffset(), [0.3], 1e-6),
+        "command_delay": fit(CommandDelay(), [0.3], 1e-6),
+    }
+    silent = [scene.without_gyroscope() for scene in scenes]
+    (found,) = next_drives(rivals, silent, known, CONFIG)
+    assert "slope" in found.words
 
 
 def test_the_most_varied_drive_is_proposed_for_all_that_it_decides(scenes, known, fit):
