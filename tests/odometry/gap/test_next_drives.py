@@ -75,7 +75,7 @@ def test_no_drive_tells_what_is_equal_by_its_equations(scenes, known, fit):
 
 
 def test_without_gyroscope_late_commands_are_late_stamps(scenes, known, fit):
-    """From rest to rest; on a slope the attitude says when the robot turned, as a gyroscope does."""
+    """From rest to rest; on a slope the attitude says when the robot turned, as it does."""
     rivals = {
         "time_offset": fit(TimeOffset(), [0.3], 1e-6),
         "command_delay": fit(CommandDelay(), [0.3], 1e-6),
