@@ -3,7 +3,7 @@ from .checks.finding import CheckReport, Finding
 from .checks.recording import check_recording
 from .comparison.compare import compare
 from .dead_reckoning import dead_reckon, dead_reckon_in_space
-from .errors import OdometryError
+from .errors import IdentificationError, OdometryError
 from .estimates import Replay
 from .estimation.config import IcrEkfConfig
 from .estimation.estimate import Estimate
@@ -20,13 +20,13 @@ from .feel.model_file import read_feel_model, write_feel_model
 from .feel.windows import feel_windows
 from .frames import Frame
 from .gap.gap import find_gap
-from .geometry.steepest_slope import steepest_slope
+from .geometry.tilt import steepest_slope
 from .icrs.measured import measured_icrs
 from .icrs.medians import icr_medians
 from .icrs.points import icr_covariances, icr_indices, icrs_of_twist, turn_is_told
 from .identification.config import SolverConfig
-from .identification.errors import IdentificationError
 from .identification.identify import identify
+from .installed import shipped_data
 from .io.run_folder import write_run_folder
 from .io.trajectory_files import read_trajectory, write_trajectory
 from .io.tum import read_spatial_tum, read_tum, write_spatial_tum, write_tum
@@ -44,10 +44,8 @@ from .pipeline import ConstantTerrain, replay
 from .run import Robot, Run
 from .run_inputs import inputs_of
 from .run_span import Span, cut_run
-from .shipped import shipped_data
 from .simulation.contact.drive import simulate_contact
-from .spatial_trajectory import SpatialTrajectory
-from .trajectory import Trajectory
+from .trajectory import SpatialTrajectory, Trajectory
 from .windows.config import WindowConfig
 from .windows.window_errors import window_errors
 from .windows.windows import windows_of

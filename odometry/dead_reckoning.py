@@ -5,10 +5,9 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.geometry import se2, se3
 from odometry.geometry.angles import wrap
-from odometry.geometry.levelled import level_steps, rises, tilt_of
-from odometry.missing_values import level_where_missing
-from odometry.spatial_trajectory import SpatialTrajectory
-from odometry.trajectory import Trajectory
+from odometry.geometry.tilt import level_steps, rises, tilt_of
+from odometry.table import level_where_missing
+from odometry.trajectory import SpatialTrajectory, Trajectory
 
 
 def dead_reckon(stamps_s: FloatArray, twists: FloatArray, start: FloatArray) -> Trajectory:

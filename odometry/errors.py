@@ -45,3 +45,31 @@ class BagError(OdometryError):
 
 class ExportError(OdometryError):
     """A parameter set or a result does not hold what a format needs."""
+
+
+class ComparisonError(OdometryError):
+    """Runs or models that cannot be compared as asked."""
+
+
+class EstimationError(OdometryError):
+    """An estimate, a chain of modes or a filter is invalid."""
+
+
+class IdentificationError(OdometryError):
+    """Runs that do not determine what is to be identified.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
+    >>> still = odometry.cut_run(run, odometry.Span(0.0, 3.0))
+    >>> try:
+    ...     odometry.identify([still], "icr", terrain="yard").require_determined()
+    ... except odometry.IdentificationError as error:
+    ...     print(str(error)[:60])
+    1 windows do not determine 5 parameters of 'icr'
+    """
+
+
+class WindowError(OdometryError):
+    """A recording that cannot be cut into the required windows."""

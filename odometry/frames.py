@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from odometry.arrays import ByteImage, FloatArray, IntArray
-from odometry.gyroscope import Gyroscope
+from odometry.sensors import Gyroscope
 from odometry.table import Table
 
 POSE_COLUMNS = ("x", "y", "yaw")

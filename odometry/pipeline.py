@@ -13,12 +13,11 @@ from odometry.estimation.estimate import Estimate
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.heading_search import INITIAL_YAW
 from odometry.estimation.kept_estimates import KeptEstimates
-from odometry.footing import Footing
 from odometry.frames import Frame
 from odometry.run import Run
 from odometry.run_end import run_end_events
-from odometry.windows.gaps import odometry_gaps
-from odometry.windows.gaps_so_far import GapsSoFar
+from odometry.run_terrains import Footing
+from odometry.windows.gaps import GapsSoFar, odometry_gaps
 
 LEAST_YAW_SIGMA_RAD = 0.1  # of a yaw found before the replay
 

@@ -1,6 +1,6 @@
-"""One recording: its robot, its tables, and its frames in time order."""
+"""One recording: its robot, its tables, its frames in time order; and names of several runs."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -10,9 +10,8 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.errors import RunFolderError
 from odometry.frames import Frame, merged_frames
-from odometry.gyroscope import gyroscope_of
 from odometry.io.run_folder import read_settings, read_tables
-from odometry.sensors import Sensors, YawRate, preferred_yaw_rate, sensors_of
+from odometry.sensors import Sensors, YawRate, gyroscope_of, preferred_yaw_rate, sensors_of
 from odometry.table import Table
 
 UNKNOWN = "unknown"  # the reserved terrain name: nothing is known of this terrain
@@ -169,3 +168,30 @@ def _robot(settings: Mapping[str, Any], file: Path) -> Robot:
         else:
             known[field.name] = float(value)
     return Robot(**known)
+
+
+def run_names(runs: Sequence[Run]) -> list[str]:
+    """Names of the folders; where those of different folders are the same, their paths."""
+    folders = {run.folder for run in runs}
+    names = [folder.resolve().name for folder in folders]
+    return [run.name if names.count(run.name) == 1 else str(run.folder) for run in runs]
+
+
+def check_no_run_twice(runs: Sequence[Run]) -> None:
+    """Raise RunFolderError if a folder is there twice: a model would be tested on its own data."""
+    folders = [run.folder.resolve() for run in runs]
+    for folder in folders:
+        if folders.count(folder) > 1:
+            raise RunFolderError(
+                f"{folder} is given twice; expected each run once: none can be its own test"
+            )
+
+
+def robot_labels(robots: Sequence[Robot]) -> dict[tuple[str, float], str]:
+    """A short name for every robot: the part before a bracket where that distinguishes them."""
+    keys = list(dict.fromkeys((robot.name, robot.track_width) for robot in robots))
+    full = {(name, width): name or f"robot {width:g} m wide" for name, width in keys}
+    short = {key: name.split(" (")[0] for key, name in full.items()}
+    longest = {key: f"{name}, track width {key[1]:g} m" for key, name in full.items()}
+    choices = (short, full, longest)
+    return next(labels for labels in choices if len(set(labels.values())) == len(keys))

@@ -5,7 +5,7 @@ import numpy as np
 from odometry.estimates import Replay
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.filter_event import FilterEvent
-from odometry.estimation.new_start import REINITIALISED
+from odometry.estimation.filter_start import REINITIALISED
 from odometry.estimation.sensor_watch import ongoing
 from odometry.estimation.transition import GYRO_BIAS, YAW
 from odometry.geometry.angles import wrap

@@ -3,10 +3,10 @@
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.missing_values import fill_gaps, level_where_missing
 from odometry.models.inputs import Inputs
-from odometry.row_terrains import row_terrains
 from odometry.run import Run
+from odometry.run_terrains import row_terrains
+from odometry.table import fill_gaps, level_where_missing
 from odometry.windows.turns import continuous_yaw
 
 

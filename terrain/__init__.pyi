@@ -9,6 +9,7 @@ from .classification.training import Training, train
 from .config import Config
 from .demo import run_demo
 from .errors import TerrainError
+from .footprint_parts import Rectangle
 from .images import decode_image, read_image, to_grey
 from .labelling.given_terrain import TerrainSpan, told_by_spans, told_terrain
 from .labelling.label_runs import label_runs
@@ -16,7 +17,6 @@ from .labelling.patch_files import write_labelled_patches
 from .labelling.scale import LabelConfig
 from .live_odometry import LiveOdometry, LiveStep
 from .main_job import run_odometry
-from .rectangle import Rectangle
 from .report.page import write_report
 from .results import read_errors, write_results
 from .run_result import RunResult

@@ -10,7 +10,7 @@ from odometry.arrays import AnyArray, FloatArray
 from odometry.feel.follow import SILENT, Felt
 from odometry.geometry import se2
 from odometry.run import UNKNOWN
-from odometry.terrain_sources import NamedTerrain
+from odometry.run_terrains import NamedTerrain
 from odometry.trajectory import Trajectory
 from terrain.image_label import ImageLabel
 

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from odometry.installed import shipped_data
 from odometry.run import Run
-from odometry.shipped import shipped_data
 from terrain.classification.training import train
 from terrain.main_job import run_odometry
 from terrain.report.page import write_report

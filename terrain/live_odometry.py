@@ -4,16 +4,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from odometry.arrays import FloatArray
-from odometry.errors import ConfigError
-from odometry.estimation.errors import EstimationError
+from odometry.errors import ConfigError, EstimationError
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.frames import Frame
+from odometry.live_frames import RunningOdometer
 from odometry.parameters import ParameterSet, read_parameters
 from odometry.pipeline import ConstantTerrain, TerrainSource, can_start, started, stepped
 from odometry.run import Robot
-from odometry.running_odometer import RunningOdometer
-from odometry.windows.gaps_so_far import GapsSoFar
+from odometry.windows.gaps import GapsSoFar
 from terrain.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.likeness import Likeness

@@ -20,16 +20,15 @@ from odometry.parameters import ParameterSet, read_parameters
 from odometry.pipeline import Estimator, TerrainSource, replay
 from odometry.pose_delay import without_pose_delay
 from odometry.run import UNKNOWN, Run
-from odometry.terrain_sources import NamedTerrain, ToldFooting
+from odometry.run_terrains import NamedTerrain, ToldFooting
 from odometry.windows.measured_poses import lacks_yaw
 from terrain.classification.classifier import Classifier, TerrainClassifier
 from terrain.config import Config
 from terrain.contradictions import Contradiction, contradictions, seen_beneath
-from terrain.evaluated_trajectories import SecondReplay
 from terrain.images_outside_replay import add_images_outside
 from terrain.new_terrain import learned_apart, new_spans
 from terrain.run_presets import run_preset, with_preset
-from terrain.run_result import RunResult
+from terrain.run_result import RunResult, SecondReplay
 from terrain.sources import (
     BOTH,
     OWN_SOURCE,

@@ -8,17 +8,54 @@ from typing import Any
 
 import numpy as np
 
+from odometry.arrays import FloatArray
+from odometry.checks.lag import Signal, lag_between
 from odometry.config import block_from_table
 from odometry.errors import OdometryError
 from odometry.evaluation.other_odometry import LONGEST_GAP_S, Judge, OtherScore, score_other
 from odometry.evaluation.relative import EvaluationConfig
 from odometry.io.csv_table import read_csv_table
-from odometry.io.pose_file import doubt_of_axes
+from odometry.io.run_folder import doubt_of_axes
 from odometry.io.structured import read_json
 from odometry.io.trajectory_files import read_trajectory
 from odometry.trajectory import Trajectory
 from terrain.errors import ResultError
-from terrain.other_odometry_lag import late_by_s
+
+MOST_SHIFT_S = 3.5
+LEAST_SHIFT_S = 0.15
+LEAST_WIDTH_S = 0.5  # over which turn rates are taken
+CERTAIN, TOGETHER, CORRELATED = 4.0, 0.7, 0.8
+
+
+def late_by_s(other: Trajectory, odometer: Trajectory) -> float | None:
+    """By how much a trajectory's stamps are late; None unless that is plain.
+
+    Pieces of the time that both cover must have the same shift, far from zero by their own
+    scatter: a drive that hardly turns determines none.
+    """
+    begin_s = max(each.stamps_s[0] for each in (other, odometer))
+    end_s = min(each.stamps_s[-1] for each in (other, odometer))
+    period_s = max(float(np.median(np.diff(each.stamps_s))) for each in (other, odometer))
+    width_s = max(LEAST_WIDTH_S, 2 * period_s)
+    span_s = (begin_s + MOST_SHIFT_S, end_s - MOST_SHIFT_S)
+    if span_s[1] - span_s[0] < 3 * width_s:
+        return None
+    lag = lag_between(_heading(other), _heading(odometer), span_s, width_s, MOST_SHIFT_S)
+    if lag is None or lag.correlation < CORRELATED or lag.together < TOGETHER:
+        return None
+    least_s = max(LEAST_SHIFT_S, period_s, CERTAIN * lag.sigma_s)
+    return lag.seconds if abs(lag.seconds) > least_s else None
+
+
+def _heading(trajectory: Trajectory) -> Signal:
+    """Heading [rad] at stamps, whole turns counted; NaN outside."""
+    yaw = np.unwrap(trajectory.poses[:, 2])
+
+    def at(stamps_s: FloatArray) -> FloatArray:
+        return np.interp(stamps_s, trajectory.stamps_s, yaw, left=np.nan, right=np.nan)
+
+    return at
+
 
 FOLDER = "other_odometry"  # of a run folder: odometry that a bag had, as NAME.csv
 PREFIX = "other/"  # of its name among the trajectories of a run

@@ -11,9 +11,14 @@ from odometry.config import require, require_positive
 from odometry.geometry import se2
 from odometry.run import Robot
 from terrain.camera import Camera
-from terrain.footprint_parts import FootprintPart, first_whole, footprint_parts, visible_shares
-from terrain.rectangle import Rectangle
-from terrain.visible_terrain import largest_visible
+from terrain.footprint_parts import (
+    FootprintPart,
+    Rectangle,
+    first_whole,
+    footprint_parts,
+    largest_visible,
+    visible_shares,
+)
 
 __all__ = ["NoRegion", "Rectangle", "Region", "RegionConfig", "predict_region"]
 

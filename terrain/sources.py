@@ -12,7 +12,7 @@ from odometry.modes.mode_set_file import read_mode_set
 from odometry.parameters import ParameterSet
 from odometry.pipeline import ConstantTerrain, TerrainSource
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
-from odometry.terrain_sources import NamedTerrain, labelled_terrain
+from odometry.run_terrains import NamedTerrain, labelled_terrain
 from terrain.camera import Camera
 from terrain.classification.classifier import Classifier
 from terrain.classification.own_statistics import used_as

@@ -7,9 +7,9 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.config import require, require_positive
-from odometry.footing import Footing
 from odometry.geometry import se2
 from odometry.run import UNKNOWN
+from odometry.run_terrains import Footing
 from terrain.label_chain import carried
 from terrain.place_beliefs import PlaceBeliefs, by_evidence, by_rows
 from terrain.place_labels import DRIFT, Footprint, PlaceLabel, nearest

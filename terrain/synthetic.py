@@ -1,6 +1,6 @@
 """A run of images and odometry made from photographs, with its truth."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,13 +17,49 @@ from odometry.simulation.noise import ornstein_uhlenbeck
 from terrain.camera import Camera
 from terrain.errors import SynthesisError
 from terrain.synthesis.config import SynthesisConfig
-from terrain.synthesis.exposure import Illumination, encode_jpeg, expose
-from terrain.synthesis.layout import lay_out
 from terrain.synthesis.patches import render_patches, write_patches
-from terrain.synthesis.photos import built_in_photos, photos_from_folder
-from terrain.synthesis.records import identified_parameters, motion_tables, run_settings
-from terrain.synthesis.vibration import imu_table
-from terrain.synthesis.view import Scene, View
+from terrain.synthesis.photos import Photo, built_in_photos, photos_from_folder
+from terrain.synthesis.records import identified_parameters, imu_table, motion_tables, run_settings
+from terrain.synthesis.texture import Texture
+from terrain.synthesis.view import Illumination, Scene, View, encode_jpeg, expose
+
+
+def lay_out(
+    config: SynthesisConfig, photos: Mapping[str, tuple[Photo, ...]], rng: np.random.Generator
+) -> tuple[GroundMap, tuple[Texture, ...]]:
+    """Ground of the run and the texture of each of its strips.
+
+    The run starts at world x = 0, where the first zone begins; a zone whose terrain has several
+    photographs is parted into as many strips.
+
+    Raises
+    ------
+    SynthesisError
+        If a zone names a terrain without photographs.
+    """
+    for zone in config.zones:
+        if zone not in photos:
+            raise SynthesisError(
+                f"there are no photographs of {zone!r}; there are of: {', '.join(sorted(photos))}"
+            )
+    strips = [
+        (zone, photo, config.zone_length_m / len(photos[zone]))
+        for zone in config.zones
+        for photo in photos[zone]
+    ]
+    lengths_m = np.array([length for _, _, length in strips])
+    first, second = rng.uniform(0.0, 2 * np.pi, size=2)
+    ground = GroundMap(
+        np.cumsum(lengths_m)[:-1],
+        tuple(zone for zone, _, _ in strips),
+        config.edge_wave_m,
+        (float(first), float(second)),
+    )
+    textures = tuple(
+        Texture.laid_at_random(photo.image, config.metres_per_pixel, rng) for _, photo, _ in strips
+    )
+    return ground, textures
+
 
 __all__ = ["SynthesisConfig", "synthesise"]
 

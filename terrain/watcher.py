@@ -10,10 +10,10 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.transition import moved_pose
-from odometry.footing import Footing
 from odometry.frames import Frame
 from odometry.geometry import se2
 from odometry.run import Robot
+from odometry.run_terrains import Footing
 from terrain.camera import Camera
 from terrain.classification.classifier import Classifier
 from terrain.distance_track import DistanceTrack

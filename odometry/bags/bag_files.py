@@ -7,15 +7,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from odometry.bags.compression import ZSTD_MAGIC, zstd_package
-from odometry.bags.connection import Message
-from odometry.bags.losses import Losses
+from odometry.bags.damage import ZSTD_MAGIC, Losses, zstd_package
 from odometry.bags.mcap_file import MAGIC as MCAP_MAGIC
 from odometry.bags.mcap_file import mcap_messages
 from odometry.bags.ros1_file import MAGIC as ROS1_MAGIC
 from odometry.bags.ros1_file import ros1_messages
 from odometry.bags.sqlite_file import MAGIC as SQLITE_MAGIC
 from odometry.bags.sqlite_file import sqlite_messages
+from odometry.bags.topic import Message
 from odometry.errors import BagError
 
 KINDS = {ROS1_MAGIC: "ros1", MCAP_MAGIC: "mcap", SQLITE_MAGIC: "sqlite3"}

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import AnyArray
-from odometry.bags.connection import Buffer
-from odometry.bags.message_kinds import COMPRESSED_IMAGE
+from odometry.bags.message_fields import COMPRESSED_IMAGE
 from odometry.bags.ordered_rows import seconds
+from odometry.bags.topic import Buffer
 from odometry.errors import BagError
 
 JPEG, PNG = b"\xff\xd8\xff", b"\x89PNG\r\n\x1a\n"

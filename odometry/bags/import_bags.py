@@ -9,17 +9,15 @@ import numpy as np
 import tomli_w
 
 from odometry.arrays import FloatArray
-from odometry.bags.attitudes import Attitudes
-from odometry.bags.connection import Connection, Message
-from odometry.bags.losses import Losses
-from odometry.bags.make_streams import make_streams
+from odometry.bags.damage import Losses
 from odometry.bags.message_types import MessageTypes
 from odometry.bags.plan import Plan
-from odometry.bags.poses import LocalMetres
+from odometry.bags.pose_rows import Attitudes, LocalMetres
 from odometry.bags.run_settings import run_settings
 from odometry.bags.speeds import FASTEST_M_S
-from odometry.bags.streams import Stream
+from odometry.bags.streams import Stream, make_streams
 from odometry.bags.survey import REPORT_EVERY, Progress, Survey
+from odometry.bags.topic import Connection, Message
 from odometry.errors import BagError
 
 MOST_REASONS = 3

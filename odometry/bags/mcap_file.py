@@ -13,10 +13,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
-from odometry.bags.compression import decompressed
-from odometry.bags.connection import Connection, Message, ros2_name
-from odometry.bags.losses import Losses
-from odometry.bags.windows import windows
+from odometry.bags.damage import Losses, decompressed, windows
+from odometry.bags.topic import Connection, Message, ros2_name
 from odometry.errors import BagError
 
 MAGIC = b"\x89MCAP0\r\n"

@@ -16,7 +16,7 @@ from rosbags.typesys import (
     get_typestore,
 )
 
-from odometry.bags.connection import READABLE, Buffer, Connection, Message
+from odometry.bags.topic import READABLE, Buffer, Connection, Message
 from odometry.errors import BagError
 
 Reader = Callable[[Buffer, str], Any]

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from odometry.bags.bag_files import bag_files
-from odometry.bags.losses import Losses
+from odometry.bags.damage import Losses
 from odometry.bags.topic import header_ns
 from odometry.errors import BagError
-from odometry.extras import extra_module
+from odometry.installed import extra_module
 
 
 class BagMessage(NamedTuple):

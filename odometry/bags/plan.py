@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from odometry.bags.message_kinds import (
+from odometry.bags.message_fields import (
     FIX,
     IMAGES,
     IMU,
@@ -18,8 +18,8 @@ from odometry.bags.robot_frame import HOW_TRACK, RobotFrame, robot_frame
 from odometry.bags.survey import Survey
 from odometry.bags.topic import Topic
 from odometry.bags.topic_guess import LIKELY, best, guess
-from odometry.bags.topic_map import TopicMap
 from odometry.bags.topic_roles import (
+    TopicMap,
     camera_info_of,
     clock_of,
     other_odometry_of,

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.bags.fields import number_at
-from odometry.bags.message_kinds import TWISTS
+from odometry.bags.message_fields import TWISTS, number_at
 from odometry.bags.wheel_source import WheelSource
 from odometry.errors import BagError
 from odometry.geometry.angles import wrap

@@ -9,10 +9,9 @@ from collections.abc import Container, Iterator
 from pathlib import Path
 from urllib.parse import quote
 
-from odometry.bags.compression import ZSTD_MAGIC, decompressed
-from odometry.bags.connection import Connection, Message, ros2_name
-from odometry.bags.losses import Losses
+from odometry.bags.damage import ZSTD_MAGIC, Losses, decompressed
 from odometry.bags.sqlite_pages import Row, rows_of_pages
+from odometry.bags.topic import Connection, Message, ros2_name
 from odometry.errors import BagError
 
 MAGIC = b"SQLite format 3\0"

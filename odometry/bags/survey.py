@@ -1,18 +1,18 @@
-"""What bags hold: their topics, the frames of the robot, and what cannot be read."""
+"""What bags hold, also as lines of text: topics, frames of the robot, what cannot be read."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import median
 from types import SimpleNamespace
 from typing import Any
 
 from odometry.bags.bag_files import BagFile
-from odometry.bags.connection import Connection, Message
-from odometry.bags.losses import Losses
-from odometry.bags.message_kinds import IMAGES, JOINTS
+from odometry.bags.damage import Losses
+from odometry.bags.message_fields import IMAGES, JOINTS, TRANSFORM_LISTS
 from odometry.bags.message_types import MessageTypes
-from odometry.bags.robot_messages import ROBOT_TYPES, RobotMessages
-from odometry.bags.topic import MOVING_TYPES, Ranges, Topic, header_ns, widen
+from odometry.bags.robot_messages import ROBOT_TYPES, TEXT, RobotMessages
+from odometry.bags.topic import MOVING_TYPES, Connection, Message, Ranges, Topic, header_ns, widen
+from odometry.bags.topic_guess import best, guess
 from odometry.bags.wheel_names import sided
 from odometry.errors import BagError
 
@@ -170,3 +170,39 @@ def _tally(connection: Connection, tallies: dict[str, Tally], losses: Losses) ->
         )
         return None
     return tally
+
+
+ROLES = ("wheels", "imu", "reference", "images")
+
+
+def topic_lines(survey: Survey) -> Iterator[str]:
+    """A line a topic; an asterisk marks what an import takes by itself."""
+    taken = {best(survey.topics, role) for role in ROLES}
+    rows = [
+        (
+            "*" if name in taken else "",
+            name,
+            topic.message_type,
+            str(topic.count),
+            f"{topic.rate_hz:.4g} Hz",
+            f"{topic.duration_s:.1f} s",
+            said_of(topic),
+        )
+        for name, topic in survey.topics.items()
+    ]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
+        yield "  ".join(cells).rstrip()
+
+
+def said_of(topic: Topic) -> str:
+    """What a topic is probably good for, or why it cannot be read."""
+    if topic.problem:
+        return f"cannot be read: {topic.problem}"
+    if topic.message_type in TRANSFORM_LISTS:
+        return "frames of the robot"
+    if topic.message_type == TEXT and "<robot" in topic.sample.data:
+        return "robot description"
+    guesses = sorted(guess(topic), key=lambda one: one.rank)
+    return "; ".join(": ".join(filter(None, (one.role, one.why))) for one in guesses)

@@ -4,8 +4,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple
 
-from odometry.bags.fields import number_paths
-from odometry.bags.message_kinds import (
+from odometry.bags.message_fields import (
     CAMERA_INFO,
     COMPRESSED_IMAGE,
     FIX,
@@ -17,6 +16,7 @@ from odometry.bags.message_kinds import (
     POSES,
     TRANSFORM_LISTS,
     TWISTS,
+    number_paths,
 )
 from odometry.bags.topic import Topic
 from odometry.bags.wheel_names import side_of, sided

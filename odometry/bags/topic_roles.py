@@ -1,13 +1,127 @@
-"""Which topic has which role: as the user says, else as it is guessed."""
+"""Which topic has which role: as the user says (a map in TOML, options), else as guessed."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from difflib import get_close_matches
+from pathlib import Path
 from typing import Any
 
-from odometry.bags.message_kinds import CAMERA_INFO, POSES
+from odometry.bags.message_fields import CAMERA_INFO, POSES
 from odometry.bags.topic import Topic
 from odometry.bags.topic_guess import best, guess
-from odometry.bags.topic_map import NONE
 from odometry.errors import BagError
+from odometry.io.structured import read_toml
+
+TIMES = ("auto", "header", "log")
+NONE = "none"  # as a topic: leave this out
+# Keys by table, and the kinds of their values
+KEYS: dict[str, dict[str, tuple[type, ...]]] = {
+    "": {"time": (str,), "other_odometry": (list,)},
+    "robot": {
+        "name": (str,),
+        "frame": (str,),
+        "track_width": (int, float),
+        "wheel_radius": (int, float),
+        "length": (int, float),
+        "width": (int, float),
+        "mass": (int, float),
+        "frame_height": (int, float),
+    },
+    "wheels": {
+        "topic": (str,),
+        "left": (list,),
+        "right": (list,),
+        "left_sign": (int, float),
+        "right_sign": (int, float),
+        "gear": (int, float),
+        "unit": (str,),
+        "values": (str,),
+        "separation": (int, float),
+    },
+    "imu": {"topic": (str,), "frame": (str,)},
+    "reference": {"topic": (str,), "frame": (str,), "world": (str,)},
+    "images": {"topic": (str,), "camera_info": (str,), "frame": (str,)},
+}
+WHAT = {str: "a text", list: "a list", int: "a number", float: "a number"}
+
+
+@dataclass(frozen=True)
+class TopicMap:
+    """What a map and the options say; what they do not say is guessed.
+
+    Attributes
+    ----------
+    time : str
+        "header", "log", or "auto".
+    other_odometry : tuple of str, or None
+        Topics kept beside the run; None: all that are guessed.
+    robot, wheels, imu, reference, images : Mapping
+        Tables of the map, see KEYS.
+    """
+
+    time: str = "auto"
+    other_odometry: tuple[str, ...] | None = None
+    robot: Mapping[str, Any] = field(default_factory=dict)
+    wheels: Mapping[str, Any] = field(default_factory=dict)
+    imu: Mapping[str, Any] = field(default_factory=dict)
+    reference: Mapping[str, Any] = field(default_factory=dict)
+    images: Mapping[str, Any] = field(default_factory=dict)
+
+    def overridden(self, options: Mapping[str, Any]) -> "TopicMap":
+        """The same with options: `time`, or "table.key" for a key of a table; None is unsaid."""
+        changed: dict[str, Any] = {}
+        for name, value in options.items():
+            table, _, key = name.rpartition(".")
+            if value is None:
+                continue
+            if not table:
+                changed[key] = value
+            else:
+                changed[table] = {**changed.get(table, getattr(self, table)), key: value}
+        return replace(self, **changed)
+
+
+def read_topic_map(file: Path) -> TopicMap:
+    """Read a map of topics.
+
+    Raises
+    ------
+    BagError
+        If the file cannot be read, or holds a key or a value that is not expected.
+    """
+    content = read_toml(file, BagError)
+    tables = {name: value for name, value in content.items() if isinstance(value, dict)}
+    for name in sorted(content.keys() & KEYS.keys() - tables.keys()):
+        raise BagError(
+            f"{file}: {name} = {content[name]!r}, expected a table [{name}] with keys such as "
+            f"{', '.join(list(KEYS[name])[:3])}"
+        )
+    _check(content.keys() - tables.keys(), content, "", str(file))
+    for name, table in tables.items():
+        if name not in KEYS:
+            raise BagError(f"{file}: [{name}]: {_expected(name, KEYS)}")
+        _check(table.keys(), table, name, f"{file}: [{name}]")
+    if content.get("time", "auto") not in TIMES:
+        raise BagError(f"{file}: time = {content['time']!r}, expected one of {', '.join(TIMES)}")
+    other = content.get("other_odometry")
+    kept = tuple(map(str, other)) if other is not None else None
+    return TopicMap(content.get("time", "auto"), kept, **tables)
+
+
+def _check(keys: Any, table: Mapping[str, Any], name: str, where: str) -> None:
+    for key in keys:
+        kinds = KEYS[name].get(key)
+        if kinds is None:
+            raise BagError(f"{where}: {key}: {_expected(key, KEYS[name])}")
+        if isinstance(table[key], bool) or not isinstance(table[key], kinds):
+            raise BagError(f"{where}: {key} = {table[key]!r}, expected {WHAT[kinds[0]]}")
+
+
+def _expected(key: str, known: Mapping[str, Any]) -> str:
+    near = get_close_matches(key, list(known), n=1)
+    meant = f"did you mean {near[0]}? " if near else ""
+    return f"there is no such key; {meant}Known: {', '.join(filter(None, known))}"
+
 
 SAME_CLOCK_S = 2.0  # header stamps and times of reception that differ by less share a clock
 

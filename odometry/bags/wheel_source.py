@@ -5,8 +5,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from odometry.bags.fields import number_at, number_paths
-from odometry.bags.message_kinds import JOINTS, NO_WHEELS, ODOMETRY, TWISTS
+from odometry.bags.message_fields import (
+    JOINTS,
+    NO_WHEELS,
+    ODOMETRY,
+    TWISTS,
+    number_at,
+    number_paths,
+)
 from odometry.bags.topic import PLACE, VELOCITY, Topic, moved
 from odometry.bags.topic_guess import SIMPLE_ARRAY, unit_of
 from odometry.bags.wheel_names import UNITS, check_unit, gear_of, side_of, sided

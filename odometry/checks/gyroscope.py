@@ -8,7 +8,7 @@ from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, counted
 from odometry.checks.outliers import spikes
-from odometry.checks.spans import constant_spans
+from odometry.windows.spans import constant_spans
 
 LEAST_BIAS_RAD_S = 0.003
 LARGE_BIAS_RAD_S = 0.1

@@ -8,7 +8,6 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, counted, disagreement
-from odometry.checks.spans import runs_of, within
 from odometry.checks.steps import (
     FAR_S,
     JITTER_S,
@@ -21,6 +20,7 @@ from odometry.checks.steps import (
     step_sizes,
     without_window_changes,
 )
+from odometry.windows.spans import runs_of, within
 
 LEAST_JUMP_M = 0.4
 LEAST_WITHOUT_HEADING_M = 1.0  # where no heading says which way the robot drove, or it slides

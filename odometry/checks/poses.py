@@ -1,18 +1,19 @@
-"""What is odd about single stretches and samples of the measured poses."""
+"""What is odd about single stretches and samples of the measured poses, steps of yaw included."""
 
 from collections.abc import Iterator
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import FloatArray, IntArray
 from odometry.checks.course import OFF_RAD
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, counted
 from odometry.checks.pose_jumps import jumps
 from odometry.checks.relation import pieces, relation
-from odometry.checks.spans import constant_spans, runs_of
+from odometry.checks.steps import FAR_S, JITTER_S, JUMP_TIMES, SHOWN, moments, rate_of, step_sizes
 from odometry.checks.undo import moved
-from odometry.checks.yaw_jumps import yaw_jumps
+from odometry.windows.gaps import odometry_gaps
+from odometry.windows.spans import constant_spans, runs_of, within
 
 FROZEN_S = 1.5
 OFTEN = 10  # stretches of repeated poses, from which the log repeats by habit
@@ -174,4 +175,47 @@ def pose_outages(evidence: Evidence) -> Iterator[Finding]:
         "The reference was lost for a while (an outage), or its rows were",
         "Nothing to do: windows do not cross it, and the filter goes on by the odometer",
         tuple(spans),
+    )
+
+
+LEAST_YAW_JUMP_RAD = np.radians(25)
+
+
+def yaw_jumps(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
+    """Steps of the measured yaw against the gyroscope."""
+    pose = evidence.run.pose
+    if pose is None or not evidence.yaw_measured or evidence.yaw_rate is None:
+        return
+    by_gyroscope = evidence.pose_turn_by_gyroscope
+    if by_gyroscope is None or by_gyroscope.correlation < 0.9:
+        return
+    stamps_s = np.clip(pose.stamps_s[rows], evidence.stamps_s[0], evidence.stamps_s[-1])
+    yaw = np.radians(pose["yaw"][rows]) if evidence.yaw_in_degrees else pose["yaw"][rows]
+    heading = evidence.integrals.gyroscope_rad(stamps_s) * by_gyroscope.slope
+    known = np.isfinite(yaw) & np.isfinite(heading)
+    stamps_s, off = stamps_s[known], np.unwrap((yaw - heading)[known])
+    step = step_sizes(stamps_s, np.stack([off, np.zeros_like(off)], axis=-1))
+    measured = np.isfinite(step)
+    if evidence.gyroscope_file == "odometry.csv":
+        gaps_s = odometry_gaps(evidence.run).spans_s
+        measured &= ~within(stamps_s, gaps_s + np.array([-FAR_S, FAR_S]))
+    if measured.sum() < 20:
+        return
+    usual = 1.4826 * float(np.median(step[measured]))
+    rate = np.abs(rate_of(heading[known], stamps_s))
+    odd = measured & (step > np.maximum(JUMP_TIMES * usual, LEAST_YAW_JUMP_RAD + JITTER_S * rate))
+    peaks = [begin + int(np.argmax(step[begin:end])) for begin, end in runs_of(odd)]
+    if not peaks:
+        return
+    yield Finding(
+        "yaw_jumps",
+        Level.WARNING,
+        f"yaw of pose.csv jumps against the gyroscope, and stays, {counted(len(peaks), 'time')}: "
+        + ", ".join(
+            f"{np.degrees(step[i]):.0f} degrees at {evidence.run_time_s(stamps_s[i]):.1f} s"
+            for i in peaks[:SHOWN]
+        ),
+        "Yaw jumps: the heading of the reference was corrected or lost (magnetometer, antennas)",
+        "Number the stretches between jumps in a column `window`, or cut with --from and --to",
+        moments(evidence, stamps_s[peaks]),
     )

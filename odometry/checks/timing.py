@@ -6,11 +6,16 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.checks.commands import commands_or_stamps
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding
 from odometry.checks.lag import Lag, Signal, lag_between
-from odometry.checks.late_stamps import clocks_apart, gyroscope_late, pose_late, treads_apart
+from odometry.checks.late_stamps import (
+    clocks_apart,
+    commands_or_stamps,
+    gyroscope_late,
+    pose_late,
+    treads_apart,
+)
 
 LEAST_LAG_S = (
     0.15  # good lidar poses were found up to 0.11 s early after constant delays were removed

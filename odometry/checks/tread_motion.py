@@ -9,7 +9,7 @@ from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.motion import Motion
 from odometry.checks.relation import Relation, relation
-from odometry.checks.spans import constant_spans, within
+from odometry.windows.spans import constant_spans, within
 
 STUCK_S = 2.0
 BOTH_STUCK_S = 1.0

@@ -11,19 +11,17 @@ from odometry.checks.relation import Relation, pieces
 from odometry.checks.turn_signs import Sense, gyroscope_sense, pose_sense
 from odometry.checks.undo import times
 from odometry.checks.unit_findings import (
+    POSITION_UNITS,
     SLIP_OR_TRACK,
+    Unit,
     gyroscope_unit,
     imported_unit,
+    matching,
     scale_along,
     slip_along,
     too_fast,
     track_against_body,
     tread_unit,
-)
-from odometry.checks.unit_tables import (
-    POSITION_UNITS,
-    Unit,
-    matching,
     tread_units,
 )
 

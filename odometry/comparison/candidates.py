@@ -10,8 +10,7 @@ from odometry.arrays import FloatArray
 from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.split import Split, training_windows
 from odometry.effects.tables import model_of, table_of
-from odometry.errors import ParameterError
-from odometry.identification.errors import IdentificationError
+from odometry.errors import IdentificationError, ParameterError
 from odometry.identification.fitters import fitter
 from odometry.identification.plausibility import refusals
 from odometry.models.base import KinematicModel

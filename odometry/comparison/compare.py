@@ -6,7 +6,6 @@ from pathlib import Path
 
 from odometry.comparison.candidates import Candidate, GivenParameters, IdentifiedModel
 from odometry.comparison.config import ComparisonConfig
-from odometry.comparison.errors import ComparisonError
 from odometry.comparison.evaluation import Evaluation, evaluate_all
 from odometry.comparison.fitting import SplitModels, fit_models
 from odometry.comparison.result import Comparison
@@ -15,12 +14,12 @@ from odometry.comparison.statistics import Difference, differences
 from odometry.comparison.summary import Place
 from odometry.comparison.training_horizons import training_horizon_errors
 from odometry.comparison.whole_runs import run_fitness
-from odometry.errors import OdometryError
+from odometry.errors import ComparisonError, OdometryError
 from odometry.models.catalogue import MODELS
 from odometry.parameters import ParameterSet, TerrainParameters, read_parameters
 from odometry.positions.heading import FoundHeading, headed
-from odometry.row_terrains import with_named_terrain
 from odometry.run import Run
+from odometry.run_terrains import with_named_terrain
 from odometry.windows.record import record_of
 
 DEFAULT_MODELS = ("differential_drive", "icr_symmetric", "icr")

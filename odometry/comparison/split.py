@@ -6,12 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from odometry.arrays import BoolArray
+from odometry.errors import WindowError
 from odometry.identification.from_positions import stretches_for
-from odometry.row_terrains import row_terrains
-from odometry.run import Run
-from odometry.run_names import check_no_run_twice, robot_labels, run_names
+from odometry.run import Run, check_no_run_twice, robot_labels, run_names
+from odometry.run_terrains import row_terrains
 from odometry.windows.config import WindowConfig
-from odometry.windows.errors import WindowError
 from odometry.windows.measured_poses import lacks_yaw
 from odometry.windows.stretches import Stretches
 from odometry.windows.windows import Windows, windows_of

@@ -3,23 +3,21 @@
 import math
 from collections.abc import Mapping
 
+from odometry.errors import EstimationError
 from odometry.estimation import sensor_watch
-from odometry.estimation.bias_change import bias_followed
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.corrections import Correction, added_from, require_corrections
-from odometry.estimation.errors import EstimationError
 from odometry.estimation.estimate import Estimate
-from odometry.estimation.first_belief import first_belief
+from odometry.estimation.filter_changes import bias_followed, followed_at_rest
+from odometry.estimation.filter_start import first_belief
+from odometry.estimation.measured_updates import PoseUpdate, VelocityUpdate
 from odometry.estimation.measurement import Place
-from odometry.estimation.pose_update import PoseUpdate
 from odometry.estimation.prediction import Prediction
-from odometry.estimation.rest_change import followed_at_rest
 from odometry.estimation.rest_watch import stand
 from odometry.estimation.terrain_beliefs import TerrainBeliefs
-from odometry.estimation.velocity_update import VelocityUpdate
-from odometry.footing import Footing
 from odometry.frames import Frame
 from odometry.parameters import ParameterSet
+from odometry.run_terrains import Footing
 
 
 class IcrEkf:

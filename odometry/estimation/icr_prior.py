@@ -5,8 +5,8 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
 from odometry.estimation.estimate import IcrBelief
+from odometry.models.base import IcrForm
 from odometry.models.catalogue import MODELS, model_named
-from odometry.models.icr_form import IcrForm
 from odometry.parameters import ParameterSet, TerrainParameters
 
 ICR_FORM_MODELS = tuple(name for name, model in MODELS.items() if model.has_constant_icrs)

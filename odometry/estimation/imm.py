@@ -11,10 +11,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.errors import EstimationError
 from odometry.estimation.bank import Bank
-from odometry.estimation.errors import EstimationError
-from odometry.estimation.mixture import floored, log_sum, moments
-from odometry.estimation.mode_belief import ModeBelief, ModeInnovations
+from odometry.estimation.mode_belief import ModeBelief, ModeInnovations, floored, log_sum, moments
 
 SUM_TOLERANCE = 1e-9
 

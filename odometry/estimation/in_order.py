@@ -3,7 +3,7 @@
 from bisect import bisect_right
 from typing import NamedTuple, Protocol
 
-from odometry.estimation.errors import EstimationError
+from odometry.errors import EstimationError
 from odometry.estimation.estimate import Estimate
 from odometry.frames import Frame
 

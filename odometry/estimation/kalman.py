@@ -11,7 +11,7 @@ from typing import NamedTuple
 from scipy.linalg.lapack import dposv, dpotrs
 
 from odometry.arrays import FloatArray
-from odometry.estimation.errors import EstimationError
+from odometry.errors import EstimationError
 from odometry.estimation.measurement import Gaussian, Measurement
 from odometry.estimation.transition import STATES, UNCHANGED
 

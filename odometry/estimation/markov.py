@@ -7,7 +7,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from odometry.arrays import FloatArray
-from odometry.estimation.errors import EstimationError
+from odometry.errors import EstimationError
 
 STEP_RESOLUTION_S = 1e-6  # steps are rounded to it, so that uneven stamps share their matrices
 SUM_TOLERANCE = 1e-9

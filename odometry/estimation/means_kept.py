@@ -6,8 +6,8 @@ import numpy as np
 
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.icr_ekf import IcrEkf
-from odometry.footing import Footing
 from odometry.frames import Frame
+from odometry.run_terrains import Footing
 
 
 class MeansKept:

@@ -1,21 +1,88 @@
-"""What a filter predicts from step to step: the motion, and the treads against the gyroscope."""
+"""What a filter predicts from step to step, the variance that it adds, treads and gyroscope."""
 
 import math
 from dataclasses import replace
 from typing import NamedTuple
 
+import numpy as np
+
 from odometry.arrays import FloatArray
 from odometry.estimation import sensor_watch
-from odometry.estimation.bounds import bounded
 from odometry.estimation.config import IcrEkfConfig
-from odometry.estimation.estimate import Estimate
+from odometry.estimation.estimate import ALPHAS, ICRS, Estimate
+from odometry.estimation.gaussian import bounded
 from odometry.estimation.kalman import predicted, updated_by_number
 from odometry.estimation.measurement import Gaussian, tread_yaw_rate
-from odometry.estimation.process_noise import ProcessNoise
 from odometry.estimation.sensor_watch import Events, SensorWatch
-from odometry.estimation.transition import ALPHA_LEFT, YAW, transition
+from odometry.estimation.transition import ALPHA_LEFT, GYRO_BIAS, STATES, YAW, X, Y, transition
 from odometry.estimation.tread_noise import huber_factor, tread_variance
 from odometry.frames import Frame
+
+GAP_DENSITY = 25.0, 9.0  # [m^2/s], [rad^2/s]: while speeds are not known, all may happen
+
+
+class ProcessNoise:
+    """Covariance that a step adds to the state, from the settings of the filter.
+
+    Parameters
+    ----------
+    config : IcrEkfConfig
+    track_width : float
+        [m]
+    """
+
+    def __init__(self, config: IcrEkfConfig, track_width: float) -> None:
+        self._position = config.position_noise**2
+        self._yaw = config.yaw_noise**2
+        self._slip = config.slip_noise**2
+        self._yaw_by_slip = self._slip / track_width**2
+        self._gyro = config.gyro_noise**2
+        alpha_noise = config.alpha_noise if config.reset_sigma_alpha > 0 else 0.0
+        density = np.zeros(STATES)
+        density[ICRS] = (config.icr_noise_widths * track_width) ** 2
+        density[ALPHAS] = alpha_noise**2
+        if config.use_gyroscope:
+            density[GYRO_BIAS] = config.bias_noise**2
+        self._density = np.diag(density)
+
+    def over_half(
+        self,
+        tread_speeds: FloatArray,
+        step_s: float,
+        *,
+        slip_scale: float,
+        by_gyroscope: bool,
+        in_gap: bool,
+        bias_walk: float = 1.0,
+    ) -> FloatArray:
+        """Covariance (9, 9) that half of a step adds: L Q L^T of Chen 2023 eq. 7 and 11.
+
+        Parameters
+        ----------
+        tread_speeds : (2,)
+            [m/s]; slip grows with the distance that they make.
+        step_s : float
+        slip_scale : float
+            Factor on the variance of slip.
+        by_gyroscope, in_gap : bool
+            Whether the gyroscope turns the robot, and whether the tread speeds are not known.
+        bias_walk : float
+            Factor on the noise of the random walk of the gyroscope's bias.
+        """
+        left, right = tread_speeds.tolist()
+        travel_per_s = (abs(left) + abs(right)) / 2 * slip_scale
+        position = self._position + self._slip * travel_per_s
+        yaw = self._gyro if by_gyroscope else self._yaw + self._yaw_by_slip * travel_per_s
+        if in_gap:
+            position += GAP_DENSITY[0]
+            yaw += 0.0 if by_gyroscope else GAP_DENSITY[1]
+        half_s = step_s / 2
+        covariance = self._density * half_s
+        covariance[X, X] = covariance[Y, Y] = position * half_s
+        covariance[YAW, YAW] = yaw * half_s
+        if bias_walk != 1.0:
+            covariance[GYRO_BIAS, GYRO_BIAS] *= bias_walk**2
+        return covariance
 
 
 class Predicted(NamedTuple):

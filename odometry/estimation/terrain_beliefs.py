@@ -9,9 +9,9 @@ from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.estimate import OF_TERRAIN, Crossing, Estimate, IcrBelief
 from odometry.estimation.icr_prior import prior_belief
 from odometry.estimation.measurement import Gaussian
-from odometry.footing import Footing
 from odometry.parameters import ParameterSet
 from odometry.run import UNKNOWN
+from odometry.run_terrains import Footing
 
 OF_TERRAIN_BLOCK = np.ix_(OF_TERRAIN, OF_TERRAIN)
 

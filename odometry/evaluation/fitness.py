@@ -8,7 +8,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.errors import TrajectoryError
 from odometry.geometry.angles import continuous_difference
-from odometry.spatial_trajectory import SpatialTrajectory
+from odometry.trajectory import SpatialTrajectory
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ import numpy as np
 from scipy.optimize import nnls
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.evaluation.horizons import spatial_horizons
 from odometry.evaluation.open_loop_errors import COMPONENTS, SOURCES, OpenLoopPath
+from odometry.evaluation.stretches import spatial_horizons
 from odometry.geometry import se2
 from odometry.geometry.angles import wrap
 

@@ -7,7 +7,7 @@ from odometry.dead_reckoning import dead_reckon_in_space
 from odometry.errors import RunFolderError, TrajectoryError
 from odometry.run import Run
 from odometry.run_inputs import attitude_of
-from odometry.spatial_trajectory import SpatialTrajectory
+from odometry.trajectory import SpatialTrajectory
 
 
 def measured_poses(run: Run) -> tuple[FloatArray, FloatArray]:

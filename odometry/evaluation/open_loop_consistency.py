@@ -6,9 +6,9 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.evaluation.consistency import chi_squared_bounds, normalised_squared_errors
-from odometry.evaluation.horizons import spatial_horizons
 from odometry.evaluation.odometer_noise import OdometerNoise, measured_noise, motion_errors
 from odometry.evaluation.open_loop_errors import OpenLoopPath
+from odometry.evaluation.stretches import spatial_horizons
 from odometry.geometry import se2
 
 DISTANCES_M = (5.0, 20.0, 100.0)

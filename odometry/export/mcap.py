@@ -19,9 +19,9 @@ import numpy as np
 from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import ExportError
 from odometry.export.source import ExportSource
-from odometry.extras import extra_module
 from odometry.geometry import se2, se3
-from odometry.io.nanoseconds import NANOSECONDS, nanoseconds
+from odometry.installed import extra_module
+from odometry.io.euroc import NANOSECONDS, nanoseconds
 from odometry.table import Table
 
 TOPICS = "/terrain_odometry"

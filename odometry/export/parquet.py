@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from odometry.export.source import ExportSource
-from odometry.extras import extra_module
+from odometry.installed import extra_module
 from odometry.io.files import atomic_write
 
 NAMES = ("odometer", "estimate", "terrain", "reference")

@@ -12,7 +12,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.export.drive_numbers import DriveNumbers, Stated
 from odometry.export.motion_errors import MotionErrors, Pace
-from odometry.outputs.formats import format_line
+from odometry.outputs.manifest import format_line
 
 FORMAT = 1
 NOT_MEASURED = 1e6  # variance by which drivers of ROS say that a component is not measured

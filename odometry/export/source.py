@@ -12,8 +12,7 @@ from odometry.errors import ExportError, ParameterError
 from odometry.export.motion_errors import MotionErrors, Pace
 from odometry.io.csv_table import read_csv_table
 from odometry.io.structured import read_json
-from odometry.outputs.formats import check_format
-from odometry.outputs.manifest import check_finished
+from odometry.outputs.manifest import check_finished, check_format
 from odometry.parameters import ParameterSet, read_parameters
 from odometry.table import Table
 from odometry.trajectory import Trajectory

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from odometry.export.source import ExportSource
 from odometry.io.trajectory_files import write_trajectory
-from odometry.spatial_trajectory import SpatialTrajectory
+from odometry.trajectory import SpatialTrajectory
 
 NAMES = ("odometer", "estimate")
 

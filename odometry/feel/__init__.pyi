@@ -1,5 +1,4 @@
-from .files import write_feel
+from .files import sentences, write_feel
 from .follow import FeelConfig, Felt
-from .words import sentences
 
 __all__ = ["FeelConfig", "Felt", "sentences", "write_feel"]

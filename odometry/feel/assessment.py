@@ -8,21 +8,15 @@ import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
 from odometry.feel.design import CROSS, SHAPE
+from odometry.feel.discriminant import fitted_discriminant, pooled
 from odometry.feel.evidence import calibrated_windows
-from odometry.feel.folds import FOLDS, stratified_folds
 from odometry.feel.held_out import HeldOut, by_length, held_out, judged_runs, names_of
 from odometry.feel.limits import STRETCH_S
 from odometry.feel.members import Choice, averaged_sets
-from odometry.feel.scores import (
-    balanced_accuracy,
-    bootstrap_interval,
-    calibration_error,
-    confusion,
-)
+from odometry.feel.scores import balanced_accuracy, bootstrap_interval, calibration_error, confusion
 from odometry.feel.selection import SHRINKAGES, Selected, main_labels, selected
-from odometry.feel.speed_alone import speed_alone
 from odometry.feel.strangeness import LENGTHS
-from odometry.feel.table import FeelTable
+from odometry.feel.table import FOLDS, FeelTable, stratified_folds
 
 
 @dataclass(frozen=True)
@@ -174,3 +168,26 @@ def _by_groups(table: FeelTable, folds: IntArray) -> dict[str, float]:
         best = np.array(table.names, dtype=object)[evidence.argmax(axis=1)]
         found[name] = balanced_accuracy(labels, best == labels)
     return found | {"speed alone": speed_alone(table, folds)}
+
+
+SHRINKAGE = 0.03
+
+
+def speed_alone(table: FeelTable, folds: IntArray) -> float:
+    """Balanced accuracy of windows by the covariates alone, folds (R,) of runs held out."""
+    width = table.tables[0].shape[1]
+    places = range(width - table.covariates, width)
+    covariates, moments = table.tables[0][:, list(places)], table.moments[0]
+    right = np.zeros(len(table), dtype=bool)
+    judged = np.zeros(len(table), dtype=bool)
+    for fold in np.unique(folds):
+        part = moments.where(folds[moments.runs] != fold)
+        names = tuple(sorted(set(part.labels.tolist())))
+        rows = (folds[table.runs] == fold) & np.isin(table.labels.astype(str), names)
+        if len(names) < 2 or not rows.any():
+            continue
+        model = fitted_discriminant(pooled(part, names).columns(places), 0, SHRINKAGE)
+        squared = (model.left(covariates[rows]) ** 2).sum(axis=2)
+        right[rows] = np.array(names, dtype=object)[squared.argmin(axis=1)] == table.labels[rows]
+        judged |= rows
+    return balanced_accuracy(table.labels[judged], right[judged])

@@ -29,8 +29,7 @@ from odometry.identification.identify import robot_of
 from odometry.models.base import KinematicModel
 from odometry.models.icr import Icr
 from odometry.positions.heading import headed
-from odometry.run import Run
-from odometry.run_names import check_no_run_twice
+from odometry.run import Run, check_no_run_twice
 
 
 def find_gap(

@@ -12,9 +12,8 @@ from odometry.effects.corrected import Added, delay_s, reported_yaw_rate, seen_p
 from odometry.effects.residual import Residual
 from odometry.gap.simulate import path_of, reported_of
 from odometry.geometry import se2
-from odometry.geometry.levelled import level_step_jacobian
-from odometry.windows.dense import DenseWindows
-from odometry.windows.dense_motion import poses_at
+from odometry.geometry.tilt import level_step_jacobian
+from odometry.windows.dense import DenseWindows, poses_at
 
 STEP = 1e-6  # m, rad, rad/s: over which sensors are linearised
 

@@ -15,8 +15,7 @@ from odometry.effects.corrected import (
 )
 from odometry.effects.reported import Reported
 from odometry.effects.time_course import run_numbers
-from odometry.windows.dense import DenseWindows
-from odometry.windows.dense_motion import off_measured, poses_at
+from odometry.windows.dense import DenseWindows, off_measured, poses_at
 from odometry.windows.motion import level_path
 
 

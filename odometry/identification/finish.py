@@ -2,10 +2,8 @@
 
 import numpy as np
 
-from odometry.errors import ParameterError
-from odometry.identification.errors import IdentificationError
-from odometry.identification.excitation import undetermined
-from odometry.identification.fitted import Fit
+from odometry.errors import IdentificationError, ParameterError
+from odometry.identification.fitted import Fit, undetermined
 from odometry.identification.problem import AnyProblem
 from odometry.identification.solve import Solution
 from odometry.identification.start import Start, by_name

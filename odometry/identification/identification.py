@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from odometry.effects.tables import table_of
-from odometry.identification.errors import IdentificationError
+from odometry.errors import IdentificationError
 from odometry.identification.fit import Fit
 from odometry.identification.halves import Halves
 from odometry.identification.plausibility import CAUSES, refusals
-from odometry.identification.stretch_uncertainty import FEWEST
+from odometry.identification.stretch_fit import FEWEST
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.run import Robot
 from odometry.windows.config import WindowConfig

@@ -9,20 +9,23 @@ from tqdm import tqdm
 from odometry.effects.corrected import Added
 from odometry.effects.measured import on_measurement, robot_run
 from odometry.effects.tables import effects_of
-from odometry.errors import ParameterError
+from odometry.errors import IdentificationError, ParameterError
 from odometry.identification.config import SolverConfig
-from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
-from odometry.identification.fitters import FitTo, fitter
+from odometry.identification.fitters import FitTo, TerrainModel, Wanted, fitter, model_on_terrain
 from odometry.identification.from_positions import windows_or_stretches
-from odometry.identification.halves import Halves, halves_of
-from odometry.identification.held_out import MOST_FOLDS, by_halves, by_runs, held_out_errors
+from odometry.identification.halves import (
+    MOST_FOLDS,
+    Halves,
+    by_halves,
+    by_runs,
+    halves_of,
+    held_out_errors,
+)
 from odometry.identification.identification import Identification, Identified
-from odometry.identification.terrain_model import TerrainModel, Wanted, model_on_terrain
 from odometry.models.catalogue import MODELS
-from odometry.row_terrains import with_named_terrain
-from odometry.run import UNKNOWN, Robot, Run
-from odometry.run_names import check_no_run_twice
+from odometry.run import UNKNOWN, Robot, Run, check_no_run_twice
+from odometry.run_terrains import with_named_terrain
 from odometry.windows.config import WindowConfig
 from odometry.windows.stretches import Stretches
 from odometry.windows.window_errors import WindowErrors, errors_over

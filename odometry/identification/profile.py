@@ -6,8 +6,8 @@ import numpy as np
 from scipy.optimize import brentq, least_squares
 
 from odometry.arrays import BoolArray, FloatArray
+from odometry.errors import IdentificationError
 from odometry.identification.config import SolverConfig
-from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit
 from odometry.identification.fitted import Interval, deviations_within
 from odometry.identification.identification import Identification

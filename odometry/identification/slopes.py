@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
+from odometry.errors import IdentificationError
 from odometry.identification.config import SolverConfig
-from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import Fit, fit
 from odometry.identification.problem import PROBLEMS, Problem
 from odometry.identification.solve import Solution

@@ -6,9 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.errors import ParameterError
+from odometry.errors import IdentificationError, ParameterError
 from odometry.identification.config import SolverConfig
-from odometry.identification.errors import IdentificationError
 from odometry.models.base import KinematicModel
 from odometry.run import Robot
 

@@ -6,18 +6,91 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.errors import IdentificationError
 from odometry.identification.config import SolverConfig
-from odometry.identification.errors import IdentificationError
 from odometry.identification.finish import finished
 from odometry.identification.fitted import LEAST_POSITION_M, Fit
 from odometry.identification.problem import StretchProblem
 from odometry.identification.solve import Solution, solve
+from odometry.identification.spread import correlated_groups, spread_between
 from odometry.identification.start import start_of
-from odometry.identification.stretch_uncertainty import stretch_uncertainty
+from odometry.identification.uncertainty import Uncertainty, grown
 from odometry.models.base import KinematicModel
 from odometry.run import Robot
-from odometry.windows.stretch_noise import UNKNOWN_NOISE, StretchNoise, likeliest_noise
+from odometry.windows.stretch_noise import (
+    UNKNOWN_NOISE,
+    StretchNoise,
+    covariance_parts,
+    likeliest_noise,
+)
 from odometry.windows.stretches import Stretches
+
+FEWEST = 4  # stretches whose spread is taken
+SCALE = 0.01  # standard deviation of what a gyroscope's scale is off by
+TINY = np.finfo(float).tiny
+
+
+def stretch_uncertainty(
+    problem: StretchProblem, solution: Solution, noise: StretchNoise, sizes: FloatArray
+) -> Uncertainty:
+    """Covariance of the free parameters and its degrees of freedom.
+
+    That of generalised least squares under the noise that was found; the degrees of freedom are
+    those of Fai and Cornelius 1996: how well the three variances are known by which each
+    parameter's own is made. Where the spread between runs, or between stretches, shows larger
+    variances, these are taken. A gyroscope's scale is off by the same in all of them, which no
+    spread shows: it is added with SCALE.
+
+    Parameters
+    ----------
+    problem : StretchProblem
+    solution : Solution
+    noise : StretchNoise
+        Its precision belongs to the stretches of the problem.
+    sizes : (F,)
+        Ordinary sizes, so that parameters of very different units can be inverted together.
+    """
+    if not len(sizes):
+        return Uncertainty(np.empty((0, 0)), np.empty(0))
+    root = np.sqrt(solution.weights)[:, None, None] * problem.whitening
+    residuals, jacobian = problem.linearised(solution.chosen)
+    jacobian = jacobian * sizes
+    whitened = root @ jacobian
+    curvature = np.einsum("kif,kig->fg", whitened, whitened)
+    inverse = np.linalg.pinv(curvature, rcond=1e-14, hermitian=True)
+    covariance, freedom = inverse, _freedom(problem, root, whitened @ inverse, noise)
+    groups = correlated_groups(problem.windows.run, 1, FEWEST)
+    if groups is not None:
+        found = np.einsum("kij,kj->ki", root, residuals)
+        covariance, freedom = grown(covariance, freedom, *spread_between(groups, whitened, found))
+    by_scale = _by_scale(problem, root, whitened @ inverse)
+    total = covariance + by_scale[:, None] * by_scale
+    freedom = freedom * np.square(np.diag(total) / np.maximum(np.diag(covariance), TINY))
+    covariance = sizes[:, None] * total * sizes
+    return Uncertainty(np.asarray((covariance + covariance.T) / 2), freedom)
+
+
+def _by_scale(problem: StretchProblem, root: FloatArray, influence: FloatArray) -> FloatArray:
+    """What one standard deviation of a gyroscope's scale moves the parameters (F,) by."""
+    turns = problem.windows.turns_rad
+    if turns is None:
+        return np.zeros(influence.shape[-1])
+    off = np.einsum("kij,kj->ki", root[:, :, -turns.shape[1] :], SCALE * turns)
+    return np.asarray(np.einsum("kif,ki->f", influence, off))
+
+
+def _freedom(
+    problem: StretchProblem, root: FloatArray, influence: FloatArray, noise: StretchNoise
+) -> FloatArray:
+    """Degrees of freedom (F,): 2 v^2 / (g' M g), g the change of v by the three variances."""
+    by_rows = root.swapaxes(1, 2) @ influence  # (K, R, F)
+    parts = covariance_parts(problem.windows)
+    changes = np.einsum("kif,pkij,kjf->pf", by_rows, parts, by_rows, optimize=True)
+    variances = np.sum(np.square(influence), axis=(0, 1))
+    known = np.linalg.pinv(noise.precision, hermitian=True)
+    spread = np.einsum("pf,pq,qf->f", changes, known, changes)
+    return np.asarray(2 * variances**2 / np.maximum(spread, TINY))
+
 
 ROUNDS = 3  # of values and noise in turn
 

@@ -23,7 +23,7 @@ from odometry.errors import OdometryError
 from odometry.io.files import atomic_write
 from odometry.io.input_file import read_bytes
 from odometry.io.structured import parsed_json
-from odometry.outputs.formats import check_format
+from odometry.outputs.manifest import check_format
 
 HEADER = "header.json"
 CHECKSUM = "sha256"

@@ -9,13 +9,15 @@ import numpy as np
 
 from odometry.arrays import AnyArray
 from odometry.errors import RunFolderError
-from odometry.io.csv_cells import Cells, opened_csv, quoted_text
 from odometry.io.csv_columns import (
     NAME_COLUMNS,
     NUMBER_COLUMNS,
+    Cells,
     names,
     numbers,
     numbers_or_names,
+    opened_csv,
+    quoted_text,
 )
 from odometry.io.files import atomic_write
 from odometry.table import Table

@@ -6,13 +6,26 @@ float64 of seconds: up to 97 days from zero each nanosecond is another number, a
 from 1970 keep 240 ns. Written is the whole nanosecond nearest to that number.
 """
 
+from decimal import Decimal
 from pathlib import Path
 
 from odometry.io.csv_columns import LARGEST, LARGEST_BY_NAME
 from odometry.io.files import atomic_write
-from odometry.io.nanoseconds import NANOSECONDS, nanoseconds, seconds
 from odometry.io.number_rows import Column, poses_of, read_rows, require_increasing
-from odometry.spatial_trajectory import SpatialTrajectory
+from odometry.trajectory import SpatialTrajectory
+
+NANOSECONDS = 10**9  # in a second
+
+
+def seconds(word: str) -> float:
+    """The float64 nearest to a whole number of nanoseconds; ValueError for any other word."""
+    return int(word) / NANOSECONDS  # Python's division of integers rounds once
+
+
+def nanoseconds(stamp_s: float) -> int:
+    """The whole number of nanoseconds nearest to a stamp."""
+    return int((Decimal(stamp_s) * NANOSECONDS).to_integral_value())
+
 
 HEADER = (
     "#timestamp [ns], p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], "

@@ -107,3 +107,11 @@ def _kind(mode: int) -> str:
         if is_kind(mode):
             return word
     return "a socket or the like"
+
+
+def leads_out(folder: Path, name: str) -> bool:
+    """Whether `folder / name` lies outside of the folder, by `..` or by symbolic links.
+
+    The folder itself may be reached through a symbolic link.
+    """
+    return not Path(os.path.realpath(folder / name)).is_relative_to(os.path.realpath(folder))

@@ -14,7 +14,7 @@ from odometry.geometry import se3
 from odometry.io.csv_columns import LARGEST, LARGEST_BY_NAME
 from odometry.io.files import atomic_write
 from odometry.io.number_rows import Column, read_rows, require_increasing
-from odometry.spatial_trajectory import SpatialTrajectory
+from odometry.trajectory import SpatialTrajectory
 
 COLUMNS = tuple(
     Column(f"r{row}{column}", LARGEST) if column < 4 else Column(f"t{row}", LARGEST_BY_NAME["x"])

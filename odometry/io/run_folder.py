@@ -1,20 +1,22 @@
-"""Read and write run folders: the only door by which recordings come in."""
+"""Read and write run folders: the only door in; trajectories from elsewhere as their poses."""
 
 import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import tomli_w
 
 from odometry.arrays import AnyArray
-from odometry.errors import RunFolderError
+from odometry.errors import RunFolderError, TrajectoryError
 from odometry.io.bag_names import bag_at, this_is_a_bag
 from odometry.io.csv_table import read_csv_table, write_csv_table
 from odometry.io.files import atomic_write
-from odometry.io.inside import leads_out
+from odometry.io.input_file import leads_out
 from odometry.io.structured import read_toml
 from odometry.table import Table
+from odometry.trajectory import SpatialTrajectory
 
 # file: (is it required, columns it must have, columns with a number in every row)
 FILES = {
@@ -111,3 +113,53 @@ def _check_image_files(folder: Path, images: Table) -> None:
             raise RunFolderError(f"{where}: {name!r} leads out of the folder {folder}")
         if not os.path.isfile(folder / name):  # noqa: PTH113 - Path.is_file raises on long names
             raise RunFolderError(f"{where}: {name!r} is not a file in {folder}")
+
+
+def pose_columns(trajectory: SpatialTrajectory) -> dict[str, AnyArray]:
+    """Columns of pose.csv by name: t, x, y, yaw, z, roll, pitch."""
+    x, y, z = trajectory.positions_m.T
+    roll, pitch, yaw = trajectory.roll_pitch_yaw.T
+    return {
+        "t": trajectory.stamps_s,
+        "x": x,
+        "y": y,
+        "yaw": yaw,
+        "z": z,
+        "roll": roll,
+        "pitch": pitch,
+    }
+
+
+def poses_within(trajectory: SpatialTrajectory, odometry: Table) -> int:
+    """How many poses lie within the odometry of a run.
+
+    Raises
+    ------
+    TrajectoryError
+        If none does: other clocks, or another run.
+    """
+    first_s, last_s = odometry.stamps_s[[0, -1]]
+    within = int(np.sum((trajectory.stamps_s >= first_s) & (trajectory.stamps_s <= last_s)))
+    if not within:
+        raise TrajectoryError(
+            f"the poses are of {trajectory.stamps_s[0]:.3f} to {trajectory.stamps_s[-1]:.3f} s, "
+            f"{odometry.file} of {first_s:.3f} to {last_s:.3f} s; expected stamps of one clock"
+        )
+    return within
+
+
+def doubt_of_axes(trajectory: SpatialTrajectory) -> str:
+    """Why a trajectory seems not to have robot axes; empty where it seems to.
+
+    A skid-steer robot moves most along x of its body.
+    """
+    moved = np.diff(trajectory.positions_m, axis=0)
+    body = np.einsum("nji,nj->ni", trajectory.poses[:-1, :3, :3], moved)
+    squares = np.sum(body**2, axis=0)
+    told = int(np.argmax(squares))
+    if told == 0:  # so it is where nothing moves
+        return ""
+    return (
+        f"the body moves most along its {'xyz'[told]} axis; expected x "
+        "forward. Poses of a camera (z along the view, y down) need --axes optical"
+    )

@@ -13,7 +13,7 @@ from odometry.io.euroc import read_euroc, write_euroc
 from odometry.io.input_file import opened_lines
 from odometry.io.kitti import read_kitti, write_kitti
 from odometry.io.tum import read_spatial_tum, write_spatial_tum
-from odometry.spatial_trajectory import SpatialTrajectory
+from odometry.trajectory import SpatialTrajectory
 
 ROBOT, OPTICAL = "robot", "optical"  # x forward, z up; or x right, y down, z along the view
 AXES = (ROBOT, OPTICAL)

@@ -7,8 +7,7 @@ import numpy as np
 from odometry.io.csv_columns import LARGEST, LARGEST_BY_NAME
 from odometry.io.files import atomic_write
 from odometry.io.number_rows import Column, poses_of, read_rows, require_increasing
-from odometry.spatial_trajectory import SpatialTrajectory
-from odometry.trajectory import Trajectory
+from odometry.trajectory import SpatialTrajectory, Trajectory
 
 COLUMNS = (
     Column("stamp", LARGEST_BY_NAME["t"]),

@@ -9,10 +9,28 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
-from odometry.models.icr_form import IcrForm
 from odometry.models.inputs import Inputs
 from odometry.parameter_covariance import LARGEST
 from odometry.run import Robot
+
+
+@dataclass(frozen=True)
+class IcrForm:
+    """A model with constant ICRs, in the parameters of `icr`.
+
+    Attributes
+    ----------
+    icrs : (3,)
+        y_left, y_right, x_icr [m].
+    alphas : (2,)
+        Slip factors of the left and the right tread.
+    by_parameters : (5, P)
+        Derivative of the ICRs and slip factors by the model's own parameters.
+    """
+
+    icrs: FloatArray
+    alphas: FloatArray
+    by_parameters: FloatArray
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.models.contact_loads import load_shares
-from odometry.models.contact_stance import INSIDE, Stance
+from odometry.models.contact_stance import INSIDE, Stance, load_shares
 from odometry.models.inertia_model import G_M_S2
 
 TIPPING = 0.95  # of the way to the edge of the base: where the centre of pressure is held

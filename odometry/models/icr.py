@@ -4,8 +4,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
-from odometry.models.base import USUAL_GAIN, Linearised, Parameter
-from odometry.models.icr_form import IcrForm
+from odometry.models.base import USUAL_GAIN, IcrForm, Linearised, Parameter
 from odometry.models.inputs import Inputs
 from odometry.models.invertible import InvertibleModel, before_slip, icr_tread_speeds
 from odometry.models.layout import vectors, zero_matrices

@@ -6,7 +6,7 @@ from enum import IntEnum
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.geometry.steepest_slope import paper_attitude
+from odometry.geometry.tilt import paper_attitude
 from odometry.models.base import KinematicModel, Linearised, Parameter, Stages
 from odometry.models.icr import (
     ALPHAS,

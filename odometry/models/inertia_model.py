@@ -11,17 +11,20 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.models.base import KinematicModel, Linearised, Parameter
-from odometry.models.consistent_force import consistent_force
 from odometry.models.icr import GUESSED_WIDTHS
-from odometry.models.inertia_columns import COEFFICIENTS, PARAMETERS, SPEEDS, Column
-from odometry.models.inputs import Inputs
-from odometry.models.steering_indices import (
+from odometry.models.inertia_forces import (
+    COEFFICIENTS,
     LEAST_ETA,
+    PARAMETERS,
+    SPEEDS,
+    Column,
     Indices,
     by_coefficient,
     by_force,
+    consistent_force,
     indices_under,
 )
+from odometry.models.inputs import Inputs
 from odometry.run import Robot
 
 G_M_S2 = 9.80665

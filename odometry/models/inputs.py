@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
-from odometry.geometry.levelled import Tilt, tilt_of
+from odometry.geometry.tilt import Tilt, tilt_of
 
 
 def _level() -> FloatArray:

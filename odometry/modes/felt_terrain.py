@@ -6,7 +6,7 @@ from odometry.modes.mode_set import NO_MODES, ModeSet
 from odometry.modes.track import ModesConfig, follow_modes
 from odometry.modes.velocity import VelocityModes
 from odometry.run import UNKNOWN, Run
-from odometry.terrain_sources import NamedTerrain
+from odometry.run_terrains import NamedTerrain
 
 
 def felt_terrain(

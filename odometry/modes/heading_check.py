@@ -12,9 +12,8 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.geometry.angles import wrap
-from odometry.gyroscope import gyroscope_of
 from odometry.run import Run
-from odometry.sensors import YawRate
+from odometry.sensors import YawRate, gyroscope_of
 
 WINDOW_S, EVERY_S = 5.0, 0.5
 LEAST_POSES, LEAST_SHARE = 15, 0.8  # of a window, and of its time

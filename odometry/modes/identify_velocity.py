@@ -6,7 +6,7 @@ import numpy as np
 from tqdm import tqdm
 
 from odometry.arrays import FloatArray
-from odometry.identification.errors import IdentificationError
+from odometry.errors import IdentificationError
 from odometry.modes.response import Record, errors_of, fitted_response, growing_power
 from odometry.modes.signals import forward_speed_m_s, velocity_signals
 from odometry.modes.stretches import stretches_by_label

@@ -16,7 +16,7 @@ from odometry.io.structured import read_toml
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.traction import TractionModes
 from odometry.modes.velocity import VelocityModes
-from odometry.outputs.formats import check_first_line, format_line
+from odometry.outputs.manifest import check_first_line, format_line
 
 FORMAT = 1  # of the file, in its first line
 LARGEST, SMALLEST = 1e9, 1e-18  # of a number, and of one above 0: a standard deviation of 1e-9

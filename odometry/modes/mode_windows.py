@@ -6,15 +6,14 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.arrays import BoolArray
-from odometry.identification.errors import IdentificationError
+from odometry.errors import IdentificationError, WindowError
 from odometry.modes.signals import STANDING_M_S
 from odometry.modes.stretches import stretches_by_label
 from odometry.modes.traction_gains import LEFT_TURN, RIGHT_TURN, turns_of
 from odometry.modes.yaw_rate_noise import Heard, heard_of
-from odometry.row_terrains import row_terrains
 from odometry.run import UNKNOWN, Run
+from odometry.run_terrains import row_terrains
 from odometry.windows.dense import DenseWindows, dense_windows_of, thinned
-from odometry.windows.errors import WindowError
 
 HORIZONS_S = (4.0, 2.0)  # of windows, the second where poses are chained for less than the first
 LEAST_S = 10.0  # of driving in each mode, in windows, and of its turns to each side

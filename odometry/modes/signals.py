@@ -8,8 +8,8 @@ from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import RunFolderError
 from odometry.modes.heading_check import HeadingCheck, heading_check
 from odometry.modes.measured_travel import MeasuredTravel, measured_travel
-from odometry.row_terrains import row_terrains
 from odometry.run import Run
+from odometry.run_terrains import row_terrains
 from odometry.windows.gaps import odometry_gaps
 from odometry.windows.turns import continuous_yaw
 

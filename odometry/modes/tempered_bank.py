@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.estimation.bank import Bank
-from odometry.estimation.ekf_model import wrapped
+from odometry.estimation.ekf_bank import wrapped
 
 OUTLIERS = 1e-3  # share of measurements that follow a Cauchy distribution
 MOST_SIGMAS = 5.0  # root mean square of an innovation beyond which it pulls no more

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.estimation.ekf_model import EkfModel
+from odometry.estimation.ekf_bank import EkfModel
 from odometry.geometry import se2
 from odometry.modes.first_order_lag import SHORTEST_LAG_S
 from odometry.modes.signals import (

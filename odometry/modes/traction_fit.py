@@ -11,8 +11,7 @@ from odometry.models.icr import GUESSED_WIDTHS
 from odometry.modes.first_order_lag import SHORTEST_LAG_S, lagged
 from odometry.modes.traction_gains import requested, turns_of, twists_of
 from odometry.modes.yaw_rate_noise import Heard, YawRateNoise
-from odometry.windows.dense import DenseWindows
-from odometry.windows.dense_motion import off_measured, poses_at
+from odometry.windows.dense import DenseWindows, off_measured, poses_at
 from odometry.windows.dense_noise import Noise, whitening
 from odometry.windows.motion import level_path
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from odometry.io.csv_cells import unquoted_text
+from odometry.io.csv_columns import unquoted_text
 from odometry.io.run_folder import FILES
 
 RUN_FILES = ("run.toml", *(f"{name}.csv" for name in FILES))

@@ -9,7 +9,7 @@ from odometry.io.files import check_writable
 from odometry.io.structured import read_toml
 from odometry.outputs.inputs import RUN_FILES
 from odometry.outputs.leftovers import remove_temporaries
-from odometry.outputs.made import MADE_BY
+from odometry.outputs.provenance import MADE_BY
 
 HEAD_BYTES = 4096  # of a PNG file with its texts, or of a text
 SET_SOURCES_0_4 = {

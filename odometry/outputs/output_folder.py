@@ -9,7 +9,6 @@ from pathlib import Path
 from odometry.errors import OutputError
 from odometry.io.files import check_writable
 from odometry.outputs.leftovers import is_temporary, remove_stages, remove_temporaries, stage_name
-from odometry.outputs.made import Made
 from odometry.outputs.manifest import (
     FINISHED,
     NAME,
@@ -19,6 +18,7 @@ from odometry.outputs.manifest import (
     read_manifest,
 )
 from odometry.outputs.own_names import files_of_version_0_4, has_own_name
+from odometry.outputs.provenance import Made
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from typing import Any
 
 from odometry.errors import OdometryError
 from odometry.io.structured import read_json
-from odometry.outputs.formats import PROGRAM
+from odometry.outputs.manifest import PROGRAM
 
 RUN_NAMES = (
     *("odometer.csv", "odometer.tum", "estimate.csv", "estimate.tum", "terrain.csv"),

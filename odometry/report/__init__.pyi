@@ -1,11 +1,11 @@
+from .figure import line_styles, terrain_colours
 from .gap_figures import closing_picture, evidence_picture
 from .gap_map import map_picture
-from .gap_rollouts import rollout_pictures
+from .gap_page import rollout_pictures
 from .icr_map import plot_icrs
 from .map_plots import plot_ground, plot_paths
 from .mode_figures import modes_picture
 from .modes_page import write_modes_report
-from .palette import line_styles, terrain_colours
 from .plots import mark_changes, plot_icr
 
 __all__ = [

@@ -11,9 +11,9 @@ from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import CheckReport
 from odometry.checks.motion import Motion
-from odometry.checks.spans import within
+from odometry.report.figure import LINE_STYLES, REFERENCE_STYLE, TERRAIN_TINTS, LineStyle
 from odometry.report.labels import HALO
-from odometry.report.palette import LINE_STYLES, REFERENCE_STYLE, TERRAIN_TINTS, LineStyle
+from odometry.windows.spans import within
 
 Marks = Mapping[str, FloatArray]
 

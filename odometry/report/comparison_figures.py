@@ -19,9 +19,8 @@ from odometry.report.comparison_plots import (
     plot_commanded_rotation,
     plot_violins,
 )
-from odometry.report.figure import save_figure
+from odometry.report.figure import line_styles, save_figure
 from odometry.report.html import Picture
-from odometry.report.palette import line_styles
 
 _WIDTH_IN, _LEGEND_COLUMNS = 7.0, 4
 _PANELS, _PANEL_IN = 3, 2.3  # of the figure of turns

@@ -21,7 +21,7 @@ from odometry.report.comparison_tables import (
     split_grid,
 )
 from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
-from odometry.report.speed_plane_figure import speed_plane_picture
+from odometry.report.speed_plane import speed_plane_picture
 from odometry.report.training_horizons import training_horizon_picture
 
 Block = Paragraph | Listing | Grid | Picture

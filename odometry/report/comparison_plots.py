@@ -10,8 +10,8 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullForma
 from scipy.stats import gaussian_kde
 
 from odometry.arrays import FloatArray
+from odometry.report.figure import LineStyle
 from odometry.report.labels import draw_line
-from odometry.report.palette import LineStyle
 
 FLOOR = 1e-3  # of the largest error; smaller ones are drawn there
 HALF_HEIGHT = 0.42  # of a violin, in rows

@@ -11,9 +11,8 @@ from odometry.arrays import FloatArray
 from odometry.gap.quantities import metres
 from odometry.gap.result import GapResult
 from odometry.gap.statistic import Gap, squared_errors
-from odometry.report.figure import save_figure
+from odometry.report.figure import LINE_STYLES, LineStyle, save_figure
 from odometry.report.html import Picture
-from odometry.report.palette import LINE_STYLES, LineStyle
 from odometry.windows.dense import DenseWindows
 
 WIDTH_IN = 7.0

@@ -16,8 +16,8 @@ from odometry.icrs.points import NO_SLIP
 from odometry.identification.identification import Identification
 from odometry.report.figure import save_figure
 from odometry.report.icr_map import FITTED_STYLE, TURN_STYLES, Frame, frame_of, plot_icrs
-from odometry.row_terrains import with_named_terrain
 from odometry.run import Robot, Run
+from odometry.run_terrains import with_named_terrain
 from odometry.windows.windows import windows_of
 
 _WIDTH_IN, _BESIDE_IN, _ABOVE_IN, _KEYS_IN, _COLUMNS = 4.6, 0.8, 1.15, 0.6, 3

@@ -1,4 +1,4 @@
-"""Lines with labels beside them, so that no legend covers the data."""
+"""Lines of figures: labels beside them, fewer points where none is lost, nothing over outages."""
 
 from collections.abc import Mapping
 from textwrap import fill
@@ -9,8 +9,65 @@ from matplotlib.patheffects import withStroke
 from scipy.optimize import isotonic_regression
 
 from odometry.arrays import FloatArray
-from odometry.report.palette import LineStyle
-from odometry.report.thinned import thinned
+from odometry.estimation.pose_watch import OUTAGE_PERIODS, OUTAGE_S
+from odometry.report.figure import LineStyle
+
+LONG = 20_000  # points; shorter lines are drawn as they are
+PARTS = 2500  # more than twice the pixels of a page's width
+
+
+def thinned(*columns: FloatArray) -> tuple[FloatArray, ...]:
+    """Columns (N,) of a line with the rows that it needs at the size of a page.
+
+    Of each of PARTS parts of a long line the first row stays, and the rows of the least and the
+    greatest value of each column; the last row stays, and a break (NaN) in each part that has one.
+
+    Parameters
+    ----------
+    columns : (N,) each
+        Rising stamps, or the coordinates of places; NaN breaks the line.
+    """
+    count = len(columns[0])
+    if count <= LONG:
+        return columns
+    width = -(-count // PARTS)
+    starts = np.arange(0, count, width)
+    rows = [starts, np.array([count - 1])]
+    for column in columns:
+        padded = np.pad(column, (0, len(starts) * width - count), mode="edge")
+        parts = padded.reshape(-1, width)
+        broken = np.isnan(parts)
+        least = np.where(broken, np.inf, parts).argmin(axis=1)
+        greatest = np.where(broken, -np.inf, parts).argmax(axis=1)
+        rows += [starts + of for of in (least, greatest, broken.argmax(axis=1))]
+    kept = np.unique(np.minimum(np.concatenate(rows), count - 1))
+    return tuple(column[kept] for column in columns)
+
+
+def broken_at_outages(stamps_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Measured values with a row of NaN in the middle of each outage, where a line breaks.
+
+    An outage is what the filter takes for one: longer than 2 s and than 10 usual periods.
+
+    Parameters
+    ----------
+    stamps_s : (N,)
+        Rising.
+    values : (N,) or (N, K)
+
+    Returns
+    -------
+    stamps_s : (N + outages,)
+    values : (N + outages,) or (N + outages, K)
+    """
+    if len(stamps_s) < 2:
+        return stamps_s, values
+    lasts_s = np.diff(stamps_s)
+    long = lasts_s > max(OUTAGE_S, OUTAGE_PERIODS * float(np.median(lasts_s)))
+    rows = np.flatnonzero(long) + 1
+    middles_s = (stamps_s[rows - 1] + stamps_s[rows]) / 2
+    return np.insert(stamps_s, rows, middles_s), np.insert(values, rows, np.nan, axis=0)
+
 
 HALO = (withStroke(linewidth=2.5, foreground="white"),)
 _LINE_PT = 12.0

@@ -8,10 +8,15 @@ from matplotlib.collections import LineCollection
 from matplotlib.ticker import MaxNLocator
 
 from odometry.evaluation.stretches import Stretch
-from odometry.report.labels import HALO, draw_line, label_points, last_point
-from odometry.report.outages import broken_at_outages
-from odometry.report.palette import LineStyle
-from odometry.report.thinned import thinned
+from odometry.report.figure import LineStyle
+from odometry.report.labels import (
+    HALO,
+    broken_at_outages,
+    draw_line,
+    label_points,
+    last_point,
+    thinned,
+)
 from odometry.trajectory import Trajectory
 
 

@@ -13,7 +13,7 @@ from matplotlib.patches import Patch
 from odometry.arrays import AnyArray
 from odometry.modes.followed import FELT, MOTION, SIGHTED, Followed
 from odometry.modes.mode_set import NO_MODES
-from odometry.report.figure import save_figure
+from odometry.report.figure import mode_colours, save_figure
 from odometry.report.html import Picture
 from odometry.report.mode_panels import (
     EDGES,
@@ -26,7 +26,6 @@ from odometry.report.mode_panels import (
     drawn_rows,
     mark_mode_changes,
 )
-from odometry.report.palette import mode_colours
 from odometry.run import UNKNOWN
 
 WIDTH_IN = 7.0

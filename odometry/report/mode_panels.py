@@ -12,7 +12,7 @@ from odometry.arrays import AnyArray, FloatArray
 from odometry.evaluation.stretches import stretches
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
 from odometry.modes.track import ModeTrack
-from odometry.report.palette import UNKNOWN_TINT, line_styles
+from odometry.report.figure import UNKNOWN_TINT, line_styles
 from odometry.run import UNKNOWN
 
 MOST_LINES = 6  # more modes are rows of grey

@@ -9,9 +9,8 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 
 from odometry.arrays import FloatArray
 from odometry.evaluation.stretches import Stretch
-from odometry.report.labels import draw_line, label_points, last_point
-from odometry.report.palette import LineStyle
-from odometry.report.thinned import thinned
+from odometry.report.figure import LineStyle
+from odometry.report.labels import draw_line, label_points, last_point, thinned
 
 LOGARITHMIC_FROM = 8.0  # times the smallest median
 MANY_TICKS_FROM = 100.0  # times the left end of a logarithmic axis

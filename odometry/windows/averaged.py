@@ -10,9 +10,9 @@ from dataclasses import fields, replace
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
-from odometry.gyroscope import gyroscope_of
 from odometry.models.inputs import Inputs
 from odometry.run import Run
+from odometry.sensors import gyroscope_of
 from odometry.windows.dense import DenseWindows
 
 LONGEST_S = 0.1  # of a step

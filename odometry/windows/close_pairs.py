@@ -6,8 +6,8 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.geometry.angles import wrap
+from odometry.windows.measured_poses import TreadTravel
 from odometry.windows.spans import touched
-from odometry.windows.tread_travel import TreadTravel
 
 FASTEST = 2.0  # times the turn of treads that do not slip: the stated width may be twice too large
 SKEWED = 0.1  # of the treads' travel by the width: a turn while both treads are as fast

@@ -8,12 +8,12 @@ from functools import cached_property
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.errors import WindowError
 from odometry.models.inputs import Inputs
-from odometry.row_terrains import row_terrains
 from odometry.run import Run
+from odometry.run_terrains import row_terrains
 from odometry.windows.config import WindowConfig
-from odometry.windows.errors import WindowError
-from odometry.windows.left_out import FEW_POSES, straddling, words
+from odometry.windows.omitted_windows import FEW_POSES, straddling, words
 from odometry.windows.record import Record, record_of
 
 LEAST_POSES = 3  # of a window
@@ -45,7 +45,7 @@ class DenseWindows:
     windows : (K, n + 1)
         Poses of each window; neighbours share one.
     left_out : Counter of str
-        How many windows of the run there are not, by reason (`odometry.windows.left_out`).
+        How many windows of the run there are not, by reason (`odometry.windows.omitted_windows`).
     """
 
     run: Run
@@ -222,3 +222,16 @@ def thinned(windows: DenseWindows, most: int) -> DenseWindows:
     chosen = np.zeros(len(windows), dtype=np.bool_)
     chosen[np.linspace(0, len(windows) - 1, most).astype(np.int64)] = True
     return windows.where(chosen)
+
+
+def poses_at(path: FloatArray, windows: DenseWindows, seen_s: FloatArray) -> FloatArray:
+    """Poses (M, 3) of a path (N, 3) over a run's samples at run times (M,)."""
+    return np.stack([np.interp(seen_s, windows.time_s, column) for column in path.T], axis=-1)
+
+
+def off_measured(poses: FloatArray, windows: DenseWindows) -> FloatArray:
+    """Measured motion less that of poses (M, 3), (K, n, 3), in the frame of each first pose.
+
+    Yaw of the poses must not be wrapped: turns are compared with all whole turns in them.
+    """
+    return np.asarray(windows.measured - motion_from_first(poses[windows.windows]))

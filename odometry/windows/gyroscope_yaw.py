@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.geometry import se2
-from odometry.gyroscope import gyroscope_of
+from odometry.sensors import gyroscope_of
 from odometry.windows.record import Record
 
 ComplexArray = NDArray[np.complex128]

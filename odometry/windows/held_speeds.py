@@ -12,12 +12,11 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.dead_reckoning import dead_reckon
 from odometry.geometry import se2
-from odometry.gyroscope import gyroscope_of
 from odometry.run import Run
-from odometry.windows.measured_poses import measured_poses
+from odometry.sensors import gyroscope_of
+from odometry.windows.measured_poses import measured_poses, tread_travel
 from odometry.windows.robust import slope
 from odometry.windows.spans import touched
-from odometry.windows.tread_travel import tread_travel
 
 BLOCK_S = 0.5  # over which motions are compared
 LONGEST_S = 2.0  # between two poses that are compared

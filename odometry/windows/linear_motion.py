@@ -4,15 +4,75 @@ By each parameter such a twist is a matrix times the same two speeds: sums of te
 the samples serve all parameters, and no derivative of a sample is ever built.
 """
 
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import FloatArray, IntArray
 from odometry.geometry.angles import sine_and_cosine
 from odometry.geometry.se2 import NO_ANGLE, SMALL_ANGLE
+from odometry.geometry.tilt import Tilt
 from odometry.models.base import KinematicModel
 from odometry.models.inputs import Inputs
-from odometry.windows.blocks import Block, blocks
 from odometry.windows.windows import Windows
+
+BLOCK = 16384  # samples at a time
+
+
+@dataclass(frozen=True)
+class Block:
+    """Some windows, and the samples from the first one's start to the last one's end.
+
+    Attributes
+    ----------
+    windows, samples : slice
+        Which they are.
+    ends : (2 K,)
+        Where each window starts and ends among these samples, in turn.
+    steps_s : (N,)
+    tilt : Tilt or None
+        Of the samples.
+    """
+
+    windows: slice
+    samples: slice
+    ends: IntArray
+    steps_s: FloatArray
+    tilt: Tilt | None
+
+    @property
+    def first(self) -> IntArray:
+        """Samples (K,) at which the windows start."""
+        return self.ends[::2]
+
+    @property
+    def last(self) -> IntArray:
+        """Samples (K,) at which they end."""
+        return self.ends[1::2]
+
+    def within(self, steps: FloatArray) -> FloatArray:
+        """Sums (..., K) of steps (..., N) from the first to before the last of each window."""
+        return np.asarray(np.add.reduceat(steps, self.ends, axis=-1)[..., ::2])
+
+
+def blocks(windows: Windows) -> Iterator[Block]:
+    """The windows in their order."""
+    tilt = windows.inputs.tilt
+    begins = np.flatnonzero(np.diff(windows.first // BLOCK, prepend=-1))
+    for begin, end in pairwise([*begins, len(windows)]):
+        chosen = slice(begin, end)
+        first, last = windows.first[chosen], windows.last[chosen]
+        samples = slice(first.min(), last.max() + 1)
+        yield Block(
+            chosen,
+            samples,
+            np.stack([first, last], axis=-1).ravel() - samples.start,
+            windows.steps_s[samples],
+            None if tilt is None else Tilt(*(part[samples] for part in tilt)),
+        )
+
 
 UNIT_SPEEDS = np.eye(2)
 

@@ -12,11 +12,10 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.geometry import se2
 from odometry.geometry.angles import sine_and_cosine
-from odometry.geometry.levelled import Tilt, level_step_jacobian, level_steps
+from odometry.geometry.tilt import Tilt, level_step_jacobian, level_steps
 from odometry.models.base import KinematicModel, Linearised
 from odometry.models.inputs import Inputs
-from odometry.windows.blocks import Block, blocks
-from odometry.windows.linear_motion import linear_window_motion
+from odometry.windows.linear_motion import Block, blocks, linear_window_motion
 from odometry.windows.windows import Windows
 
 

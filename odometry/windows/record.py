@@ -6,21 +6,21 @@ from typing import NamedTuple
 import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
+from odometry.errors import WindowError
 from odometry.models.inputs import Inputs
-from odometry.row_terrains import row_terrains
 from odometry.run import Run
 from odometry.run_inputs import inputs_with_heading
+from odometry.run_terrains import row_terrains
 from odometry.windows.config import WindowConfig
-from odometry.windows.errors import WindowError
 from odometry.windows.gaps import odometry_gaps
-from odometry.windows.left_out import (
+from odometry.windows.measured_poses import measured_poses, measured_positions
+from odometry.windows.omitted_windows import (
     CHANGE_OF_TERRAIN,
     CHANGE_OF_WINDOW,
     ODOMETRY_GAP,
     POSE_GAP,
     UNKNOWN_TURNS,
 )
-from odometry.windows.measured_poses import measured_poses, measured_positions
 from odometry.windows.spans import touched
 from odometry.windows.turns import counted_turns
 

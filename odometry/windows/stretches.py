@@ -9,13 +9,12 @@ from typing import NamedTuple
 import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
-from odometry.evaluation.horizons import spatial_horizons
-from odometry.run import Run
-from odometry.run_names import run_names
+from odometry.errors import WindowError
+from odometry.evaluation.stretches import spatial_horizons
+from odometry.run import Run, run_names
 from odometry.windows.config import WindowConfig
-from odometry.windows.errors import WindowError
 from odometry.windows.gyroscope_yaw import yaw_rates_of
-from odometry.windows.left_out import FEW_POSES, straddling, summed, words
+from odometry.windows.omitted_windows import FEW_POSES, straddling, summed, words
 from odometry.windows.record import LEAST_POSITIONS, Record, position_record_of
 from odometry.windows.windows import Windows, laid_together
 

@@ -8,14 +8,13 @@ from functools import cached_property
 import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
-from odometry.evaluation.horizons import spatial_horizons
+from odometry.errors import WindowError
+from odometry.evaluation.stretches import spatial_horizons
 from odometry.geometry import se2
 from odometry.models.inputs import Inputs, joined
-from odometry.run import Run
-from odometry.run_names import run_names
+from odometry.run import Run, run_names
 from odometry.windows.config import WindowConfig
-from odometry.windows.errors import WindowError
-from odometry.windows.left_out import STATIONARY, straddling, summed, words
+from odometry.windows.omitted_windows import STATIONARY, straddling, summed, words
 from odometry.windows.record import Record, record_of
 
 STANDING_M = 1e-3  # less wheel travel than this is no evidence on a model
@@ -43,7 +42,7 @@ class Windows:
     run, terrain : (K,) of str
         Name of the run (its path where names are equal), and of the terrain.
     left_out : Counter of str
-        How many windows of the runs there are not, by reason (`odometry.windows.left_out`).
+        How many windows of the runs there are not, by reason (`odometry.windows.omitted_windows`).
     """
 
     inputs: Inputs

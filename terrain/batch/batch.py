@@ -1,27 +1,29 @@
 """Many runs replayed into one folder: a folder each, one table and one page over all of them."""
 
+import os
+import signal
+import threading
 import time
 from collections.abc import Iterator, Sequence
-from concurrent.futures import as_completed
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
+from multiprocessing import active_children, forkserver, get_all_start_methods, get_context
+from multiprocessing import parent_process as parent_of_this
 from pathlib import Path
 
 from tqdm import tqdm
 
-from odometry.outputs.asked import Asked
 from odometry.outputs.leftovers import stage_name
-from odometry.outputs.made import Made, installed_packages
 from odometry.outputs.manifest import FINISHED, UNFINISHED, Manifest
 from odometry.outputs.output_folder import claim_folder
+from odometry.outputs.provenance import Asked, Made, installed_packages
 from odometry.parameters import ParameterSet
 from terrain.batch.cluster import cluster_outcomes
 from terrain.batch.job import FAILED, KEPT, Job, Outcome, run_job
-from terrain.batch.learned import LEARNED, Learned, merge, write_learned
 from terrain.batch.page import write_batch_page
-from terrain.batch.processes import pool
-from terrain.batch.row import Row, row_of, write_rows
+from terrain.batch.row import LEARNED, Learned, Row, merge, row_of, write_learned, write_rows
 
 TABLE, PAGE, TIMES = "batch.csv", "report.html", "times.csv"
 FILES = (TABLE, LEARNED, PAGE, TIMES)
@@ -178,3 +180,54 @@ def _pooled(jobs: Sequence[Job], processes: int) -> Iterator[Outcome]:
     with pool(processes) as executor:
         for future in as_completed([executor.submit(run_job, job) for job in jobs]):
             yield future.result()
+
+
+METHOD = "forkserver" if "forkserver" in get_all_start_methods() else "spawn"
+NEEDED = "terrain.batch.job"
+ONE_THREAD = dict.fromkeys(("MKL_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
+
+
+def prepare() -> None:
+    """Let a process import what a replay needs, while this one does other things.
+
+    Processes forked from it need not: importing takes as long as a short run. It has one thread,
+    as a process must that is forked.
+    """
+    if METHOD != "forkserver":
+        return
+    before = dict(os.environ)
+    os.environ.update(ONE_THREAD)
+    try:
+        forkserver.set_forkserver_preload([NEEDED])
+        forkserver.ensure_running()
+    finally:
+        os.environ.clear()
+        os.environ.update(before)
+
+
+@contextmanager
+def pool(processes: int) -> Iterator[ProcessPoolExecutor]:
+    """So many processes that end with this one; at once where the work is broken off."""
+    prepare()
+    others = set(active_children())
+    executor = ProcessPoolExecutor(processes, get_context(METHOD), end_with_parent)
+    try:
+        yield executor
+    except BaseException:
+        executor.shutdown(wait=False, cancel_futures=True)
+        for process in set(active_children()) - others:
+            process.kill()
+        raise
+    executor.shutdown()
+
+
+def end_with_parent() -> None:
+    """Let this process end soon after its parent, which alone hears of Ctrl-C."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_watch, daemon=True).start()
+
+
+def _watch() -> None:
+    if parent := parent_of_this():
+        parent.join()
+    os._exit(1)

@@ -9,8 +9,8 @@ from importlib.metadata import version
 from itertools import islice
 from typing import Any, TypeVar
 
-from odometry.extras import extra_module
-from odometry.outputs.made import installed_packages
+from odometry.installed import extra_module
+from odometry.outputs.provenance import installed_packages
 from terrain.errors import BatchError
 
 CONNECTS_S, WAITS_S = 10.0, 10.0

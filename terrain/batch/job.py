@@ -7,14 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from odometry.errors import OdometryError
-from odometry.outputs.asked import Asked
-from odometry.outputs.made import Made
 from odometry.outputs.manifest import FINISHED, Manifest, check_finished, read_manifest
 from odometry.outputs.output_folder import claim_folder
-from terrain.checks.checked_run import checked_run
+from odometry.outputs.provenance import Asked, Made
+from terrain.checks.recording import checked_run
 from terrain.one_thread import one_thread
+from terrain.results import write_run
 from terrain.run_options import RunOptions
-from terrain.run_output import write_run
 
 VERB = "run"
 REPLAYED, KEPT, FAILED = "replayed", "kept", "failed"

@@ -7,10 +7,9 @@ from urllib.parse import quote
 
 import numpy as np
 
-from odometry.merged_parameters import UNITS, MergedTerrain
+from odometry.learned_parameters import UNITS, MergedTerrain
 from odometry.report.html import Grid, Listing, Paragraph, Section, write_page
-from terrain.batch.learned import Learned
-from terrain.batch.row import Row
+from terrain.batch.row import Learned, Row
 from terrain.report.tables import NOTHING, number
 
 HEADER = (

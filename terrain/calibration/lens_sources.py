@@ -1,15 +1,51 @@
-"""The lens of a run's camera: from a calibration file, from photographs, or as run.toml has it."""
+"""The lens of a run's camera: from a file, from photographs, or as run.toml has it."""
 
 from dataclasses import dataclass
 from pathlib import Path
 
+from odometry.arrays import ByteImage
 from odometry.run import Run
 from terrain.calibration.chessboard import BoardViews, Chessboard, find_boards, photo_files
-from terrain.calibration.first_image import first_image, require_size
 from terrain.calibration.lens_from_boards import LensFit, lens_from_boards
 from terrain.camera_files.calibration import Calibration, Lens
 from terrain.camera_files.read import read_calibration
-from terrain.errors import CalibrationError, CameraError
+from terrain.errors import CalibrationError, CameraError, ImageError
+from terrain.images import read_image
+
+TRIES = 20
+
+
+def first_image(run: Run) -> ByteImage | None:
+    """The first image of a run that can be read; None where it has none."""
+    if run.images is None:
+        return None
+    for name in run.images["file"][:TRIES]:
+        try:
+            return read_image(run.folder / str(name))
+        except ImageError:
+            continue
+    return None
+
+
+def require_size(run: Run, lens: Lens) -> None:
+    """Raise CameraError unless the run's images have the size of the lens, or there are none."""
+    image = first_image(run)
+    if image is None:
+        return
+    height, width = image.shape[:2]
+    if (width, height) == lens.image_size:
+        return
+    lens_width, lens_height = lens.image_size
+    advice = "give the calibration of this camera"
+    if width * lens_height == height * lens_width:
+        advice = (
+            f"if the images were made smaller or larger, not cut, multiply fx, fy, cx and cy by "
+            f"{width / lens_width:g} and state the images' size"
+        )
+    raise CameraError(
+        f"the images of {run.folder} have {width} x {height} pixels, the lens is that of "
+        f"{lens_width} x {lens_height}: {advice}"
+    )
 
 
 @dataclass(frozen=True, eq=False)

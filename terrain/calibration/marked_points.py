@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.io.csv_cells import opened_csv
+from odometry.io.csv_columns import opened_csv
 from terrain.errors import CalibrationError
 
 COLUMNS = ("u", "v", "x", "y")

@@ -8,8 +8,7 @@ import numpy as np
 from scipy.stats import t as student
 
 from odometry.arrays import BoolArray, FloatArray
-from terrain.calibration.flow_solver import Solution, solve_mount
-from terrain.calibration.ground_flow import GroundFlow
+from terrain.calibration.flow_solver import GroundFlow, Solution, solve_mount
 from terrain.calibration.mount_fit import MountFit, too_wide
 from terrain.calibration.tracks import Tracks
 from terrain.camera_files.calibration import Lens

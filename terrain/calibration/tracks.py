@@ -10,8 +10,7 @@ from odometry.arrays import ByteImage, FloatArray, IntArray
 from odometry.geometry import se2
 from odometry.run import Run
 from odometry.trajectory import Trajectory
-from terrain.calibration.followed import followed
-from terrain.calibration.warp import Warp
+from terrain.calibration.warp import Warp, followed
 from terrain.camera_files.calibration import Lens
 from terrain.checks.sampled_images import spread
 from terrain.errors import CalibrationError, ImageError

@@ -1,4 +1,4 @@
-"""Check a recording with its camera before anything is fitted to it."""
+"""Check a recording with its camera before anything is fitted to it, and refuse what cannot be."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -10,14 +10,14 @@ from odometry.checks.finding import CheckReport, Finding, Level
 from odometry.checks.recording import check_recording
 from odometry.errors import RunFolderError
 from odometry.run import Run
+from odometry.run_span import Span, cut_run
 from terrain.camera import Camera
 from terrain.checks.image_files import damaged, frozen, outside_of_odometry
 from terrain.checks.image_sizes import other_sizes
 from terrain.checks.image_values import Values, grey_of, image_values, values_of
-from terrain.checks.region_ahead import region_ahead
+from terrain.checks.region_ahead import region_ahead, vision_model
 from terrain.checks.run_regions import straight_ahead
 from terrain.checks.sampled_images import DECODED, SampledImage, decode, sample_images, spread
-from terrain.checks.vision_model import vision_model
 from terrain.classification.classifier import TerrainClassifier
 from terrain.distortion import undistort
 from terrain.errors import CameraError
@@ -162,3 +162,27 @@ def lens(camera: Camera) -> Iterator[Finding]:
             "matrix has too short a focal length"
         )
     yield Finding("distortion", Level.WARNING, seen, cause, "Calibrate with OpenCV's lens model")
+
+
+def checked_run(folder: Path, span: Span, *, images: bool = False) -> tuple[Run, CheckReport]:
+    """Read one run folder, cut to the span, and check it.
+
+    Parameters
+    ----------
+    folder : Path
+    span : Span
+    images : bool
+        Whether the camera and its images are checked as well.
+
+    Raises
+    ------
+    RunFolderError
+        If it is not as the format says, cannot be used as it is, or nothing of it lies in the
+        span.
+    """
+    run = cut_run(Run.read(folder), span)
+    report = check_run(run) if images else check_recording(run)
+    refused = report.at(Level.REFUSED)
+    if refused:
+        raise RunFolderError(f"{folder}: {refused[0].line.removeprefix('refused: ')}")
+    return run, report

@@ -1,4 +1,4 @@
-"""Whether the image shows the terrain where the robot will be."""
+"""Whether the image shows the terrain where the robot will be, and a classifier can read it."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -18,8 +18,10 @@ from terrain.checks.other_cameras import (
     too_far,
 )
 from terrain.checks.run_regions import RunRegions, run_regions, straight_ahead
+from terrain.classification.classifier import TerrainClassifier
 from terrain.errors import CameraError
-from terrain.region import NoRegion, Region
+from terrain.region import NoRegion, Region, RegionConfig
+from terrain.warp import scale_mismatch
 
 HORIZON_M = 1e4
 USUAL_HEIGHT_M = (0.2, 3.0)  # of cameras on skid-steer robots
@@ -145,3 +147,37 @@ def _seen(camera: Camera, table: Mapping[str, Any]) -> str:
     if camera.mount is None:
         return f"by ground_to_image {centre}"
     return f"by mount = {[float(f'{value:.4g}') for value in table['mount']]} {centre}"
+
+
+def vision_model(
+    classifier: TerrainClassifier, camera: Camera | None, robot: Robot
+) -> Iterator[Finding]:
+    """No metric scale, or one at which this camera's images cannot be read."""
+    scale = classifier.metres_per_pixel
+    if scale is None:
+        yield Finding(
+            "model_without_scale",
+            Level.NOTE,
+            f"the model's training patches of {classifier.patch_size_px} pixels have no "
+            "metres_per_pixel",
+            "The model has no metric scale: pixels of the region are compared as they are, and "
+            "texture is finer in the image the farther away it is",
+            "Train with --metres-per-pixel, on patches in the view from above",
+        )
+    if camera is None:
+        return
+    region = straight_ahead(camera, robot)
+    if isinstance(region, NoRegion):
+        return
+    reason = scale_mismatch(classifier, camera, region.rectangle, RegionConfig().coarsest)
+    if reason:
+        size = f"{scale:.3g} m" if scale is not None else "no stated scale"
+        yield Finding(
+            "model_unsuited",
+            Level.WARNING,
+            f"{reason}, when driving straight on ({region.distance_ahead_m:.2g} m ahead; patches "
+            f"of {classifier.patch_size_px} pixels, {size} a pixel): vision will label nothing",
+            "metres_per_pixel of the model is wrong (mm?), or the model is of another camera, "
+            "nearer to the terrain",
+            "Train with patches of this camera and their metres_per_pixel",
+        )

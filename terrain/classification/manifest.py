@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from odometry.io.csv_cells import opened_csv, unquoted_text
-from odometry.io.inside import leads_out
+from odometry.io.csv_columns import opened_csv, unquoted_text
+from odometry.io.input_file import leads_out
 from terrain.errors import PatchError
 
 

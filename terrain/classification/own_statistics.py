@@ -11,7 +11,7 @@ from terrain.classification.answer import Classification, Classifier
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.metric import ClippedScaler
 from terrain.classification.neighbours import DiscriminantNeighbours
-from terrain.classifier_config import ClassifierConfig
+from terrain.config import ClassifierConfig
 
 LEAST = 0.01  # of a deviation in training: a feature that varies less is taken as in training
 HALF_AT = 50  # patches: with so many the camera's own statistics have half of their weight

@@ -22,7 +22,7 @@ def _prepared(command: Callable[..., None]) -> Callable[..., None]:
 
     @wraps(command)
     def early(*, folders: tuple[Path, ...], processes: int | None, **others: Any) -> None:
-        from terrain.batch.processes import prepare
+        from terrain.batch.batch import prepare
 
         if len(folders) > 1 and processes != 1 and others["scheduler"] is None:
             prepare()
@@ -98,8 +98,7 @@ def _each_once(folders: tuple[Path, ...]) -> list[Path]:
 def _jobs(folders: list[Path], out: Path, options: "RunOptions") -> "list[Job]":
     from terrain.batch.batch import FILES
     from terrain.batch.job import Job
-    from terrain.batch.names import folder_names
-    from terrain.cli.outputs import asked
+    from terrain.cli.outputs import asked, folder_names
 
     names = folder_names(folders, FILES)
     return [

@@ -103,9 +103,14 @@ def camera(
       terrain-odometry camera my_run --file camera.yaml --points marked.csv --out camera
     """
     from terrain.classification.classifier import TerrainClassifier
-    from terrain.cli.camera_advice import print_doubts
     from terrain.cli.camera_outputs import draw, write_tables
-    from terrain.cli.camera_text import print_lens, print_mount, print_seen, print_written
+    from terrain.cli.camera_text import (
+        print_doubts,
+        print_lens,
+        print_mount,
+        print_seen,
+        print_written,
+    )
     from terrain.cli.outputs import claim_folder
     from terrain.cli.recordings import read_run
 
@@ -197,7 +202,7 @@ def _placed(
 
 def _write(run_folder: Path, placed: "MountSource | None") -> None:
     from terrain.calibration.camera_table import write_camera
-    from terrain.cli.camera_advice import is_no_mount
+    from terrain.cli.camera_text import is_no_mount
     from terrain.errors import CalibrationError
 
     if placed is None:

@@ -7,10 +7,10 @@ import tomli_w
 
 from odometry.arrays import FloatArray
 from odometry.io.files import atomic_write
-from odometry.outputs.made import Made
+from odometry.outputs.provenance import Made
 from odometry.run import Run
 from terrain.calibration.camera_table import camera_text
-from terrain.calibration.first_image import first_image
+from terrain.calibration.lens_sources import first_image
 from terrain.calibration.look_ahead import run_region
 from terrain.checks.drawn_images import shown_images
 from terrain.distortion import distort

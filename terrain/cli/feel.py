@@ -62,8 +62,7 @@ def feel(
     from odometry.feel.follow import FeelConfig, follow_feel
     from odometry.feel.model_file import read_feel_model
     from odometry.report.feel_page import write_feel_report
-    from terrain.batch.names import folder_names
-    from terrain.cli.outputs import about, claim_folder
+    from terrain.cli.outputs import about, claim_folder, folder_names
     from terrain.cli.recordings import read_run
 
     output = claim_folder(out)
@@ -85,7 +84,7 @@ def feel(
 
 
 def _print(felt: "Sequence[Felt]", names: Sequence[str]) -> None:
-    from odometry.feel.words import sentences
+    from odometry.feel.files import sentences
 
     if len(felt) == 1:
         for sentence in sentences(felt[0]):

@@ -6,8 +6,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.identification_text import print_identification, require_determined
-from terrain.cli.identify_files import claimed, draw, require_icr_form, write_ros
+from terrain.cli.identification_outputs import (
+    claimed,
+    draw,
+    print_identification,
+    require_determined,
+    require_icr_form,
+    write_ros,
+)
 from terrain.cli.options import (
     MODEL_NAMES,
     OUTPUT,

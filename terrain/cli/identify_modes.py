@@ -81,9 +81,8 @@ def identify_modes(
     from odometry.modes.mode_set_file import write_mode_set
     from odometry.modes.traction import TractionModes
     from odometry.outputs.output_file import is_set_of
-    from terrain.cli.measured_turns import with_turns
     from terrain.cli.outputs import claim_file, comment
-    from terrain.cli.recordings import read_runs
+    from terrain.cli.recordings import read_runs, with_turns
 
     for given, option in ((shared, "--shared"), (common_noise, "--common-noise")):
         if given and kind != "velocity":

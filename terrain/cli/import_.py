@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from odometry.bags.import_bags import Imported
     from odometry.bags.message_types import MessageTypes
     from odometry.bags.survey import Survey
-    from odometry.bags.topic_map import TopicMap
+    from odometry.bags.topic_roles import TopicMap
 
 LARGEST_M = 1000.0
 # Options that override a key of the map, and the key
@@ -124,7 +124,7 @@ def import_(
     if as_list or out is None:
         _list(bags)
         return
-    from odometry.bags.topic_map import TopicMap, read_topic_map
+    from odometry.bags.topic_roles import TopicMap, read_topic_map
     from terrain.cli.outputs import claim_folder
 
     topic_map = read_topic_map(map_file) if map_file is not None else TopicMap()
@@ -163,12 +163,12 @@ def _value(name: str, said: Any) -> Any:
 
 
 def _list(bags: tuple[Path, ...]) -> None:
-    from odometry.bags.message_kinds import NO_WHEELS
+    from odometry.bags.message_fields import NO_WHEELS
     from odometry.bags.message_types import MessageTypes
     from odometry.bags.plan import NO_SPEEDS, make_plan
+    from odometry.bags.survey import topic_lines
     from odometry.bags.topic_guess import best
-    from odometry.bags.topic_list import topic_lines
-    from odometry.bags.topic_map import TopicMap
+    from odometry.bags.topic_roles import TopicMap
     from odometry.errors import BagError
 
     found = _surveyed(bags, MessageTypes())
@@ -196,7 +196,7 @@ def _surveyed(bags: tuple[Path, ...], types: "MessageTypes") -> "Survey":
     from tqdm import tqdm
 
     from odometry.bags.bag_files import bag_files
-    from odometry.bags.losses import Losses
+    from odometry.bags.damage import Losses
     from odometry.bags.survey import survey
 
     losses = Losses()

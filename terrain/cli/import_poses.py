@@ -76,8 +76,7 @@ def write_poses(folder: Path, poses: PoseFiles) -> list[str]:
         If a file cannot be read, or has no stamp in common with the odometry.
     """
     from odometry.io.csv_table import write_csv_table
-    from odometry.io.pose_file import doubt_of_axes, pose_columns, poses_within
-    from odometry.io.run_folder import read_tables
+    from odometry.io.run_folder import doubt_of_axes, pose_columns, poses_within, read_tables
     from odometry.io.trajectory_files import read_trajectory
 
     odometry = read_tables(folder)["odometry"]

@@ -113,16 +113,14 @@ def label(
 
     from odometry.feel.model_file import read_feel_model
     from odometry.parameters import read_parameters
-    from terrain.cli.label_spans import spans_by_run
-    from terrain.cli.label_text import summary
+    from terrain.cli.label_text import spans_by_run, summary
     from terrain.cli.outputs import claim_folder
     from terrain.cli.recordings import read_run
     from terrain.labelling.corrections import read_corrections
-    from terrain.labelling.given_terrain import told_by_spans, told_terrain
+    from terrain.labelling.given_terrain import SURE, told_by_feel, told_by_spans, told_terrain
     from terrain.labelling.label_runs import label_runs
     from terrain.labelling.patch_files import write_labelled_patches
     from terrain.labelling.scale import LabelConfig
-    from terrain.labelling.terrain_by_feel import SURE, told_by_feel
 
     if sum(map(bool, (spans, source, by_feel))) > 1:
         raise click.UsageError("--span, --labels and --by-feel: give one of them")

@@ -32,7 +32,6 @@ def print_held_out(
     """
     from terrain.classification.held_out import answer_photos, held_out_score
     from terrain.classification.patches import find_photos
-    from terrain.cli.labelled_images import print_likeness
     from terrain.errors import PatchError
 
     answers, unusable = answer_photos(classifier, find_photos(folder))

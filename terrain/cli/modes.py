@@ -135,8 +135,7 @@ def _several(
     from odometry.modes.files import write_modes, write_runs
     from odometry.modes.words import sentences
     from odometry.report.modes_page import write_modes_report
-    from terrain.batch.names import folder_names
-    from terrain.cli.outputs import about
+    from terrain.cli.outputs import about, folder_names
 
     rows: dict[str, Followed | str] = {}
     out = output.out
@@ -173,8 +172,7 @@ def _followed(
     from odometry.errors import RunFolderError
     from odometry.modes.followed import followed
     from odometry.modes.sight import seen_grounds
-    from terrain.cli.measured_turns import with_turns
-    from terrain.cli.recordings import read_run
+    from terrain.cli.recordings import read_run, with_turns
 
     (run,) = with_turns([read_run(folder, span)])
     grounds = () if seen is None else seen_grounds(seen, run)

@@ -1,7 +1,7 @@
 """Where the commands write: claimed before any work, with what made it."""
 
 import shlex
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,10 +11,24 @@ from click.core import ParameterSource
 from terrain.cli.recordings import checks_made
 
 if TYPE_CHECKING:
-    from odometry.outputs.asked import Asked
     from odometry.outputs.inputs import Input
-    from odometry.outputs.made import Made
     from odometry.outputs.output_folder import OutputFolder
+    from odometry.outputs.provenance import Asked, Made
+
+
+def folder_names(folders: Sequence[Path], taken: Iterable[str] = ()) -> list[str]:
+    """Name each after its run; a name that comes again, or is taken, gets a number."""
+    used, names = set(taken), []
+    for folder in folders:
+        first = folder.resolve().name
+        name, count = first, 1
+        while name in used:
+            count += 1
+            name = f"{first}_{count}"
+        used.add(name)
+        names.append(name)
+    return names
+
 
 OUTPUTS = ("out", "picture", "ros")  # options that name what a command writes
 NO_MATTER = (*OUTPUTS, "processes", "scheduler")  # where it is written, and who computes it
@@ -98,7 +112,7 @@ def about(made: "Made", folder: Path | None = None) -> dict[str, Any]:
     folder : Path, optional
         The one run of the result; else it is of all that were read.
     """
-    from odometry.outputs.made import about_result
+    from odometry.outputs.provenance import about_result
 
     return about_result(made, [one for one in checks_made() if folder in (None, one.folder)])
 
@@ -117,7 +131,7 @@ def comment(made: "Made") -> str:
 
 def made_by(inputs: "list[Input]", *, reads_images: bool = False) -> "Made":
     """Verb, command and settings of the command that runs, and the sums of its inputs."""
-    from odometry.outputs.made import Made, installed_packages
+    from odometry.outputs.provenance import Made, installed_packages
 
     said = asked(click.get_current_context())
     sums = [(i.role, str(i.path), i.sha256(with_images=reads_images)) for i in inputs]
@@ -126,7 +140,7 @@ def made_by(inputs: "list[Input]", *, reads_images: bool = False) -> "Made":
 
 def asked(context: click.Context) -> "Asked":
     """Verb, command, settings and named inputs of a command."""
-    from odometry.outputs.asked import Asked
+    from odometry.outputs.provenance import Asked
 
     parameters = [p for p in context.command.params if p.name not in NO_MATTER]
     settings = {

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from odometry.run import Run
     from odometry.run_span import Span
 
+
 CHECKS = "terrain.checks"  # key of the reports in click's context
 
 
@@ -71,7 +72,7 @@ def read_run(folder: Path, span: "Span", *, images: bool = False) -> "Run":
         Whether the camera and its images are checked as well.
     """
     from odometry.checks.finding import Level
-    from terrain.checks.checked_run import checked_run
+    from terrain.checks.recording import checked_run
 
     run, report = checked_run(folder, span, images=images)
     for finding in report.findings:
@@ -87,3 +88,45 @@ def checks_made() -> "list[CheckReport]":
     """Reports of the runs that the command has read."""
     found: list[CheckReport] = click.get_current_context().meta.get(CHECKS, [])
     return found
+
+
+def with_turns(runs: "Sequence[Run]") -> "list[Run]":
+    """Runs whose yaw was measured, or is found from positions and a gyroscope; says what was done.
+
+    Their poses are those of the robot: a lever arm of `[sensors]` is undone, and stated no more.
+
+    Positions without yaw are left out where velocity.csv alone measured how the robot turned.
+
+    Raises
+    ------
+    RunFolderError
+        If neither a yaw nor a yaw rate was measured on a run that has positions.
+    """
+    from odometry.effects.measured import robot_run
+
+    return [robot_run(_with_turns(run), ()) for run in runs]
+
+
+def _with_turns(run: "Run") -> "Run":
+    from dataclasses import replace
+
+    import numpy as np
+
+    from odometry.errors import RunFolderError
+    from odometry.positions.heading import found_heading, needs_heading
+
+    if not needs_heading(run):
+        return run
+    if run.yaw_rate is not None:
+        found = found_heading(run)
+        click.echo(f"Note: {found.words}", err=True)
+        return found.run
+    if run.velocity is not None and np.isfinite(run.velocity["wz"]).any():
+        click.echo(
+            f"Note: {run.folder}: pose.csv has positions without yaw and is not used", err=True
+        )
+        return replace(run, pose=None)
+    raise RunFolderError(
+        f"{run.folder}: pose.csv has positions without yaw, and no yaw rate was measured: how the "
+        "robot turned is not known; expected yaw in pose.csv, or gyro_z in imu.csv or odometry.csv"
+    )

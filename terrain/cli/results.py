@@ -38,8 +38,7 @@ def print_errors(results: Mapping[str, "RunResult"]) -> None:
 
 def _beside_errors(result: "RunResult") -> list[str]:
     """What the table does not hold: how the estimate is evaluated, and what else to note."""
-    from terrain.evaluation_notes import NO_GYROSCOPE, evaluated_with, remarks
-    from terrain.odometer_advice import advice
+    from terrain.evaluation_notes import NO_GYROSCOPE, advice, evaluated_with, remarks
 
     second = result.second
     how = [] if second is None else [f"The estimate is evaluated with {evaluated_with(second)}"]

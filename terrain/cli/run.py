@@ -31,9 +31,9 @@ def run(run_folder: Path, *, out: Path, options: "RunOptions") -> None:
     from terrain.cli.outputs import claim_folder
     from terrain.cli.recordings import checks_made, read_run
     from terrain.cli.results import print_changes, print_errors, print_image_labels, print_written
-    from terrain.contradiction_words import contradiction_lines
+    from terrain.new_terrain import contradiction_lines
     from terrain.result_table import image_label_counts
-    from terrain.run_output import write_run
+    from terrain.results import write_run
 
     output = claim_folder(out, reads_images=options.reads_images)
     recording = read_run(run_folder, options.span, images=options.reads_images)

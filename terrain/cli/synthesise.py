@@ -72,7 +72,7 @@ def synthesise(
       terrain-odometry synthesise --out my_run --photos my_photos --zone asphalt --zone sand
     """
     from terrain.cli.outputs import claim_folder
-    from terrain.synthesis.files import read_camera, read_robot
+    from terrain.synthesis.config import read_camera, read_robot
     from terrain.synthetic import SynthesisConfig
     from terrain.synthetic import synthesise as make_run
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from odometry.io.csv_cells import opened_csv, unquoted_text
+from odometry.io.csv_columns import opened_csv, unquoted_text
 from odometry.outputs.manifest import FINISHED, read_manifest
 from terrain.errors import PatchError
 

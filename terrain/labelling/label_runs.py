@@ -9,16 +9,15 @@ import numpy as np
 
 from odometry.parameters import ParameterSet
 from odometry.run import Run
-from odometry.terrain_sources import NamedTerrain
+from odometry.run_terrains import NamedTerrain
 from terrain.camera import Camera
 from terrain.errors import PatchError
 from terrain.labelling.corrections import Corrections
 from terrain.labelling.driven_path import DrivenWay
 from terrain.labelling.given_terrain import GivenTerrain
-from terrain.labelling.patch_places import place_centres, places_of
 from terrain.labelling.scale import LabelConfig, PatchScale, patch_scale
 from terrain.labelling.square_labels import LabelledSquare, labelled_squares
-from terrain.labelling.squares import SquareFinder
+from terrain.labelling.squares import SquareFinder, place_centres, places_of
 from terrain.main_job import run_odometry
 
 ASTRIDE_PLACES, NOT_NEEDED = "across the border of two places", "more than a place needs"

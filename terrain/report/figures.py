@@ -10,8 +10,8 @@ from odometry.evaluation.score import window_errors
 from odometry.evaluation.stretches import Stretch, stretches
 from odometry.report.figure import save_figure, show_run_time
 from odometry.report.html import Picture
+from odometry.report.labels import broken_at_outages
 from odometry.report.map_plots import plot_ground, plot_paths
-from odometry.report.outages import broken_at_outages
 from odometry.report.plots import (
     mark_changes,
     plot_error_distribution,

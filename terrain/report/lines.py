@@ -8,11 +8,10 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.evaluation.score import Score, score
 from odometry.models.catalogue import ICR_NAMES
-from odometry.report.outages import broken_at_outages
-from odometry.report.palette import REFERENCE_STYLE, LineStyle, line_styles
+from odometry.report.figure import REFERENCE_STYLE, LineStyle, line_styles
+from odometry.report.labels import broken_at_outages
 from odometry.trajectory import Trajectory
-from terrain.evaluated_trajectories import EvaluatedTrajectory, at_reference_point
-from terrain.run_result import RunResult
+from terrain.run_result import EvaluatedTrajectory, RunResult, at_reference_point
 
 LABELS = {
     "differential_drive": "differential drive",

@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from pathlib import Path
 
+from odometry.report.figure import terrain_colours
 from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
-from odometry.report.palette import terrain_colours
-from terrain.contradiction_words import contradiction_lines
+from terrain.evaluation_notes import advice
 from terrain.label_confusion import label_confusions
-from terrain.odometer_advice import advice
+from terrain.new_terrain import contradiction_lines
 from terrain.report.figures import (
     Tints,
     distribution_picture,

@@ -9,7 +9,7 @@ from odometry.evaluation.open_loop_consistency import OpenLoopConsistency
 from odometry.evaluation.score import Score
 from odometry.report.html import Grid
 from odometry.run import UNKNOWN
-from terrain.odometer_advice import not_checked, verdict
+from terrain.evaluation_notes import not_checked, verdict
 from terrain.report.lines import ICR_COORDINATES, ReportLines
 from terrain.run_result import RunResult, TerrainChange
 from terrain.switch import SwitchEvent

@@ -14,10 +14,9 @@ from terrain.camera import Camera
 from terrain.errors import SynthesisError
 from terrain.region import Rectangle
 from terrain.synthesis.config import SynthesisConfig
-from terrain.synthesis.exposure import Illumination, encode_jpeg, expose, jpeg_image
 from terrain.synthesis.photos import Photo
 from terrain.synthesis.texture import Texture
-from terrain.synthesis.view import Scene, View
+from terrain.synthesis.view import Illumination, Scene, View, encode_jpeg, expose, jpeg_image
 from terrain.warp import ground_view
 
 PATCH_JPEG_QUALITY = 95

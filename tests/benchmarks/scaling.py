@@ -29,9 +29,9 @@ from odometry.estimation.mode_belief import ModeBelief
 from odometry.identification.config import SolverConfig
 from odometry.identification.problem import Problem
 from odometry.identification.solve import solve
+from odometry.installed import shipped_data
 from odometry.models.catalogue import MODELS
 from odometry.report.figure import save_figure
-from odometry.shipped import shipped_data
 from odometry.windows.config import WindowConfig
 from odometry.windows.motion import linearised_window_motion
 from odometry.windows.noise import pose_variances

@@ -9,8 +9,8 @@ import numpy as np
 
 import odometry
 from odometry.geometry import se2
+from odometry.installed import shipped_data
 from odometry.io.run_folder import write_run_folder
-from odometry.shipped import shipped_data
 
 COMMAND = "from terrain.cli.main import main; main()"
 

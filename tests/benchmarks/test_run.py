@@ -5,7 +5,7 @@ import pytest
 
 import odometry
 import terrain
-from odometry.shipped import shipped_data
+from odometry.installed import shipped_data
 from terrain.one_thread import one_thread
 
 

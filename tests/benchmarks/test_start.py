@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from odometry.shipped import shipped_data
+from odometry.installed import shipped_data
 
 COMMAND = "from terrain.cli.main import main; main()"
 DEMO = str(shipped_data() / "runs" / "demo")

@@ -10,7 +10,7 @@ from hypothesis import given
 
 from odometry.models.catalogue import MODELS
 from odometry.models.icr_slope import Column as SlopeColumn
-from odometry.models.inertia_columns import Column as InertiaColumn
+from odometry.models.inertia_forces import Column as InertiaColumn
 from odometry.models.inputs import Inputs
 from tests.contracts.model_draws import draws, inputs_, values_of
 from tests.contracts.test_models import each_model, ordinary

@@ -9,13 +9,13 @@ import numpy as np
 from odometry.effects.tables import model_of
 from odometry.errors import OdometryError
 from odometry.estimation.icr_prior import prior_belief
+from odometry.installed import shipped_data
 from odometry.io.tum import read_tum
 from odometry.modes.mode_set_file import read_mode_set, write_mode_set
 from odometry.modes.track import follow_modes
 from odometry.parameters import read_parameters
 from odometry.run import Run
 from odometry.run_inputs import inputs_of
-from odometry.shipped import shipped_data
 from odometry.simulation.contact.vehicle import read_contact_vehicle
 from odometry.windows.config import WindowConfig
 from odometry.windows.windows import windows_of
@@ -27,8 +27,7 @@ from terrain.config import Config
 from terrain.images import read_image
 from terrain.main_job import run_odometry
 from terrain.results import read_errors
-from terrain.synthesis.config import SynthesisConfig
-from terrain.synthesis.files import read_camera, read_robot
+from terrain.synthesis.config import SynthesisConfig, read_camera, read_robot
 from tests.fuzz.camera_readers import camera_readers
 from tests.fuzz.mutations import bytes_changed, json_changed, model_changed, text_changed
 from tests.fuzz.reader import reader_of

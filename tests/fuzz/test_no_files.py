@@ -16,7 +16,7 @@ from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config
 from terrain.images import read_image
 from terrain.results import read_errors
-from terrain.synthesis.files import read_camera
+from terrain.synthesis.config import read_camera
 
 READERS = {
     "csv": lambda file: read_csv_table(file, ("t",)),

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import ExtraError
-from odometry.extras import extra_module
+from odometry.installed import extra_module
 from odometry.io.csv_table import read_csv_table, write_csv_table
 from odometry.table import Table
 

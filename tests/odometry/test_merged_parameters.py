@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from odometry.merged_parameters import learned_by_runs, merged_terrain
+from odometry.learned_parameters import learned_by_runs, merged_terrain
 from odometry.parameters import ParameterSet, TerrainParameters, read_parameters, write_parameters
 
 NAMES = ("y_left", "y_right", "x_icr")

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import TrajectoryError
-from odometry.missing_values import fill_gaps, level_where_missing
+from odometry.table import fill_gaps, level_where_missing
 
 STAMPS_S = np.array([0.0, 1, 3, 4, 6])
 GAPPED = np.array([np.nan, 2, np.nan, 8, np.nan])

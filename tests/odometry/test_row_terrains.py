@@ -1,7 +1,7 @@
 import pytest
 
-from odometry.row_terrains import row_terrains, with_named_terrain
 from odometry.run import Run
+from odometry.run_terrains import row_terrains, with_named_terrain
 
 ROWS = "t,v_left,v_right,terrain\n0,1,1,\n1,1,1,ice\n2,3,3,ice\n3,0,0,unknown\n4,1,1,ice\n"
 

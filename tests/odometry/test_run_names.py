@@ -3,8 +3,7 @@ from dataclasses import replace
 import pytest
 
 from odometry.errors import RunFolderError
-from odometry.run import Robot, Run
-from odometry.run_names import check_no_run_twice, robot_labels, run_names
+from odometry.run import Robot, Run, check_no_run_twice, robot_labels, run_names
 
 
 def test_runs_of_one_name_are_told_apart_by_their_folders(make_run, tmp_path):

@@ -4,8 +4,7 @@ from scipy.spatial.transform import Rotation, Slerp
 
 from odometry.errors import TrajectoryError
 from odometry.geometry import se3
-from odometry.spatial_trajectory import SpatialTrajectory
-from odometry.trajectory import Trajectory
+from odometry.trajectory import SpatialTrajectory, Trajectory
 
 
 def make(stamps_s, positions, angles):

@@ -12,10 +12,10 @@ import pytest
 
 from odometry.dead_reckoning import dead_reckon, dead_reckon_in_space
 from odometry.evaluation.relative import EvaluationConfig, position_errors, relative_errors
+from odometry.installed import shipped_data
 from odometry.io.trajectory_files import write_trajectory
 from odometry.io.tum import write_spatial_tum, write_tum
-from odometry.shipped import shipped_data
-from odometry.spatial_trajectory import SpatialTrajectory
+from odometry.trajectory import SpatialTrajectory
 from terrain.main_job import run_odometry
 from terrain.results import write_results
 from tests.reference.pose_metrics.alignment import align_origin, align_rigid

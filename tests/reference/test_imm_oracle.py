@@ -12,9 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from odometry.estimation.bank import Members
-from odometry.estimation.ekf_bank import EkfBank
+from odometry.estimation.ekf_bank import EkfBank, EkfModel
 from odometry.estimation.ekf_member import EkfMember
-from odometry.estimation.ekf_model import EkfModel
 from odometry.estimation.imm import Imm
 from odometry.estimation.mode_belief import ModeBelief
 from tests.reference.imm_systems import assert_same, linear_model, linear_system, positive

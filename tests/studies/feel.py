@@ -10,17 +10,15 @@ from pathlib import Path
 
 import numpy as np
 
-from odometry.feel.assessment import LENGTHS, assessed
+from odometry.feel.assessment import LENGTHS, assessed, speed_alone
 from odometry.feel.design import Design
-from odometry.feel.folds import stratified_folds
 from odometry.feel.follow import FeelConfig
 from odometry.feel.held_out import HeldOut, by_length, judged_runs, scored, windows_alone
 from odometry.feel.limits import STRETCH_S
 from odometry.feel.scores import area, balanced_accuracy, bootstrap_interval
 from odometry.feel.selection import main_labels, selected
-from odometry.feel.speed_alone import speed_alone
 from odometry.feel.strangeness import unknown_probability
-from odometry.feel.table import FeelTable
+from odometry.feel.table import FeelTable, stratified_folds
 from odometry.feel.windows import feel_windows
 from odometry.run import Run
 

@@ -25,8 +25,8 @@ from odometry.identification.fitters import fitter
 from odometry.identification.from_positions import windows_or_stretches
 from odometry.models.base import KinematicModel
 from odometry.models.catalogue import MODELS
-from odometry.row_terrains import with_named_terrain
 from odometry.run import Run
+from odometry.run_terrains import with_named_terrain
 from odometry.windows.config import WindowConfig
 from odometry.windows.motion import level_path
 from odometry.windows.record import position_record_of

@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
-from odometry.footing import Footing
 from odometry.io.run_folder import write_run_folder
 from odometry.parameters import ParameterSet
 from odometry.run import Run
+from odometry.run_terrains import Footing
 from odometry.simulation.drive import Drive, simulate
 from odometry.simulation.driver import WeavingDriver
 from odometry.simulation.ground import GroundMap, footprint_points, to_world

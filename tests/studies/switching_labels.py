@@ -23,7 +23,7 @@ from tqdm import tqdm
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.evaluation.score import reference_of, score
 from odometry.pipeline import ConstantTerrain, replay
-from odometry.terrain_sources import labelled_terrain
+from odometry.run_terrains import labelled_terrain
 from terrain.config import Config
 
 A_B_A, THREE = ("gravel", "grass", "gravel"), ("gravel", "grass", "brick", "gravel", "brick")

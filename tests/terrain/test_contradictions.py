@@ -9,14 +9,13 @@ from odometry.feel.follow import follow_feel
 from odometry.feel.identify_feel import identify_feel
 from odometry.parameters import ParameterSet, read_parameters
 from odometry.run import UNKNOWN, Run
+from odometry.run_terrains import NamedTerrain
 from odometry.table import Table
-from odometry.terrain_sources import NamedTerrain
 from odometry.trajectory import Trajectory
-from terrain.contradiction_words import contradiction_lines
 from terrain.contradictions import LASTS_S, Beneath, contradictions, moments_of, seen_beneath
 from terrain.image_label import ImageLabel
 from terrain.main_job import run_odometry
-from terrain.new_terrain import new_name
+from terrain.new_terrain import contradiction_lines, new_name
 from terrain.region import Rectangle, Region
 from terrain.report.page import write_report
 from terrain.results import write_results

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 
 from odometry.bags.messages import bag_messages
-from odometry.errors import ConfigError, ParameterError
+from odometry.errors import ConfigError, EstimationError, ParameterError
 from odometry.estimates import Replay
 from odometry.estimation.config import IcrEkfConfig
-from odometry.estimation.errors import EstimationError
 from odometry.frames import Frame
 from odometry.live_frames import LiveFrames
 from odometry.parameters import ParameterSet, TerrainParameters

@@ -20,8 +20,7 @@ from terrain.classification.patches import find_photos
 from terrain.cli.synthesise import synthesise as command
 from terrain.errors import SynthesisError
 from terrain.images import read_image
-from terrain.synthesis.config import default_camera, default_robot
-from terrain.synthesis.files import read_camera, read_robot
+from terrain.synthesis.config import default_camera, default_robot, read_camera, read_robot
 from terrain.synthetic import SynthesisConfig, synthesise
 
 DATA = Path(__file__).parents[2] / "data"

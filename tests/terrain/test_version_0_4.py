@@ -13,9 +13,9 @@ from click.testing import CliRunner
 
 from odometry.errors import OutputError
 from odometry.modes.mode_set_file import read_mode_set
-from odometry.outputs.made import Made
 from odometry.outputs.output_file import claim_file, is_set_of
 from odometry.outputs.output_folder import claim_folder
+from odometry.outputs.provenance import Made
 from odometry.parameters import read_parameters
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.persistence import is_model

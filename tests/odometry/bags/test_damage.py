@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from odometry.bags.bag_files import bag_files
-from odometry.bags.losses import Losses
+from odometry.bags.damage import Losses
 from odometry.bags.message_types import MessageTypes
 from odometry.bags.survey import survey
 from odometry.errors import BagError

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry import extras
+from odometry import installed
 from odometry.bags.messages import bag_messages
 from odometry.errors import BagError, ExtraError
 from tests.odometry.bags.made_bags import BEGIN_NS, Bag, name_of
@@ -55,6 +55,8 @@ def test_what_is_no_bag_is_an_error(tmp_path):
 
 
 def test_without_the_extra_it_is_named(tmp_path, monkeypatch):
-    monkeypatch.setattr(extras, "find_spec", lambda name: None if name == "rosbags" else object())
+    monkeypatch.setattr(
+        installed, "find_spec", lambda name: None if name == "rosbags" else object()
+    )
     with pytest.raises(ExtraError, match=r"rosbags.*terrain-odometry\[bags\]"):
         next(bag_messages(tmp_path / "any.bag"))

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from odometry.bags.topic_map import KEYS, read_topic_map
+from odometry.bags.topic_roles import KEYS, read_topic_map
 from odometry.bags.wheel_names import UNITS
 
 EXAMPLE = Path(__file__).parents[3] / "data/bags/map.toml"

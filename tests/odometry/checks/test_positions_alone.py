@@ -5,10 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.checks.course_turns import course_turns
-from odometry.checks.evidence import Evidence
+from odometry.checks.evidence import Evidence, course_turns
 from odometry.checks.finding import Level
-from odometry.checks.path_differences import paths_apart
+from odometry.checks.position_differences import paths_apart
 from odometry.checks.recording import check_recording
 from tests.odometry.checks.faulty import FAULTS, gyroscope, put
 from tests.odometry.checks.test_confirmed_causes import turning_all_round

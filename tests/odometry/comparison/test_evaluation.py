@@ -11,14 +11,14 @@ from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.evaluation import Evaluation, evaluation_windows
 from odometry.comparison.split import parts_by_terrain, windows_of_parts
 from odometry.dead_reckoning import dead_reckon
+from odometry.errors import WindowError
 from odometry.evaluation.relative import EvaluationConfig
 from odometry.evaluation.score import reference_of, score
 from odometry.models.catalogue import MODELS
-from odometry.row_terrains import with_named_terrain
 from odometry.run import Run
 from odometry.run_inputs import inputs_of
+from odometry.run_terrains import with_named_terrain
 from odometry.windows.config import WindowConfig
-from odometry.windows.errors import WindowError
 from odometry.windows.window_errors import window_errors
 
 

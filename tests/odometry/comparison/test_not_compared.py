@@ -7,9 +7,7 @@ import pytest
 
 from odometry.comparison.compare import candidates_named, compare
 from odometry.comparison.config import ComparisonConfig
-from odometry.comparison.errors import ComparisonError
-from odometry.errors import ConfigError, ParameterError
-from odometry.identification.errors import IdentificationError
+from odometry.errors import ComparisonError, ConfigError, IdentificationError, ParameterError
 from odometry.identification.identify import identify
 from odometry.run import Run
 

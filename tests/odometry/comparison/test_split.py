@@ -18,12 +18,11 @@ from odometry.comparison.split import (
     splits,
     windows_of_parts,
 )
-from odometry.errors import RunFolderError
-from odometry.row_terrains import with_named_terrain
+from odometry.errors import RunFolderError, WindowError
 from odometry.run import Robot, Run
+from odometry.run_terrains import with_named_terrain
 from odometry.table import Table
 from odometry.windows.config import WindowConfig
-from odometry.windows.errors import WindowError
 
 ROWS = "t,v_left,v_right,terrain\n0,1,1,\n1,1,1,ice\n2,3,3,ice\n3,0,0,unknown\n4,1,1,ice\n"
 POSES = "t,x,y,yaw\n-1,0,0,0\n0,1,0,0\n1,2,0,0\n2.5,3,0,0\n4,4,0,0\n9,5,0,0\n"

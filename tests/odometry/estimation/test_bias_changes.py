@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from odometry.estimates import Replay
-from odometry.estimation.bias_change import drifted_bias
 from odometry.estimation.bias_watch import BiasWatch, Rates, told_bias, watched
+from odometry.estimation.filter_changes import drifted_bias
 from odometry.estimation.gyroscope_hold import GyroscopeHold
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.geometry.angles import wrap

@@ -7,9 +7,9 @@ import pytest
 from filterpy.kalman import KalmanFilter
 from scipy.stats import multivariate_normal
 
+from odometry.errors import EstimationError
+from odometry.estimation.ekf_bank import EkfModel
 from odometry.estimation.ekf_member import EkfMember
-from odometry.estimation.ekf_model import EkfModel
-from odometry.estimation.errors import EstimationError
 from tests.odometry.estimation.imm_banks import pose_model
 
 

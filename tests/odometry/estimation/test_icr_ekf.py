@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from odometry.errors import ConfigError
+from odometry.errors import ConfigError, EstimationError
 from odometry.estimation.config import IcrEkfConfig
-from odometry.estimation.errors import EstimationError
 from tests.odometry.estimation.icr_ekf_drives import WIDTH, driven, filter_of, frame, table
 
 

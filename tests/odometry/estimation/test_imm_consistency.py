@@ -13,8 +13,7 @@ clusters and their squares spread more than chi-squared, though about the right 
 import numpy as np
 import pytest
 
-from odometry.estimation.ekf_bank import EkfBank
-from odometry.estimation.ekf_model import EkfModel
+from odometry.estimation.ekf_bank import EkfBank, EkfModel
 from odometry.estimation.imm import Imm
 from odometry.estimation.markov import ModeChain
 from odometry.estimation.mode_belief import ModeBelief

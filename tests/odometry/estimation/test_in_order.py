@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from odometry.estimation.errors import EstimationError
+from odometry.errors import EstimationError
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.estimation.in_order import InOrder
 from tests.odometry.estimation.sensor_drives import WIDTH, drive, frames_of, noisy_poses

@@ -6,7 +6,7 @@ from filterpy.kalman import ExtendedKalmanFilter
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.estimation.errors import EstimationError
+from odometry.errors import EstimationError
 from odometry.estimation.kalman import predicted, updated, updated_by_number
 from odometry.estimation.measurement import Measurement
 from odometry.estimation.transition import STATES

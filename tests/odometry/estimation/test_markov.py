@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.estimation.errors import EstimationError
+from odometry.errors import EstimationError
 from odometry.estimation.markov import ModeChain
 
 dwells = st.lists(st.floats(0.05, 1e4), min_size=1, max_size=6)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.estimation.config import IcrEkfConfig
-from odometry.estimation.process_noise import GAP_DENSITY, ProcessNoise
+from odometry.estimation.prediction import GAP_DENSITY, ProcessNoise
 from odometry.estimation.transition import GYRO_BIAS, X_ICR, Y_LEFT, YAW, X, Y
 
 WIDTH_M = 0.5

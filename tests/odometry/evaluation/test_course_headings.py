@@ -5,8 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.evaluation.course_headings import course_headings
-from odometry.evaluation.relative import EvaluationConfig, relative_errors
+from odometry.evaluation.relative import EvaluationConfig, course_headings, relative_errors
 from odometry.trajectory import Trajectory
 
 TRAVEL_M = np.arange(0, 30.05, 0.1)

@@ -4,7 +4,7 @@ import pytest
 from odometry.errors import TrajectoryError
 from odometry.evaluation.fitness import fitness
 from odometry.geometry import se3
-from odometry.spatial_trajectory import SpatialTrajectory
+from odometry.trajectory import SpatialTrajectory
 
 STAMPS_S = np.arange(4.0)
 REFERENCE = np.array([[0, 0, 0, 3.0], [1, 0, 0.5, 3.1], [2, 0, 1, -3.1], [9, 9, 9, 9]])

@@ -10,7 +10,7 @@ from odometry.export import mcap
 from odometry.export.source import read_export_source
 from odometry.geometry import se2
 from odometry.io.csv_table import write_csv_table
-from odometry.io.nanoseconds import nanoseconds
+from odometry.io.euroc import nanoseconds
 from tests.odometry.export.result_folder import SEEN, SPEED_M_S, STAMPS_S, circle, write_results
 
 highlevel = pytest.importorskip("rosbags.highlevel")

@@ -8,7 +8,7 @@ import pytest
 from odometry.errors import ExportError
 from odometry.export import terrain_map
 from odometry.export.source import read_export_source
-from odometry.export.terrain_cells import terrain_cells
+from odometry.export.terrain_map import terrain_cells
 from odometry.io.csv_table import read_csv_table
 from tests.odometry.export.result_folder import circle, write_results
 

@@ -3,8 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.distance import cdist
 
-from odometry.feel.discriminant import fitted_discriminant, pooled
-from odometry.feel.moments import moments_of
+from odometry.feel.discriminant import fitted_discriminant, moments_of, pooled
 
 NAMES = ("a", "b")
 

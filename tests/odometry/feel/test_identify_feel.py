@@ -3,11 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.errors import ConfigError, OdometryError, RunFolderError
+from odometry.errors import ConfigError, IdentificationError, OdometryError, RunFolderError
+from odometry.feel.files import is_unlike, sentences
 from odometry.feel.follow import NOT_MEASURED, STATIONARY, follow_feel
 from odometry.feel.identify_feel import identify_feel
-from odometry.feel.words import is_unlike, sentences
-from odometry.identification.errors import IdentificationError
 from odometry.run import UNKNOWN
 from tests.odometry.feel.feel_drives import drive, drives, with_imu
 

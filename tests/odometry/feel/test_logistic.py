@@ -3,9 +3,8 @@
 import numpy as np
 from sklearn.linear_model import LogisticRegression
 
-from odometry.feel.discriminant import pooled
+from odometry.feel.discriminant import moments_of, pooled
 from odometry.feel.logistic import RIDGE, fitted_logistic
-from odometry.feel.moments import moments_of
 from tests.odometry.feel.test_discriminant import NAMES, made
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.feel.files import write_feel
+from odometry.feel.files import sentences, write_feel
 from odometry.feel.follow import FeelConfig, follow_feel
 from odometry.feel.model_file import (
     FeelFileError,
@@ -13,11 +13,10 @@ from odometry.feel.model_file import (
     read_feel_model,
     write_feel_model,
 )
-from odometry.feel.words import sentences
+from odometry.installed import shipped_data
 from odometry.io.csv_table import read_csv_table
 from odometry.report.feel_page import write_feel_report
 from odometry.run import Run
-from odometry.shipped import shipped_data
 from tests.odometry.feel.feel_drives import drive
 
 FIRST_ROWS, FIRST_GIVEN = [0, 10, 30, 50], [0.44364731, 0.44957747, 0.45369787, 0.46806786]

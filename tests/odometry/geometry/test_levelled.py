@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from odometry.geometry.levelled import level_step_jacobian, level_steps, rises, tilt_of
+from odometry.geometry.tilt import level_step_jacobian, level_steps, rises, tilt_of
 
 angle = st.floats(-0.6, 0.6)
 step = st.tuples(st.floats(-2, 2), st.floats(-2, 2), st.floats(-3, 3)).map(np.array)

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from odometry.geometry.se3 import rotation_from_roll_pitch_yaw
-from odometry.geometry.steepest_slope import paper_attitude, steepest_slope
+from odometry.geometry.tilt import paper_attitude, steepest_slope
 
 angle = st.floats(-0.3, 0.3)
 

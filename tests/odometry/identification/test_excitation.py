@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from odometry.identification.config import SolverConfig
-from odometry.identification.excitation import Undetermined, undetermined
 from odometry.identification.fit import fit
+from odometry.identification.fitted import Undetermined, undetermined
 from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr
 from odometry.run import Robot, Run

@@ -2,9 +2,8 @@ import numpy as np
 import pytest
 from scipy.stats import t as student
 
-from odometry.errors import ParameterError
+from odometry.errors import IdentificationError, ParameterError
 from odometry.identification.config import SolverConfig
-from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import fit
 from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr

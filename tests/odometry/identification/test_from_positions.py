@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from odometry.errors import IdentificationError
 from odometry.identification.config import SolverConfig
-from odometry.identification.errors import IdentificationError
 from odometry.identification.from_positions import position_notes, windows_or_stretches
 from odometry.identification.identify import identify
 from odometry.identification.profile import with_profiles

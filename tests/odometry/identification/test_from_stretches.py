@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
+from odometry.errors import IdentificationError
 from odometry.identification.config import SolverConfig
-from odometry.identification.errors import IdentificationError
 from odometry.identification.identification import contradicted, undetermined_by_positions
 from odometry.identification.identify import identify
 from odometry.identification.simpler_model import simpler_model

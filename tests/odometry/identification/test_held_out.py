@@ -6,7 +6,7 @@ import pytest
 
 from odometry.identification.config import SolverConfig
 from odometry.identification.fit import fit
-from odometry.identification.held_out import by_halves, by_runs, held_out_errors
+from odometry.identification.halves import by_halves, by_runs, held_out_errors
 from odometry.models.icr import Icr
 from odometry.run import Run
 from odometry.windows.config import WindowConfig

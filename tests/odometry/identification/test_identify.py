@@ -4,9 +4,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.errors import ParameterError
+from odometry.errors import IdentificationError, ParameterError
 from odometry.identification.config import SolverConfig
-from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import fit
 from odometry.identification.fitters import fitter
 from odometry.identification.identify import identify, robot_of

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
+from odometry.errors import IdentificationError
 from odometry.identification.config import SolverConfig
-from odometry.identification.errors import IdentificationError
 from odometry.identification.identify import identify
 from odometry.identification.problem import Problem
 from odometry.identification.profile import with_profiles

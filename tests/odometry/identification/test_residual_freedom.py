@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.identification.problem import Problem
-from odometry.identification.residual_freedom import residual_freedom
+from odometry.identification.uncertainty import residual_freedom
 from odometry.models.icr import Icr
 from odometry.windows.noise import by_pose_noise, pose_variances
 from odometry.windows.windows import windows_of

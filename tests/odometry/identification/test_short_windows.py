@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.identification.short_windows import WHY, short_windows
-from odometry.windows.left_out import CHANGE_OF_WINDOW, POSE_GAP, STATIONARY
+from odometry.identification.plausibility import WHY, short_windows
+from odometry.windows.omitted_windows import CHANGE_OF_WINDOW, POSE_GAP, STATIONARY
 from odometry.windows.windows import windows_of
 
 

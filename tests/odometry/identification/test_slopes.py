@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from odometry.errors import ParameterError
+from odometry.errors import IdentificationError, ParameterError
 from odometry.identification.config import SolverConfig
-from odometry.identification.errors import IdentificationError
 from odometry.identification.fit import fit
 from odometry.identification.problem import Problem
 from odometry.identification.slopes import fit_in_two_stages, mean_tilt_rad

@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from odometry.errors import RunFolderError
-from odometry.io import csv_cells
+from odometry.io import csv_columns
 from odometry.io.csv_table import read_csv_table, write_csv_table
 
 
@@ -158,9 +158,9 @@ def test_a_name_that_a_spreadsheet_would_compute_is_written_as_text(tmp_path, fi
 
 @given(st.text("=+-@'1a", min_size=1))
 def test_texts_are_read_as_written_and_no_cell_is_a_formula(text):
-    cell = csv_cells.quoted_text(text)
-    assert csv_cells.unquoted_text(cell) == text
-    if cell.startswith(csv_cells.FORMULA):
+    cell = csv_columns.quoted_text(text)
+    assert csv_columns.unquoted_text(cell) == text
+    if cell.startswith(csv_columns.FORMULA):
         assert float(cell) == float(text)
 
 
@@ -202,7 +202,7 @@ def test_blocks_make_one_table(read, monkeypatch, rows):
     """Numbers, names, an empty cell, a column that turns out to hold names in its last row."""
     content = "t,x,terrain,late,mine\n1,,a,1,2\n\n2,5,bb,2,\n2,6,c,3,4\n3,7,,x,5\n"
     whole = read(content)
-    monkeypatch.setattr(csv_cells, "BLOCK_ROWS", rows)
+    monkeypatch.setattr(csv_columns, "BLOCK_ROWS", rows)
     table = read(content)
     assert (table.lines.tolist(), table.repeated_lines.tolist()) == ([2, 4, 6], [5])
     assert table["late"].tolist() == ["1", "2", "x"]

@@ -9,10 +9,10 @@ from scipy.spatial.transform import Rotation
 from odometry.errors import TrajectoryError
 from odometry.geometry import se3
 from odometry.io.csv_table import read_csv_table, write_csv_table
-from odometry.io.pose_file import doubt_of_axes, pose_columns, poses_within
+from odometry.io.run_folder import doubt_of_axes, pose_columns, poses_within
 from odometry.io.trajectory_files import to_optical
-from odometry.spatial_trajectory import SpatialTrajectory
 from odometry.table import Table
+from odometry.trajectory import SpatialTrajectory
 
 
 def odometry(first_s, last_s):

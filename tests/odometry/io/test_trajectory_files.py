@@ -8,8 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from odometry.errors import TrajectoryError
 from odometry.geometry import se3
-from odometry.io.euroc import read_euroc, write_euroc
-from odometry.io.nanoseconds import seconds
+from odometry.io.euroc import read_euroc, seconds, write_euroc
 from odometry.io.trajectory_files import (
     FORMATS,
     format_of,
@@ -18,7 +17,7 @@ from odometry.io.trajectory_files import (
     to_optical,
     write_trajectory,
 )
-from odometry.spatial_trajectory import SpatialTrajectory
+from odometry.trajectory import SpatialTrajectory
 
 small = st.floats(-1e3, 1e3)
 bodies = st.tuples(small, small, small, *[st.floats(-4, 4)] * 3)

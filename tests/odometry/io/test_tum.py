@@ -8,8 +8,7 @@ from odometry.errors import TrajectoryError
 from odometry.geometry import se3
 from odometry.io import number_rows
 from odometry.io.tum import read_spatial_tum, read_tum, write_spatial_tum, write_tum
-from odometry.spatial_trajectory import SpatialTrajectory
-from odometry.trajectory import Trajectory
+from odometry.trajectory import SpatialTrajectory, Trajectory
 
 
 def test_the_row_of_a_left_turn(tmp_path):

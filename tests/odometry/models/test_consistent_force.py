@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from odometry.models.consistent_force import consistent_force
+from odometry.models.inertia_forces import consistent_force
 
 
 def solve(force_at, limit):

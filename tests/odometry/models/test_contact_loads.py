@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import minimize
 
-from odometry.models.contact_loads import even_layout, load_shares
+from odometry.models.contact_stance import even_layout, load_shares
 
 inside = st.floats(-0.95, 0.95)
 a_side = st.integers(2, 7)

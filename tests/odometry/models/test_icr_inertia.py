@@ -6,8 +6,8 @@ from scipy.optimize import brentq
 
 from odometry.models.icr import Icr
 from odometry.models.icr_inertia import IcrInertia
+from odometry.models.inertia_forces import LEAST_ETA
 from odometry.models.inputs import Inputs
-from odometry.models.steering_indices import LEAST_ETA
 
 MODEL = IcrInertia()
 AURIGA = {

@@ -3,8 +3,7 @@ import pytest
 
 from odometry.errors import ParameterError
 from odometry.models.icr import Icr
-from odometry.models.icr_inertia import IcrInertia
-from odometry.models.icr_inertia_measured import IcrInertiaMeasured
+from odometry.models.icr_inertia import IcrInertia, IcrInertiaMeasured
 from odometry.models.inputs import Inputs
 
 MODEL = IcrInertiaMeasured()

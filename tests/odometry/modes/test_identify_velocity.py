@@ -3,8 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.errors import RunFolderError
-from odometry.identification.errors import IdentificationError
+from odometry.errors import IdentificationError, RunFolderError
 from odometry.modes.identify_velocity import CORRECTED_S, identify_velocity_modes
 from tests.odometry.modes.mode_drives import run_of_tables, velocities, velocity_run, wandering
 

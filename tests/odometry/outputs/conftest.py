@@ -1,6 +1,6 @@
 import pytest
 
-from odometry.outputs.made import Made
+from odometry.outputs.provenance import Made
 
 
 @pytest.fixture

@@ -1,6 +1,6 @@
 from dataclasses import replace
 
-from odometry.outputs.made import installed_packages
+from odometry.outputs.provenance import installed_packages
 
 
 def test_the_identity_is_of_all_but_the_paths(made):

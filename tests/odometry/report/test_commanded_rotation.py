@@ -8,7 +8,7 @@ from odometry.report.comparison_plots import (
     difference_edges,
     plot_commanded_rotation,
 )
-from odometry.report.palette import LineStyle
+from odometry.report.figure import LineStyle
 
 STYLE = LineStyle("#0000FF")
 

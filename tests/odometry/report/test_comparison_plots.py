@@ -3,7 +3,7 @@ import pytest
 from matplotlib.collections import PolyCollection
 
 from odometry.report.comparison_plots import plot_violins
-from odometry.report.palette import LineStyle
+from odometry.report.figure import LineStyle
 
 STYLES = {"a": LineStyle("#0000FF"), "$b^$": LineStyle("#FF0000"), "few": LineStyle("#00FF00")}
 

@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from odometry.report.figure import save_figure
+from odometry.report.figure import line_styles, save_figure
 from odometry.report.labels import label_points
-from odometry.report.palette import line_styles
 
 
 def draw(figure):

@@ -22,8 +22,7 @@ from odometry.gap.variables import Variable
 from odometry.gap.words import sentences
 from odometry.report.gap_figures import rolling_rms
 from odometry.report.gap_map import binned_rms, scale_of
-from odometry.report.gap_page import event_grids, write_gap_report
-from odometry.report.gap_rollouts import MEASURED_NAME, rollout, rollouts
+from odometry.report.gap_page import MEASURED_NAME, event_grids, rollout, rollouts, write_gap_report
 from odometry.report.gap_shapes import shape_of, shape_pictures
 from odometry.report.gap_tables import worst_grid
 

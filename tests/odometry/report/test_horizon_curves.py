@@ -1,7 +1,7 @@
 import numpy as np
 
 from odometry.report.comparison_plots import plot_against_horizon
-from odometry.report.palette import LineStyle
+from odometry.report.figure import LineStyle
 
 STYLES = {"a": LineStyle("#0000FF"), "$b^$": LineStyle("#FF0000", "dashed")}
 

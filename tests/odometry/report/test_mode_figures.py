@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 from odometry.modes.followed import Followed, followed
 from odometry.modes.sight import SeenGround
 from odometry.modes.track import ModesConfig
-from odometry.report import mode_figures, mode_innovations, mode_panels
+from odometry.report import mode_figures, mode_panels, modes_page
+from odometry.report.figure import LINE_STYLES, mode_colours
 from odometry.report.mode_figures import modes_picture, path_picture
-from odometry.report.mode_innovations import MOST, innovations_picture
 from odometry.report.mode_panels import (
     draw_probabilities,
     draw_state,
@@ -21,8 +21,7 @@ from odometry.report.mode_panels import (
     drawn_rows,
     mark_mode_changes,
 )
-from odometry.report.modes_page import write_modes_report
-from odometry.report.palette import LINE_STYLES, mode_colours
+from odometry.report.modes_page import MOST, innovations_picture, write_modes_report
 from tests.odometry.modes.mode_examples import run_of, track, traction_set, velocity_set
 
 MANY = tuple(f"_$wheel^${i}" for i in range(16))
@@ -189,7 +188,7 @@ def drawn(monkeypatch):
         figures[file.name] = figure
         return file
 
-    for module in (mode_figures, mode_innovations):
+    for module in (mode_figures, modes_page):
         monkeypatch.setattr(module, "save_figure", keep)
     return figures
 

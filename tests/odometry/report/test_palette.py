@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from odometry.report.palette import (
+from odometry.report.figure import (
     LINE_STYLES,
     REFERENCE_STYLE,
     TERRAIN_TINTS,

@@ -8,7 +8,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from odometry.evaluation.stretches import Stretch
-from odometry.report.palette import LineStyle
+from odometry.report.figure import LineStyle
 from odometry.report.plots import (
     mark_changes,
     plot_error_distribution,

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from odometry.errors import WindowError
 from odometry.gap.pieces import numbered_pieces, pieces
 from odometry.windows.dense import dense_windows_of, thinned
-from odometry.windows.errors import WindowError
-from odometry.windows.left_out import ODOMETRY_GAP
+from odometry.windows.omitted_windows import ODOMETRY_GAP
 
 TWO_SECONDS = 10  # steps between poses at 5 Hz
 

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from odometry.errors import WindowError
 from odometry.table import Table
 from odometry.windows.dense import dense_windows_of
-from odometry.windows.errors import WindowError
 
 HORIZON_S = 2.0
 DURATION_S = 60.0

@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from odometry.errors import WindowError
 from odometry.windows.config import WindowConfig
 from odometry.windows.dense import dense_windows_of
-from odometry.windows.errors import WindowError
-from odometry.windows.left_out import (
+from odometry.windows.omitted_windows import (
     CHANGE_OF_TERRAIN,
     CHANGE_OF_WINDOW,
     POSE_GAP,

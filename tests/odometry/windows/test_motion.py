@@ -9,7 +9,7 @@ from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr
 from odometry.models.inputs import Inputs
 from odometry.run import Robot, Run
-from odometry.windows import blocks
+from odometry.windows import linear_motion
 from odometry.windows.config import WindowConfig
 from odometry.windows.motion import (
     linearised_window_motion,
@@ -200,7 +200,7 @@ def test_blocks_make_no_difference(driven, monkeypatch, order):
     fields = ("first", "last", "measured")
     windows = replace(windows, **{name: getattr(windows, name)[::order] for name in fields})
     whole = linearised_window_motion(Icr(), SPINNING, windows)
-    monkeypatch.setattr(blocks, "BLOCK", 7)
+    monkeypatch.setattr(linear_motion, "BLOCK", 7)
     apart = linearised_window_motion(Icr(), SPINNING, windows)
     for one, other in zip(whole, apart, strict=True):
         np.testing.assert_allclose(one, other, rtol=0, atol=1e-12)

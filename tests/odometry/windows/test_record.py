@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from odometry.errors import WindowError
 from odometry.run import UNKNOWN, Run
 from odometry.run_inputs import inputs_of
 from odometry.windows.close_pairs import close_pairs
 from odometry.windows.config import WindowConfig
-from odometry.windows.errors import WindowError
-from odometry.windows.left_out import UNKNOWN_TURNS
+from odometry.windows.omitted_windows import UNKNOWN_TURNS
 from odometry.windows.record import record_of
 
 CONFIG = WindowConfig(pose_gap_s=0.5)

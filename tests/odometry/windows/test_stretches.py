@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from odometry.errors import WindowError
 from odometry.models.catalogue import MODELS
 from odometry.windows.config import WindowConfig
-from odometry.windows.errors import WindowError
 from odometry.windows.measured_poses import lacks_yaw
 from odometry.windows.stretch_motion import (
     linearised_shape_residuals,

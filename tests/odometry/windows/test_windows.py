@@ -7,11 +7,11 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from odometry.errors import WindowError
 from odometry.models.icr import Icr
 from odometry.run import Robot, Run
 from odometry.table import Table
 from odometry.windows.config import WindowConfig
-from odometry.windows.errors import WindowError
 from odometry.windows.gaps import odometry_gaps
 from odometry.windows.motion import window_motion, window_motion_jacobian
 from odometry.windows.windows import windows_of

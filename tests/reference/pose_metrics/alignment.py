@@ -4,7 +4,7 @@ import numpy as np
 
 from odometry.errors import TrajectoryError
 from odometry.geometry import se3
-from odometry.spatial_trajectory import SpatialTrajectory
+from odometry.trajectory import SpatialTrajectory
 
 LINE = 1e-12  # second over first singular value below which positions lie on one line
 

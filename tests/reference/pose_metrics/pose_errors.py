@@ -12,7 +12,7 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.errors import TrajectoryError
 from odometry.geometry import se3
-from odometry.spatial_trajectory import SpatialTrajectory
+from odometry.trajectory import SpatialTrajectory
 
 
 @dataclass(frozen=True)

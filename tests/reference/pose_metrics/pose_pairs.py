@@ -4,7 +4,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.config import require
-from odometry.spatial_trajectory import SpatialTrajectory
+from odometry.trajectory import SpatialTrajectory
 
 
 def consecutive_frame_pairs(trajectory: SpatialTrajectory, frames: int) -> IntArray:

@@ -4,7 +4,7 @@ from scipy.spatial.transform import Rotation
 
 from odometry.errors import TrajectoryError
 from odometry.geometry import se3
-from odometry.spatial_trajectory import SpatialTrajectory
+from odometry.trajectory import SpatialTrajectory
 from tests.reference.pose_metrics.alignment import align_origin, align_rigid, at_common_stamps
 
 FRAME = se3.pose(np.array([5.0, -3, 2]), Rotation.from_rotvec([0.4, -1.2, 2.0]).as_matrix())

@@ -5,8 +5,7 @@ from scipy.spatial.transform import Rotation
 from odometry.errors import TrajectoryError
 from odometry.evaluation.relative import position_errors
 from odometry.geometry import se3
-from odometry.spatial_trajectory import SpatialTrajectory
-from odometry.trajectory import Trajectory
+from odometry.trajectory import SpatialTrajectory, Trajectory
 from tests.reference.pose_metrics.pose_errors import (
     absolute_pose_errors,
     relative_pose_errors,

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from odometry.errors import ConfigError
 from odometry.geometry import se3
-from odometry.spatial_trajectory import SpatialTrajectory
+from odometry.trajectory import SpatialTrajectory
 from tests.reference.pose_metrics.pose_pairs import (
     all_frame_pairs,
     all_path_pairs,

@@ -1,6 +1,6 @@
 import pytest
 
-from odometry.outputs.asked import Asked
+from odometry.outputs.provenance import Asked
 from terrain.batch.job import Job
 from terrain.config import Config
 from terrain.run_options import RunOptions

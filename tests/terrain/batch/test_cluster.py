@@ -59,7 +59,7 @@ def test_a_worker_that_cannot_do_the_jobs_is_told_in_one_line(
     job = job_of(curvy_run)
     monkeypatch.setattr("terrain.batch.connection.WAITS_S", 0.3)
     assert "has no workers; start some with: dask worker" in refused([job], scheduler)
-    older = "import odometry.outputs.made as made; made.version = lambda name: '0.1'"
+    older = "import odometry.outputs.provenance as made; made.version = lambda name: '0.1'"
     with started_workers(scheduler, 1, before=older):
         message = refused([job], scheduler)
     assert "terrain-odometry 0.1 (here " in message

@@ -69,7 +69,7 @@ def test_another_recording_replaces_the_result_and_says_so(done, world, tmp_path
 
 
 def test_other_packages_replace_the_result_and_say_so(done, monkeypatch):
-    monkeypatch.setattr("odometry.outputs.asked.installed_packages", lambda: {"numpy": "9.9"})
+    monkeypatch.setattr("odometry.outputs.provenance.installed_packages", lambda: {"numpy": "9.9"})
     outcome = run_job(done)
     assert outcome.state == REPLAYED
     assert outcome.said.startswith("made with numpy ")

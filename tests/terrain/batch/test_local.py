@@ -7,9 +7,8 @@ from contextlib import suppress
 from multiprocessing import active_children
 from pathlib import Path
 
-from terrain.batch.batch import KILLED, local_outcomes
+from terrain.batch.batch import KILLED, local_outcomes, pool
 from terrain.batch.job import FAILED, REPLAYED
-from terrain.batch.processes import pool
 from terrain.config import Config
 from tests.terrain.batch.deadly import Deadly
 
@@ -37,7 +36,7 @@ def test_a_process_of_the_pool_ends_with_its_parent():
     """A parent that is killed can tell nobody."""
     program = """
 import os, sys, time
-from terrain.batch.processes import pool
+from terrain.batch.batch import pool
 with pool(1) as executor:
     print(executor.submit(os.getpid).result(), flush=True)
     executor.submit(time.sleep, 60)

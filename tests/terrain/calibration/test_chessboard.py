@@ -4,7 +4,6 @@ import cv2
 import numpy as np
 import pytest
 
-from terrain.calibration.board_variety import what_next
 from terrain.calibration.chessboard import (
     BoardView,
     BoardViews,
@@ -12,7 +11,7 @@ from terrain.calibration.chessboard import (
     find_boards,
     photo_files,
 )
-from terrain.calibration.lens_from_boards import lens_from_boards
+from terrain.calibration.lens_from_boards import lens_from_boards, what_next
 from terrain.errors import CalibrationError
 from tests.terrain.calibration.conftest import BOARD, CAMERA, SQUARE_M
 from tests.terrain.calibration.rendered import bend, board_poses

@@ -4,8 +4,13 @@ import numpy as np
 import pytest
 
 from odometry.run import Robot
-from terrain.calibration.look_ahead import look_ahead, metre_px, nearest_seen_m
-from terrain.calibration.suggested_mount import pitched, suggest_pitch
+from terrain.calibration.look_ahead import (
+    look_ahead,
+    metre_px,
+    nearest_seen_m,
+    pitched,
+    suggest_pitch,
+)
 from terrain.camera import Camera
 from terrain.region import NoRegion
 

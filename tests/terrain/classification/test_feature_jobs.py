@@ -7,7 +7,7 @@ from click.testing import CliRunner
 from joblib.externals.loky import get_reusable_executor
 from threadpoolctl import threadpool_info
 
-from odometry.shipped import shipped_data
+from odometry.installed import shipped_data
 from terrain.classification import feature_jobs
 from terrain.classification.feature_jobs import shared_feature_matrix
 from terrain.classification.features import feature_matrix

@@ -8,7 +8,7 @@ from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.likeness import FEWEST_IMAGES, TrainingLook, look_of
 from terrain.classification.persistence import read_model, write_model
 from terrain.errors import ModelFileError
-from terrain.run_likeness import WORTH_OF_UNLIKE, RunLikeness
+from terrain.image_labeller import WORTH_OF_UNLIKE, RunLikeness
 
 
 def texture(rng, grain_px, size=64, spread=35):

@@ -12,8 +12,8 @@ from terrain.classification.own_statistics import (
     own_weight,
     used_as,
 )
-from terrain.classifier_config import ClassifierConfig
 from terrain.cli.classify import classify
+from terrain.config import ClassifierConfig
 from terrain.errors import ImageError
 
 SIZE = 32

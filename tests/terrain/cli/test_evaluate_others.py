@@ -11,7 +11,7 @@ from odometry.geometry import se3
 from odometry.io.trajectory_files import read_trajectory, to_optical, write_trajectory
 from odometry.io.tum import write_spatial_tum
 from odometry.run import Run
-from odometry.spatial_trajectory import SpatialTrajectory
+from odometry.trajectory import SpatialTrajectory
 from terrain.cli.evaluate import evaluate
 from terrain.main_job import run_odometry
 from terrain.results import write_results

@@ -4,7 +4,7 @@ import pytest
 from click.testing import CliRunner
 
 from odometry.errors import OdometryError
-from odometry.shipped import shipped_data
+from odometry.installed import shipped_data
 from terrain.cli.main import VERBS, cli
 
 OUTPUTS = {"out", "picture"}

@@ -8,7 +8,7 @@ import pytest
 
 from odometry.errors import RunFolderError
 from odometry.table import Table
-from terrain.cli.measured_turns import with_turns
+from terrain.cli.recordings import with_turns
 from tests.odometry.positions_drives import drive, emptied
 
 

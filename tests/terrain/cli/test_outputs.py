@@ -9,9 +9,9 @@ import pytest
 from click.testing import CliRunner
 
 from odometry.errors import OdometryError
+from odometry.installed import shipped_data
 from odometry.outputs.manifest import Manifest, read_manifest
 from odometry.parameters import read_parameters
-from odometry.shipped import shipped_data
 from terrain.cli.evaluate import evaluate
 from terrain.cli.identify import identify
 from terrain.cli.run import run

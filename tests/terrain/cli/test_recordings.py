@@ -11,7 +11,7 @@ from click.testing import CliRunner
 
 from odometry.checks.finding import CheckReport, Finding, Level
 from odometry.errors import RunFolderError
-from odometry.outputs.made import Made
+from odometry.outputs.provenance import Made
 from odometry.run_span import Span
 from terrain.cli.outputs import comment
 from terrain.cli.recordings import CHECKS, read_runs

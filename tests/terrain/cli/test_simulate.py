@@ -5,11 +5,10 @@ import pytest
 from click.testing import CliRunner
 
 from odometry.errors import OdometryError
+from odometry.installed import shipped_data
 from odometry.run import Run
-from odometry.shipped import shipped_data
 from odometry.simulation.courses import COURSE_NAMES
-from terrain.cli.simulate import simulate
-from terrain.cli.simulated_robot import VEHICLES
+from terrain.cli.simulate import VEHICLES, simulate
 
 PIONEER = shipped_data() / "vehicles" / "pioneer_like.toml"
 

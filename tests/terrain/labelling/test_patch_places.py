@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from terrain.labelling.patch_places import place_centres, places_of
+from terrain.labelling.squares import place_centres, places_of
 
 POINTS = arrays(float, st.tuples(st.integers(1, 40), st.just(2)), elements=st.floats(-6, 6))
 

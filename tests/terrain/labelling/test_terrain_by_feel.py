@@ -7,7 +7,7 @@ import pytest
 
 from odometry.errors import RunFolderError
 from odometry.feel.identify_feel import identify_feel
-from terrain.labelling.terrain_by_feel import told_by_feel
+from terrain.labelling.given_terrain import told_by_feel
 from tests.odometry.feel.feel_drives import drive, drives
 from tests.terrain.test_feel_labels import joined
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.simulation.drive import Drive
-from terrain.synthesis.vibration import BAND, GRAVITY_M_S2, RATE_HZ, imu_table, vibration_bands
+from terrain.synthesis.records import BAND, GRAVITY_M_S2, RATE_HZ, imu_table, vibration_bands
 
 TERRAINS = ("brick", "grass", "gravel")
 

@@ -10,15 +10,17 @@ from terrain.camera import Camera
 from terrain.errors import SynthesisError
 from terrain.region import Rectangle
 from terrain.synthesis.config import default_camera
-from terrain.synthesis.exposure import (
+from terrain.synthesis.texture import Texture
+from terrain.synthesis.view import (
     NOISE_GREY_LEVELS,
+    SKY_BRIGHTNESS,
     Illumination,
+    Scene,
+    View,
     encode_jpeg,
     expose,
     jpeg_image,
 )
-from terrain.synthesis.texture import Texture
-from terrain.synthesis.view import SKY_BRIGHTNESS, Scene, View
 from terrain.warp import ground_view
 
 

@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-from odometry.footing import Footing
 from odometry.frames import Frame
+from odometry.run_terrains import Footing
 from terrain.camera import Camera
 from terrain.errors import CameraError
 from terrain.region import RegionConfig

@@ -1,0 +1,160 @@
+"""Terrain of a run: under its robot, by row, and by stamp as the source of a replay."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from odometry.arrays import AnyArray, FloatArray
+from odometry.errors import RunFolderError
+from odometry.estimation.estimate import Estimate
+from odometry.frames import Frame
+from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
+
+
+@dataclass(frozen=True, slots=True)
+class Footing:
+    """The terrain in force and the shares of all terrains under the footprint.
+
+    Attributes
+    ----------
+    terrain : str
+        The one with the largest share, as a rule.
+    shares : Mapping of str to float
+        Above zero; they add up to 1. On one terrain alone its share is 1.
+    """
+
+    terrain: str
+    shares: Mapping[str, float]
+
+    @classmethod
+    def of(cls, terrain: "str | Footing") -> "Footing":
+        """A name is a footing on one terrain."""
+        return cls(terrain, {terrain: 1.0}) if isinstance(terrain, str) else terrain
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether all of the footprint is on one terrain."""
+        return len(self.shares) == 1
+
+
+def with_named_terrain(run: Run, given: str | None) -> Run:
+    """The run with a name for every terrain: `given`, or "ground", where it has no name."""
+    usual = run.terrain if run.terrain not in (None, UNKNOWN) else given or UNNAMED_TERRAIN
+    settings = {**run.settings, "run": {**run.settings.get("run", {}), "terrain": usual}}
+    odometry = run.odometry
+    if "terrain" in odometry:
+        names = odometry["terrain"].astype(object)
+        named = np.where((names == "") | (names == UNKNOWN), usual, names)
+        odometry = replace(odometry, columns={**odometry.columns, "terrain": named})
+    return replace(run, settings=settings, odometry=odometry)
+
+
+def row_terrains(run: Run) -> AnyArray:
+    """Name of the terrain (N,) at each row of odometry.csv.
+
+    Its column `terrain` where there is one, else the run's; "unknown" where neither names one.
+    """
+    usual = run.terrain or UNKNOWN
+    if "terrain" not in run.odometry:
+        return np.full(len(run.odometry), usual, dtype=object)
+    names = run.odometry["terrain"].astype(object)
+    return np.asarray(np.where(names == "", usual, names))
+
+
+@dataclass(frozen=True)
+class NamedTerrain:
+    """The latest name at or before each frame; before the first name, the initial terrain.
+
+    Attributes
+    ----------
+    initial : str
+    stamps_s : (N,)
+        From when on each name holds, rising.
+    names : (N,) of str
+    """
+
+    initial: str
+    stamps_s: FloatArray
+    names: AnyArray
+
+    @classmethod
+    def told(
+        cls, initial: str, stamps_s: FloatArray, answers: AnyArray, silent: Sequence[str]
+    ) -> "NamedTerrain":
+        """From answers (N,); those in `silent` keep the terrain in force."""
+        speaks = ~np.isin(answers.astype(str), list(silent))
+        return cls(initial, stamps_s[speaks], answers[speaks])
+
+    def terrain(self, frame: Frame, estimate: Estimate) -> str:  # noqa: ARG002 - the protocol's
+        """The name in force at the stamp of the frame."""
+        row = int(np.searchsorted(self.stamps_s, frame.stamp_s, side="right")) - 1
+        return str(self.names[row]) if row >= 0 else self.initial
+
+
+@dataclass(frozen=True)
+class ToldFooting:
+    """The terrain of an earlier replay: the latest footing at or before each frame.
+
+    Attributes
+    ----------
+    estimates : sequence of Estimate
+        Of that replay.
+    """
+
+    estimates: Sequence[Estimate]
+
+    @property
+    def initial(self) -> str:
+        """The terrain at the first estimate."""
+        return self.estimates[0].terrain
+
+    @cached_property
+    def _told(self) -> tuple[FloatArray, list[Footing]]:
+        """Stamps (N,) of the estimates, and the footing at each."""
+        stamps_s, footings, before = [], [], None
+        for estimate in self.estimates:
+            now = estimate.terrain, estimate.crossing
+            if before is None or now[0] != before[0] or now[1] is not before[1]:
+                shares = None if now[1] is None else now[1].shares
+                footing = Footing.of(now[0]) if shares is None else Footing(now[0], shares)
+            stamps_s.append(estimate.stamp_s)
+            footings.append(footing)
+            before = now
+        return np.array(stamps_s), footings
+
+    def terrain(self, frame: Frame, estimate: Estimate) -> Footing:  # noqa: ARG002 - the protocol's
+        """The footing in force at the stamp of the frame."""
+        stamps_s, footings = self._told
+        row = int(np.searchsorted(stamps_s, frame.stamp_s, side="right")) - 1
+        return footings[max(row, 0)]
+
+
+def labelled_terrain(run: Run, initial: str | None = None) -> NamedTerrain:
+    """The terrain that the run itself names: what a source of terrain could do at best.
+
+    Of truth.csv where that has a column `terrain`, else of odometry.csv. An empty label or
+    `unknown` keeps the terrain in force.
+
+    Parameters
+    ----------
+    run : Run
+    initial : str, optional
+        In force before the first label; by default the first label.
+
+    Raises
+    ------
+    RunFolderError
+        If neither file names a terrain.
+    """
+    for table in (run.truth, run.odometry):
+        if table is None or "terrain" not in table:
+            continue
+        found = NamedTerrain.told("", table.stamps_s, table["terrain"], ("", UNKNOWN))
+        if len(found.names):
+            return NamedTerrain(initial or str(found.names[0]), found.stamps_s, found.names)
+    raise RunFolderError(
+        f"{run.folder}: no column `terrain` of odometry.csv or truth.csv names a terrain; expected "
+        "one where the run's own labels are the source of terrain"
+    )
