@@ -29,24 +29,24 @@ class Contradiction:
     Attributes
     ----------
     begin_s, end_s : float
-    seen, felt, moved : str
-        What the camera, the feel and the motion name; "" of a source that names nothing.
-    seen_probability, felt_probability : float
+    camera, feel, motion : str
+        The terrain by each source; "" of a source that names nothing.
+    camera_probability, feel_probability : float
         Means over the span; NaN without a name.
     """
 
     begin_s: float
     end_s: float
-    seen: str
-    felt: str
-    moved: str
-    seen_probability: float
-    felt_probability: float
+    camera: str
+    feel: str
+    motion: str
+    camera_probability: float
+    feel_probability: float
 
     @property
     def is_new(self) -> bool:
         """Whether no source knows the terrain, and it is unknown by feel."""
-        return self.felt == UNKNOWN and self.seen in ("", UNKNOWN)
+        return self.feel == UNKNOWN and self.camera in ("", UNKNOWN)
 
 
 @dataclass(frozen=True)
@@ -78,10 +78,10 @@ def contradictions(
     )
     sure = np.where(names == UNKNOWN, np.nan, around.lasting_probabilities.max(axis=1))
     nothing = np.full(len(moments_s), "", dtype=object)
-    seen = nothing if beneath is None else beneath.names
-    moved = nothing if motion is None else _names_at(motion, moments_s)
+    camera = nothing if beneath is None else beneath.names
+    by_motion = nothing if motion is None else _names_at(motion, moments_s)
     share = np.full(len(moments_s), np.nan) if beneath is None else beneath.probabilities
-    rows = zip(seen.tolist(), names.tolist(), moved.tolist(), strict=True)
+    rows = zip(camera.tolist(), names.tolist(), by_motion.tolist(), strict=True)
     found = [
         Contradiction(
             float(moments_s[first]),
@@ -95,13 +95,13 @@ def contradictions(
     return tuple(found)
 
 
-def differ(seen: str, felt: str, moved: str) -> bool:
+def differ(camera: str, feel: str, motion: str) -> bool:
     """Whether two sources that name a terrain name different ones, or feel knows none.
 
     A camera that knows no terrain contradicts nobody, nor does feel where the camera knows one.
     """
-    named = {name for name in (seen, felt, moved) if name not in ("", UNKNOWN)}
-    return len(named) > 1 or (felt == UNKNOWN and not named)
+    named = {name for name in (camera, feel, motion) if name not in ("", UNKNOWN)}
+    return len(named) > 1 or (feel == UNKNOWN and not named)
 
 
 def moments_of(felt: Felt) -> FloatArray:
@@ -109,7 +109,7 @@ def moments_of(felt: Felt) -> FloatArray:
     return np.asarray(felt.stamps_s - STRETCH_S / 2)
 
 
-def seen_beneath(
+def labels_beneath(
     felt: Felt, image_labels: Sequence[ImageLabel], odometer: Trajectory, radius_m: float
 ) -> Beneath:
     """The most frequent label of places within `radius_m` of the robot, and its mean probability.

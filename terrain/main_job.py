@@ -24,7 +24,7 @@ from odometry.run_terrains import NamedTerrain, ToldFooting
 from odometry.windows.measured_poses import lacks_yaw
 from terrain.classification.classifier import Classifier, TerrainClassifier
 from terrain.config import Config
-from terrain.contradictions import Contradiction, contradictions, seen_beneath
+from terrain.contradictions import Contradiction, contradictions, labels_beneath
 from terrain.images_outside_replay import add_images_outside
 from terrain.new_terrain import learned_apart, new_spans
 from terrain.run_presets import run_preset, with_preset
@@ -174,12 +174,12 @@ def _contradictions(
     felt: Felt, motion: NamedTerrain | None, watcher: TerrainWatcher | None, result: Replay
 ) -> tuple[Contradiction, ...]:
     """Where camera, feel and motion differ for long."""
-    seen = None
+    beneath = None
     if watcher is not None:
-        seen = seen_beneath(
+        beneath = labels_beneath(
             felt, watcher.image_labels, result.odometer(), watcher.footprint.radius_m
         )
-    return contradictions(felt, seen, motion)
+    return contradictions(felt, beneath, motion)
 
 
 def _second_replay(

@@ -86,7 +86,7 @@ def learned_apart(
     return replace(learned, terrains={**learned.terrains, name: found})
 
 
-MOST = 4  # that are given as sentences
+MOST_SENTENCES = 4  # that are given as sentences
 
 
 def contradiction_columns(found: Sequence[Contradiction]) -> dict[str, Any]:
@@ -96,11 +96,11 @@ def contradiction_columns(found: Sequence[Contradiction]) -> dict[str, Any]:
     return {
         "t": np.array([one.begin_s for one in found]),
         "until": np.array([one.end_s for one in found]),
-        "seen": np.array([one.seen for one in found]),
-        "seen_probability": np.array([one.seen_probability for one in found]),
-        "felt": np.array([one.felt for one in found]),
-        "felt_probability": np.array([one.felt_probability for one in found]),
-        "motion": np.array([one.moved for one in found]),
+        "camera": np.array([one.camera for one in found]),
+        "camera_probability": np.array([one.camera_probability for one in found]),
+        "feel": np.array([one.feel for one in found]),
+        "feel_probability": np.array([one.feel_probability for one in found]),
+        "motion": np.array([one.motion for one in found]),
     }
 
 
@@ -112,10 +112,10 @@ def contradiction_lines(result: RunResult) -> list[str]:
 def _lines(result: RunResult) -> Iterator[str]:
     began_s = result.run.began_s
     differ = [one for one in result.contradictions if not one.is_new]
-    for one in differ[:MOST]:
+    for one in differ[:MOST_SENTENCES]:
         yield f"From {one.begin_s - began_s:.1f} to {one.end_s - began_s:.1f} s {_told(one)}."
-    if len(differ) > MOST:
-        yield f"{len(differ) - MOST} more contradictions, see contradictions.csv."
+    if len(differ) > MOST_SENTENCES:
+        yield f"{len(differ) - MOST_SENTENCES} more contradictions, see contradictions.csv."
     if differ:
         yield (
             "Look at the images of these stretches: where the camera is wrong, label them and "
@@ -125,7 +125,8 @@ def _lines(result: RunResult) -> Iterator[str]:
     if not new:
         return
     spans = " ".join(
-        f"--span {one.begin_s - began_s:.1f}:{one.end_s - began_s:.1f}=NAME" for one in new[:MOST]
+        f"--span {one.begin_s - began_s:.1f}:{one.end_s - began_s:.1f}=NAME"
+        for one in new[:MOST_SENTENCES]
     )
     whole_s = sum(one.end_s - one.begin_s for one in new)
     name = next((of for of in result.learned.terrains if _is_new(result, of)), None)
@@ -143,9 +144,9 @@ def _is_new(result: RunResult, name: str) -> bool:
 
 def _told(one: Contradiction) -> str:
     named = [
-        (one.seen, "the camera shows", one.seen_probability),
-        (one.felt, "by feel it is", one.felt_probability),
-        (one.moved, "by the motion it is", float("nan")),
+        (one.camera, "the camera shows", one.camera_probability),
+        (one.feel, "by feel it is", one.feel_probability),
+        (one.motion, "by the motion it is", float("nan")),
     ]
     parts = []
     for name, words, probability in named:

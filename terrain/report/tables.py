@@ -68,20 +68,20 @@ def event_grid(result: RunResult) -> Grid | None:
 
 
 def contradiction_grid(result: RunResult) -> Grid:
-    """Where sight, feel and motion differ for long."""
+    """Where camera, feel and motion differ for long."""
     began_s = result.run.began_s
     rows = [
         (
             *(f"{stamp_s - began_s:.1f}" for stamp_s in (one.begin_s, one.end_s)),
-            one.seen or NOTHING,
-            _share(one.seen_probability),
-            one.felt or NOTHING,
-            _share(one.felt_probability),
-            one.moved or NOTHING,
+            one.camera or NOTHING,
+            _share(one.camera_probability),
+            one.feel or NOTHING,
+            _share(one.feel_probability),
+            one.motion or NOTHING,
         )
         for one in result.contradictions
     ]
-    header = ("from [s]", "to [s]", "seen", "probability", "felt", "probability", "motion")
+    header = ("from [s]", "to [s]", "camera", "probability", "feel", "probability", "motion")
     return Grid(header, rows)
 
 

@@ -12,7 +12,7 @@ from odometry.run import UNKNOWN, Run
 from odometry.run_terrains import NamedTerrain
 from odometry.table import Table
 from odometry.trajectory import Trajectory
-from terrain.contradictions import LASTS_S, Beneath, contradictions, moments_of, seen_beneath
+from terrain.contradictions import LASTS_S, Beneath, contradictions, labels_beneath, moments_of
 from terrain.image_label import ImageLabel
 from terrain.main_job import run_odometry
 from terrain.new_terrain import contradiction_lines, new_name
@@ -50,9 +50,9 @@ def test_sources_that_agree_are_not_mentioned(felt):
 
 def test_what_lasts_is_told_and_what_does_not_is_not(felt):
     (one,) = contradictions(felt, beneath(felt, "tiles", 10.0, 18.0))
-    assert (one.seen, one.felt, one.moved) == ("tiles", "snow", "")
-    assert one.seen_probability == pytest.approx(0.8)
-    assert one.felt_probability > 0.6
+    assert (one.camera, one.feel, one.motion) == ("tiles", "snow", "")
+    assert one.camera_probability == pytest.approx(0.8)
+    assert one.feel_probability > 0.6
     assert one.begin_s == pytest.approx(10.0, abs=1.0)
     assert one.end_s == pytest.approx(18.0, abs=1.0)
     assert contradictions(felt, beneath(felt, "tiles", 10.0, 10.0 + LASTS_S - 1.5)) == ()
@@ -61,7 +61,7 @@ def test_what_lasts_is_told_and_what_does_not_is_not(felt):
 def test_motion_is_heard_as_well(felt):
     motion = NamedTerrain("", np.array([15.0]), np.array(["gravel"], dtype=object))
     (one,) = contradictions(felt, None, motion)
-    assert one.moved == "gravel"
+    assert one.motion == "gravel"
     assert one.begin_s >= 14.9
 
 
@@ -83,14 +83,14 @@ def test_the_camera_speaks_of_the_places_that_the_robot_comes_to(felt):
         ImageLabel(float(t), "", "tiles" if t + 2.0 >= 15.0 else "snow", 0.7, region)
         for t in stamps_s
     ]
-    seen = seen_beneath(felt, sightings, way, 0.4)
+    below = labels_beneath(felt, sightings, way, 0.4)
     moments_s = moments_of(felt)
     late = moments_s >= 15.5
     early = (moments_s >= 2.5) & (moments_s < 14.5)
-    assert set(seen.names[late]) == {"tiles"}
-    assert set(seen.names[early]) == {"snow"}
-    assert not any(seen.names[moments_s < 1.4])
-    np.testing.assert_allclose(seen.probabilities[late], 0.7)
+    assert set(below.names[late]) == {"tiles"}
+    assert set(below.names[early]) == {"snow"}
+    assert not any(below.names[moments_s < 1.4])
+    np.testing.assert_allclose(below.probabilities[late], 0.7)
 
 
 def test_a_name_is_new():
@@ -137,7 +137,11 @@ def test_icrs_of_a_new_terrain_are_learned_apart_and_all_is_written(tmp_path):
     write_results(result, tmp_path)
     write_report(result, tmp_path)
     assert "unknown 1" in read_parameters(tmp_path / "learned.toml").terrains
-    assert (tmp_path / "contradictions.csv").read_text().startswith("t,until,seen")
+    assert (
+        (tmp_path / "contradictions.csv")
+        .read_text()
+        .startswith("t,until,camera,camera_probability,feel,feel_probability,motion")
+    )
     assert "Where the sources differ" in (tmp_path / "report.html").read_text()
     plain = run_odometry(run, parameters=ParameterSet(), vision=False, terrain="snow")
     write_results(plain, tmp_path)
