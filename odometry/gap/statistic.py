@@ -14,7 +14,7 @@ from odometry.gap.end_residuals import mean_variance_m2
 from odometry.gap.pieces import numbered_pieces
 from odometry.gap.simulate import residuals
 from odometry.windows.dense import DenseWindows
-from odometry.windows.noise_factors import added_travel_m
+from odometry.windows.dense_noise import added_travel_m
 
 RESAMPLES = 1000
 SEED = 0
