@@ -31,6 +31,8 @@ class EffectParameter:
         A small change of it that matters: the measure of steps.
     absent : float or None
         The value at which the effect does nothing; None where another parameter decides that.
+    in_steps : bool
+        Whether recorded motion changes in steps as it does, and not at all between them.
     """
 
     name: str
@@ -40,6 +42,7 @@ class EffectParameter:
     start: float
     scale: float
     absent: float | None = 0.0
+    in_steps: bool = False
 
 
 class Effect(ABC):
@@ -124,6 +127,10 @@ class Effect(ABC):
         count = len(self.parameters)
         return np.zeros(count), np.full(count, np.inf)
 
+    def resolution(self, values: FloatArray, inputs: Inputs) -> FloatArray:  # noqa: ARG002
+        """By how much values (P,) in steps may differ and do the same to what was recorded."""
+        return np.zeros(len(values))
+
     def same_as(self, values: FloatArray) -> Mapping[str, str]:  # noqa: ARG002 - of the interface
         """Effects that do exactly the same at these values, and what would distinguish them."""
         return {}
@@ -131,6 +138,10 @@ class Effect(ABC):
     def is_meant(self, values: FloatArray) -> bool:  # noqa: ARG002 - of the interface
         """Whether values (P,) agree with the name, where a search may leave that."""
         return True
+
+    def in_words_at(self, values: FloatArray) -> str:  # noqa: ARG002 - of the interface
+        """The name that a roboticist would use where its values are (P,)."""
+        return self.in_words
 
     def pack(self, values: Mapping[str, float], where: str) -> FloatArray:
         """Values by name as an array (P,).

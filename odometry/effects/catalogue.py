@@ -7,6 +7,7 @@ import numpy as np
 
 from odometry.effects.actuator_lag import ActuatorLag
 from odometry.effects.base import Effect
+from odometry.effects.by_side import DeadbandBySide, DelayBySide, LagBySide, SaturationBySide
 from odometry.effects.command_delay import CommandDelay
 from odometry.effects.corrected import Added
 from odometry.effects.course_settings import course_of
@@ -50,9 +51,13 @@ from odometry.parameter_covariance import finite_number
 EFFECTS: tuple[type[Effect], ...] = (
     WheelScale,
     ActuatorLag,
+    LagBySide,
     CommandDelay,
+    DelayBySide,
     Deadband,
+    DeadbandBySide,
     Saturation,
+    SaturationBySide,
     RateLimit,
     SlipBySpeed,
     SlipByDirection,

@@ -30,6 +30,11 @@ class Added:
         names = [parameter.name for parameter in self.effect.parameters]
         return {name: float(value) for name, value in zip(names, self.values, strict=True)}
 
+    @property
+    def in_words(self) -> str:
+        """The name that a roboticist would use."""
+        return self.effect.in_words_at(self.values)
+
 
 class Corrected(KinematicModel):
     """A base model, its parameters free, with effects on commands and motion held as they are.

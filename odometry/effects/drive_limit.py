@@ -12,7 +12,10 @@ from odometry.effects.recorded import Recorded
 from odometry.models.inputs import Inputs
 
 EDGE_M_S = 0.005  # over which a command begins to act: samples there have a derivative
+BLURRED_M_S = 0.01  # by noise of the recorded speeds, a deadband
 HARDEST_M_S2 = 20.0
+HIGHEST_LEAST_M_S = 0.5
+STARTS_M_S = (*(0.02, 0.04, 0.06, 0.08, 0.1, 0.12, 0.14), *(0.16, 0.18, 0.2, 0.23, 0.26, 0.3))
 REMEMBERED = 64  # results: beside other effects one is evaluated with the same values again
 
 
@@ -35,11 +38,20 @@ class Deadband(DriveLimit):
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
         """See `Effect.parameters`."""
-        return (EffectParameter("least", "m/s", 0.0, 0.5, 0.05, 0.005),)
+        return (
+            EffectParameter("least", "m/s", 0.0, HIGHEST_LEAST_M_S, 0.05, 0.005, in_steps=True),
+        )
 
     def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the interface
-        """See `Effect.starts`: the cost has steps."""
-        return np.array([[0.03], [0.06], [0.1], [0.16], [0.25]])
+        """See `Effect.starts`: near enough to each other for a cost that has steps."""
+        return np.array(STARTS_M_S)[:, None]
+
+    def resolution(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """See `Effect.resolution`: up to the nearest commands below and above."""
+        off = np.append(np.abs(inputs.tread_speeds_m_s).ravel(), 0.0) - values[0]
+        below, above = -off[off <= 0], off[off > 0]
+        farthest = max(below.min(), above.min(initial=HIGHEST_LEAST_M_S - values[0]))
+        return np.array([max(farthest, BLURRED_M_S)])
 
     def tread_speeds(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `CommandEffect.tread_speeds`."""

@@ -18,6 +18,8 @@ from odometry.gap.measured import Measured
 from odometry.gap.responses import Responses, columns_of, simulated_scenes
 from odometry.gap.solve import Found, Solved
 
+WITHIN_95 = 1.96  # standard deviations
+
 
 @dataclass(frozen=True)
 class Fitted:
@@ -84,7 +86,11 @@ class Fitter:
         of_base = np.zeros(hypothesis.of_base, dtype=np.bool_)
         held = hypothesis.held(np.concatenate([of_base, *pinned]))
         starts = hypothesis.distinct(self._starts(effects, known_starts))
-        found = least_cost(hypothesis, starts, held)
+        settled = [
+            np.full(len(e.parameters), start is not None)
+            for e, start in zip(effects, known_starts, strict=True)
+        ]
+        found = least_cost(hypothesis, starts, held, np.concatenate([of_base, *settled]))
         return _finished(hypothesis, derived(hypothesis, found, held))
 
     def spread(self, fit: Fitted) -> float:
@@ -159,9 +165,20 @@ def _finished(hypothesis: Hypothesis, solved: Solved) -> Fitted:
     return Fitted(
         base,
         added,
-        spread * inverse[np.ix_(of_effects, of_effects)],
+        spread * inverse[np.ix_(of_effects, of_effects)] + np.diag(_resolved(hypothesis, added)),
         chi_squared,
         held_out(hypothesis, solved),
         float(solved.rows[rows:] @ solved.rows[rows:]),
         float(np.sum(solved.rows[rows : rows + hypothesis.of_base] ** 2)),
     )
+
+
+def _resolved(hypothesis: Hypothesis, effects: Sequence[Added]) -> FloatArray:
+    """Variance (Q,) of values in steps, of which any between two steps does the same."""
+    of_scenes = [
+        np.concatenate(
+            [np.empty(0), *(e.effect.resolution(e.values, scene.inputs) for e in effects)]
+        )
+        for scene in hypothesis.measured.scenes
+    ]
+    return np.asarray((np.min(of_scenes, axis=0) / WITHIN_95) ** 2)

@@ -56,10 +56,19 @@ class Hypothesis:
         return np.concatenate([base, [p.scale for p in self.parameters]])
 
     @cached_property
-    def jumps(self) -> BoolArray:
+    def shapes(self) -> BoolArray:
         """Values (V,) that shape an effect, which may change by steps as they change."""
-        of_effects = [p.absent is None and not e.slow for e in self.effects for p in e.parameters]
-        return np.array([False] * self.of_base + of_effects, dtype=np.bool_)
+        return self._of_effects(
+            [p.absent is None and not e.slow for e in self.effects for p in e.parameters]
+        )
+
+    @cached_property
+    def in_steps(self) -> BoolArray:
+        """Values (V,) of effects that change in steps as they change."""
+        return self._of_effects([p.in_steps for p in self.parameters])
+
+    def _of_effects(self, of: Sequence[bool]) -> BoolArray:
+        return np.array([*[False] * self.of_base, *of], dtype=np.bool_)
 
     @cached_property
     def places(self) -> IntArray:

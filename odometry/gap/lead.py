@@ -30,7 +30,7 @@ def _missing(result: GapResult) -> str:
             f"Something is missing in {model} that the catalogue of effects does not have "
             f"(unknown): it depends on {listed(rest)}."
         )
-    names = listed([f"{e.added.effect.in_words} ({e.added.effect.name})" for e in named])
+    names = listed([f"{e.added.in_words} ({e.added.effect.name})" for e in named])
     if rest:
         names += f", and something unknown that depends on {listed(rest)}"
     untold = "".join(

@@ -12,15 +12,21 @@ JUMPS = (-4.0, -2.0, -1.0, -0.5, 0.5, 1.0, 2.0, 4.0)  # in scales of a parameter
 MOST_JUMPS = 4
 
 
-def least_cost(hypothesis: Hypothesis, starts: list[FloatArray], held: BoolArray) -> Found:
-    """Values of least cost from several starts, the held ones as they are."""
+def least_cost(
+    hypothesis: Hypothesis, starts: list[FloatArray], held: BoolArray, settled: BoolArray
+) -> Found:
+    """Values of least cost from several starts, the held ones as they are.
+
+    From those that are `settled` (V,), by an earlier search, none in steps jumps.
+    """
     if len(starts) > 1:
         base_held = held | (np.arange(len(held)) < hypothesis.of_base)
         tried = [_search(hypothesis, start, 1, base_held) for start in starts]
         order = np.argsort([one.cost for one in tried], kind="stable")[:SEARCHED]
         starts = [tried[i].values for i in order]
     found = [_search(hypothesis, start, ITERATIONS, held) for start in starts]
-    return _after_jumps(hypothesis, min(found, key=lambda one: one.cost), held)
+    jumps = hypothesis.shapes | (hypothesis.in_steps & ~settled)
+    return _after_jumps(hypothesis, min(found, key=lambda one: one.cost), held, jumps)
 
 
 def _search(hypothesis: Hypothesis, start: FloatArray, iterations: int, held: BoolArray) -> Found:
@@ -37,9 +43,9 @@ def _search(hypothesis: Hypothesis, start: FloatArray, iterations: int, held: Bo
     )
 
 
-def _after_jumps(hypothesis: Hypothesis, found: Found, held: BoolArray) -> Found:
+def _after_jumps(hypothesis: Hypothesis, found: Found, held: BoolArray, jumps: BoolArray) -> Found:
     """Search on from jumps of the values whose derivatives are small."""
-    places = np.flatnonzero(hypothesis.jumps & ~held)
+    places = np.flatnonzero(jumps & ~held)
     unit = np.diag(hypothesis.scales)
     steps = [jump * unit[place] for place in places for jump in JUMPS]
     for _ in range(MOST_JUMPS if steps else 0):

@@ -33,7 +33,7 @@ def effect_words(effect: NamedEffect) -> str:
     added = effect.added.effect
     if isinstance(added, Residual):
         return f"a smooth function of {noun_of_residual(added)}"
-    return f"{added.in_words} ({added.name}, {added.form.replace('_', ' ')})"
+    return f"{effect.added.in_words} ({added.name}, {added.form.replace('_', ' ')})"
 
 
 def _refused(name: str) -> str:
@@ -82,11 +82,14 @@ def _effect(effect: NamedEffect, number: int) -> str:
 
 
 def parameter_words(effect: NamedEffect) -> Sequence[str]:
-    """Each parameter with its 95 % interval."""
+    """Each parameter with its 95 % interval; those with which it does nothing as "none"."""
     added, said = effect.added, []
     for p, *ends in zip(
         added.effect.parameters, added.values, effect.low, effect.high, strict=True
     ):
+        if ends[0] == p.absent:
+            said.append(f"{p.name}: none")
+            continue
         value, low, high = rounded(*map(float, ends))
         said.append(f"{p.name} = {value}{' ' + p.unit if p.unit else ''} ({low} to {high})")
     return said

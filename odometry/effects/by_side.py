@@ -1,0 +1,131 @@
+"""Faults of drives that each tread has by itself: one may be slow, late, weak or limited alone."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.effects.actuator_lag import ActuatorLag
+from odometry.effects.base import CommandEffect, Effect, EffectParameter
+from odometry.effects.base_model import Base
+from odometry.effects.command_delay import CommandDelay
+from odometry.effects.drive_limit import Deadband, Saturation
+from odometry.effects.recorded import Recorded
+from odometry.models.inputs import Inputs
+
+SIDES = ("left", "right")
+LEAST_APART = 0.2  # share of the larger by which the numbers of both treads differ
+MOST_OF_BOTH = 3  # starts with the same number on both sides
+
+
+class BySide(CommandEffect):
+    """An effect on commands of one number, with a number for each tread.
+
+    Beside the form of one number for both it is another form of the same name, and pays for the
+    second number.
+    """
+
+    looks_like = "turns to one side that nobody asked for, where this tread has its fault"
+    of_both: CommandEffect
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`: that of the left tread, then that of the right one."""
+        (p,) = self.of_both.parameters
+        return tuple(replace(p, name=f"{p.name}_{side}") for side in SIDES)
+
+    def starts(self, inputs: Inputs, base: Base) -> FloatArray:
+        """See `Effect.starts`: each of the effect on the left alone, the right alone, and both."""
+        (parameter,) = self.of_both.parameters
+        one = self.of_both.starts(inputs, base)[:, 0]
+        none = np.full_like(one, parameter.absent)
+        both = one[:: -(-len(one) // MOST_OF_BOTH)]
+        pairs = ((one, none), (none, one), (both, both))
+        return np.vstack([np.stack(pair, axis=-1) for pair in pairs])
+
+    def resolution(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """See `Effect.resolution`."""
+        speeds = inputs.tread_speeds_m_s
+        of_sides = [replace(inputs, tread_speeds_m_s=speeds[:, [i, i]]) for i in range(len(SIDES))]
+        return np.concatenate(
+            [self.of_both.resolution(values[i : i + 1], side) for i, side in enumerate(of_sides)]
+        )
+
+    def is_meant(self, values: FloatArray) -> bool:
+        """See `Effect.is_meant`: nearly the same of both treads is no fault of one side."""
+        left, right = self._sizes(values)
+        return bool(abs(left - right) > LEAST_APART * max(left, right))
+
+    def in_words_at(self, values: FloatArray) -> str:
+        """See `Effect.in_words_at`: which tread has the fault, where it is one alone."""
+        acts = (self._sizes(values) > [p.scale for p in self.parameters]).tolist()
+        if all(acts) or not any(acts):
+            return f"{self.in_words}, each side by itself"
+        return f"{self.in_words}, on the {SIDES[acts.index(True)]} alone"
+
+    def tread_speeds(self, values: FloatArray, inputs: Inputs) -> FloatArray:
+        """See `CommandEffect.tread_speeds`."""
+        of_both = self.of_both
+        sides = [of_both.tread_speeds(values[i : i + 1], inputs)[:, i] for i in range(len(SIDES))]
+        return np.stack(sides, axis=-1)
+
+    def _sizes(self, values: FloatArray) -> FloatArray:
+        """How much there is of it (2,), by the distance of each number from none."""
+        return np.abs(values - [p.absent for p in self.parameters])
+
+
+class LagBySide(BySide):
+    """A first-order lag of each tread's own."""
+
+    name = ActuatorLag.name
+    form = "first_order_by_side"
+    in_words = ActuatorLag.in_words
+    equation = ActuatorLag.equation + ", of each tread"
+    source = ActuatorLag.source
+    remedy = ActuatorLag.remedy
+    alike = ActuatorLag.alike
+    of_both = ActuatorLag()
+
+
+class DelayBySide(BySide):
+    """A dead time of each tread's own."""
+
+    name = CommandDelay.name
+    form = "by_side"
+    in_words = CommandDelay.in_words
+    equation = CommandDelay.equation + ", of each tread"
+    source = CommandDelay.source
+    remedy = CommandDelay.remedy
+    alike = CommandDelay.alike
+    of_both = CommandDelay()
+
+
+class DeadbandBySide(BySide):
+    """A deadband of each tread's own."""
+
+    name = Deadband.name
+    form = "deadband_by_side"
+    in_words = Deadband.in_words
+    equation = Deadband.equation + ", of each tread"
+    source = Deadband.source
+    remedy = Deadband.remedy
+    of_both = Deadband()
+
+
+class SaturationBySide(BySide):
+    """A highest speed of each tread's own."""
+
+    name = Saturation.name
+    form = "saturation_by_side"
+    in_words = Saturation.in_words
+    equation = Saturation.equation + ", of each tread"
+    source = Saturation.source
+    remedy = Saturation.remedy
+
+    def __init__(self, fastest_m_s: float = 20.0) -> None:
+        self.of_both = Saturation(fastest_m_s)
+
+    @classmethod
+    def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
+        """Below the fastest speed recorded."""
+        return (cls(recorded.fastest_m_s),)
