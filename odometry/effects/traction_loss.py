@@ -48,8 +48,8 @@ class TractionLoss(MotionEffect):
         )
 
     def is_meant(self, values: FloatArray) -> bool:
-        """A loss is no gain."""
-        return bool((values <= NO_GAIN).all())
+        """A loss is no gain, and turns lose at least: what brakes speed alone has another cause."""
+        return bool((values <= NO_GAIN).all() and values[1] < 1 / NO_GAIN)
 
     def twist(
         self,

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from odometry.effects.base import Effect
 from odometry.effects.residual import Residual
+from odometry.effects.time_course import FromAMoment
 from odometry.gap.config import GapConfig
 from odometry.gap.end_residuals import ends_of
 from odometry.gap.explanation import Explanation
@@ -14,6 +15,7 @@ from odometry.gap.own_moments import with_own_moments
 from odometry.gap.predictors import Predictor, predictors
 from odometry.gap.search import Search
 from odometry.gap.statistic import gap_of
+from odometry.gap.sudden import sudden_wheels
 from odometry.gap.unnamed import grown, in_bursts, last_of_each_run, with_course
 from odometry.gap.variables import window_variables
 from odometry.gap.verdict import (
@@ -33,13 +35,14 @@ class Standing(Search):
     def that_stand(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
         """The effects that close the gap where they were not fitted, and leave noise alone.
 
-        Where no name does, one in bursts may; else smooth functions do as far as they can, and
-        their residuals may follow a course in time that is each run's own.
+        Where no name does, one in bursts or wheels from a moment on may; else smooth functions do
+        as far as they can, and their residuals may follow a course in time that is each run's own.
         """
         found = self._less_doubtful(self._of_their_form(found, smooth))
         if not _named(found):
-            bursts, smooth_ones = in_bursts(self, found), grown(self, found)
-            found = bursts if bursts.steps and bursts.cost < smooth_ones.cost else smooth_ones
+            sudden = of_their_form(self, sudden_wheels(self, found), smooth)
+            named = [one for one in (in_bursts(self, found), sudden) if one.steps]
+            found = min([grown(self, found), *named], key=lambda one: one.cost)
         found = self._without_structure(self._standing(found, smooth), smooth)
         if not _named(found) and (found.steps or self.unexplained() or self.is_above):
             found = self._standing(with_course(self, found), smooth)
@@ -100,6 +103,15 @@ class Standing(Search):
         by_contact = any(effect.slow for effect in names)
         return self.config.contact_closed if by_contact else self.config.mostly_closed
 
+    def _most_fitted(self, names: Sequence[Effect]) -> float:
+        """The same on the measured runs, whose moments are known: what begins at one closes more.
+
+        A step closes most of what comes slowly, too.
+        """
+        sudden = any(effect.course == FromAMoment.name for effect in names)
+        by_contact = any(effect.slow for effect in names)
+        return self.config.bursts_closed if sudden and not by_contact else self._most(names)
+
     def _believed_gap(self) -> float:
         """On the measured windows, of the base as it was calibrated."""
         return self._gap(replace(self.start, base=self.fitter.calibration.base))
@@ -119,7 +131,7 @@ class Standing(Search):
         excess = max(self.start.cost - noise, self.config.least_excess * noise)
         closed = (self.start.cost - alone.cost) / excess
         reason = leaves_noise(
-            self.fitter.spread(alone), closed, self.config.left_over, self._most(names)
+            self.fitter.spread(alone), closed, self.config.left_over, self._most_fitted(names)
         )
         of_all = self.start.cost - found.fitted.cost
         reason = reason or is_the_main_part(self.start.cost - alone.cost, of_all, self.config)

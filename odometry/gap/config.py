@@ -63,8 +63,8 @@ class GapConfig:
         Chi-squared a degree of freedom that names may leave, unless they close this share of its
         excess. Beside a wrong name 1.8 to 190 is left and 0.75 closed at most. Forces of contacts,
         for which no equation here is exact, need to close less; events, whose begin and end are
-        known to a quarter of a second, more: on development seeds right ones close 0.96,
-        wrong ones 0.88 at most.
+        known to a quarter of a second, and what begins at a moment, more: on development seeds
+        right ones close 0.96, wrong ones 0.88 at most.
     least_held_out : float
         Share of the excess on held-out data that names must close. On development seeds right
         names close 0.22 at least, a loss of traction in the place of slippery patches 0.05.

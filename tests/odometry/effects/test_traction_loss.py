@@ -19,7 +19,11 @@ def test_it_is_offered_in_a_course_of_time_alone(bench, rng):
 
 
 @pytest.mark.parametrize(
-    ("k", "m", "meant"), [(0.8, 0.9, True), (1.01, 0.9, True), (1.1, 0.9, False), (0.9, 1.2, False)]
+    ("k", "m", "meant"),
+    [
+        *((0.8, 0.9, True), (1.01, 0.9, True), (1.1, 0.9, False), (0.9, 1.2, False)),
+        *((0.8, 1.0, False), (0.8, 0.99, False), (0.97, 0.96, True)),
+    ],
 )
-def test_a_loss_is_no_gain(k, m, meant):
+def test_a_loss_is_no_gain_and_one_of_turns(k, m, meant):
     assert TractionLoss().is_meant(np.array([k, m])) == meant
