@@ -5,6 +5,7 @@ from tests.blind.hidden.everyday import EVERYDAY
 from tests.blind.hidden.instruments import INSTRUMENTS
 from tests.blind.hidden.kind import Hidden, Kind
 from tests.blind.hidden.mixed import MIXED
+from tests.blind.hidden.one_side import ONE_SIDE
 from tests.blind.hidden.references import REFERENCES
 from tests.blind.hidden.seen import SEEN
 from tests.blind.hidden.slips import SLIPS
@@ -20,6 +21,7 @@ def nothing(rng, scene):  # noqa: ARG001
 GROUPS = {
     "seen": SEEN,
     "drives": DRIVES,
+    "one_side": ONE_SIDE,
     "slips": SLIPS,
     "surroundings": SURROUNDINGS,
     "references": REFERENCES,
