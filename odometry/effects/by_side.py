@@ -15,7 +15,6 @@ from odometry.models.inputs import Inputs
 
 SIDES = ("left", "right")
 LEAST_APART = 0.2  # share of the larger by which the numbers of both treads differ
-MOST_OF_BOTH = 3  # starts with the same number on both sides
 
 
 class BySide(CommandEffect):
@@ -39,16 +38,17 @@ class BySide(CommandEffect):
         (parameter,) = self.of_both.parameters
         one = self.of_both.starts(inputs, base)[:, 0]
         none = np.full_like(one, parameter.absent)
-        both = one[:: -(-len(one) // MOST_OF_BOTH)]
+        both = one[[len(one) // 2]]
         pairs = ((one, none), (none, one), (both, both))
         return np.vstack([np.stack(pair, axis=-1) for pair in pairs])
 
     def resolution(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `Effect.resolution`."""
-        speeds = inputs.tread_speeds_m_s
-        of_sides = [replace(inputs, tread_speeds_m_s=speeds[:, [i, i]]) for i in range(len(SIDES))]
         return np.concatenate(
-            [self.of_both.resolution(values[i : i + 1], side) for i, side in enumerate(of_sides)]
+            [
+                self.of_both.resolution(values[[side]], _alone(inputs, side))
+                for side in range(len(SIDES))
+            ]
         )
 
     def is_meant(self, values: FloatArray) -> bool:
@@ -65,13 +65,22 @@ class BySide(CommandEffect):
 
     def tread_speeds(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `CommandEffect.tread_speeds`."""
-        of_both = self.of_both
-        sides = [of_both.tread_speeds(values[i : i + 1], inputs)[:, i] for i in range(len(SIDES))]
-        return np.stack(sides, axis=-1)
+        speeds = inputs.tread_speeds_m_s.astype(np.float64)
+        for side, parameter in enumerate(self.parameters):
+            if values[side] != parameter.absent:
+                speeds[:, side] = self.of_both.tread_speeds(values[[side]], _alone(inputs, side))[
+                    :, 0
+                ]
+        return speeds
 
     def _sizes(self, values: FloatArray) -> FloatArray:
         """How much there is of it (2,), by the distance of each number from none."""
         return np.abs(values - [p.absent for p in self.parameters])
+
+
+def _alone(inputs: Inputs, side: int) -> Inputs:
+    """The inputs with the speeds of one tread (N, 1)."""
+    return replace(inputs, tread_speeds_m_s=inputs.tread_speeds_m_s[:, [side]])
 
 
 class LagBySide(BySide):

@@ -15,7 +15,7 @@ EDGE_M_S = 0.005  # over which a command begins to act: samples there have a der
 BLURRED_M_S = 0.01  # by noise of the recorded speeds, a deadband
 HARDEST_M_S2 = 20.0
 HIGHEST_LEAST_M_S = 0.5
-STARTS_M_S = (*(0.02, 0.04, 0.06, 0.08, 0.1, 0.12, 0.14), *(0.16, 0.18, 0.2, 0.23, 0.26, 0.3))
+STARTS_M_S = (0.02, 0.04, 0.06, 0.09, 0.12, 0.15, 0.18, 0.21, 0.25)
 REMEMBERED = 64  # results: beside other effects one is evaluated with the same values again
 
 

@@ -23,7 +23,7 @@ def held_spans(time_s: FloatArray) -> tuple[FloatArray, BoolArray]:
 def late_speeds(
     speeds: FloatArray, held_s: FloatArray, starts: BoolArray, delay_s: float
 ) -> FloatArray:
-    """Mean speeds (N, 2) over each sample of those (N, 2) recorded `delay_s` earlier.
+    """Mean speeds (N, T) over each sample of those (N, T) of T treads recorded `delay_s` earlier.
 
     Exact for held commands: differences of travel. Before the first sample of a record, and after
     its last, speeds are as in it.
@@ -40,8 +40,7 @@ def _of_record(speeds: FloatArray, held_s: FloatArray, delay_s: float) -> FloatA
     known_s = np.concatenate([[-beyond_s], ends_s, [ends_s[-1] + beyond_s]])
     moved = held_s > 0
     late = speeds.copy()
-    for tread in (0, 1):
-        own = speeds[:, tread]
+    for tread, own in enumerate(speeds.T):
         steps_m = np.concatenate([[beyond_s * own[0]], own * held_s, [beyond_s * own[-1]]])
         travel_m = np.concatenate([[0.0], np.cumsum(steps_m)])
         at_m = np.interp(ends_s - delay_s, known_s, travel_m)

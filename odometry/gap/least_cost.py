@@ -7,6 +7,7 @@ from odometry.gap.hypothesis import Hypothesis
 from odometry.gap.solve import Found, Solved, least_squares, with_jacobian
 
 ITERATIONS = 12
+MOST_STARTS = 2  # from which values in steps are searched
 SEARCHED = 2  # of several starts: the best ones
 JUMPS = (-4.0, -2.0, -1.0, -0.5, 0.5, 1.0, 2.0, 4.0)  # in scales of a parameter
 MOST_JUMPS = 4
@@ -19,14 +20,24 @@ def least_cost(
 
     From those that are `settled` (V,), by an earlier search, none in steps jumps.
     """
+    in_steps = hypothesis.in_steps & ~settled
+    if in_steps.any():
+        starts = _cheapest(hypothesis, starts)
     if len(starts) > 1:
         base_held = held | (np.arange(len(held)) < hypothesis.of_base)
         tried = [_search(hypothesis, start, 1, base_held) for start in starts]
         order = np.argsort([one.cost for one in tried], kind="stable")[:SEARCHED]
         starts = [tried[i].values for i in order]
     found = [_search(hypothesis, start, ITERATIONS, held) for start in starts]
-    jumps = hypothesis.shapes | (hypothesis.in_steps & ~settled)
+    jumps = hypothesis.shapes | in_steps
     return _after_jumps(hypothesis, min(found, key=lambda one: one.cost), held, jumps)
+
+
+def _cheapest(hypothesis: Hypothesis, starts: list[FloatArray]) -> list[FloatArray]:
+    """The starts of least cost as they are: values in steps hardly move in one step of a search."""
+    costs = [np.sum(hypothesis.rows(start) ** 2) for start in starts]
+    order = np.argsort(np.nan_to_num(costs, nan=np.inf), kind="stable")
+    return [starts[i] for i in order[:MOST_STARTS]]
 
 
 def _search(hypothesis: Hypothesis, start: FloatArray, iterations: int, held: BoolArray) -> Found:

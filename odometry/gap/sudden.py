@@ -19,6 +19,8 @@ def sudden_wheels(search: Search, found: Explanation) -> Explanation:
     comes slowly or with the place is closed in good part by one moment, too.
     """
     nothing = replace(found, steps=())
+    if not search.has_excess(nothing.fitted):
+        return nothing
     spans = tuple(observed_s(scene) for scene in search.fitter.measured.scenes)
     wheels = in_course(WheelScale(), FromAMoment(spans))
     before = nothing.fitted
