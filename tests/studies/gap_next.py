@@ -54,6 +54,7 @@ ALIKE_WITHOUT_GYROSCOPE = {
     "late stamps": ("late commands",),
     "late commands": ("late stamps",),
 }
+OF_SLOPE = {"roll", "pitch"}  # the catalogue has no law of a share of the slope
 COLUMNS = (
     *("pair", "truth", "seed", "true", "rival", "first", "equivalent", "proposed", "between"),
     *("odds", "then", "then_equivalent", "score", "apart", "cpu_s", "error"),
@@ -135,10 +136,17 @@ def apart(case: RivalCase, found: dict[str, Any]) -> dict[str, str]:
         alike = (*alike, *ALIKE_WITHOUT_GYROSCOPE.get(case.true, ()))
     true = ((case.true, *alike),)
     near = [one["name"] for one in found["equivalent"]]
-    scored = score(found["verdict"], "", true, (), near)
+    scored = score(named(case, found), "", true, (), near)
     data = [one["name"] for one in found["equivalent"] if not one["by_equation"]]
     rivals = set(data) & set(MEANING[case.rival])
     return {"score": scored, "apart": f"{int(scored == 'right' and not rivals)}"}
+
+
+def named(case: RivalCase, found: dict[str, Any]) -> str:
+    """The verdict; of a slope without a law in the catalogue, what depends on attitude is it."""
+    follows = {one.get("variable") for one in found["effects"][:1]}
+    of_slope = found["verdict"] == "unknown" and follows <= OF_SLOPE and follows
+    return "slope_sliding" if of_slope and case.true == "slope" else str(found["verdict"])
 
 
 def answer(case: RivalCase, measured: list[Path], out: Path) -> dict[str, Any]:

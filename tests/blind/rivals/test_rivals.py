@@ -1,5 +1,7 @@
 """Rivals say the same about the drive that is given, and one of a handful tells them apart."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -16,6 +18,7 @@ from tests.blind.rivals.cases import (
 from tests.blind.rivals.drives import SHAPES, Proposal, drive_of
 from tests.blind.rivals.pairs import PAIRS
 from tests.studies.gap_names import MEANING
+from tests.studies.gap_next import apart as judged_apart
 from tests.studies.gap_next import proposal_of
 
 
@@ -82,5 +85,30 @@ def test_a_drive_is_read_from_the_words_of_a_proposal():
     words = "circles of 1.5 m radius to both sides at 0.62 m/s, on a slope of 6 degrees"
     assert proposal_of(words) == Proposal("circles", 0.62, 1.5, slope_rad=np.deg2rad(6.0))
     assert proposal_of("spins to both sides, treads at 0.8 m/s") == Proposal("spins", 0.8)
+    words = "circles of 1 m radius to both sides with steps of speed up to 0.5 m/s"
+    assert proposal_of(words) == Proposal("stepped circles", 0.5, 1.0)
     with pytest.raises(ValueError, match="expected one of spins"):
         proposal_of("a square of 3 m at 0.5 m/s")
+
+
+@pytest.mark.parametrize(
+    ("true", "answer", "near", "expected"),
+    [
+        ("slope", ("unknown", "pitch"), (), ("right", "1")),
+        ("slope", ("unknown", "time"), (), ("unknown", "0")),
+        ("wheel size", ("unknown", "pitch"), (), ("unknown", "0")),
+        ("wheel size", ("wheel_scale", ""), (("tread_slip", False),), ("right", "0")),
+        ("wheel size", ("wheel_scale", ""), (("tread_slip", True),), ("right", "1")),
+    ],
+)
+def test_what_counts_as_apart(true, answer, near, expected):
+    """What depends on attitude is a slope; a rival of the same equations stays beside a name."""
+    verdict, variable = answer
+    found = {
+        "verdict": verdict,
+        "effects": [{"variable": variable}] if variable else [{}],
+        "equivalent": [{"name": name, "by_equation": same} for name, same in near],
+    }
+    scene = SimpleNamespace(sensors=SimpleNamespace(gyroscope="imu"))
+    case = SimpleNamespace(true=true, rival="tread slip", drawn=SimpleNamespace(scene=scene))
+    assert tuple(judged_apart(case, found).values()) == expected
