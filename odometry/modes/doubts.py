@@ -85,6 +85,17 @@ def _of_motion(followed: Followed, undetermined: BoolArray) -> list[Doubt]:
                 _share(followed, off),
             )
         )
+    if track.headings_disagree is not None:
+        off = track.headings_disagree & sure & undetermined
+        found.append(
+            Doubt(
+                "gyroscope and measured headings turn apart by more than a third of what "
+                "distinguishes the most probable mode from the next for "
+                f"{round(100 * _share(followed, off))} % of the time",
+                "check the gyroscope (range, scale, mounting, temperature) and the headings",
+                _share(followed, off),
+            )
+        )
     if track.between is not None and track.between.holds.any():
         found.append(_between(followed, track.between))
     if track.travel is not None:

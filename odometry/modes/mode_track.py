@@ -72,6 +72,8 @@ class ModeTrack:
         Modes that travel by another distance than was measured; without it none do.
     between : BetweenModes or None
         Where the robot turns by more than one mode and by less than the next; without it nowhere.
+    headings_disagree : (N,) or None
+        Where gyroscope and headings turn apart by more than distinguishes modes; else nowhere.
     felt : (N, M) or None
         Probability of each mode by feel alone; None without a model of feel.
 
@@ -98,4 +100,5 @@ class ModeTrack:
     turns_are_off: BoolArray | None = None
     travel: TravelCheck | None = None
     between: BetweenModes | None = None
+    headings_disagree: BoolArray | None = None
     felt: FloatArray | None = None

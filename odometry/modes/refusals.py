@@ -42,6 +42,8 @@ def refusals(track: ModeTrack, sure: float) -> dict[str, BoolArray]:
         found["alike"] = track.alike.any(axis=1)
     if track.turns_are_off is not None:
         found["turns"] = track.turns_are_off
+    if track.headings_disagree is not None:
+        found["headings"] = track.headings_disagree
     if track.travel is not None:
         found["travel"] = track.travel.off[of_most]
     return found

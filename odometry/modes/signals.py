@@ -8,6 +8,7 @@ from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import RunFolderError
 from odometry.modes.heading_check import HeadingCheck, heading_check
 from odometry.modes.measured_travel import MeasuredTravel, measured_travel
+from odometry.modes.measured_turn import MeasuredTurn, measured_turn
 from odometry.run import Run
 from odometry.run_terrains import row_terrains
 from odometry.windows.gaps import odometry_gaps
@@ -39,6 +40,8 @@ class Signals:
         The gyroscope against measured headings, where these are no measurement of the filters.
     travel : MeasuredTravel or None
         Measured positions, where they are no measurement of the filters.
+    turn : MeasuredTurn or None
+        Measured headings beside the gyroscope, where they are no measurement of the filters.
     """
 
     stamps_s: FloatArray
@@ -48,6 +51,7 @@ class Signals:
     gaps_s: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
     heading_check: HeadingCheck | None = None
     travel: MeasuredTravel | None = None
+    turn: MeasuredTurn | None = None
 
     def __len__(self) -> int:
         return len(self.stamps_s)
@@ -63,6 +67,7 @@ class Signals:
             self.gaps_s[self.gaps_s[:, 0] >= self.stamps_s[row]],
             self.heading_check,
             self.travel,
+            self.turn,
         )
 
     @property
@@ -97,8 +102,8 @@ def velocity_signals(run: Run) -> Signals:
     measured = np.column_stack([speed, omega])
     speeds = run.odometry.stack("v_left", "v_right")
     gaps_s = odometry_gaps(run).spans_s
-    check, travel = heading_check(run), measured_travel(run)
-    return Signals(stamps_s, speeds, measured, row_terrains(run), gaps_s, check, travel)
+    checks = heading_check(run), measured_travel(run), measured_turn(run)
+    return Signals(stamps_s, speeds, measured, row_terrains(run), gaps_s, *checks)
 
 
 def pose_signals(run: Run) -> Signals:

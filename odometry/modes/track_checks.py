@@ -11,6 +11,7 @@ from odometry.modes.mode_set import ModeSet
 from odometry.modes.signals import Signals
 from odometry.modes.similar_modes import similar_modes
 from odometry.modes.travel_check import TravelCheck, travel_check
+from odometry.modes.turn_agreement import turns_disagree
 from odometry.modes.turn_test import turns_are_off
 from odometry.modes.velocity import VelocityModes
 
@@ -26,16 +27,20 @@ def gyroscope_trust_of(
 
 def contradictions(
     signals: Signals, mode_set: ModeSet, left: Innovations, biases_rad_s: FloatArray
-) -> tuple[BoolArray | None, BoolArray | None, TravelCheck | None, BetweenModes | None]:
-    """Modes alike, turns that contradict, travel, and turns between two modes.
+) -> tuple[
+    BoolArray | None, BoolArray | None, TravelCheck | None, BetweenModes | None, BoolArray | None
+]:
+    """Modes alike, turns that contradict, travel, turns between two modes, headings at odds.
 
     None of modes that hear poses themselves.
     """
     modes = mode_set.modes
     if not isinstance(modes, VelocityModes):
-        return None, None, None, None
+        return None, None, None, None, None
     asked = modes.steady_yaw_rates(signals.tread_speeds_m_s)
     before = np.vstack([np.zeros(asked.shape[1]), asked[:-1]])
     alike = similar_modes(signals, modes, left.leading)
     between = between_modes(signals, modes, biases_rad_s, left.independent)
-    return alike, turns_are_off(left, before), travel_check(signals, modes), between
+    off, travel = turns_are_off(left, before), travel_check(signals, modes)
+    disagree = turns_disagree(signals, modes, left.leading, biases_rad_s)
+    return alike, off, travel, between, disagree

@@ -7,8 +7,8 @@ told. Modes are identified on a minute or two in each; every run changes between
 the fault begins later. Shares are of the time from its onset to the end (of the whole run where
 clean): with a mode named that is not the true one (`wrong`), with the true one (`right`), with
 `none of these`, with `undetermined`. On a terrain that is no mode, any mode is wrong. Simulated
-runs are kept in FOLDER; every run is a row of FOLDER/answers.csv. Ten faults that were made when
-all settings stood are not run unless they are named (`--faults further_cable_dragged ...`).
+runs are kept in FOLDER; every run is a row of FOLDER/answers.csv. Faults that were made later are
+not run unless they are named (`--faults further_cable_dragged robot_payload_shifts ...`).
 """
 
 import argparse

@@ -32,6 +32,7 @@ from odometry.table import Table
 
 BETWEEN_S = 1.0  # of two runs joined
 SURE = ModesConfig().sure
+TESTS = ("fit", "gyroscope", "alike", "turns_are_off", "travel", "between", "headings_disagree")
 KINDS: Mapping[str, Mapping[str, bool]] = {
     "model and noise of each ground": {},
     "a model of each ground, one noise": {"common_noise": True},
@@ -158,7 +159,7 @@ def print_table(title: str, tracks: Sequence[ModeTrack]) -> None:
     print(f"\n{title}: named with {SURE:.0%} and more | most probable")
     print(" " * 10, *(f"{name[:9]:>9}" for name in (*names, *NO_MODES, "", *names)))
     named = sum(confusion(track, SURE, names) for track in tracks)
-    untested = dict.fromkeys(("fit", "gyroscope", "alike", "turns_are_off", "travel"))
+    untested = dict.fromkeys(TESTS)
     forced = sum(confusion(replace(track, **untested), 0.0, names) for track in tracks)
     forced = forced[:, : len(names)]
     for name, row, other in zip(names, named, forced, strict=True):

@@ -10,7 +10,7 @@ import numpy as np
 from tests.blind.commands import RATE_HZ
 from tests.blind.faults.catalogue import FAULTS
 from tests.blind.faults.recordings import read_recording, write_recording
-from tests.blind.modes import further_faults, worlds
+from tests.blind.modes import further_faults, robot_faults, worlds
 from tests.blind.modes.more_faults import MORE
 
 
@@ -205,12 +205,18 @@ def _effect(name, **values):
     return befall
 
 
-OF_DRIVE = {
-    "unseen_terrain": unseen_terrain,
-    "double_speed": double_speed,
-    "slope": slope,
-    "own_ripple": _effect("unknown_ripple", amplitude_rad_m=(0.15, 0.6), phase_rad=(-np.pi, np.pi)),
-} | further_faults.OF_DRIVE
+OF_DRIVE = (
+    {
+        "unseen_terrain": unseen_terrain,
+        "double_speed": double_speed,
+        "slope": slope,
+        "own_ripple": _effect(
+            "unknown_ripple", amplitude_rad_m=(0.15, 0.6), phase_rad=(-np.pi, np.pi)
+        ),
+    }
+    | further_faults.OF_DRIVE
+    | robot_faults.OF_DRIVE
+)
 OF_RECORD = (
     {
         "gyro_bias": _whole("gyro_bias"),
@@ -233,6 +239,7 @@ OF_RECORD = (
     }
     | MORE
     | further_faults.OF_RECORD
+    | robot_faults.OF_RECORD
 )
 NAMED = (
     "gyro_bias",

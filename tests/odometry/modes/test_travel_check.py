@@ -11,7 +11,7 @@ from odometry.modes.identify_velocity import identify_velocity_modes
 from odometry.modes.measured_travel import measured_travel
 from odometry.modes.mode_set import NONE_OF_THESE, UNDETERMINED
 from odometry.modes.response import Record, Response, growing_power
-from odometry.modes.travel_check import WINDOW_S, TravelCheck, travel_check
+from odometry.modes.travel_check import WINDOWS_S, TravelCheck, travel_check
 from odometry.run import Robot, Run
 from odometry.table import Table
 from tests.odometry.modes.mode_examples import track, velocity_set
@@ -59,8 +59,8 @@ def test_travel_is_as_long_as_the_way():
 def test_treads_that_count_another_way_are_off(factor, expected):
     check = checked(run_of(factor))
     known = np.isfinite(check.ratio[:, 0])
-    assert known[round((WINDOW_S + 0.7) / STEP_S) :].all()
-    assert not known[: round(WINDOW_S / STEP_S)].any()
+    assert known[round((WINDOWS_S[0] + 0.7) / STEP_S) :].all()
+    assert not known[: round(WINDOWS_S[0] / STEP_S)].any()
     np.testing.assert_allclose(check.ratio[known], 1 / factor, rtol=5e-3)
     assert (check.off[known] == expected).all()
     assert not check.off[~known].any()
@@ -77,7 +77,7 @@ def test_without_a_gyroscope_headings_alone_tell():
     of, signals = modes(), modes().signals(run_of())
     for one, expected in ((run, True), (known, False)):
         off = travel_check(replace(signals, travel=measured_travel(one)), of).off
-        assert (off[round((WINDOW_S + 0.7) / STEP_S) :] == expected).all()
+        assert (off[round((WINDOWS_S[0] + 0.7) / STEP_S) :] == expected).all()
 
 
 def test_nothing_is_known_without_positions_or_calibrated_speeds():
