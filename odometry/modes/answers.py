@@ -37,13 +37,17 @@ def _none_fits(track: ModeTrack, sure: float) -> BoolArray:
 
 
 def candidates(track: ModeTrack, sure: float) -> BoolArray:
-    """The fewest modes (N, M) at each stamp that have a probability of `sure` together."""
+    """The fewest modes (N, M) at each stamp that have a probability of `sure` together.
+
+    With them those that the drive does not distinguish from the most probable one, whatever their
+    probability: that comes of errors of models alone.
+    """
     order = np.argsort(-track.probabilities, axis=1, kind="stable")
     summed = np.cumsum(np.take_along_axis(track.probabilities, order, axis=1), axis=1)
     before = np.concatenate([np.zeros((len(summed), 1)), summed[:, :-1]], axis=1)
     chosen = np.empty(track.probabilities.shape, dtype=np.bool_)
     np.put_along_axis(chosen, order, before < sure, axis=1)
-    return chosen
+    return chosen if track.alike is None else chosen | track.alike
 
 
 def disagreements(

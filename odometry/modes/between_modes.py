@@ -14,12 +14,12 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.modes.first_order_lag import lagged
 from odometry.modes.innovation_test import windowed
+from odometry.modes.modes_config import ModesConfig
 from odometry.modes.response import SLOWEST_HZ
 from odometry.modes.signals import Signals
 from odometry.modes.velocity import VelocityModes
 
 WINDOW_S = 16.0
-BOUND, HALF_BOUND = 3.0, 2.0  # standard deviations from 0 and 1, of a window and of its halves
 TOLERANCE = 0.01  # of the yaw rate: no mode is identified better
 LEAST_INFORMATION = 1.0  # on the share: less determines none
 LEFT_BIAS_RAD_S = 0.003  # standard deviation of the bias beyond that of the filters
@@ -52,7 +52,11 @@ class BetweenModes:
 
 
 def between_modes(
-    signals: Signals, modes: VelocityModes, biases_rad_s: FloatArray, independent: float
+    signals: Signals,
+    modes: VelocityModes,
+    biases_rad_s: FloatArray,
+    independent: float,
+    config: ModesConfig | None = None,
 ) -> BetweenModes | None:
     """Follow where turns lie between two modes.
 
@@ -65,12 +69,14 @@ def between_modes(
         Of the filters.
     independent : float
         Share of a measurement that is news.
+    config : ModesConfig, optional
 
     Returns
     -------
     BetweenModes or None
         None of a single mode.
     """
+    config = config or ModesConfig()
     gains = modes.steady_gains()[:, 1] @ [-0.5, 0.5]
     order = np.argsort(gains)
     pairs = list(zip(order[:-1].tolist(), order[1:].tolist(), strict=True))
@@ -89,9 +95,9 @@ def between_modes(
             for window_s in (WINDOW_S, WINDOW_S / 2)
         )
         early = np.where(half >= 0, late[:, half], np.nan)
-        holds = _inside(whole, error, BOUND)
+        holds = _inside(whole, error, config.between_sigmas)
         for part in (early, late):
-            holds &= _inside(part, error, HALF_BOUND)
+            holds &= _inside(part, error, config.between_half_sigmas)
         place[holds], share[holds] = row, _share(whole)[0][holds]
     names = tuple((modes.names[first], modes.names[second]) for first, second in pairs)
     return BetweenModes(names, place, share)

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
+from odometry.modes.modes_config import ModesConfig
 from odometry.modes.signals import BIAS_SIGMA_RAD_S, Signals
 from odometry.modes.standing_bias import standing_biases
 
 JUMP_SIGMAS = 4.0  # from the estimated bias: farther off it is another one
-OPEN_SIGMAS = 3.0  # of BIAS_SIGMA_RAD_S, from what was read last: nothing confirms that
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,9 @@ def with_reading(
     return mean, covariance
 
 
-def bias_is_open(biases_rad_s: FloatArray, readings: Mapping[int, BiasReading]) -> BoolArray:
+def bias_is_open(
+    biases_rad_s: FloatArray, readings: Mapping[int, BiasReading], config: ModesConfig | None = None
+) -> BoolArray:
     """Where (N,) the estimated bias (N,) of the filters lies beyond its expected range.
 
     That is 0, and after a reading what was read. A mode that is not the true one explains a turn
@@ -76,4 +78,5 @@ def bias_is_open(biases_rad_s: FloatArray, readings: Mapping[int, BiasReading]) 
     expected = np.zeros(len(biases_rad_s))
     for row in sorted(readings):
         expected[row:] = readings[row].bias_rad_s
-    return np.asarray(np.abs(biases_rad_s - expected) > OPEN_SIGMAS * BIAS_SIGMA_RAD_S)
+    least = (config or ModesConfig()).bias_sigmas * BIAS_SIGMA_RAD_S
+    return np.asarray(np.abs(biases_rad_s - expected) > least)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
-from odometry.modes.answers import named_modes
+from odometry.modes.answers import candidates, named_modes
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
 from odometry.modes.mode_track import ModeTrack
 from odometry.run import UNKNOWN
@@ -81,6 +81,20 @@ def confusion(track: ModeTrack, sure: float, names: Sequence[str]) -> FloatArray
             for row in names
         ]
     )
+
+
+def narrowed_s(track: ModeTrack, sure: float) -> tuple[float, float]:
+    """Seconds in which the answer is undetermined on a mode: narrowed down, and missed.
+
+    The true mode is one of candidates that are fewer than all; it is none of them.
+    """
+    judged = np.isin(track.labels, track.names) & (named_modes(track, sure) == UNDETERMINED)
+    chosen = candidates(track, sure)[judged]
+    is_true = track.labels[judged, None] == np.array(track.names, dtype=object)
+    lasts_s = np.append(np.diff(track.stamps_s), 0.0)[judged]
+    among = (chosen & is_true).any(axis=1)
+    narrowed = among & ~chosen.all(axis=1)
+    return float(lasts_s[narrowed].sum()), float(lasts_s[~among].sum())
 
 
 def _shares(answers: AnyArray, lasts_s: FloatArray, mode: str) -> tuple[float, float, float, float]:

@@ -12,8 +12,8 @@ from odometry.estimation.mode_belief import floored, log_sum
 from odometry.feel.follow import Felt, follow_feel
 from odometry.feel.model import FeelModel
 from odometry.feel.windows import STEPS
-from odometry.modes.mode_track import ModesConfig, ModeTrack
-from odometry.modes.refusals import AGREED
+from odometry.modes.mode_track import ModeTrack
+from odometry.modes.modes_config import ModesConfig
 from odometry.run import UNKNOWN, Run
 
 
@@ -99,12 +99,12 @@ def with_feel(
     motion, and where the rolling test does not agree with motion it says nothing.
     """
     felt = source.alone(track.stamps_s, ModeChain(dwell_s).transition, config.floor)
-    product = felt * _by_motion(track)
+    product = felt * _by_motion(track, config.agreed)
     probabilities = product / product.sum(axis=1, keepdims=True)
     return replace(track, probabilities=probabilities, felt=felt, alike=None)
 
 
-def _by_motion(track: ModeTrack) -> FloatArray:
+def _by_motion(track: ModeTrack, agreed: float) -> FloatArray:
     """Probabilities (N, M) among modes that motion can tell apart."""
     most = track.probabilities.argmax(axis=1)
     of_most = (np.arange(len(most)), most)
@@ -115,7 +115,7 @@ def _by_motion(track: ModeTrack) -> FloatArray:
         means = (by_motion * one).sum(axis=1) / one.sum(axis=1)
         by_motion = np.where(one, means[:, None], by_motion)
     if track.fit is not None:
-        by_motion[np.exp(track.fit.log_probabilities[of_most]) < AGREED] = 1 / by_motion.shape[1]
+        by_motion[np.exp(track.fit.log_probabilities[of_most]) < agreed] = 1 / by_motion.shape[1]
     return by_motion
 
 

@@ -3,7 +3,8 @@
 from odometry.errors import ParameterError
 from odometry.modes.answers import named_modes
 from odometry.modes.mode_set import NO_MODES, ModeSet
-from odometry.modes.track import ModesConfig, follow_modes
+from odometry.modes.modes_config import ModesConfig
+from odometry.modes.track import follow_modes
 from odometry.modes.velocity import VelocityModes
 from odometry.run import UNKNOWN, Run
 from odometry.run_terrains import NamedTerrain

@@ -11,7 +11,8 @@ from odometry.modes.answers import candidates, disagreements, named_modes
 from odometry.modes.feel_source import feel_source, with_feel
 from odometry.modes.misfits import Misfit, misfits
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED, ModeSet
-from odometry.modes.mode_track import ModesConfig, ModeTrack
+from odometry.modes.mode_track import ModeTrack
+from odometry.modes.modes_config import ModesConfig
 from odometry.modes.score import Score, score_of
 from odometry.modes.sight import SeenGround, seen_labels
 from odometry.modes.signals import Signals

@@ -8,6 +8,7 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray
 from odometry.modes.bias_reading import JUMP_SIGMAS, BiasReading, bias_is_open
 from odometry.modes.heading_check import WINDOW_S, HeadingCheck
+from odometry.modes.modes_config import ModesConfig
 from odometry.modes.signals import Signals
 
 HOLDS_S = 2 * WINDOW_S  # the scale of a window where later ones determine none
@@ -36,9 +37,10 @@ def gyroscope_trust(
     biases_rad_s: FloatArray,
     sigmas_rad_s: FloatArray,
     readings: Mapping[int, BiasReading],
+    config: ModesConfig | None = None,
 ) -> GyroscopeTrust:
     """Of the estimated biases (N,) with deviations (N,) of the filters, and of their readings."""
-    open_, stamps_s = bias_is_open(biases_rad_s, readings), signals.stamps_s
+    open_, stamps_s = bias_is_open(biases_rad_s, readings, config), signals.stamps_s
     check = signals.heading_check
     if check is None:
         return GyroscopeTrust(open_, np.full(len(stamps_s), np.nan))

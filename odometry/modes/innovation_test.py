@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.arrays import FloatArray, IntArray
 from odometry.estimation.markov import ModeChain
 
 WINDOW_S = 0.5  # of the rolling test
@@ -24,9 +24,8 @@ MISFIT_LASTS_S = 20.0
 LONG_WINDOW_S = 6.0  # in which a small misfit shows that lasts
 LONG_EVIDENCE = 30.0  # [nat] of a long window for none, at most
 LONG_CLIP = 2.0  # of one innovation: what is large shows in a short window
-LONG_BOUND = 3.5  # standard deviations of a long sum beyond which no mode is named
 """Chosen on seeds of `tests/studies/modes_faults.py`: SPREAD and the long window on 10 and 20,
-LONG_BOUND on 50, 51, 60 and 61, else 0 to 2."""
+else 0 to 2; `long_sigmas` of `ModesConfig` on 50, 51, 60 and 61."""
 
 
 @dataclass(frozen=True)
@@ -87,11 +86,6 @@ class ModeFit:
     sums: FloatArray
     lasting: FloatArray
     log_probabilities: FloatArray
-
-    @property
-    def lasts(self) -> BoolArray:
-        """Where (N,) something small is left that lasts, whichever mode is taken."""
-        return np.asarray((np.abs(self.lasting) > LONG_BOUND).any(axis=1))
 
     @property
     def none(self) -> FloatArray:

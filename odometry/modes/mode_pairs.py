@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.modes.mode_track import ModesConfig
+from odometry.modes.modes_config import ModesConfig
 from odometry.modes.signals import STANDING_M_S
 from odometry.modes.traction import TractionModes
 from odometry.modes.traction_gains import twists_of

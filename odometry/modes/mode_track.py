@@ -1,44 +1,13 @@
-"""What following the modes of a run gives at each stamp, and the settings of it."""
+"""What following the modes of a run gives at each stamp."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray
-from odometry.config import require, require_positive
 from odometry.modes.between_modes import BetweenModes
 from odometry.modes.gyroscope_trust import GyroscopeTrust
 from odometry.modes.innovation_test import ModeFit
+from odometry.modes.modes_config import ModesConfig
 from odometry.modes.travel_check import TravelCheck
-
-
-@dataclass(frozen=True)
-class ModesConfig:
-    """Settings of the estimator and of its answers.
-
-    Attributes
-    ----------
-    floor : float
-        Least probability of a mode.
-    sure : float
-        The probability from which a mode is named; below it the answer is "undetermined".
-    lasting_s : float
-        A disagreement of camera and feel that lasts so long is reported.
-    misfit_share : float
-        Share of the time in which no mode of the set fits, before anything was measured.
-    """
-
-    floor: float = 1e-6
-    sure: float = 0.9
-    lasting_s: float = 2.0
-    misfit_share: float = 0.05
-
-    def __post_init__(self) -> None:
-        require(0 <= self.floor < 0.5, f"floor = {self.floor}, expected 0 to below 0.5")
-        require(0.5 < self.sure < 1, f"sure = {self.sure}, expected above 0.5 and below 1")
-        require_positive(self, "lasting_s")
-        require(
-            0 < self.misfit_share < 0.5,
-            f"misfit_share = {self.misfit_share}, expected above 0 and below 0.5",
-        )
 
 
 @dataclass(frozen=True)
@@ -76,6 +45,8 @@ class ModeTrack:
         Where gyroscope and headings turn apart by more than distinguishes modes; else nowhere.
     felt : (N, M) or None
         Probability of each mode by feel alone; None without a model of feel.
+    config : ModesConfig
+        By which it was followed, and is answered but for `sure`.
 
     Examples
     --------
@@ -102,3 +73,4 @@ class ModeTrack:
     between: BetweenModes | None = None
     headings_disagree: BoolArray | None = None
     felt: FloatArray | None = None
+    config: ModesConfig = field(default_factory=ModesConfig)

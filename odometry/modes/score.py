@@ -4,7 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.modes.detection import Detection, confusion, detections, false_switches
+from odometry.modes.detection import (
+    Detection,
+    confusion,
+    detections,
+    false_switches,
+    narrowed_s,
+)
 from odometry.modes.mode_track import ModeTrack
 
 
@@ -20,6 +26,9 @@ class Score:
         Shares of the time after each detection, over all stretches; NaN where none was detected.
     wrong_of_all : float
         Share of all the time in stretches of a mode, detected or not; NaN where there is none.
+    narrowed_of_all, missed_of_all : float
+        Shares of the same time in which no mode is named, and the true one is among candidates that
+        are fewer than all; and is not among them.
     false_switches : int
     """
 
@@ -29,6 +38,8 @@ class Score:
     undetermined: float
     none_of_these: float
     wrong_of_all: float
+    narrowed_of_all: float
+    missed_of_all: float
     false_switches: int
 
     @property
@@ -58,5 +69,5 @@ def score_of(track: ModeTrack, sure: float) -> Score:
     judged = float(seconds.sum())
     of_modes = seconds[:, : len(track.names)]
     off = float(of_modes.sum() - np.trace(of_modes))
-    of_all = off / judged if judged else float("nan")
-    return Score(found, right, wrong, open_, none, of_all, false_switches(track, sure))
+    of_all = [one / judged if judged else float("nan") for one in (off, *narrowed_s(track, sure))]
+    return Score(found, right, wrong, open_, none, *of_all, false_switches(track, sure))

@@ -8,19 +8,21 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.modes.mode_set import DWELL_S
+from odometry.modes.modes_config import ModesConfig
 from odometry.modes.response import BLOCK_S
 from odometry.modes.signals import Signals
 from odometry.modes.velocity import VelocityModes
 
-APART_SIGMAS = 2.0  # of what lasts of the errors of a mode
 
-
-def similar_modes(signals: Signals, modes: VelocityModes, leading: IntArray) -> BoolArray:
+def similar_modes(
+    signals: Signals, modes: VelocityModes, leading: IntArray, config: ModesConfig | None = None
+) -> BoolArray:
     """Modes (N, M) that the last DWELL_S do not distinguish from the leading one (N,).
 
     What is not measured, or does not depend on the modes, is not in the signals. Modes of one model
     are distinguished by their noise.
     """
+    config = config or ModesConfig()
     gains = modes.steady_gains()[:, 1]
     asked = modes.steady_yaw_rates(signals.tread_speeds_m_s)
     asked[:-1] *= np.any(np.isfinite(signals.measured[1:]), axis=1, keepdims=True)
@@ -31,7 +33,7 @@ def similar_modes(signals: Signals, modes: VelocityModes, leading: IntArray) -> 
     rows, count = np.arange(len(means)), means.shape[1]
     alike = np.empty((len(means), count), dtype=np.bool_)
     for place in range(count):
-        least = APART_SIGMAS * np.maximum(lasting, lasting[:, [place]])
+        least = config.alike_sigmas * np.maximum(lasting, lasting[:, [place]])
         apart = np.abs(means - means[:, [place]]) > least
         last = np.maximum.accumulate(np.where(apart, rows[:, None], -1), axis=0)
         since_s = signals.stamps_s[:, None] - signals.stamps_s[last]

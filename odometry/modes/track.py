@@ -14,7 +14,8 @@ from odometry.estimation.mode_belief import ModeBelief
 from odometry.modes.bias_reading import bias_readings, with_reading
 from odometry.modes.innovation_test import Innovations, mode_fit
 from odometry.modes.mode_set import ModeSet
-from odometry.modes.mode_track import ModesConfig, ModeTrack
+from odometry.modes.mode_track import ModeTrack
+from odometry.modes.modes_config import ModesConfig
 from odometry.modes.own_filters import OwnFilters, with_bias, with_lead, with_shared_bias
 from odometry.modes.sight import SeenGround, mode_chains
 from odometry.modes.signals import Signals
@@ -151,8 +152,9 @@ def follow_signals(
         squared,
         signals.labels,
         mode_fit(left, mode_set.dwell_s, config.misfit_share),
-        gyroscope_trust_of(signals, mode_set, means[:, -1], sigmas[:, -1]),
-        *contradictions(replace(signals, measured=measured), mode_set, left, means[:, -1]),
+        gyroscope_trust_of(signals, mode_set, (means[:, -1], sigmas[:, -1]), config),
+        *contradictions(replace(signals, measured=measured), mode_set, left, means[:, -1], config),
+        config=config,
     )
 
 

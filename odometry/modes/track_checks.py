@@ -8,6 +8,7 @@ from odometry.modes.bias_reading import bias_readings
 from odometry.modes.gyroscope_trust import GyroscopeTrust, gyroscope_trust
 from odometry.modes.innovation_test import Innovations
 from odometry.modes.mode_set import ModeSet
+from odometry.modes.modes_config import ModesConfig
 from odometry.modes.signals import Signals
 from odometry.modes.similar_modes import similar_modes
 from odometry.modes.travel_check import TravelCheck, travel_check
@@ -17,16 +18,23 @@ from odometry.modes.velocity import VelocityModes
 
 
 def gyroscope_trust_of(
-    signals: Signals, mode_set: ModeSet, biases_rad_s: FloatArray, sigmas_rad_s: FloatArray
+    signals: Signals,
+    mode_set: ModeSet,
+    state: tuple[FloatArray, FloatArray],
+    config: ModesConfig,
 ) -> GyroscopeTrust | None:
-    """None where the filters measure headings, which confirm a bias."""
+    """Of biases (N,) and their deviations (N,); None where filters measure headings themselves."""
     if mode_set.modes.state_angles:
         return None
-    return gyroscope_trust(signals, biases_rad_s, sigmas_rad_s, bias_readings(signals))
+    return gyroscope_trust(signals, *state, bias_readings(signals), config)
 
 
 def contradictions(
-    signals: Signals, mode_set: ModeSet, left: Innovations, biases_rad_s: FloatArray
+    signals: Signals,
+    mode_set: ModeSet,
+    left: Innovations,
+    biases_rad_s: FloatArray,
+    config: ModesConfig,
 ) -> tuple[
     BoolArray | None, BoolArray | None, TravelCheck | None, BetweenModes | None, BoolArray | None
 ]:
@@ -39,8 +47,9 @@ def contradictions(
         return None, None, None, None, None
     asked = modes.steady_yaw_rates(signals.tread_speeds_m_s)
     before = np.vstack([np.zeros(asked.shape[1]), asked[:-1]])
-    alike = similar_modes(signals, modes, left.leading)
-    between = between_modes(signals, modes, biases_rad_s, left.independent)
-    off, travel = turns_are_off(left, before), travel_check(signals, modes)
-    disagree = turns_disagree(signals, modes, left.leading, biases_rad_s)
+    alike = similar_modes(signals, modes, left.leading, config)
+    between = between_modes(signals, modes, biases_rad_s, left.independent, config)
+    off = turns_are_off(left, before, config)
+    travel = travel_check(signals, modes, config)
+    disagree = turns_disagree(signals, modes, left.leading, biases_rad_s, config)
     return alike, off, travel, between, disagree

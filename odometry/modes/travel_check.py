@@ -12,6 +12,7 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray
 from odometry.modes.first_order_lag import lagged
 from odometry.modes.measured_travel import MeasuredTravel
+from odometry.modes.modes_config import ModesConfig
 from odometry.modes.response import SLOWEST_HZ
 from odometry.modes.signals import Signals
 from odometry.modes.step_windows import StepWindows, during, step_windows
@@ -19,8 +20,6 @@ from odometry.modes.velocity import VelocityModes
 
 WINDOWS_S = (5.0, 10.0)
 TOLERANCE = 0.01  # of the distance: no mode is identified better
-OFF_SIGMAS = 3.0  # beyond which a mode travels by another distance than measured
-"""Chosen on seeds 50, 51, 60 and 61 of `tests/studies/modes_faults.py`."""
 
 
 @dataclass(frozen=True)
@@ -39,11 +38,15 @@ class TravelCheck:
     ratio: FloatArray
 
 
-def travel_check(signals: Signals, modes: VelocityModes) -> TravelCheck | None:
+def travel_check(
+    signals: Signals, modes: VelocityModes, config: ModesConfig | None = None
+) -> TravelCheck | None:
     """None without measured travel, or where modes were identified without it.
 
-    What a window says holds for as long as it is, where no later one does.
+    What a window says holds for as long as it is, where no later one does. `travel_sigmas` of the
+    settings were chosen on seeds 50, 51, 60 and 61 of `tests/studies/modes_faults.py`.
     """
+    config = config or ModesConfig()
     travel = signals.travel
     if travel is None or modes.speed_power is None:
         return None
@@ -58,7 +61,7 @@ def travel_check(signals: Signals, modes: VelocityModes) -> TravelCheck | None:
             continue
         sigmas, ratios = np.stack([_compared(travel, *of, windows) for of in said], axis=-1)
         last, known = windows.in_force(signals.stamps_s, window_s)
-        off |= (np.abs(sigmas[last]) > OFF_SIGMAS) & known[:, None]
+        off |= (np.abs(sigmas[last]) > config.travel_sigmas) & known[:, None]
         ratio = np.where(known[:, None], ratios[last], ratio)
     return TravelCheck(off, ratio) if np.isfinite(ratio).any() else None
 

@@ -9,21 +9,25 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.modes.measured_turn import MeasuredTurn
+from odometry.modes.modes_config import ModesConfig
 from odometry.modes.signals import Signals
 from odometry.modes.step_windows import StepWindows, during, step_windows
 from odometry.modes.velocity import VelocityModes
 
 WINDOWS_S = (5.0, 10.0)
-SIGMAS = 5.0  # of the noise of headings: less is none
-SHARE = 1 / 3  # of what two modes differ by
 HOLDS_S = 5.0  # what a window says, where no later one does
-"""Chosen on seeds 62 to 65 of `tests/studies/modes_faults.py`: with a half of what modes differ by
-modes on a gyroscope with a soft limit are wrong for 2 % of the time instead of 0.5 %; with three
-deviations clean runs lose another 1.3 points."""
+"""`headings_share` and `headings_sigmas` of `ModesConfig` were chosen on seeds 62 to 65 of
+`tests/studies/modes_faults.py`: with a half instead of a third modes on a gyroscope with a soft
+limit are wrong for 2 % of the time instead of 0.5 %; with three deviations clean runs lose another
+1.3 points."""
 
 
 def turns_disagree(
-    signals: Signals, modes: VelocityModes, leading: IntArray, biases_rad_s: FloatArray
+    signals: Signals,
+    modes: VelocityModes,
+    leading: IntArray,
+    biases_rad_s: FloatArray,
+    config: ModesConfig | None = None,
 ) -> BoolArray | None:
     """Where (N,) headings contradict what the gyroscope turned; None without both.
 
@@ -35,7 +39,9 @@ def turns_disagree(
         The most probable mode.
     biases_rad_s : (N,)
         Of the filters.
+    config : ModesConfig, optional
     """
+    config = config or ModesConfig()
     turn = signals.turn
     if turn is None or len(modes.names) < 2:
         return None
@@ -51,15 +57,19 @@ def turns_disagree(
         windows = step_windows(turn.begin_s, turn.end_s, window_s)
         if len(windows):
             last, known = windows.in_force(signals.stamps_s, HOLDS_S)
-            off = _off(turn, windows, said, biases)
+            off = _off(turn, windows, (said, biases), config)
             disagree |= known & off[leading, last]
     return disagree
 
 
 def _off(
-    turn: MeasuredTurn, windows: StepWindows, said: FloatArray, biases: FloatArray
+    turn: MeasuredTurn,
+    windows: StepWindows,
+    steps: tuple[FloatArray, FloatArray],
+    config: ModesConfig,
 ) -> BoolArray:
-    """Windows (M, W) in which the gyroscope is off too far for each mode."""
+    """Windows (M, W) in which the gyroscope is too far off; steps: of each mode, and of biases."""
+    said, biases = steps
     side = np.sign(said.mean(axis=0))
     read = turn.gyroscope_rad - biases
     apart = windows.sums(side * (read - turn.heading_rad))
@@ -70,7 +80,8 @@ def _off(
     turned = windows.sums(side * said)
     between = np.abs(turned[:, None] - turned)
     between[np.arange(len(said)), np.arange(len(said))] = np.inf
-    return np.asarray(apart > np.maximum(SHARE * between.min(axis=1), SIGMAS * noise))
+    least = config.headings_share * between.min(axis=1)
+    return np.asarray(apart > np.maximum(least, config.headings_sigmas * noise))
 
 
 def _lateness(windows: StepWindows, read: FloatArray, headings: FloatArray) -> IntArray:

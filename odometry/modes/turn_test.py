@@ -10,17 +10,16 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.modes.innovation_test import Innovations, windowed
+from odometry.modes.modes_config import ModesConfig
 
 WINDOWS_S = (6.0, 12.0)
 CLIP = 3.0  # of one innovation
 LEAST_RAD_S = 0.05  # asked for: less is no turn
-BOUND = 3.5  # standard deviations of a sum beyond which no mode is named
-HOLDS_S = 3.0  # after a contradiction, in which no mode is named either
-"""Chosen on seeds 50, 51 and 60 to 63 of `tests/studies/modes_faults.py`: of 18 clean runs 3 have a
-sum beyond 3.5 somewhere."""
 
 
-def turns_are_off(innovations: Innovations, asked_rad_s: FloatArray) -> BoolArray:
+def turns_are_off(
+    innovations: Innovations, asked_rad_s: FloatArray, config: ModesConfig | None = None
+) -> BoolArray:
     """Where (N,) turns contradict the most probable mode.
 
     Parameters
@@ -29,12 +28,16 @@ def turns_are_off(innovations: Innovations, asked_rad_s: FloatArray) -> BoolArra
         The yaw rate is the last measured entry.
     asked_rad_s : (N, M)
         Steady yaw rate of each mode for the speeds in force before each stamp.
+    config : ModesConfig, optional
+        `turn_sigmas` were chosen on seeds 50, 51 and 60 to 63 of `tests/studies/modes_faults.py`:
+        of 18 clean runs 3 have a sum beyond 3.5 somewhere.
     """
+    config = config or ModesConfig()
     sums = [turn_sums(innovations, asked_rad_s, window_s) for window_s in WINDOWS_S]
-    off = np.asarray((np.abs(sums) > BOUND).any(axis=(0, 2)))
+    off = np.asarray((np.abs(sums) > config.turn_sigmas).any(axis=(0, 2)))
     last = np.maximum.accumulate(np.where(off, np.arange(len(off)), -1))
     since_s = innovations.stamps_s - innovations.stamps_s[last]
-    return np.asarray((last >= 0) & (since_s <= HOLDS_S))
+    return np.asarray((last >= 0) & (since_s <= config.turn_holds_s))
 
 
 def turn_sums(innovations: Innovations, asked_rad_s: FloatArray, window_s: float) -> FloatArray:

@@ -6,7 +6,8 @@ Robots, modes, drives and faults are those of tests/blind/modes, which know noth
 told. Modes are identified on a minute or two in each; every run changes between two of them, and
 the fault begins later. Shares are of the time from its onset to the end (of the whole run where
 clean): with a mode named that is not the true one (`wrong`), with the true one (`right`), with
-`none of these`, with `undetermined`. On a terrain that is no mode, any mode is wrong. Simulated
+`none of these`, with `undetermined`; of that with the true mode among candidates that are fewer
+than all (`narrowed`). On a terrain that is no mode, any mode is wrong. Simulated
 runs are kept in FOLDER; every run is a row of FOLDER/answers.csv. Faults that were made later are
 not run unless they are named (`--faults further_cable_dragged robot_payload_shifts ...`).
 """
@@ -22,7 +23,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from odometry.modes.answers import named_modes
+from odometry.modes.answers import candidates, named_modes
 from odometry.modes.identify_traction import identify_traction_modes
 from odometry.modes.identify_velocity import identify_velocity_modes
 from odometry.modes.mode_set import DWELL_S, NONE_OF_THESE, UNDETERMINED, ModeSet
@@ -33,7 +34,7 @@ from tests.blind.modes.more_faults import MORE
 from tests.blind.modes.worlds import World, calibration_runs, worlds
 
 IDENTIFY = {"velocity": identify_velocity_modes, "traction": identify_traction_modes}
-SHARES = ("wrong", "right", "none", "undetermined")
+SHARES = ("wrong", "right", "none", "undetermined", "narrowed")
 COLUMNS = ("world", "fault", "seed", *SHARES)
 MOST_MEAN, MOST_WORST = 0.05, 0.15  # of the time with a wrong name
 
@@ -89,7 +90,10 @@ def judged(run: Run, mode_set: ModeSet, from_s: float) -> dict[str, float]:
     lasts_s = np.append(np.diff(track.stamps_s), 0.0) * (track.stamps_s >= from_s)
     none, open_ = answers == NONE_OF_THESE, answers == UNDETERMINED
     right = answers == track.labels
-    chosen = (~(none | open_ | right), right, none, open_)
+    among = candidates(track, config.sure)
+    is_true = track.labels[:, None] == np.array(track.names, dtype=object)
+    narrowed = open_ & (among & is_true).any(axis=1) & ~among.all(axis=1)
+    chosen = (~(none | open_ | right), right, none, open_, narrowed)
     return {
         name: float(lasts_s @ of / lasts_s.sum()) for name, of in zip(SHARES, chosen, strict=True)
     }

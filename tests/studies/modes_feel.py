@@ -23,7 +23,8 @@ from odometry.modes.answers import named_modes
 from odometry.modes.feel_source import feel_source, with_feel
 from odometry.modes.identify_velocity import identify_velocity_modes
 from odometry.modes.mode_set import DWELL_S, NO_MODES, ModeSet
-from odometry.modes.mode_track import ModesConfig, ModeTrack
+from odometry.modes.mode_track import ModeTrack
+from odometry.modes.modes_config import ModesConfig
 from odometry.modes.track import follow_modes
 from odometry.run import Run
 from tests.odometry.feel.feel_drives import drive

@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from odometry.modes.answers import candidates, disagreements, named_modes
-from odometry.modes.detection import confusion, detections, false_switches
+from odometry.modes.detection import confusion, detections, false_switches, narrowed_s
 from odometry.modes.innovation_test import ModeFit
 from odometry.modes.mode_set import UNDETERMINED
+from odometry.modes.modes_config import ModesConfig
 from odometry.modes.refusals import refusals
 from tests.odometry.modes.mode_examples import track
 
@@ -145,6 +146,25 @@ def test_a_disagreement_ends_where_they_agree_or_name_others():
 def test_the_fewest_modes_that_are_sure_together(probabilities, chosen):
     known = replace(track(["a"], ["a"]), probabilities=np.array([probabilities]))
     assert candidates(known, 0.9).tolist() == [chosen]
+
+
+def test_modes_that_the_drive_does_not_distinguish_are_candidates_too():
+    """Whatever their probability: of two that are alike the wrong one may be 0.99 probable."""
+    known = track(["a", "a"], ["b", "b"], probability=0.99)
+    alike = np.array([[False, True, False], [False, False, False]])
+    chosen = candidates(replace(known, alike=alike), 0.9)
+    assert chosen.tolist() == [[True, True, False], [True, False, False]]
+    narrowed, missed = narrowed_s(replace(known, alike=alike), 0.995)
+    assert (narrowed, missed) == (0.5, 0.0)
+
+
+@pytest.mark.parametrize(("probability", "named"), [(0.85, "a"), (0.75, UNDETERMINED)])
+def test_a_mode_stays_named_for_as_much_doubt_as_the_settings_say(probability, named):
+    known = track(["a", "a"], ["a", "a"], names=("a", "b"))
+    known.probabilities[1] = probability, 1 - probability
+    assert named_modes(known, 0.9).tolist() == ["a", named]
+    strict = replace(known, config=ModesConfig(most_doubt=1.0))
+    assert named_modes(strict, 0.9).tolist() == ["a", UNDETERMINED]
 
 
 @given(arrays(float, (5, 4), elements=st.floats(1e-6, 1.0)), st.floats(0.51, 0.99))

@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 
 from odometry.modes.bias_reading import (
-    OPEN_SIGMAS,
     BiasReading,
     bias_is_open,
     bias_readings,
     with_reading,
 )
 from odometry.modes.heading_check import HeadingCheck
+from odometry.modes.modes_config import ModesConfig
 from odometry.modes.signals import BIAS_SIGMA_RAD_S, Signals
 
 STEP_S, SIZE = 0.02, 1000
 STAMPS_S = STEP_S * np.arange(SIZE)
-BEYOND_RAD_S = OPEN_SIGMAS * BIAS_SIGMA_RAD_S + 1e-3
+BEYOND_RAD_S = ModesConfig.bias_sigmas * BIAS_SIGMA_RAD_S + 1e-3
 
 
 def test_what_is_read_is_weighed_with_what_is_believed():

@@ -15,7 +15,7 @@ from odometry.modes.followed import followed
 from odometry.modes.identify_velocity import identify_velocity_modes
 from odometry.modes.innovation_test import ModeFit
 from odometry.modes.mode_set import ModeSet
-from odometry.modes.mode_track import ModesConfig
+from odometry.modes.modes_config import ModesConfig
 from tests.odometry.feel.feel_drives import TERRAINS, drive, drives, with_imu
 from tests.odometry.modes.mode_examples import track
 

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.modes.files import content_of, write_modes, write_runs
+from odometry.modes.content import content_of
+from odometry.modes.files import write_modes, write_runs
 from odometry.modes.followed import MOTION, SIGHTED, Followed, followed
 from odometry.modes.sight import PULLED_S, SeenGround
 from odometry.modes.track import ModesConfig
@@ -54,6 +55,8 @@ def test_modes_between_which_the_answer_lies_are_named():
     }
     assert made.candidates(known).tolist() == ["a", *["b or c"] * 4, *["a or b or c"] * 2, "a"]
     assert "While undetermined, it is b or c 67 % of that time." in sentences(made)
+    score = made.score(known)  # half a second of 3.5 that the last stamp does not last
+    assert (score.narrowed_of_all, score.missed_of_all) == pytest.approx((0.0, 2.0 / 3.5))
     (first, second) = content_of(made)["motion"]["undetermined_between"]
     assert (first["modes"], second["modes"]) == (["b", "c"], ["a", "b", "c"])
 
@@ -100,6 +103,7 @@ def test_numbers_of_all_stretches_weigh_their_time():
     weighed = np.array([1.5, 0.5]) @ [[0.5, 0.25, 0.25], [1, 0, 0]] / 2
     assert shares == pytest.approx(weighed)
     assert score.wrong_of_all == pytest.approx(1.5 / 3.5)
+    assert (score.narrowed_of_all, score.missed_of_all) == (0.0, 0.0)
     assert answers.shares(answers.motion) == pytest.approx(
         {"a": 2 / 3.5, "b": 1 / 3.5, "undetermined": 0.5 / 3.5}
     )

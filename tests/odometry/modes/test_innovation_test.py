@@ -15,6 +15,7 @@ from odometry.modes.innovation_test import (
 )
 from odometry.modes.misfits import misfits
 from odometry.modes.mode_set import NONE_OF_THESE, UNDETERMINED
+from odometry.modes.refusals import refusals
 from odometry.modes.track import ModeTrack
 
 STEP_S, SIZE = 0.02, 1500
@@ -129,24 +130,29 @@ def test_long_sums_are_of_the_mode_in_the_lead():
     assert lasting[HALF + 200, 0] == pytest.approx(direct)
 
 
+def beyond(fit):
+    return refusals(track_of(fit), 0.9)["six seconds"]
+
+
 def test_a_small_misfit_that_lasts_is_none():
     """A third of a standard deviation is hidden in half a second, and six of a sum in six."""
     off = (0.35, 0.35)
     innovations = np.concatenate([drawn()[:HALF], drawn(off)[HALF:]])
     window = round(LONG_WINDOW_S / STEP_S)
     fit = fit_of(innovations)
-    assert not fit.lasts[100:HALF].any()
-    assert fit.lasts[HALF + window :].all()
+    lasts = beyond(fit)
+    assert not lasts[100:HALF].any()
+    assert lasts[HALF + window :].all()
     answers = named_modes(track_of(fit), 0.9)
     assert set(answers[100:HALF]) == {"a"}
-    assert set(answers[fit.lasts & (fit.none < 0.9)]) == {UNDETERMINED}
+    assert set(answers[lasts & (fit.none < 0.9)]) == {UNDETERMINED}
     assert answers[-1] == NONE_OF_THESE
 
 
 def test_a_misfit_that_changes_its_sign_within_the_long_window_is_no_lasting_one():
     sign = np.where(np.arange(SIZE) // 50 % 2, 1.0, -1.0)
     fit = fit_of(drawn((0.0, 0.0)) + 0.5 * sign[:, None, None])
-    assert not fit.lasts[round(LONG_WINDOW_S / STEP_S) :].any()
+    assert not beyond(fit)[round(LONG_WINDOW_S / STEP_S) :].any()
 
 
 def test_the_signal_that_fits_least_is_said():

@@ -5,9 +5,10 @@ import pytest
 
 from odometry.modes.answers import named_modes
 from odometry.modes.mode_set import DWELL_S, UNDETERMINED, ModeSet
+from odometry.modes.modes_config import ModesConfig
 from odometry.modes.response import BLOCK_S
 from odometry.modes.signals import Signals
-from odometry.modes.similar_modes import APART_SIGMAS, similar_modes
+from odometry.modes.similar_modes import similar_modes
 from odometry.modes.track import follow_signals
 from odometry.modes.velocity import VelocityModes
 
@@ -37,7 +38,7 @@ def drive(differences, omega=None):
 @pytest.mark.parametrize(("factor", "expected"), [(0.95, True), (1.05, False)])
 def test_modes_are_alike_up_to_some_deviations_of_what_lasts(factor, expected):
     """Yaw rates differ by 0.5 times the difference of treads."""
-    signals = drive(np.full(500, factor * APART_SIGMAS * LASTING_RAD_S / 0.5))
+    signals = drive(np.full(500, factor * ModesConfig.alike_sigmas * LASTING_RAD_S / 0.5))
     alike = similar_modes(signals, modes(1.0, 1.5), np.zeros(500, dtype=int))
     assert not alike[:, 0].any()
     assert (alike[200:, 1] == expected).all()

@@ -272,7 +272,18 @@ def test_errors_that_last_count_once(run, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"floor": 0.5}, {"sure": 0.5}, {"sure": 1.0}, {"lasting_s": 0}, {"misfit_share": 0.0}]
+    "wrong",
+    [
+        {"floor": 0.5},
+        {"sure": 0.5},
+        {"sure": 1.0},
+        {"most_doubt": 0.9},
+        {"agreed": 1.0},
+        {"lasting_s": 0},
+        {"misfit_share": 0.0},
+        {"turn_sigmas": 0.0},
+        {"headings_share": -1.0},
+    ],
 )
 def test_settings_that_cannot_be(wrong):
     with pytest.raises(ConfigError, match=f"{next(iter(wrong))} = "):

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from odometry.modes.answers import named_modes
-from odometry.modes.innovation_test import LONG_BOUND, Innovations, mode_fit
+from odometry.modes.innovation_test import Innovations, mode_fit
 from odometry.modes.mode_set import UNDETERMINED
-from odometry.modes.turn_test import BOUND, LEAST_RAD_S, WINDOWS_S, turn_sums, turns_are_off
+from odometry.modes.modes_config import ModesConfig
+from odometry.modes.turn_test import LEAST_RAD_S, WINDOWS_S, turn_sums, turns_are_off
 from tests.odometry.modes.mode_examples import track
 
 STEP_S, SIZE = 0.02, 1500
@@ -64,7 +65,7 @@ def test_a_gain_that_is_off_shows_over_turns_to_both_sides_where_a_plain_sum_can
     sums = turn_sums(innovations, asked(WEAVING), max(WINDOWS_S))
     assert np.sign(sums[-1]).tolist() == [np.sign(share)] * 3
     plain = mode_fit(innovations, np.array([20.0, 20.0]), 0.05).lasting
-    assert np.nanmax(np.abs(plain[300:])) < LONG_BOUND
+    assert np.nanmax(np.abs(plain[300:])) < ModesConfig.long_sigmas
 
 
 def test_a_gain_to_one_side_alone_is_off():
@@ -74,7 +75,7 @@ def test_a_gain_to_one_side_alone_is_off():
 
 def test_nothing_is_off_on_straights_nor_where_nothing_was_measured():
     straight = np.full(SIZE, 0.9 * LEAST_RAD_S)
-    assert not turns_are_off(left_over(white() + BOUND), asked(straight)).any()
+    assert not turns_are_off(left_over(white() + ModesConfig.turn_sigmas), asked(straight)).any()
     assert not turns_are_off(left_over(np.full(SIZE, np.nan)), asked(WEAVING)).any()
 
 

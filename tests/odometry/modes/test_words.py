@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from odometry.modes.files import content_of
+from odometry.modes.content import content_of
 from odometry.modes.followed import followed
 from odometry.modes.in_short import in_short
 from odometry.modes.mode_set import NONE_OF_THESE

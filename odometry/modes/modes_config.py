@@ -1,0 +1,76 @@
+"""Settings of the estimator of modes and of its answers, each with its reason."""
+
+from dataclasses import dataclass, fields
+
+from odometry.config import require, require_positive
+
+
+@dataclass(frozen=True)
+class ModesConfig:
+    """Settings of the estimator and of its answers.
+
+    Numbers of deviations and shares were chosen on seeds of `tests/studies/modes_faults.py`, as the
+    tests that use them say.
+
+    Attributes
+    ----------
+    floor : float
+        Least probability of a mode: one that was impossible could never come back.
+    sure : float
+        The probability from which a mode is named; below it the answer is "undetermined".
+    most_doubt : float
+        A named mode stays named, while it leads, up to so many times the doubt 1 - sure: near one
+        threshold an answer comes and goes.
+    agreed : float
+        Probability from which the rolling test, or feel, takes a mode for the one that fits.
+    lasting_s : float
+        A disagreement of camera and feel that lasts so long is reported.
+    misfit_share : float
+        Share of the time in which no mode of the set fits, before anything was measured.
+    long_sigmas : float
+        Of a sum of innovations over six seconds, beyond which no mode is named: small misfits last.
+    turn_sigmas, turn_holds_s : float
+        Of a sum of innovations by the side of the turn, and for how long after it no mode is named:
+        clean runs of models that err a little reach 3 and more.
+    travel_sigmas : float
+        By which a mode travels another distance than was measured.
+    headings_share, headings_sigmas : float
+        Gyroscope and headings turn apart by more than this share of what distinguishes two modes,
+        and by so many deviations of the headings: with a half a soft limit is another terrain.
+    between_sigmas, between_half_sigmas : float
+        By which the share of a mixture of two modes lies between 0 and 1, over a window and over
+        each half of it: a change from one to the other is no mixture.
+    alike_sigmas : float
+        Of what lasts of the errors of modes; less apart they are alike.
+    bias_sigmas : float
+        Of the bias that is expected: farther off only a mode that is not true says so.
+    """
+
+    floor: float = 1e-6
+    sure: float = 0.9
+    most_doubt: float = 2.0
+    agreed: float = 0.6
+    lasting_s: float = 2.0
+    misfit_share: float = 0.05
+    long_sigmas: float = 3.5
+    turn_sigmas: float = 3.5
+    turn_holds_s: float = 3.0
+    travel_sigmas: float = 3.0
+    headings_share: float = 1 / 3
+    headings_sigmas: float = 5.0
+    between_sigmas: float = 3.0
+    between_half_sigmas: float = 2.0
+    alike_sigmas: float = 2.0
+    bias_sigmas: float = 3.0
+
+    def __post_init__(self) -> None:
+        require(0 <= self.floor < 0.5, f"floor = {self.floor}, expected 0 to below 0.5")
+        require(0.5 < self.sure < 1, f"sure = {self.sure}, expected above 0.5 and below 1")
+        require(self.most_doubt >= 1, f"most_doubt = {self.most_doubt}, expected 1 or more")
+        require(0 < self.agreed < 1, f"agreed = {self.agreed}, expected above 0 and below 1")
+        require(
+            0 < self.misfit_share < 0.5,
+            f"misfit_share = {self.misfit_share}, expected above 0 and below 0.5",
+        )
+        sigmas = [field.name for field in fields(self) if field.name.endswith("sigmas")]
+        require_positive(self, "lasting_s", "turn_holds_s", "headings_share", *sigmas)
