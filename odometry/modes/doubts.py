@@ -62,8 +62,8 @@ def doubts(followed: Followed) -> tuple[Doubt, ...]:
             Doubt(
                 "the drive does not distinguish the most probable mode from another for "
                 f"{round(100 * _share(followed, alike))} % of the time",
-                "drive turns of several radii to both sides: there modes differ most; where poses are "
-                "measured, traction modes distinguish terrains by sideways motion as well",
+                "drive turns of several radii to both sides: there modes differ most; where poses "
+                "are measured, traction modes distinguish terrains by sideways motion as well",
                 _share(followed, alike),
             )
         )
