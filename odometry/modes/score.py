@@ -69,5 +69,17 @@ def score_of(track: ModeTrack, sure: float) -> Score:
     judged = float(seconds.sum())
     of_modes = seconds[:, : len(track.names)]
     off = float(of_modes.sum() - np.trace(of_modes))
-    of_all = [one / judged if judged else float("nan") for one in (off, *narrowed_s(track, sure))]
-    return Score(found, right, wrong, open_, none, *of_all, false_switches(track, sure))
+    wrong_of_all, narrowed_of_all, missed_of_all = (
+        one / judged if judged else float("nan") for one in (off, *narrowed_s(track, sure))
+    )
+    return Score(
+        found,
+        right,
+        wrong,
+        open_,
+        none,
+        wrong_of_all,
+        narrowed_of_all,
+        missed_of_all,
+        false_switches(track, sure),
+    )
