@@ -68,6 +68,14 @@ def test_a_gyroscope_is_off_by_the_measure_of_the_modes(change, expected):
     assert found[late].mean() == pytest.approx(float(expected), abs=0.1)
 
 
+def test_a_window_in_which_poses_are_not_chained_says_nothing():
+    run = with_gyro(drive(), lambda rates: 1.3 * rates)
+    assert disagree(run).any()
+    window = np.arange(len(run.pose.stamps_s)) // 20  # of 2 s each
+    columns = run.pose.columns | {"window": window.astype(float)}
+    assert not disagree(replace(run, pose=replace(run.pose, columns=columns))).any()
+
+
 def test_modes_that_are_farther_apart_allow_more():
     run = with_gyro(drive(), lambda rates: 1.12 * rates)
     assert not disagree(run, (TURN, 1.5 * TURN)).any()
