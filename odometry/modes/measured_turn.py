@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.gyroscope import gyroscope_of
 from odometry.modes.heading_check import without_spikes
 from odometry.run import Run
+from odometry.sensors import gyroscope_of
 from odometry.windows.turns import continuous_yaw
 
 LEAST_STEPS = 20  # of a run
