@@ -44,6 +44,7 @@ class ContactChange(MotionEffect):
         self.half_width = half_width
         self._changes: dict[bytes, FloatArray] = {}
         self._balanced: dict[bytes, FloatArray] = {}
+        self._latest: dict[bytes, FloatArray] = {}
 
     @classmethod
     def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
@@ -112,8 +113,19 @@ class ContactChange(MotionEffect):
 
     def balanced(self, balances: FloatArray, inputs: Inputs) -> FloatArray:
         """Balanced twists (K, 3) of parameters (K, 9) of `Contact`."""
-        stack = (balances, inputs.tread_speeds_m_s, inputs.roll_rad, inputs.pitch_rad)
-        return _remembered(self._balanced, stack, lambda: MODEL.twist(balances, inputs))
+        driven = (inputs.tread_speeds_m_s, inputs.roll_rad, inputs.pitch_rad)
+        return _remembered(
+            self._balanced, (balances, *driven), lambda: self._balance(balances, inputs, driven)
+        )
+
+    def _balance(
+        self, balances: FloatArray, inputs: Inputs, driven: Sequence[FloatArray]
+    ) -> FloatArray:
+        """The same, searched from the latest answer on these inputs."""
+        latest = _remembered(self._latest, driven, lambda: MODEL.twist(balances, inputs))
+        answer = MODEL.twist_near(balances, inputs, latest)
+        self._latest[_key(driven)] = answer
+        return answer
 
     def balanced_by_values(self, balances: FloatArray, inputs: Inputs) -> FloatArray:
         """Their derivative (P, K, 3) by the effect's parameters."""
@@ -132,12 +144,16 @@ def _remembered(
     answers: dict[bytes, FloatArray], stack: Sequence[FloatArray], answer: Callable[[], FloatArray]
 ) -> FloatArray:
     """What was answered to the same numbers, or the answer now."""
-    key = b"".join(np.ascontiguousarray(of).tobytes() for of in stack)
+    key = _key(stack)
     if key not in answers:
         while len(answers) >= REMEMBERED:
             answers.pop(next(iter(answers)))
         answers[key] = answer()
     return answers[key]
+
+
+def _key(stack: Sequence[FloatArray]) -> bytes:
+    return b"".join(np.ascontiguousarray(of).tobytes() for of in stack)
 
 
 def _means(inputs: Inputs) -> tuple[Inputs, IntArray]:

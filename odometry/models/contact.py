@@ -14,7 +14,7 @@ from odometry.errors import ParameterError
 from odometry.models.base import KinematicModel, Linearised, Parameter
 from odometry.models.contact_balance import balance_at
 from odometry.models.contact_derivatives import parameter_derivative, speed_derivative
-from odometry.models.contact_solve import balanced_twist
+from odometry.models.contact_solve import balanced_near, balanced_twist
 from odometry.models.contact_stance import INSIDE, Stance, stance_of
 from odometry.models.icr_slope import GUESSED_HALF_LENGTH
 from odometry.models.inputs import Inputs
@@ -83,6 +83,13 @@ class Contact(KinematicModel):
         """See `KinematicModel.twist`."""
         return _in_blocks(balanced_twist, values, inputs)
 
+    def twist_near(self, values: FloatArray, inputs: Inputs, known: FloatArray) -> FloatArray:
+        """`twist`, searched from twists (N, 3) for values a little different.
+
+        Where several twists are steady, the answer is the one near those.
+        """
+        return _in_blocks(balanced_near, values, inputs, known)
+
     def linearised(self, values: FloatArray, inputs: Inputs) -> Linearised:
         """See `KinematicModel.linearised`."""
         both = _in_blocks(_linearised, values, inputs)
@@ -125,9 +132,12 @@ def _speed_derivative(stance: Stance) -> FloatArray:
 
 
 def _in_blocks(
-    answer: Callable[[Stance], FloatArray], values: FloatArray, inputs: Inputs
+    answer: Callable[..., FloatArray], values: FloatArray, inputs: Inputs, *known: FloatArray
 ) -> FloatArray:
-    """Broadcast, and answer a stance of N samples at a time: of (M, N) it makes (..., M)."""
+    """Broadcast, and answer a stance of N samples at a time: of (M, N) it makes (..., M).
+
+    What is `known` (..., M) of the samples goes with the stance, as (M, N).
+    """
     stack = np.broadcast_shapes(np.shape(values)[:-1], inputs.shape)
     rows = np.broadcast_to(values, (*stack, np.shape(values)[-1])).reshape(-1, np.shape(values)[-1])
     speeds = np.broadcast_to(inputs.tread_speeds_m_s, (*stack, 2)).reshape(-1, 2)
@@ -136,7 +146,7 @@ def _in_blocks(
     )
     flat = Inputs(speeds, roll, pitch)
     answers = [
-        answer(stance_of(rows[block], flat.rows(block)))
+        answer(stance_of(rows[block], flat.rows(block)), *(of[block].T for of in known))
         for block in (slice(k, k + BLOCK) for k in range(0, max(len(rows), 1), BLOCK))
     ]
     joined = np.concatenate(answers, axis=-1)

@@ -6,6 +6,7 @@ about the origin, [1, 1, m].
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -66,7 +67,7 @@ class Balance:
         """Wrench (3, N) of all contacts."""
         return np.asarray(np.sum(self.load * self.contact_wrenches, axis=1))
 
-    @property
+    @cached_property
     def residual(self) -> FloatArray:
         """Wrench (3, N) of all forces: zero where they balance."""
         return self.friction + wrench(self.pull, self.stance.centre_m)
@@ -95,17 +96,30 @@ class Balance:
     @property
     def by_twist(self) -> FloatArray:
         """Derivative (3, 3, N) of the residual by the twist."""
-        x, y = self.stance.places_m
         x_cm, y_cm = self.stance.centre_m
         v_x, v_y = self.centre_speeds_m_s
         omega, zero = self.omega, np.zeros_like(self.omega)
-        columns = [
-            self.by_slip((1.0, 0.0)) + self.by_pull(np.stack([zero, -omega]) / G_M_S2),
-            self.by_slip((0.0, 1.0)) + self.by_pull(np.stack([omega, zero]) / G_M_S2),
-            self.by_slip((-y, x))
-            + self.by_pull(np.stack([v_y + omega * x_cm, omega * y_cm - v_x]) / G_M_S2),
-        ]
-        return np.stack(columns, axis=1)
+        derivative = self._friction_by_twist()
+        pulls = (zero, -omega), (omega, zero), (v_y + omega * x_cm, omega * y_cm - v_x)
+        for column, pull in enumerate(pulls):
+            derivative[:, column] += self.by_pull(np.stack(pull) / G_M_S2)
+        return derivative
+
+    def _friction_by_twist(self) -> FloatArray:
+        """The part (3, 3, N) of the contacts' slip, which is symmetric."""
+        x, y = self.stance.places_m
+        ahead, aside = self.slip_m_s * self.resistance
+        stiffness = -self.load * self.resistance * self.stance.mu
+        xx, xy = stiffness * (1 - ahead * ahead), -stiffness * ahead * aside
+        yy = stiffness * (1 - aside * aside)
+        x_turn, y_turn = x * xy - y * xx, x * yy - y * xy
+        derivative = np.empty((3, 3, len(self.omega)))
+        derivative[0, 0], derivative[1, 1] = xx.sum(axis=0), yy.sum(axis=0)
+        derivative[0, 1] = derivative[1, 0] = xy.sum(axis=0)
+        derivative[0, 2] = derivative[2, 0] = x_turn.sum(axis=0)
+        derivative[1, 2] = derivative[2, 1] = y_turn.sum(axis=0)
+        derivative[2, 2] = (x * y_turn - y * x_turn).sum(axis=0)
+        return derivative
 
 
 def balance_at(stance: Stance, twist: FloatArray) -> Balance:

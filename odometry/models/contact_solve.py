@@ -17,7 +17,7 @@ from odometry.models.icr import GUESSED_WIDTHS
 
 TOLERANCE = 1e-12  # of the weight
 NEAR = 1e-9  # of the weight; nearer than this, rounding decides which way the forces push
-ITERATIONS, STAGE_ITERATIONS, LAST_ITERATIONS = 20, 4, 60
+ITERATIONS, STAGE_ITERATIONS, LAST_ITERATIONS, NEAR_ITERATIONS = 20, 4, 60, 8
 SLIP_SCALE_FALL = 0.3  # from stage to stage
 PUSH_BACK = 0.5
 FIRST_DAMPING, LEAST_DAMPING, RAISED_DAMPING = 3.0, 0.01, 1.0  # of the friction at tread speed
@@ -39,7 +39,19 @@ def balanced_twist(stance: Stance) -> FloatArray:
     return _polished(stance, twist)
 
 
-def descend(stance: Stance, start: FloatArray, iterations: int) -> tuple[FloatArray, FloatArray]:
+def balanced_near(stance: Stance, known: FloatArray) -> FloatArray:
+    """The same from twists (3, N) that balance forces a little different, where that settles."""
+    twist, least = descend(stance, known, NEAR_ITERATIONS, damping=0.0)
+    lost = least > TOLERANCE
+    twist = _polished(stance, twist)
+    if np.any(lost):
+        twist[:, lost] = balanced_twist(stance.rows(lost))
+    return twist
+
+
+def descend(
+    stance: Stance, start: FloatArray, iterations: int, *, damping: float = FIRST_DAMPING
+) -> tuple[FloatArray, FloatArray]:
     """Damped Newton steps: the twist (3, N) of least residual on the way, and its size (N,).
 
     The start counts; samples that have settled are not moved any more.
@@ -48,27 +60,26 @@ def descend(stance: Stance, start: FloatArray, iterations: int) -> tuple[FloatAr
     left = np.arange(start.shape[1])  # samples that have not settled yet
     twist, step = start, np.zeros_like(start)
     force, matrix = np.zeros_like(start), np.zeros((3, *start.shape))
-    damping = np.full(start.shape[1], FIRST_DAMPING)
+    damped = np.full(start.shape[1], damping)
     for _ in range(iterations):
         tried = balance_at(stance, twist + step)
         size = _size(stance, tried.residual)
         good = _is_good(force, tried, step) | (size < NEAR)
         twist = np.where(good, twist + step, twist)
-        force = np.where(good, tried.residual, force)
-        matrix = np.where(good, tried.by_twist, matrix)
-        damping = np.where(
-            good, _fallen(damping), np.maximum(DAMPING_RISE * damping, RAISED_DAMPING)
-        )
         closer = good & (size < least[left])
         best[:, left[closer]], least[left[closer]] = twist[:, closer], size[closer]
         open_ = least[left] > TOLERANCE
         if not np.any(open_):
             break
-        left, stance = left[open_], stance.rows(open_)
-        twist, force, matrix, damping = (
-            array[..., open_] for array in (twist, force, matrix, damping)
-        )
-        step = _step(stance, force, matrix, damping)
+        force = np.where(good, tried.residual, force)
+        matrix = np.where(good, tried.by_twist, matrix)
+        damped = np.where(good, _fallen(damped), np.maximum(DAMPING_RISE * damped, RAISED_DAMPING))
+        if not np.all(open_):
+            left, stance = left[open_], stance.rows(open_)
+            twist, force, matrix, damped = (
+                array[..., open_] for array in (twist, force, matrix, damped)
+            )
+        step = _step(stance, force, matrix, damped)
     return best, least
 
 
