@@ -2,12 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.errors import EstimationError
-from odometry.geometry.angles import wrap
+from odometry.geometry.angles import entries, wrap
 
 Motion = Callable[[FloatArray, FloatArray, float], FloatArray]
 Measurement = Callable[[FloatArray], FloatArray]
@@ -106,8 +107,8 @@ def wrapped(values: FloatArray, angles: tuple[int, ...]) -> FloatArray:
     """Values (..., n) with the entries `angles` in (-pi, pi]."""
     if not angles:
         return values
-    values = np.array(values)
-    values[..., angles] = wrap(values[..., angles])
+    values, part = np.array(values), entries(angles)
+    values[..., part] = wrap(values[..., part])
     return values
 
 
@@ -139,18 +140,18 @@ class EkfBank:
         self, means: FloatArray, covariances: FloatArray, z: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Means, covariances, log-likelihoods (M,), normalised innovations squared (M,)."""
-        entries = self.model.measured_entries(z)
-        R = self.model.measurement_covariance[..., entries[:, None], entries]
-        H = self.model.measurement_jacobian(means)[..., entries, :]
-        residuals = wrapped(z - self.model.measurement(means), self.model.measurement_angles)[
-            :, entries
-        ]
-        S = H @ covariances @ _transposed(H) + R
+        seen = self.model.measured_entries(z)
+        R, H = self.model.measurement_covariance, self.model.measurement_jacobian(means)
+        residuals = wrapped(z - self.model.measurement(means), self.model.measurement_angles)
+        if len(seen) < len(z):
+            R, H, residuals = R[..., seen[:, None], seen], H[..., seen, :], residuals[:, seen]
+        H_transposed = _transposed(H)
+        S = H @ covariances @ H_transposed + R
         inverse = np.linalg.inv(S)
-        K = covariances @ _transposed(H) @ inverse
+        K = covariances @ H_transposed @ inverse
         squared = np.einsum("ja,jab,jb->j", residuals, inverse, residuals)
         corrected = means + (K @ residuals[..., None])[..., 0]
-        remaining = np.eye(means.shape[1]) - K @ H
+        remaining = _unit(means.shape[1]) - K @ H
         joseph = remaining @ covariances @ _transposed(remaining) + K @ R @ _transposed(K)
         return (
             wrapped(corrected, self.model.state_angles),
@@ -165,6 +166,11 @@ class EkfBank:
         S = H @ covariances @ _transposed(H) + self.model.measurement_covariance
         residuals = wrapped(z - self.model.measurement(means), self.model.measurement_angles)
         return np.asarray(residuals / np.sqrt(np.diagonal(S, axis1=-2, axis2=-1)))
+
+
+@lru_cache(maxsize=16)
+def _unit(size: int) -> FloatArray:
+    return np.eye(size)
 
 
 def _transposed(matrices: FloatArray) -> FloatArray:

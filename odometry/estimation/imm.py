@@ -5,8 +5,10 @@ numbers are those of Salvi 2024; its eq. 9 prints the last probability where the
 predicted one of eq. 5 (Bar-Shalom, Li, Kirubarajan 2001, section 11.6.6).
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -85,16 +87,17 @@ class Imm:
 
     def updated(self, predicted: ModeBelief, z: FloatArray | None) -> ModeBelief:
         """Estimate after a measurement: eq. 8-9; without one, probabilities stay; see `step`."""
-        if z is None or np.isnan(z).all():
+        seen = [] if z is None else np.ravel(z).tolist()
+        if z is None or all(map(math.isnan, seen)):
             logs = floored(predicted.log_probabilities, self.floor)
             return replace(predicted, log_probabilities=logs)
-        if np.isinf(z).any():
+        if any(map(math.isinf, seen)):
             raise EstimationError(f"a measurement {z}, expected finite numbers, or NaN for none")
         means, covariances, log_likelihoods, squared = self.bank.updated(
             predicted.means, predicted.covariances, z
         )
         log_weights = predicted.log_probabilities + log_likelihoods  # eq. 9, with eq. 5's c_j
-        if not np.isfinite(log_weights.max()):
+        if not math.isfinite(log_weights.max()):
             raise EstimationError(
                 f"log-likelihoods {log_likelihoods.tolist()} of {z}, expected a finite one of a "
                 "possible mode"
@@ -119,11 +122,18 @@ class Imm:
                 f"an estimate of {belief.modes} modes and a transition matrix of shape "
                 f"{matrix.shape} for a bank of {modes} filters"
             )
-        if matrix.min() < 0 or np.abs(matrix.sum(axis=1) - 1).max() > SUM_TOLERANCE:
-            raise EstimationError(
-                f"transition matrix {matrix.tolist()}, expected rows (from) that sum to 1"
-            )
-        return np.log(matrix, out=np.full(matrix.shape, -np.inf), where=matrix > 0)
+        return _logarithms(matrix.tobytes(), modes)
+
+
+@lru_cache(maxsize=256)  # steps of a run share their matrices
+def _logarithms(transition: bytes, modes: int) -> FloatArray:
+    """Logarithms (M, M) of the transition matrix with these bytes; checked."""
+    matrix = np.frombuffer(transition).reshape(modes, modes)
+    if matrix.min() < 0 or np.abs(matrix.sum(axis=1) - 1).max() > SUM_TOLERANCE:
+        raise EstimationError(
+            f"transition matrix {matrix.tolist()}, expected rows (from) that sum to 1"
+        )
+    return np.log(matrix, out=np.full(matrix.shape, -np.inf), where=matrix > 0)
 
 
 def _mixing_weights(log_joint: FloatArray, log_predicted: FloatArray) -> FloatArray:
@@ -132,6 +142,8 @@ def _mixing_weights(log_joint: FloatArray, log_predicted: FloatArray) -> FloatAr
     A mode that nothing leads to starts where it was.
     """
     reached = log_predicted > -np.inf
+    if reached.all():
+        return np.asarray(np.exp(log_joint - log_predicted).T)
     weights = np.exp(log_joint - np.where(reached, log_predicted, 0.0)).T
     weights[~reached] = np.eye(len(weights))[~reached]
     return np.asarray(weights)

@@ -1,12 +1,13 @@
 """The estimates of a bank of filters at one stamp, and mixtures of Gaussians."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import EstimationError
-from odometry.geometry.angles import wrap
+from odometry.geometry.angles import entries, wrap
 
 NO_DIRECTION = 1e-12  # a mean direction vector this short points nowhere
 
@@ -33,11 +34,12 @@ def moments(
     """
     modes, size = means.shape
     mixed = weights @ means
+    part = entries(angles)
     if angles:
-        mixed[:, angles] = _mean_angles(weights, means[:, angles])
+        mixed[:, part] = _mean_angles(weights, means[:, part])
     deviations = means - mixed[:, None, :]  # (K, M, n)
     if angles:
-        deviations[..., angles] = wrap(deviations[..., angles])
+        deviations[..., part] = wrap(deviations[..., part])
     within = (weights @ covariances.reshape(modes, size * size)).reshape(-1, size, size)
     between = (deviations * weights[..., None]).swapaxes(1, 2) @ deviations
     return mixed, within + (between + between.swapaxes(1, 2)) / 2
@@ -127,10 +129,10 @@ class ModeBelief:
                 f"means, covariances and log-probabilities of shapes {shapes[0]}, {shapes[1]} and "
                 f"{shapes[2]}, expected {(modes, size)}, {(modes, size, size)} and {(modes,)}"
             )
-        if not (np.isfinite(self.means).all() and np.isfinite(self.covariances).all()):
+        if not (_are_finite(self.means) and _are_finite(self.covariances)):
             raise EstimationError(self._not_finite())
         logs = self.log_probabilities
-        if np.isnan(logs).any() or not abs(log_sum(logs)) < SUM_TOLERANCE:
+        if any(map(math.isnan, logs.tolist())) or not abs(log_sum(logs)) < SUM_TOLERANCE:
             raise EstimationError(
                 f"mode probabilities {self.probabilities.tolist()}, expected a sum of 1"
             )
@@ -163,3 +165,7 @@ class ModeBelief:
                     "expected finite numbers"
                 )
         raise AssertionError
+
+
+def _are_finite(values: FloatArray) -> bool:
+    return bool(np.logical_and.reduce(np.isfinite(values), axis=None))
