@@ -10,7 +10,6 @@ from typing import ClassVar
 
 import numpy as np
 from scipy.linalg import solve_banded
-from scipy.signal import bilinear, lfilter, lfilter_zi
 
 from odometry.arrays import FloatArray
 from odometry.effects.base import EffectParameter, MeasurementEffect
@@ -129,6 +128,8 @@ class SwayingMast(ReferenceFilter):
 
     def seen(self, values: FloatArray, poses: FloatArray, reported: Reported) -> FloatArray:
         """See `MeasurementEffect.seen`; by the bilinear transform, at rest before the first."""
+        from scipy.signal import bilinear, lfilter, lfilter_zi  # noqa: PLC0415 - slow to load
+
         bend, frequency, damping = values
         square, rate = frequency**2, 2 * damping * frequency
         numbers = bilinear([1 - bend * square, rate, square], [1.0, rate, square], 1 / GRID_S)
