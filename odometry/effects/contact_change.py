@@ -122,9 +122,13 @@ class ContactChange(MotionEffect):
         self, balances: FloatArray, inputs: Inputs, driven: Sequence[FloatArray]
     ) -> FloatArray:
         """The same, searched from the latest answer on these inputs."""
-        latest = _remembered(self._latest, driven, lambda: MODEL.twist(balances, inputs))
-        answer = MODEL.twist_near(balances, inputs, latest)
-        self._latest[_key(driven)] = answer
+        key = _key(driven)
+        latest = self._latest.pop(key, None)
+        if latest is None:
+            answer = MODEL.twist(balances, inputs)
+        else:
+            answer = MODEL.twist_near(balances, inputs, latest)
+        _keep(self._latest, key, answer)
         return answer
 
     def balanced_by_values(self, balances: FloatArray, inputs: Inputs) -> FloatArray:
@@ -146,10 +150,14 @@ def _remembered(
     """What was answered to the same numbers, or the answer now."""
     key = _key(stack)
     if key not in answers:
-        while len(answers) >= REMEMBERED:
-            answers.pop(next(iter(answers)))
-        answers[key] = answer()
+        _keep(answers, key, answer())
     return answers[key]
+
+
+def _keep(answers: dict[bytes, FloatArray], key: bytes, answer: FloatArray) -> None:
+    while len(answers) >= REMEMBERED:
+        answers.pop(next(iter(answers)))
+    answers[key] = answer
 
 
 def _key(stack: Sequence[FloatArray]) -> bytes:

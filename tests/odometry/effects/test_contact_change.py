@@ -72,6 +72,20 @@ def test_inertia_does_not_see_the_slope(bench):
 
 
 @pytest.mark.parametrize("effect", [SlopeByContact, InertiaByContact])
+def test_other_values_before_do_not_change_the_answer(bench, effect, monkeypatch):
+    """A balance that is searched from that of other values is the same; few are remembered."""
+    monkeypatch.setattr("odometry.effects.contact_change.REMEMBERED", 2)
+    used = effect()
+    for factor in (1.0, 1.3, 0.8, 1.0):
+        for speeds in ([0.4, 1.2], [0.2, 1.4], [0.1, 0.3]):
+            inputs, values = constant(speeds, 0.1), VALUES * factor
+            before, fresh = (
+                corrected_twist(bench.base, [Added(of, values)], inputs) for of in (used, effect())
+            )
+            np.testing.assert_allclose(before, fresh, atol=1e-12)
+
+
+@pytest.mark.parametrize("effect", [SlopeByContact, InertiaByContact])
 def test_what_it_remembers_is_what_it_computes(bench, effect):
     """One instance, asked in turn of other inputs and values, answers as new ones do."""
     used = effect()

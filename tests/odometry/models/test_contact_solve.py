@@ -131,3 +131,21 @@ def test_what_is_not_known_gives_no_twist():
 
 def test_no_samples():
     assert MODEL.twist(ORDINARY, Inputs(np.zeros((0, 2)))).shape == (0, 3)
+
+
+def test_a_search_from_a_known_balance_finds_the_same_one(rng):
+    """Ordinary robots, from the balance with other friction and longer contacts."""
+    values, inputs = np.tile(ORDINARY, (500, 1)), wide(rng, 500)[1]
+    slopes = np.clip([inputs.roll_rad, inputs.pitch_rad], -0.2, 0.2)
+    inputs = Inputs(np.clip(inputs.tread_speeds_m_s, -0.6, 0.6), *slopes)
+    other = values * np.where(np.arange(9) == 0, 1.2, np.where(np.arange(9) == 5, 0.8, 1.0))
+    near = MODEL.twist_near(values, inputs, MODEL.twist(other, inputs))
+    np.testing.assert_allclose(near, MODEL.twist(values, inputs), atol=1e-9)
+
+
+def test_a_search_from_far_away_settles_as_often_as_an_ordinary_one(rng):
+    """Where it does not settle from there, it begins where it would have."""
+    values, inputs = wide(rng, 1000)
+    near = MODEL.twist_near(values, inputs, rng.normal(0, 50, (1000, 3)))
+    of_near = settled(balance_at(stance_of(values, inputs), near.T))
+    assert np.all(of_near[settled(balance_of(values, inputs))])
