@@ -69,6 +69,13 @@ class Reliability:
         gaps = np.abs(self.accuracies - self.confidences)[used]
         return float(self.counts[used] @ gaps / self.counts.sum())
 
+    @property
+    def mean_excess(self) -> float:
+        """Mean probability of the answers less the share that is right: above 0, too sure."""
+        used = self.counts > 0
+        gaps = (self.confidences - self.accuracies)[used]
+        return float(self.counts[used] @ gaps / self.counts.sum())
+
 
 def reliability(codes: IntArray, probabilities: FloatArray) -> Reliability:
     """Sort the likeliest answers by their probability.
@@ -90,14 +97,33 @@ def reliability(codes: IntArray, probabilities: FloatArray) -> Reliability:
         return Reliability(counts, *means)
 
 
-def expected_error_if_calibrated(
-    probabilities: FloatArray, groups: AnyArray, seed: int = 0
-) -> float:
-    """The expected calibration error to expect of probabilities that are exactly right.
+@dataclass(frozen=True)
+class ReliabilityByChance:
+    """How far off probabilities seem that are exactly right, by chance alone.
 
-    It is not zero: few answers in a tenth are right in another share than their probability by
-    chance alone. Answers are drawn 200 times, right with their own probability; those of a group
-    are drawn together, by one number, so that they are right and wrong as a whole.
+    Attributes
+    ----------
+    expected_error : float
+        The expected calibration error, in the mean over draws.
+    lowest, highest : FloatArray, shape (10,)
+        Between which the share of right answers of each tenth lies in 95 % of the draws; NaN
+        where there is no answer.
+    """
+
+    expected_error: float
+    lowest: FloatArray
+    highest: FloatArray
+
+
+def reliability_by_chance(
+    probabilities: FloatArray, groups: AnyArray, seed: int = 0
+) -> ReliabilityByChance:
+    """What to expect of the reliability of probabilities that are exactly right.
+
+    Their calibration error is not zero: few answers in a tenth are right in another share than
+    their probability by chance alone. Answers are drawn 200 times, right with their own
+    probability; those of a group are drawn together, by one number, so that they are right and
+    wrong as a whole.
 
     Parameters
     ----------
@@ -109,9 +135,11 @@ def expected_error_if_calibrated(
     confidence = probabilities.max(axis=1)
     _, group = np.unique(groups, return_inverse=True)
     rng = np.random.default_rng(seed)
-    errors = []
+    drawn = []
     for _ in range(DRAWS):
         right = rng.random(int(group.max()) + 1)[group] < confidence
         answers = np.where(right, probabilities.argmax(axis=1), -1)
-        errors.append(reliability(answers, probabilities).expected_error)
-    return float(np.mean(errors))
+        drawn.append(reliability(answers, probabilities))
+    lowest, highest = np.quantile([each.accuracies for each in drawn], [0.025, 0.975], axis=0)
+    expected = float(np.mean([each.expected_error for each in drawn]))
+    return ReliabilityByChance(expected, lowest, highest)

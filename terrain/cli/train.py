@@ -10,7 +10,6 @@ from terrain.cli.network_options import network_options
 from terrain.cli.options import OUTPUT, Positive, processes_option, scheduler_option
 
 if TYPE_CHECKING:
-    from terrain.classification.classifier import TerrainClassifier
     from terrain.classification.network_features import NetworkFeatures
     from terrain.classification.patches import LabelledPatches
 
@@ -74,6 +73,13 @@ if TYPE_CHECKING:
     help="PATCHES are a few photographs of a new camera: mix them with what MODEL learned from, "
     "where cross-validation says that it helps.",
 )
+@click.option(
+    "--picture",
+    metavar="FILE.png",
+    type=OUTPUT,
+    help="Draw how often answers were right in cross-validation, by how probable they were said to "
+    "be.",
+)
 @processes_option
 @scheduler_option
 def train(
@@ -89,6 +95,7 @@ def train(
     reject: float,
     augment: bool,
     old: Path | None,
+    picture: Path | None,
     processes: int | None,
     scheduler: str | None,
 ) -> None:
@@ -109,8 +116,14 @@ def train(
     from terrain.classification.persistence import is_model
     from terrain.classification.training import train as train_classifier
     from terrain.cli.outputs import claim_file
+    from terrain.cli.train_text import (
+        claim_reliability_picture,
+        summary,
+        write_reliability_picture,
+    )
 
     made = claim_file(out, is_model)
+    claim_reliability_picture(picture)
     shared: dict[str, Any] = {
         "metres_per_pixel": metres_per_pixel,
         "colour": colour,
@@ -163,7 +176,8 @@ def train(
         )
     classifier.save(out, made.to_table())
     if hasattr(classifier, "cross_validation_"):  # a model that was kept as it is has none
-        click.echo(_summary(classifier, loaded))
+        click.echo(summary(classifier, loaded))
+    write_reliability_picture(picture, classifier, loaded)
     click.echo(f"\nWrote {out}. Next: terrain-odometry classify {out} IMAGE...")
 
 
@@ -171,48 +185,3 @@ def _grouped(patches: "LabelledPatches") -> set[Path]:
     """The photographs that a manifest names: the others are named after themselves."""
     pairs = zip(patches.photos, patches.groups, strict=True)
     return {photo for photo, group in pairs if group != str(photo)}
-
-
-def _origin(patches: "LabelledPatches") -> str:
-    """How many photographs, and what the cross-validation keeps whole."""
-    photos, groups = len(set(patches.photos)), len(set(patches.groups))
-    if groups == photos:
-        return f"{photos} photographs, cross-validated by photograph"
-    return f"{photos} photographs in {groups} groups, cross-validated by group"
-
-
-def _summary(classifier: "TerrainClassifier", patches: "LabelledPatches") -> str:
-    import numpy as np
-
-    from terrain.classification.calibration import expected_error_if_calibrated, reliability
-    from terrain.classification.evaluation import (
-        balanced_accuracy,
-        confusion,
-        confusion_text,
-        photo_votes,
-    )
-
-    found = classifier.cross_validation_
-    answers = found.probabilities.argmax(axis=1)
-    names = np.array([str(patches.photos[row]) for row in found.rows])
-    photo_codes, photo_answers, _ = photo_votes(found.codes, found.probabilities, names)
-    table = confusion(found.codes, answers, len(classifier.classes_))
-    chosen = "given" if classifier.n_neighbors else "chosen"
-    independent, together = (
-        expected_error_if_calibrated(found.probabilities, groups)
-        for groups in (np.arange(len(names)), names)
-    )
-    return (
-        f"{len(patches.photos)} patches of {classifier.patch_size_px} px from {_origin(patches)} "
-        "(true terrain down, answer across, %):\n\n"
-        f"{confusion_text(table, classifier.classes_.tolist())}\n\n"
-        f"balanced accuracy by patch {balanced_accuracy(found.codes, answers):.3f}, by vote of a "
-        f"photograph's patches {balanced_accuracy(photo_codes, photo_answers):.3f}; probabilities "
-        f"are off by {reliability(found.codes, found.probabilities).expected_error:.3f} in the "
-        f"mean (expected calibration error; exact ones would seem off by {independent:.3f} if "
-        f"patches were independent, by {together:.3f} if those of a photograph were right or wrong "
-        "together)\n"
-        f"{chosen} k {classifier.n_neighbors_}, rejection threshold "
-        f"{classifier.rejection_distance_:.4g} ({100 * classifier.rejected_share:g} % of known "
-        "terrain lies beyond)"
-    )

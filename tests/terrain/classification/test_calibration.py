@@ -6,9 +6,9 @@ from scipy.stats import binom
 
 from terrain.classification.calibration import (
     FLOOR,
-    expected_error_if_calibrated,
     fitted_temperature,
     reliability,
+    reliability_by_chance,
     tempered,
 )
 
@@ -43,6 +43,9 @@ def test_expected_error_in_closed_form():
     assert found.counts.tolist() == [0, 0, 0, 0, 0, 0, 2, 0, 0, 4]
     assert found.accuracies[[6, 9]].tolist() == [0.5, 0.75]
     assert found.expected_error == pytest.approx((2 * 0.15 + 4 * 0.20) / 6)
+    assert found.mean_excess == pytest.approx((2 * 0.15 + 4 * 0.20) / 6)
+    turned = reliability(np.array([0, 0, 0, 0, 1, 1]), probabilities)
+    assert turned.mean_excess == pytest.approx(-(2 * 0.35 + 4 * 0.05) / 6)
 
 
 def test_a_class_without_a_neighbour_stays_possible():
@@ -56,14 +59,23 @@ def test_the_error_of_exact_probabilities_in_closed_form():
     shares = np.arange(n + 1)
     expected = binom(n, p).pmf(shares) @ np.abs(shares / n - p)
     probabilities = np.tile([p, 1 - p], (n, 1))
-    found = expected_error_if_calibrated(probabilities, np.arange(n))
+    found = reliability_by_chance(probabilities, np.arange(n)).expected_error
     assert found == pytest.approx(expected, abs=4 * 0.125 * 0.6 / np.sqrt(200))
-    together = expected_error_if_calibrated(probabilities, np.zeros(n))
+    together = reliability_by_chance(probabilities, np.zeros(n)).expected_error
     assert together == pytest.approx(2 * p * (1 - p), abs=4 * 0.22 / np.sqrt(200))
 
 
 def test_exact_probabilities_are_no_farther_off_than_expected(rng):
     probabilities = rng.dirichlet(np.ones(4), 3000)
     codes = (rng.random(3000)[:, None] > probabilities.cumsum(axis=1)).sum(axis=1)
-    expected = expected_error_if_calibrated(probabilities, np.arange(3000))
+    expected = reliability_by_chance(probabilities, np.arange(3000)).expected_error
     assert reliability(codes, probabilities).expected_error < 2 * expected < 0.04
+
+
+def test_shares_that_chance_explains_are_those_of_the_binomial():
+    """400 answers of one probability: a band of two deviations on either side, no other tenth."""
+    n, p = 400, 0.75
+    chance = reliability_by_chance(np.tile([p, 1 - p], (n, 1)), np.arange(n))
+    expected = binom(n, p).ppf([0.025, 0.975]) / n
+    assert [chance.lowest[7], chance.highest[7]] == pytest.approx(expected, abs=0.012)
+    assert np.isnan(np.delete(chance.lowest, 7)).all()

@@ -9,8 +9,10 @@ from click.testing import CliRunner
 from joblib.externals.loky import get_reusable_executor
 
 from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.validation import CrossValidation
 from terrain.cli.classify import classify
 from terrain.cli.train import train
+from terrain.cli.train_text import calibration_words
 from terrain.images import read_image
 
 
@@ -41,6 +43,7 @@ def trained(photos, tmp_path_factory):
 
 def trained_by(photos, model, processes):
     options = ["--patch-size", "32", "--metres-per-pixel", "0.006", "--processes", str(processes)]
+    options += ["--picture", str(model.with_suffix(".png"))]
     return CliRunner().invoke(train, [str(photos), "--out", str(model), *options])
 
 
@@ -48,6 +51,38 @@ def test_two_processes_train_the_same_file(trained, photos, tmp_path):
     assert trained_by(photos, tmp_path / "ground.model", 2).exit_code == 0
     get_reusable_executor().shutdown(wait=True)
     assert (tmp_path / "ground.model").read_bytes() == trained[0].read_bytes()
+
+
+def test_train_draws_the_reliability(trained):
+    model, answer = trained
+    picture = model.with_suffix(".png")
+    assert cv2.imread(str(picture)).std() > 10
+    assert f"Wrote {picture}" in answer.stdout
+
+
+def test_train_overwrites_no_picture_of_others(photos, tmp_path):
+    picture = tmp_path / "mine.png"
+    picture.write_bytes(b"a picture of another program")
+    call = [str(photos), "--out", str(tmp_path / "ground.model"), "--picture"]
+    assert "did not make it" in str(CliRunner().invoke(train, [*call, str(picture)]).exception)
+    answer = CliRunner().invoke(train, [*call, str(tmp_path / "mine.jpg")])
+    assert "expected a name that ends in .png" in answer.output
+
+
+@pytest.mark.parametrize(
+    ("shares_right", "words"),
+    [
+        (0.75, "chance explains this"),
+        (0.25, "chance does not explain this: they are too high"),
+        (1.0, "chance does not explain this: they are too low"),
+    ],
+)
+def test_train_says_whether_chance_explains_the_error(shares_right, words):
+    """400 answers of probability 0.75, each of a photograph of its own, some of them right."""
+    codes = (np.arange(400) >= 400 * shares_right).astype(int)
+    votes = np.tile([0.75, 0.25], (400, 1))
+    found = CrossValidation(1, np.arange(400), codes, votes, np.zeros(400))
+    assert words in calibration_words(found, np.arange(400))
 
 
 def test_train_prints_confusion_k_and_threshold_and_what_comes_next(trained, photos):
