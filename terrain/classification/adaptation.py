@@ -1,13 +1,15 @@
 """A trained model and a few labelled photographs of a new camera: which samples to train on."""
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from odometry.arrays import AnyArray, BoolArray, IntArray
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.evaluation import balanced_accuracy
+from terrain.classification.evaluation import balanced_accuracy, paired_difference
 from terrain.classification.patches import (
     LabelledPatches,
     find_photos,
@@ -18,6 +20,7 @@ from terrain.classification.trained_on import TrainedOn
 from terrain.classification.training import Training
 from terrain.errors import PatchError
 
+CLEAR = 2.0  # standard errors
 ALONE, MIXED, OLD = "the new photographs alone", "both mixed", "the old model as it is"
 
 
@@ -57,8 +60,9 @@ def adapt(
     """Train on the photographs of a folder, with the samples of an old model where they help.
 
     Whether they do is decided by cross-validation that holds whole new photographs out: nothing of
-    an old photograph is evaluated. Where a terrain has one photograph alone this is undetermined,
-    and only the new photographs are trained on.
+    an old photograph is evaluated. The new photographs alone are kept unless old ones help by more
+    than twice the standard error of the difference, see `clearly_best`. Where a terrain has one
+    photograph alone this is undetermined, and only the new photographs are trained on.
 
     Parameters
     ----------
@@ -110,24 +114,45 @@ def adapt(
     forgotten = tuple(sorted(set(map(str, old.classes_)) - set(patches.labels)))
     if single:
         return Adaptation(Training(found[ALONE], patches), ALONE, {}, forgotten)
-    scores = {name: _held_out(classifier) for name, classifier in found.items()}
-    found[OLD], scores[OLD] = old, _as_it_is(old, patches)
-    kept = max(scores, key=lambda name: scores[name])
+    rows = found[ALONE].cross_validation_.rows
+    right = {name: _held_out(classifier) for name, classifier in found.items()}
+    right[OLD] = (np.asarray(old.predict(patches.images)) == np.array(patches.labels))[rows]
+    found[OLD] = old
+    codes, groups = found[ALONE].cross_validation_.codes, np.asarray(patches.groups)[rows]
+    scores = {name: balanced_accuracy(codes, np.where(of, codes, -1)) for name, of in right.items()}
+    kept = clearly_best(codes, right, groups)
     return Adaptation(
         Training(found[kept], patches), kept, scores, () if kept == OLD else forgotten
     )
 
 
-def _held_out(classifier: TerrainClassifier) -> float:
+def clearly_best(codes: IntArray, right: Mapping[str, BoolArray], groups: AnyArray) -> str:
+    """The new photographs alone, unless another way is clearly better.
+
+    A few photographs are weak evidence, what an old model holds is of another camera, and in each
+    fold the new ones alone learn from fewer photographs than in the end: where held-out photographs
+    do not show by two standard errors that old ones help, these are left out.
+
+    Parameters
+    ----------
+    codes : IntArray, shape (n,)
+    right : dict of str to BoolArray, shape (n,)
+        Whether each way answers the patches rightly.
+    groups : array, shape (n,)
+        Their photographs.
+    """
+    gains = {
+        name: paired_difference(codes, of, right[ALONE], groups)
+        for name, of in right.items()
+        if name != ALONE
+    }
+    helpful = [name for name, (gain, error) in gains.items() if gain > CLEAR * error]
+    return max(helpful, key=lambda name: gains[name][0], default=ALONE)
+
+
+def _held_out(classifier: TerrainClassifier) -> BoolArray:
     found = classifier.cross_validation_
-    return balanced_accuracy(found.codes, found.probabilities.argmax(axis=1))
-
-
-def _as_it_is(old: TerrainClassifier, patches: LabelledPatches) -> float:
-    said = np.asarray(old.predict(patches.images))
-    names, codes = np.unique(patches.labels, return_inverse=True)
-    right = said == np.array(patches.labels)
-    return float(np.mean([right[codes == code].mean() for code in range(len(names))]))
+    return np.asarray(found.probabilities.argmax(axis=1) == found.codes)
 
 
 def _in_parts(patches: LabelledPatches) -> LabelledPatches:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from sklearn.metrics import confusion_matrix, roc_auc_score
 
-from odometry.arrays import AnyArray, FloatArray, IntArray
+from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 
 BOOTSTRAP_SAMPLES = 2000
 
@@ -62,6 +62,40 @@ def balanced_accuracy_interval(
         recalls.append((draws @ right) / (draws @ sizes))
     low, high = np.quantile(np.mean(recalls, axis=0), [0.025, 0.975])
     return float(low), float(high)
+
+
+def paired_difference(
+    codes: IntArray, right: BoolArray, other: BoolArray, groups: AnyArray
+) -> tuple[float, float]:
+    """How much better one way answers the same patches than another, and its standard error.
+
+    Parameters
+    ----------
+    codes : IntArray, shape (n,)
+    right, other : BoolArray, shape (n,)
+        Whether either way answers rightly.
+    groups : array, shape (n,)
+        Photographs: each is one piece of evidence, however many patches it has.
+
+    Returns
+    -------
+    difference, standard_error : float
+        Of balanced accuracy. The error is infinite where a class has one photograph alone.
+    """
+    classes = np.unique(codes)
+    means, variances = [], []
+    for c in classes:
+        chosen = codes == c
+        _, members = np.unique(groups[chosen], return_inverse=True)
+        sizes = np.bincount(members)
+        better = np.bincount(members, weights=right[chosen].astype(int) - other[chosen])
+        mean = better.sum() / sizes.sum()
+        residuals = (better - mean * sizes) / sizes.sum()
+        count = len(sizes)
+        variance = (residuals**2).sum() * count / (count - 1) if count > 1 else np.inf
+        means.append(mean)
+        variances.append(variance)
+    return float(np.mean(means)), float(np.sqrt(np.sum(variances)) / len(classes))
 
 
 def rejection_roc_area(known_distances: FloatArray, unknown_distances: FloatArray) -> float:

@@ -37,7 +37,8 @@ def _words(found: "Adaptation", model: Path) -> str:
         scores = ", ".join(f"{name} {score:.3f}" for name, score in found.scores.items())
         lines = [
             f"Adapted from {model}: balanced accuracy by patch on new photographs that were held "
-            f"out: {scores}. Kept: {found.kept}."
+            f"out: {scores}. Kept: {found.kept}; another way is kept only where it is better than "
+            "the new photographs alone by more than twice the standard error of the difference."
         ]
     else:
         lines = [

@@ -18,8 +18,8 @@ from pathlib import Path
 import numpy as np
 from terrain_grounds import COPIES, PER_COPY, Grounds
 
-from odometry.arrays import FloatArray, IntArray
-from terrain.classification.adaptation import ALONE, MIXED, OLD
+from odometry.arrays import BoolArray, FloatArray, IntArray
+from terrain.classification.adaptation import ALONE, MIXED, OLD, clearly_best
 from terrain.classification.evaluation import balanced_accuracy
 from terrain.classification.feature_jobs import shared_feature_matrix
 from terrain.classification.neighbours import Neighbours, vote
@@ -46,21 +46,21 @@ def read(folder: Path, per_photo: int, store: Path) -> Grounds:
         return Grounds(*(arrays[f"arr_{i}"] for i in range(5)))
 
 
-def learned(samples: Samples, *, judged: bool) -> tuple[Neighbours, int, float]:
-    """Neighbours, k and the balanced accuracy of held-out photographs, where one could be."""
-    score, k = float("nan"), PRESET.neighbour_counts[0]
+def learned(samples: Samples, *, judged: bool) -> tuple[Neighbours, int, BoolArray]:
+    """Neighbours, k and which held-out patches (n,) are named rightly, where some could be."""
+    right, k = np.zeros(0, dtype=bool), PRESET.neighbour_counts[0]
     if judged:
         found = cross_validate(PRESET.neighbours, PRESET.neighbour_counts, samples, calibrates=True)
-        score = balanced_accuracy(found.codes, found.probabilities.argmax(axis=1))
+        right = found.probabilities.argmax(axis=1) == found.codes
         k = found.n_neighbors
     everything = samples.with_copies(np.arange(len(samples.codes)), None)
-    return PRESET.neighbours().fit(*everything), k, score
+    return PRESET.neighbours().fit(*everything), k, right
 
 
-def accuracy(model: Neighbours, k: int, features: FloatArray, codes: IntArray) -> float:
-    """Balanced accuracy by patch."""
+def answers(model: Neighbours, k: int, features: FloatArray) -> IntArray:
+    """The likeliest class of each patch."""
     labels, _ = model.labels_and_distances(features, k)
-    return balanced_accuracy(codes, vote(labels, model.class_weights_).argmax(axis=1))
+    return vote(labels, model.class_weights_).argmax(axis=1)
 
 
 def one_draw(
@@ -76,18 +76,24 @@ def one_draw(
     some, rest = new.only(shown), new.only(~shown)
     codes, test = new.codes[shown], new.codes[~shown]
     grey = some.bank[:, GREY]
-    ways: dict[str, tuple[Neighbours, int, float]] = {
+    ways: dict[str, tuple[Neighbours, int, BoolArray]] = {
         ALONE: learned(Samples(grey, codes, some.groups), judged=photos > 1),
         MIXED: learned(
             SamplesBesideOld(grey, codes, some.groups, old.bank[:, GREY], old.codes),
             judged=photos > 1,
         ),
     }
-    ways[OLD] = *as_it_is, accuracy(*as_it_is, grey, codes)
-    found = {name: accuracy(m, k, rest.bank[:, GREY], test) for name, (m, k, _) in ways.items()}
-    kept = max(ways, key=lambda name: ways[name][2]) if photos > 1 else ALONE
+    ways[OLD] = *as_it_is, answers(*as_it_is, grey) == codes
+    found = {
+        name: balanced_accuracy(test, answers(model, k, rest.bank[:, GREY]))
+        for name, (model, k, _) in ways.items()
+    }
+    kept = ALONE
+    if photos > 1:
+        right = {name: of for name, (_, _, of) in ways.items()}
+        kept = clearly_best(codes, right, some.groups)
     model, k, _ = learned(Samples(some.bank, codes, some.groups), judged=photos > 1)
-    return found, kept, accuracy(model, k, rest.bank, test)
+    return found, kept, balanced_accuracy(test, answers(model, k, rest.bank))
 
 
 def main() -> None:

@@ -1,11 +1,13 @@
 import numpy as np
 import pytest
+from scipy.stats import sem
 
 from terrain.classification.evaluation import (
     balanced_accuracy,
     balanced_accuracy_interval,
     confusion,
     confusion_text,
+    paired_difference,
     photo_votes,
     rejection_roc_area,
 )
@@ -61,3 +63,14 @@ def test_roc_area_counts_pairs(rng):
     known, unknown = rng.integers(0, 8, 30).astype(float), rng.integers(2, 12, 20).astype(float)
     wins = unknown[:, None] - known
     assert rejection_roc_area(known, unknown) == pytest.approx(np.mean((np.sign(wins) + 1) / 2))
+
+
+def test_a_difference_and_its_error_are_those_of_photographs(rng):
+    """Photographs of ten patches each: mean and standard error of what they gain."""
+    codes, groups = np.repeat([0, 1], [60, 40]), np.repeat(np.arange(10), 10)
+    right, other = rng.random((2, 100)) < [[0.7], [0.5]]
+    gains = (right.astype(float) - other).reshape(10, 10).mean(axis=1)
+    difference, error = paired_difference(codes, right, other, groups)
+    assert difference == pytest.approx((gains[:6].mean() + gains[6:].mean()) / 2)
+    assert error == pytest.approx(np.hypot(sem(gains[:6]), sem(gains[6:])) / 2)
+    assert paired_difference(codes, right, other, codes)[1] == np.inf
