@@ -20,10 +20,7 @@ from terrain.classification.old_samples import OldSamples, SamplesBesideOld
 from terrain.classification.patches import LabelledPatches
 from terrain.classification.presets import PRESETS
 from terrain.classification.trained_on import TrainedOn
-from terrain.classification.training_set import (
-    check_labels,
-    holds_images,
-)
+from terrain.classification.training_set import check_labels, holds_images
 from terrain.classification.validation import Samples
 
 __all__ = ["Classification", "Classifier", "TerrainClassifier"]
@@ -74,8 +71,10 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
     rejection_distance_ : float
         Of one patch.
     rejection_distances_ : tuple of float
-        Of the median of 1, 2, 4, 8, 16 patches; a distance that `classify` gives is on the scale
-        of one patch.
+        Of the median of 1, 2, 4, 8, 16 patches.
+    image_rejection_distances_ : tuple of float or None
+        The same of their mean place, which is judged (`classify` gives it on the scale of one
+        patch); None with ``chen2023`` and of files before version 0.13.
     temperature_ : float or None
         Of the votes; None leaves them as they are.
     cross_validation_ : CrossValidation

@@ -9,7 +9,7 @@ from odometry.arrays import AnyArray, ByteImage
 from terrain.classification.features import FeatureSettings
 from terrain.classification.features_of import Transformed
 from terrain.classification.presets import PRESETS
-from terrain.classification.rejection import rejection_distances
+from terrain.classification.rejection import quantiles, rejection_distances
 from terrain.classification.trained import TrainedClassifier
 from terrain.classification.training_set import common_size, has_colour
 from terrain.classification.validation import CrossValidation, Samples, best_way
@@ -71,3 +71,6 @@ class LearningClassifier(TrainedClassifier):
         )
         self.rejection_distances_ = limits[:1] if preset.as_published else limits
         self.rejection_distance_ = limits[0]
+        self.image_rejection_distances_ = (
+            None if preset.as_published else quantiles(found.image_distances, self.rejected_share)
+        )

@@ -37,6 +37,7 @@ class ModelFile:
     n_neighbors_: int
     rejection_distance_: float
     rejection_distances_: tuple[float, ...]
+    image_rejection_distances_: tuple[float, ...] | None
     temperature_: float | None
     one_patch_: bool
     trained_on_: TrainedOn | None
@@ -89,6 +90,7 @@ class ModelFile:
             self.rejection_distances_,
             self.temperature_,
             self.one_patch_,
+            self.image_rejection_distances_,
         )
         write_model(Path(path), settings.to_table(), arrays, made)
 
@@ -126,6 +128,7 @@ class ModelFile:
         else:
             model._features = features
         model.rejection_distances_ = settings.rejection_distances
+        model.image_rejection_distances_ = settings.image_rejection_distances
         model.temperature_ = settings.temperature
         model.one_patch_ = settings.one_patch
         model.trained_on_ = settings.trained_on
@@ -143,5 +146,7 @@ class ModelFile:
         self.n_features_in_ = features.shape[1]
         self._neighbours.labels(features, self.n_neighbors_)
         self._neighbours.distances(features)
+        if self.image_rejection_distances_ is not None:
+            self._neighbours.labels_and_image_distances(features, 1, [np.arange(1)])
         if len(self.classes_) != len(self._neighbours.class_weights_):
             raise ValueError(f"{len(self.classes_)} class names for the samples of others")

@@ -1,7 +1,7 @@
 """What a model file says beside its arrays, checked when it is read."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Self
 
@@ -29,6 +29,7 @@ class ModelSettings:
     rejection_distances: tuple[float, ...] = ()
     temperature: float | None = None
     one_patch: bool = False
+    image_rejection_distances: tuple[float, ...] | None = None
 
     def to_table(self) -> dict[str, Any]:
         """Turn into values that JSON can hold."""
@@ -76,14 +77,21 @@ class ModelSettings:
             values["trained_on"] = TrainedOn.from_table(table["trained_on"])
         # files of version 0.9 do not say
         limits = table.get("rejection_distances", [table["rejection_distance"]])
-        values["rejection_distances"] = tuple(_within(limit, 0.0, 1e12) for limit in limits)
-        if len(limits) not in {1, len(PATCHES)}:
-            raise ValueError(f"rejection_distances = {limits}")
+        values["rejection_distances"] = _distances(limits, {1, len(PATCHES)})
         if table.get("temperature") is not None:
             values["temperature"] = _within(table["temperature"], *TEMPERATURES)
         # files of version 0.11 do not say
         values["one_patch"] = _is_true(table.get("one_patch", False))
+        if table.get("image_rejection_distances") is not None:  # files of 0.12 do not say
+            limits = table["image_rejection_distances"]
+            values["image_rejection_distances"] = _distances(limits, {len(PATCHES)})
         return cls(**values)
+
+
+def _distances(limits: Sequence[object], lengths: set[int]) -> tuple[float, ...]:
+    if len(limits) not in lengths:
+        raise ValueError(f"rejection distances {limits}")
+    return tuple(_within(limit, 0.0, 1e12) for limit in limits)
 
 
 def _is_true(value: object) -> bool:

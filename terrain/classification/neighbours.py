@@ -1,23 +1,24 @@
 """Nearest neighbours: who they are, how they vote, and how far away they are.
 
-Two final classes behind one interface, `Neighbours`: `PlainNeighbours` is the paper's,
-`DiscriminantNeighbours` the default's. Features are (n, F), class codes 0 ... classes - 1.
+Two final classes behind one interface, `Neighbours`: `PlainNeighbours` is the paper's (in its own
+file), `DiscriminantNeighbours` the default's. Features are (n, F), class codes 0 ... classes - 1.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from copy import copy
 from typing import Protocol, Self
 
 import numpy as np
 from scipy.spatial.distance import cdist
-from sklearn.neighbors import KNeighborsClassifier
 from sklearn.pipeline import make_pipeline
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
 from terrain.classification.fourier import MOST, FourierFeatures
 from terrain.classification.metric import AppearanceMetric, ClippedScaler, DiscriminantMetric
-from terrain.classification.nearest import nearest
-from terrain.classification.novelty import ASKED, NEIGHBOURS, LocalSparsity, classes_left_open
+from terrain.classification.nearest import brute_force, labels_and_sample_distances
+from terrain.classification.novelty import ASKED, LocalSparsity, classes_left_open
+
+SMALLEST = np.finfo(float).tiny  # sparsity of a patch that several samples equal
 
 
 class Neighbours(Protocol):
@@ -36,6 +37,14 @@ class Neighbours(Protocol):
 
     def labels_and_distances(self, features: FloatArray, k: int) -> tuple[IntArray, FloatArray]:
         """Return both, with nothing computed twice."""
+
+    def labels_and_image_distances(
+        self, features: FloatArray, k: int, images: Sequence[IntArray]
+    ) -> tuple[IntArray, FloatArray]:
+        """Return the codes of the k nearest of each patch (n, k), and the distance of each image.
+
+        `images` holds rows of `features`: the patches of an image are judged together.
+        """
 
     def arrays(self) -> dict[str, AnyArray]:
         """Return everything learned, by name."""
@@ -68,40 +77,6 @@ def vote(labels: IntArray, class_weights: FloatArray) -> FloatArray:
     return np.asarray(votes / votes.sum(axis=1, keepdims=True))
 
 
-class PlainNeighbours:
-    """Euclidean neighbours of unscaled features, one vote each (Chen et al. 2023, eq. 24-25)."""
-
-    class_weights_: FloatArray
-
-    def fit(self, features: FloatArray, codes: IntArray, copies: int = 0) -> Self:  # noqa: ARG002
-        """Remember features (n, F) and class codes (n,), copies or not."""
-        self.pipeline_ = make_pipeline(_knn()).fit(features, codes)
-        self.class_weights_ = np.ones(int(codes.max()) + 1)
-        return self
-
-    def labels(self, features: FloatArray, k: int) -> IntArray:
-        """Return the class codes of the k nearest, (n, k)."""
-        return self.labels_and_distances(features, k)[0]
-
-    def distances(self, features: FloatArray) -> FloatArray:
-        """Return the mean Euclidean distances to the nearest samples, (n,)."""
-        return self.labels_and_distances(features, 1)[1]
-
-    def labels_and_distances(self, features: FloatArray, k: int) -> tuple[IntArray, FloatArray]:
-        """Return both."""
-        knn = self.pipeline_[-1]
-        return _labels_and_distances(knn, features, k, knn.n_samples_fit_)  # eq. 24
-
-    def arrays(self) -> dict[str, AnyArray]:
-        """Return the training samples."""
-        return {"points": self.pipeline_[-1]._fit_X, "codes": self.pipeline_[-1]._y}
-
-    @classmethod
-    def from_arrays(cls, arrays: Mapping[str, AnyArray]) -> Self:
-        """Rebuild from the training samples."""
-        return cls().fit(arrays["points"], arrays["codes"])
-
-
 class DiscriminantNeighbours:
     """Neighbours among shrunk discriminants; rare classes weigh as much as common ones.
 
@@ -112,7 +87,8 @@ class DiscriminantNeighbours:
     class among the discriminants, the number of classes that the neighbours' vote leaves open, and
     the cube of the local sparsity among whitened principal components. The first two ask whether a
     patch is like any class in what tells classes apart, the third whether its neighbours agree, the
-    last whether it looks like anything seen. The mean and the vote detect another terrain, the
+    last whether it looks like anything seen. Patches of one image are judged together by their
+    mean place, see `labels_and_image_distances`. The mean and the vote detect another terrain, the
     samples what is far from all (sky, blur). Altered copies vote, but only what was really seen
     makes a patch familiar.
 
@@ -129,7 +105,7 @@ class DiscriminantNeighbours:
     def fit(self, features: FloatArray, codes: IntArray, copies: int = 0) -> Self:
         """Learn scale, discriminants, components and spacings from (n, F) and (n,)."""
         self.pipeline_ = make_pipeline(
-            ClippedScaler(), FourierFeatures(self._cosines), DiscriminantMetric(), _knn()
+            ClippedScaler(), FourierFeatures(self._cosines), DiscriminantMetric(), brute_force()
         )
         self.pipeline_.fit(features, codes)
         self.class_weights_ = 1.0 / np.bincount(codes)
@@ -153,20 +129,50 @@ class DiscriminantNeighbours:
 
     def labels_and_distances(self, features: FloatArray, k: int) -> tuple[IntArray, FloatArray]:
         """Return both."""
-        scaler, *others, knn = (step for _, step in self.pipeline_.steps)
+        if self.class_means_ is not None:
+            alone = list(np.arange(len(features))[:, None])
+            return self.labels_and_image_distances(features, k, alone)
+        place, sparsity = self._places(features)
+        labels, distances = labels_and_sample_distances(
+            self.pipeline_[-1], place, k, len(self.sparsity_.points_)
+        )
+        return labels, distances * sparsity
+
+    def labels_and_image_distances(
+        self, features: FloatArray, k: int, images: Sequence[IntArray]
+    ) -> tuple[IntArray, FloatArray]:
+        """Return the codes of the k nearest of each patch, and the distance of each image.
+
+        Distances to the samples and to the class means are those of the mean place of an image's
+        patches among the discriminants, where what varies from patch to patch cancels; the other
+        two factors are geometric means over the patches.
+
+        Raises
+        ------
+        ValueError
+            If the model is of a file before version 0.12, without class means.
+        """
+        knn, means = self.pipeline_[-1], self.class_means_
+        if means is None:
+            raise ValueError("no class means, and image_rejection_distances")
+        seen, asked = len(self.sparsity_.points_), min(max(k, ASKED), knn.n_samples_fit_)
+        places, sparsity = self._places(features)
+        labels, _ = labels_and_sample_distances(knn, places, asked, seen)
+        left_open = classes_left_open(vote(labels[:, :ASKED], self.class_weights_))
+        doubt = np.log(left_open) + 3 * np.log(np.maximum(sparsity, SMALLEST))
+        middles = np.array([places[rows].mean(axis=0) for rows in images])
+        _, to_samples = labels_and_sample_distances(knn, middles, 1, seen)
+        to_mean = cdist(middles, means).min(axis=1)
+        together = np.exp([doubt[rows].mean() for rows in images])
+        return labels[:, :k], to_samples * to_mean * together
+
+    def _places(self, features: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Discriminants (n, classes - 1), and local sparsity (n,)."""
+        scaler, *others, _ = (step for _, step in self.pipeline_.steps)
         scaled = place = scaler.transform(features)
         for step in others:
             place = step.transform(place)
-        sparsity = self.sparsity_.sparsity(self.appearance_.transform(scaled))
-        if self.class_means_ is None:
-            labels, distances = _labels_and_distances(knn, place, k, len(self.sparsity_.points_))
-            return labels, distances * sparsity
-        labels, to_samples = _labels_and_distances(
-            knn, place, min(max(k, ASKED), knn.n_samples_fit_), len(self.sparsity_.points_)
-        )
-        left_open = classes_left_open(vote(labels[:, :ASKED], self.class_weights_))
-        to_mean = cdist(place, self.class_means_).min(axis=1)
-        return labels[:, :k], to_samples * to_mean * left_open * sparsity**3
+        return place, self.sparsity_.sparsity(self.appearance_.transform(scaled))
 
     @property
     def scaler(self) -> ClippedScaler:
@@ -217,7 +223,7 @@ class DiscriminantNeighbours:
         fourier.frequencies_ = arrays.get("frequencies", np.empty((len(scaler.mean_), 0)))
         fourier.phases_ = arrays.get("phases", np.empty(0))
         metric.projection_ = arrays["discriminants"]
-        knn = _knn().fit(arrays["points"], arrays["codes"])
+        knn = brute_force().fit(arrays["points"], arrays["codes"])
         model.pipeline_ = make_pipeline(scaler, fourier, metric, knn)
         model.class_weights_ = 1.0 / np.bincount(arrays["codes"])
         model.class_means_ = arrays.get("class_means")
@@ -233,21 +239,3 @@ class DiscriminantNeighbours:
 def linear_neighbours() -> DiscriminantNeighbours:
     """Neighbours among linear discriminants."""
     return DiscriminantNeighbours(cosines=0)
-
-
-def _knn() -> KNeighborsClassifier:
-    return KNeighborsClassifier(n_neighbors=1, algorithm="brute")
-
-
-def _labels_and_distances(
-    knn: KNeighborsClassifier, places: FloatArray, k: int, seen: int
-) -> tuple[IntArray, FloatArray]:
-    """Class codes (n, k) of the k nearest samples, and the mean distance (n,) of the nearest.
-
-    The first `seen` samples are no altered copies: the distance is to these.
-    """
-    few = min(NEIGHBOURS, seen)
-    distances, rows = nearest(knn._fit_X, places, max(k, few))
-    if seen < knn.n_samples_fit_:
-        distances, _ = nearest(knn._fit_X[:seen], places, few)
-    return np.asarray(knn._y[rows[:, :k]], dtype=np.int64), distances[:, :few].mean(axis=1)

@@ -6,9 +6,8 @@ import numpy as np
 from sklearn.neighbors import NearestNeighbors
 
 from odometry.arrays import FloatArray
-from terrain.classification.nearest import nearest
+from terrain.classification.nearest import NEIGHBOURS, nearest
 
-NEIGHBOURS = 5
 SMALLEST_SHARE_OF_MEAN = 0.01
 ASKED = 25  # neighbours whose vote says how many classes are left open, whatever the k
 

@@ -12,9 +12,9 @@ from terrain.classification.features import (
 from terrain.classification.neighbours import (
     DiscriminantNeighbours,
     Neighbours,
-    PlainNeighbours,
     linear_neighbours,
 )
+from terrain.classification.plain_neighbours import PlainNeighbours
 
 
 @dataclass(frozen=True)

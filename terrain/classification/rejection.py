@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from odometry.arrays import AnyArray, FloatArray
+from odometry.arrays import AnyArray, FloatArray, IntArray
 
 PATCHES = (1, 2, 4, 8, 16)
 
@@ -31,15 +31,40 @@ def rejection_distances(
     tuple of float, length 5
         From one to 16 patches, none larger than the one before.
     """
-    members = [np.flatnonzero(groups == group) for group in np.unique(groups)]
-    limits = []
-    for count in PATCHES:
-        medians = [
-            float(np.median(distances[rows[start :: max(len(rows) // count, 1)]]))
-            for rows in members
-            for start in range(max(len(rows) // count, 1))
-        ]
-        limits.append(float(np.quantile(medians, 1 - rejected_share)))
+    images = [images_of_patches(groups, count) for count in PATCHES]
+    medians = [np.array([np.median(distances[rows]) for rows in of]) for of in images]
+    return quantiles(medians, rejected_share)
+
+
+def images_of_patches(groups: AnyArray, count: int) -> list[IntArray]:
+    """Rows of patches that stand for images of so many patches: parts of photographs.
+
+    The patches of a part are spread over the photograph (n,); one with fewer patches than
+    required is one part.
+    """
+    images = []
+    for group in np.unique(groups):
+        rows = np.flatnonzero(groups == group)
+        step = max(len(rows) // count, 1)
+        images += [rows[start::step] for start in range(step)]
+    return images
+
+
+def quantiles(distances: Sequence[FloatArray], rejected_share: float) -> tuple[float, ...]:
+    """What a share of held-out images lies beyond, from one to 16 patches.
+
+    Parameters
+    ----------
+    distances : sequence of FloatArray, length 5
+        Of images of 1, 2, 4, 8 and 16 patches.
+    rejected_share : float
+
+    Returns
+    -------
+    tuple of float, length 5
+        None larger than the one before.
+    """
+    limits = [float(np.quantile(of, 1 - rejected_share)) for of in distances]
     return tuple(np.minimum.accumulate(limits).tolist())
 
 

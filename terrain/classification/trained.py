@@ -41,7 +41,9 @@ class TrainedClassifier(ModelFile):
         """Classify images of at least the patch size.
 
         A larger image is cut into patches side by side; their probabilities are averaged, and
-        the median of their distances, on the scale of one patch, decides whether it is unknown.
+        their distance together, on the scale of one patch, decides whether it is unknown: that of
+        their mean place among the discriminants, or with ``chen2023`` and models of files before
+        version 0.13 the median of their distances.
 
         Raises
         ------
@@ -129,6 +131,14 @@ class TrainedClassifier(ModelFile):
 
     def _of_patches(self, features: FloatArray) -> tuple[FloatArray, float]:
         """Mean probabilities (classes,) of the patches of an image, and its distance."""
-        votes, distances = self._of_features(features)
-        median, limits = float(np.median(distances)), self.rejection_distances_
-        return votes.mean(axis=0), as_of_one_patch(median, len(features), limits)
+        limits = self.image_rejection_distances_
+        if limits is None:
+            votes, distances = self._of_features(features)
+            median = float(np.median(distances))
+            together = as_of_one_patch(median, len(features), self.rejection_distances_)
+            return votes.mean(axis=0), together
+        labels, distances = self._neighbours.labels_and_image_distances(
+            features, self.n_neighbors_, [np.arange(len(features))]
+        )
+        votes = tempered(vote(labels, self._neighbours.class_weights_), self.temperature_)
+        return votes.mean(axis=0), as_of_one_patch(float(distances[0]), len(features), limits)

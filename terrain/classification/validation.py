@@ -10,6 +10,7 @@ from sklearn.model_selection import StratifiedGroupKFold
 from odometry.arrays import AnyArray, FloatArray, IntArray
 from terrain.classification.calibration import fitted_temperature, tempered
 from terrain.classification.neighbours import Neighbours, vote
+from terrain.classification.rejection import PATCHES, images_of_patches
 from terrain.errors import PatchError
 
 MOST_FOLDS = 5
@@ -33,6 +34,9 @@ class CrossValidation:
     temperature : float or None
         Of the votes, as `calibration.tempered` takes it; for each fold the probabilities are those
         at the temperature of the other folds. None where votes are left as they are.
+    image_distances : tuple of FloatArray, length 5
+        Distances of parts of photographs, of 1, 2, 4, 8 and 16 patches that are judged together;
+        see `rejection.images_of_patches`.
     """
 
     n_neighbors: int
@@ -41,6 +45,7 @@ class CrossValidation:
     probabilities: FloatArray
     distances: FloatArray
     temperature: float | None = None
+    image_distances: tuple[FloatArray, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -137,10 +142,12 @@ def cross_validate(
     n_classes = int(codes.max()) + 1
     probabilities = np.full((len(counts), len(codes), n_classes), np.nan)
     distances = np.full(len(codes), np.nan)
+    together: list[list[FloatArray]] = [[] for _ in PATCHES]
     for train, test in folds:
         model = neighbours().fit(*samples.with_copies(train, copies))
-        labels = model.labels(features[test], counts[-1])
-        distances[test] = model.distances(features[test])
+        labels, distances[test] = model.labels_and_distances(features[test], counts[-1])
+        for of, found in zip(together, _of_images(model, samples, test), strict=True):
+            of.append(found)
         for i, k in enumerate(counts):
             probabilities[i, test] = vote(labels[:, :k], model.class_weights_)
     kept = np.sort(np.concatenate([test for _, test in folds]))
@@ -154,8 +161,22 @@ def cross_validate(
     if calibrates:
         nested = _tempered_by_others(nested, codes, [test for _, test in folds])
     return CrossValidation(
-        counts[best], kept, codes[kept], nested[kept], distances[kept], temperature
+        counts[best],
+        kept,
+        codes[kept],
+        nested[kept],
+        distances[kept],
+        temperature,
+        tuple(np.concatenate(of) for of in together),
     )
+
+
+def _of_images(model: Neighbours, samples: Samples, test: IntArray) -> list[FloatArray]:
+    """Distances of images of 1, 2, 4, 8 and 16 patches, parts of held-out photographs."""
+    images = [images_of_patches(samples.groups[test], count) for count in PATCHES]
+    rows = [part for of in images for part in of]
+    _, found = model.labels_and_image_distances(samples.features[test], 1, rows)
+    return np.split(found, np.cumsum([len(of) for of in images])[:-1])
 
 
 def _tempered_by_others(votes: FloatArray, codes: IntArray, tests: list[IntArray]) -> FloatArray:

@@ -136,7 +136,7 @@ def judged(name: str, model: Chosen, classes: AnyArray, shown: Grounds) -> None:
     right = probabilities.argmax(axis=1) == codes
     refused = distances > model.rejection_distances[0]
     photo_codes, photo_answers, _ = photo_votes(codes, probabilities, shown.photos)
-    photo_refused = model.photo_distances(distances, shown.photos) > model.rejection_distances[0]
+    photo_refused = model.photo_distances(features, shown.photos) > model.rejection_distances[0]
     cells = [
         balanced_accuracy(codes, probabilities.argmax(axis=1)),
         refused.mean(),
@@ -200,9 +200,7 @@ def unknown_terrain(grounds: Grounds, copies: Grounds | None) -> None:
 def refusals(model: Chosen, held: Grounds, unknown: Grounds) -> list[float]:
     """Areas and refused shares, by patch and by photograph."""
     near, far = (model.distances(g.bank) for g in (held, unknown))
-    near_photo, far_photo = (
-        model.photo_distances(d, g.photos) for d, g in ((near, held), (far, unknown))
-    )
+    near_photo, far_photo = (model.photo_distances(g.bank, g.photos) for g in (held, unknown))
     limit = model.rejection_distances[0]
     areas = [rejection_roc_area(near, far), rejection_roc_area(near_photo, far_photo)]
     return areas + [float(np.mean(of > limit)) for of in (far, near, far_photo, near_photo)]

@@ -13,7 +13,7 @@ from terrain.classification.feature_jobs import shared_feature_matrix
 from terrain.classification.neighbours import Neighbours, vote
 from terrain.classification.patches import find_photos, load_patches
 from terrain.classification.presets import PRESETS, Preset
-from terrain.classification.rejection import as_of_one_patch, rejection_distances
+from terrain.classification.rejection import as_of_one_patch, quantiles, rejection_distances
 from terrain.classification.validation import Samples, best_way
 
 REJECTED_SHARE = 0.05
@@ -79,6 +79,7 @@ class Chosen:
     model: Neighbours
     k: int
     rejection_distances: tuple[float, ...]
+    image_rejection_distances: tuple[float, ...]
     temperature: float | None
 
     def probabilities(self, features: FloatArray) -> FloatArray:
@@ -90,14 +91,14 @@ class Chosen:
         """To the nearest class, (n,)."""
         return self.model.distances(features[:, self.columns])
 
-    def photo_distances(self, distances: FloatArray, photos: AnyArray) -> FloatArray:
-        """Median distance of the patches of each photograph, on the scale of one patch."""
-        return np.array(
-            [
-                as_of_one_patch(float(np.median(of)), len(of), self.rejection_distances)
-                for of in (distances[photos == photo] for photo in np.unique(photos))
-            ]
-        )
+    def photo_distances(self, features: FloatArray, photos: AnyArray) -> FloatArray:
+        """Distance of the patches of each photograph together, on the scale of one patch."""
+        images = [np.flatnonzero(photos == photo) for photo in np.unique(photos)]
+        columns = features[:, self.columns]
+        _, found = self.model.labels_and_image_distances(columns, self.k, images)
+        limits = self.image_rejection_distances
+        pairs = zip(found.tolist(), map(len, images), strict=True)
+        return np.array([as_of_one_patch(distance, count, limits) for distance, count in pairs])
 
 
 def choose(
@@ -135,6 +136,7 @@ def choose(
         way().fit(*everything),
         found.n_neighbors,
         limits[:1] if preset.as_published else limits,
+        limits[:1] if preset.as_published else quantiles(found.image_distances, REJECTED_SHARE),
         found.temperature,
     )
 

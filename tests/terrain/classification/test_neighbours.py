@@ -3,7 +3,8 @@ import pytest
 from scipy.stats import entropy
 from sklearn.neighbors import KNeighborsClassifier
 
-from terrain.classification.neighbours import DiscriminantNeighbours, PlainNeighbours, vote
+from terrain.classification.neighbours import DiscriminantNeighbours, vote
+from terrain.classification.plain_neighbours import PlainNeighbours
 
 
 @pytest.fixture
