@@ -210,8 +210,16 @@ class MeasurementEffect(Effect):
     acts_on = "measurement"
     by_pose: ClassVar[bool] = True
 
-    def delay_s(self, values: FloatArray, stamps_s: FloatArray) -> FloatArray:  # noqa: ARG002
-        """By how much each of the stamps of poses (M,), in run time, is late (M,)."""
+    def delay_s(
+        self,
+        values: FloatArray,  # noqa: ARG002 - of the interface
+        stamps_s: FloatArray,
+        run: int | None = None,  # noqa: ARG002
+    ) -> FloatArray:
+        """By how much each of the stamps of poses (M,), in run time, is late (M,).
+
+        `run` is the number of the run, see `Reported.run`.
+        """
         return np.zeros_like(stamps_s)
 
     def seen(

@@ -9,7 +9,7 @@ from odometry.effects.actuator_lag import ActuatorLag
 from odometry.effects.base import CommandEffect, Effect, EffectParameter
 from odometry.effects.base_model import Base
 from odometry.effects.command_delay import CommandDelay
-from odometry.effects.drive_limit import Deadband, Saturation
+from odometry.effects.drive_limit import HARDEST_M_S2, Deadband, RateLimit, Saturation
 from odometry.effects.recorded import Recorded
 from odometry.models.inputs import Inputs
 
@@ -35,9 +35,8 @@ class BySide(CommandEffect):
 
     def starts(self, inputs: Inputs, base: Base) -> FloatArray:
         """See `Effect.starts`: each of the effect on the left alone, the right alone, and both."""
-        (parameter,) = self.of_both.parameters
         one = self.of_both.starts(inputs, base)[:, 0]
-        none = np.full_like(one, parameter.absent)
+        none = np.full_like(one, self.parameters[0].absent)
         both = one[[len(one) // 2]]
         pairs = ((one, none), (none, one), (both, both))
         return np.vstack([np.stack(pair, axis=-1) for pair in pairs])
@@ -138,3 +137,25 @@ class SaturationBySide(BySide):
     def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
         """Below the fastest speed recorded."""
         return (cls(recorded.fastest_m_s),)
+
+
+class RateBySide(BySide):
+    """A highest change of speed of each tread's own; one that is not reached is none."""
+
+    name = RateLimit.name
+    form = "rate_by_side"
+    in_words = RateLimit.in_words
+    equation = RateLimit.equation + ", of each tread"
+    source = RateLimit.source
+    remedy = RateLimit.remedy
+    needs = RateLimit.needs
+    of_both = RateLimit()
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`: at the hardest that is searched a tread follows at once."""
+        return tuple(replace(p, absent=HARDEST_M_S2) for p in super().parameters)
+
+    def _sizes(self, values: FloatArray) -> FloatArray:
+        """How long (2,) a change of speed takes, beyond that of a tread without limit [s^2/m]."""
+        return np.asarray(1 / values - 1 / HARDEST_M_S2)

@@ -7,9 +7,16 @@ import numpy as np
 
 from odometry.effects.actuator_lag import ActuatorLag
 from odometry.effects.base import Effect
-from odometry.effects.by_side import DeadbandBySide, DelayBySide, LagBySide, SaturationBySide
+from odometry.effects.by_side import (
+    DeadbandBySide,
+    DelayBySide,
+    LagBySide,
+    RateBySide,
+    SaturationBySide,
+)
 from odometry.effects.command_delay import CommandDelay
 from odometry.effects.corrected import Added
+from odometry.effects.course_for_yaw import CourseForYaw
 from odometry.effects.course_settings import course_of
 from odometry.effects.curvature import Curvature
 from odometry.effects.drive_limit import Deadband, RateLimit, Saturation
@@ -19,6 +26,7 @@ from odometry.effects.history import History
 from odometry.effects.in_course import in_course
 from odometry.effects.inertia_contact import InertiaByContact
 from odometry.effects.inertia_icr import InertiaByIndices
+from odometry.effects.late_by_chance import LateByChance
 from odometry.effects.lateral_skid import LateralSkid
 from odometry.effects.lever_arm import LeverArm
 from odometry.effects.map_fault import DriftingMap, DriftingYaw, StretchedMap, TurningMap
@@ -30,6 +38,7 @@ from odometry.effects.reference_filter import (
     SwayingMast,
 )
 from odometry.effects.reference_outliers import FrozenPoses, JumpingPoses, ReferenceOutliers
+from odometry.effects.reference_step import ClockStep
 from odometry.effects.residual import Residual
 from odometry.effects.slope_contact import SlopeByContact
 from odometry.effects.slope_icr import SlopeByIcr
@@ -59,6 +68,7 @@ EFFECTS: tuple[type[Effect], ...] = (
     Saturation,
     SaturationBySide,
     RateLimit,
+    RateBySide,
     SlipBySpeed,
     SlipByDirection,
     SlipByAcceleration,
@@ -75,6 +85,7 @@ EFFECTS: tuple[type[Effect], ...] = (
     InertiaByContact,
     TimeOffset,
     ClockDrift,
+    ClockStep,
     LeverArm,
     HeadingOffset,
     Compass,
@@ -86,6 +97,8 @@ EFFECTS: tuple[type[Effect], ...] = (
     FilteredPositions,
     SlowYaw,
     SwayingMast,
+    CourseForYaw,
+    LateByChance,
     GyroscopeError,
 )
 OUTLIERS = (ReferenceOutliers, FrozenPoses, JumpingPoses)

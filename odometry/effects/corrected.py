@@ -123,12 +123,15 @@ def with_true_speeds(effects: Sequence[Added], inputs: Inputs) -> Inputs:
     return inputs
 
 
-def delay_s(effects: Sequence[Added], stamps_s: FloatArray) -> FloatArray:
-    """By how much (M,) all effects together make stamps of poses (M,), in run time, late."""
+def delay_s(effects: Sequence[Added], stamps_s: FloatArray, run: int | None = None) -> FloatArray:
+    """By how much (M,) all effects together make stamps of poses (M,), in run time, late.
+
+    `run` is the number of the run, see `Reported.run`.
+    """
     late_s = np.zeros_like(stamps_s)
     for added in effects:
         if isinstance(added.effect, MeasurementEffect):
-            late_s = late_s + added.effect.delay_s(added.values, stamps_s)
+            late_s = late_s + added.effect.delay_s(added.values, stamps_s, run)
     return late_s
 
 

@@ -32,7 +32,12 @@ class TimeOffset(MeasurementEffect):
         """See `Effect.parameters`."""
         return (EffectParameter("offset", "s", -1.0, 1.0, 0.0, 0.02),)
 
-    def delay_s(self, values: FloatArray, stamps_s: FloatArray) -> FloatArray:
+    def delay_s(
+        self,
+        values: FloatArray,
+        stamps_s: FloatArray,
+        run: int | None = None,  # noqa: ARG002 - of the interface
+    ) -> FloatArray:
         """See `MeasurementEffect.delay_s`."""
         return np.full_like(stamps_s, values[0])
 
@@ -61,6 +66,11 @@ class ClockDrift(MeasurementEffect):
             EffectParameter("rate", "", -0.01, 0.01, 0.0, 1e-4),
         )
 
-    def delay_s(self, values: FloatArray, stamps_s: FloatArray) -> FloatArray:
+    def delay_s(
+        self,
+        values: FloatArray,
+        stamps_s: FloatArray,
+        run: int | None = None,  # noqa: ARG002 - of the interface
+    ) -> FloatArray:
         """See `MeasurementEffect.delay_s`."""
         return np.asarray(values[0] + values[1] * stamps_s)

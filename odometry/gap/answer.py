@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from odometry.effects.corrected import Added
+from odometry.effects.reference_step import ReferenceStep
 from odometry.effects.residual import Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import Judged
@@ -41,6 +42,8 @@ def named_effects(
         spread = WITHIN_95 * sigmas[place : place + len(own.values)]
         more = len(added.values) - len(own.values)
         likely = spread if isinstance(own.effect, Residual) else [MOMENT_KNOWN_S]
+        if isinstance(own.effect, ReferenceStep):
+            likely = [spread[0], MOMENT_KNOWN_S]
         spread = np.append(spread, np.resize(likely, more))
         place += len(own.values)
         lows, highs = np.array([(p.low, p.high) for p in added.effect.parameters]).T

@@ -35,6 +35,7 @@ def _of_catalogue(scenes: Sequence[DenseWindows], calibration: Calibration) -> l
         tuple(scene.inputs for scene in scenes),
         tuple(observed_s(scene) for scene in scenes),
         frozenset().union(*(labels_of(scene.inputs) for _, scene in calibration.held_back)),
+        tuple(scene.pose_s for scene in scenes),
     )
     return [effect for form in EFFECTS for effect in form.offered(recorded)]
 

@@ -8,9 +8,11 @@ from odometry.arrays import BoolArray
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.effects.in_course import CommandsInCourse, MotionInCourse, in_course
+from odometry.effects.reference_step import ReferenceStep
 from odometry.effects.time_course import FromAMoment
 from odometry.gap.bursts import is_in_bursts, with_events_of_run
 from odometry.gap.calibration import Calibration
+from odometry.gap.own_steps import with_step_of_run
 from odometry.gap.own_values import OWN, with_values_of_run
 from odometry.gap.statistic import squared_errors
 from odometry.windows.dense import DenseWindows
@@ -44,19 +46,23 @@ def with_own_moments(
     known = {scene.run.folder for scene in fitted}
     others = [scene for scene in held_out if scene.run.folder not in known]
     begins = [place for place, one in enumerate(effects) if _begins(one)]
+    steps = [i for i, one in enumerate(effects) if isinstance(one.effect, ReferenceStep)]
     own = any(isinstance(one.effect, OWN) for one in effects)
-    if not (begins or own) or not others:
+    if not (begins or steps or own) or not others:
         return tuple(effects), list(held_out)
     extended = list(effects)
     for scene in others:
         odd = np.arange(len(scene)) % 2 == 1
         for place in begins:
             extended = _with_moment(base, extended, place, scene.where(odd))
+        for place in steps:
+            extended = with_step_of_run(base, extended, place, scene.where(odd))
         if own:
             extended = with_values_of_run(base, extended, scene.where(odd), calibration)
     judged = [scene for scene in held_out if scene.run.folder in known]
     for number, scene in enumerate(others, start=-len(others)):
         moments_s = [extended[place].values[number] for place in begins]
+        moments_s += [moment_of(extended[place], number) for place in steps]
         judged.append(scene.where(_judges(scene, moments_s)))
     return tuple(extended), [scene for scene in judged if len(scene)]
 
@@ -69,6 +75,12 @@ def _judges(scene: DenseWindows, moments_s: Sequence[float]) -> BoolArray:
         near_s = end_s - begin_s
         judges &= (moment_s < begin_s - near_s) | (moment_s > end_s + near_s)
     return np.asarray(judges)
+
+
+def moment_of(added: Added, run: int) -> float:
+    """When a step of the reference is, of one run; negative numbers count from the last."""
+    effect = added.effect
+    return effect.moment_s(added.values, run) if isinstance(effect, ReferenceStep) else np.inf
 
 
 def _begins(added: Added) -> bool:

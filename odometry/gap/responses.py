@@ -8,9 +8,9 @@ from odometry.arrays import FloatArray
 from odometry.effects.base import MeasurementEffect
 from odometry.effects.base_model import Base
 from odometry.effects.chain import Chain
-from odometry.effects.corrected import Added, delay_s, reported_yaw_rate, seen_poses
+from odometry.effects.corrected import Added, reported_yaw_rate, seen_poses
 from odometry.effects.residual import Residual
-from odometry.gap.simulate import path_of, reported_of
+from odometry.gap.simulate import measured_s, path_of, reported_of
 from odometry.geometry import se2
 from odometry.geometry.tilt import level_step_jacobian
 from odometry.windows.dense import DenseWindows, poses_at
@@ -34,7 +34,7 @@ class Responses:
         self.path = path_of(self.chain.twist, scene)
         self._scene = scene
         self._by_twist = _by_twist(self.chain.twist, self.path, scene)
-        seen_s = scene.pose_s - base.latency_s - delay_s(effects, scene.pose_s)
+        seen_s = measured_s(base, effects, scene)
         self._seen = _Between(scene, seen_s)
         poses = poses_at(self.path, scene, seen_s)
         self._poses = seen_poses(effects, poses, reported_of(scene)).T

@@ -35,13 +35,24 @@ def poses_on(
     path: FloatArray, base: Base, effects: Sequence[Added], scene: DenseWindows
 ) -> FloatArray:
     """Poses (M, 3) that the reference reports of a robot on a path (N, 3)."""
-    seen_s = scene.pose_s - base.latency_s - delay_s(effects, scene.pose_s)
+    seen_s = measured_s(base, effects, scene)
     return seen_poses(effects, poses_at(path, scene, seen_s), reported_of(scene))
+
+
+def measured_s(base: Base, effects: Sequence[Added], scene: DenseWindows) -> FloatArray:
+    """Run time (M,) at which the poses of a scene were measured, by their stamps."""
+    late_s = delay_s(effects, scene.pose_s, run_of(scene))
+    return np.asarray(scene.pose_s - base.latency_s - late_s)
 
 
 def reported_of(scene: DenseWindows) -> Reported:
     """What the reference reported of a run."""
-    return Reported(scene.pose_s, scene.poses, int(run_numbers(scene.inputs)[0]))
+    return Reported(scene.pose_s, scene.poses, run_of(scene))
+
+
+def run_of(scene: DenseWindows) -> int:
+    """Number of the run of a scene among several."""
+    return int(run_numbers(scene.inputs)[0])
 
 
 def residuals(base: Base, effects: Sequence[Added], scene: DenseWindows) -> FloatArray:

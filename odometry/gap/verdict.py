@@ -22,6 +22,7 @@ from odometry.gap.fit import Fitted
 from odometry.gap.pieces import numbered_pieces
 from odometry.gap.predictors import Predictor
 from odometry.gap.region_words import noun_of
+from odometry.gap.simulate import run_of
 from odometry.gap.statistic import SEED, Gap, drawn_gaps, squared_errors
 from odometry.windows.dense import DenseWindows
 
@@ -182,7 +183,7 @@ def is_resolved(added: Added, before: Sequence[Added], scenes: Sequence[DenseWin
     if not late or added.effect.name != TimeOffset.name:
         return ""
     periods_s = [float(np.median(np.diff(one.run.odometry.stamps_s))) for one in scenes]
-    off_s = max(float(np.abs(delay_s((added,), one.pose_s)).max()) for one in scenes)
+    off_s = max(float(np.abs(delay_s((added,), one.pose_s, run_of(one))).max()) for one in scenes)
     if off_s > max(periods_s):
         return ""
     return (

@@ -4,10 +4,16 @@ import numpy as np
 import pytest
 
 from odometry.effects.actuator_lag import ActuatorLag
-from odometry.effects.by_side import DeadbandBySide, DelayBySide, LagBySide, SaturationBySide
+from odometry.effects.by_side import (
+    DeadbandBySide,
+    DelayBySide,
+    LagBySide,
+    RateBySide,
+    SaturationBySide,
+)
 from odometry.effects.command_delay import CommandDelay
 from odometry.effects.corrected import Added
-from odometry.effects.drive_limit import BLURRED_M_S, Deadband, Saturation
+from odometry.effects.drive_limit import BLURRED_M_S, HARDEST_M_S2, Deadband, RateLimit, Saturation
 from odometry.effects.recorded import Recorded
 from odometry.models.inputs import Inputs
 
@@ -16,6 +22,7 @@ VALUES = {
     "by_side": (DelayBySide(), CommandDelay(), 0.17, 0.0),
     "deadband_by_side": (DeadbandBySide(), Deadband(), 0.3, 0.0),
     "saturation_by_side": (SaturationBySide(2.0), Saturation(2.0), 0.7, 2.0),
+    "rate_by_side": (RateBySide(), RateLimit(), 0.4, HARDEST_M_S2),
 }
 each = pytest.mark.parametrize("form", VALUES)
 
@@ -57,7 +64,7 @@ def test_the_name_is_that_of_both_and_the_words_say_the_side(form):
 def test_nearly_the_same_of_both_treads_is_no_fault_of_one_side(form):
     effect, _, value, none = VALUES[form]
     assert effect.is_meant(np.array([value, none]))
-    assert not effect.is_meant(np.array([value, none + 0.9 * (value - none)]))
+    assert not effect.is_meant(np.array([value, 0.9 * value]))
     assert not effect.is_meant(np.array([none, none]))
 
 

@@ -81,12 +81,16 @@ def test_both_of_a_pair_are_named_and_nothing_freer_in_place_of_one(studied):
     assert result.holdout.share_closed > 0.9
 
 
-def test_a_clock_that_was_set_is_no_constant_delay(studied):
-    """A delay explains much of it, but each stretch of the run asks for another."""
-    _, result = studied("clock_step", 50)
-    assert result.verdict == "unknown"
-    (refusal,) = [one for one in result.refusals if one.name == "time_offset"]
-    assert "its strength differs" in refusal.reason
+def test_a_clock_that_was_set_is_a_step_and_no_constant_delay_nor_a_drift(studied):
+    """The size and the moment of each run are the true ones."""
+    case, result = studied("clock_step", 50)
+    (step,) = [one.added for one in result.effects]
+    assert (step.effect.name, step.effect.form) == ("time_offset", "step")
+    for number, run in enumerate(("measured", "holdout")):
+        size_s, moment_s = step.values[2 * number : 2 * number + 2]
+        assert size_s == pytest.approx(case.truth[run]["step_s"], abs=0.02)
+        assert moment_s == pytest.approx(case.truth[run]["moment_s"], abs=0.5)
+    assert not result.holdout.after.is_above(result.holdout.noise_floor)
 
 
 def test_what_a_moved_base_hides_is_named_beside_the_first(studied):
