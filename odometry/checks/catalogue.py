@@ -35,6 +35,7 @@ CATALOGUE: dict[str, str] = {
     "tread_offset": "one tread reads a constant besides its speed",
     "treads_are_twist": "the columns hold speed and turn rate",
     "treads_equal": "both columns hold one speed",
+    "treads_unsigned": "the columns hold magnitudes",
     "tread_scale_changed": "the scale of the treads changes while recording",
     "treads_are_counters": "the columns hold positions of wheels",
     "treads_unrelated": "treads of another recording",
@@ -118,6 +119,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "yaw_is_course": YAW | {"pose_late", "poses_unrelated", "gyroscope_unit", "yaw_jumps"},
     "poses_are_wheel_odometry": frozenset(
         {"gyroscope_unit", "track_width", "pose_late", "yaw_is_course", "yaw_jumps"}
+        | {"gyroscope_bias"}
     ),
     "noisy_positions": frozenset({"pose_late", "pose_jumps", "clocks_apart", "slip"})
     | YAW
@@ -130,6 +132,12 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "treads_equal": TREADS
     | POSES
     | {"treads_unrelated", "far_sensor", "treads_are_twist", "treads_unequal", "stuck_encoder"},
+    "treads_unsigned": TREADS
+    | POSES
+    | YAW
+    | {"treads_unrelated", "far_sensor", "treads_unequal", "tread_offset", "slip_episodes"}
+    | {"treads_equal", "treads_are_twist", "stuck_encoder", "gyroscope_unit", "pose_late"}
+    | {"gyroscope_unrelated", "gyroscope_reversed", "turns_at_rest"},
     "tread_scale_changed": TREADS
     | POSES
     | {"treads_not_proportional", "far_sensor", "treads_unequal", "slip_episodes"},
@@ -179,13 +187,14 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     ),
     "coarse_speeds": frozenset({"stuck_encoder"}),
     "position_unit": frozenset({"far_sensor"}),
+    "positions_stretched": frozenset({"scale"}),
 }
 
 
 # No curve of the speeds is fitted where these were found.
 NOT_CURVES = frozenset(
     {"stuck_encoder", "treads_frozen", "treads_are_twist", "treads_unrelated", "poses_unrelated"}
-    | {"treads_equal"}
+    | {"treads_equal", "treads_unsigned"}
 )
 
 

@@ -15,7 +15,6 @@ COARSE_M = 0.02
 INTERPOLATED = 0.5  # share of second differences that are nothing
 NOISY_M = 0.15
 SAME_RAD = 0.003  # yaw and course this near are one thing written twice
-COPIED = 0.9999  # share of the turn explained from which poses are computed from the treads
 
 
 def pose_values(evidence: Evidence) -> Iterator[Finding]:
@@ -34,7 +33,6 @@ def pose_values(evidence: Evidence) -> Iterator[Finding]:
         every = np.flatnonzero(np.isfinite(pose.stack("x", "y", "yaw")).all(axis=1))
         yield from _yaw_is_course(evidence, every, pose.stack("x", "y")[every])
         yield from _quaternion(evidence)
-        yield from _wheel_odometry(evidence)
 
 
 def _frame(evidence: Evidence, positions: FloatArray) -> Iterator[Finding]:
@@ -196,21 +194,6 @@ def _quaternion(evidence: Evidence) -> Iterator[Finding]:
         "Yaw holds a component (z) of a quaternion, not an angle",
         "Convert: yaw = atan2(2 (w z + x y), 1 - 2 (y^2 + z^2))",
     )
-
-
-def _wheel_odometry(evidence: Evidence) -> Iterator[Finding]:
-    found = evidence.pose_turn_by_difference
-    if found is None or found.explained < COPIED:
-        return
-    factor = found.slope * evidence.run.robot.track_width
-    if abs(factor - 1) < 0.02:
-        yield _finding(
-            "poses_are_wheel_odometry",
-            f"turns of pose.csv are those of the treads over track_width to {factor:.4f} "
-            f"({100 * found.explained:.3f} % explained)",
-            "pose.csv is wheel odometry itself, computed from these treads: no reference",
-            "Use a measured reference (GNSS, SLAM, motion capture)",
-        )
 
 
 def _finding(name: str, seen: str, cause: str, remedy: str) -> Finding:

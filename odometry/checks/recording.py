@@ -8,6 +8,7 @@ import numpy as np
 from odometry.checks.attitude import attitude
 from odometry.checks.catalogue import CATALOGUE, without_consequences
 from odometry.checks.compass_error import bent
+from odometry.checks.computed_poses import computed_poses
 from odometry.checks.course import course
 from odometry.checks.disagreement import (
     agreement,
@@ -32,6 +33,7 @@ from odometry.checks.turning import turning
 from odometry.checks.undo import Mend, between, in_turn
 from odometry.checks.units import units
 from odometry.checks.unreadable import no_run_folder, unreadable
+from odometry.checks.unsigned import unsigned
 from odometry.errors import RunFolderError
 from odometry.run import Run
 
@@ -40,12 +42,14 @@ Check = Callable[[Evidence], Iterator[Finding]]
 # Findings of one level are reported in this order: a cause before its consequences.
 CHECKS: tuple[Check, ...] = (
     stamps,
+    computed_poses,
     pose_values,
     agreement,
     yaw_against_course,
     turning,
     course,
     equal_treads,
+    unsigned,
     scale_change,
     units,
     bent,
@@ -123,21 +127,23 @@ AROUND_S = 2.0  # of such a moment that is left out
 LEAST_S = 15.0  # of a part between two cuts
 HALF = 0.5  # of the recording, that parts are at least: with more cuts it is compared whole
 MOST_PARTS = 6  # the longest ones are compared
-# Sensors of different times seem to slip, to jump and to be far from the centre.
-OF_TIME = frozenset(
+# Sensors of different times seem to slip, to jump and to be far from the centre; one side of
+# another scale seems to scale the way.
+TRIED_ALONE = frozenset(
     {"pose_late", "clocks_apart", "gyroscope_late", "treads_late", "treads_are_commands"}
+    | {"treads_unequal"}
 )
 
 Found = Callable[[Evidence], list[Finding]]
 
 
 def alone(evidence: Evidence, found: Sequence[Finding], find: Found) -> list[Finding]:
-    """A cause of time that leaves no warning when it is undone, and the notes; else all findings.
+    """A cause that leaves no warning when it alone is undone, and the notes; else all findings.
 
     Its consequences vanish with it.
     """
     warnings = _warnings(found)
-    causes = [cause for cause in warnings if cause.name in OF_TIME]
+    causes = [cause for cause in warnings if cause.name in TRIED_ALONE]
     only = _explains_all(evidence, causes, find) if len(warnings) > 1 else None
     return list(found) if only is None else [only, *_notes(found)]
 

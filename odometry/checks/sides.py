@@ -19,6 +19,7 @@ LEAST_OFFSET_M_S = 0.03
 TIMES = 5.0  # standard deviations
 HELD = 0.9  # share of the turns explained where terrain holds
 LASTING = 0.4  # share of the logarithm of a ratio that each piece of the recording has
+TOO_LITTLE = 1.1  # metres moved for each of the mean tread travel, which no slip makes
 TWIST = 0.15  # share of the turn that may come from the other column
 
 
@@ -86,8 +87,15 @@ def _unequal(evidence: Evidence, turn: Relation, forward: Relation | None) -> It
         f"One side has another scale: the {side} tread reads {max(ratio, 1 / ratio):.3g} times too "
         "much against the other (unit, wheel radius, gear, ticks of one side, a flat tyre)",
         "Compare both sides on a straight drive",
-        mend=treads_times(ratio, 1.0),
+        mend=_as_the_other(evidence, ratio),
     )
+
+
+def _as_the_other(evidence: Evidence, ratio: float) -> Mend:
+    """The side that reads too much made smaller, unless the way says that one reads too little."""
+    if (evidence.metres_per_metre or 1.0) > TOO_LITTLE:
+        return treads_times(max(ratio, 1.0), max(1 / ratio, 1.0))
+    return treads_times(min(ratio, 1.0), min(1 / ratio, 1.0))
 
 
 def _lasts(evidence: Evidence, ratio: float) -> bool:

@@ -1,63 +1,18 @@
-"""What is said of a unit that was taken for another: tables of units, and factors that are none."""
-
-from collections.abc import Callable
-from dataclasses import dataclass
+"""What is said of a unit that was taken for another, and of factors that are none."""
 
 import numpy as np
 
 from odometry.bags.wheel_names import UNITS
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
+from odometry.checks.motion import scattered
+from odometry.checks.relation import relation
 from odometry.checks.undo import gyroscope_times, treads_times
+from odometry.checks.unit_tables import ORDINARY_FORWARD, Unit, matching, of_wheels, tread_units
 
-ORDINARY_FORWARD = 0.93  # metres that a robot moves for each metre of tread travel
-
-
-@dataclass(frozen=True)
-class Unit:
-    """A unit in place of the right one: the file holds `factor` times the SI value."""
-
-    words: str
-    factor: float
-
-
-def tread_units(wheel_radius_m: float | None, period_s: float = 0.0) -> tuple[Unit, ...]:
-    """Units in which tread speeds are logged; those of wheels need a radius."""
-    linear = (
-        Unit("metres a row (increments of an odometer, not speeds)", period_s or 1e-9),
-        Unit("mm/s", 1000.0),
-        Unit("cm/s", 100.0),
-        Unit("km/h", 3.6),
-        Unit("miles per hour", 2.23694),
-        Unit("feet per second", 3.28084),
-    )
-    if wheel_radius_m is None:
-        return linear
-    turn = 2 * np.pi * wheel_radius_m
-    return (
-        Unit(f"rad/s (of wheels of {wheel_radius_m:g} m radius)", 1 / wheel_radius_m),
-        Unit(f"RPM (of wheels of {wheel_radius_m:g} m radius)", 60 / turn),
-        Unit("revolutions per second", 1 / turn),
-        Unit("degrees per second", 360 / turn),
-        *linear,
-    )
-
-
-POSITION_UNITS = (
-    Unit("mm", 1000.0),
-    Unit("cm", 100.0),
-    Unit("km", 0.001),
-    Unit("feet", 3.28084),
-    Unit("inches", 39.3701),
-    Unit("degrees of latitude and longitude", 1 / 111_320.0),
-)
-
-
-def matching(candidates: tuple[Unit, ...], ratio: Callable[[Unit], float]) -> Unit | None:
-    """The unit that brings a ratio nearest to the ordinary one, if near enough."""
-    near = min(candidates, key=lambda unit: abs(np.log(ratio(unit) / ORDINARY_FORWARD)))
-    low, high = (0.45, 1.6) if not 1 / 50 < near.factor < 50 else (0.7, 1.15)
-    return near if low <= ratio(near) <= high else None
+FARTHEST = 1.1  # the same, at most: 0.92 to 1.02 where real robots drive straight
+STEADY = 0.98  # correlation from which a factor on straight lines is constant
+STRAIGHT = 0.05  # way of an arm in a turn, as a share of the way of the robot
 
 
 SLIP_OR_TRACK = "; or heavy slip in turns (snow), or a wrong track_width"
@@ -138,17 +93,34 @@ def slip_along(seen: str, tight: bool) -> Finding:
     )
 
 
-def scale_along(seen: str, forward: float) -> Finding:
+def scale_along(seen: str, forward: float, radius_known: bool) -> Finding:
     """A constant factor along the way that is no known unit."""
+    factor = ORDINARY_FORWARD / forward
+    size = f"{factor:.2g} times too large" if factor > 1 else f"{1 / factor:.2g} times too small"
+    units = "" if radius_known else "".join(f"{words}, " for words in of_wheels(forward))
     return Finding(
         "scale",
         Level.WARNING,
         f"{seen}; the factor is constant",
-        f"Tread speeds are {1 / forward * ORDINARY_FORWARD:.2g} times too large (wheel radius or "
-        "diameter, gear ratio, unit), or positions are scaled",
+        f"Tread speeds are {size} ({units}wheel radius or diameter, gear ratio, unit), or "
+        "positions are scaled",
         "Compare a straight stretch with a tape measure, and mend the wheel radius",
-        mend=treads_times(forward / ORDINARY_FORWARD, forward / ORDINARY_FORWARD),
+        mend=treads_times(1 / factor, 1 / factor),
     )
+
+
+def beyond_treads(evidence: Evidence) -> float | None:
+    """Metres per metre of tread travel where the robot drives straight, if more than slip leaves.
+
+    Slip shortens the way, and on a straight line no arm of the sensor lengthens it.
+    """
+    m = evidence.motion
+    arm_m = max(evidence.run.robot.length or 0.0, evidence.run.robot.track_width) / 2
+    straight = np.abs(evidence.turn_rad(m)) * arm_m < STRAIGHT * np.abs(m.mean_m)
+    found = relation(np.where(straight, m.distance_m, np.nan), np.abs(m.mean_m))
+    if scattered(m) or found is None or found.correlation < STEADY:
+        return None
+    return found.slope if found.slope - 5 * found.slope_sigma > FARTHEST else None
 
 
 def track_against_body(evidence: Evidence) -> Finding | None:

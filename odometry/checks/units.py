@@ -11,19 +11,17 @@ from odometry.checks.relation import Relation, pieces
 from odometry.checks.turn_signs import Sense, gyroscope_sense, pose_sense
 from odometry.checks.undo import times
 from odometry.checks.unit_findings import (
-    POSITION_UNITS,
     SLIP_OR_TRACK,
-    Unit,
+    beyond_treads,
     gyroscope_unit,
     imported_unit,
-    matching,
     scale_along,
     slip_along,
     too_fast,
     track_against_body,
     tread_unit,
-    tread_units,
 )
+from odometry.checks.unit_tables import POSITION_UNITS, counts, matching, tread_units
 
 # Robots that were measured move 0.75 to 1.05 times as far as their treads where the terrain holds,
 # and turn as if 1.0 to 3.1 times as wide; on ice 0.24 to 0.4 times as far, on snow 10 times
@@ -51,6 +49,8 @@ def units(evidence: Evidence) -> Iterator[Finding]:
     high *= 1 + _longer_by_noise(evidence)
     if forward is not None and not low <= forward <= high:
         yield _along(evidence, forward, forward_tight, width)
+    elif (straight := beyond_treads(evidence)) is not None:
+        yield _along(evidence, straight, True, width)
     if width is not None and width < WIDTH[0] and (mean := holds_the_mean(evidence)):
         yield disagreement(mean)
     elif width is not None and not WIDTH[0] <= width <= WIDTH[1]:
@@ -148,10 +148,11 @@ def _along(evidence: Evidence, forward: float, tight: bool, width: float | None)
         tread_units(evidence.run.robot.wheel_radius, evidence.period_s),
         lambda unit: forward * unit.factor,
     )
+    radius_known = evidence.run.robot.wheel_radius is not None
     position = matching(POSITION_UNITS, lambda unit: forward / unit.factor)
     tread_fits = tread is not None and (width is None or 0.95 <= width / tread.factor <= WIDTH[1])
     if tread is None and forward * EXTREME < 1 and width is not None and width > EXTREME:
-        tread = Unit("encoder ticks or motor RPM (before the gearbox)", 1 / forward)
+        tread = counts(forward, radius_known)
         tread_fits = True
     if tread is not None and tread_fits and (tight or extreme):
         return tread_unit(seen, tread, evidence)
@@ -170,7 +171,7 @@ def _along(evidence: Evidence, forward: float, tight: bool, width: float | None)
         )
     if not tight or (forward < FORWARD[0] and width is not None and width > ORDINARY_WIDTH):
         return slip_along(seen, tight)
-    return scale_along(seen, forward)
+    return scale_along(seen, forward, radius_known)
 
 
 def _across(evidence: Evidence, forward: float | None, width: float, tight: bool) -> Finding:

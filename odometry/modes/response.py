@@ -10,6 +10,7 @@ from scipy.signal import lfilter
 from odometry.arrays import FloatArray, IntArray
 
 SLOWEST_HZ, FASTEST_HZ = 0.3, 30.0
+LOG_RATE_TOLERANCE = 1e-9  # the file is then the same on other processors, but for rounding
 RIDGE = 1e-3  # of the mean square of an input: what inputs that go together leave open is small
 BLOCK_S = 2.0  # over which errors of a model are correlated
 LEAST_VARIANCE = 1e-10
@@ -63,7 +64,9 @@ def fitted_response(records: Sequence[Record], row: int) -> Response:
     grid = np.linspace(np.log(SLOWEST_HZ), np.log(FASTEST_HZ), 25)
     best = int(np.argmin([cost(log_rate) for log_rate in grid]))
     bounds = (grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)])
-    log_rate = minimize_scalar(cost, bounds=bounds, method="bounded").x
+    log_rate = minimize_scalar(
+        cost, bounds=bounds, method="bounded", options={"xatol": LOG_RATE_TOLERANCE}
+    ).x
     rate_hz = float(np.exp(log_rate))
     return Response(rate_hz, _projected(records, row, rate_hz)[0])
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from tests.blind.faults import (
     bent,
+    computed,
     encoders,
     frames,
     images,
@@ -36,6 +37,7 @@ ROOMS = (
     images,
     texts,
     bent,
+    computed,
 )
 FAULTS = {fault.key: fault for room in ROOMS for fault in room.FAULTS}
 MOTION = frozenset({"motion"})

@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import pytest
 
 from odometry.checks.poses import _place
-from odometry.checks.unit_findings import tread_unit, tread_units
+from odometry.checks.unit_findings import tread_unit
+from odometry.checks.unit_tables import tread_units
 
 
 @pytest.mark.parametrize("words", ["miles per hour", "km/h", "feet per second"])
