@@ -1,6 +1,6 @@
 """Drives of skid-steer vehicles on contacts: many at once, with the truth of every stamp."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +8,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.simulation.contact.dynamics import MEMORY, POSITION, YAW, YAW_RATE, ContactDynamics
 from odometry.simulation.contact.integrate import LONGEST_STEP_S, rosenbrock_step
+from odometry.simulation.contact.one_vehicle import one_vehicle
 from odometry.simulation.contact.slope import Ground, Plane, gravity
 from odometry.simulation.contact.traction import (
     Traction,
@@ -19,6 +20,8 @@ from odometry.simulation.contact.traction import (
 from odometry.simulation.contact.vectors import ComplexArray
 from odometry.simulation.contact.vehicle import ContactVehicle
 from odometry.simulation.errors import SimulationError
+
+Steps = Callable[[ComplexArray, FloatArray, float, int], ComplexArray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,6 +134,7 @@ def simulate_contact(
     switches = dict(zip(switch_rows(pieces, stamps_s).tolist(), pieces, strict=True))
     dynamics = ContactDynamics(vehicle, ground)
     state = dynamics.start(starts[:, 0] + 1j * starts[:, 1], starts[:, 2])
+    advanced = _steps_of(dynamics, len(state))
     substeps = max(1, int(np.ceil(step_s / longest_step_s - 1e-9)))
     states = np.empty((count, len(state), MEMORY), dtype=np.complex128)
     for k in range(count):
@@ -141,10 +145,11 @@ def simulate_contact(
             )
         if k in switches:
             dynamics, state = switched(dynamics, state, switches[k])
+            advanced = _steps_of(dynamics, len(state))
         states[k] = state[:, :MEMORY]
         with np.errstate(over="ignore", invalid="ignore"):
-            for _ in range(substeps if k < count - 1 else 0):
-                state = rosenbrock_step(dynamics, state, flat[:, k], step_s / substeps)
+            if k < count - 1:
+                state = advanced(state, flat[:, k], step_s / substeps, substeps)
     poses, twists, accelerations = _observed(dynamics, states, step_s)
     return ContactDrive(
         vehicle,
@@ -156,6 +161,20 @@ def simulate_contact(
         accelerations.reshape(*stack, count, 2),
         pieces,
     )
+
+
+def _steps_of(dynamics: ContactDynamics, drives: int) -> Steps:
+    """What takes states (B, S) so many steps further: plain numbers for one drive, else NumPy."""
+    one = one_vehicle(dynamics) if drives == 1 else None
+    if one is not None:
+        return one.advanced
+
+    def of_many(state: ComplexArray, speeds: FloatArray, step_s: float, steps: int) -> ComplexArray:
+        for _ in range(steps):
+            state = rosenbrock_step(dynamics, state, speeds, step_s)
+        return state
+
+    return of_many
 
 
 def _observed(

@@ -56,6 +56,12 @@ class ContactDynamics:
         In the contact plane, from the origin.
     arms_m : (n,) complex array
         From the centre of mass to each contact.
+    normal_loads : NormalLoads
+    friction : (n,) or (B, n) array
+    lateral_share : float
+        Of the traction sideways.
+    entry_m : (2, n) array
+        Distance of each contact from where its tread meets the ground, ahead and back.
     """
 
     def __init__(self, vehicle: ContactVehicle, ground: Ground) -> None:
@@ -63,14 +69,14 @@ class ContactDynamics:
         x, y, self._height_m = vehicle.centre_of_mass_m
         self.centre_of_mass = complex(x, y)
         self.arms_m = vehicle.places_m - self.centre_of_mass
-        self._loads = NormalLoads(vehicle.places_m)
-        self.law, self._friction, self._lateral = vehicle.law, vehicle.friction.ravel(), 1.0
-        self._entry_m = np.tile(vehicle.entry_m, 2)
+        self.normal_loads = NormalLoads(vehicle.places_m)
+        self.law, self.friction, self.lateral_share = vehicle.law, vehicle.friction.ravel(), 1.0
+        self.entry_m = np.tile(vehicle.entry_m, 2)
 
     def on(self, friction: FloatArray, law: FrictionLaw, lateral_share: float) -> "ContactDynamics":
         """The same with another friction (B, n), law, and share of the traction sideways."""
         other = copy(self)
-        other.law, other._friction, other._lateral = law, friction, lateral_share
+        other.law, other.friction, other.lateral_share = law, friction, lateral_share
         return other
 
     def start(self, positions: ComplexArray, yaws_rad: FloatArray) -> ComplexArray:
@@ -101,16 +107,16 @@ class ContactDynamics:
         """
         weight = self.vehicle.mass_kg * normal_gravity_m_s2
         moment = weight * self.centre_of_mass - self._height_m * state[:, FOLLOWED_FORCE]
-        loads = self._loads(weight, moment)
+        loads = self.normal_loads(weight, moment)
         treads = np.repeat(tread_speeds_m_s, len(self.arms_m) // 2, axis=-1)
         slips = state[:, VELOCITY, None] + 1j * state[:, YAW_RATE, None].real * self.arms_m - treads
-        renewal = np.abs(treads) / np.where(treads > 0, *self._entry_m)
+        renewal = np.abs(treads) / np.where(treads > 0, *self.entry_m)
         memory, law = state[:, MEMORY:], self.law
         rates = law.displacement_rate(slips, memory, renewal)
         opposed, factor = law.yielding(slips, memory, rates)
-        stiffness = self._friction * loads * factor
-        shared: ComplexArray = opposed.real + 1j * (self._lateral * opposed.imag)
-        damping = stiffness * (law.lead * max(1.0, self._lateral))
+        stiffness = self.friction * loads * factor
+        shared: ComplexArray = opposed.real + 1j * (self.lateral_share * opposed.imag)
+        damping = stiffness * (law.lead * max(1.0, self.lateral_share))
         return Contacts(loads, slips, -stiffness * shared, rates, damping)
 
     def rate(

@@ -6,7 +6,7 @@ from odometry.arrays import FloatArray
 from odometry.simulation.contact.dynamics import VELOCITY, YAW_RATE, ContactDynamics, Contacts
 from odometry.simulation.contact.vectors import ComplexArray, cross
 
-GAMMA = 1 - np.sqrt(0.5)
+GAMMA = float(1 - np.sqrt(0.5))
 LONGEST_STEP_S = 0.005
 
 

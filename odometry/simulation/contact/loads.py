@@ -20,12 +20,18 @@ class NormalLoads:
     ----------
     places_m : (n,) complex array
         Contacts in the contact plane, not all on a line.
+
+    Attributes
+    ----------
+    of_balance : list of (float, float, float)
+        For each contact: load by the weight and by both parts of its moment, where none lifts off.
     """
 
     def __init__(self, places_m: ComplexArray) -> None:
         self.places_m = places_m
         self._shape = np.stack([np.ones(len(places_m)), places_m.real, places_m.imag])
         self._linear = np.linalg.pinv(self._shape).T
+        self.of_balance = [tuple(column) for column in self._linear.T.tolist()]
 
     def __call__(self, weight_n: FloatArray, moment_nm: ComplexArray) -> FloatArray:
         """Loads (B, n) [N].

@@ -120,26 +120,27 @@ class Zones:
         slopes = np.tan(self.slopes_rad)
         share = 0.5 + 0.5 * np.tanh(self._from_edges(points))
         along = slopes[0] + share @ np.diff(slopes)
-        return np.asarray(along * self._uphill * heading.conj())
+        return np.asarray(along * self.uphill * heading.conj())
 
     def rise_rate(self, points: ComplexArray, velocity: ComplexArray) -> ComplexArray:
         """See `Ground`."""
         bend = 0.5 / self.crease_m * (1 - np.tanh(self._from_edges(points)) ** 2)
-        climbing = dot(self._uphill, velocity)
-        return np.asarray(bend @ np.diff(np.tan(self.slopes_rad)) * climbing * self._uphill)
+        climbing = dot(self.uphill, velocity)
+        return np.asarray(bend @ np.diff(np.tan(self.slopes_rad)) * climbing * self.uphill)
 
     def heights_m(self, points: ComplexArray) -> FloatArray:
         """See `Ground`; the integral of the slope from far behind, up to a constant."""
         slopes = np.tan(self.slopes_rad)
         risen = 0.5 * self.crease_m * np.logaddexp(0.0, 2 * self._from_edges(points))
-        return np.asarray(slopes[0] * dot(self._uphill, points) + risen @ np.diff(slopes))
+        return np.asarray(slopes[0] * dot(self.uphill, points) + risen @ np.diff(slopes))
 
     @property
-    def _uphill(self) -> complex:
+    def uphill(self) -> complex:
+        """Unit vector, x + i y in the world."""
         return complex(np.exp(1j * self.uphill_rad))
 
     def _from_edges(self, points: ComplexArray) -> FloatArray:
-        along = dot(self._uphill, points)[..., None]
+        along = dot(self.uphill, points)[..., None]
         return np.asarray((along - np.array(self.edges_m)) / self.crease_m)
 
 

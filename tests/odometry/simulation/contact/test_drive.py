@@ -5,6 +5,7 @@ import pytest
 
 from odometry.simulation.contact.drive import simulate_contact
 from odometry.simulation.contact.slope import Plane, Zones
+from odometry.simulation.contact.traction import Traction
 from odometry.simulation.errors import SimulationError
 
 G = 9.80665
@@ -110,3 +111,49 @@ def test_accelerations_are_means_since_the_stamp_before(make_vehicle):
     means = fine.accelerations_m_s2[1:2001].reshape(100, 20, 2).mean(axis=1)
     np.testing.assert_allclose(coarse.accelerations_m_s2[20:], means[19:], atol=1e-3)
     assert np.ptp(means[19:], axis=0).max() > 0.3
+
+
+class Bowl:
+    """Ground of somebody else: it rises by 0.05 m^-1 times the distance from the origin."""
+
+    def rise(self, points, heading):
+        return 0.05 * points * heading.conj()
+
+    def rise_rate(self, points, velocity):  # noqa: ARG002
+        return 0.05 * velocity
+
+    def heights_m(self, points):
+        return 0.025 * np.abs(points) ** 2
+
+
+@pytest.mark.parametrize("law", ["coulomb", "shear"])
+@pytest.mark.parametrize(
+    "ground", [Plane(0.12, 2.0), Zones((0.0, 0.2, -0.1), (0.3, 0.9), 0.4, 0.2), Bowl()]
+)
+def test_one_drive_in_plain_numbers_is_that_of_a_stack(make_vehicle, speeds, rng, law, ground):
+    """One drive alone takes another program; wheels lift off, and the traction changes."""
+    vehicle = make_vehicle(law, height=0.5, patch_length=None, track_length=1.2)
+    friction, other = rng.uniform(0.3, 0.9, (2, 2, 3)), make_vehicle("shear").law
+    traction = [
+        Traction("a", 0.0, friction[0], vehicle.law, 0.7),
+        Traction("b", 1.5, friction[1], other, 1.3),
+    ]
+    many = speeds.reshape(6, 151, 2)[:2]
+    stack = simulate_contact(vehicle, many, 0.02, ground=ground, traction=traction)
+    alone = simulate_contact(vehicle, many[1], 0.02, ground=ground, traction=traction)
+    for name in ("poses_world", "twists_body"):
+        np.testing.assert_allclose(
+            getattr(alone, name), getattr(stack[1], name), rtol=0, atol=1e-11
+        )
+
+
+@pytest.mark.parametrize("speed_m_s", [1e3, 1e308])
+def test_a_drive_that_runs_away_says_so_alone_as_in_a_stack(make_vehicle, speed_m_s):
+    """What overflows in plain numbers raises other errors than in arrays."""
+    speeds = np.full((2, 40, 2), speed_m_s) * [1.0, -0.5]
+    said = []
+    for of in (speeds, speeds[0]):
+        with pytest.raises(SimulationError, match="runs away") as error:
+            simulate_contact(make_vehicle("shear"), of, 0.5)
+        said.append(str(error.value))
+    assert said[0] == said[1]
