@@ -15,6 +15,7 @@ from .evaluation.score import reference_of, score
 from .evaluation.stretches import stretches
 from .feel.follow import follow_feel
 from .feel.identify_feel import identify_feel
+from .feel.live import LiveFeel
 from .feel.model import FeelModel
 from .feel.model_file import read_feel_model, write_feel_model
 from .feel.windows import feel_windows
@@ -64,6 +65,7 @@ __all__ = [
     "IcrEkfConfig",
     "IdentificationError",
     "Inputs",
+    "LiveFeel",
     "LiveFrames",
     "ModeSet",
     "ModeTrack",

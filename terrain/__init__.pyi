@@ -15,7 +15,8 @@ from .labelling.given_terrain import TerrainSpan, told_by_spans, told_terrain
 from .labelling.label_runs import label_runs
 from .labelling.patch_files import write_labelled_patches
 from .labelling.scale import LabelConfig
-from .live_odometry import LiveOdometry, LiveStep
+from .live_odometry import LiveOdometry
+from .live_step import LiveStep
 from .main_job import run_odometry
 from .report.page import write_report
 from .results import read_errors, write_results

@@ -1,52 +1,20 @@
 """Where camera, feel and motion name different terrains for long, and unknown terrain."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import groupby
 
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
-from odometry.feel.follow import SILENT, Felt
+from odometry.feel.felt import SILENT, FeltWindows
 from odometry.geometry import se2
 from odometry.run import UNKNOWN
 from odometry.run_terrains import NamedTerrain
 from odometry.trajectory import Trajectory
+from terrain.contradictions_so_far import Contradiction, ContradictionsSoFar
 from terrain.image_label import ImageLabel
 
 STRETCH_S = 4.0  # of feel, half before a moment and half after
-BREAK_S = 2.5  # a shorter time between two equal stretches ends none
-LASTS_S = 5.0  # what is shorter is an edge between terrains, or chance
-
-
-Names = tuple[str, str, str]  # by camera, feel and motion
-
-
-@dataclass(frozen=True)
-class Contradiction:
-    """A span in which sources differ, or in which neither knows the terrain.
-
-    Attributes
-    ----------
-    begin_s, end_s : float
-    camera, feel, motion : str
-        The terrain by each source; "" of a source that names nothing.
-    camera_probability, feel_probability : float
-        Means over the span; NaN without a name.
-    """
-
-    begin_s: float
-    end_s: float
-    camera: str
-    feel: str
-    motion: str
-    camera_probability: float
-    feel_probability: float
-
-    @property
-    def is_new(self) -> bool:
-        """Whether no source knows the terrain, and it is unknown by feel."""
-        return self.feel == UNKNOWN and self.camera in ("", UNKNOWN)
 
 
 @dataclass(frozen=True)
@@ -58,13 +26,13 @@ class Beneath:
 
 
 def contradictions(
-    felt: Felt, beneath: Beneath | None = None, motion: NamedTerrain | None = None
+    felt: FeltWindows, beneath: Beneath | None = None, motion: NamedTerrain | None = None
 ) -> tuple[Contradiction, ...]:
     """Spans of LASTS_S or more.
 
     Parameters
     ----------
-    felt : Felt
+    felt : FeltWindows
         What the run feels like; put together over STRETCH_S around each moment.
     beneath : Beneath, optional
         At the `moments_s` of the same run.
@@ -81,47 +49,40 @@ def contradictions(
     camera = nothing if beneath is None else beneath.names
     by_motion = nothing if motion is None else _names_at(motion, moments_s)
     share = np.full(len(moments_s), np.nan) if beneath is None else beneath.probabilities
+    found, so_far = list[Contradiction](), ContradictionsSoFar()
     rows = zip(camera.tolist(), names.tolist(), by_motion.tolist(), strict=True)
-    found = [
-        Contradiction(
-            float(moments_s[first]),
-            float(moments_s[last]),
-            *by_source,
-            _mean(share[first : last + 1]),
-            _mean(sure[first : last + 1]),
-        )
-        for by_source, first, last in _spans(moments_s, list(rows))
-    ]
-    return tuple(found)
+    for moment_s, by_source, *sizes in zip(
+        moments_s.tolist(), rows, share.tolist(), sure.tolist(), strict=True
+    ):
+        found += so_far.add(moment_s, by_source, (sizes[0], sizes[1]))
+    return (*found, *so_far.lasting)
 
 
-def differ(camera: str, feel: str, motion: str) -> bool:
-    """Whether two sources that name a terrain name different ones, or feel knows none.
-
-    A camera that knows no terrain contradicts nobody, nor does feel where the camera knows one.
-    """
-    named = {name for name in (camera, feel, motion) if name not in ("", UNKNOWN)}
-    return len(named) > 1 or (feel == UNKNOWN and not named)
-
-
-def moments_of(felt: Felt) -> FloatArray:
+def moments_of(felt: FeltWindows) -> FloatArray:
     """The moments (W,) in the middle of what is put together."""
-    return np.asarray(felt.stamps_s - STRETCH_S / 2)
+    return np.asarray(felt.windows.ends_s - STRETCH_S / 2)
 
 
 def labels_beneath(
-    felt: Felt, image_labels: Sequence[ImageLabel], odometer: Trajectory, radius_m: float
+    felt: FeltWindows,
+    image_labels: Sequence[ImageLabel],
+    odometer: Trajectory,
+    radius_m: float,
+    *,
+    causal: bool = False,
 ) -> Beneath:
     """The most frequent label of places within `radius_m` of the robot, and its mean probability.
 
     Parameters
     ----------
-    felt : Felt
+    felt : FeltWindows
     image_labels : sequence of ImageLabel
         Of the same run.
     odometer : Trajectory
         No measured pose moves it, so that places do not move under the robot.
     radius_m : float
+    causal : bool
+        Whether labels that are later than a window is known count for nothing.
     """
     of = [one for one in image_labels if one.label and one.region is not None]
     stamps_s = np.array([one.stamp_s for one in of])
@@ -132,17 +93,25 @@ def labels_beneath(
     shares = np.full(len(moments_s), np.nan)
     if not of:
         return Beneath(names, shares)
-    places = _places(of, odometer)
-    labels = np.array([one.label for one in of], dtype=object)
-    sure = np.array([one.confidence for one in of])
+    stamps_s, places = stamps_s[kept], _places(of, odometer)
+    upto_s = felt.stamps_s if causal else np.full(len(moments_s), np.inf)
     for row, here in enumerate(odometer.at(moments_s).poses[:, :2]):
-        near = np.hypot(*(places - here).T) <= radius_m
-        if near.any():
-            found, counts = np.unique(labels[near].astype(str), return_counts=True)
-            names[row] = str(found[counts.argmax()])
-            known = names[row] != UNKNOWN
-            shares[row] = _mean(sure[near & (labels == names[row])]) if known else np.nan
+        near = (np.hypot(*(places - here).T) <= radius_m) & (stamps_s <= upto_s[row])
+        names[row], shares[row] = most_frequent(
+            [one for one, of_it in zip(of, near, strict=True) if of_it]
+        )
     return Beneath(names, shares)
+
+
+def most_frequent(labels: Sequence[ImageLabel]) -> tuple[str, float]:
+    """The most frequent label and its mean probability; "" without a label."""
+    if not labels:
+        return "", float("nan")
+    found, counts = np.unique([one.label for one in labels], return_counts=True)
+    name = str(found[counts.argmax()])
+    if name == UNKNOWN:
+        return name, float("nan")
+    return name, _mean(np.array([one.confidence for one in labels if one.label == name]))
 
 
 def _places(of: Sequence[ImageLabel], odometer: Trajectory) -> FloatArray:
@@ -157,24 +126,6 @@ def _names_at(motion: NamedTerrain, moments_s: FloatArray) -> AnyArray:
     rows = np.searchsorted(motion.stamps_s, moments_s, side="right") - 1
     names = np.append(motion.names.astype(object), "")
     return np.asarray(np.where(names[rows] == UNKNOWN, "", names[rows]))
-
-
-def _spans(moments_s: FloatArray, rows: Sequence[Names]) -> Iterator[tuple[Names, int, int]]:
-    """Where sources differ: what they name, first and last row; short breaks are bridged."""
-    found: list[tuple[Names, int, int]] = []
-    for by_source, group in groupby(range(len(rows)), key=lambda row: rows[row]):
-        if not differ(*by_source):
-            continue
-        first, *others = group
-        last = others[-1] if others else first
-        if (
-            found
-            and found[-1][0] == by_source
-            and moments_s[first] <= moments_s[found[-1][2]] + BREAK_S
-        ):
-            first = found.pop()[1]
-        found.append((by_source, first, last))
-    yield from (one for one in found if moments_s[one[2]] - moments_s[one[1]] >= LASTS_S)
 
 
 def _mean(values: FloatArray) -> float:

@@ -1,15 +1,28 @@
 """Terrain by feel as labels of the place under the robot."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
-from odometry.arrays import FloatArray
-from odometry.feel.follow import Felt
+from odometry.arrays import FloatArray, IntArray
+from odometry.feel.felt import FeltWindows
 from odometry.feel.windows import STEPS
 from odometry.run import UNKNOWN
 from terrain.place_labels import PlaceLabel
+
+
+class FeltPlaces(Protocol):
+    """Terrain by feel as one more source of labels."""
+
+    def between(
+        self, after_s: float, upto_s: float, pose: FloatArray, travel_m: float
+    ) -> Iterator[PlaceLabel]:
+        """Labels of the windows that became known after one stamp and up to another."""
+
+    def beside(self, seen: Mapping[str, float]) -> Mapping[str, float]:
+        """Probabilities of one image with those terrains added that only feel can name."""
 
 
 @dataclass(frozen=True)
@@ -22,30 +35,26 @@ class FeelLabels:
         Of the terrains of the model of feel.
     image_names : tuple of str
         Of the terrains that the camera can name.
-    ends_s : (N,)
+    known_s : (N,)
     probabilities : (N, K)
         Of each terrain by one window, calibrated on held-out runs.
     """
 
     names: tuple[str, ...]
     image_names: tuple[str, ...]
-    ends_s: FloatArray
+    known_s: FloatArray
     probabilities: FloatArray
 
     @classmethod
-    def of(cls, felt: Felt, image_names: tuple[str, ...] = ()) -> "FeelLabels":
+    def of(cls, felt: FeltWindows, image_names: tuple[str, ...] = ()) -> "FeelLabels":
         """Windows that do not overlap; those that fit no terrain are none."""
-        windows = felt.windows
-        rows = np.arange(0, len(windows), STEPS)
-        rows = rows[windows.felt[rows] & (felt.answers[rows] != UNKNOWN)]
-        given = felt.probabilities[rows]
-        given = given + felt.unknown[rows, None] / given.shape[1]  # of none: the same for all
-        return cls(felt.model.names, image_names, felt.stamps_s[rows], given)
+        rows = evident(felt, np.arange(0, len(felt.windows), STEPS))
+        return cls(felt.model.names, image_names, felt.stamps_s[rows], given_by(felt, rows))
 
     def between(
         self, after_s: float, upto_s: float, pose: FloatArray, travel_m: float
     ) -> Iterator[PlaceLabel]:
-        """Labels of the windows that ended after one stamp and up to another.
+        """Labels of the windows that became known after one stamp and up to another.
 
         Parameters
         ----------
@@ -55,22 +64,51 @@ class FeelLabels:
         travel_m : float
             Wheel travel of the run.
         """
-        first, end = np.searchsorted(self.ends_s, [after_s, upto_s], side="right")
+        first, end = np.searchsorted(self.known_s, [after_s, upto_s], side="right")
         for row in range(int(first), int(end)):
-            given = dict(zip(self.names, self.probabilities[row].tolist(), strict=True))
-            yield PlaceLabel(
-                max(given, key=lambda name: given[name]),
-                float(self.ends_s[row]),
-                travel_m,
-                pose[:2],
-                0.0,
-                widened(given, self.image_names),
-                by_feel=True,
-            )
+            of = float(self.known_s[row]), self.probabilities[row]
+            yield place_label((self.names, self.image_names), of, pose, travel_m)
 
     def beside(self, seen: Mapping[str, float]) -> Mapping[str, float]:
         """Probabilities of one image with those terrains added that only feel can name."""
         return widened(seen, self.names) if seen else seen
+
+
+def evident(felt: FeltWindows, rows: IntArray) -> IntArray:
+    """Those of some windows in which the robot moves on a terrain that the model may know."""
+    return np.asarray(rows[felt.windows.felt[rows] & (felt.answers[rows] != UNKNOWN)])
+
+
+def given_by(felt: FeltWindows, rows: IntArray) -> FloatArray:
+    """Probabilities of the terrains of the model (N, K) by some windows (N,)."""
+    given = felt.probabilities[rows]
+    return np.asarray(given + felt.unknown[rows, None] / given.shape[1])  # of none: for all alike
+
+
+def place_label(
+    names: tuple[Sequence[str], tuple[str, ...]],
+    of: tuple[float, FloatArray],
+    pose: FloatArray,
+    travel_m: float,
+) -> PlaceLabel:
+    """The label of the place under a robot.
+
+    Parameters
+    ----------
+    names : (sequence of str, tuple of str)
+        Of the terrains of the model of feel, and of those that the camera can name.
+    of : (float, (K,))
+        From when on a window is known, and what it gives to each terrain.
+    pose : (3,)
+        Of the robot in the odometry frame.
+    travel_m : float
+        Wheel travel of the run.
+    """
+    stamp_s, probabilities = of
+    given = dict(zip(names[0], probabilities.tolist(), strict=True))
+    label = max(given, key=lambda name: given[name])
+    given = widened(given, names[1])
+    return PlaceLabel(label, stamp_s, travel_m, pose[:2], 0.0, given, by_feel=True)
 
 
 def widened(given: Mapping[str, float], names: tuple[str, ...]) -> dict[str, float]:

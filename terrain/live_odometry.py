@@ -1,69 +1,32 @@
 """The main job frame by frame, as on a robot."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from odometry.arrays import FloatArray
 from odometry.errors import ConfigError, EstimationError
-from odometry.estimation.estimate import Estimate
 from odometry.estimation.icr_ekf import IcrEkf
+from odometry.feel.live import NOTHING
+from odometry.feel.model import FeelModel
 from odometry.frames import Frame
 from odometry.live_frames import RunningOdometer
 from odometry.parameters import ParameterSet, read_parameters
-from odometry.pipeline import ConstantTerrain, TerrainSource, can_start, started, stepped
+from odometry.pipeline import TerrainSource, can_start, started, stepped
 from odometry.run import Robot
 from odometry.windows.gaps import GapsSoFar
 from terrain.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.likeness import Likeness
-from terrain.classification.own_statistics import used_as
 from terrain.config import Config
-from terrain.image_label import ImageLabel
+from terrain.live_feel import LiveFelt
+from terrain.live_source import live_feel, live_source
+from terrain.live_step import LiveStep
+from terrain.place_labels import Footprint
 from terrain.sources import initial_terrain
-from terrain.switch import SwitchEvent
 from terrain.watcher import TerrainWatcher
 
-KEPT = 1  # image label and event that the watcher remembers
-
-
-@dataclass(frozen=True)
-class LiveStep:
-    """What is known after one frame.
-
-    Attributes
-    ----------
-    estimate : Estimate
-        Pose corrected by measured poses, ICRs, covariance, and what the filter noticed.
-    odometer : (3,)
-        x, y [m], yaw [rad] of the odometer, which no measured pose corrects after the start.
-    terrain : str
-        In force; `unknown` where for long no label supported it.
-    image_label : ImageLabel or None
-        Label of the frame's image; None where it has no image, or there is no model.
-    switch : SwitchEvent or None
-        The terrain that came into force at this frame.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import odometry
-    >>> import terrain
-    >>> live = terrain.LiveOdometry(odometry.Robot(track_width=0.4), terrain="grass")
-    >>> step = live.step(odometry.Frame(0.0, np.array([0.5, 0.5]), 0, None, None))
-    >>> step.terrain, step.switch is None
-    ('grass', True)
-    """
-
-    estimate: Estimate
-    odometer: FloatArray
-    terrain: str
-    image_label: ImageLabel | None = None
-    switch: SwitchEvent | None = None
-
-    @property
-    def sighting(self) -> ImageLabel | None:
-        """`image_label` under its old name, for one version."""
-        return self.image_label
+if TYPE_CHECKING:
+    from odometry.estimation.estimate import Estimate
 
 
 class LiveOdometry:
@@ -83,6 +46,11 @@ class LiveOdometry:
         `[filter] causal` counts as set.
     source : TerrainSource, optional
         Gives the terrain instead of the images.
+    feel : FeelModel or path, optional
+        The terrain by feel, as the source, or beside the images; `imu` and `currents` take the
+        rows that it needs.
+    imu_rad : (roll, pitch, yaw), optional
+        Of the axes of the IMU in the robot frame, `[sensors] imu`.
     lever_m : (x, y)
         Place in the robot frame of the point whose position is measured, `[sensors] pose`.
     at_pose : bool
@@ -92,7 +60,8 @@ class LiveOdometry:
     Raises
     ------
     OdometryError
-        If an input does not have its documented format, or a model has no camera.
+        If an input does not have its documented format, a model has no camera, or feel is of
+        another robot.
 
     Notes
     -----
@@ -122,6 +91,8 @@ class LiveOdometry:
         terrain: str | None = None,
         config: Config | None = None,
         source: TerrainSource | None = None,
+        feel: FeelModel | str | Path | None = None,
+        imu_rad: tuple[float, float, float] | None = None,
         lever_m: tuple[float, float] = (0.0, 0.0),
         at_pose: bool = False,
     ) -> None:
@@ -129,8 +100,17 @@ class LiveOdometry:
         if not isinstance(parameters, ParameterSet):
             parameters = read_parameters(parameters) if parameters else ParameterSet()
         initial = initial_terrain(terrain, parameters)
+        if feel is not None and source is not None:
+            raise ConfigError("feel was given and a source of your own; expected one of them")
+        live = None if feel is None else live_feel(feel, robot, imu_rad)
+        self._felt: LiveFelt | None = None
         if source is None:
-            source = _source(robot, camera, model, initial, config)
+            source, felt = live_source(
+                robot, initial, config, camera=camera, model=model, live=live
+            )
+            if live is not None and felt is not None:
+                radius_m = Footprint.of(robot, config.region.footprint_scale).radius_m
+                self._felt = LiveFelt(live, felt, radius_m)
         self._source = source
         self._watcher = source if isinstance(source, TerrainWatcher) else None
         self._ekf = IcrEkf(robot.track_width, parameters, config.filter, lever_m=lever_m)
@@ -138,6 +118,30 @@ class LiveOdometry:
         self._gaps = GapsSoFar()
         self._estimate: Estimate | None = None
         self._odometer: RunningOdometer | None = None
+
+    def imu(
+        self,
+        stamp_s: float,
+        *,
+        gyro: Sequence[float] = NOTHING,
+        accel: Sequence[float] = NOTHING,
+    ) -> None:
+        """Take in a row of the IMU for feel; see `odometry.LiveFeel.imu`.
+
+        Rows up to the stamp of a frame come before it; without feel they are left out.
+        """
+        if self._felt is not None:
+            self._felt.live.imu(stamp_s, gyro=gyro, accel=accel)
+
+    def currents(self, stamp_s: float, left_a: float, right_a: float) -> None:
+        """Take in motor currents [A] for feel, held until the next."""
+        if self._felt is not None:
+            self._felt.live.currents(stamp_s, left_a, right_a)
+
+    @property
+    def feel_note(self) -> str:
+        """Why nothing is felt, such as accelerations in g; "" where all is well."""
+        return "" if self._felt is None else self._felt.live.note
 
     def step(self, frame: Frame) -> LiveStep | None:
         """Take in the next frame; None as long as nothing can start.
@@ -149,14 +153,15 @@ class LiveOdometry:
         CameraError
             If the first image to be classified is not of the camera's size.
         """
-        if self._estimate is None:
-            if not can_start(frame, at_pose=self._at_pose):
-                return None
-        elif not frame.stamp_s >= self._estimate.stamp_s:
+        if self._estimate is not None and not frame.stamp_s >= self._estimate.stamp_s:
             raise EstimationError(
                 f"a frame of {frame.stamp_s} s came after that of {self._estimate.stamp_s} s; "
                 "expected frames in order of time, as LiveFrames gives them"
             )
+        if self._felt is not None:
+            self._felt.before(frame)
+        if self._estimate is None and not can_start(frame, at_pose=self._at_pose):
+            return None
         frame = self._gaps.told(frame)
         if self._estimate is None or self._odometer is None:
             self._estimate = started(self._ekf, self._source, frame)
@@ -165,10 +170,14 @@ class LiveOdometry:
         else:
             self._estimate = stepped(self._ekf, self._source, self._estimate, frame)
             pose = self._odometer.step(self._estimate)
-        if self._watcher is None:
-            return LiveStep(self._estimate, pose, self._estimate.terrain)
-        seen = self._watcher.image_labels[-1] if frame.image is not None else None
-        return LiveStep(self._estimate, pose, self._estimate.terrain, seen, self._watcher.event)
+        terrain, seen, event = self._estimate.terrain, None, None
+        if self._watcher is not None:
+            seen = self._watcher.image_labels[-1] if frame.image is not None else None
+            event = self._watcher.event
+        if self._felt is None:
+            return LiveStep(self._estimate, pose, terrain, seen, event)
+        felt = self._felt.after(self._estimate.stamp_s, pose, seen)
+        return LiveStep(self._estimate, pose, terrain, seen, event, *felt)
 
     @property
     def likeness(self) -> Likeness | None:
@@ -177,27 +186,3 @@ class LiveOdometry:
         None where images are not used, or the model holds no comparison; `Likeness.note` has words.
         """
         return None if self._watcher is None else self._watcher.seen.likeness
-
-
-def _source(
-    robot: Robot,
-    camera: Camera | None,
-    model: TerrainClassifier | str | Path | None,
-    initial: str,
-    config: Config,
-) -> TerrainSource:
-    if model is None:
-        return ConstantTerrain(initial)
-    if camera is None:
-        raise ConfigError("a model was given and no camera; expected both, or neither")
-    if isinstance(model, str | Path):
-        model = TerrainClassifier.load(model)
-    return TerrainWatcher(
-        robot,
-        camera,
-        used_as(model, config.classifier),
-        initial,
-        region=config.region,
-        switch=config.switch,
-        keep=KEPT,
-    )

@@ -24,7 +24,8 @@ from odometry.run_terrains import NamedTerrain, ToldFooting
 from odometry.windows.measured_poses import lacks_yaw
 from terrain.classification.classifier import Classifier, TerrainClassifier
 from terrain.config import Config
-from terrain.contradictions import Contradiction, contradictions, labels_beneath
+from terrain.contradictions import contradictions, labels_beneath
+from terrain.contradictions_so_far import Contradiction
 from terrain.images_outside_replay import add_images_outside
 from terrain.new_terrain import learned_apart, new_spans
 from terrain.run_presets import run_preset, with_preset
@@ -145,7 +146,8 @@ def run_odometry(
     differing: tuple[Contradiction, ...] = ()
     if feel is not None and name in ("camera", "feel"):
         motion = None if modes is None else moved_terrain(run, modes, UNKNOWN)
-        differing = _contradictions(felt_of(run, feel), motion, watcher, result)
+        felt = felt_of(run, feel, causal=causal)
+        differing = _contradictions(felt, motion, watcher, result, causal=causal)
     reference_name, reference = reference_of(run) or ("", None)
     second = None
     if reference_name == "pose":
@@ -171,13 +173,19 @@ def run_odometry(
 
 
 def _contradictions(
-    felt: Felt, motion: NamedTerrain | None, watcher: TerrainWatcher | None, result: Replay
+    felt: Felt,
+    motion: NamedTerrain | None,
+    watcher: TerrainWatcher | None,
+    result: Replay,
+    *,
+    causal: bool,
 ) -> tuple[Contradiction, ...]:
     """Where camera, feel and motion differ for long."""
     beneath = None
     if watcher is not None:
+        radius_m = watcher.footprint.radius_m
         beneath = labels_beneath(
-            felt, watcher.image_labels, result.odometer(), watcher.footprint.radius_m
+            felt, watcher.image_labels, result.odometer(), radius_m, causal=causal
         )
     return contradictions(felt, beneath, motion)
 

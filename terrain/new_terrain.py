@@ -14,7 +14,7 @@ from odometry.parameters import ParameterSet
 from odometry.pipeline import Estimator, replay
 from odometry.run import UNKNOWN, Run
 from odometry.run_terrains import Footing, ToldFooting
-from terrain.contradictions import Contradiction
+from terrain.contradictions_so_far import Contradiction
 from terrain.run_result import RunResult
 
 NEW = "unknown {number}"

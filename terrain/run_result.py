@@ -16,7 +16,7 @@ from odometry.parameters import ParameterSet
 from odometry.run import Run
 from odometry.trajectory import Trajectory
 from terrain.config import Config
-from terrain.contradictions import Contradiction
+from terrain.contradictions_so_far import Contradiction
 from terrain.switch import SwitchEvent
 from terrain.watcher import TerrainWatcher
 

@@ -3,7 +3,9 @@
 from pathlib import Path
 
 from odometry.errors import ConfigError, ParameterError, RunFolderError
-from odometry.feel.follow import SILENT, Felt, follow_feel
+from odometry.feel.felt import SILENT
+from odometry.feel.follow import Felt, follow_feel
+from odometry.feel.live_run import follow_feel_live
 from odometry.feel.model import FeelModel
 from odometry.feel.model_file import read_feel_model
 from odometry.modes.felt_terrain import felt_terrain
@@ -119,7 +121,7 @@ def terrain_source(
     if name == "feel":
         if feel is None:
             raise ConfigError("the terrain source 'feel' needs a model (`identify-feel`)")
-        felt = felt_of(run, feel)
+        felt = felt_of(run, feel, causal=config.filter.causal)
         return NamedTerrain.told(initial, felt.stamps_s, felt.lasting_answers, (*SILENT, UNKNOWN))
     if name == "modes":
         if modes is None:
@@ -137,9 +139,10 @@ def moved_terrain(
     return felt_terrain(run, mode_set, initial, show_progress=show_progress)
 
 
-def felt_of(run: Run, feel: FeelModel | str | Path) -> Felt:
-    """What the run feels like."""
-    return follow_feel(run, feel if isinstance(feel, FeelModel) else read_feel_model(feel))
+def felt_of(run: Run, feel: FeelModel | str | Path, *, causal: bool) -> Felt:
+    """What the run feels like; `causal` as in `IcrEkfConfig`."""
+    model = feel if isinstance(feel, FeelModel) else read_feel_model(feel)
+    return follow_feel_live(run, model) if causal else follow_feel(run, model)
 
 
 def _watcher(
@@ -155,14 +158,15 @@ def _watcher(
             f"{'images.csv' if run.images is None else '[camera] in run.toml'}; "
             "a model (--model) reads images: leave it out, or turn vision off (--no-vision)"
         )
-    if feel is not None and config.switch.labels_in_row:
-        raise ConfigError(
-            f"[switch] labels_in_row = {config.switch.labels_in_row} counts labels of the camera; "
-            "feel is weighed by probabilities: expected 0"
-        )
+    if feel is not None:
+        check_weighed(config)
     camera = Camera.from_table(run.settings["camera"], str(run.folder / "run.toml"))
     names = tuple(map(str, model.classes_))
-    felt = None if feel is None else FeelLabels.of(felt_of(run, feel), names)
+    felt = (
+        None
+        if feel is None
+        else FeelLabels.of(felt_of(run, feel, causal=config.filter.causal), names)
+    )
     return TerrainWatcher(
         run.robot,
         camera,
@@ -173,3 +177,12 @@ def _watcher(
         folder=run.folder,
         felt=felt,
     )
+
+
+def check_weighed(config: Config) -> None:
+    """Raise ConfigError where labels are counted, and feel cannot be weighed with them."""
+    if config.switch.labels_in_row:
+        raise ConfigError(
+            f"[switch] labels_in_row = {config.switch.labels_in_row} counts labels of the camera; "
+            "feel is weighed by probabilities: expected 0"
+        )

@@ -17,7 +17,7 @@ from odometry.run_terrains import Footing
 from terrain.camera import Camera
 from terrain.classification.classifier import Classifier
 from terrain.distance_track import DistanceTrack
-from terrain.feel_labels import FeelLabels
+from terrain.feel_labels import FeltPlaces
 from terrain.image_label import ImageLabel
 from terrain.image_labeller import ImageLabeller
 from terrain.place_labels import Footprint, PlaceLabel
@@ -42,7 +42,7 @@ class TerrainWatcher:
         What names of image files are relative to.
     keep : int, optional
         How many of the latest image labels and events are kept; by default all.
-    felt : FeelLabels, optional
+    felt : FeltPlaces, optional
         Terrain by feel, as one more source.
 
     Attributes
@@ -69,7 +69,7 @@ class TerrainWatcher:
         switch: SwitchConfig,
         folder: Path | None = None,
         keep: int | None = None,
-        felt: FeelLabels | None = None,
+        felt: FeltPlaces | None = None,
     ) -> None:
         self.initial = initial
         self.image_labels: list[ImageLabel] = []

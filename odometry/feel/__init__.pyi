@@ -1,4 +1,5 @@
+from .felt import FeelConfig
 from .files import sentences, write_feel
-from .follow import FeelConfig, Felt
+from .follow import Felt
 
 __all__ = ["FeelConfig", "Felt", "sentences", "write_feel"]

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import AnyArray
-from odometry.feel.follow import NOT_MEASURED, SILENT, STATIONARY, Felt
+from odometry.feel.felt import NOT_MEASURED, SILENT, STATIONARY
+from odometry.feel.follow import Felt
 from odometry.feel.scores import balanced_accuracy
 from odometry.io.csv_table import write_csv_table
 from odometry.io.files import atomic_write

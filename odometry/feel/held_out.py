@@ -37,6 +37,19 @@ class Scores:
         likelihoods = members.log_likelihoods(squared, tables)
         return cls(likelihoods, squared.min(axis=1) / members.columns, offsets)
 
+    def since(self, first: int) -> "Scores":
+        """Those of the windows from a row on."""
+        return Scores(self.log_likelihoods[first:], self.novelty[first:], self.offsets[first:])
+
+    @classmethod
+    def joined(cls, parts: "Sequence[Scores]") -> "Scores":
+        """Those of several parts; zeros where one of fewer terrains has fewer directions."""
+        return cls(
+            np.concatenate([part.log_likelihoods for part in parts]),
+            np.concatenate([part.novelty for part in parts]),
+            _stacked([part.offsets for part in parts]),
+        )
+
     def among(self, places: IntArray, count: int) -> "Scores":
         """The same among `count` terrains, of which these stand at `places`.
 
@@ -61,11 +74,7 @@ class HeldOut:
         """Those of several folds."""
         return cls(
             np.concatenate([part.rows for part in parts]),
-            Scores(
-                np.concatenate([part.scores.log_likelihoods for part in parts]),
-                np.concatenate([part.scores.novelty for part in parts]),
-                _stacked([part.scores.offsets for part in parts]),
-            ),
+            Scores.joined([part.scores for part in parts]),
         )
 
 

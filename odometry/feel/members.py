@@ -9,8 +9,8 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.feel.design import CROSS, SHAPE, SPECTRAL, Design
 from odometry.feel.discriminant import Discriminant, Pooled, fitted_discriminant, pooled
 from odometry.feel.logistic import Logistic, fitted_logistic
+from odometry.feel.motion_features import SPEED_NAMES
 from odometry.feel.table import FeelTable
-from odometry.feel.windows import SPEED_NAMES
 
 
 @dataclass(frozen=True)

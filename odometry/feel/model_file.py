@@ -16,8 +16,8 @@ from odometry.feel.limits import NEVER, Limits
 from odometry.feel.logistic import Logistic
 from odometry.feel.members import Choice, Members
 from odometry.feel.model import FeelModel
+from odometry.feel.motion_features import SPEED_NAMES
 from odometry.feel.strangeness import LENGTHS, TERMS, Strangeness
-from odometry.feel.windows import SPEED_NAMES
 from odometry.io.array_file import FileKind, read_array_file, write_array_file
 
 

@@ -34,13 +34,13 @@ class Summed:
     ) -> "Summed":
         """Over those of W windows that are felt, from the first to before the end of spans (N, 2).
 
-        `evidence` (W, K) is bounded, see `Calibration`.
+        `evidence` (W, K) is bounded, see `Calibration`. A span has a window or more, and its sum
+        depends on its windows alone, not on those before.
         """
 
         def of(values: FloatArray) -> FloatArray:
-            kept = (values.T * felt).T
-            upto = np.concatenate([np.zeros((1, *values.shape[1:])), np.cumsum(kept, axis=0)])
-            return np.asarray(upto[spans[:, 1]] - upto[spans[:, 0]])
+            kept = np.concatenate([(values.T * felt).T, np.zeros((1, *values.shape[1:]))])
+            return np.asarray(np.add.reduceat(kept, spans.ravel(), axis=0)[::2])
 
         return cls(of(evidence), of(scores.novelty), of(scores.offsets), of(np.ones(len(felt))))
 

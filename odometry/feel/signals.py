@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.arrays import AnyArray, FloatArray
+from odometry.arrays import AnyArray, FloatArray, IntArray
 from odometry.errors import RunFolderError
+from odometry.feel.imu_check import ImuSums
 from odometry.geometry.se3 import rotation_from_roll_pitch_yaw
 from odometry.run import Run
 from odometry.run_terrains import row_terrains
@@ -64,7 +65,7 @@ def feel_signals(run: Run) -> FeelSignals:
         If there is no axis, they are recorded too slowly, or their sizes are not in rad/s and
         m/s2 with gravity along z; see `imu_checks`.
     """
-    table, axes = _axes(run)
+    table, axes = axes_of(run)
     stamps_s = table.stamps_s
     rate_hz = usual_rate_hz(stamps_s)
     if rate_hz < LEAST_RATE_HZ:
@@ -82,14 +83,16 @@ def feel_signals(run: Run) -> FeelSignals:
             f"{odometry_s[0]:g} to {odometry_s[-1]:g}; expected some time in common"
         )
     grid_s = begin_s + np.arange(int((end_s - begin_s) * rate_hz + 1e-6) + 1) / rate_hz
-    even = {name: _interpolated(grid_s, stamps_s, of, rate_hz) for name, of in axes.items()}
-    held = np.clip(np.searchsorted(odometry_s, grid_s + 1e-9, side="right") - 1, 0, None)
+    even = {name: interpolated(grid_s, stamps_s, of, rate_hz) for name, of in axes.items()}
+    held = held_rows(odometry_s, grid_s)
     treads = run.odometry.stack("v_left", "v_right")[held]
-    treads[_in_gap(grid_s, odometry_gaps(run).spans_s)] = np.nan
+    treads[within_gaps(grid_s, odometry_gaps(run).spans_s)] = np.nan
     signals = FeelSignals(
         begin_s, rate_hz, even, treads, _currents(run.odometry, held), row_terrains(run)[held]
     )
-    check_imu(signals.axes, treads, run.robot.track_width, str(table.file))
+    fault = ImuSums().plus(signals.axes, treads, run.robot.track_width).fault()
+    if fault:
+        raise RunFolderError(f"{table.file}: {fault}")
     return signals
 
 
@@ -102,14 +105,14 @@ def usual_rate_hz(stamps_s: FloatArray) -> float:
     return float(1 / usual.mean())
 
 
-def _axes(run: Run) -> tuple[Table, dict[str, FloatArray]]:
+def axes_of(run: Run) -> tuple[Table, dict[str, FloatArray]]:
     """The table that holds axes of the IMU, and the axes in the robot frame."""
     for table in (run.imu, run.odometry):
         if table is None:
             continue
         found = {name: table[name] for name in AXES if name in table and is_told(table[name])}
         if table is run.imu and run.sensors.imu_rad is not None:
-            found = _turned(found, np.array(run.sensors.imu_rad))
+            found = in_robot_frame(found, np.array(run.sensors.imu_rad))
         if found:
             return table, found
     raise RunFolderError(
@@ -126,7 +129,9 @@ def is_told(column: AnyArray) -> bool:
     return bool(len(finite) >= LEAST_SHARE * len(column) and np.ptp(finite) > LEAST_CHANGE)
 
 
-def _turned(axes: dict[str, FloatArray], roll_pitch_yaw: FloatArray) -> dict[str, FloatArray]:
+def in_robot_frame(
+    axes: dict[str, FloatArray], roll_pitch_yaw: FloatArray
+) -> dict[str, FloatArray]:
     """Axes of the sensor in the robot frame; a triple that is not whole cannot be turned."""
     rotation = rotation_from_roll_pitch_yaw(roll_pitch_yaw)
     turned: dict[str, FloatArray] = {}
@@ -137,19 +142,20 @@ def _turned(axes: dict[str, FloatArray], roll_pitch_yaw: FloatArray) -> dict[str
     return turned
 
 
-def _interpolated(
+def interpolated(
     grid_s: FloatArray, stamps_s: FloatArray, values: FloatArray, rate_hz: float
 ) -> FloatArray:
+    """Values (N,) of a column at even stamps (N,), linear between numbers; NaN within gaps."""
     there = np.isfinite(values)
     stamps_s, values = stamps_s[there], values[there]
     even = np.interp(grid_s, stamps_s, values)
     gaps = np.flatnonzero(np.diff(stamps_s) > GAP_PERIODS / rate_hz)
-    even[_in_gap(grid_s, np.column_stack([stamps_s[gaps], stamps_s[gaps + 1]]))] = np.nan
+    even[within_gaps(grid_s, np.column_stack([stamps_s[gaps], stamps_s[gaps + 1]]))] = np.nan
     even[(grid_s < stamps_s[0] - 1e-9) | (grid_s > stamps_s[-1] + 1e-9)] = np.nan
     return even
 
 
-def _in_gap(grid_s: FloatArray, spans_s: FloatArray) -> AnyArray:
+def within_gaps(grid_s: FloatArray, spans_s: FloatArray) -> AnyArray:
     """Whether each stamp (N,) lies within one of the spans (G, 2), which are in order."""
     if not len(spans_s):
         return np.zeros(len(grid_s), dtype=bool)
@@ -160,60 +166,15 @@ def _in_gap(grid_s: FloatArray, spans_s: FloatArray) -> AnyArray:
 def _currents(odometry: Table, held: AnyArray) -> FloatArray | None:
     if not all(name in odometry and is_told(odometry[name]) for name in CURRENTS):
         return None
-    currents = np.abs(odometry.stack(*CURRENTS)[held])
-    return np.where(currents > 0, currents, np.nan)
+    return current_sizes(odometry.stack(*CURRENTS)[held])
 
 
-GRAVITY_M_S2 = 9.81
-GRAVITY_SHARE = 0.15  # by which the mean size may differ
-MOST_TILT_RAD = 0.79  # of gravity from the robot's z: 45 degrees are no slope that one drives
-MOST_YAW_GAIN = 5.0  # yaw rate over that of the treads; a skid-steer robot has less than 1.2
-LEAST_TURN_RAD_S = 0.05  # of the treads, root mean square, for its gain to be determined
+def current_sizes(currents_a: FloatArray) -> FloatArray:
+    """Sizes (N, 2) of currents; a zero is a dropout, and NaN."""
+    sizes = np.abs(currents_a)
+    return np.where(sizes > 0, sizes, np.nan)
 
 
-def check_imu(
-    axes: Mapping[str, FloatArray], treads_m_s: FloatArray, track_width_m: float, file: str
-) -> None:
-    """Compare gravity and the yaw rate with what they must be.
-
-    Parameters
-    ----------
-    axes : Mapping of str to (N,)
-    treads_m_s : (N, 2)
-    track_width_m : float
-    file : str
-        For the message.
-
-    Raises
-    ------
-    RunFolderError
-        If accelerations have not the size of gravity, gravity is not along z, or the yaw rate is
-        many times that of the treads.
-    """
-    if all(f"accel_{axis}" in axes for axis in "xyz"):
-        mean = np.array([np.nanmean(axes[f"accel_{axis}"]) for axis in "xyz"])
-        size = float(np.linalg.norm(mean))
-        if abs(size / GRAVITY_M_S2 - 1) > GRAVITY_SHARE:
-            raise RunFolderError(
-                f"{file}: the mean acceleration has a size of {size:.4g}, expected "
-                f"{GRAVITY_M_S2} m/s2, gravity included; are they in g or mg?"
-            )
-        if np.arccos(np.clip(mean[2] / size, -1, 1)) > MOST_TILT_RAD:
-            raise RunFolderError(
-                f"{file}: the mean acceleration is {np.round(mean, 1).tolist()} m/s2, expected "
-                "gravity along z; state the attitude of the IMU as [sensors] imu in run.toml"
-            )
-    if "gyro_z" not in axes:
-        return
-    turning = np.diff(treads_m_s)[:, 0] / track_width_m
-    both = np.isfinite(turning) & np.isfinite(axes["gyro_z"])
-    turning, yaw_rate = turning[both], axes["gyro_z"][both]
-    power = float(turning @ turning)
-    if power <= len(turning) * LEAST_TURN_RAD_S**2:
-        return
-    gain = float(yaw_rate @ turning) / power
-    if abs(gain) > MOST_YAW_GAIN:
-        raise RunFolderError(
-            f"{file}: gyro_z is {gain:.0f} times the yaw rate that the treads give, expected at "
-            "most about 1; is it in degrees a second?"
-        )
+def held_rows(stamps_s: FloatArray, grid_s: FloatArray) -> IntArray:
+    """The row of `stamps_s` in force at each of the even stamps (N,)."""
+    return np.clip(np.searchsorted(stamps_s, grid_s + 1e-9, side="right") - 1, 0, None)

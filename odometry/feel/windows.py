@@ -1,89 +1,17 @@
 """Windows of a run and their features, of vibration and of motion."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.errors import RunFolderError
+from odometry.feel.motion_features import current_features, speed_covariates, yaw_features
 from odometry.feel.signals import AXES, FeelSignals, feel_signals
 from odometry.feel.spectra import cross_densities
 from odometry.run import UNKNOWN, Run
-
-LEAST_SPEED_M_S = 0.02  # added below logarithms
-TURN_SIGMA_RAD_S = 0.05  # turns of the treads below this determine no gain
-USUAL_GAIN = 0.7  # of a skid-steer robot, where a window has no turn
-LEAST_YAW_RATE_RAD_S = 0.003
-LEAST_CURRENT_A = 0.3
-SPEED_NAMES = ("log_speed", "log_speed_squared", "turning", "log_speed_change")
-YAW_NAMES = ("yaw_gain", "log_yaw_residual", "log_yaw_ratio")
-CURRENT_NAMES = ("log_current", "log_current_change")
-
-
-def speed_covariates(treads_m_s: FloatArray) -> FloatArray:
-    """How a window was driven (W, 4), SPEED_NAMES, from treads (W, N, 2).
-
-    Vibration, currents and yaw rate all grow with speed: what depends on these is taken out.
-    """
-    speeds = np.abs(treads_m_s).mean(axis=2)
-    log_speed = np.log(speeds.mean(axis=1) + LEAST_SPEED_M_S)
-    turning = np.abs(np.diff(treads_m_s)[..., 0]).mean(axis=1)
-    change = np.log(speeds.std(axis=1) + LEAST_SPEED_M_S)
-    return np.column_stack([log_speed, log_speed**2, turning, change])
-
-
-def yaw_features(
-    yaw_rate_rad_s: FloatArray, treads_m_s: FloatArray, track_width_m: float, average: int
-) -> FloatArray:
-    """Yaw gain, its residual, and the ratio of the mean rates (W, 3), YAW_NAMES.
-
-    Parameters
-    ----------
-    yaw_rate_rad_s : (W, N)
-    treads_m_s : (W, N, 2)
-    track_width_m : float
-    average : int
-        Samples over which rates are averaged, so that vibration is left out.
-    """
-    turning = _averaged(np.diff(treads_m_s)[..., 0] / track_width_m, average)
-    measured = _averaged(yaw_rate_rad_s, average)
-    weight = turning.shape[1] * TURN_SIGMA_RAD_S**2
-    product, power = (measured * turning).sum(axis=1), (turning**2).sum(axis=1)
-    gain = (product + USUAL_GAIN * weight) / (power + weight)
-    left = (measured - gain[:, None] * turning).std(axis=1)
-    ratio = np.log(np.abs(measured.mean(axis=1)) + LEAST_SPEED_M_S) - np.log(
-        np.abs(turning.mean(axis=1)) + LEAST_SPEED_M_S
-    )
-    return np.column_stack([gain, np.log(left + LEAST_YAW_RATE_RAD_S), ratio])
-
-
-def current_features(currents_a: FloatArray) -> FloatArray:
-    """Mean and spread (W, 2), CURRENT_NAMES, of currents (W, N, 2) without their dropouts.
-
-    In logarithms, so that a current over speed is their difference to a covariate. NaN where a
-    window has no current.
-    """
-    there = np.isfinite(currents_a)
-    count = there.sum(axis=1)
-    known = np.where(there, currents_a, 0.0)
-    means = np.divide(known.sum(axis=1), count, out=np.full(count.shape, np.nan), where=count > 0)
-    squares = np.where(there, (currents_a - means[:, None]) ** 2, 0.0).sum(axis=1)
-    spread = np.sqrt(squares / np.maximum(count, 1))
-    sides = count > 0
-    either = np.maximum(sides.sum(axis=1), 1)
-    both = [np.where(sides, of, 0.0).sum(axis=1) / either for of in (means, spread)]
-    features = np.log(np.column_stack(both) + LEAST_CURRENT_A)
-    features[~sides.any(axis=1)] = np.nan
-    return features
-
-
-def _averaged(values: FloatArray, average: int) -> FloatArray:
-    """Means (W, N // average) over so many samples."""
-    parts = values.shape[1] // average
-    return np.asarray(
-        values[:, : parts * average].reshape(len(values), parts, average).mean(axis=2)
-    )
-
 
 SHORTEST_S, LONGEST_S = 1.0, 5.0
 STANDING_M_S = 0.03  # mean speed of the treads in a window; below it the robot is stationary
@@ -118,6 +46,8 @@ class FeelWindows:
     axes : tuple of str
     step_hz, top_hz : float
         Of the frequencies; the highest that the sampling rate carries.
+    complete_s : (W,), optional
+        The stamp of the sample that completed each; by default its end.
     """
 
     run_name: str
@@ -133,14 +63,20 @@ class FeelWindows:
     axes: tuple[str, ...]
     step_hz: float
     top_hz: float
+    complete_s: FloatArray | None = None
 
     def __len__(self) -> int:
         return len(self.begins_s)
 
     @property
     def ends_s(self) -> FloatArray:
-        """The stamp (W,) from which each window is known."""
+        """The stamp (W,) at which each window ends."""
         return self.begins_s + self.window_s
+
+    @property
+    def known_s(self) -> FloatArray:
+        """The stamp (W,) from which each window is known."""
+        return self.ends_s if self.complete_s is None else self.complete_s
 
     @property
     def felt(self) -> BoolArray:
@@ -152,6 +88,26 @@ class FeelWindows:
         """Groups of features that the run has."""
         kinds = [kind for kind in ("gyro", "accel") if any(a.startswith(kind) for a in self.axes)]
         return (*kinds, *self.motion)
+
+
+BY_WINDOW = ("begins_s", "labels", "whole", "standing", "speeds_m_s", "covariates", "densities")
+
+
+def windows_since(windows: FeelWindows, first: int) -> FeelWindows:
+    """Those from a row on."""
+    rows: dict[str, Any] = {name: getattr(windows, name)[first:] for name in BY_WINDOW}
+    motion = {name: table[first:] for name, table in windows.motion.items()}
+    return replace(windows, **rows, motion=motion, complete_s=windows.known_s[first:])
+
+
+def joined_windows(parts: Sequence[FeelWindows]) -> FeelWindows:
+    """Windows of one run, one part after another."""
+    rows: dict[str, Any] = {
+        name: np.concatenate([getattr(one, name) for one in parts]) for name in BY_WINDOW
+    }
+    motion = {name: np.concatenate([one.motion[name] for one in parts]) for name in parts[0].motion}
+    known_s = np.concatenate([one.known_s for one in parts])
+    return replace(parts[0], **rows, motion=motion, complete_s=known_s)
 
 
 def feel_windows(run: Run, window_s: float = 2.0) -> FeelWindows:
@@ -177,13 +133,27 @@ def feel_windows(run: Run, window_s: float = 2.0) -> FeelWindows:
     (53, ('gyro_z',), 10.0)
     """
     signals = feel_signals(run)
-    count = round(window_s * signals.rate_hz)
-    starts = np.arange(0, len(signals) - count + 1, max(1, round(count / STEPS)))
-    if not len(starts):
+    windows = windows_of(signals, window_s, run.name, run.robot.track_width)
+    if not len(windows):
         raise RunFolderError(
             f"{run.folder}: {len(signals) / signals.rate_hz:.2g} s of IMU and odometry, expected "
             f"a window of {window_s:g} s or more"
         )
+    return windows
+
+
+def steps_of(window_s: float, rate_hz: float) -> tuple[int, int]:
+    """How many samples a window has, and after how many the next begins."""
+    count = round(window_s * rate_hz)
+    return count, max(1, round(count / STEPS))
+
+
+def windows_of(
+    signals: FeelSignals, window_s: float, run_name: str, track_width_m: float
+) -> FeelWindows:
+    """Cut signals into windows and measure each; none where they are shorter than one."""
+    count, step = steps_of(window_s, signals.rate_hz)
+    starts = np.arange(0, len(signals) - count + 1, step)
     rows = starts[:, None] + np.arange(count)
     treads = signals.treads_m_s[rows]
     whole = np.isfinite(treads).all(axis=(1, 2))
@@ -195,7 +165,7 @@ def feel_windows(run: Run, window_s: float = 2.0) -> FeelWindows:
     labels = signals.labels[rows[:, 0]].copy()
     labels[(signals.labels[rows] != labels[:, None]).any(axis=1)] = UNKNOWN
     return FeelWindows(
-        run.name,
+        run_name,
         signals.begin_s + starts / signals.rate_hz,
         count / signals.rate_hz,
         labels,
@@ -204,7 +174,7 @@ def feel_windows(run: Run, window_s: float = 2.0) -> FeelWindows:
         speeds,
         _filled(felt, speed_covariates(treads[felt])),
         _filled(felt, _densities(signals, axes, rows[felt])),
-        _motion(signals, rows, felt, run.robot.track_width),
+        _motion(signals, rows, felt, track_width_m),
         axes,
         signals.rate_hz / count,
         signals.rate_hz / 2,

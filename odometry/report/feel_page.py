@@ -8,8 +8,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from odometry.arrays import AnyArray
+from odometry.feel.felt import SILENT
 from odometry.feel.files import sentences, shares
-from odometry.feel.follow import SILENT, Felt
+from odometry.feel.follow import Felt
 from odometry.feel.model import FeelModel
 from odometry.modes.mode_set import NONE_OF_THESE
 from odometry.report.figure import mode_colours, save_figure

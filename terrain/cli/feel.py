@@ -58,8 +58,9 @@ def feel(
     Example:
       terrain-odometry feel my_run --model my_robot.feel --out felt
     """
+    from odometry.feel.felt import FeelConfig
     from odometry.feel.files import write_feel, write_feel_runs
-    from odometry.feel.follow import FeelConfig, follow_feel
+    from odometry.feel.follow import follow_feel
     from odometry.feel.model_file import read_feel_model
     from odometry.report.feel_page import write_feel_report
     from terrain.cli.outputs import about, claim_folder, folder_names

@@ -7,7 +7,8 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import RunFolderError
-from odometry.feel.follow import SILENT, FeelConfig, follow_feel
+from odometry.feel.felt import SILENT, FeelConfig
+from odometry.feel.follow import follow_feel
 from odometry.feel.model import FeelModel
 from odometry.run import UNKNOWN, Run
 from odometry.run_terrains import row_terrains

@@ -12,7 +12,7 @@ import numpy as np
 
 from odometry.feel.assessment import LENGTHS, assessed, speed_alone
 from odometry.feel.design import Design
-from odometry.feel.follow import FeelConfig
+from odometry.feel.felt import FeelConfig
 from odometry.feel.held_out import HeldOut, by_length, judged_runs, scored, windows_alone
 from odometry.feel.limits import STRETCH_S
 from odometry.feel.scores import area, balanced_accuracy, bootstrap_interval

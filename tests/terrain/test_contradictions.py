@@ -12,7 +12,8 @@ from odometry.run import UNKNOWN, Run
 from odometry.run_terrains import NamedTerrain
 from odometry.table import Table
 from odometry.trajectory import Trajectory
-from terrain.contradictions import LASTS_S, Beneath, contradictions, labels_beneath, moments_of
+from terrain.contradictions import Beneath, contradictions, labels_beneath, moments_of
+from terrain.contradictions_so_far import LASTS_S
 from terrain.image_label import ImageLabel
 from terrain.main_job import run_odometry
 from terrain.new_terrain import contradiction_lines, new_name

@@ -51,7 +51,7 @@ def test_what_is_felt_brings_a_terrain_into_force(model):
 def test_sights_do_not_overlap_and_lie_beneath_the_robot(model):
     felt = follow_feel(drive("snow", 62), model)
     place_labels = FeelLabels.of(felt, ("snow", "mud"))
-    assert np.diff(place_labels.ends_s).min() >= felt.windows.window_s - 1e-9
+    assert np.diff(place_labels.known_s).min() >= felt.windows.window_s - 1e-9
     pose = np.array([3.0, 1.0, np.pi / 2])
     (first, *_) = place_labels.between(-np.inf, 6.0, pose, 4.0)
     assert first.label == "snow"
@@ -61,7 +61,7 @@ def test_sights_do_not_overlap_and_lie_beneath_the_robot(model):
 
 
 def test_what_fits_no_terrain_is_no_sight(model):
-    assert len(FeelLabels.of(follow_feel(drive("grates", 64), model)).ends_s) == 0
+    assert len(FeelLabels.of(follow_feel(drive("grates", 64), model)).known_s) == 0
 
 
 def test_a_terrain_that_a_source_does_not_know_gets_the_mean():
