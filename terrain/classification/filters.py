@@ -11,8 +11,7 @@ import cv2
 import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage
-
-HALF_TURN = np.float32(np.pi)
+from terrain.classification.orientation import half_turn_bytes
 
 
 class Scales:
@@ -82,10 +81,7 @@ def gradient_orientation(sigma_px: float) -> Filter:
 
     def apply(scales: Scales) -> ByteImage:
         across, down = scales.gradient(sigma_px)
-        angle: AnyArray = np.arctan2(down, across)
-        angle[angle == HALF_TURN] = 0.0
-        angle += HALF_TURN * (angle < 0)  # modulo half a turn
-        return _to_bytes(angle * (255 / np.pi))
+        return half_turn_bytes(across, down)
 
     return apply
 
@@ -136,4 +132,5 @@ def _length(across: AnyArray, down: AnyArray) -> AnyArray:
 
 
 def _to_bytes(image: AnyArray) -> ByteImage:
-    return np.clip(np.rint(image), 0, 255).astype(np.uint8)
+    """Rounded, half to even, and held within 0 to 255, in one pass."""
+    return np.asarray(cv2.addWeighted(image, 1.0, image, 0.0, 0.0, dtype=cv2.CV_8U))

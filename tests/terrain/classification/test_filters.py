@@ -95,3 +95,8 @@ def test_small_and_flat_images_give_bytes(apply, shape):
     copy = apply(Scales(np.full(shape, 128, np.uint8)))
     assert copy.dtype == np.uint8
     assert len(np.unique(copy)) == 1
+
+
+def test_means_between_two_greys_are_rounded_to_the_even_one():
+    grey = np.repeat(np.array([[0, 1, 1, 2, 254, 255]], np.uint8), 2, axis=0)
+    np.testing.assert_array_equal(reduced(2)(Scales(grey)), [[0, 2, 254]])
