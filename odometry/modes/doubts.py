@@ -1,4 +1,4 @@
-"""Why no mode is named although one is probable: gyroscope, equal modes, turns or travel."""
+"""Why no mode is named although one is probable, and which checks the data do not allow."""
 
 from dataclasses import dataclass
 
@@ -8,6 +8,7 @@ from odometry.arrays import BoolArray
 from odometry.modes.between_modes import BetweenModes
 from odometry.modes.followed import Followed
 from odometry.modes.mode_set import UNDETERMINED
+from odometry.modes.velocity import VelocityModes
 
 LEAST_DOUBT = 0.1  # of the time: less is not reported
 
@@ -137,3 +138,25 @@ def _share(followed: Followed, rows: BoolArray) -> float:
 def _when(followed: Followed, rows: BoolArray) -> str:
     begin_s, end_s = followed.last_track.stamps_s[np.flatnonzero(rows)[[0, -1]]]
     return f"between {begin_s:.1f} s and {end_s:.1f} s"
+
+
+def not_checked(followed: Followed) -> tuple[str, ...]:
+    """Sentences without their full stop; of velocity modes alone, which use no poses.
+
+    To a yaw rate a gyroscope whose scale is off is another terrain, and so is a load on both tyres.
+    """
+    modes, signals = followed.mode_set.modes, followed.signals
+    if not isinstance(modes, VelocityModes):
+        return ()
+    found = []
+    if signals.heading_check is None:
+        found.append(
+            "the scale of the gyroscope, without measured headings: one that is off turns as "
+            "another terrain does, and yaw rate alone does not distinguish the two"
+        )
+    if signals.travel is None or modes.speed_power is None:
+        missing = "measured positions" if signals.travel is None else "measured speeds in the set"
+        found.append(
+            f"the distance, without {missing}: a load on both tyres turns as another terrain does"
+        )
+    return tuple(found)

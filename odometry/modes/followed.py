@@ -1,4 +1,4 @@
-"""A run whose modes were followed, by motion alone and with the camera, and its scores."""
+"""A run whose modes were followed, by motion alone and with the camera, its scores and misfits."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -8,18 +8,64 @@ import numpy as np
 from odometry.arrays import AnyArray, IntArray
 from odometry.feel.model import FeelModel
 from odometry.modes.answers import candidates, disagreements, named_modes
+from odometry.modes.detection import Score, score_of
 from odometry.modes.feel_source import feel_source, with_feel
-from odometry.modes.misfits import Misfit, misfits
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED, ModeSet
 from odometry.modes.mode_track import ModeTrack
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.score import Score, score_of
 from odometry.modes.sight import SeenGround, seen_labels
 from odometry.modes.signals import Signals
 from odometry.modes.track import follow_signals, judged_signals
 from odometry.run import UNKNOWN, Run
 
+BOUND = 2.0  # standard deviations: 95 % of what is left of a mode that is true
+
 MOTION, FELT, SIGHTED = "motion alone", "motion and feel", "motion and sight"
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """A stretch in which no mode of the set fits.
+
+    Attributes
+    ----------
+    from_s, to_s : float
+        From the last stamp before at which all of the nearest mode was within BOUND.
+    signal : int
+        Place of the measured entry that fits least.
+    sigmas : float
+        Root mean square of what is left of it in a window where the nearest mode is taken: 1 where
+        that mode is true.
+    """
+
+    from_s: float
+    to_s: float
+    signal: int
+    sigmas: float
+
+
+def misfits(track: ModeTrack, sure: float) -> tuple[Misfit, ...]:
+    """The stretches in which the answer of the rolling test is "none of these"."""
+    if track.fit is None:
+        return ()
+    none, best = track.fit.none, track.fit.best
+    rows = np.flatnonzero(none >= sure)
+    fitted = np.flatnonzero(none < 1 - sure)
+    quiet = np.flatnonzero(~(np.abs(best) > BOUND).any(axis=1))
+    found: list[Misfit] = []
+    # stretches between which a mode was not as probable as ever are one
+    cuts = np.flatnonzero(np.diff(np.searchsorted(fitted, rows))) + 1
+    for stretch in np.split(rows, cuts) if len(rows) else []:
+        before = np.searchsorted(quiet, stretch[0])
+        first = int(quiet[before - 1]) if before else 0
+        squares = best[first : stretch[-1] + 1] ** 2
+        measured = np.isfinite(squares).any(axis=0)
+        sizes = np.full(best.shape[1], -1.0)
+        sizes[measured] = np.sqrt(np.nanmean(squares[:, measured], axis=0))
+        signal = int(sizes.argmax())
+        begin, end = track.stamps_s[[first, stretch[-1]]].tolist()
+        found.append(Misfit(begin, end, signal, float(sizes[signal])))
+    return tuple(found)
 
 
 @dataclass(frozen=True)

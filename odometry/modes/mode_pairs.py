@@ -8,8 +8,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.signals import STANDING_M_S
-from odometry.modes.traction import TractionModes
-from odometry.modes.traction_gains import twists_of
+from odometry.modes.traction import TractionModes, twists_of
 from odometry.modes.velocity import VelocityModes
 from odometry.run import Run
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray
 from odometry.modes.between_modes import BetweenModes
-from odometry.modes.gyroscope_trust import GyroscopeTrust
+from odometry.modes.gyroscope_bias import GyroscopeTrust
 from odometry.modes.innovation_test import ModeFit
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.travel_check import TravelCheck

@@ -1,19 +1,19 @@
 """Windows of runs, and stretches with a gyroscope, that identify a traction mode."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from odometry.arrays import BoolArray
+from odometry.arrays import AnyArray, BoolArray, IntArray
 from odometry.errors import IdentificationError, WindowError
 from odometry.modes.signals import STANDING_M_S
-from odometry.modes.stretches import stretches_by_label
-from odometry.modes.traction_gains import LEFT_TURN, RIGHT_TURN, turns_of
+from odometry.modes.traction import LEFT_TURN, RIGHT_TURN, turns_of
 from odometry.modes.yaw_rate_noise import Heard, heard_of
 from odometry.run import UNKNOWN, Run
 from odometry.run_terrains import row_terrains
 from odometry.windows.dense import DenseWindows, dense_windows_of, thinned
+from odometry.windows.gaps import odometry_gaps
 
 HORIZONS_S = (4.0, 2.0)  # of windows, the second where poses are chained for less than the first
 LEAST_S = 10.0  # of driving in each mode, in windows, and of its turns to each side
@@ -114,3 +114,12 @@ def _on(scene: DenseWindows, name: str) -> DenseWindows:
     poses_s = scene.pose_s[scene.windows]
     rows = np.clip(np.searchsorted(odometry_s, poses_s, side="right") - 1, 0, len(labels) - 1)
     return scene.where((labels[rows] == name).all(axis=1))
+
+
+def stretches_by_label(run: Run, labels: AnyArray) -> Iterator[tuple[str, IntArray]]:
+    """Label and rows of odometry.csv of each stretch in order; labels (N,)."""
+    stamps_s = run.odometry.stamps_s
+    gap = np.isin(stamps_s, odometry_gaps(run).spans_s[:, 1])
+    cuts = np.flatnonzero((labels[1:] != labels[:-1]) | gap[1:]) + 1
+    for rows in np.split(np.arange(len(stamps_s)), cuts):
+        yield str(labels[rows[0]]), rows

@@ -15,6 +15,8 @@ RIDGE = 1e-3  # of the mean square of an input: what inputs that go together lea
 BLOCK_S = 2.0  # over which errors of a model are correlated
 LEAST_VARIANCE = 1e-10
 
+SHORTEST_LAG_S = 1e-3
+
 
 @dataclass(frozen=True)
 class Record:
@@ -173,3 +175,14 @@ def _answers(record: Record, row: int, rate_hz: float) -> FloatArray:
 def _others(row: int) -> IntArray:
     """Columns of the inputs: the other quantity, and both treads."""
     return np.array([1 - row, 2, 3])
+
+
+def lagged(values: FloatArray, time_s: FloatArray, lag_s: float) -> FloatArray:
+    """Values (N,) at times (N,), each held to the next, as a first-order lag follows them."""
+    since_s = time_s - time_s[0]
+    steps = max(1, round(float(since_s[-1] / np.median(np.diff(since_s)))))
+    even_s, step_s = np.linspace(0.0, since_s[-1], steps + 1, retstep=True)
+    held = values[np.searchsorted(since_s, even_s + 1e-3 * step_s, side="right") - 1]
+    lasting = np.exp(-step_s / max(lag_s, SHORTEST_LAG_S))
+    followed, _ = lfilter([0.0, 1 - lasting], [1.0, -lasting], held, zi=held[:1])
+    return np.asarray(np.interp(since_s, even_s, followed))

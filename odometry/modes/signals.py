@@ -7,8 +7,12 @@ import numpy as np
 from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import RunFolderError
 from odometry.modes.heading_check import HeadingCheck, heading_check
-from odometry.modes.measured_travel import MeasuredTravel, measured_travel
-from odometry.modes.measured_turn import MeasuredTurn, measured_turn
+from odometry.modes.measured_steps import (
+    MeasuredTravel,
+    MeasuredTurn,
+    measured_travel,
+    measured_turn,
+)
 from odometry.run import Run
 from odometry.run_terrains import row_terrains
 from odometry.windows.gaps import odometry_gaps

@@ -11,17 +11,23 @@ from odometry.arrays import FloatArray
 from odometry.estimation.ekf_bank import EkfBank
 from odometry.estimation.imm import Imm
 from odometry.estimation.mode_belief import ModeBelief
-from odometry.modes.bias_reading import bias_readings, with_reading
+from odometry.modes.gyroscope_bias import bias_readings, with_reading
 from odometry.modes.innovation_test import Innovations, mode_fit
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.mode_track import ModeTrack
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.own_filters import OwnFilters, with_bias, with_lead, with_shared_bias
 from odometry.modes.sight import SeenGround, mode_chains
 from odometry.modes.signals import Signals
-from odometry.modes.tempered_bank import TemperedBank
+from odometry.modes.tempered_bank import (
+    OwnFilters,
+    TemperedBank,
+    independent_share,
+    usable_measurements,
+    with_bias,
+    with_lead,
+    with_shared_bias,
+)
 from odometry.modes.track_checks import contradictions, gyroscope_trust_of
-from odometry.modes.usable_measurements import independent_share, usable_measurements
 from odometry.run import Run
 
 __all__ = ["ModeTrack", "ModesConfig", "follow_modes", "follow_signals", "judged_signals"]

@@ -2,19 +2,21 @@
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray
+from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.modes.between_modes import BetweenModes, between_modes
-from odometry.modes.bias_reading import bias_readings
-from odometry.modes.gyroscope_trust import GyroscopeTrust, gyroscope_trust
-from odometry.modes.innovation_test import Innovations
-from odometry.modes.mode_set import ModeSet
+from odometry.modes.gyroscope_bias import GyroscopeTrust, bias_readings, gyroscope_trust
+from odometry.modes.innovation_test import Innovations, windowed
+from odometry.modes.mode_set import DWELL_S, ModeSet
 from odometry.modes.modes_config import ModesConfig
+from odometry.modes.response import BLOCK_S
 from odometry.modes.signals import Signals
-from odometry.modes.similar_modes import similar_modes
 from odometry.modes.travel_check import TravelCheck, travel_check
 from odometry.modes.turn_agreement import turns_disagree
-from odometry.modes.turn_test import turns_are_off
 from odometry.modes.velocity import VelocityModes
+
+WINDOWS_S = (6.0, 12.0)
+CLIP = 3.0  # of one innovation
+LEAST_RAD_S = 0.05  # asked for: less is no turn
 
 
 def gyroscope_trust_of(
@@ -53,3 +55,88 @@ def contradictions(
     travel = travel_check(signals, modes, config)
     disagree = turns_disagree(signals, modes, left.leading, biases_rad_s, config)
     return alike, off, travel, between, disagree
+
+
+def turns_are_off(
+    innovations: Innovations, asked_rad_s: FloatArray, config: ModesConfig | None = None
+) -> BoolArray:
+    """Where (N,) turns contradict the most probable mode.
+
+    Parameters
+    ----------
+    innovations : Innovations
+        The yaw rate is the last measured entry.
+    asked_rad_s : (N, M)
+        Steady yaw rate of each mode for the speeds in force before each stamp.
+    config : ModesConfig, optional
+        `turn_sigmas` were chosen on seeds 50, 51 and 60 to 63 of `tests/studies/modes_faults.py`:
+        of 18 clean runs 3 have a sum beyond 3.5 somewhere.
+    """
+    config = config or ModesConfig()
+    sums = [turn_sums(innovations, asked_rad_s, window_s) for window_s in WINDOWS_S]
+    off = np.asarray((np.abs(sums) > config.turn_sigmas).any(axis=(0, 2)))
+    last = np.maximum.accumulate(np.where(off, np.arange(len(off)), -1))
+    since_s = innovations.stamps_s - innovations.stamps_s[last]
+    return np.asarray((last >= 0) & (since_s <= config.turn_holds_s))
+
+
+def turn_sums(innovations: Innovations, asked_rad_s: FloatArray, window_s: float) -> FloatArray:
+    """Sums (N, 3) over left turns, right turns and both in a window up to each stamp.
+
+    In their standard deviations if the mode is true; positive: more was turned than it says.
+    """
+    rows = np.arange(len(innovations.leading))
+    asked = asked_rad_s[rows, innovations.leading]
+    left_over = innovations.of_leading[:, -1]
+    known = np.isfinite(left_over)
+    clipped = np.where(known, np.clip(np.nan_to_num(left_over), -CLIP, CLIP), 0.0)
+    sides = []
+    for side in (1, -1):
+        weights = np.where(known & (side * asked > LEAST_RAD_S), asked, 0.0)
+        columns = np.column_stack([weights * clipped, weights**2, np.abs(weights)])
+        summed, squares, sizes = windowed(columns, innovations.stamps_s, window_s).T
+        variances = np.minimum(squares / innovations.independent, sizes**2)
+        sides.append(summed / np.sqrt(np.maximum(variances, 1e-9)))
+    left, right = sides
+    return np.column_stack([left, right, (left + right) / np.sqrt(2.0)])
+
+
+def similar_modes(
+    signals: Signals, modes: VelocityModes, leading: IntArray, config: ModesConfig | None = None
+) -> BoolArray:
+    """Modes (N, M) that the last DWELL_S do not distinguish from the leading one (N,).
+
+    What is not measured, or does not depend on the modes, is not in the signals. Modes of one model
+    are distinguished by their noise.
+    """
+    config = config or ModesConfig()
+    gains = modes.steady_gains()[:, 1]
+    asked = modes.steady_yaw_rates(signals.tread_speeds_m_s)
+    asked[:-1] *= np.any(np.isfinite(signals.measured[1:]), axis=1, keepdims=True)
+    means, lasts_s = _means(asked, signals.stamps_s)
+    # the deviation of what lasts of errors in a mean over so long
+    share = np.minimum(modes.errors_last_s / lasts_s, 1.0)[:, None]
+    lasting = np.sqrt(modes.measurement_variance[:, 1] * share)
+    rows, count = np.arange(len(means)), means.shape[1]
+    alike = np.empty((len(means), count), dtype=np.bool_)
+    for place in range(count):
+        least = config.alike_sigmas * np.maximum(lasting, lasting[:, [place]])
+        apart = np.abs(means - means[:, [place]]) > least
+        last = np.maximum.accumulate(np.where(apart, rows[:, None], -1), axis=0)
+        since_s = signals.stamps_s[:, None] - signals.stamps_s[last]
+        recent = (last >= 0) & (since_s <= DWELL_S)
+        one_model = (gains == gains[place]).all(axis=1)
+        alike[leading == place] = ~(recent | one_model)[leading == place]
+    return alike
+
+
+def _means(values: FloatArray, stamps_s: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Means of values (N, M), in force from each stamp to the next, and over how long (N,).
+
+    Over BLOCK_S before each stamp, or all there is.
+    """
+    steps_s = np.diff(stamps_s)[:, None]
+    summed = np.cumsum(np.vstack([np.zeros(values.shape[1]), values[:-1] * steps_s]), axis=0)
+    first = np.searchsorted(stamps_s, stamps_s - BLOCK_S)
+    lasts_s = np.maximum(stamps_s - stamps_s[first], 1e-9)
+    return (summed - summed[first]) / lasts_s[:, None], lasts_s

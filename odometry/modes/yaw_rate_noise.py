@@ -7,10 +7,9 @@ import numpy as np
 from scipy.optimize import nnls
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
-from odometry.modes.first_order_lag import lagged
-from odometry.modes.response import BLOCK_S, LEAST_VARIANCE, block_means
+from odometry.modes.response import BLOCK_S, LEAST_VARIANCE, block_means, lagged
 from odometry.modes.signals import STANDING_M_S, accelerations_m_s2, yaw_rates_of
-from odometry.modes.traction_gains import twists_of
+from odometry.modes.traction import twists_of
 from odometry.run import Run
 
 LASTING_S = 5.0  # for which an error of gains may stay the same: as long as a turn

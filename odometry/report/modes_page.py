@@ -8,10 +8,9 @@ from matplotlib.figure import Figure
 from odometry.arrays import FloatArray
 from odometry.modes.detection import confusion
 from odometry.modes.followed import Followed
-from odometry.modes.in_short import in_short
-from odometry.modes.misfits import BOUND
+from odometry.modes.innovation_test import BOUND
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
-from odometry.modes.words import SIGNALS, percent, scale_word, sentences, signal_of
+from odometry.modes.words import SIGNALS, in_short, percent, scale_word, sentences, signal_of
 from odometry.report.figure import save_figure
 from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
 from odometry.report.mode_figures import modes_picture, path_picture

@@ -143,7 +143,7 @@ def _print_traction(modes: "TractionModes") -> None:
     """Print the shares of requested speed and turn rate, and the noise."""
     import numpy as np
 
-    from odometry.modes.traction_gains import requested, twists_of
+    from odometry.modes.traction import requested, twists_of
 
     click.echo(
         "Share k of the requested speed, shares m of the requested turn rate in wide and in tight "

@@ -104,8 +104,7 @@ def _one(
     span: "Span",
 ) -> None:
     from odometry.modes.files import write_modes
-    from odometry.modes.in_short import in_short
-    from odometry.modes.words import sentences
+    from odometry.modes.words import in_short, sentences
     from odometry.report.modes_page import write_modes_report
     from terrain.cli.outputs import about
 

@@ -8,12 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from odometry.modes.answers import candidates, disagreements, named_modes
+from odometry.modes.answers import candidates, disagreements, named_modes, refusals
 from odometry.modes.detection import confusion, detections, false_switches, narrowed_s
 from odometry.modes.innovation_test import ModeFit
 from odometry.modes.mode_set import UNDETERMINED
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.refusals import refusals
 from tests.odometry.modes.mode_examples import track
 
 NAMES = ("a", "b", "c")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.modes.bias_reading import (
+from odometry.modes.gyroscope_bias import (
     BiasReading,
     bias_is_open,
     bias_readings,

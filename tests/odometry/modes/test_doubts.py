@@ -5,15 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.modes.content import content_of
 from odometry.modes.doubts import doubts
+from odometry.modes.files import content_of
 from odometry.modes.followed import Followed
-from odometry.modes.gyroscope_trust import GyroscopeTrust
-from odometry.modes.in_short import in_short
+from odometry.modes.gyroscope_bias import GyroscopeTrust
 from odometry.modes.mode_set import NONE_OF_THESE, UNDETERMINED
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.travel_check import TravelCheck
-from odometry.modes.words import sentences
+from odometry.modes.words import in_short, sentences
 from tests.odometry.modes.mode_examples import run_of, track, velocity_set
 
 SIZE, FROM = 11, 6  # stamps, half a second apart

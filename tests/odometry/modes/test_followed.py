@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.modes.content import content_of
-from odometry.modes.files import write_modes, write_runs
+from odometry.modes.files import content_of, write_modes, write_runs
 from odometry.modes.followed import MOTION, SIGHTED, Followed, followed
 from odometry.modes.sight import PULLED_S, SeenGround
 from odometry.modes.track import ModesConfig

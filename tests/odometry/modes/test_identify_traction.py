@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from odometry.errors import IdentificationError, WindowError
-from odometry.modes.identify_traction import identify_traction_modes
+from odometry.modes.identify_traction import fitted, identify_traction_modes
 from odometry.modes.mode_windows import MOST_POSES, heard_by_mode, scenes_by_mode
-from odometry.modes.traction_fit import fitted
 from odometry.modes.yaw_rate_noise import LASTING_S, NOT_MEASURED, YawRateNoise
 from odometry.windows.dense_noise import Noise
 from tests.odometry.modes.mode_drives import (

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from odometry.modes.followed import Followed
-from odometry.modes.in_short import in_short
 from odometry.modes.innovation_test import ModeFit
 from odometry.modes.track import ModesConfig
+from odometry.modes.words import in_short
 from tests.odometry.modes.mode_examples import run_of, track, velocity_set
 
 

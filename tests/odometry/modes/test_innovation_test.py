@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from odometry.modes.answers import named_modes
+from odometry.modes.answers import named_modes, refusals
+from odometry.modes.followed import misfits
 from odometry.modes.innovation_test import (
     CLIP,
     LONG_CLIP,
@@ -13,9 +14,7 @@ from odometry.modes.innovation_test import (
     Innovations,
     mode_fit,
 )
-from odometry.modes.misfits import misfits
 from odometry.modes.mode_set import NONE_OF_THESE, UNDETERMINED
-from odometry.modes.refusals import refusals
 from odometry.modes.track import ModeTrack
 
 STEP_S, SIZE = 0.02, 1500

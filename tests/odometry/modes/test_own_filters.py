@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from odometry.estimation.mode_belief import ModeBelief
-from odometry.modes.own_filters import with_lead, with_shared_bias
+from odometry.modes.tempered_bank import with_lead, with_shared_bias
 
 LOGS = np.log([0.1, 0.9])
 ALONE = ModeBelief(np.array([[1.0], [50.0]]), np.array([[[1.0]], [[2.0]]]), LOGS)

@@ -14,9 +14,8 @@ from odometry.estimation.markov import ModeChain
 from odometry.estimation.mode_belief import ModeBelief
 from odometry.evaluation.consistency import consistency, normalised_squared_errors
 from odometry.modes.mode_set import ModeSet
-from odometry.modes.own_filters import with_shared_bias
 from odometry.modes.signals import Signals
-from odometry.modes.tempered_bank import TemperedBank
+from odometry.modes.tempered_bank import TemperedBank, with_shared_bias
 from odometry.modes.track import follow_signals
 from odometry.modes.velocity import FIRST_SIGMAS, VelocityModes
 from tests.odometry.modes.mode_drives import integrated

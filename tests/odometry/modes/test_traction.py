@@ -8,8 +8,14 @@ from hypothesis.extra.numpy import arrays
 
 from odometry.models.inputs import Inputs
 from odometry.models.traction_mode import TractionMode
-from odometry.modes.traction import TractionModes
-from odometry.modes.traction_gains import LEFT_TURN, RIGHT_TURN, requested, turns_of, twists_of
+from odometry.modes.traction import (
+    LEFT_TURN,
+    RIGHT_TURN,
+    TractionModes,
+    requested,
+    turns_of,
+    twists_of,
+)
 from odometry.simulation.contact.drive import simulate_contact
 from odometry.simulation.contact.vehicle import read_contact_vehicle
 from tests.odometry.modes.mode_drives import asked_twists, integrated

@@ -8,7 +8,7 @@ import pytest
 
 from odometry.modes.answers import named_modes
 from odometry.modes.identify_velocity import identify_velocity_modes
-from odometry.modes.measured_travel import measured_travel
+from odometry.modes.measured_steps import measured_travel
 from odometry.modes.mode_set import NONE_OF_THESE, UNDETERMINED
 from odometry.modes.response import Record, Response, growing_power
 from odometry.modes.travel_check import WINDOWS_S, TravelCheck, travel_check

@@ -9,7 +9,7 @@ from odometry.modes.answers import named_modes
 from odometry.modes.innovation_test import Innovations, mode_fit
 from odometry.modes.mode_set import UNDETERMINED
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.turn_test import LEAST_RAD_S, WINDOWS_S, turn_sums, turns_are_off
+from odometry.modes.track_checks import LEAST_RAD_S, WINDOWS_S, turn_sums, turns_are_off
 from tests.odometry.modes.mode_examples import track
 
 STEP_S, SIZE = 0.02, 1500

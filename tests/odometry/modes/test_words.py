@@ -5,11 +5,10 @@ import json
 import numpy as np
 import pytest
 
-from odometry.modes.content import content_of
+from odometry.modes.files import content_of
 from odometry.modes.followed import followed
-from odometry.modes.in_short import in_short
 from odometry.modes.mode_set import NONE_OF_THESE
-from odometry.modes.words import percent, scale_word
+from odometry.modes.words import in_short, percent, scale_word
 from tests.odometry.modes.mode_examples import run_of, velocity_set
 
 ICE = ["ice"] * 400
