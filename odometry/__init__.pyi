@@ -8,8 +8,7 @@ from .estimates import Replay
 from .estimation.config import IcrEkfConfig
 from .estimation.estimate import Estimate
 from .estimation.icr_ekf import IcrEkf
-from .evaluation.fitness import fitness
-from .evaluation.open_loop import measured_poses, open_loop
+from .evaluation.open_loop import fitness, measured_poses, open_loop
 from .evaluation.relative import EvaluationConfig, position_errors, relative_errors
 from .evaluation.score import reference_of, score
 from .evaluation.stretches import stretches
@@ -22,8 +21,7 @@ from .feel.windows import feel_windows
 from .frames import Frame
 from .gap.gap import find_gap
 from .geometry.tilt import steepest_slope
-from .icrs.measured import measured_icrs
-from .icrs.medians import icr_medians
+from .icrs.measured import icr_medians, measured_icrs
 from .icrs.points import icr_covariances, icr_indices, icrs_of_twist, turn_is_told
 from .identification.config import SolverConfig
 from .identification.identify import identify

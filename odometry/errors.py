@@ -73,3 +73,7 @@ class IdentificationError(OdometryError):
 
 class WindowError(OdometryError):
     """A recording that cannot be cut into the required windows."""
+
+
+class SimulationError(OdometryError):
+    """A drive cannot be simulated from what was given."""

@@ -11,7 +11,7 @@ from odometry.errors import RunFolderError
 from odometry.estimates import Replay
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.filter_event import FilterEvent
-from odometry.estimation.heading_search import INITIAL_YAW
+from odometry.estimation.filter_start import INITIAL_YAW
 from odometry.estimation.kept_estimates import KeptEstimates
 from odometry.frames import Frame
 from odometry.run import Run

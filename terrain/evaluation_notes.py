@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 from odometry.estimation.filter_event import FilterEvent
 from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.open_loop_consistency import DEGREES, OpenLoopConsistency
-from odometry.evaluation.score import Score
-from odometry.evaluation.withheld import JUDGED_EVERY_S, SILENT_S
+from odometry.evaluation.score import JUDGED_EVERY_S, SILENT_S, Score
 from odometry.run_end import OFF_AT_END
 from terrain.run_result import SecondReplay
 

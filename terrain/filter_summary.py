@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.estimates import Replay
 from odometry.estimation.filter_event import FilterEvent
-from odometry.estimation.heading_search import INITIAL_YAW, LATER_YAW
+from odometry.estimation.filter_start import INITIAL_YAW, LATER_YAW
 from odometry.estimation.transition import GYRO_BIAS
 from odometry.run_end import DRIFT_FOLLOWED
 

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage
-from odometry.io.input_file import read_bytes
+from odometry.io.files import read_bytes
 from terrain.errors import ImageError
 from terrain.image_size import PIXELS, is_whole, stated_size
 

@@ -7,11 +7,9 @@ from odometry.effects.corrected import Added
 from odometry.effects.measured import robot_run, shared_measurement
 from odometry.estimates import Replay
 from odometry.estimation.corrections import corrections_of
-from odometry.estimation.icr_ekf import IcrEkf
-from odometry.estimation.means_kept import MeansKept
+from odometry.estimation.icr_ekf import IcrEkf, MeansKept
 from odometry.evaluation.odometer_uncertainty import odometer_uncertainty
-from odometry.evaluation.score import reference_of
-from odometry.evaluation.withheld import withhold
+from odometry.evaluation.score import reference_of, withhold
 from odometry.feel.follow import Felt
 from odometry.feel.model import FeelModel
 from odometry.learned_parameters import learned_parameters

@@ -12,8 +12,7 @@ from odometry.arrays import FloatArray
 from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.open_loop_consistency import DEGREES, OpenLoopConsistency
 from odometry.evaluation.open_loop_errors import SOURCES
-from odometry.evaluation.score import counted_reference_yaw
-from odometry.evaluation.withheld import JUDGED_EVERY_S, SILENT_S
+from odometry.evaluation.score import JUDGED_EVERY_S, SILENT_S, counted_reference_yaw
 from terrain.evaluation_notes import advice, remarks, verdict
 from terrain.filter_summary import filter_table
 from terrain.label_confusion import label_confusion_table

@@ -8,9 +8,8 @@ import numpy as np
 from odometry.estimates import Replay
 from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.relative import position_errors
-from odometry.evaluation.score import Score, score
+from odometry.evaluation.score import Score, Withheld, score
 from odometry.evaluation.stretches import stretches
-from odometry.evaluation.withheld import Withheld
 from odometry.geometry import se2
 from odometry.parameters import ParameterSet
 from odometry.run import Run

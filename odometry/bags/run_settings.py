@@ -13,7 +13,7 @@ from odometry.bags.robot_frame import HOW_HEIGHT
 from odometry.bags.survey import Survey
 from odometry.bags.topic_guess import RECTIFIED
 from odometry.geometry import se3
-from odometry.geometry.optical_frame import OPTICAL_FROM_CAMERA, mount_of_optical
+from odometry.geometry.se3 import OPTICAL_FROM_CAMERA, mount_of_optical
 
 HOW_MOUNT = (
     "Or find the mount: terrain-odometry camera RUN --from-motion --out camera --write; or give it "

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from odometry.checks.finding import Finding, Level
 from odometry.errors import RunFolderError
-from odometry.io.bag_names import import_command, is_named_bag
+from odometry.io.run_folder import import_command, is_named_bag
 
 # The first pattern that fits the message: (pattern, cause, remedy).
 CAUSES = (

@@ -11,7 +11,7 @@ from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.fitting import SplitModels
 from odometry.comparison.split import Part, windows_of_parts
 from odometry.effects.corrected import Added, delay_s, seen_poses
-from odometry.effects.reported import Reported
+from odometry.effects.recorded import Reported
 from odometry.effects.tables import effects_of
 from odometry.errors import OdometryError
 from odometry.evaluation.open_loop import measured_poses

@@ -13,7 +13,7 @@ from odometry.comparison.summary import Place, Summary, summarise
 from odometry.comparison.training_horizons import HorizonErrors
 from odometry.comparison.whole_runs import RunFitness
 from odometry.parameters import ParameterSet
-from odometry.windows.omitted_windows import summed
+from odometry.windows.record import summed
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from itertools import permutations
 from odometry.comparison.statistics import Difference, between
 from odometry.comparison.summary import NOT_IDENTIFIED, QUANTITIES, Place, Summary
 from odometry.comparison.whole_runs import RunFitness
-from odometry.evaluation.fitness import Fitness, pooled_fitness
+from odometry.evaluation.open_loop import Fitness, pooled_fitness
 
 EFFECTIVE_WIDTH = "icr_symmetric"
 CLEARLY_LESS = 0.95  # of a median or of J/N: less than this share of it says another order

@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray
 from odometry.errors import WindowError
-from odometry.identification.from_positions import stretches_for
+from odometry.identification.stretch_fit import stretches_for
 from odometry.run import Run, check_no_run_twice, robot_labels, run_names
 from odometry.run_terrains import row_terrains
 from odometry.windows.config import WindowConfig

@@ -11,8 +11,7 @@ from odometry.comparison.split import Part
 from odometry.effects.measured import robot_run, shared_measurement
 from odometry.effects.tables import effects_of
 from odometry.errors import OdometryError
-from odometry.evaluation.fitness import Fitness, fitness
-from odometry.evaluation.open_loop import measured_poses, open_loop
+from odometry.evaluation.open_loop import Fitness, fitness, measured_poses, open_loop
 from odometry.run_inputs import inputs_of
 
 

@@ -9,8 +9,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
-from odometry.effects.recorded import Recorded
-from odometry.effects.reported import Reported
+from odometry.effects.recorded import Recorded, Reported
 from odometry.errors import ParameterError
 from odometry.models.inputs import Inputs
 from odometry.parameter_covariance import finite_number

@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.actuator_lag import ActuatorLag
 from odometry.effects.base import CommandEffect, Effect, EffectParameter
 from odometry.effects.base_model import Base
-from odometry.effects.command_delay import CommandDelay
 from odometry.effects.drive_limit import HARDEST_M_S2, Deadband, RateLimit, Saturation
+from odometry.effects.late_treads import ActuatorLag, CommandDelay
 from odometry.effects.recorded import Recorded
 from odometry.models.inputs import Inputs
 

@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 
-from odometry.effects.actuator_lag import ActuatorLag
 from odometry.effects.base import Effect
 from odometry.effects.by_side import (
     DeadbandBySide,
@@ -14,36 +13,28 @@ from odometry.effects.by_side import (
     RateBySide,
     SaturationBySide,
 )
-from odometry.effects.command_delay import CommandDelay
+from odometry.effects.contact_effects import InertiaByContact, SlopeByContact
 from odometry.effects.corrected import Added
 from odometry.effects.course_for_yaw import CourseForYaw
-from odometry.effects.course_settings import course_of
 from odometry.effects.curvature import Curvature
 from odometry.effects.drive_limit import Deadband, RateLimit, Saturation
 from odometry.effects.gyroscope_error import GyroscopeError
-from odometry.effects.heading_offset import HeadingOffset
 from odometry.effects.history import History
 from odometry.effects.in_course import in_course
-from odometry.effects.inertia_contact import InertiaByContact
 from odometry.effects.inertia_icr import InertiaByIndices
 from odometry.effects.late_by_chance import LateByChance
+from odometry.effects.late_treads import ActuatorLag, CommandDelay
 from odometry.effects.lateral_skid import LateralSkid
-from odometry.effects.lever_arm import LeverArm
 from odometry.effects.map_fault import DriftingMap, DriftingYaw, StretchedMap, TurningMap
 from odometry.effects.reference_fault import Compass
-from odometry.effects.reference_filter import (
-    FilteredPositions,
-    SlowYaw,
-    SmoothedPoses,
-    SwayingMast,
-)
+from odometry.effects.reference_filter import FilteredPositions, SlowYaw, SmoothedPoses, SwayingMast
 from odometry.effects.reference_outliers import FrozenPoses, JumpingPoses, ReferenceOutliers
 from odometry.effects.reference_step import ClockStep
 from odometry.effects.residual import Residual
-from odometry.effects.slope_contact import SlopeByContact
+from odometry.effects.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.slope_icr import SlopeByIcr
 from odometry.effects.terrain import NewIcrs, Terrain
-from odometry.effects.time_course import Course, FromAMoment
+from odometry.effects.time_course import UNBOUNDED_S, Course, FromAMoment, Gradual, InBursts, Spans
 from odometry.effects.time_offset import ClockDrift, TimeOffset
 from odometry.effects.traction_loss import TractionLoss
 from odometry.effects.tread_slip import (
@@ -104,6 +95,8 @@ EFFECTS: tuple[type[Effect], ...] = (
 OUTLIERS = (ReferenceOutliers, FrozenPoses, JumpingPoses)
 KNOWN: tuple[type[Effect], ...] = (*EFFECTS, *OUTLIERS, Residual, History)
 BY_FORM = {(effect.name, effect.form): effect for effect in KNOWN}
+
+COURSES = (FromAMoment.name, Gradual.name, InBursts.name)
 
 
 def effect_table(added: Added) -> dict[str, Any]:
@@ -171,3 +164,38 @@ def _course(
 
 def _frozen(value: Any) -> Any:
     return tuple(_frozen(item) for item in value) if isinstance(value, list) else value
+
+
+def course_of(settings: dict[str, Any], where: str) -> Course:
+    """The course of the settings of a parameter set; its keys are taken out of them.
+
+    Raises
+    ------
+    ParameterError
+        If it is not known, or its own settings are wrong.
+    """
+    name = settings.pop("course")
+    if name not in COURSES:
+        raise ParameterError(f"{where}: course = {name!r}, expected one of {', '.join(COURSES)}")
+    if name == "gradual":
+        return Gradual(finite_number(settings.pop("full_s", UNBOUNDED_S), f"{where}: full_s"))
+    if name == InBursts.name:
+        runs = _list(settings.pop("events_s", []), f"{where}: events_s")
+        return InBursts(tuple(_spans(events, f"{where}: events_s") for events in runs))
+    return FromAMoment(
+        _spans(settings.pop("observed_s", [[0.0, UNBOUNDED_S]]), f"{where}: observed_s")
+    )
+
+
+def _list(value: object, where: str) -> Sequence[Any]:
+    if not isinstance(value, list | tuple):
+        raise ParameterError(f"{where} = {value!r}, expected a list")
+    return value
+
+
+def _spans(value: object, where: str) -> Spans:
+    spans = []
+    for span in _list(value, where):
+        first, last = _list(span, where) if len(_list(span, where)) == 2 else (None, None)
+        spans.append((finite_number(first, where), finite_number(last, where)))
+    return tuple(spans)

@@ -8,7 +8,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base import CommandEffect, Effect, MeasurementEffect, MotionEffect
 from odometry.effects.base_model import Base
-from odometry.effects.reported import Reported
+from odometry.effects.recorded import Reported
 from odometry.models.base import KinematicModel, Linearised
 from odometry.models.icr_by_terrain import IcrByTerrain
 from odometry.models.inputs import Inputs

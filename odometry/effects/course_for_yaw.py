@@ -5,8 +5,8 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base import EffectParameter
 from odometry.effects.base_model import Base
+from odometry.effects.recorded import Reported
 from odometry.effects.reference_filter import ReferenceFilter
-from odometry.effects.reported import Reported
 from odometry.models.inputs import Inputs
 
 

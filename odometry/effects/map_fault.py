@@ -12,9 +12,8 @@ import numpy as np
 from odometry.arrays import AnyArray, FloatArray
 from odometry.effects.base import Effect, EffectParameter, MeasurementEffect
 from odometry.effects.base_model import Base
-from odometry.effects.headings import all_round
-from odometry.effects.recorded import Recorded
-from odometry.effects.reported import Reported
+from odometry.effects.recorded import Recorded, Reported
+from odometry.effects.reference_fault import all_round
 from odometry.models.inputs import Inputs
 
 ROUNDS = 40  # of the inverse: each shrinks its error by the size of the fault

@@ -8,8 +8,8 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base import MeasurementEffect
 from odometry.effects.corrected import Added, delay_s
-from odometry.effects.lever_arm import LeverArm
-from odometry.effects.reported import Reported
+from odometry.effects.recorded import Reported
+from odometry.effects.sensor_mount import LeverArm
 from odometry.errors import ParameterError
 from odometry.geometry.angles import wrap
 from odometry.run import Run

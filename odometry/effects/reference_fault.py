@@ -5,12 +5,15 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base import EffectParameter, MeasurementEffect
 from odometry.effects.base_model import Base
-from odometry.effects.headings import all_round
-from odometry.effects.reported import Reported
+from odometry.effects.recorded import Reported
 from odometry.models.inputs import Inputs
 
 ROUNDS = 50  # of the inverse: each shrinks its error by the size of the distortion
 SETTLED_RAD = 1e-14
+
+SECTORS, LEAST_SECTORS = 12, 6  # of the circle, and in how many of them the robot must look
+FEW_HEADINGS = "headings over half a turn"
+LEAST_SHARE = 0.01  # of the samples, in a sector
 
 
 class Compass(MeasurementEffect):
@@ -59,3 +62,13 @@ def _true_yaw(values: FloatArray, measured_rad: FloatArray) -> FloatArray:
         if np.abs(yaw_rad - before).max(initial=0.0) < SETTLED_RAD:
             break
     return np.asarray(yaw_rad)
+
+
+def all_round(inputs: Inputs) -> str:
+    """What is lacking: headings over half a turn or more; "" where there are."""
+    if inputs.heading_rad is None:
+        return "headings"
+    sector = np.floor(inputs.heading_rad / (2 * np.pi) * SECTORS) % SECTORS
+    shares = np.bincount(sector.astype(np.int64), minlength=SECTORS) / len(sector)
+    enough = np.count_nonzero(shares >= LEAST_SHARE) >= LEAST_SECTORS
+    return "" if enough else FEW_HEADINGS

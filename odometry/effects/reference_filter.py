@@ -13,7 +13,7 @@ from scipy.linalg import solve_banded
 
 from odometry.arrays import FloatArray
 from odometry.effects.base import EffectParameter, MeasurementEffect
-from odometry.effects.reported import Reported
+from odometry.effects.recorded import Reported
 
 GRID_S = 0.02  # of the oscillator
 MOST_DAMPED = 0.5  # more is no ringing: a robot that slides may answer so

@@ -11,10 +11,8 @@ from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.course import Course
 from odometry.estimation.estimate import OF_TERRAIN, Estimate, Innovation
 from odometry.estimation.filter_event import FilterEvent
-from odometry.estimation.filter_start import agree, new_start_event, started_anew
-from odometry.estimation.gaussian import bounded, gate_threshold
-from odometry.estimation.heading_search import searched
-from odometry.estimation.kalman import updated
+from odometry.estimation.filter_start import agree, new_start_event, searched, started_anew
+from odometry.estimation.kalman import bounded, gate_threshold, updated
 from odometry.estimation.measurement import (
     Gaussian,
     Measurement,

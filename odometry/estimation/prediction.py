@@ -10,8 +10,7 @@ from odometry.arrays import FloatArray
 from odometry.estimation import sensor_watch
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.estimate import ALPHAS, ICRS, Estimate
-from odometry.estimation.gaussian import bounded
-from odometry.estimation.kalman import predicted, updated_by_number
+from odometry.estimation.kalman import bounded, predicted, updated_by_number
 from odometry.estimation.measurement import Gaussian, tread_yaw_rate
 from odometry.estimation.sensor_watch import Events, SensorWatch
 from odometry.estimation.transition import ALPHA_LEFT, GYRO_BIAS, STATES, YAW, X, Y, transition

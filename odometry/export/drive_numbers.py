@@ -1,34 +1,17 @@
-"""What a terrain's ICRs are in the numbers of an ordinary differential drive.
-
-A differential drive with wheel separation s b and factors m_left, m_right on its wheel radii (the
-odometry of ROS 2's `diff_drive_controller`) moves by
-
-    v_x = (m_right v_right + m_left v_left) / 2,  v_y = 0,
-    omega = (m_right v_right - m_left v_left) / (s b).
-
-With e_left = alpha_left v_left and e_right = alpha_right v_right, W = y_left - y_right and
-c = (y_left + y_right) / 2, the ICRs (Baril 2020 eq. 7) move the robot's origin by
-
-    omega = (e_right - e_left) / W,
-    v_x = (e_right y_left - e_left y_right) / W = (e_right + e_left) / 2 + c omega,
-    v_y = -x_icr omega.
-
-So m_left = alpha_left, m_right = alpha_right and s = W / b give the same omega. What is left over,
-c omega of v_x and -x_icr omega of v_y, no multiplier can give. But a point at (x_icr, c) of the
-robot moves by v_x - c omega and v_y + x_icr omega: there the differential drive is exact. A frame
-fixed at that point, as the base frame of the controller's odometry, expresses the whole model.
-"""
+"""Parameters in the terms of ordinary differential drives and of filters that take them in."""
 
 from dataclasses import dataclass
+from math import pi, sqrt
 
 import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
-from odometry.estimation.icr_prior import icr_form
+from odometry.estimation.terrain_beliefs import icr_form
 from odometry.identification.fitted import NORMAL
 from odometry.models.catalogue import model_named
 from odometry.parameters import TerrainParameters
+from odometry.windows.window_errors import WindowErrors
 
 
 @dataclass(frozen=True)
@@ -137,3 +120,68 @@ def _stated(value: float, table: TerrainParameters, gradient: FloatArray) -> Sta
     by = np.array(list(slopes.values()))
     half = NORMAL * float(np.sqrt(max(by @ table.covariance_of(tuple(slopes)) @ by, 0.0)))
     return Stated(value, value - half, value + half)
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How fast a robot drove: mean wheel speed, and mean size of its yaw rate."""
+
+    wheel_speed_m_s: float
+    yaw_rate_rad_s: float
+
+
+@dataclass(frozen=True)
+class MotionErrors:
+    """Standard deviations of the error of motions, per metre of wheel travel.
+
+    Attributes
+    ----------
+    along_m_per_m : float
+        Along each axis.
+    yaw_rad_per_m : float
+    horizon_m : float
+        Wheel travel of the windows.
+    source : str
+        What they were measured on.
+    """
+
+    along_m_per_m: float
+    yaw_rad_per_m: float
+    horizon_m: float
+    source: str
+
+    @classmethod
+    def of_windows(cls, errors: WindowErrors, horizon_m: float, source: str) -> "MotionErrors":
+        """From errors of windows: half of a squared distance belongs to each axis."""
+        along, yaw = (
+            float(np.mean(np.square(each)))
+            for each in (errors.translation_per_m, errors.rotation_per_m)
+        )
+        return cls(sqrt(along / 2), sqrt(yaw), horizon_m, source)
+
+    @classmethod
+    def of_means(
+        cls, translation_m_per_m: float, rotation_rad_per_m: float, horizon_m: float, source: str
+    ) -> "MotionErrors":
+        """From mean errors, as of normal ones: a distance (Rayleigh), and an absolute value."""
+        along, yaw = translation_m_per_m / sqrt(pi / 2), rotation_rad_per_m * sqrt(pi / 2)
+        return cls(along, yaw, horizon_m, source)
+
+    def twist_variances(self, pace: Pace, left_over_m: tuple[float, float]) -> FloatArray:
+        """Variances (3,) of v_x, v_y [m^2/s^2] and omega [rad^2/s^2] at a pace.
+
+        Parameters
+        ----------
+        pace : Pace
+        left_over_m : (2,)
+            Of v_x and v_y over the yaw rate, where the odometry has no such term: the middle of
+            the ICRs and `x_icr`.
+        """
+        own = np.array([self.along_m_per_m, self.along_m_per_m, self.yaw_rad_per_m])
+        left_over = np.array([*left_over_m, 0.0]) * pace.yaw_rate_rad_s
+        return np.asarray((own * pace.wheel_speed_m_s) ** 2 + left_over**2)
+
+    def pose_variances_per_s(self, pace: Pace) -> FloatArray:
+        """Growth (3,) of the variances of x, y [m^2/s] and yaw [rad^2/s] at a pace."""
+        own = np.array([self.along_m_per_m, self.along_m_per_m, self.yaw_rad_per_m])
+        return np.asarray(own**2 * self.horizon_m * pace.wheel_speed_m_s)

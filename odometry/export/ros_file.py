@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from odometry.errors import ParameterError
-from odometry.export.drive_numbers import drive_numbers
-from odometry.export.motion_errors import MotionErrors, Pace
+from odometry.export.drive_numbers import MotionErrors, Pace, drive_numbers
 from odometry.export.ros_yaml import ros_yaml
 from odometry.export.source import ExportSource
 from odometry.identification.identification import Identification

@@ -10,8 +10,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.export.drive_numbers import DriveNumbers, Stated
-from odometry.export.motion_errors import MotionErrors, Pace
+from odometry.export.drive_numbers import DriveNumbers, MotionErrors, Pace, Stated
 from odometry.outputs.manifest import format_line
 
 FORMAT = 1

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from odometry.errors import ExportError, ParameterError
-from odometry.export.motion_errors import MotionErrors, Pace
+from odometry.export.drive_numbers import MotionErrors, Pace
 from odometry.io.csv_table import read_csv_table
 from odometry.io.structured import read_json
 from odometry.outputs.manifest import check_finished, check_format

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 from odometry.effects.base import Effect
 from odometry.effects.catalogue import EFFECTS
-from odometry.effects.headings import FEW_HEADINGS
 from odometry.effects.recorded import Recorded, labels_of
+from odometry.effects.reference_fault import FEW_HEADINGS
 from odometry.gap.calibration import Calibration
 from odometry.gap.own_moments import observed_s
 from odometry.windows.dense import DenseWindows

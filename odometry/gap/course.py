@@ -5,8 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.residual import TREADS, WORLD
-from odometry.effects.residual_of_each_run import ResidualOfEachRun
+from odometry.effects.residual import TREADS, WORLD, ResidualOfEachRun
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import Judged, sure_sum
 from odometry.gap.fit import Fitted, Fitter

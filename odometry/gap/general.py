@@ -10,8 +10,8 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
-from odometry.effects.headings import all_round
 from odometry.effects.history import BOTH, LAGS_S, History
+from odometry.effects.reference_fault import all_round
 from odometry.effects.residual import (
     ANGLES,
     COMPONENTS,

@@ -16,8 +16,8 @@ from scipy.stats import norm
 from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added, corrected_twist, reported_yaw_rate
-from odometry.effects.headings import FEW_HEADINGS
 from odometry.effects.in_course import lasting
+from odometry.effects.reference_fault import FEW_HEADINGS
 from odometry.gap.calibration import Calibration
 from odometry.gap.config import GapConfig
 from odometry.gap.drives import Drive, drives_of, scene_of

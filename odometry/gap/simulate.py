@@ -13,7 +13,7 @@ from odometry.effects.corrected import (
     reported_yaw_rate,
     seen_poses,
 )
-from odometry.effects.reported import Reported
+from odometry.effects.recorded import Reported
 from odometry.effects.time_course import run_numbers
 from odometry.windows.dense import DenseWindows, off_measured, poses_at
 from odometry.windows.motion import level_path

@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.effects.history import History
-from odometry.effects.residual import Residual
-from odometry.effects.residual_of_each_run import ResidualOfEachRun
+from odometry.effects.residual import Residual, ResidualOfEachRun
 from odometry.effects.time_course import InBursts
 from odometry.gap.burst_variable import variable_of_events
 from odometry.gap.bursts import InCourse, burst_effects

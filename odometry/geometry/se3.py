@@ -7,6 +7,9 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 
+# Columns: the camera's x, y and z axes in the optical frame
+OPTICAL_FROM_CAMERA = np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]])
+
 
 def pose(position: FloatArray, rotation: FloatArray) -> FloatArray:
     """Pose (..., 4, 4) of a position (..., 3) in metres and a rotation matrix (..., 3, 3)."""
@@ -101,3 +104,31 @@ def _skew_part(rotation: FloatArray) -> FloatArray:
         ],
         axis=-1,
     )
+
+
+def mount_of_optical(
+    robot_from_optical: FloatArray,
+) -> tuple[float, float, float, float, float, float]:
+    """The `mount` of a camera whose optical frame is known.
+
+    Parameters
+    ----------
+    robot_from_optical : (4, 4)
+        Pose of the optical frame in the robot frame: points of the one into points of the other.
+
+    Returns
+    -------
+    x, y, z, roll, pitch, yaw
+        Place [m] and attitude [rad] of the camera's own frame, R = Rz(yaw) Ry(pitch) Rx(roll).
+    """
+    transform = np.asarray(robot_from_optical, dtype=np.float64)
+    angles = roll_pitch_yaw(transform[:3, :3] @ OPTICAL_FROM_CAMERA)
+    x, y, z, roll, pitch, yaw = map(float, (*transform[:3, 3], *angles))
+    return x, y, z, roll, pitch, yaw
+
+
+def optical_of_mount(mount: FloatArray) -> FloatArray:
+    """Pose (4, 4) of the optical frame in the robot frame; the inverse of `mount_of_optical`."""
+    mount = np.asarray(mount, dtype=np.float64)
+    camera = rotation_from_roll_pitch_yaw(mount[3:])
+    return pose(mount[:3], camera @ OPTICAL_FROM_CAMERA.T)

@@ -1,4 +1,4 @@
-"""Identify one model from recorded runs, terrain by terrain."""
+"""Identify one model from recorded runs, terrain by terrain, and a simpler one where it fails."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -9,11 +9,10 @@ from tqdm import tqdm
 from odometry.effects.corrected import Added
 from odometry.effects.measured import on_measurement, robot_run
 from odometry.effects.tables import effects_of
-from odometry.errors import IdentificationError, ParameterError
+from odometry.errors import IdentificationError, OdometryError, ParameterError
 from odometry.identification.config import SolverConfig
 from odometry.identification.fit import Fit
 from odometry.identification.fitters import FitTo, TerrainModel, Wanted, fitter, model_on_terrain
-from odometry.identification.from_positions import windows_or_stretches
 from odometry.identification.halves import (
     MOST_FOLDS,
     Halves,
@@ -23,6 +22,7 @@ from odometry.identification.halves import (
     held_out_errors,
 )
 from odometry.identification.identification import Identification, Identified
+from odometry.identification.stretch_fit import windows_or_stretches
 from odometry.models.catalogue import MODELS
 from odometry.run import UNKNOWN, Robot, Run, check_no_run_twice
 from odometry.run_terrains import with_named_terrain
@@ -30,6 +30,8 @@ from odometry.windows.config import WindowConfig
 from odometry.windows.stretches import Stretches
 from odometry.windows.window_errors import WindowErrors, errors_over
 from odometry.windows.windows import Windows, windows_of
+
+SIMPLE = "icr_symmetric"  # two factors: a scale and an effective width
 
 
 def identify(
@@ -206,3 +208,31 @@ def _held_out(
         others = iter((halves.second, halves.first))
         return held_out_errors(windows, by_halves(windows), lambda _: next(others)), "halves"
     return by_run, "runs"
+
+
+def simpler_model(found: Identification) -> Identification | None:
+    """`SIMPLE` on the same windows, where a refused identification left parameters open.
+
+    None where the identified model does not explain the runs, has effects or is as simple, or
+    where the runs do not determine this one either. Nothing is held out.
+    """
+    models = [one.fit.model for one in found.terrains.values()]
+    if found.unexplained or any(model.name == SIMPLE or effects_of(model) for model in models):
+        return None
+    fit_to = fitter(
+        MODELS[SIMPLE],
+        found.robot,
+        fixed={},
+        window_config=found.window_config,
+        solver_config=SolverConfig(),
+    )
+    try:
+        terrains = {
+            terrain: replace(one, fit=fit_to(one.fit.windows), held_out=None, given={})
+            for terrain, one in found.terrains.items()
+        }
+        simpler = replace(found, terrains=terrains)
+        simpler.require_determined()
+    except OdometryError:
+        return None
+    return simpler

@@ -7,7 +7,7 @@ from odometry.identification.fit import Fit
 from odometry.identification.fitted import NORMAL, deviations_within
 from odometry.models.base import Parameter
 from odometry.windows.config import WindowConfig
-from odometry.windows.omitted_windows import (
+from odometry.windows.record import (
     CHANGE_OF_TERRAIN,
     CHANGE_OF_WINDOW,
     ODOMETRY_GAP,

@@ -20,8 +20,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray
 from odometry.errors import OdometryError
-from odometry.io.files import atomic_write
-from odometry.io.input_file import read_bytes
+from odometry.io.files import atomic_write, read_bytes
 from odometry.io.structured import parsed_json
 from odometry.outputs.manifest import check_format
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import OdometryError, RunFolderError
-from odometry.io.input_file import opened_lines
+from odometry.io.files import opened_lines
 
 BLOCK_ROWS = 1000  # more do not stay in the cache and take three times as long
 Cells = list[tuple[str, ...]]  # of each column

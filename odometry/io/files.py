@@ -1,15 +1,124 @@
-"""Files that are whole or absent: written under a temporary name, then renamed."""
+"""Files: input read within bounds of size, output whole or absent."""
 
 import errno
+import io
 import os
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO, TextIO
 
-from odometry.errors import OutputError
+from odometry.errors import OdometryError, OutputError
+
+TABLE_BYTES = 4 * 1024**3  # ten million rows of a dozen columns have about 1.5 GB
+LINE_CHARACTERS = 65536  # a row of numbers has a few hundred
 
 # a full disk, a quota, the largest size of a file, a disk that fails or may not be written to
 NOT_WRITTEN = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EROFS)
+
+
+@contextmanager
+def opened(file: Path, error: type[OdometryError], most_bytes: int, why: str) -> Iterator[BinaryIO]:
+    """Open a regular file for reading; pipes and devices, which may never end, are not opened.
+
+    Parameters
+    ----------
+    file : Path
+    error : child of OdometryError
+        What is raised.
+    most_bytes : int
+        A larger file is refused.
+    why : str
+        What such a file usually has, for the message.
+
+    Raises
+    ------
+    OdometryError
+        Of the kind `error`, naming the file: missing, no regular file, or too large.
+    """
+    _check_regular(file, error, most_bytes, why)
+    try:
+        with Path(file).open("rb") as stream:
+            yield stream
+    except OSError as problem:
+        raise error(f"{file}: cannot be read: {problem.strerror or problem}") from problem
+
+
+def read_bytes(file: Path, error: type[OdometryError], most_bytes: int, why: str) -> bytes:
+    """The content of a file; raises as `opened`."""
+    with opened(file, error, most_bytes, why) as stream:
+        size = os.fstat(stream.fileno()).st_size  # reading more would allocate more
+        return stream.read(min(size, most_bytes))
+
+
+@contextmanager
+def opened_lines(file: Path, error: type[OdometryError]) -> Iterator[Iterator[str]]:
+    """Open a table as text: its lines, ends included; a byte order mark is left out.
+
+    Raises
+    ------
+    OdometryError
+        Of the kind `error`, naming file and row: as `opened`, bytes that are not UTF-8 text, or a
+        line of LINE_CHARACTERS or more.
+    """
+    with (
+        opened(file, error, TABLE_BYTES, "ten million rows have about 1.5e9") as stream,
+        io.TextIOWrapper(stream, encoding="utf-8-sig", newline="") as text,
+    ):
+        yield _lines(text, file, error)
+
+
+def _lines(text: TextIO, file: Path, error: type[OdometryError]) -> Iterator[str]:
+    row = 0
+    try:
+        while line := text.readline(LINE_CHARACTERS):
+            row += 1
+            if len(line) == LINE_CHARACTERS:
+                raise error(
+                    f"{file}: row {row} has {LINE_CHARACTERS} characters or more; is it a table?"
+                )
+            if "\0" in line:
+                raise error(f"{file}: row {row} holds a NUL byte; expected text")
+            yield line
+    except UnicodeDecodeError as problem:
+        byte = problem.object[problem.start]
+        raise error(
+            f"{file}: cannot be read as utf-8 text: byte {byte:#04x} below row {row}"
+        ) from problem
+
+
+def _check_regular(file: Path, error: type[OdometryError], most_bytes: int, why: str) -> None:
+    try:
+        status = Path(file).stat()
+    except OSError as problem:
+        raise error(f"{file}: cannot be read: {problem.strerror or problem}") from problem
+    except ValueError as problem:  # a NUL in the name
+        raise error(f"{str(file)!r}: cannot be read: {problem}") from problem
+    if not stat.S_ISREG(status.st_mode):
+        raise error(f"{file}: {_kind(status.st_mode)}, expected a regular file")
+    if status.st_size > most_bytes:
+        raise error(f"{file}: {status.st_size} bytes, expected at most {most_bytes}: {why}")
+
+
+def _kind(mode: int) -> str:
+    for is_kind, word in (
+        (stat.S_ISDIR, "a folder"),
+        (stat.S_ISFIFO, "a pipe"),
+        (stat.S_ISCHR, "a device"),
+        (stat.S_ISBLK, "a device"),
+    ):
+        if is_kind(mode):
+            return word
+    return "a socket or the like"
+
+
+def leads_out(folder: Path, name: str) -> bool:
+    """Whether `folder / name` lies outside of the folder, by `..` or by symbolic links.
+
+    The folder itself may be reached through a symbolic link.
+    """
+    return not Path(os.path.realpath(folder / name)).is_relative_to(os.path.realpath(folder))
 
 
 @contextmanager

@@ -10,7 +10,7 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.errors import TrajectoryError
 from odometry.geometry import se3
-from odometry.io.input_file import opened_lines
+from odometry.io.files import opened_lines
 
 BLOCK_ROWS = 1000
 Words = list[tuple[int, list[str]]]  # row of the file, and its words

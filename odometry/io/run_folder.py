@@ -1,7 +1,9 @@
 """Read and write run folders: the only door in; trajectories from elsewhere as their poses."""
 
 import os
+import shlex
 from collections.abc import Mapping
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -10,10 +12,8 @@ import tomli_w
 
 from odometry.arrays import AnyArray
 from odometry.errors import RunFolderError, TrajectoryError
-from odometry.io.bag_names import bag_at, this_is_a_bag
 from odometry.io.csv_table import read_csv_table, write_csv_table
-from odometry.io.files import atomic_write
-from odometry.io.input_file import leads_out
+from odometry.io.files import atomic_write, leads_out
 from odometry.io.structured import read_toml
 from odometry.table import Table
 from odometry.trajectory import SpatialTrajectory
@@ -27,6 +27,10 @@ FILES = {
     "truth": (False, ("t", "x", "y", "yaw"), ("t", "x", "y", "yaw")),
     "imu": (False, ("t",), ("t",)),
 }
+
+SUFFIXES = (".bag", ".mcap", ".db3", ".active")
+PACKED = (".zstd", ".zst")
+MOST_ENTRIES = 1000  # of a folder that are listed
 
 
 def read_settings(folder: Path) -> dict[str, Any]:
@@ -163,3 +167,29 @@ def doubt_of_axes(trajectory: SpatialTrajectory) -> str:
         f"the body moves most along its {'xyz'[told]} axis; expected x "
         "forward. Poses of a camera (z along the view, y down) need --axes optical"
     )
+
+
+def is_named_bag(path: Path) -> bool:
+    """Whether a file is named as a bag."""
+    plain = path.with_suffix("") if path.suffix.lower() in PACKED else path
+    return plain.suffix.lower() in SUFFIXES
+
+
+def bag_at(path: Path) -> bool:
+    """Whether a path is a bag, or a folder that holds one and no run."""
+    if not path.is_dir():
+        return path.is_file() and is_named_bag(path)
+    if (path / "run.toml").exists() or (path / "odometry.csv").exists():
+        return False
+    return any(map(is_named_bag, islice(path.iterdir(), MOST_ENTRIES)))
+
+
+def this_is_a_bag(path: Path) -> str:
+    """What is said of a bag where a run folder is expected."""
+    return f"{path}: this is a bag (a log of ROS), no run folder. Import it: {import_command(path)}"
+
+
+def import_command(path: Path) -> str:
+    """The command that makes a run folder of a bag."""
+    name = path.resolve().name.split(".")[0] or "my"
+    return f"terrain-odometry import {shlex.quote(str(path))} --out {shlex.quote(f'{name}_run')}"

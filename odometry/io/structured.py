@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from odometry.errors import OdometryError
-from odometry.io.input_file import read_bytes
+from odometry.io.files import read_bytes
 
 TOML_BYTES = 1024**2
 JSON_BYTES = 16 * 1024**2

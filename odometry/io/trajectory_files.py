@@ -8,9 +8,9 @@ import numpy as np
 
 from odometry.errors import TrajectoryError
 from odometry.geometry import se3
-from odometry.geometry.optical_frame import OPTICAL_FROM_CAMERA
+from odometry.geometry.se3 import OPTICAL_FROM_CAMERA
 from odometry.io.euroc import read_euroc, write_euroc
-from odometry.io.input_file import opened_lines
+from odometry.io.files import opened_lines
 from odometry.io.kitti import read_kitti, write_kitti
 from odometry.io.tum import read_spatial_tum, write_spatial_tum
 from odometry.trajectory import SpatialTrajectory

@@ -215,3 +215,13 @@ class KinematicModel(ABC):
 
     def check(self, values: FloatArray) -> None:  # noqa: B027 - most models have no such relation
         """Raise ParameterError where a relation between parameters (P,) does not hold."""
+
+
+def vectors(*entries: FloatArray) -> FloatArray:
+    """Vectors (..., M) of M entries, which are broadcast to one stack (...)."""
+    return np.moveaxis(np.stack(np.broadcast_arrays(*entries)), 0, -1)
+
+
+def zero_matrices(stack: tuple[int, ...], rows: int, columns: int) -> FloatArray:
+    """Matrices (..., rows, columns) to be filled entry by entry."""
+    return np.moveaxis(np.zeros((rows, columns, *stack)), (0, 1), (-2, -1))

@@ -17,8 +17,7 @@ from odometry.models.icr import Icr
 from odometry.models.icr_inertia import IcrInertia, IcrInertiaMeasured
 from odometry.models.icr_slope import IcrSlope
 from odometry.models.radius_of_curvature import RadiusOfCurvature
-from odometry.models.symmetric import DifferentialDrive, IcrSymmetric
-from odometry.models.traction_mode import TractionMode
+from odometry.models.symmetric import DifferentialDrive, IcrSymmetric, TractionMode
 
 MODELS: dict[str, KinematicModel] = {
     model.name: model

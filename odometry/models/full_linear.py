@@ -3,10 +3,9 @@
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.models.base import KinematicModel, Linearised, Parameter
+from odometry.models.base import KinematicModel, Linearised, Parameter, zero_matrices
 from odometry.models.icr import GUESSED_WIDTHS
 from odometry.models.inputs import Inputs
-from odometry.models.layout import zero_matrices
 from odometry.run import Robot
 
 

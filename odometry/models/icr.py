@@ -4,10 +4,9 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
-from odometry.models.base import USUAL_GAIN, IcrForm, Linearised, Parameter
+from odometry.models.base import USUAL_GAIN, IcrForm, Linearised, Parameter, vectors, zero_matrices
 from odometry.models.inputs import Inputs
 from odometry.models.invertible import InvertibleModel, before_slip, icr_tread_speeds
-from odometry.models.layout import vectors, zero_matrices
 from odometry.run import Robot
 
 ICRS, ALPHAS = slice(0, 3), slice(3, 5)  # where the parameters of `icr` have them

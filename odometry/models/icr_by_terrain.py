@@ -9,10 +9,9 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.models.base import Linearised
+from odometry.models.base import Linearised, zero_matrices
 from odometry.models.icr import Icr
 from odometry.models.inputs import Inputs
-from odometry.models.layout import zero_matrices
 from odometry.run import Robot
 
 PLAIN = Icr()

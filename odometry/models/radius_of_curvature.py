@@ -4,10 +4,16 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
-from odometry.models.base import USUAL_GAIN, KinematicModel, Linearised, Parameter
+from odometry.models.base import (
+    USUAL_GAIN,
+    KinematicModel,
+    Linearised,
+    Parameter,
+    vectors,
+    zero_matrices,
+)
 from odometry.models.icr import GUESSED_WIDTHS
 from odometry.models.inputs import Inputs
-from odometry.models.layout import vectors, zero_matrices
 from odometry.run import Robot
 
 

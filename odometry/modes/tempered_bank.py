@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.estimation.bank import Bank
 from odometry.estimation.ekf_bank import EkfBank, wrapped
+from odometry.estimation.imm import Bank
 from odometry.estimation.mode_belief import ModeBelief
 from odometry.modes.gyroscope_bias import moving
 from odometry.modes.signals import Signals

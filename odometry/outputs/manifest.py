@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from odometry.errors import OdometryError, OutputError
-from odometry.io.files import atomic_write
-from odometry.io.input_file import opened
+from odometry.io.files import atomic_write, opened
 from odometry.io.structured import TOML_BYTES, read_json
 
 PROGRAM = "terrain-odometry"

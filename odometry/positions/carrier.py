@@ -9,8 +9,7 @@ from odometry.errors import OdometryError
 from odometry.geometry import se2
 from odometry.identification.config import SolverConfig
 from odometry.identification.fitted import Fit
-from odometry.identification.from_positions import stretches_for
-from odometry.identification.stretch_fit import fit_stretches
+from odometry.identification.stretch_fit import fit_stretches, stretches_for
 from odometry.models.catalogue import MODELS
 from odometry.run import Run
 from odometry.windows.config import WindowConfig

@@ -19,7 +19,7 @@ from odometry.positions.carrier import Carrier, carrier_of
 from odometry.positions.smoother import Filtered, Way, filtered, smoothed
 from odometry.run import Run
 from odometry.windows.measured_poses import YAW_FOUND, lacks_yaw
-from odometry.windows.omitted_windows import ODOMETRY_GAP
+from odometry.windows.record import ODOMETRY_GAP
 
 STARTS = 12  # headings all round
 FAR_RAD = np.radians(20.0)  # of another yaw that leaves it untold

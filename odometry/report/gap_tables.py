@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from odometry.effects.residual_of_each_run import ResidualOfEachRun
+from odometry.effects.residual import ResidualOfEachRun
 from odometry.gap.config import GapConfig
 from odometry.gap.moved import moves_of
 from odometry.gap.quantities import evidence_words, percent, rounded, with_interval

@@ -8,8 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Ellipse, Rectangle
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.icrs.measured import MeasuredIcrs
-from odometry.icrs.medians import IcrMedian, icr_medians
+from odometry.icrs.measured import IcrMedian, MeasuredIcrs, icr_medians
 from odometry.report.labels import HALO
 from odometry.run import Robot
 

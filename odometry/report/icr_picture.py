@@ -10,8 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from odometry.arrays import FloatArray
-from odometry.icrs.measured import SHORT_WINDOWS, MeasuredIcrs, icrs_of_windows
-from odometry.icrs.medians import LEAST_WINDOWS
+from odometry.icrs.measured import LEAST_WINDOWS, SHORT_WINDOWS, MeasuredIcrs, icrs_of_windows
 from odometry.icrs.points import NO_SLIP
 from odometry.identification.identification import Identification
 from odometry.report.figure import save_figure

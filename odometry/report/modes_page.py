@@ -7,8 +7,7 @@ from matplotlib.figure import Figure
 
 from odometry.arrays import FloatArray
 from odometry.modes.detection import confusion
-from odometry.modes.followed import Followed
-from odometry.modes.innovation_test import BOUND
+from odometry.modes.followed import BOUND, Followed
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
 from odometry.modes.words import SIGNALS, in_short, percent, scale_word, sentences, signal_of
 from odometry.report.figure import save_figure

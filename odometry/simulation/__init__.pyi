@@ -4,8 +4,13 @@ from .contact.slope import Plane
 from .contact.vehicle import read_contact_vehicle
 from .courses import STEP_S, Course, make_course
 from .record import ContactSensors, write_contact_run
-from .skid_experiments import SENSORS, calibration_courses, calibration_runs, terrain_experiment
-from .skid_traction import ground_traction
+from .skid_experiments import (
+    SENSORS,
+    calibration_courses,
+    calibration_runs,
+    ground_traction,
+    terrain_experiment,
+)
 
 __all__ = [
     "SENSORS",

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.errors import SimulationError
 from odometry.simulation.commands import ACCELERATION_M_S2, segments
-from odometry.simulation.errors import SimulationError
 
 
 def skidpad(

@@ -13,8 +13,7 @@ from odometry.models.inputs import Inputs
 from odometry.run import Run
 from odometry.run_terrains import row_terrains
 from odometry.windows.config import WindowConfig
-from odometry.windows.omitted_windows import FEW_POSES, straddling, words
-from odometry.windows.record import Record, record_of
+from odometry.windows.record import FEW_POSES, Record, record_of, straddling, words
 
 LEAST_POSES = 3  # of a window
 EDGE_S = 0.5  # of a run: a late or early pose must still lie within its odometry
@@ -45,7 +44,7 @@ class DenseWindows:
     windows : (K, n + 1)
         Poses of each window; neighbours share one.
     left_out : Counter of str
-        How many windows of the run there are not, by reason (`odometry.windows.omitted_windows`).
+        How many windows of the run there are not, by reason (`odometry.windows.windows`).
     """
 
     run: Run

@@ -1,5 +1,7 @@
-"""A run as windows are cut from it: inputs that hold between stamps, and measured poses."""
+"""A run as windows are cut from it, and why windows are left out."""
 
+from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -14,18 +16,19 @@ from odometry.run_terrains import row_terrains
 from odometry.windows.config import WindowConfig
 from odometry.windows.gaps import odometry_gaps
 from odometry.windows.measured_poses import measured_poses, measured_positions
-from odometry.windows.omitted_windows import (
-    CHANGE_OF_TERRAIN,
-    CHANGE_OF_WINDOW,
-    ODOMETRY_GAP,
-    POSE_GAP,
-    UNKNOWN_TURNS,
-)
 from odometry.windows.spans import touched
 from odometry.windows.turns import counted_turns
 
 LEAST_POSITIONS = 4  # of a shape: three determine one bend and no change of it
 POSE_PERIODS = 5.0  # poses farther apart than this many usual periods are a gap
+
+CHANGE_OF_TERRAIN = "change of terrain"
+CHANGE_OF_WINDOW = "change of `window`"
+FEW_POSES = "fewer poses than most windows"
+ODOMETRY_GAP = "gap of odometry.csv"
+POSE_GAP = "gap of pose.csv"
+STATIONARY = "treads stationary"
+UNKNOWN_TURNS = "unknown count of whole turns"
 
 
 @dataclass(frozen=True)
@@ -152,3 +155,35 @@ def _record(run: Run, config: WindowConfig, measured: _Poses) -> Record:
         "",
     ).astype(object)
     return Record(run, stamps_s, inputs, travel_m, poses, samples, breaks, terrains[samples])
+
+
+def straddling(breaks: AnyArray, first: IntArray, last: IntArray) -> Counter[str]:
+    """Of windows laid without regard to breaks, how many straddle one, by the first that they do.
+
+    Parameters
+    ----------
+    breaks : (M - 1,) of str
+        What parts a pose from the next; empty where nothing does.
+    first, last : (K,)
+        Poses at the ends of each window.
+    """
+    places = np.flatnonzero(breaks != "")
+    if not len(places):
+        return Counter()
+    next_break = np.searchsorted(places, first)
+    inside = next_break < np.searchsorted(places, last)
+    return Counter(map(str, breaks[places[next_break[inside]]]))
+
+
+def summed(parts: Iterable[Counter[str]]) -> Counter[str]:
+    """The counts of several runs together."""
+    return sum(parts, Counter())
+
+
+def words(left_out: Counter[str]) -> str:
+    """One line, the most frequent reason first; empty where nothing was left out."""
+    total = left_out.total()
+    if not total:
+        return ""
+    of = ", ".join(f"{reason} ({count})" for reason, count in left_out.most_common())
+    return f"{total} {'window' if total == 1 else 'windows'} left out: {of}"

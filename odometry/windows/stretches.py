@@ -14,8 +14,15 @@ from odometry.evaluation.stretches import spatial_horizons
 from odometry.run import Run, run_names
 from odometry.windows.config import WindowConfig
 from odometry.windows.gyroscope_yaw import yaw_rates_of
-from odometry.windows.omitted_windows import FEW_POSES, straddling, summed, words
-from odometry.windows.record import LEAST_POSITIONS, Record, position_record_of
+from odometry.windows.record import (
+    FEW_POSES,
+    LEAST_POSITIONS,
+    Record,
+    position_record_of,
+    straddling,
+    summed,
+    words,
+)
 from odometry.windows.windows import Windows, laid_together
 
 MOST_POSITIONS = 25  # of a stretch; the covariance of more takes time and adds little

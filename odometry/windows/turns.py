@@ -19,17 +19,18 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.geometry.angles import wrap
 from odometry.run import Run
 from odometry.sensors import Gyroscope, gyroscope_of
-from odometry.windows.close_pairs import (
+from odometry.windows.gaps import odometry_gaps
+from odometry.windows.measured_poses import (
     FASTEST,
     LEAST_PAIRS,
     POSE_RAD,
     ClosePairs,
+    TreadTravel,
     close_pairs,
     fastest_rad,
+    tread_travel,
     unseen,
 )
-from odometry.windows.gaps import odometry_gaps
-from odometry.windows.measured_poses import TreadTravel, tread_travel
 from odometry.windows.robust import slope, spread
 
 LEAST_TURN = 0.1  # of that of treads that do not slip: less, or to the other side, is no width

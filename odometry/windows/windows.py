@@ -14,8 +14,7 @@ from odometry.geometry import se2
 from odometry.models.inputs import Inputs, joined
 from odometry.run import Run, run_names
 from odometry.windows.config import WindowConfig
-from odometry.windows.omitted_windows import STATIONARY, straddling, summed, words
-from odometry.windows.record import Record, record_of
+from odometry.windows.record import STATIONARY, Record, record_of, straddling, summed, words
 
 STANDING_M = 1e-3  # less wheel travel than this is no evidence on a model
 
@@ -42,7 +41,7 @@ class Windows:
     run, terrain : (K,) of str
         Name of the run (its path where names are equal), and of the terrain.
     left_out : Counter of str
-        How many windows of the runs there are not, by reason (`odometry.windows.omitted_windows`).
+        How many windows of the runs there are not, by reason (`odometry.windows.record`).
     """
 
     inputs: Inputs

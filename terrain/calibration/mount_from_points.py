@@ -7,7 +7,7 @@ from scipy.stats import t as student
 
 from odometry.arrays import FloatArray
 from odometry.geometry import se3
-from odometry.geometry.optical_frame import mount_of_optical, optical_of_mount
+from odometry.geometry.se3 import mount_of_optical, optical_of_mount
 from terrain.calibration.marked_points import MarkedPoints
 from terrain.calibration.mount_fit import NAMES, MountFit, too_wide
 from terrain.camera_files.calibration import Lens

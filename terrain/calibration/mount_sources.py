@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from odometry.arrays import FloatArray
 from odometry.geometry import se3
-from odometry.geometry.optical_frame import mount_of_optical
+from odometry.geometry.se3 import mount_of_optical
 from odometry.run import Run
 from terrain.calibration.lens_sources import LensSource
 from terrain.calibration.marked_points import MarkedPoints, read_marked_points

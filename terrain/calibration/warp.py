@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray
 from odometry.geometry import se3
-from odometry.geometry.optical_frame import OPTICAL_FROM_CAMERA
+from odometry.geometry.se3 import OPTICAL_FROM_CAMERA
 from terrain.camera_files.calibration import Lens
 
 FEATURES = 150

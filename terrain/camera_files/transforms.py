@@ -9,7 +9,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.geometry import se3
-from odometry.geometry.optical_frame import mount_of_optical
+from odometry.geometry.se3 import mount_of_optical
 from terrain.camera_files.values import matrix, read_values
 from terrain.errors import CameraError
 

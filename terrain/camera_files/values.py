@@ -9,7 +9,7 @@ import numpy as np
 import yaml
 
 from odometry.arrays import FloatArray
-from odometry.io.input_file import read_bytes
+from odometry.io.files import read_bytes
 from odometry.io.structured import parsed_json
 from terrain.errors import CameraError
 

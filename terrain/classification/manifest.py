@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from odometry.io.csv_columns import opened_csv, unquoted_text
-from odometry.io.input_file import leads_out
+from odometry.io.files import leads_out
 from terrain.errors import PatchError
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray
 from odometry.errors import ConfigError
-from odometry.io.input_file import read_bytes
+from odometry.io.files import read_bytes
 from terrain.classification.onnx_graph import (
     before_halvings,
     layers_of,

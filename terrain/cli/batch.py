@@ -60,8 +60,8 @@ def batch(
     """
     from joblib import cpu_count
 
-    from odometry.outputs.inputs import Input
     from odometry.outputs.manifest import check_finished
+    from odometry.outputs.provenance import Input
     from odometry.parameters import ParameterSet, read_parameters
     from terrain.batch.batch import run_batch
     from terrain.cli.outputs import asked, require_apart

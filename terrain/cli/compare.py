@@ -88,7 +88,7 @@ def _print_splits(comparison: "Comparison") -> None:
 
 def _print_place(comparison: "Comparison", place: "Place") -> None:
     """Print what the errors of one place say, and what to know of them."""
-    from odometry.windows.omitted_windows import words
+    from odometry.windows.record import words
 
     click.echo(f"{place.title}:")
     for sentence in comparison.sentences_at(place):

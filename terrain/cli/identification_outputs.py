@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 def require_icr_form(model: str) -> None:
     """Refuse --ros of a model that has no multiplier in ROS, before any run is read."""
-    from odometry.estimation.icr_prior import ICR_FORM_MODELS
+    from odometry.estimation.terrain_beliefs import ICR_FORM_MODELS
 
     if model in MODEL_NAMES and model not in ICR_FORM_MODELS:
         raise click.UsageError(
@@ -75,10 +75,10 @@ def write_ros(ros: Path, runs: "Sequence[Run]", found: "Identification", comment
 
 def print_identification(found: "Identification") -> None:
     """Print the report of each terrain; what to doubt goes to standard error."""
-    from odometry.identification.from_positions import position_notes
     from odometry.identification.plausibility import notes, short_windows
     from odometry.identification.report import report
-    from odometry.windows.omitted_windows import words
+    from odometry.identification.stretch_fit import position_notes
+    from odometry.windows.record import words
 
     for name, of_terrain in found.terrains.items():
         click.echo("\n".join(report(name, of_terrain)))
@@ -105,9 +105,9 @@ def require_determined(found: "Identification") -> None:
     """
     from odometry.checks.finding import Level
     from odometry.errors import IdentificationError
+    from odometry.identification.identify import SIMPLE, simpler_model
     from odometry.identification.report import in_short
-    from odometry.identification.simpler_model import SIMPLE, simpler_model
-    from odometry.windows.omitted_windows import words
+    from odometry.windows.record import words
     from terrain.cli.recordings import checks_made
 
     try:

@@ -158,7 +158,7 @@ def identify(
 
 def _next(identified: "ParameterSet", out: Path, terrain: str | None) -> str:
     """What to do with the parameter set."""
-    from odometry.estimation.icr_prior import ICR_FORM_MODELS
+    from odometry.estimation.terrain_beliefs import ICR_FORM_MODELS
 
     named = f" --terrain {shlex.quote(terrain)}" if terrain else ""
     said = (

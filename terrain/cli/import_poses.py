@@ -127,8 +127,8 @@ def add_to_run(folders: tuple[Path, ...], out: Path | None, poses: PoseFiles) ->
 
 def _say_in_manifest(folder: Path, poses: PoseFiles) -> None:
     """Add the tables to what made the folder, where the program made it."""
-    from odometry.outputs.inputs import Input
     from odometry.outputs.manifest import read_manifest
+    from odometry.outputs.provenance import Input
 
     manifest = read_manifest(folder)
     if manifest is None:

@@ -48,7 +48,7 @@ class RunFolder(click.Path):
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The path, click's error for another file, or a RunFolderError for a bag."""
         from odometry.errors import RunFolderError
-        from odometry.io.bag_names import bag_at, this_is_a_bag
+        from odometry.io.run_folder import bag_at, this_is_a_bag
 
         if bag_at(Path(value)):
             raise RunFolderError(this_is_a_bag(Path(value)))

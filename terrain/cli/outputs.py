@@ -11,9 +11,8 @@ from click.core import ParameterSource
 from terrain.cli.recordings import checks_made
 
 if TYPE_CHECKING:
-    from odometry.outputs.inputs import Input
     from odometry.outputs.output_folder import OutputFolder
-    from odometry.outputs.provenance import Asked, Made
+    from odometry.outputs.provenance import Asked, Input, Made
 
 
 def folder_names(folders: Sequence[Path], taken: Iterable[str] = ()) -> list[str]:
@@ -162,8 +161,8 @@ def _verb(context: click.Context) -> str:
 
 def _inputs(context: click.Context) -> "list[Input]":
     """Files and folders that the command names, of no unfinished output."""
-    from odometry.outputs.inputs import Input
     from odometry.outputs.manifest import check_finished
+    from odometry.outputs.provenance import Input
 
     named = asked(context).inputs
     for _, path in named:

@@ -28,7 +28,7 @@ def robot_named(vehicle: str, friction: float | None, law: str | None) -> "Conta
 
 def traction_named(robot: "ContactVehicle", text: str) -> "Traction":
     """The terrain or the slipping wheels of NAME[@SECONDS]."""
-    from odometry.simulation.skid_traction import (
+    from odometry.simulation.skid_experiments import (
         GROUNDS,
         WHEEL_MODES,
         ground_traction,
@@ -53,8 +53,8 @@ def traction_named(robot: "ContactVehicle", text: str) -> "Traction":
 
 def _vehicle_file(name: str) -> Path:
     """The shipped file of that name, else `name` itself as a path."""
+    from odometry.errors import SimulationError
     from odometry.installed import shipped_data
-    from odometry.simulation.errors import SimulationError
 
     if name in VEHICLES:
         return shipped_data() / "vehicles" / f"{name}.toml"

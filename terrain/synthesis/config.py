@@ -10,7 +10,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.io.structured import read_toml
-from odometry.simulation.driver import WeavingDriver
+from odometry.simulation.commands import WeavingDriver
 from terrain.camera import Camera
 from terrain.errors import SynthesisError
 

@@ -11,10 +11,9 @@ import numpy as np
 import pytest
 from filterpy.kalman import ExtendedKalmanFilter, IMMEstimator
 
-from odometry.estimation.bank import Members
 from odometry.estimation.ekf_bank import EkfBank, EkfModel
 from odometry.estimation.ekf_member import EkfMember
-from odometry.estimation.imm import Imm
+from odometry.estimation.imm import Imm, Members
 from odometry.estimation.markov import ModeChain
 from odometry.estimation.mode_belief import ModeBelief
 

@@ -4,9 +4,9 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
+from odometry.errors import SimulationError
 from odometry.simulation.contact.drive import simulate_contact
 from odometry.simulation.contact.vehicle import contact_vehicle
-from odometry.simulation.errors import SimulationError
 from tests.blind.commands import CALIBRATION_S, MEASURED_S, RATE_HZ, Limits, draw_commands
 from tests.blind.drawn import Drawn
 from tests.blind.motion import Motion

@@ -8,7 +8,7 @@ import numpy as np
 
 from odometry.effects.tables import model_of
 from odometry.errors import OdometryError
-from odometry.estimation.icr_prior import prior_belief
+from odometry.estimation.terrain_beliefs import prior_belief
 from odometry.installed import shipped_data
 from odometry.io.tum import read_tum
 from odometry.modes.mode_set_file import read_mode_set, write_mode_set

@@ -7,8 +7,8 @@ import pytest
 
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
-from odometry.effects.lever_arm import LeverArm
 from odometry.effects.residual import Residual
+from odometry.effects.sensor_mount import LeverArm
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.calibration import Calibration
 from odometry.gap.config import GapConfig

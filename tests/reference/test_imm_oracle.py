@@ -11,10 +11,9 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from odometry.estimation.bank import Members
 from odometry.estimation.ekf_bank import EkfBank, EkfModel
 from odometry.estimation.ekf_member import EkfMember
-from odometry.estimation.imm import Imm
+from odometry.estimation.imm import Imm, Members
 from odometry.estimation.mode_belief import ModeBelief
 from tests.reference.imm_systems import assert_same, linear_model, linear_system, positive
 

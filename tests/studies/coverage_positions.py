@@ -18,8 +18,8 @@ import numpy as np
 from odometry.errors import OdometryError
 from odometry.identification.config import SolverConfig
 from odometry.identification.fitters import fitter
-from odometry.identification.from_positions import stretches_for
 from odometry.identification.plausibility import refusals
+from odometry.identification.stretch_fit import stretches_for
 from odometry.models.catalogue import MODELS
 from odometry.run import Run
 from odometry.windows.config import WindowConfig

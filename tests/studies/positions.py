@@ -22,7 +22,7 @@ from odometry.comparison.split import halves, parts_by_terrain
 from odometry.errors import OdometryError
 from odometry.identification.config import SolverConfig
 from odometry.identification.fitters import fitter
-from odometry.identification.from_positions import windows_or_stretches
+from odometry.identification.stretch_fit import windows_or_stretches
 from odometry.models.base import KinematicModel
 from odometry.models.catalogue import MODELS
 from odometry.run import Run

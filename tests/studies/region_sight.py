@@ -26,7 +26,7 @@ import yaml
 
 from odometry.geometry import se2
 from odometry.run import Robot, Run
-from odometry.simulation.driver import WeavingDriver
+from odometry.simulation.commands import WeavingDriver
 from terrain.camera import Camera
 from terrain.checks.run_regions import motion_at
 from terrain.classification.training import train

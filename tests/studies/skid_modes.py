@@ -40,14 +40,15 @@ from odometry.run import Run
 from odometry.simulation.contact.drive import ContactDrive, simulate_contact
 from odometry.simulation.contact.traction import Traction
 from odometry.simulation.contact.vehicle import ContactVehicle, read_contact_vehicle
-from odometry.simulation.courses import STEP_S
-from odometry.simulation.manoeuvre_courses import SPIRAL_WIDTHS, effective_width_m
+from odometry.simulation.courses import SPIRAL_WIDTHS, STEP_S, effective_width_m
 from odometry.simulation.manoeuvres import outward_spiral
 from odometry.simulation.record import contact_run
-from odometry.simulation.skid_experiments import SENSORS, calibration_courses, calibration_runs
-from odometry.simulation.skid_traction import (
+from odometry.simulation.skid_experiments import (
     GROUNDS,
+    SENSORS,
     WHEEL_MODES,
+    calibration_courses,
+    calibration_runs,
     ground_traction,
     wheel_traction,
 )

@@ -18,8 +18,7 @@ import numpy as np
 mpl.use("agg")
 import matplotlib.pyplot as plt
 
-from odometry.evaluation.fitness import fitness
-from odometry.evaluation.open_loop import measured_poses, open_loop
+from odometry.evaluation.open_loop import fitness, measured_poses, open_loop
 from odometry.identification.config import SolverConfig
 from odometry.identification.fit import Fit, fit
 from odometry.identification.identify import identify

@@ -16,8 +16,8 @@ from odometry.io.run_folder import write_run_folder
 from odometry.parameters import ParameterSet
 from odometry.run import Run
 from odometry.run_terrains import Footing
+from odometry.simulation.commands import WeavingDriver
 from odometry.simulation.drive import Drive, simulate
-from odometry.simulation.driver import WeavingDriver
 from odometry.simulation.ground import GroundMap, footprint_points, to_world
 from odometry.simulation.noise import ornstein_uhlenbeck
 from terrain.camera import Camera

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.errors import SimulationError
 from odometry.simulation.contact.dynamics import MEMORY, POSITION, YAW, YAW_RATE, ContactDynamics
 from odometry.simulation.contact.integrate import LONGEST_STEP_S, rosenbrock_step
 from odometry.simulation.contact.one_vehicle import one_vehicle
@@ -19,7 +20,6 @@ from odometry.simulation.contact.traction import (
 )
 from odometry.simulation.contact.vectors import ComplexArray
 from odometry.simulation.contact.vehicle import ContactVehicle
-from odometry.simulation.errors import SimulationError
 
 Steps = Callable[[ComplexArray, FloatArray, float, int], ComplexArray]
 

@@ -3,8 +3,8 @@
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.errors import SimulationError
 from odometry.simulation.contact.vectors import ComplexArray
-from odometry.simulation.errors import SimulationError
 
 MOST_CHANGES = 50
 

@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
+from odometry.errors import SimulationError
 from odometry.simulation.contact.dynamics import MEMORY, ContactDynamics
 from odometry.simulation.contact.friction import FrictionLaw
 from odometry.simulation.contact.vectors import ComplexArray
 from odometry.simulation.contact.vehicle import ContactVehicle
-from odometry.simulation.errors import SimulationError
 
 
 @dataclass(frozen=True, eq=False)

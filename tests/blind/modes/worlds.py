@@ -16,7 +16,7 @@ from odometry.simulation.contact.friction import Shear
 from odometry.simulation.contact.slope import Plane
 from odometry.simulation.contact.traction import Traction
 from odometry.simulation.contact.vehicle import contact_vehicle, read_contact_vehicle
-from odometry.simulation.skid_traction import GROUNDS, ground_traction, wheel_traction
+from odometry.simulation.skid_experiments import GROUNDS, ground_traction, wheel_traction
 from tests.blind.commands import RATE_HZ, Limits, draw_commands
 from tests.blind.contact_cases import _draw_contacts as draw_contacts
 from tests.blind.effects import draw_effect

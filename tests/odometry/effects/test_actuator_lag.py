@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.effects.actuator_lag import ActuatorLag
+from odometry.effects.late_treads import ActuatorLag
 from odometry.models.inputs import Inputs
 
 EFFECT = ActuatorLag()

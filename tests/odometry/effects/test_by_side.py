@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from odometry.effects.actuator_lag import ActuatorLag
 from odometry.effects.by_side import (
     DeadbandBySide,
     DelayBySide,
@@ -11,9 +10,9 @@ from odometry.effects.by_side import (
     RateBySide,
     SaturationBySide,
 )
-from odometry.effects.command_delay import CommandDelay
 from odometry.effects.corrected import Added
 from odometry.effects.drive_limit import BLURRED_M_S, HARDEST_M_S2, Deadband, RateLimit, Saturation
+from odometry.effects.late_treads import ActuatorLag, CommandDelay
 from odometry.effects.recorded import Recorded
 from odometry.models.inputs import Inputs
 

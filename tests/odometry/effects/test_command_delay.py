@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.effects.command_delay import CommandDelay
+from odometry.effects.late_treads import CommandDelay
 from odometry.models.inputs import Inputs
 
 PARTS = 2000

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
+from odometry.effects.contact_effects import InertiaByContact, SlopeByContact
 from odometry.effects.corrected import Added, corrected_twist
-from odometry.effects.inertia_contact import InertiaByContact
-from odometry.effects.slope_contact import SlopeByContact
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
 

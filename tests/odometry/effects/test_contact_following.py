@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.effects.contact_following import followed
+from odometry.effects.contact_effects import followed
 from odometry.models.catalogue import MODELS
 from odometry.models.contact_balance import balance_at
 from odometry.models.contact_stance import stance_of

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.effects.actuator_lag import ActuatorLag
 from odometry.effects.corrected import (
     Added,
     Corrected,
@@ -14,9 +13,9 @@ from odometry.effects.corrected import (
     with_true_speeds,
 )
 from odometry.effects.curvature import Curvature
-from odometry.effects.heading_offset import HeadingOffset
+from odometry.effects.late_treads import ActuatorLag
 from odometry.effects.lateral_skid import LateralSkid
-from odometry.effects.lever_arm import LeverArm
+from odometry.effects.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.terrain import Terrain
 from odometry.effects.time_offset import TimeOffset
 from odometry.effects.wheel_scale import WheelScale

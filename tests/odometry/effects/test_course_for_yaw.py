@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.effects.course_for_yaw import CourseForYaw
-from odometry.effects.reported import Reported
+from odometry.effects.recorded import Reported
 
 AHEAD_M, SPEED_M_S = 0.3, 0.6
 STAMPS_S = np.arange(0.0, 20.0, 0.05)

@@ -1,6 +1,6 @@
 import numpy as np
 
-from odometry.effects.heading_offset import HeadingOffset
+from odometry.effects.sensor_mount import HeadingOffset
 from tests.odometry.effects.reports import reported
 
 EFFECT = HeadingOffset()

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from odometry.effects.catalogue import added_effects, effect_table
-from odometry.effects.command_delay import CommandDelay
 from odometry.effects.corrected import Added, corrected_twist
 from odometry.effects.history import BOTH, HISTORY, LAGS_S, History
+from odometry.effects.late_treads import CommandDelay
 from odometry.errors import ParameterError
 
 

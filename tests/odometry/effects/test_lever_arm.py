@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.dead_reckoning import dead_reckon
-from odometry.effects.lever_arm import LeverArm
+from odometry.effects.sensor_mount import LeverArm
 from odometry.models.catalogue import MODELS
 from tests.odometry.effects.reports import reported
 

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from odometry.effects.corrected import Added, seen_poses
-from odometry.effects.heading_offset import HeadingOffset
 from odometry.effects.lateral_skid import LateralSkid
-from odometry.effects.lever_arm import LeverArm
 from odometry.effects.measured import on_measurement, robot_poses, robot_run, shared_measurement
+from odometry.effects.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.time_offset import TimeOffset
 from odometry.errors import ParameterError
 from odometry.run import Run

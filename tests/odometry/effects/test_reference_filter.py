@@ -5,13 +5,13 @@ import pytest
 
 from odometry.effects.corrected import Added
 from odometry.effects.map_fault import DriftingMap
+from odometry.effects.recorded import Reported
 from odometry.effects.reference_filter import (
     FilteredPositions,
     SlowYaw,
     SmoothedPoses,
     SwayingMast,
 )
-from odometry.effects.reported import Reported
 from odometry.gap.effect_values import is_meant
 
 STAMPS_S = np.cumsum(np.random.default_rng(3).uniform(0.04, 0.06, 1200))

@@ -4,10 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.estimation.bank import Members
 from odometry.estimation.ekf_bank import EkfModel
 from odometry.estimation.ekf_member import EkfMember
-from odometry.estimation.imm import Imm
+from odometry.estimation.imm import Imm, Members
 from odometry.estimation.mode_belief import ModeBelief
 
 NOTHING = np.zeros(0)

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from odometry.estimation.gaussian import (
+from odometry.estimation.kalman import (
     gate_threshold,
     normalised_squared,
     project_above,

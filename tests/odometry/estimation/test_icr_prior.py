@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import ParameterError
-from odometry.estimation.icr_prior import prior_belief
+from odometry.estimation.terrain_beliefs import prior_belief
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
 from odometry.parameters import ParameterSet, TerrainParameters

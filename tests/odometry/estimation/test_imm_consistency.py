@@ -17,7 +17,7 @@ from odometry.estimation.ekf_bank import EkfBank, EkfModel
 from odometry.estimation.imm import Imm
 from odometry.estimation.markov import ModeChain
 from odometry.estimation.mode_belief import ModeBelief
-from odometry.evaluation.consistency import consistency, normalised_squared_errors
+from odometry.evaluation.open_loop_consistency import consistency, normalised_squared_errors
 
 RUNS, STEPS, STEP_S = 100, 200, 0.05
 DWELL_S = np.array([4.0, 3.0, 2.0])

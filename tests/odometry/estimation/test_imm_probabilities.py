@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.estimation.bank import Members
-from odometry.estimation.imm import Imm
+from odometry.estimation.imm import Imm, Members
 from odometry.estimation.mode_belief import ModeBelief
 from tests.odometry.estimation.imm_banks import (
     EVEN,

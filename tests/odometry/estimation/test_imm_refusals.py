@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import EstimationError
-from odometry.estimation.bank import Members
-from odometry.estimation.imm import Imm
+from odometry.estimation.imm import Imm, Members
 from odometry.estimation.mode_belief import ModeBelief
 from tests.odometry.estimation.imm_banks import EVEN, NOTHING, Saying, two_rates
 

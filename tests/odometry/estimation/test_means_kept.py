@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.estimation.config import PAPER, IcrEkfConfig
-from odometry.estimation.icr_ekf import IcrEkf
-from odometry.estimation.means_kept import MeansKept
+from odometry.estimation.icr_ekf import IcrEkf, MeansKept
 from odometry.frames import Frame
 
 WIDTH, SIGMA_WIDTHS = 0.5, 0.2

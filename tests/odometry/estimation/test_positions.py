@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.estimation import heading_search
+from odometry.estimation import filter_start
 from odometry.estimation.config import IcrEkfConfig
 from tests.odometry.estimation.sensor_drives import (
     distance,
@@ -121,7 +121,7 @@ def test_an_unknown_bias_widens_the_yaw_by_half_of_what_it_turned(rng, monkeypat
 
     A wide yaw is said in words.
     """
-    monkeypatch.setattr(heading_search, "WIDE_RAD", 0.06)
+    monkeypatch.setattr(filter_start, "WIDE_RAD", 0.06)
 
     def slowly(t):
         return np.array([0.1, 0.1]) + 0.0 * t

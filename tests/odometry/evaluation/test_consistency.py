@@ -5,7 +5,7 @@ import pytest
 from scipy.stats import chi2, norm
 
 from odometry.errors import TrajectoryError
-from odometry.evaluation.consistency import (
+from odometry.evaluation.open_loop_consistency import (
     chi_squared_bounds,
     consistency,
     normalised_squared_errors,

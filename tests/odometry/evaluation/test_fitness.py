@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import TrajectoryError
-from odometry.evaluation.fitness import fitness
+from odometry.evaluation.open_loop import fitness
 from odometry.geometry import se3
 from odometry.trajectory import SpatialTrajectory
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from odometry.estimation.icr_ekf import IcrEkf
-from odometry.evaluation.withheld import JUDGED_EVERY_S, SILENT_S, choose, withhold
+from odometry.evaluation.score import JUDGED_EVERY_S, SILENT_S, choose, withhold
 from odometry.pipeline import ConstantTerrain, replay
 from odometry.run import Run
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.export.motion_errors import MotionErrors, Pace
+from odometry.export.drive_numbers import MotionErrors, Pace
 from odometry.windows.window_errors import WindowErrors
 
 PACE = Pace(wheel_speed_m_s=0.8, yaw_rate_rad_s=0.3)

@@ -7,8 +7,7 @@ import pytest
 
 from odometry.errors import ParameterError
 from odometry.export import ros_file
-from odometry.export.drive_numbers import drive_numbers
-from odometry.export.motion_errors import MotionErrors, Pace
+from odometry.export.drive_numbers import MotionErrors, Pace, drive_numbers
 from odometry.export.ros_yaml import ros_yaml
 from odometry.export.source import read_export_source
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters

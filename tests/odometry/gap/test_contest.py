@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import ttest_1samp
 
 from odometry.effects.corrected import Added
-from odometry.effects.heading_offset import HeadingOffset
+from odometry.effects.sensor_mount import HeadingOffset
 from odometry.effects.slope_icr import SlopeByIcr
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import margin_of, penalty, ranked

@@ -5,14 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.effects.actuator_lag import ActuatorLag
+from odometry.effects.contact_effects import InertiaByContact, SlopeByContact
 from odometry.effects.curvature import Curvature
 from odometry.effects.gyroscope_error import GyroscopeError
-from odometry.effects.heading_offset import HeadingOffset
-from odometry.effects.inertia_contact import InertiaByContact
-from odometry.effects.lever_arm import LeverArm
+from odometry.effects.late_treads import ActuatorLag
 from odometry.effects.residual import COMPONENTS, Residual
-from odometry.effects.slope_contact import SlopeByContact
+from odometry.effects.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.time_offset import TimeOffset
 from odometry.effects.tread_slip import SlipBySpeed
 from odometry.effects.wheel_scale import WheelScale

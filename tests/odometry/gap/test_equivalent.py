@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 from odometry.effects.catalogue import EFFECTS
-from odometry.effects.command_delay import CommandDelay
 from odometry.effects.corrected import Added
-from odometry.effects.heading_offset import HeadingOffset
+from odometry.effects.late_treads import CommandDelay
 from odometry.effects.lateral_skid import LateralSkid
-from odometry.effects.lever_arm import LeverArm
+from odometry.effects.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.terrain import NewIcrs
 from odometry.effects.time_offset import TimeOffset
 from odometry.gap import answer, equivalent

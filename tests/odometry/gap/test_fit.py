@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from odometry.effects.corrected import Added
-from odometry.effects.lever_arm import LeverArm
+from odometry.effects.sensor_mount import LeverArm
 from odometry.effects.time_offset import TimeOffset
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig

@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from odometry.effects.contact_effects import SlopeByContact
 from odometry.effects.corrected import Added
 from odometry.effects.in_course import in_course
-from odometry.effects.slope_contact import SlopeByContact
 from odometry.effects.time_course import InBursts
 from odometry.effects.traction_loss import TractionLoss
 from odometry.gap.config import GapConfig

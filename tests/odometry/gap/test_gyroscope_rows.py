@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.effects.command_delay import CommandDelay
+from odometry.effects.late_treads import CommandDelay
 from odometry.effects.time_offset import TimeOffset
 from odometry.gap.calibration import calibrated
 from odometry.gap.config import GapConfig

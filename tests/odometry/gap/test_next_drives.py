@@ -5,14 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.effects.actuator_lag import ActuatorLag
-from odometry.effects.command_delay import CommandDelay
 from odometry.effects.corrected import Added
-from odometry.effects.heading_offset import HeadingOffset
 from odometry.effects.in_course import in_course
+from odometry.effects.late_treads import ActuatorLag, CommandDelay
 from odometry.effects.lateral_skid import LateralSkid
-from odometry.effects.lever_arm import LeverArm
 from odometry.effects.reference_fault import Compass
+from odometry.effects.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.slope_icr import SlopeByIcr
 from odometry.effects.time_course import FromAMoment
 from odometry.effects.time_offset import TimeOffset

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.effects.corrected import Added
-from odometry.effects.residual import Residual
-from odometry.effects.residual_of_each_run import ResidualOfEachRun
+from odometry.effects.residual import Residual, ResidualOfEachRun
 from odometry.gap.config import GapConfig
 from odometry.gap.course import best_course
 from odometry.gap.fit import Fitter

@@ -7,8 +7,8 @@ import pytest
 
 from odometry.effects.corrected import Added
 from odometry.effects.gyroscope_error import GyroscopeError
-from odometry.effects.lever_arm import LeverArm
 from odometry.effects.residual import COMPONENTS, Residual
+from odometry.effects.sensor_mount import LeverArm
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.responses import columns_of, simulated_scenes
 from odometry.gap.simulate import whitened_residuals

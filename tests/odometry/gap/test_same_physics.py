@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.effects.base import EffectParameter, MotionEffect
-from odometry.effects.inertia_contact import InertiaByContact
-from odometry.effects.slope_contact import SlopeByContact
+from odometry.effects.contact_effects import InertiaByContact, SlopeByContact
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
 from odometry.gap.fit import Fitter

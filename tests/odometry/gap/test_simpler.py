@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from odometry.effects.lateral_skid import LateralSkid
-from odometry.effects.lever_arm import LeverArm
+from odometry.effects.sensor_mount import LeverArm
 from odometry.effects.terrain import NewIcrs
 from odometry.effects.time_offset import TimeOffset
 from odometry.effects.wheel_scale import WheelScale

@@ -7,8 +7,7 @@ import pytest
 
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
-from odometry.effects.heading_offset import HeadingOffset
-from odometry.effects.lever_arm import LeverArm
+from odometry.effects.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.time_offset import TimeOffset
 from odometry.evaluation.open_loop import open_loop
 from odometry.gap.simulate import residuals, simulated_poses

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from odometry.effects.base_model import Base
-from odometry.effects.command_delay import CommandDelay
 from odometry.effects.corrected import Added
 from odometry.effects.curvature import Curvature
-from odometry.effects.heading_offset import HeadingOffset
 from odometry.effects.in_course import in_course
+from odometry.effects.late_treads import CommandDelay
+from odometry.effects.sensor_mount import HeadingOffset
 from odometry.effects.slope_icr import SlopeByIcr
 from odometry.effects.time_course import FromAMoment
 from odometry.effects.time_offset import ClockDrift, TimeOffset

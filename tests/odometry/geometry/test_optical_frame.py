@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from odometry.geometry import se3
-from odometry.geometry.optical_frame import mount_of_optical, optical_of_mount
+from odometry.geometry.se3 import mount_of_optical, optical_of_mount
 
 
 def seen_from_robot(right, down, ahead, place=(0.0, 0.0, 0.0)):

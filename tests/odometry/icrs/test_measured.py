@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.icrs.measured import HALF_TURN_RAD, measured_icrs
-from odometry.icrs.medians import icr_medians
+from odometry.icrs.measured import HALF_TURN_RAD, icr_medians, measured_icrs
 from odometry.identification.identify import identify
 from odometry.run import Run
 from odometry.windows.config import WindowConfig

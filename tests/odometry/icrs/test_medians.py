@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from odometry.icrs.measured import MeasuredIcrs
-from odometry.icrs.medians import LEAST_WINDOWS, icr_medians
+from odometry.icrs.measured import LEAST_WINDOWS, MeasuredIcrs, icr_medians
 
 
 def points(icrs, *, sigma_m=0.1, run="one", terrain="yard", omega=1.0):

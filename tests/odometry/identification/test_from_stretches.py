@@ -7,8 +7,7 @@ import pytest
 from odometry.errors import IdentificationError
 from odometry.identification.config import SolverConfig
 from odometry.identification.identification import contradicted, undetermined_by_positions
-from odometry.identification.identify import identify
-from odometry.identification.simpler_model import simpler_model
+from odometry.identification.identify import identify, simpler_model
 from tests.odometry.positions_drives import ICR, ROBOT, drive, emptied
 
 

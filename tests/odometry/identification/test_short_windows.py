@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from odometry.identification.plausibility import WHY, short_windows
-from odometry.windows.omitted_windows import CHANGE_OF_WINDOW, POSE_GAP, STATIONARY
+from odometry.windows.record import CHANGE_OF_WINDOW, POSE_GAP, STATIONARY
 from odometry.windows.windows import windows_of
 
 

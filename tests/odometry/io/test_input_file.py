@@ -7,7 +7,7 @@ import pytest
 
 from odometry.errors import ConfigError, RunFolderError
 from odometry.io import input_file
-from odometry.io.input_file import leads_out, opened_lines, read_bytes
+from odometry.io.files import leads_out, opened_lines, read_bytes
 from odometry.io.structured import DEPTH, JSON_BYTES, TOML_BYTES, read_json, read_toml
 
 

@@ -1,6 +1,6 @@
 import numpy as np
 
-from odometry.models.layout import vectors, zero_matrices
+from odometry.models.base import vectors, zero_matrices
 
 
 def test_entries_are_broadcast_and_their_samples_lie_side_by_side():

@@ -2,8 +2,7 @@ import numpy as np
 
 from odometry.models.icr import Icr
 from odometry.models.inputs import Inputs
-from odometry.models.symmetric import IcrSymmetric
-from odometry.models.traction_mode import TractionMode
+from odometry.models.symmetric import IcrSymmetric, TractionMode
 
 MODEL = TractionMode()
 

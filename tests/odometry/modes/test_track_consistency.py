@@ -12,7 +12,7 @@ from odometry.estimation.ekf_bank import EkfBank
 from odometry.estimation.imm import Imm
 from odometry.estimation.markov import ModeChain
 from odometry.estimation.mode_belief import ModeBelief
-from odometry.evaluation.consistency import consistency, normalised_squared_errors
+from odometry.evaluation.open_loop_consistency import consistency, normalised_squared_errors
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.signals import Signals
 from odometry.modes.tempered_bank import TemperedBank, with_shared_bias

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from odometry.models.inputs import Inputs
-from odometry.models.traction_mode import TractionMode
+from odometry.models.symmetric import TractionMode
 from odometry.modes.traction import (
     LEFT_TURN,
     RIGHT_TURN,

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from odometry.outputs.inputs import Input
+from odometry.outputs.provenance import Input
 
 
 def test_the_sum_of_a_file_is_its_sha256(tmp_path):

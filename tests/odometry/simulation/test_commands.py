@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from odometry.errors import SimulationError
 from odometry.simulation.commands import excitation, figure_eight, segments, spin, tour
-from odometry.simulation.errors import SimulationError
 
 STEP = 0.02
 PROGRAMMES = {

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from odometry.arrays import FloatArray
+from odometry.errors import SimulationError
+from odometry.simulation.commands import WeavingDriver
 from odometry.simulation.drive import simulate
-from odometry.simulation.driver import WeavingDriver
-from odometry.simulation.errors import SimulationError
 from odometry.simulation.ground import GroundMap
 
 ICR = np.array([0.45, -0.35, 0.06])

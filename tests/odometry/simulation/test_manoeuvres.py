@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.simulation.errors import SimulationError
+from odometry.errors import SimulationError
 from odometry.simulation.manoeuvres import clothoid, outward_spiral, sinusoid, skidpad
 
 STEP, WIDTH = 0.02, 1.1

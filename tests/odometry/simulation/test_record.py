@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from odometry.errors import SimulationError
 from odometry.run import Run
 from odometry.simulation.contact.drive import simulate_contact
 from odometry.simulation.contact.slope import Plane, Zones
 from odometry.simulation.contact.vehicle import read_contact_vehicle
-from odometry.simulation.errors import SimulationError
 from odometry.simulation.record import ContactSensors, write_contact_run
 
 J8 = Path(__file__).parents[3] / "data" / "vehicles" / "j8.toml"

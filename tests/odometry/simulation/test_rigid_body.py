@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.simulation.rigid_body import body_twist, pose_rate, runge_kutta_4
+from odometry.simulation.drive import body_twist, pose_rate, runge_kutta_4
 
 speeds = st.floats(-2.0, 2.0)
 half_widths = st.floats(0.1, 1.0)

@@ -17,10 +17,11 @@ from odometry.simulation.skid_experiments import (
     calibration_courses,
     calibration_runs,
     drives_on,
+    ground_traction,
     terrain_experiment,
     wheel_experiment,
+    wheel_traction,
 )
-from odometry.simulation.skid_traction import ground_traction, wheel_traction
 
 HUSKY = Path(__file__).parents[3] / "data" / "vehicles" / "husky_like.toml"
 

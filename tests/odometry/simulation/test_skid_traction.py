@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from odometry.errors import SimulationError
 from odometry.simulation.contact.drive import simulate_contact
 from odometry.simulation.contact.steady_state import steady_state
 from odometry.simulation.contact.vehicle import read_contact_vehicle
-from odometry.simulation.errors import SimulationError
-from odometry.simulation.skid_traction import (
+from odometry.simulation.skid_experiments import (
     GROUNDS,
     WHEEL_MODES,
     ground_traction,

@@ -9,7 +9,7 @@ import pytest
 from odometry.errors import WindowError
 from odometry.windows.config import WindowConfig
 from odometry.windows.dense import dense_windows_of
-from odometry.windows.omitted_windows import (
+from odometry.windows.record import (
     CHANGE_OF_TERRAIN,
     CHANGE_OF_WINDOW,
     POSE_GAP,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.windows.config import WindowConfig
-from odometry.windows.omitted_windows import UNKNOWN_TURNS
+from odometry.windows.record import UNKNOWN_TURNS
 from odometry.windows.turns import continuous_yaw, counted_turns
 from odometry.windows.windows import windows_of
 from tests.odometry.windows.turning_robot import turning_run

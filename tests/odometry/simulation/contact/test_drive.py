@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from odometry.errors import SimulationError
 from odometry.simulation.contact.drive import simulate_contact
 from odometry.simulation.contact.slope import Plane, Zones
 from odometry.simulation.contact.traction import Traction
-from odometry.simulation.errors import SimulationError
 
 G = 9.80665
 

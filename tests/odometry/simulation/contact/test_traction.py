@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from odometry.errors import SimulationError
 from odometry.simulation.contact.drive import simulate_contact
 from odometry.simulation.contact.dynamics import MEMORY, ContactDynamics
 from odometry.simulation.contact.friction import Coulomb, Shear
 from odometry.simulation.contact.slope import Plane
 from odometry.simulation.contact.traction import Traction, switched
-from odometry.simulation.errors import SimulationError
 
 LAW = Shear.for_modulus(0.006, 0.6)
 

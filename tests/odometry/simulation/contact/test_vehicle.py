@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from odometry.errors import SimulationError
 from odometry.simulation.contact.friction import Coulomb, Shear
 from odometry.simulation.contact.vehicle import read_contact_vehicle
-from odometry.simulation.errors import SimulationError
 
 VEHICLES = Path(__file__).parents[4] / "data" / "vehicles"
 NAMES = ("auriga_alpha", "lazaro", "j8", "warthog_like", "husky_like")

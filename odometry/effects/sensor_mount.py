@@ -1,4 +1,4 @@
-"""A reference sensor that is not at the robot's origin."""
+"""Where the reference sensor sits on the robot: away from its origin, or turned against it."""
 
 from collections.abc import Mapping
 from typing import ClassVar
@@ -8,7 +8,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base import EffectParameter, MeasurementEffect
 from odometry.effects.lateral_skid import TOLD_APART
-from odometry.effects.reported import Reported
+from odometry.effects.recorded import Reported
 from odometry.geometry import se2
 
 
@@ -54,3 +54,34 @@ class LeverArm(MeasurementEffect):
 def _moved(poses: FloatArray, arm: FloatArray) -> FloatArray:
     """Poses (M, 3) with their positions moved by an arm (2,) in the robot frame."""
     return np.concatenate([se2.transform(poses, arm), poses[:, 2:]], axis=1)
+
+
+class HeadingOffset(MeasurementEffect):
+    """The measured yaw is off by a constant angle."""
+
+    name = "heading_offset"
+    form = "constant"
+    in_words = "a reference that is turned against the robot"
+    equation = "yaw -> yaw + offset"
+    source = "definition"
+    looks_like = "straights on which the robot seems to drift to one side, forward and backward"
+    remedy = "turn the sensor, or its frame, by the angle; then the yaw is the robot's"
+    of_reference = True
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`."""
+        return (EffectParameter("offset", "rad", -3.2, 3.2, 0.0, 0.01),)
+
+    def seen(
+        self,
+        values: FloatArray,
+        poses: FloatArray,
+        reported: Reported,  # noqa: ARG002
+    ) -> FloatArray:
+        """See `MeasurementEffect.seen`."""
+        return np.asarray(poses + np.array([0.0, 0.0, values[0]]))
+
+    def robot_poses(self, values: FloatArray, reported: Reported) -> FloatArray:
+        """See `MeasurementEffect.robot_poses`."""
+        return np.asarray(reported.poses - np.array([0.0, 0.0, values[0]]))
