@@ -77,3 +77,7 @@ class WindowError(OdometryError):
 
 class SimulationError(OdometryError):
     """A drive cannot be simulated from what was given."""
+
+
+class GapError(OdometryError):
+    """Runs or settings from which no gap can be found."""

@@ -1,13 +1,19 @@
-"""Sentences beside the errors: where a method without a fit is as good, and the covariance."""
+"""Sentences beside the errors, and what the filter noticed of its sensors."""
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import Any
 
+import numpy as np
+
+from odometry.estimates import Replay
 from odometry.estimation.filter_event import FilterEvent
+from odometry.estimation.filter_start import INITIAL_YAW, LATER_YAW
+from odometry.estimation.transition import GYRO_BIAS
 from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.open_loop_consistency import DEGREES, OpenLoopConsistency
 from odometry.evaluation.score import JUDGED_EVERY_S, SILENT_S, Score
-from odometry.run_end import OFF_AT_END
+from odometry.run_end import DRIFT_FOLLOWED, OFF_AT_END
 from terrain.run_result import SecondReplay
 
 NEEDS_NO_FIT = {
@@ -20,6 +26,22 @@ JUDGED_AT_THE_END = {"odometer": "the odometer", "estimate": "the estimate"}
 NO_GYROSCOPE = (
     "The run has no gyroscope: there is no gyroscope row, and the odometer is turned by the treads."
 )
+
+HARMLESS = {  # kinds of events after which the estimate is still valid
+    DRIFT_FOLLOWED,
+    INITIAL_YAW,
+    LATER_YAW,
+    "gyroscope_bias",
+    "gyroscope_bias_changed",
+    "gyroscope_held",
+    "gyroscope_silence",
+    "gyroscope_spike",
+    "late_poses",
+    "odometry_gap",
+    "pose_outage",
+    "refused_poses",
+    "tread_spike",
+}
 
 
 def remarks(
@@ -148,3 +170,44 @@ def advice(uncertainty: OdometerUncertainty, reference_name: str) -> str:
 
 def _distances(checks: Sequence[OpenLoopConsistency]) -> str:
     return " and ".join(f"{check.distance_m:g}" for check in checks) + " m"
+
+
+def filter_table(replay: Replay) -> dict[str, Any]:
+    """What result.json holds of the filter: plain values, units in the names."""
+    squared = replay.innovations_squared
+    squared = squared[~np.isnan(squared)]
+    last = replay.estimates[-1]
+    yaw = next((event.values for event in replay.events if event.kind == INITIAL_YAW), None)
+    return {
+        "poses": len(squared),
+        "poses_refused": len(squared) - int(replay.accepted.sum()),
+        "median_normalised_innovation_squared": float(np.median(squared)) if len(squared) else None,
+        "jumps_s": replay.stamps_s[replay.jumps].tolist(),
+        "gyro_bias_rad_s": float(last.mean[GYRO_BIAS]) if replay.used_gyroscope else None,
+        "sigma_gyro_bias_rad_s": (
+            float(replay.sigmas[-1, GYRO_BIAS]) if replay.used_gyroscope else None
+        ),
+        "initial_yaw": None if yaw is None else {"yaw_rad": yaw[0], "sigma_rad": yaw[1]},
+        "events": [
+            {
+                "kind": event.kind,
+                "begin_s": event.begin_s,
+                "end_s": event.end_s,
+                "text": event.text,
+            }
+            for event in replay.events
+        ],
+    }
+
+
+def misleading(replay: Replay) -> list[FilterEvent]:
+    """Events that show that the run misled the filter: its estimates are then in doubt."""
+    return [event for event in replay.events if event.kind not in HARMLESS]
+
+
+def event_line(event: FilterEvent, began_s: float) -> str:
+    """When, in seconds since a stamp, and what, in one line."""
+    begin_s, end_s = event.begin_s - began_s, event.end_s - began_s
+    if end_s > begin_s:
+        return f"{begin_s:.1f} to {end_s:.1f} s: {event.text}"
+    return f"{begin_s:.1f} s: {event.text}"

@@ -13,8 +13,7 @@ from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.open_loop_consistency import DEGREES, OpenLoopConsistency
 from odometry.evaluation.open_loop_errors import SOURCES
 from odometry.evaluation.score import JUDGED_EVERY_S, SILENT_S, counted_reference_yaw
-from terrain.evaluation_notes import advice, remarks, verdict
-from terrain.filter_summary import filter_table
+from terrain.evaluation_notes import advice, filter_table, remarks, verdict
 from terrain.label_confusion import label_confusion_table
 from terrain.new_terrain import contradiction_lines
 from terrain.run_result import RunResult, TerrainChange

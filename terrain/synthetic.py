@@ -17,8 +17,13 @@ from odometry.simulation.noise import ornstein_uhlenbeck
 from terrain.camera import Camera
 from terrain.errors import SynthesisError
 from terrain.synthesis.config import SynthesisConfig
-from terrain.synthesis.patches import render_patches, write_patches
-from terrain.synthesis.photos import Photo, built_in_photos, photos_from_folder
+from terrain.synthesis.photos import (
+    Photo,
+    built_in_photos,
+    photos_from_folder,
+    render_patches,
+    write_patches,
+)
 from terrain.synthesis.records import identified_parameters, imu_table, motion_tables, run_settings
 from terrain.synthesis.texture import Texture
 from terrain.synthesis.view import Illumination, Scene, View, encode_jpeg, expose

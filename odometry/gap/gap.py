@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from tqdm import tqdm
 
+from odometry.errors import GapError
 from odometry.gap.answer import (
     drives_apart,
     named_effects,
@@ -15,7 +16,6 @@ from odometry.gap.calibration import calibrated
 from odometry.gap.calibration_by_terrain import by_terrain
 from odometry.gap.config import GapConfig
 from odometry.gap.equivalent import equivalents, rivals_of_one_heading
-from odometry.gap.errors import GapError
 from odometry.gap.fit import Fitter
 from odometry.gap.horizon import for_chains, for_positions
 from odometry.gap.locate import locate

@@ -3,8 +3,7 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from odometry.errors import ParameterError
-from odometry.gap.errors import GapError
+from odometry.errors import GapError, ParameterError
 from odometry.models.base import KinematicModel
 from odometry.models.catalogue import MODELS, model_named
 from odometry.parameters import read_parameters

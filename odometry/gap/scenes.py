@@ -7,9 +7,9 @@ import numpy as np
 
 from odometry.arrays import BoolArray
 from odometry.effects.reference_outliers import JumpingPoses
+from odometry.errors import GapError
 from odometry.gap.calibration import Calibration
 from odometry.gap.config import GapConfig
-from odometry.gap.errors import GapError
 from odometry.gap.isolated import Isolated
 from odometry.gap.jumps import Jumps
 from odometry.gap.outliers import Outliers, closes, outliers_of

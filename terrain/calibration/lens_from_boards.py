@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from terrain.calibration.chessboard import BoardViews, Chessboard
-from terrain.camera_files.calibration import Lens
+from terrain.camera_files.lens_models import Lens
 from terrain.errors import CalibrationError
 
 FEWEST_VIEWS, ENOUGH_VIEWS = 5, 12

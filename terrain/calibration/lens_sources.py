@@ -7,7 +7,7 @@ from odometry.arrays import ByteImage
 from odometry.run import Run
 from terrain.calibration.chessboard import BoardViews, Chessboard, find_boards, photo_files
 from terrain.calibration.lens_from_boards import LensFit, lens_from_boards
-from terrain.camera_files.calibration import Calibration, Lens
+from terrain.camera_files.lens_models import Calibration, Lens
 from terrain.camera_files.read import read_calibration
 from terrain.errors import CalibrationError, CameraError, ImageError
 from terrain.images import read_image

@@ -11,8 +11,8 @@ from odometry.arrays import BoolArray, FloatArray
 from terrain.calibration.flow_solver import GroundFlow, Solution, solve_mount
 from terrain.calibration.mount_fit import MountFit, too_wide
 from terrain.calibration.tracks import Tracks
-from terrain.camera_files.calibration import Lens
-from terrain.checks.sampled_images import spread
+from terrain.camera_files.lens_models import Lens
+from terrain.checks.image_files import spread
 from terrain.errors import CalibrationError
 
 AGAIN = 2  # features are tracked again with the mount found

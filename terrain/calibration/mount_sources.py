@@ -11,13 +11,16 @@ from odometry.geometry import se3
 from odometry.geometry.se3 import mount_of_optical
 from odometry.run import Run
 from terrain.calibration.lens_sources import LensSource
-from terrain.calibration.marked_points import MarkedPoints, read_marked_points
 from terrain.calibration.mount_fit import MountFit
 from terrain.calibration.mount_from_motion import mount_from_motion
-from terrain.calibration.mount_from_points import mount_from_points
+from terrain.calibration.mount_from_points import (
+    MarkedPoints,
+    mount_from_points,
+    read_marked_points,
+)
 from terrain.calibration.tracks import Tracks, tracker_of
 from terrain.camera import Camera
-from terrain.camera_files.calibration import Lens
+from terrain.camera_files.lens_models import Lens
 from terrain.camera_files.transforms import ROBOT, mount_in, read_transforms
 from terrain.camera_values import finite_array
 from terrain.errors import CalibrationError, CameraError

@@ -11,8 +11,8 @@ from odometry.geometry import se2
 from odometry.run import Run
 from odometry.trajectory import Trajectory
 from terrain.calibration.warp import Warp, followed
-from terrain.camera_files.calibration import Lens
-from terrain.checks.sampled_images import spread
+from terrain.camera_files.lens_models import Lens
+from terrain.checks.image_files import spread
 from terrain.errors import CalibrationError, ImageError
 from terrain.images import read_image, to_grey
 

@@ -8,7 +8,7 @@ import numpy as np
 from odometry.arrays import AnyArray, ByteImage, FloatArray
 from odometry.geometry import se3
 from odometry.geometry.se3 import OPTICAL_FROM_CAMERA
-from terrain.camera_files.calibration import Lens
+from terrain.camera_files.lens_models import Lens
 
 FEATURES = 150
 QUALITY = 0.01  # of a corner, relative to the best

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from odometry.io.structured import read_toml
-from terrain.camera_files.calibration import Calibration, Lens
-from terrain.camera_files.lens_models import lens_of
+from terrain.camera_files.lens_models import Calibration, Lens, lens_of
 from terrain.camera_files.transforms import rigid
 from terrain.camera_files.values import matrix, numbers, read_values
 from terrain.camera_values import finite_array

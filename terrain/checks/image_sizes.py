@@ -9,7 +9,7 @@ import numpy as np
 
 from odometry.checks.finding import Finding, Level
 from terrain.camera import Camera
-from terrain.checks.sampled_images import SampledImage
+from terrain.checks.image_files import SampledImage
 
 Size = tuple[int, int]
 

@@ -12,12 +12,20 @@ from odometry.errors import RunFolderError
 from odometry.run import Run
 from odometry.run_span import Span, cut_run
 from terrain.camera import Camera
-from terrain.checks.image_files import damaged, frozen, outside_of_odometry
+from terrain.checks.drawn_images import straight_ahead
+from terrain.checks.image_files import (
+    DECODED,
+    SampledImage,
+    damaged,
+    decode,
+    frozen,
+    outside_of_odometry,
+    sample_images,
+    spread,
+)
 from terrain.checks.image_sizes import other_sizes
 from terrain.checks.image_values import Values, grey_of, image_values, values_of
 from terrain.checks.region_ahead import region_ahead, vision_model
-from terrain.checks.run_regions import straight_ahead
-from terrain.checks.sampled_images import DECODED, SampledImage, decode, sample_images, spread
 from terrain.classification.classifier import TerrainClassifier
 from terrain.distortion import undistort
 from terrain.errors import CameraError

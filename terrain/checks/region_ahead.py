@@ -9,6 +9,7 @@ from odometry.arrays import FloatArray
 from odometry.checks.finding import Finding, Level
 from odometry.run import Robot, Run
 from terrain.camera import Camera
+from terrain.checks.drawn_images import RunRegions, run_regions, straight_ahead
 from terrain.checks.other_cameras import (
     Reading,
     angles_in_degrees,
@@ -17,7 +18,6 @@ from terrain.checks.other_cameras import (
     tilted,
     too_far,
 )
-from terrain.checks.run_regions import RunRegions, run_regions, straight_ahead
 from terrain.classification.classifier import TerrainClassifier
 from terrain.errors import CameraError
 from terrain.region import NoRegion, Region, RegionConfig

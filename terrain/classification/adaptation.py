@@ -9,7 +9,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, IntArray
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.evaluation import balanced_accuracy, paired_difference
+from terrain.classification.held_out import balanced_accuracy, paired_difference
 from terrain.classification.patches import (
     LabelledPatches,
     find_photos,

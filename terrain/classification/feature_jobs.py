@@ -1,22 +1,71 @@
-"""Features of many patches, shared by processes of this machine or workers of a Dask cluster."""
+"""Features of many patches, whatever makes them, shared by processes or by a Dask cluster."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
+from typing import Protocol
 
 import numpy as np
 from joblib import Parallel, cpu_count, delayed
 from tqdm import tqdm
 
-from odometry.arrays import ByteImage, FloatArray
+from odometry.arrays import AnyArray, ByteImage, FloatArray
 from terrain.batch.connection import ONE_AT_A_TIME, answers, connected, failure
-from terrain.classification.features import FeatureSettings
-from terrain.classification.features_of import Transformed, features_of
-from terrain.errors import BatchError
+from terrain.classification.features import FeatureSettings, feature_matrix
+from terrain.errors import BatchError, PatchError
+from terrain.images import to_grey
 from terrain.one_thread import one_thread
 
 PATCHES_A_JOB = 20  # of 128 px: a third of a second, and 1 MB in colour
 WORTH_A_PROCESS = 100  # patches; their features take as long as a process takes to start
 AHEAD = 4  # jobs for each thread of the workers that are sent before they can begin
+
+
+class Transformer(Protocol):
+    """Makes features of images, as transformers of scikit-learn do."""
+
+    def transform(self, X: Iterable[AnyArray]) -> AnyArray:
+        """Features (n, F) of images, grey (H, W) or RGB (H, W, 3)."""
+
+
+@dataclass(frozen=True)
+class Transformed:
+    """Features by a transformer.
+
+    Attributes
+    ----------
+    transformer : Transformer
+        Fitted.
+    colour : bool
+        Whether it gets colour; else it gets grey patches.
+    """
+
+    transformer: Transformer
+    colour: bool
+
+
+def features_of(patches: Sequence[ByteImage], made_by: FeatureSettings | Transformed) -> FloatArray:
+    """Features of patches as rows (n, F).
+
+    Raises
+    ------
+    PatchError
+        If a transformer gives no table of finite numbers.
+    """
+    if isinstance(made_by, FeatureSettings):
+        return feature_matrix(patches, made_by)
+    shown = patches if made_by.colour else [to_grey(patch) for patch in patches]
+    table = np.asarray(made_by.transformer.transform(shown))
+    name = type(made_by.transformer).__name__
+    if table.ndim != 2 or len(table) != len(patches) or table.dtype.kind not in "fiub":
+        raise PatchError(
+            f"{name} gives {table.dtype} {table.shape} for {len(patches)} patches; expected a "
+            "table of numbers with a row for each"
+        )
+    features = table.astype(np.float64)
+    if not np.isfinite(features).all():
+        raise PatchError(f"{name} gives numbers that are not finite")
+    return features
 
 
 def shared_feature_matrix(

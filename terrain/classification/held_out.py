@@ -1,19 +1,125 @@
-"""A classifier on labelled photographs that it was not trained on: confusion and accuracy."""
+"""Scores of classifiers, and a classifier on labelled photographs that it was not trained on."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from sklearn.metrics import confusion_matrix, roc_auc_score
 
-from odometry.arrays import IntArray
+from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.run import UNKNOWN
 from terrain.classification.classifier import Classification, TerrainClassifier
-from terrain.classification.evaluation import balanced_accuracy, balanced_accuracy_interval
 from terrain.classification.patches import LabelledPhoto
 from terrain.classification.trained_on import image_sum
 from terrain.errors import ImageError
 from terrain.images import read_image
+
+BOOTSTRAP_SAMPLES = 2000
+
+
+def confusion(codes: IntArray, answers: IntArray, n_classes: int) -> IntArray:
+    """Count answers (columns) by true class (rows), shape (classes, classes)."""
+    return np.asarray(confusion_matrix(codes, answers, labels=range(n_classes)))
+
+
+def balanced_accuracy(codes: IntArray, answers: IntArray) -> float:
+    """Return the mean over the classes in `codes` of the share that is answered rightly."""
+    right = codes == answers
+    return float(np.mean([right[codes == c].mean() for c in np.unique(codes)]))
+
+
+def photo_votes(
+    codes: IntArray, probabilities: FloatArray, photos: AnyArray
+) -> tuple[IntArray, IntArray, AnyArray]:
+    """Average the probabilities of the patches of each photograph.
+
+    Parameters
+    ----------
+    codes : IntArray, shape (n,)
+    probabilities : FloatArray, shape (n, classes)
+    photos : array, shape (n,)
+
+    Returns
+    -------
+    codes, answers : IntArray, shape (photographs,)
+    rows : array, shape (photographs,)
+        The first patch of each photograph, to look up its group.
+    """
+    _, rows, indices = np.unique(photos, return_index=True, return_inverse=True)
+    sums = np.zeros((len(rows), probabilities.shape[1]))
+    np.add.at(sums, indices, probabilities)
+    return codes[rows], sums.argmax(axis=1), rows
+
+
+def balanced_accuracy_interval(
+    codes: IntArray, answers: IntArray, groups: AnyArray, rng: np.random.Generator
+) -> tuple[float, float]:
+    """Return the 95 % bootstrap interval of the balanced accuracy.
+
+    Whole groups (photographs) are drawn with replacement within each class, since patches of one
+    photograph are no independent evidence.
+    """
+    recalls = []
+    for c in np.unique(codes):
+        chosen = codes == c
+        _, members = np.unique(groups[chosen], return_inverse=True)
+        sizes = np.bincount(members)
+        right = np.bincount(members, weights=(answers == codes)[chosen])
+        draws = rng.multinomial(len(sizes), np.full(len(sizes), 1 / len(sizes)), BOOTSTRAP_SAMPLES)
+        recalls.append((draws @ right) / (draws @ sizes))
+    low, high = np.quantile(np.mean(recalls, axis=0), [0.025, 0.975])
+    return float(low), float(high)
+
+
+def paired_difference(
+    codes: IntArray, right: BoolArray, other: BoolArray, groups: AnyArray
+) -> tuple[float, float]:
+    """How much better one way answers the same patches than another, and its standard error.
+
+    Parameters
+    ----------
+    codes : IntArray, shape (n,)
+    right, other : BoolArray, shape (n,)
+        Whether either way answers rightly.
+    groups : array, shape (n,)
+        Photographs: each is one piece of evidence, however many patches it has.
+
+    Returns
+    -------
+    difference, standard_error : float
+        Of balanced accuracy. The error is infinite where a class has one photograph alone.
+    """
+    classes = np.unique(codes)
+    means, variances = [], []
+    for c in classes:
+        chosen = codes == c
+        _, members = np.unique(groups[chosen], return_inverse=True)
+        sizes = np.bincount(members)
+        better = np.bincount(members, weights=right[chosen].astype(int) - other[chosen])
+        mean = better.sum() / sizes.sum()
+        residuals = (better - mean * sizes) / sizes.sum()
+        count = len(sizes)
+        variance = (residuals**2).sum() * count / (count - 1) if count > 1 else np.inf
+        means.append(mean)
+        variances.append(variance)
+    return float(np.mean(means)), float(np.sqrt(np.sum(variances)) / len(classes))
+
+
+def rejection_roc_area(known_distances: FloatArray, unknown_distances: FloatArray) -> float:
+    """Return the probability that unknown terrain is farther away than known terrain."""
+    truth = np.repeat([0, 1], [len(known_distances), len(unknown_distances)])
+    return float(roc_auc_score(truth, np.concatenate([known_distances, unknown_distances])))
+
+
+def confusion_text(table: IntArray, classes: Sequence[str]) -> str:
+    """Lay a confusion table out as text: true classes down, answers across, in per cent."""
+    width = max(9, *(len(name) + 2 for name in classes))
+    lines = [" " * width + "".join(name.rjust(width) for name in classes) + "patches".rjust(width)]
+    for name, row in zip(classes, table, strict=True):
+        shares = "".join(f"{100 * n / max(row.sum(), 1):{width}.1f}" for n in row)
+        lines.append(name.ljust(width) + shares + f"{row.sum():{width}d}")
+    return "\n".join(lines)
 
 
 @dataclass(frozen=True)

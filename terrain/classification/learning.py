@@ -6,12 +6,12 @@ import numpy as np
 from sklearn.base import clone
 
 from odometry.arrays import AnyArray, ByteImage
+from terrain.classification.feature_jobs import Transformed
 from terrain.classification.features import FeatureSettings
-from terrain.classification.features_of import Transformed
 from terrain.classification.presets import PRESETS
 from terrain.classification.rejection import quantiles, rejection_distances
 from terrain.classification.trained import TrainedClassifier
-from terrain.classification.training_set import common_size, has_colour
+from terrain.classification.trained_on import common_size, has_colour
 from terrain.classification.validation import CrossValidation, Samples, best_way
 from terrain.errors import PatchError
 from terrain.images import to_grey

@@ -8,19 +8,19 @@ import numpy as np
 
 from odometry.arrays import AnyArray
 from odometry.errors import ConfigError
+from odometry.io.array_file import FileKind, read_array_file, write_array_file
+from terrain.classification.feature_jobs import Transformed, Transformer, features_of
 from terrain.classification.features import FeatureSettings
-from terrain.classification.features_of import Transformed, Transformer, features_of
 from terrain.classification.likeness import TrainingLook
-from terrain.classification.model_settings import ModelSettings
+from terrain.classification.model_settings import ModelSettings, NetworkSettings
 from terrain.classification.neighbours import Neighbours
 from terrain.classification.network_features import NetworkFeatures
-from terrain.classification.network_settings import NetworkSettings
 from terrain.classification.old_samples import OldSamples
-from terrain.classification.persistence import read_model, write_model
 from terrain.classification.presets import PRESETS
-from terrain.classification.trained_on import TrainedOn
-from terrain.classification.training_set import check_codes
+from terrain.classification.trained_on import TrainedOn, check_codes
 from terrain.errors import ImageError, ModelFileError, NetworkError
+
+CLASSIFIER = FileKind("terrain-odometry classifier", 1, "model file", ModelFileError)
 
 
 class ModelFile:
@@ -150,3 +150,36 @@ class ModelFile:
             self._neighbours.labels_and_image_distances(features, 1, [np.arange(1)])
         if len(self.classes_) != len(self._neighbours.class_weights_):
             raise ValueError(f"{len(self.classes_)} class names for the samples of others")
+
+
+def write_model(
+    path: Path,
+    settings: Mapping[str, Any],
+    arrays: Mapping[str, AnyArray],
+    made: Mapping[str, Any] | None = None,
+) -> None:
+    """Write settings (JSON values) and arrays (numeric); the same content gives the same bytes.
+
+    `made` says what made the model; it is kept in the header, for people alone.
+    """
+    write_array_file(path, CLASSIFIER, settings, arrays, made)
+
+
+def read_model(path: Path) -> tuple[dict[str, Any], dict[str, AnyArray]]:
+    """Read what `write_model` wrote: the settings and the arrays.
+
+    Raises
+    ------
+    ModelFileError
+        If the file is missing, damaged, not a model, or of a newer version.
+    """
+    return read_array_file(path, CLASSIFIER)
+
+
+def is_model(path: Path) -> bool:
+    """Whether a file is a whole model file of a format that this program reads."""
+    try:
+        read_model(path)
+    except ModelFileError:
+        return False
+    return True

@@ -1,7 +1,6 @@
 """Nearest neighbours: who they are, how they vote, and how far away they are.
 
-Two final classes behind one interface, `Neighbours`: `PlainNeighbours` is the paper's (in its own
-file), `DiscriminantNeighbours` the default's. Features are (n, F), class codes 0 ... classes - 1.
+`DiscriminantNeighbours` is the default's, `PlainNeighbours` (in `presets`) the paper's.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,10 +12,20 @@ from scipy.spatial.distance import cdist
 from sklearn.pipeline import make_pipeline
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
-from terrain.classification.fourier import MOST, FourierFeatures
-from terrain.classification.metric import AppearanceMetric, ClippedScaler, DiscriminantMetric
-from terrain.classification.nearest import brute_force, labels_and_sample_distances
-from terrain.classification.novelty import ASKED, LocalSparsity, classes_left_open
+from terrain.classification.metric import (
+    MOST,
+    AppearanceMetric,
+    ClippedScaler,
+    DiscriminantMetric,
+    FourierFeatures,
+)
+from terrain.classification.nearest import (
+    ASKED,
+    LocalSparsity,
+    brute_force,
+    classes_left_open,
+    labels_and_sample_distances,
+)
 
 SMALLEST = np.finfo(float).tiny  # sparsity of a patch that several samples equal
 

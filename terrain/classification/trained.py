@@ -11,13 +11,13 @@ from odometry.arrays import AnyArray, BoolArray, ByteImage, FloatArray
 from odometry.run import UNKNOWN
 from terrain.classification.answer import Classification
 from terrain.classification.calibration import tempered
-from terrain.classification.features_of import features_of
+from terrain.classification.feature_jobs import features_of
 from terrain.classification.likeness import Likeness, look_of, middle_of
 from terrain.classification.model_file import ModelFile
 from terrain.classification.neighbours import Neighbours, vote
 from terrain.classification.patches import cut_patches
 from terrain.classification.rejection import as_of_one_patch
-from terrain.classification.training_set import holds_images
+from terrain.classification.trained_on import holds_images
 from terrain.errors import ImageError
 
 

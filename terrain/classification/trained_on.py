@@ -1,11 +1,15 @@
-"""What a classifier was trained on, so that a test on the same photographs is recognised."""
+"""What a classifier needs to be trained on, and what it was trained on."""
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any, Self, TypeGuard
 
-from odometry.arrays import ByteImage
+import numpy as np
+
+from odometry.arrays import AnyArray, ByteImage
+from odometry.run import UNKNOWN
+from terrain.errors import PatchError
 
 SUM_DIGITS = 16  # of SHA-256: chance matches among a million images are of the order of 1e-8
 
@@ -49,3 +53,55 @@ def image_sum(image: ByteImage) -> str:
     """Sum of the pixels of an image: the same for a copy under another name or lossless format."""
     content = f"{image.shape}".encode() + image.tobytes()
     return hashlib.sha256(content).hexdigest()[:SUM_DIGITS]
+
+
+def holds_images(X: object) -> TypeGuard[Sequence[ByteImage]]:
+    """Whether X is images, each of two axes or three, and not a table of features."""
+    if hasattr(X, "shape"):
+        return len(X.shape) in {3, 4}
+    return isinstance(X, Sequence) and (not X or np.ndim(X[0]) in {2, 3})
+
+
+def common_size(images: Sequence[ByteImage]) -> int:
+    """Return the side of square patches of one size; PatchError for any others."""
+    shapes = {image.shape[:2] for image in images}
+    if len(shapes) > 1 or any(rows != columns for rows, columns in shapes):
+        raise PatchError(f"patches must be square and of one size; seen: {sorted(shapes)}")
+    return int(images[0].shape[0])
+
+
+def check_labels(n_images: int, labels: AnyArray, groups: AnyArray) -> None:
+    """Raise PatchError unless there are two classes of two groups each, with allowed names."""
+    if not n_images == len(labels) == len(groups):
+        raise PatchError(f"{n_images} images, {len(labels)} labels and {len(groups)} groups")
+    if UNKNOWN in labels.tolist():
+        raise PatchError(f"the label '{UNKNOWN}' is reserved")
+    photos: dict[Hashable, set[Hashable]] = {}
+    for label, group in sorted(zip(labels.tolist(), groups.tolist(), strict=True)):
+        photos.setdefault(label, set()).add(group)
+    if len(photos) < 2 or min(map(len, photos.values())) < 2:
+        seen = ", ".join(f"{label} {len(members)}" for label, members in photos.items())
+        raise PatchError(
+            "training needs at least 2 classes with patches of at least 2 photographs each, "
+            f"so that some can be held out; photographs found: {seen or 'none'}"
+        )
+
+
+def check_codes(codes: AnyArray, classes: int) -> None:
+    """Raise ValueError unless codes (n,) are whole numbers that use each of the classes."""
+    if codes.ndim != 1 or codes.dtype.kind != "i" or set(codes.tolist()) != set(range(classes)):
+        raise ValueError(f"codes of {codes.dtype} {codes.shape} do not name {classes} classes")
+
+
+def has_colour(images: Sequence[ByteImage], labels: AnyArray) -> bool:
+    """Whether every image has channels, and most of each class differ between them.
+
+    A few colourless photographs are nothing unusual; a colourless class would make colour a
+    mark of its camera.
+    """
+    if any(image.ndim != 3 for image in images):
+        return False
+    coloured: dict[str, list[bool]] = {}
+    for image, label in zip(images, labels, strict=True):
+        coloured.setdefault(label, []).append(bool((image != image[..., :1]).any()))
+    return all(2 * sum(of_class) > len(of_class) for of_class in coloured.values())

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from terrain.classification.augmentation import Augmentation, load_copies
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.features_of import Transformer
+from terrain.classification.feature_jobs import Transformer
 from terrain.classification.patches import (
     LabelledPatches,
     find_photos,

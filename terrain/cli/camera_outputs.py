@@ -15,7 +15,7 @@ from terrain.calibration.look_ahead import run_region
 from terrain.checks.drawn_images import shown_images
 from terrain.distortion import distort
 from terrain.region import NoRegion, Region
-from terrain.report.camera_figures import (
+from terrain.report.ground_plots import (
     write_board_figure,
     write_flow_figure,
     write_ground_figures,

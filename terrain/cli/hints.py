@@ -9,7 +9,7 @@ import numpy as np
 from odometry.estimation.filter_event import FilterEvent
 from odometry.run import UNKNOWN
 from terrain.classification.own_statistics import OwnStatisticsClassifier
-from terrain.filter_summary import event_line
+from terrain.evaluation_notes import event_line
 from terrain.image_label import ImageLabel
 from terrain.run_result import RunResult
 
@@ -118,7 +118,7 @@ def learned_advice(
     preset : str, optional
         A published system knows no parameter sets.
     """
-    from terrain.filter_summary import misleading
+    from terrain.evaluation_notes import misleading
 
     if preset is not None or not result.has_learned:
         return None

@@ -9,7 +9,7 @@ from odometry.arrays import AnyArray
 from odometry.outputs.output_file import picture_source
 from terrain.classification.calibration import reliability, reliability_by_chance
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.evaluation import (
+from terrain.classification.held_out import (
     balanced_accuracy,
     confusion,
     confusion_text,

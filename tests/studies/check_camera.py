@@ -19,11 +19,11 @@ from odometry.run import Robot, Run
 from odometry.table import Table
 from terrain.camera import Camera
 from terrain.camera_values import homography_of_mount
+from terrain.checks.drawn_images import straight_ahead
+from terrain.checks.image_files import SampledImage
 from terrain.checks.image_sizes import other_sizes
 from terrain.checks.recording import lens
 from terrain.checks.region_ahead import region_ahead
-from terrain.checks.run_regions import straight_ahead
-from terrain.checks.sampled_images import SampledImage
 from terrain.errors import CameraError
 from terrain.region import NoRegion
 

@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 from sklearn.model_selection import StratifiedKFold
 
-from terrain.classification.evaluation import balanced_accuracy, confusion, confusion_text
 from terrain.classification.feature_jobs import shared_feature_matrix
+from terrain.classification.held_out import balanced_accuracy, confusion, confusion_text
 from terrain.classification.neighbours import vote
 from terrain.classification.patches import find_photos, load_patches
 from terrain.classification.presets import PRESETS

@@ -28,7 +28,7 @@ from odometry.geometry import se2
 from odometry.run import Robot, Run
 from odometry.simulation.commands import WeavingDriver
 from terrain.camera import Camera
-from terrain.checks.run_regions import motion_at
+from terrain.checks.drawn_images import motion_at
 from terrain.classification.training import train
 from terrain.images import read_image
 from terrain.main_job import run_odometry

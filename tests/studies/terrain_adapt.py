@@ -20,8 +20,8 @@ from terrain_grounds import COPIES, PER_COPY, Grounds
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from terrain.classification.adaptation import ALONE, MIXED, OLD, clearly_best
-from terrain.classification.evaluation import balanced_accuracy
 from terrain.classification.feature_jobs import shared_feature_matrix
+from terrain.classification.held_out import balanced_accuracy
 from terrain.classification.neighbours import Neighbours, vote
 from terrain.classification.old_samples import SamplesBesideOld
 from terrain.classification.patches import find_photos, load_patches

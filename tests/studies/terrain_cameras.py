@@ -22,13 +22,13 @@ from terrain_grounds import Chosen, Grounds, choose, read_copies, read_grounds
 
 from odometry.arrays import AnyArray, ByteImage
 from terrain.classification.calibration import reliability
-from terrain.classification.evaluation import (
+from terrain.classification.feature_jobs import shared_feature_matrix
+from terrain.classification.held_out import (
     balanced_accuracy,
     balanced_accuracy_interval,
     photo_votes,
     rejection_roc_area,
 )
-from terrain.classification.feature_jobs import shared_feature_matrix
 from terrain.classification.own_statistics import Moments, own_scaler, own_weight
 from terrain.classification.patches import cut_patches, find_photos
 from terrain.classification.presets import PRESETS

@@ -8,8 +8,8 @@ import numpy as np
 from odometry.arrays import AnyArray, FloatArray, IntArray
 from terrain.classification.augmentation import Augmentation, load_copies
 from terrain.classification.calibration import tempered
-from terrain.classification.evaluation import balanced_accuracy
 from terrain.classification.feature_jobs import shared_feature_matrix
+from terrain.classification.held_out import balanced_accuracy
 from terrain.classification.neighbours import Neighbours, vote
 from terrain.classification.patches import find_photos, load_patches
 from terrain.classification.presets import PRESETS, Preset

@@ -18,7 +18,7 @@ import numpy as np
 from terrain_grounds import Grounds, Way, choose, joined, read_grounds
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
-from terrain.classification.evaluation import (
+from terrain.classification.held_out import (
     balanced_accuracy,
     balanced_accuracy_interval,
     confusion,

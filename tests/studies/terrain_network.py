@@ -17,12 +17,12 @@ import cv2
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
-from terrain.classification.evaluation import (
+from terrain.classification.feature_jobs import Transformed, features_of
+from terrain.classification.held_out import (
     balanced_accuracy,
     balanced_accuracy_interval,
     photo_votes,
 )
-from terrain.classification.features_of import Transformed, features_of
 from terrain.classification.neighbours import vote
 from terrain.classification.network_features import NetworkFeatures
 from terrain.classification.patches import LabelledPatches, find_photos, load_patches

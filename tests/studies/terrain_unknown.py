@@ -23,10 +23,9 @@ from scipy.spatial.distance import cdist
 from terrain_grounds import Grounds, read_grounds
 
 from odometry.arrays import FloatArray
-from terrain.classification.evaluation import rejection_roc_area
-from terrain.classification.nearest import NEIGHBOURS, nearest
+from terrain.classification.held_out import rejection_roc_area
+from terrain.classification.nearest import ASKED, NEIGHBOURS, classes_left_open, nearest
 from terrain.classification.neighbours import DiscriminantNeighbours, vote
-from terrain.classification.novelty import ASKED, classes_left_open
 from terrain.classification.validation import grouped_folds
 
 PER_PHOTO, FOLDS, GREY = 12, 2, slice(0, 456)

@@ -20,7 +20,7 @@ from terrain_unknown import FOLDS as FEWER_FOLDS
 from terrain_unknown import GREY, REJECTED, parts, thinned
 
 from odometry.arrays import FloatArray, IntArray
-from terrain.classification.evaluation import rejection_roc_area
+from terrain.classification.held_out import rejection_roc_area
 from terrain.classification.neighbours import DiscriminantNeighbours, linear_neighbours
 from terrain.classification.validation import grouped_folds
 

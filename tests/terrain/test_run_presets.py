@@ -8,7 +8,7 @@ import pytest
 from odometry.errors import ConfigError
 from odometry.parameters import ParameterSet, TerrainParameters
 from terrain.classification.classifier import TerrainClassifier
-from terrain.cli import run_options
+from terrain.cli import run as run_verb
 from terrain.config import Config
 from terrain.main_job import run_odometry
 from terrain.run_presets import RUN_PRESETS, run_preset
@@ -111,4 +111,4 @@ def test_where_no_time_fits_the_camera_that_is_said(tmp_path, world, paper):
 
 
 def test_the_command_offers_every_preset():
-    assert set(run_options.PRESETS) == set(RUN_PRESETS)
+    assert set(run_verb.PRESETS) == set(RUN_PRESETS)

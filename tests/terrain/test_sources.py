@@ -12,7 +12,7 @@ from odometry.errors import ConfigError, RunFolderError
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.pipeline import ConstantTerrain
 from odometry.run import UNKNOWN
-from terrain.cli import run_options
+from terrain.cli import run as run_verb
 from terrain.main_job import run_odometry
 from terrain.report.page import write_report
 from terrain.results import write_results
@@ -179,4 +179,4 @@ def test_the_default_source():
 
 
 def test_the_command_offers_every_source():
-    assert run_options.SOURCES == SOURCES
+    assert run_verb.SOURCES == SOURCES

@@ -18,7 +18,7 @@ from odometry.outputs.output_folder import claim_folder
 from odometry.outputs.provenance import Made
 from odometry.parameters import read_parameters
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.persistence import is_model
+from terrain.classification.model_file import is_model
 from terrain.cli.evaluate import evaluate
 from terrain.errors import ResultError
 from terrain.results import read_errors

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
+from odometry.errors import GapError
 from odometry.gap.calibration import calibrated
 from odometry.gap.config import GapConfig
-from odometry.gap.errors import GapError
 from odometry.models.icr import Icr
 from odometry.models.symmetric import IcrSymmetric
 from odometry.windows.dense import dense_windows_of

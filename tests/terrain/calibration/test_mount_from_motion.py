@@ -9,7 +9,7 @@ from odometry.run import Run
 from terrain.calibration.mount_from_motion import mount_from_motion
 from terrain.calibration.mount_sources import mount_of_motion
 from terrain.calibration.tracks import Tracks
-from terrain.camera_files.calibration import Lens
+from terrain.camera_files.lens_models import Lens
 from terrain.errors import CalibrationError
 from tests.terrain.calibration.rendered import OPTICAL, rotation
 

@@ -5,9 +5,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from terrain.calibration.marked_points import MarkedPoints, read_marked_points
-from terrain.calibration.mount_from_points import mount_from_points
-from terrain.camera_files.calibration import Lens
+from terrain.calibration.mount_from_points import (
+    MarkedPoints,
+    mount_from_points,
+    read_marked_points,
+)
+from terrain.camera_files.lens_models import Lens
 from terrain.errors import CalibrationError
 from tests.terrain.calibration.rendered import ground_behind, marked
 

@@ -7,8 +7,7 @@ import pytest
 
 from odometry.checks.finding import Level
 from odometry.run import Run
-from terrain.checks.image_files import outside_of_odometry
-from terrain.checks.sampled_images import FILES, decode, sample_images, spread
+from terrain.checks.image_files import FILES, decode, outside_of_odometry, sample_images, spread
 
 
 def half(data):

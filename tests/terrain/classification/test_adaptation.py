@@ -7,8 +7,8 @@ from click.testing import CliRunner
 
 from terrain.classification.adaptation import ALONE, MIXED, OLD, adapt, clearly_best
 from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.model_file import read_model, write_model
 from terrain.classification.old_samples import SamplesBesideOld
-from terrain.classification.persistence import read_model, write_model
 from terrain.classification.validation import Samples
 from terrain.cli.train import train
 from terrain.errors import ModelFileError, PatchError

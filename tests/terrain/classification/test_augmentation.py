@@ -9,7 +9,7 @@ from odometry.errors import ConfigError
 from terrain.classification.augmentation import Augmentation, altered, load_copies
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.patches import find_photos
-from terrain.classification.plain_neighbours import PlainNeighbours
+from terrain.classification.presets import PlainNeighbours
 from terrain.classification.training import train
 from terrain.classification.validation import Samples, cross_validate
 

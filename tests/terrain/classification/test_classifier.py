@@ -7,7 +7,7 @@ from sklearn.neighbors import KNeighborsClassifier
 from odometry.errors import ConfigError
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.features import patch_features
-from terrain.classification.persistence import read_model, write_model
+from terrain.classification.model_file import read_model, write_model
 from terrain.classification.presets import PRESETS
 from terrain.errors import ImageError, ModelFileError, PatchError
 from terrain.images import to_grey

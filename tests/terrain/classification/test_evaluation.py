@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.stats import sem
 
-from terrain.classification.evaluation import (
+from terrain.classification.held_out import (
     balanced_accuracy,
     balanced_accuracy_interval,
     confusion,

@@ -9,9 +9,8 @@ from threadpoolctl import threadpool_info
 
 from odometry.installed import shipped_data
 from terrain.classification import feature_jobs
-from terrain.classification.feature_jobs import shared_feature_matrix
+from terrain.classification.feature_jobs import Transformed, features_of, shared_feature_matrix
 from terrain.classification.features import feature_matrix
-from terrain.classification.features_of import Transformed, features_of
 from terrain.classification.network_features import Network, NetworkFeatures
 from terrain.classification.presets import PRESETS
 from terrain.cli.train import train

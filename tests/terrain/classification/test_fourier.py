@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from terrain.classification.fourier import MOST, WIDTH, FourierFeatures
+from terrain.classification.metric import MOST, WIDTH, FourierFeatures
 
 
 def test_products_of_cosines_are_the_kernel(rng):

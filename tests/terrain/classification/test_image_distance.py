@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.evaluation import rejection_roc_area
+from terrain.classification.held_out import rejection_roc_area
+from terrain.classification.model_file import read_model, write_model
 from terrain.classification.neighbours import DiscriminantNeighbours, linear_neighbours
-from terrain.classification.persistence import read_model, write_model
-from terrain.classification.plain_neighbours import PlainNeighbours
+from terrain.classification.presets import PlainNeighbours
 from terrain.classification.rejection import PATCHES, images_of_patches, quantiles
 from terrain.classification.validation import Samples, cross_validate
 from terrain.errors import ModelFileError

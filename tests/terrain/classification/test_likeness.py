@@ -6,7 +6,7 @@ import pytest
 
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.likeness import FEWEST_IMAGES, TrainingLook, look_of
-from terrain.classification.persistence import read_model, write_model
+from terrain.classification.model_file import read_model, write_model
 from terrain.errors import ModelFileError
 from terrain.image_labeller import WORTH_OF_UNLIKE, RunLikeness
 

@@ -4,7 +4,7 @@ from scipy.stats import entropy
 from sklearn.neighbors import KNeighborsClassifier
 
 from terrain.classification.neighbours import DiscriminantNeighbours, vote
-from terrain.classification.plain_neighbours import PlainNeighbours
+from terrain.classification.presets import PlainNeighbours
 
 
 @pytest.fixture

@@ -13,8 +13,8 @@ from sklearn.base import BaseEstimator, TransformerMixin, clone
 
 from odometry.errors import ConfigError
 from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.model_file import read_model, write_model
 from terrain.classification.network_features import Network, NetworkFeatures
-from terrain.classification.persistence import read_model, write_model
 from terrain.cli.train import train
 from terrain.errors import ModelFileError, PatchError
 from terrain.main_job import run_odometry

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.one_patch import OnePatchClassifier
 from terrain.errors import ImageError
+from terrain.run_presets import OnePatchClassifier
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.persistence import read_model, write_model
+from terrain.classification.model_file import read_model, write_model
 from terrain.errors import ModelFileError
 
 

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from terrain.classification.persistence import read_model, write_model
+from terrain.classification.model_file import read_model, write_model
 from terrain.errors import ModelFileError
 
 SETTINGS = {"preset": "default", "classes": ["grass", "sand"], "scale": None, "k": 5}

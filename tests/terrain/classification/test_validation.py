@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from terrain.classification.plain_neighbours import PlainNeighbours
+from terrain.classification.presets import PlainNeighbours
 from terrain.classification.validation import Samples, best_way, cross_validate, grouped_folds
 from terrain.errors import PatchError
 

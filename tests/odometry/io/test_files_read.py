@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from odometry.errors import ConfigError, RunFolderError
-from odometry.io import input_file
+from odometry.io import files
 from odometry.io.files import leads_out, opened_lines, read_bytes
 from odometry.io.structured import DEPTH, JSON_BYTES, TOML_BYTES, read_json, read_toml
 
@@ -29,8 +29,8 @@ def test_a_file_that_may_not_be_read_is_told(tmp_path, monkeypatch):
 
 
 def test_sockets_have_a_word_too():
-    assert input_file._kind(stat.S_IFSOCK) == "a socket or the like"
-    assert input_file._kind(stat.S_IFBLK) == "a device"
+    assert files._kind(stat.S_IFSOCK) == "a socket or the like"
+    assert files._kind(stat.S_IFBLK) == "a device"
 
 
 def test_lines_have_an_end(tmp_path):
