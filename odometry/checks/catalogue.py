@@ -154,7 +154,8 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "treads_frozen": frozenset({"pose_jumps", "slip", "odometry_gap", "turns_at_rest"})
     | {"far_sensor", "track_width", "treads_unequal", "tread_offset"},
     "odometry_gap": frozenset({"pose_jumps", "positions_stretched", "yaw_bent"}),
-    "clock_set": frozenset({"pose_jumps"}),
+    "clock_set": frozenset({"pose_jumps", "slip", "scale"}),
+    "dropped_speeds": frozenset({"treads_not_proportional"}),
     "imu_mount": frozenset({"gyroscope_reversed", "gyroscope_unrelated"}),
     "treads_still": TREADS | POSES,
     "treads_unrelated": TREADS | YAW | {"pose_late", "treads_late", "clocks_apart"},

@@ -59,6 +59,8 @@ MOST_SHARP = 0.8  # share of the windows in sharp turns, from which these are us
 COURSE_WINDOWS_S = (1.0, 2.0, 4.0)
 MOST_TURN_RAD = 2.5  # between two poses, from which whole turns may be lost
 DEGREES_RAD_S = 7.0  # no robot turns faster: the gyroscope is in degrees per second
+UNRELATED = 0.3  # correlation below which turns have nothing in common
+SOME_TURN = 0.2  # rad, or m of difference of the treads, in half a second
 CLEARLY = 0.3  # difference of concentrations or squared correlations that decides
 
 
@@ -77,10 +79,11 @@ class Evidence(CleanedRecording):
             max((readings[n].concentration for n in names if n in readings), default=0.0)
             for names in (("radians", "radians, reversed"), ("degrees", "degrees, reversed"))
         )
-        if max(plain, degrees) >= CONSISTENT and abs(plain - degrees) > CLEARLY:
-            return degrees > plain
         turns = raw.gyroscope_rad if self.yaw_rate is not None else raw.difference_m
         as_radians, as_degrees = (relation(m.turn_rad, turns) for m in (raw, read))
+        if max(plain, degrees) >= CONSISTENT and abs(plain - degrees) > CLEARLY:
+            contrary = as_degrees is not None and as_degrees.correlation < UNRELATED
+            return degrees > plain and not (contrary and np.nanmax(np.abs(turns)) > SOME_TURN)
         if as_radians is None or as_degrees is None:
             return False
         return as_degrees.correlation**2 > as_radians.correlation**2 + CLEARLY

@@ -10,6 +10,7 @@ from odometry.checks.relation import relation
 from odometry.checks.undo import gyroscope_times, treads_times
 from odometry.checks.unit_tables import ORDINARY_FORWARD, Unit, matching, of_wheels, tread_units
 
+WIDEST_M = 50.0  # no robot is wider
 FARTHEST = 1.1  # the same, at most: 0.92 to 1.02 where real robots drive straight
 STEADY = 0.98  # correlation from which a factor on straight lines is constant
 STRAIGHT = 0.05  # way of an arm in a turn, as a share of the way of the robot
@@ -97,13 +98,14 @@ def scale_along(seen: str, forward: float, radius_known: bool) -> Finding:
     """A constant factor along the way that is no known unit."""
     factor = ORDINARY_FORWARD / forward
     size = f"{factor:.2g} times too large" if factor > 1 else f"{1 / factor:.2g} times too small"
+    missed = "" if factor > 1 else ", encoder ticks that are missed"
     units = "" if radius_known else "".join(f"{words}, " for words in of_wheels(forward))
     return Finding(
         "scale",
         Level.WARNING,
         f"{seen}; the factor is constant",
-        f"Tread speeds are {size} ({units}wheel radius or diameter, gear ratio, unit), or "
-        "positions are scaled",
+        f"Tread speeds are {size} ({units}wheel radius or diameter, gear ratio, unit{missed}), "
+        "or positions are scaled",
         "Compare a straight stretch with a tape measure, and mend the wheel radius",
         mend=treads_times(1 / factor, 1 / factor),
     )
@@ -132,7 +134,9 @@ def track_against_body(evidence: Evidence) -> Finding | None:
         "track_width",
         Level.WARNING,
         f"track_width is {robot.track_width:g} m, and the robot is {robot.width:g} m wide",
-        "track_width or width of run.toml is wrong",
+        "track_width of run.toml is in mm, not metres"
+        if robot.track_width > WIDEST_M
+        else "track_width or width of run.toml is wrong",
         "Measure the distance between the middles of the left and the right treads, in metres",
     )
 

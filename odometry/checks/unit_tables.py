@@ -49,10 +49,15 @@ POSITION_UNITS = (
 )
 
 
-def matching(candidates: tuple[Unit, ...], ratio: Callable[[Unit], float]) -> Unit | None:
-    """The unit that brings a ratio nearest to the ordinary one, if near enough."""
+def matching(
+    candidates: tuple[Unit, ...], ratio: Callable[[Unit], float], most: float = 1.2
+) -> Unit | None:
+    """The unit that brings a ratio nearest to the ordinary one, if near enough.
+
+    A rare unit may lie farther off, up to `most`: no robot goes much farther than its treads.
+    """
     near = min(candidates, key=lambda unit: abs(np.log(ratio(unit) / ORDINARY_FORWARD)))
-    low, high = (0.45, 1.2) if not 1 / 50 < near.factor < 50 else (0.7, 1.15)
+    low, high = (0.45, most) if not 1 / 50 < near.factor < 50 else (0.7, 1.15)
     return near if low <= ratio(near) <= high else None
 
 

@@ -21,7 +21,13 @@ from odometry.checks.unit_findings import (
     track_against_body,
     tread_unit,
 )
-from odometry.checks.unit_tables import POSITION_UNITS, counts, matching, tread_units
+from odometry.checks.unit_tables import (
+    ORDINARY_FORWARD,
+    POSITION_UNITS,
+    counts,
+    matching,
+    tread_units,
+)
 
 # Robots that were measured move 0.75 to 1.05 times as far as their treads where the terrain holds,
 # and turn as if 1.0 to 3.1 times as wide; on ice 0.24 to 0.4 times as far, on snow 10 times
@@ -36,7 +42,11 @@ NOISE = 6.0  # noise of both ends adds 2 (sigma / distance)^2 to a distance, and
 HALF = 0.5  # share of the turns explained from which they have a width
 LEAST_WINDOWS = 15  # from which a factor without heading can be called constant
 PLAUSIBLE_M_S = 10.0  # no skid-steer robot is faster
+NEARLY = 0.9  # of the ordinary way: farther off, the unit may be another one
+OR_COUNTS = ", or are encoder ticks: these cannot be distinguished"
 ORDINARY_WIDTH = 1.8
+SLIPPERY_WIDTH = 2.1  # in track widths; where robots slipped along the way they turned as if 2.3
+ONE_AXIS_STRETCHED = 1.6  # degrees of longitude taken for those of latitude
 
 
 def units(evidence: Evidence) -> Iterator[Finding]:
@@ -50,7 +60,8 @@ def units(evidence: Evidence) -> Iterator[Finding]:
     if forward is not None and not low <= forward <= high:
         yield _along(evidence, forward, forward_tight, width)
     elif (straight := beyond_treads(evidence)) is not None:
-        yield _along(evidence, straight, True, width)
+        seen = f"the robot moves {straight:.3g} m for each m of tread travel on straight lines"
+        yield scale_along(seen, straight, evidence.run.robot.wheel_radius is not None)
     if width is not None and width < WIDTH[0] and (mean := holds_the_mean(evidence)):
         yield disagreement(mean)
     elif width is not None and not WIDTH[0] <= width <= WIDTH[1]:
@@ -149,13 +160,14 @@ def _along(evidence: Evidence, forward: float, tight: bool, width: float | None)
         lambda unit: forward * unit.factor,
     )
     radius_known = evidence.run.robot.wheel_radius is not None
-    position = matching(POSITION_UNITS, lambda unit: forward / unit.factor)
+    position = matching(POSITION_UNITS, lambda unit: forward / unit.factor, ONE_AXIS_STRETCHED)
     tread_fits = tread is not None and (width is None or 0.95 <= width / tread.factor <= WIDTH[1])
-    if tread is None and forward * EXTREME < 1 and width is not None and width > EXTREME:
+    if not tread_fits and forward * EXTREME < 1 and width is not None and width > EXTREME:
         tread = counts(forward, radius_known)
         tread_fits = True
     if tread is not None and tread_fits and (tight or extreme):
-        return tread_unit(seen, tread, evidence)
+        counted = extreme and forward * tread.factor < NEARLY * ORDINARY_FORWARD
+        return tread_unit(seen, tread, evidence, OR_COUNTS if counted else "")
     if (
         position is not None
         and (tight or extreme)
@@ -169,6 +181,8 @@ def _along(evidence: Evidence, forward: float, tight: bool, width: float | None)
             "Convert x and y to local metres",
             mend=times("pose", 1 / position.factor, "x", "y"),
         )
+    if not tight and width is not None and WIDTH[0] <= width < SLIPPERY_WIDTH:
+        return disagreement(f"{seen}: slip along the way widens turns, too")
     if not tight or (forward < FORWARD[0] and width is not None and width > ORDINARY_WIDTH):
         return slip_along(seen, tight)
     return scale_along(seen, forward, radius_known)
