@@ -177,7 +177,9 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "gyroscope_clipped": frozenset(
         {"yaw_jumps", "gyroscope_unit", "gyroscope_dead", "gyroscope_bias", "yaw_bent"}
     ),
-    "gyroscope_dead": frozenset({"yaw_bent", "gyroscope_unit", "yaw_jumps", "stuck_encoder"}),
+    "gyroscope_dead": frozenset(
+        {"yaw_bent", "gyroscope_unit", "yaw_jumps", "stuck_encoder", "turns_at_rest"}
+    ),
     "interpolated_poses": frozenset({"clocks_apart"}),
     "turns_at_rest": frozenset({"gyroscope_bias", "tread_offset"}),
     "tread_unit": frozenset({"track_width", "slip_in_turns", "slip"}),
