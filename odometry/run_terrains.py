@@ -112,15 +112,14 @@ class ToldFooting:
 
     @cached_property
     def _told(self) -> tuple[FloatArray, list[Footing]]:
-        """Stamps (N,) of the estimates, and the footing at each."""
+        """Stamps (n,) from which on the footing was another one, and that footing."""
         stamps_s, footings, before = [], [], None
         for estimate in self.estimates:
             now = estimate.terrain, estimate.crossing
             if before is None or now[0] != before[0] or now[1] is not before[1]:
                 shares = None if now[1] is None else now[1].shares
-                footing = Footing.of(now[0]) if shares is None else Footing(now[0], shares)
-            stamps_s.append(estimate.stamp_s)
-            footings.append(footing)
+                footings.append(Footing.of(now[0]) if shares is None else Footing(now[0], shares))
+                stamps_s.append(estimate.stamp_s)
             before = now
         return np.array(stamps_s), footings
 

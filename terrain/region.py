@@ -157,8 +157,8 @@ def predict_region(
         ]
         reasons = [reason for reason in map(scale_mismatch, rectangles) if reason]
         if not reasons:
-            time_s = float(ahead_s[place])
-            return Region(tuple(rectangles), time_s, wheel_speed_m_s * time_s, poses[place])
+            time_s, pose = float(ahead_s[place]), poses[place].copy()  # not a view of all of them
+            return Region(tuple(rectangles), time_s, wheel_speed_m_s * time_s, pose)
     if reasons:
         return NoRegion(reasons[0])
     in_image = visible_shares(camera, poses, parts) >= config.least_share

@@ -161,3 +161,10 @@ def test_corners_go_clockwise_in_the_image_from_far_left():
 def test_settings_without_sense_are_refused(setting):
     with pytest.raises(ConfigError, match=next(iter(setting))):
         RegionConfig(**setting)
+
+
+def test_a_region_keeps_its_own_pose_and_not_all_that_were_tried():
+    """Regions of a long run are kept: a view of 200 poses would keep 5 kB with each."""
+    region = predict_region(ROBOT, AHEAD, np.array([1.0, 0.0, 0.1]), 1.0, RegionConfig())
+    assert region.pose_ahead.base is None
+    assert region.pose_ahead.nbytes == 24

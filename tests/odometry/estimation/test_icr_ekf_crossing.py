@@ -1,5 +1,7 @@
 """A robot astride an edge, and one on terrain that is unknown."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -97,6 +99,27 @@ def test_a_replay_can_be_told_what_another_one_was():
         again = ekf.step(again, at, told.terrain(at, again))
         np.testing.assert_array_equal(again.mean, estimate.mean)
     assert told.initial == "a"
+
+
+def test_what_is_told_is_the_footing_at_or_before_each_stamp():
+    """Held between estimates, the first one before them, the last one after them."""
+    ekf = filter_of(terrains=TERRAINS)
+    estimates = [ekf.start(frame(0, (0, 0, 0), speeds=(0.5, 0.5)), "a")]
+    for share in (0.0, 0.4, 0.4, 1.0):
+        estimates.append(carried(ekf, estimates[-1], [share]))
+    told = ToldFooting(tuple(estimates))
+
+    def at(stamp_s):
+        return told.terrain(frame(stamp_s, None, speeds=(0.5, 0.5)), estimates[0])
+
+    for before, after in pairwise(estimates):
+        middle_s = (before.stamp_s + after.stamp_s) / 2
+        for stamp_s, estimate in ((before.stamp_s, before), (middle_s, before)):
+            crossing = estimate.crossing
+            shares = {estimate.terrain: 1.0} if crossing is None else crossing.shares
+            assert at(stamp_s).shares == shares
+    assert at(-1.0) == at(0.0)
+    assert at(1e3) == at(estimates[-1].stamp_s)
 
 
 def test_unknown_terrain_keeps_the_icrs_and_teaches_none():
