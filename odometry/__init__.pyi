@@ -23,8 +23,8 @@ from .gap.gap import find_gap
 from .geometry.tilt import steepest_slope
 from .icrs.measured import icr_medians, measured_icrs
 from .icrs.points import icr_covariances, icr_indices, icrs_of_twist, turn_is_told
-from .identification.config import SolverConfig
 from .identification.identify import identify
+from .identification.start import SolverConfig
 from .installed import shipped_data
 from .io.run_folder import write_run_folder
 from .io.trajectory_files import read_trajectory, write_trajectory

@@ -12,8 +12,8 @@ from odometry.estimation.estimate import Estimate
 from odometry.frames import Frame
 from odometry.run import UNKNOWN, Robot
 from terrain.camera import Camera
-from terrain.classification.answer import Classifier
 from terrain.classification.likeness import Likeness, TrainingLook, look_of, middle_of
+from terrain.classification.trained import Classifier
 from terrain.errors import CameraError, ImageError
 from terrain.image_label import ImageLabel, answered
 from terrain.images import read_image

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 from odometry.config import LARGEST, SMALLEST, require, require_positive
-from odometry.identification.config import SolverConfig
+from odometry.identification.start import SolverConfig
 from odometry.windows.config import WindowConfig
 
 ROTATION_HORIZON_M = 1.0  # over which Baril 2020 Fig. 7 shows what commands lead to

@@ -7,8 +7,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
 from odometry.models.base import KinematicModel
-from odometry.models.icr import Icr
-from odometry.models.icr_by_terrain import IcrByTerrain
+from odometry.models.icr import Icr, IcrByTerrain
 from odometry.run import Robot
 
 

@@ -36,13 +36,13 @@ from odometry.effects.slope_icr import SlopeByIcr
 from odometry.effects.terrain import NewIcrs, Terrain
 from odometry.effects.time_course import UNBOUNDED_S, Course, FromAMoment, Gradual, InBursts, Spans
 from odometry.effects.time_offset import ClockDrift, TimeOffset
-from odometry.effects.traction_loss import TractionLoss
 from odometry.effects.tread_slip import (
     SlipByAcceleration,
     SlipByDirection,
     SlipBySpeed,
     SlipOfLeftTread,
     SlipOfRightTread,
+    TractionLoss,
 )
 from odometry.effects.wheel_scale import WheelScale
 from odometry.errors import ParameterError

@@ -10,7 +10,7 @@ from odometry.effects.base_model import Base
 from odometry.effects.contact_change import ContactChange
 from odometry.effects.corrected import Added, corrected_twist, moved_twist, with_true_speeds
 from odometry.effects.residual import Residual
-from odometry.models.icr_by_terrain import IcrByTerrain
+from odometry.models.icr import IcrByTerrain
 from odometry.models.inputs import Inputs
 
 

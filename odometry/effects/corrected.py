@@ -10,7 +10,7 @@ from odometry.effects.base import CommandEffect, Effect, MeasurementEffect, Moti
 from odometry.effects.base_model import Base
 from odometry.effects.recorded import Reported
 from odometry.models.base import KinematicModel, Linearised
-from odometry.models.icr_by_terrain import IcrByTerrain
+from odometry.models.icr import IcrByTerrain
 from odometry.models.inputs import Inputs
 from odometry.run import Robot
 

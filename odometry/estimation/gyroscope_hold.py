@@ -8,6 +8,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.measurement import Gaussian, turned_by_treads
+from odometry.estimation.noise_scale import width_sigma_m
 from odometry.estimation.transition import (
     GYRO_BIAS,
     STATES,
@@ -15,7 +16,6 @@ from odometry.estimation.transition import (
     Y_RIGHT,
     YAW,
 )
-from odometry.estimation.tread_noise import width_sigma_m
 
 SAME_RAD_S = 1e-9
 HELD_S = 1.0  # for so long a value must repeat

@@ -20,9 +20,8 @@ from odometry.estimation.measurement import (
     pose_measurement,
     velocity_measurement,
 )
-from odometry.estimation.noise_scale import NoiseScale, adapted
+from odometry.estimation.noise_scale import NoiseScale, adapted, velocity_variances
 from odometry.estimation.transition import YAW
-from odometry.estimation.tread_noise import velocity_variances
 from odometry.frames import Frame
 
 

@@ -12,9 +12,9 @@ from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.estimate import ALPHAS, ICRS, Estimate
 from odometry.estimation.kalman import bounded, predicted, updated_by_number
 from odometry.estimation.measurement import Gaussian, tread_yaw_rate
+from odometry.estimation.noise_scale import huber_factor, tread_variance
 from odometry.estimation.sensor_watch import Events, SensorWatch
 from odometry.estimation.transition import ALPHA_LEFT, GYRO_BIAS, STATES, YAW, X, Y, transition
-from odometry.estimation.tread_noise import huber_factor, tread_variance
 from odometry.frames import Frame
 
 GAP_DENSITY = 25.0, 9.0  # [m^2/s], [rad^2/s]: while speeds are not known, all may happen

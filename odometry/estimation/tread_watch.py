@@ -6,8 +6,8 @@ from typing import NamedTuple
 from odometry.arrays import FloatArray
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.measurement import Gaussian
+from odometry.estimation.noise_scale import width_sigma_m
 from odometry.estimation.transition import ALPHA_LEFT, ALPHA_RIGHT, GYRO_BIAS, Y_LEFT, Y_RIGHT
-from odometry.estimation.tread_noise import width_sigma_m
 from odometry.frames import Frame
 
 JUMP_M_S, JUMP_M_S2 = 3.0, 10.0  # a change of speed by more needs a second row that agrees

@@ -9,8 +9,7 @@ import numpy as np
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.config import require, require_positive
 from odometry.feel.held_out import Scores
-from odometry.feel.model import FeelModel
-from odometry.feel.probabilities import Probabilities, Summed
+from odometry.feel.model import FeelModel, Probabilities, Summed
 from odometry.feel.windows import FeelWindows, joined_windows, windows_since
 from odometry.run import UNKNOWN
 

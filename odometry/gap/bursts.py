@@ -16,8 +16,7 @@ from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.effects.in_course import CommandsInCourse, MotionInCourse, in_course
 from odometry.effects.time_course import InBursts, Spans, run_numbers
-from odometry.effects.traction_loss import TractionLoss
-from odometry.effects.tread_slip import SlipOfLeftTread, SlipOfRightTread
+from odometry.effects.tread_slip import SlipOfLeftTread, SlipOfRightTread, TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.calibration import Calibration
 from odometry.gap.fit import Fitted, Fitter

@@ -9,8 +9,8 @@ from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
 from odometry.errors import GapError
 from odometry.gap.config import GapConfig
-from odometry.gap.derivative import whitened_derivative
 from odometry.gap.pieces import numbered_pieces, pieces
+from odometry.gap.responses import whitened_derivative
 from odometry.gap.simulate import all_residuals, whitened_residuals
 from odometry.gap.solve import (
     Bounds,

@@ -2,34 +2,41 @@
 
 from collections.abc import Callable, Mapping, Sequence
 
+import numpy as np
 from tqdm import tqdm
 
+from odometry.effects.recorded import labels_of
 from odometry.errors import GapError
-from odometry.gap.answer import (
-    drives_apart,
-    named_effects,
-    named_outliers,
-    rivals_of,
-    verdict_of,
-)
-from odometry.gap.calibration import calibrated
-from odometry.gap.calibration_by_terrain import by_terrain
+from odometry.gap.answer import drives_apart, named_effects, named_outliers, rivals_of, verdict_of
+from odometry.gap.calibration import Calibration, calibrated
 from odometry.gap.config import GapConfig
+from odometry.gap.contest import sure_sum
 from odometry.gap.equivalent import equivalents, rivals_of_one_heading
 from odometry.gap.fit import Fitter
-from odometry.gap.horizon import for_chains, for_positions
 from odometry.gap.locate import locate
 from odometry.gap.measured import measured_of
 from odometry.gap.name import explained
 from odometry.gap.own_moments import with_own_moments
+from odometry.gap.pieces import numbered_pieces
 from odometry.gap.result import Closing, GapResult
-from odometry.gap.scenes import alike, dealt, scene_of, scenes_of, without_outliers
-from odometry.gap.statistic import floor_of, floor_there, gap_of
+from odometry.gap.scenes import (
+    alike,
+    dealt,
+    for_chains,
+    for_positions,
+    scene_of,
+    scenes_of,
+    without_outliers,
+)
+from odometry.gap.statistic import floor_of, floor_there, gap_of, squared_errors
 from odometry.identification.identify import robot_of
 from odometry.models.base import KinematicModel
-from odometry.models.icr import Icr
+from odometry.models.icr import Icr, IcrByTerrain
 from odometry.positions.heading import headed
 from odometry.run import Run, check_no_run_twice
+from odometry.windows.dense import DenseWindows
+
+LEAST_S = 20.0  # on a terrain, for its own ICRs
 
 
 def find_gap(
@@ -151,3 +158,37 @@ def _counting(bar: "tqdm[None]") -> Callable[[], None]:
         bar.update()
 
     return count
+
+
+def by_terrain(
+    known: Calibration, scenes: Sequence[DenseWindows], config: GapConfig
+) -> Calibration:
+    """The calibration with ICRs by terrain, where these explain held-back stretches better.
+
+    By the sum of squared position errors, sure at 95 % over pieces of the runs. The same where the
+    base is another model or was given, or fewer than two terrains are labelled for long enough.
+    """
+    labels = labels_covered(scenes)
+    base_is_open = isinstance(known.base.model, Icr) and known.uncertain.latency_is_free
+    if not base_is_open or len(labels) < 2:
+        return known
+    split = calibrated(scenes, IcrByTerrain(labels), known.base.robot, config)
+    kept = [scene for _, scene in known.held_back]
+    gains = [
+        squared_errors(base, (), scene) - squared_errors(own, (), scene)
+        for (base, scene), (own, _) in zip(known.held_back, split.held_back, strict=True)
+    ]
+    _, piece = np.unique(numbered_pieces(kept, config.part_s), return_inverse=True)
+    of_pieces = np.asarray(np.bincount(piece, weights=np.concatenate(gains)), dtype=np.float64)
+    return split if sure_sum(of_pieces, config.trimmed) > 0 else known
+
+
+def labels_covered(scenes: Sequence[DenseWindows]) -> tuple[str, ...]:
+    """Terrains on which the runs are for `LEAST_S` or more, the longest first."""
+    lasting_s: dict[str, float] = {}
+    for scene in scenes:
+        for label in sorted(labels_of(scene.inputs)):
+            here = np.asarray(scene.inputs.terrain) == label
+            lasting_s[label] = lasting_s.get(label, 0.0) + float(scene.steps_s[here].sum())
+    covered = [label for label, of in lasting_s.items() if of >= LEAST_S]
+    return tuple(sorted(covered, key=lambda label: -lasting_s[label]))

@@ -3,10 +3,9 @@
 from collections.abc import Sequence
 
 from odometry.effects.residual import Residual
-from odometry.gap.quantities import metres, percent, with_interval
+from odometry.gap.quantities import Share, held_out_share, metres, percent, with_interval
 from odometry.gap.region_words import noun_of_residual
 from odometry.gap.result import Equivalent, GapResult
-from odometry.gap.share_closed import Share, held_out_share
 from odometry.gap.verdict import Refusal
 
 REFUSED = 2  # reasons that are given

@@ -13,8 +13,7 @@ from odometry.effects.reference_outliers import FrozenPoses, JumpingPoses, Refer
 from odometry.gap.calibration import Calibration
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import sure_sum
-from odometry.gap.frozen import frozen
-from odometry.gap.isolated import Isolated, isolated
+from odometry.gap.frozen import Isolated, frozen, isolated
 from odometry.gap.jumps import Jumps, jumps
 from odometry.gap.pieces import pieces
 from odometry.gap.simulate import residuals

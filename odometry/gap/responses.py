@@ -1,6 +1,6 @@
-"""How the residuals of windows answer to small changes of the motion, to first order."""
+"""How the residuals of windows answer to small changes of motion and values, to first order."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -10,12 +10,14 @@ from odometry.effects.base_model import Base
 from odometry.effects.chain import Chain
 from odometry.effects.corrected import Added, reported_yaw_rate, seen_poses
 from odometry.effects.residual import Residual
-from odometry.gap.simulate import measured_s, path_of, reported_of
+from odometry.gap.simulate import measured_s, path_of, reported_of, residuals_on
 from odometry.geometry import se2
 from odometry.geometry.tilt import level_step_jacobian
 from odometry.windows.dense import DenseWindows, poses_at
 
 STEP = 1e-6  # m, rad, rad/s: over which sensors are linearised
+
+At = Callable[[FloatArray], tuple[Base, tuple[Added, ...]]]
 
 
 class Responses:
@@ -175,3 +177,47 @@ def _summed(steps: FloatArray) -> FloatArray:
     sums[..., 0] = 0.0
     np.cumsum(steps[..., :-1], axis=-1, out=sums[..., 1:])
     return sums
+
+
+def whitened_derivative(
+    at: At,
+    values: FloatArray,
+    steps: FloatArray,
+    scenes: Sequence[DenseWindows],
+    whiteners: Sequence[FloatArray],
+) -> FloatArray:
+    """Derivative (R, V) of `whitened_residuals` by values (V,), over steps (V,); 0: not taken."""
+    free = np.flatnonzero(steps)
+    stepped = [at(values + step) for step in np.diag(steps)[free]]
+    found = []
+    for scene, white in zip(scenes, whiteners, strict=True):
+        here = Responses(*at(values), scene)
+        columns = _of_scene(here, stepped, steps[free], at(values), scene)
+        found.append(whitened(white, columns))
+    jacobian = np.zeros((sum(map(len, found)), len(values)))
+    jacobian[:, free] = np.concatenate(found)
+    return jacobian
+
+
+def _of_scene(
+    here: Responses,
+    stepped: Sequence[tuple[Base, tuple[Added, ...]]],
+    steps: FloatArray,
+    at: tuple[Base, tuple[Added, ...]],
+    scene: DenseWindows,
+) -> FloatArray:
+    """Derivative (F, K, R) of the residuals of one scene."""
+    columns = np.empty((len(steps), len(scene), scene.rows_per_window))
+    moving = np.array([here.chain.is_moved_by(*one) for one in stepped], dtype=np.bool_)
+    if moving.any():
+        changes = [
+            (here.chain.at(*stepped[place]) - here.chain.twist) / steps[place]
+            for place in np.flatnonzero(moving).tolist()
+        ]
+        columns[moving] = here.of(np.stack(changes))
+    if not moving.all():
+        rows = residuals_on(here.chain.twist, here.path, *at, scene)
+        for place in np.flatnonzero(~moving).tolist():
+            other = residuals_on(here.chain.twist, here.path, *stepped[place], scene)
+            columns[place] = (other - rows) / steps[place]
+    return columns

@@ -1,4 +1,4 @@
-"""Windows of the runs: to fit effects to, to evaluate them, and without poses that are far off."""
+"""Windows of the runs: how long, to fit effects to, to evaluate them, without poses left out."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -10,13 +10,17 @@ from odometry.effects.reference_outliers import JumpingPoses
 from odometry.errors import GapError
 from odometry.gap.calibration import Calibration
 from odometry.gap.config import GapConfig
-from odometry.gap.isolated import Isolated
+from odometry.gap.frozen import Isolated
 from odometry.gap.jumps import Jumps
 from odometry.gap.outliers import Outliers, closes, outliers_of
 from odometry.gap.pieces import held_back
+from odometry.positions.heading import Headed
 from odometry.run import Run
 from odometry.windows.averaged import averaged_windows
-from odometry.windows.dense import DenseWindows, dense_windows_of, thinned
+from odometry.windows.dense import DenseWindows, covered_s, dense_windows_of, thinned
+
+SHORTER = (1.0, 0.75, 0.5)  # of the usual duration of windows, where stretches ask for it
+SLOWEST_M_S = 0.05  # of a mean speed: a stationary robot has no horizon
 
 
 def dealt(
@@ -116,3 +120,28 @@ def _off(run: Run, found: Isolated | Jumps) -> BoolArray:
     pose_s = run.pose.stamps_s if run.pose is not None else np.empty(0)
     stamps_s = np.round(pose_s - run.odometry.stamps_s[0], 6)
     return np.asarray(np.isin(stamps_s, np.round(found.stamps_s[found.off], 6)))
+
+
+def for_chains(config: GapConfig, runs: Sequence[Run]) -> GapConfig:
+    """Shorter windows where poses are chained in stretches that longer ones do not fit into.
+
+    The longest of these that leaves out hardly more of the poses than the best one does.
+    """
+    tried_s = [share * config.horizon_s for share in SHORTER]
+    covered = np.sum([covered_s(run, tried_s) for run in runs], axis=0)
+    enough = covered >= config.least_covered * covered.max()
+    return replace(config, horizon_s=tried_s[int(np.argmax(enough))])
+
+
+def for_positions(config: GapConfig, headings: Headed) -> GapConfig:
+    """Longer windows where positions without yaw are too noisy for short ones.
+
+    At most half of a piece, so that pieces still hold windows.
+    """
+    speeds_m_s = [
+        each.run.wheel_travel_m[-1] / np.ptp(each.run.odometry.stamps_s) for each in headings.found
+    ]
+    if not speeds_m_s:
+        return config
+    needed_s = headings.least_horizon_m / max(min(speeds_m_s), SLOWEST_M_S)
+    return replace(config, horizon_s=max(config.horizon_s, min(needed_s, config.part_s / 2)))

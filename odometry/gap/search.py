@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
+from sklearn.linear_model import LassoLarsIC
 
 from odometry.effects.base import Effect
 from odometry.effects.residual import Residual
@@ -14,7 +15,6 @@ from odometry.gap.contest import Judged, judge, ranked
 from odometry.gap.effect_values import is_the_effect
 from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitted, Fitter
-from odometry.gap.sparse import sparse_residual
 from odometry.gap.statistic import Gap, gap_of
 from odometry.gap.verdict import (
     Refusal,
@@ -206,3 +206,28 @@ class Search:
             if not self._brings_back(one.fitted, before):
                 return False
         return bool(closed_m > share * excess_m > 0 or closed > share * excess)
+
+
+def sparse_residual(fitter: Fitter, fit: Fitted) -> Residual:
+    """The last effect of a fit, a `Residual`, with the terms that the lasso keeps by BIC.
+
+    All other parameters are projected out, so that no term takes their place.
+    """
+    residual = fit.effects[-1].effect
+    if not isinstance(residual, Residual):
+        raise TypeError(f"the last effect is {residual.name}, expected a residual")
+    design = fitter.design(fit)
+    rows, jacobian = design.rows, design.jacobian
+    own = jacobian[:, -len(residual.terms) :]
+    others = jacobian[:, : -len(residual.terms)]
+    target = own @ fit.effects[-1].values - rows
+    basis, _ = np.linalg.qr(others)
+    own, target = own - basis @ (basis.T @ own), target - basis @ (basis.T @ target)
+    lengths = np.maximum(np.linalg.norm(own, axis=0), 1e-12)
+    noise = max(1.0, float(rows @ rows) / len(rows))
+    lasso = LassoLarsIC(criterion="bic", fit_intercept=False, noise_variance=noise)
+    kept = lasso.fit(own / lengths, target).coef_ != 0
+    if not kept.any():
+        return residual
+    terms = tuple(term for term, keep in zip(residual.terms, kept, strict=True) if keep)
+    return replace(residual, terms=terms)

@@ -7,11 +7,10 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import IdentificationError, ParameterError
-from odometry.identification.config import SolverConfig
 from odometry.identification.fitted import Fit, undetermined
 from odometry.identification.problem import PROBLEMS, AnyProblem, Problem
 from odometry.identification.solve import Solution, loss, solve
-from odometry.identification.start import Start, by_name, start_of
+from odometry.identification.start import SolverConfig, Start, by_name, start_of
 from odometry.identification.uncertainty import Uncertainty, parameter_uncertainty, residual_scale
 from odometry.models.base import KinematicModel
 from odometry.run import Robot

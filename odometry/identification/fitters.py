@@ -7,9 +7,9 @@ from typing import Protocol
 
 from odometry.effects.tables import model_of
 from odometry.errors import ParameterError
-from odometry.identification.config import SolverConfig
 from odometry.identification.fit import Fit, fit
 from odometry.identification.slopes import fit_in_two_stages
+from odometry.identification.start import SolverConfig
 from odometry.identification.stretch_fit import fit_stretches
 from odometry.models.base import KinematicModel
 from odometry.models.catalogue import model_named

@@ -10,7 +10,6 @@ from odometry.effects.corrected import Added
 from odometry.effects.measured import on_measurement, robot_run
 from odometry.effects.tables import effects_of
 from odometry.errors import IdentificationError, OdometryError, ParameterError
-from odometry.identification.config import SolverConfig
 from odometry.identification.fit import Fit
 from odometry.identification.fitters import FitTo, TerrainModel, Wanted, fitter, model_on_terrain
 from odometry.identification.halves import (
@@ -22,6 +21,7 @@ from odometry.identification.halves import (
     held_out_errors,
 )
 from odometry.identification.identification import Identification, Identified
+from odometry.identification.start import SolverConfig
 from odometry.identification.stretch_fit import windows_or_stretches
 from odometry.models.catalogue import MODELS
 from odometry.run import UNKNOWN, Robot, Run, check_no_run_twice

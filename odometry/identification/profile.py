@@ -7,11 +7,11 @@ from scipy.optimize import brentq, least_squares
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.errors import IdentificationError
-from odometry.identification.config import SolverConfig
 from odometry.identification.fit import Fit
 from odometry.identification.fitted import Interval, deviations_within
 from odometry.identification.identification import Identification
 from odometry.identification.problem import PROBLEMS, AnyProblem, StretchProblem
+from odometry.identification.start import SolverConfig
 from odometry.run import Robot
 from odometry.windows.config import WindowConfig
 from odometry.windows.noise import pose_variances

@@ -7,10 +7,10 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.errors import IdentificationError
-from odometry.identification.config import SolverConfig
 from odometry.identification.fit import Fit, fit
 from odometry.identification.problem import PROBLEMS, Problem
 from odometry.identification.solve import Solution
+from odometry.identification.start import SolverConfig
 from odometry.identification.uncertainty import residual_scale
 from odometry.models.base import KinematicModel, Stages
 from odometry.run import Robot

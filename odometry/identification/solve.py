@@ -7,8 +7,8 @@ from scipy.optimize import least_squares
 from scipy.stats import chi2
 
 from odometry.arrays import FloatArray
-from odometry.identification.config import SolverConfig
 from odometry.identification.problem import AnyProblem
+from odometry.identification.start import SolverConfig
 
 INSIDE = 0.95  # of normal Mahalanobis distances: those that Huber's function squares
 REWEIGHTINGS = 20

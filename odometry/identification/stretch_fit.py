@@ -7,13 +7,12 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import IdentificationError
-from odometry.identification.config import SolverConfig
 from odometry.identification.fit import finished
 from odometry.identification.fitted import LEAST_POSITION_M, Fit
 from odometry.identification.problem import StretchProblem
 from odometry.identification.solve import Solution, solve
 from odometry.identification.spread import correlated_groups, spread_between
-from odometry.identification.start import start_of
+from odometry.identification.start import SolverConfig, start_of
 from odometry.identification.uncertainty import Uncertainty, grown
 from odometry.models.base import KinematicModel
 from odometry.models.catalogue import MODELS

@@ -12,11 +12,10 @@ Examples
 from odometry.errors import ParameterError
 from odometry.models.base import KinematicModel
 from odometry.models.contact import Contact
-from odometry.models.full_linear import FullLinear
 from odometry.models.icr import Icr
 from odometry.models.icr_inertia import IcrInertia, IcrInertiaMeasured
 from odometry.models.icr_slope import IcrSlope
-from odometry.models.radius_of_curvature import RadiusOfCurvature
+from odometry.models.radius_of_curvature import FullLinear, RadiusOfCurvature
 from odometry.models.symmetric import DifferentialDrive, IcrSymmetric, TractionMode
 
 MODELS: dict[str, KinematicModel] = {

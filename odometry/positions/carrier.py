@@ -7,8 +7,8 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.errors import OdometryError
 from odometry.geometry import se2
-from odometry.identification.config import SolverConfig
 from odometry.identification.fitted import Fit
+from odometry.identification.start import SolverConfig
 from odometry.identification.stretch_fit import fit_stretches, stretches_for
 from odometry.models.catalogue import MODELS
 from odometry.run import Run

@@ -12,8 +12,8 @@ from odometry.effects.corrected import Added
 from odometry.effects.in_course import CommandsInCourse, MotionInCourse
 from odometry.effects.reference_outliers import ReferenceOutliers
 from odometry.effects.time_course import InBursts
+from odometry.gap.quantities import Share, held_out_share
 from odometry.gap.result import GapResult
-from odometry.gap.share_closed import Share, held_out_share
 from odometry.gap.simulate import simulated_poses
 from odometry.gap.words import sentences
 from odometry.geometry import se2

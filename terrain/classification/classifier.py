@@ -11,13 +11,13 @@ from sklearn.utils.validation import validate_data
 
 from odometry.arrays import AnyArray, ByteImage
 from odometry.errors import ConfigError
-from terrain.classification.answer import Classification, Classifier
 from terrain.classification.feature_jobs import Transformer, shared_feature_matrix
 from terrain.classification.learning import LearningClassifier
 from terrain.classification.likeness import TrainingLook, spread_rows
 from terrain.classification.old_samples import OldSamples, SamplesBesideOld
 from terrain.classification.patches import LabelledPatches
 from terrain.classification.presets import PRESETS
+from terrain.classification.trained import Classification, Classifier
 from terrain.classification.trained_on import TrainedOn, check_labels, holds_images
 from terrain.classification.validation import Samples
 

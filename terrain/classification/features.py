@@ -26,7 +26,7 @@ from terrain.texture.box_counting import byte_histogram
 from terrain.texture.coarse_otsu import coarse_otsu
 from terrain.texture.otsu import multilevel_otsu
 from terrain.texture.stack import features_between
-from terrain.texture.variants import VARIANTS
+from terrain.texture.ttbd import VARIANTS
 
 ITSELF = "grey"  # the copy that is the grey image
 ALL_GREYS, FEWER_GREYS = 256, 64

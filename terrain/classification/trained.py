@@ -2,14 +2,14 @@
 
 from collections.abc import Iterable, Sequence
 from copy import copy
-from typing import Self
+from dataclasses import dataclass
+from typing import Protocol, Self
 
 import numpy as np
 from sklearn.utils.validation import check_is_fitted, validate_data
 
 from odometry.arrays import AnyArray, BoolArray, ByteImage, FloatArray
 from odometry.run import UNKNOWN
-from terrain.classification.answer import Classification
 from terrain.classification.calibration import tempered
 from terrain.classification.feature_jobs import features_of
 from terrain.classification.likeness import Likeness, look_of, middle_of
@@ -19,6 +19,54 @@ from terrain.classification.patches import cut_patches
 from terrain.classification.rejection import as_of_one_patch
 from terrain.classification.trained_on import holds_images
 from terrain.errors import ImageError
+
+
+@dataclass(frozen=True)
+class Classification:
+    """The answer for one image.
+
+    Attributes
+    ----------
+    label : str
+        The terrain, or ``unknown`` where `distance` is beyond the rejection threshold.
+    confidence : float
+        The probability of the likeliest known terrain, also where the label is ``unknown``.
+    distance : float
+        Distance to the nearest class in the preset's measure; compare with
+        `TerrainClassifier.rejection_distance_`.
+    probabilities : dict of str to float
+        One per known terrain; they add up to 1.
+    patches : int
+        That the image was cut into.
+
+    Examples
+    --------
+    >>> import terrain
+    >>> answer = terrain.Classification("unknown", 0.9, 3.2, {"grass": 0.9, "gravel": 0.1})
+    >>> max(answer.probabilities, key=answer.probabilities.get)  # what it would have been
+    'grass'
+    """
+
+    label: str
+    confidence: float
+    distance: float
+    probabilities: dict[str, float]
+    patches: int = 1
+
+
+class Classifier(Protocol):
+    """Whatever names the terrain of images of at least the patch size."""
+
+    classes_: AnyArray
+    colour_: bool
+    patch_size_px: int
+    metres_per_pixel: float | None
+
+    def classify(self, images: Sequence[ByteImage]) -> list[Classification]:
+        """One answer for each image."""
+
+    def middle_used(self, shape: tuple[int, int]) -> tuple[int, int]:
+        """Rows and columns in the middle of an image of such a shape: all that is looked at."""
 
 
 class TrainedClassifier(ModelFile):

@@ -177,7 +177,7 @@ def compare(
     from odometry.comparison.compare import compare as compare_models
     from odometry.comparison.config import ComparisonConfig
     from odometry.comparison.files import write_comparison
-    from odometry.identification.config import SolverConfig
+    from odometry.identification.start import SolverConfig
     from odometry.report.comparison_page import write_comparison_report
     from terrain.cli.outputs import about, claim_folder
     from terrain.cli.recordings import read_runs

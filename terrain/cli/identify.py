@@ -119,9 +119,9 @@ def identify(
     Example:
       terrain-odometry identify grass_1 grass_2 asphalt_1 --model icr --out set.toml
     """
-    from odometry.identification.config import SolverConfig
     from odometry.identification.identify import identify as identify_runs
     from odometry.identification.profile import with_profiles
+    from odometry.identification.start import SolverConfig
     from odometry.parameters import read_parameters, write_parameters
     from terrain.cli.outputs import comment
     from terrain.cli.recordings import read_runs

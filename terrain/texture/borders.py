@@ -1,11 +1,15 @@
 """Borders of the regions of up to eight binary images at once, of many planes at once."""
 
+import threading
+from math import prod
+
 import numpy as np
 
 from odometry.arrays import ByteImage
-from terrain.texture.kept import kept
 
 INSIDE = 255  # all eight bits
+
+_OF_THREAD = threading.local()
 
 
 def region_borders(bits: ByteImage) -> ByteImage:
@@ -56,3 +60,20 @@ def framed_borders(padded: ByteImage) -> ByteImage:
     inside &= across[2 * width :]
     inside ^= flat[width + 1 : -width - 1]  # inside is a part of bits: what is left is its border
     return borders[:, :-2, :-2]
+
+
+def kept(use: str, shape: tuple[int, ...]) -> ByteImage:
+    """Bytes of any content for one use; the next call with this use gets the same ones.
+
+    Parameters
+    ----------
+    use : str
+        What the thread has one of.
+    shape : tuple of int
+    """
+    size = prod(shape)
+    buffer: ByteImage | None = getattr(_OF_THREAD, use, None)
+    if buffer is None or buffer.size < size:
+        buffer = np.empty(size, np.uint8)
+        setattr(_OF_THREAD, use, buffer)
+    return buffer[:size].reshape(shape)

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray
-from terrain.texture.kept import kept
+from terrain.texture.borders import kept
 
 BITS_OF_BYTE: FloatArray = np.unpackbits(
     np.arange(256, dtype=np.uint8)[:, None], axis=1, bitorder="little"

@@ -5,7 +5,7 @@ import numpy as np
 from odometry.arrays import AnyArray, FloatArray
 from terrain.images import to_grey
 from terrain.texture.stack import stack_features
-from terrain.texture.variants import VariantName, chosen_variant
+from terrain.texture.ttbd import VariantName, chosen_variant
 
 
 def sfta(image: AnyArray, n_thresholds: int = 4, variant: VariantName = "chen2023") -> FloatArray:

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from odometry.arrays import BoolArray, ByteImage, FloatArray
-from terrain.texture.borders import framed, framed_borders
+from terrain.texture.borders import framed, framed_borders, kept
 from terrain.texture.box_counting import (
     BITS_OF_BYTE,
     box_counts,
@@ -15,9 +15,7 @@ from terrain.texture.box_counting import (
     fractal_dimension,
     or_of_2x2,
 )
-from terrain.texture.kept import kept
-from terrain.texture.ttbd import GREYS, packed_tables
-from terrain.texture.variants import Variant
+from terrain.texture.ttbd import GREYS, Variant, packed_tables
 
 BAND = 2**19  # pixels of one image that are looked at together, at the most
 TOGETHER = 2**16  # pixels of several small ones: what is made of them stays in the cache

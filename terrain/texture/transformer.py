@@ -7,7 +7,7 @@ import numpy as np
 from odometry.arrays import AnyArray, FloatArray
 from terrain.texture.image_transformer import ImageTransformer, listed_images, naming_image
 from terrain.texture.sfta import feature_names, sfta
-from terrain.texture.variants import VariantName
+from terrain.texture.ttbd import VariantName
 
 
 class SFTA(ImageTransformer):

@@ -26,9 +26,9 @@ from odometry.estimation.ekf_bank import EkfBank
 from odometry.estimation.imm import Imm
 from odometry.estimation.markov import ModeChain
 from odometry.estimation.mode_belief import ModeBelief
-from odometry.identification.config import SolverConfig
 from odometry.identification.problem import Problem
 from odometry.identification.solve import solve
+from odometry.identification.start import SolverConfig
 from odometry.installed import shipped_data
 from odometry.models.catalogue import MODELS
 from odometry.report.figure import save_figure

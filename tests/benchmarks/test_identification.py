@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 from odometry.dead_reckoning import dead_reckon
-from odometry.identification.config import SolverConfig
 from odometry.identification.problem import Problem
 from odometry.identification.solve import solve
+from odometry.identification.start import SolverConfig
 from odometry.io.run_folder import write_run_folder
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs

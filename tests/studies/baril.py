@@ -21,8 +21,8 @@ from odometry.comparison.compare import compare
 from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.result import Comparison
 from odometry.comparison.summary import Place
-from odometry.identification.config import SolverConfig
 from odometry.identification.fit import fit
+from odometry.identification.start import SolverConfig
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
 from odometry.parameters import read_parameters

@@ -18,9 +18,9 @@ from pathlib import Path
 import numpy as np
 
 from odometry.errors import OdometryError
-from odometry.identification.config import SolverConfig
 from odometry.identification.fitters import fitter
 from odometry.identification.plausibility import refusals
+from odometry.identification.start import SolverConfig
 from odometry.models.catalogue import MODELS
 from odometry.run import Robot, Run
 from odometry.table import Table

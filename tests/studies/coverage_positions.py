@@ -16,9 +16,9 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.errors import OdometryError
-from odometry.identification.config import SolverConfig
 from odometry.identification.fitters import fitter
 from odometry.identification.plausibility import refusals
+from odometry.identification.start import SolverConfig
 from odometry.identification.stretch_fit import stretches_for
 from odometry.models.catalogue import MODELS
 from odometry.run import Run

@@ -13,8 +13,8 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.errors import OdometryError
-from odometry.identification.config import SolverConfig
 from odometry.identification.identify import identify
+from odometry.identification.start import SolverConfig
 from odometry.run import Run
 from tests.studies.estimation_outputs import with_columns
 from tests.studies.estimation_recordings import SEVEN, motion, recordings

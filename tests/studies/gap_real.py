@@ -40,9 +40,8 @@ from odometry.gap.config import GapConfig
 from odometry.gap.files import write_gap
 from odometry.gap.gap import find_gap
 from odometry.gap.measured import measured_of
-from odometry.gap.quantities import percent, with_interval
+from odometry.gap.quantities import held_out_share, percent, with_interval
 from odometry.gap.result import GapResult, NamedEffect
-from odometry.gap.share_closed import held_out_share
 from odometry.gap.words import parameter_words
 from odometry.io.files import atomic_write
 from odometry.report.gap_page import write_gap_report

@@ -22,7 +22,7 @@ import scipy.optimize
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from odometry.gap import least_cost as gap_fit
+from odometry.gap import hypothesis as gap_fit
 from odometry.gap.gap import find_gap
 from odometry.gap.solve import Found, differences, least_squares
 from odometry.run import Run

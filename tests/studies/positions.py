@@ -20,8 +20,8 @@ import numpy as np
 
 from odometry.comparison.split import halves, parts_by_terrain
 from odometry.errors import OdometryError
-from odometry.identification.config import SolverConfig
 from odometry.identification.fitters import fitter
+from odometry.identification.start import SolverConfig
 from odometry.identification.stretch_fit import windows_or_stretches
 from odometry.models.base import KinematicModel
 from odometry.models.catalogue import MODELS

@@ -38,7 +38,7 @@ from odometry.comparison.split import Split, folds
 from odometry.comparison.statistics import Difference, between
 from odometry.comparison.summary import QUANTITIES, Place, Summary
 from odometry.errors import OdometryError
-from odometry.identification.config import SolverConfig
+from odometry.identification.start import SolverConfig
 from odometry.io.files import atomic_write
 from odometry.models.catalogue import MODELS
 from odometry.report.comparison_page import write_comparison_report

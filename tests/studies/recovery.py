@@ -18,9 +18,9 @@ import numpy as np
 from scipy.stats import binomtest
 
 from odometry.dead_reckoning import dead_reckon_in_space
-from odometry.identification.config import SolverConfig
 from odometry.identification.fitters import fitter
 from odometry.identification.identify import identify
+from odometry.identification.start import SolverConfig
 from odometry.io.run_folder import write_run_folder
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs

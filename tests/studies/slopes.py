@@ -19,9 +19,9 @@ mpl.use("agg")
 import matplotlib.pyplot as plt
 
 from odometry.evaluation.open_loop import fitness, measured_poses, open_loop
-from odometry.identification.config import SolverConfig
 from odometry.identification.fit import Fit, fit
 from odometry.identification.identify import identify
+from odometry.identification.start import SolverConfig
 from odometry.models.catalogue import MODELS
 from odometry.models.icr_slope import IcrSlope
 from odometry.models.inputs import Inputs

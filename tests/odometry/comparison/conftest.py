@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from odometry.comparison.config import ComparisonConfig
-from odometry.identification.config import SolverConfig
+from odometry.identification.start import SolverConfig
 from odometry.io.run_folder import write_run_folder
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
 from odometry.run import Run

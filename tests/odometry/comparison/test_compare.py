@@ -9,8 +9,8 @@ from odometry.comparison.candidates import IdentifiedModel
 from odometry.comparison.compare import compare
 from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.statistics import between
-from odometry.identification.config import SolverConfig
 from odometry.identification.identify import identify
+from odometry.identification.start import SolverConfig
 from odometry.models.catalogue import MODELS
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
 from odometry.run import Run

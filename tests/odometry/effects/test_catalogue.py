@@ -20,7 +20,7 @@ from odometry.effects.residual import Residual
 from odometry.effects.terrain import Terrain
 from odometry.effects.time_course import FromAMoment, Gradual
 from odometry.effects.time_offset import TimeOffset
-from odometry.effects.traction_loss import TractionLoss
+from odometry.effects.tread_slip import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.errors import ParameterError
 from odometry.models.catalogue import MODELS

@@ -10,8 +10,7 @@ from odometry.effects.recorded import Recorded, labels_of
 from odometry.effects.terrain import NewIcrs, Terrain
 from odometry.errors import ParameterError
 from odometry.models.catalogue import MODELS
-from odometry.models.icr import icr_twist
-from odometry.models.icr_by_terrain import IcrByTerrain
+from odometry.models.icr import IcrByTerrain, icr_twist
 from odometry.models.inputs import Inputs
 
 EFFECT = Added(

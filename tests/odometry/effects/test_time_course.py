@@ -8,7 +8,7 @@ import pytest
 from odometry.effects.corrected import Added, corrected_twist, with_true_speeds
 from odometry.effects.in_course import in_course
 from odometry.effects.time_course import SPACING_S, FromAMoment, Gradual, InBursts
-from odometry.effects.traction_loss import TractionLoss
+from odometry.effects.tread_slip import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.models.inputs import Inputs
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from odometry.effects.recorded import Recorded
-from odometry.effects.traction_loss import TractionLoss
+from odometry.effects.tread_slip import TractionLoss
 
 
 def test_it_is_a_share_of_the_twist(bench, rng):

@@ -13,7 +13,7 @@ from scipy.stats import chi2
 
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.icr_ekf import IcrEkf
-from odometry.estimation.tread_noise import tread_variance
+from odometry.estimation.noise_scale import tread_variance
 from odometry.frames import Frame
 from odometry.parameters import ParameterSet, TerrainParameters
 

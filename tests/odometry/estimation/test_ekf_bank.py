@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from odometry.errors import EstimationError
 from odometry.estimation.ekf_bank import EkfBank
-from odometry.estimation.ekf_member import EkfMember
 from odometry.estimation.imm import Members
+from tests.odometry.estimation.ekf_member import EkfMember
 from tests.odometry.estimation.imm_banks import pose_model
 
 

@@ -9,7 +9,7 @@ from scipy.stats import multivariate_normal
 
 from odometry.errors import EstimationError
 from odometry.estimation.ekf_bank import EkfModel
-from odometry.estimation.ekf_member import EkfMember
+from tests.odometry.estimation.ekf_member import EkfMember
 from tests.odometry.estimation.imm_banks import pose_model
 
 

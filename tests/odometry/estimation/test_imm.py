@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from odometry.estimation.ekf_bank import EkfBank
-from odometry.estimation.ekf_member import EkfMember
 from odometry.estimation.imm import Imm, Members
 from odometry.estimation.markov import ModeChain
 from odometry.estimation.mode_belief import ModeBelief
+from tests.odometry.estimation.ekf_member import EkfMember
 from tests.odometry.estimation.imm_banks import (
     EVEN,
     LEANING,

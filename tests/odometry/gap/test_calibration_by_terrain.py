@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from odometry.gap.calibration import calibrated
-from odometry.gap.calibration_by_terrain import by_terrain, labels_covered
 from odometry.gap.config import GapConfig
-from odometry.models.icr import Icr
-from odometry.models.icr_by_terrain import IcrByTerrain
+from odometry.gap.gap import by_terrain, labels_covered
+from odometry.models.icr import Icr, IcrByTerrain
 
 CONFIG = GapConfig()
 WIDER = 1.4  # on ice

@@ -12,11 +12,11 @@ from odometry.effects.in_course import in_course
 from odometry.effects.terrain import Terrain
 from odometry.effects.time_course import FromAMoment
 from odometry.effects.time_offset import TimeOffset
-from odometry.effects.traction_loss import TractionLoss
+from odometry.effects.tread_slip import TractionLoss
 from odometry.gap.files import write_gap
 from odometry.gap.result import NamedEffect, Rival
 from odometry.gap.statistic import Gap
-from odometry.models.icr_by_terrain import IcrByTerrain
+from odometry.models.icr import IcrByTerrain
 from odometry.parameters import read_parameters
 
 NUMBER = (int, float)

@@ -9,7 +9,7 @@ from odometry.effects.contact_effects import SlopeByContact
 from odometry.effects.corrected import Added
 from odometry.effects.in_course import in_course
 from odometry.effects.time_course import InBursts
-from odometry.effects.traction_loss import TractionLoss
+from odometry.effects.tread_slip import TractionLoss
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import Judged
 from odometry.gap.evenness import Unevenness

@@ -9,14 +9,14 @@ from odometry.effects.curvature import Curvature
 from odometry.effects.in_course import in_course
 from odometry.effects.residual import ANGLES, OF_TREADS, TREADS, VARIABLES
 from odometry.effects.time_course import FromAMoment, InBursts
-from odometry.effects.traction_loss import TractionLoss
-from odometry.gap.burst_variable import variable_of_events
+from odometry.effects.tread_slip import TractionLoss
 from odometry.gap.config import GapConfig
 from odometry.gap.fit import Fitter
 from odometry.gap.form import slow_course_in_place, without_essence
 from odometry.gap.general import shares_of_motion
 from odometry.gap.measured import measured_of
 from odometry.gap.own_moments import observed_s
+from odometry.gap.unnamed import variable_of_events
 from odometry.gap.verdict import come_by_themselves, is_by_its_essence
 
 CONFIG = GapConfig()

@@ -14,7 +14,7 @@ from odometry.effects.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.slope_icr import SlopeByIcr
 from odometry.effects.time_course import FromAMoment
 from odometry.effects.time_offset import TimeOffset
-from odometry.effects.traction_loss import TractionLoss
+from odometry.effects.tread_slip import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
 from odometry.gap.drives import drives_of, scene_of

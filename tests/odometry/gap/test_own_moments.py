@@ -6,7 +6,7 @@ import pytest
 from odometry.effects.corrected import Added
 from odometry.effects.in_course import in_course
 from odometry.effects.time_course import FromAMoment
-from odometry.effects.traction_loss import TractionLoss
+from odometry.effects.tread_slip import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap import own_moments
 from odometry.gap.own_moments import observed_s, with_own_moments

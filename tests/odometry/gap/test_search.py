@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from odometry.effects.traction_loss import TractionLoss
+from odometry.effects.tread_slip import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
 from odometry.gap.search import Search

@@ -5,7 +5,7 @@ import pytest
 
 from odometry.effects.in_course import in_course
 from odometry.effects.time_course import FromAMoment
-from odometry.effects.traction_loss import TractionLoss
+from odometry.effects.tread_slip import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.accepted_effects import Standing
 from odometry.gap.config import GapConfig

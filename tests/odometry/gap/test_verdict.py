@@ -12,7 +12,7 @@ from odometry.effects.sensor_mount import HeadingOffset
 from odometry.effects.slope_icr import SlopeByIcr
 from odometry.effects.time_course import FromAMoment
 from odometry.effects.time_offset import ClockDrift, TimeOffset
-from odometry.effects.traction_loss import TractionLoss
+from odometry.effects.tread_slip import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import sure_sum

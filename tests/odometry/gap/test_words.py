@@ -8,9 +8,15 @@ import pytest
 from odometry.effects.corrected import Added
 from odometry.effects.time_offset import TimeOffset
 from odometry.gap.next_drives import NextDrive
-from odometry.gap.quantities import evidence_words, percent, rounded, with_interval
+from odometry.gap.quantities import (
+    Share,
+    evidence_words,
+    held_out_share,
+    percent,
+    rounded,
+    with_interval,
+)
 from odometry.gap.result import NamedEffect
-from odometry.gap.share_closed import Share, held_out_share
 from odometry.gap.statistic import Gap
 from odometry.gap.verdict import Refusal
 from odometry.gap.words import sentences

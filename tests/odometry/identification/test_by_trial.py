@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from odometry.identification.config import SolverConfig
 from odometry.identification.fit import fit, try_values
 from odometry.identification.problem import Problem
 from odometry.identification.solve import solve
+from odometry.identification.start import SolverConfig
 from odometry.models.catalogue import MODELS
 from odometry.windows.config import WindowConfig
 from odometry.windows.noise import pose_variances

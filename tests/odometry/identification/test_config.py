@@ -3,7 +3,7 @@ import math
 import pytest
 
 from odometry.errors import ConfigError
-from odometry.identification.config import SolverConfig
+from odometry.identification.start import SolverConfig
 from odometry.windows.config import WindowConfig
 
 

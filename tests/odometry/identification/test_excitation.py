@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from odometry.identification.config import SolverConfig
 from odometry.identification.fit import fit
 from odometry.identification.fitted import Undetermined, undetermined
+from odometry.identification.start import SolverConfig
 from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr
 from odometry.run import Robot, Run

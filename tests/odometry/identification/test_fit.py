@@ -3,8 +3,8 @@ import pytest
 from scipy.stats import t as student
 
 from odometry.errors import IdentificationError, ParameterError
-from odometry.identification.config import SolverConfig
 from odometry.identification.fit import fit
+from odometry.identification.start import SolverConfig
 from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr
 from odometry.run import Run

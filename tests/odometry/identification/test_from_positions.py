@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from odometry.errors import IdentificationError
-from odometry.identification.config import SolverConfig
 from odometry.identification.identify import identify
 from odometry.identification.profile import with_profiles
+from odometry.identification.start import SolverConfig
 from odometry.identification.stretch_fit import position_notes, windows_or_stretches
 from odometry.windows.config import WindowConfig
 from odometry.windows.stretches import Stretches

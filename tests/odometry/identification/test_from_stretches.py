@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 
 from odometry.errors import IdentificationError
-from odometry.identification.config import SolverConfig
 from odometry.identification.identification import contradicted, undetermined_by_positions
 from odometry.identification.identify import identify, simpler_model
+from odometry.identification.start import SolverConfig
 from tests.odometry.positions_drives import ICR, ROBOT, drive, emptied
 
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.identification.config import SolverConfig
 from odometry.identification.halves import BY_CHANCE, Halves
 from odometry.identification.identify import identify
+from odometry.identification.start import SolverConfig
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
 

@@ -4,9 +4,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from odometry.identification.config import SolverConfig
 from odometry.identification.fit import fit
 from odometry.identification.halves import by_halves, by_runs, held_out_errors
+from odometry.identification.start import SolverConfig
 from odometry.models.icr import Icr
 from odometry.run import Run
 from odometry.windows.config import WindowConfig

@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from odometry.errors import IdentificationError, ParameterError
-from odometry.identification.config import SolverConfig
 from odometry.identification.fit import fit
 from odometry.identification.fitters import fitter
 from odometry.identification.identify import identify, robot_of
+from odometry.identification.start import SolverConfig
 from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr
 from odometry.models.inputs import Inputs

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from odometry.errors import IdentificationError
-from odometry.identification.config import SolverConfig
 from odometry.identification.identify import identify
 from odometry.identification.plausibility import notes, refusals
+from odometry.identification.start import SolverConfig
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
 

@@ -3,9 +3,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.identification.config import SolverConfig
 from odometry.identification.problem import Problem
 from odometry.identification.solve import solve
+from odometry.identification.start import SolverConfig
 from odometry.models.icr import Icr
 from odometry.models.radius_of_curvature import RadiusOfCurvature
 from odometry.run import Run

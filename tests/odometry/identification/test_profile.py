@@ -7,10 +7,10 @@ import pytest
 from scipy.optimize import minimize
 
 from odometry.errors import IdentificationError
-from odometry.identification.config import SolverConfig
 from odometry.identification.identify import identify
 from odometry.identification.problem import Problem
 from odometry.identification.profile import with_profiles
+from odometry.identification.start import SolverConfig
 from odometry.models.icr_slope import IcrSlope
 from odometry.windows.noise import pose_variances
 

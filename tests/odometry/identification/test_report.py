@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.identification.config import SolverConfig
 from odometry.identification.identify import identify
 from odometry.identification.report import correlations, in_short, report
+from odometry.identification.start import SolverConfig
 from odometry.windows.stretch_noise import UNKNOWN_NOISE
 
 

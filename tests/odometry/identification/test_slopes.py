@@ -10,11 +10,11 @@ import pytest
 from scipy.stats import chi2
 
 from odometry.errors import IdentificationError, ParameterError
-from odometry.identification.config import SolverConfig
 from odometry.identification.fit import fit
 from odometry.identification.problem import Problem
 from odometry.identification.slopes import fit_in_two_stages, mean_tilt_rad
 from odometry.identification.solve import solve
+from odometry.identification.start import SolverConfig
 from odometry.models.icr_slope import IcrSlope
 from odometry.run import Run
 from odometry.windows.config import WindowConfig

@@ -7,9 +7,9 @@ import pytest
 from scipy.optimize import minimize
 from scipy.stats import chi2
 
-from odometry.identification.config import SolverConfig
 from odometry.identification.problem import PROBLEMS, Problem
 from odometry.identification.solve import solve
+from odometry.identification.start import SolverConfig
 from odometry.models.icr import Icr
 from odometry.run import Run
 from odometry.windows.config import WindowConfig

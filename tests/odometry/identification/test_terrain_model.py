@@ -8,9 +8,9 @@ import pytest
 
 from odometry.effects.tables import effects_of
 from odometry.errors import ParameterError
-from odometry.identification.config import SolverConfig
 from odometry.identification.fitters import model_on_terrain
 from odometry.identification.identify import identify
+from odometry.identification.start import SolverConfig
 from odometry.models.catalogue import MODELS
 from odometry.parameters import (
     ParameterSet,

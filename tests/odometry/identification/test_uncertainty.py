@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from scipy.stats import binom, chi2
 
-from odometry.identification.config import SolverConfig
 from odometry.identification.fit import fit
 from odometry.identification.problem import Problem
 from odometry.identification.solve import Solution
+from odometry.identification.start import SolverConfig
 from odometry.identification.uncertainty import parameter_uncertainty, residual_scale
 from odometry.models.icr import Icr
 from odometry.run import Run

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from odometry.errors import ParameterError
-from odometry.models.full_linear import FullLinear
 from odometry.models.icr import Icr
 from odometry.models.inputs import Inputs
+from odometry.models.radius_of_curvature import FullLinear
 
 MODEL = FullLinear()
 GAMMAS = {

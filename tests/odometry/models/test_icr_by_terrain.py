@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import ParameterError
-from odometry.models.icr import Icr
-from odometry.models.icr_by_terrain import IcrByTerrain
+from odometry.models.icr import Icr, IcrByTerrain
 from odometry.models.inputs import Inputs
 from odometry.run import Robot
 

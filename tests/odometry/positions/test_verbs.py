@@ -10,8 +10,8 @@ from odometry.comparison.config import ComparisonConfig
 from odometry.effects.measured import robot_run
 from odometry.gap.gap import find_gap
 from odometry.geometry.angles import wrap
-from odometry.identification.config import SolverConfig
 from odometry.identification.identify import identify
+from odometry.identification.start import SolverConfig
 from odometry.models.icr import Icr
 from odometry.windows.config import WindowConfig
 from odometry.windows.windows import windows_of

@@ -8,7 +8,7 @@ import pytest
 
 from odometry.comparison.compare import compare
 from odometry.comparison.config import ComparisonConfig
-from odometry.identification.config import SolverConfig
+from odometry.identification.start import SolverConfig
 from odometry.io.run_folder import write_run_folder
 from odometry.report.comparison_page import lead, write_comparison_report
 from odometry.run import Run

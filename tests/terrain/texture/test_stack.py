@@ -12,7 +12,7 @@ from terrain.texture import multilevel_otsu, region_borders, sfta
 from terrain.texture import stack as stack_file
 from terrain.texture.coarse_otsu import coarse_otsu
 from terrain.texture.stack import stack_features
-from terrain.texture.variants import VARIANTS
+from terrain.texture.ttbd import VARIANTS
 
 
 def one_by_one(stack, variant, n_thresholds=4):
