@@ -9,7 +9,18 @@ from odometry.arrays import ByteImage
 
 INSIDE = 255  # all eight bits
 
-_OF_THREAD = threading.local()
+MOST_SHAPES = 256  # views of kept bytes that are remembered; then all begin anew
+
+
+class _Kept(threading.local):
+    """Bytes by use, and views of them by use and shape, of one thread."""
+
+    def __init__(self) -> None:
+        self.buffers: dict[str, ByteImage] = {}
+        self.views: dict[tuple[str, tuple[int, ...]], ByteImage] = {}
+
+
+_KEPT = _Kept()
 
 
 def region_borders(bits: ByteImage) -> ByteImage:
@@ -71,9 +82,17 @@ def kept(use: str, shape: tuple[int, ...]) -> ByteImage:
         What the thread has one of.
     shape : tuple of int
     """
+    view = _KEPT.views.get((use, shape))
+    return _new_view(use, shape) if view is None else view
+
+
+def _new_view(use: str, shape: tuple[int, ...]) -> ByteImage:
     size = prod(shape)
-    buffer: ByteImage | None = getattr(_OF_THREAD, use, None)
+    buffer = _KEPT.buffers.get(use)
     if buffer is None or buffer.size < size:
-        buffer = np.empty(size, np.uint8)
-        setattr(_OF_THREAD, use, buffer)
-    return buffer[:size].reshape(shape)
+        buffer = _KEPT.buffers[use] = np.empty(size, np.uint8)
+        _KEPT.views.clear()  # those of the smaller buffer would keep it
+    if len(_KEPT.views) >= MOST_SHAPES:
+        _KEPT.views.clear()
+    view = _KEPT.views[use, shape] = buffer[:size].reshape(shape)
+    return view

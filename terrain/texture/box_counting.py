@@ -54,7 +54,7 @@ def box_counts(bits: ByteImage) -> FloatArray:
         count_bytes(planes, histograms[large])
         planes = or_of_2x2(planes, f"halved {large % 2}")
         large += 1
-    of_large = np.moveaxis(histograms[:large] @ BITS_OF_BYTE, 0, 1)
+    of_large = (histograms[:large] @ BITS_OF_BYTE).swapaxes(0, 1)
     counts = np.concatenate((of_large, _small_box_counts(planes, n_sizes - large)), axis=1)
     return counts.reshape(*bits.shape[:-2], n_sizes, 8)
 

@@ -45,7 +45,7 @@ def features_between(
     """The same with thresholds (N, n_t) that were found before, in histograms (N, 256)."""
     members = definition.members(thresholds)
     features = np.empty((*members.shape[:2], 3))
-    for j, tables in enumerate(np.moveaxis(packed_tables(members), -2, 0)):
+    for j, tables in enumerate(packed_tables(members).swapaxes(0, 1)):
         eight = slice(8 * j, 8 * j + 8)
         boxes, of_borders = _boxes(greys, tables, of_borders=definition.of_borders)
         if of_borders is None:

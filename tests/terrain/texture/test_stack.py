@@ -10,6 +10,7 @@ from hypothesis.extra.numpy import arrays
 
 from terrain.texture import multilevel_otsu, region_borders, sfta
 from terrain.texture import stack as stack_file
+from terrain.texture.borders import _KEPT, MOST_SHAPES, kept
 from terrain.texture.coarse_otsu import coarse_otsu
 from terrain.texture.stack import stack_features
 from terrain.texture.ttbd import VARIANTS
@@ -81,3 +82,14 @@ def test_thresholds_in_bins_are_those_of_the_binned_histogram(histograms, n_thre
         ]
         some = histograms[histograms.any(axis=1)]
         np.testing.assert_array_equal(coarse_otsu(some, n_thresholds, n_bins), expected)
+
+
+def test_kept_bytes_are_the_same_ones_and_of_no_more_shapes_than_are_remembered():
+    small, large = kept("a test", (2, 3)), kept("a test", (4, 5))
+    assert small.shape == (2, 3)
+    assert kept("a test", (4, 5)) is large
+    assert np.shares_memory(kept("a test", (2, 3)), large)
+    assert not np.shares_memory(kept("another test", (4, 5)), large)
+    for side in range(3 * MOST_SHAPES, 0, -1):  # the buffer does not grow
+        kept("a test", (1, side))
+    assert len(_KEPT.views) <= MOST_SHAPES
