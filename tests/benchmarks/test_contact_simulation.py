@@ -1,5 +1,9 @@
-"""Time of the contact simulator: 20 s at 50 Hz, one drive and fifty at once."""
+"""Time of the contact simulator: 20 s at 50 Hz, one drive and fifty at once.
 
+Its figure is the time of the processor, which bears a busy machine better.
+"""
+
+import time
 from pathlib import Path
 
 import numpy as np
@@ -20,8 +24,14 @@ def test_simulate_contact(benchmark, drives, law):
     vehicle = read_contact_vehicle(J8, {"law": law})
     seeds = [np.random.default_rng(seed) for seed in range(drives)]
     speeds = np.stack([excitation(LASTS_S, STEP_S, max_speed_m_s=1.0, rng=rng) for rng in seeds])
-    drive = benchmark.pedantic(
-        simulate_contact, (vehicle, speeds, STEP_S), {"ground": Plane(0.1, 1.0)}, rounds=3
-    )
+    spent_s = []
+
+    def drives_once():
+        started = time.process_time()
+        found = simulate_contact(vehicle, speeds, STEP_S, ground=Plane(0.1, 1.0))
+        spent_s.append(time.process_time() - started)
+        return found
+
+    drive = benchmark.pedantic(drives_once, rounds=3)
     assert drive.poses_world.shape == (drives, round(LASTS_S / STEP_S) + 1, 6)
-    benchmark.extra_info["figure"] = drives * LASTS_S / benchmark.stats.stats.median
+    benchmark.extra_info["figure"] = drives * LASTS_S / sorted(spent_s)[1]
