@@ -1,0 +1,90 @@
+"""The answer: a verdict by what stands and what noise explains, and intervals by hand."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from odometry.effects.corrected import Added
+from odometry.effects.lateral_skid import LateralSkid
+from odometry.effects.wheel_scale import WheelScale
+from odometry.gap.answer import named_effects, rivals_of, verdict_of
+from odometry.gap.result import Closing
+from odometry.gap.statistic import Gap
+
+FLOOR = Gap(0.1, 0.08, 0.12)
+SCALE, SKID = WheelScale(), LateralSkid()
+
+
+def explained(names=(), **others):
+    return SimpleNamespace(names=names, **{"unexplained": False, **others})
+
+
+def held_out(low):
+    before = Gap(0.2, low, 0.3)
+    return Closing(before, before, FLOOR)
+
+
+@pytest.mark.parametrize(
+    ("names", "unexplained", "low", "verdict"),
+    [
+        (("wheel_scale", "curvature"), True, 0.15, "wheel_scale"),
+        ((), True, 0.05, "unknown"),
+        ((), False, 0.121, "unknown"),
+        ((), False, 0.12, "none"),
+        ((), False, 0.1, "none"),
+    ],
+)
+def test_the_first_name_else_whether_noise_explains_what_is_left(names, unexplained, low, verdict):
+    """Only a gap whose whole interval is above that of the floor is more than noise."""
+    assert verdict_of(explained(names, unexplained=unexplained), held_out(low)) == verdict
+
+
+def judged(effect, evidence, gap_after):
+    return SimpleNamespace(effect=effect, evidence=evidence, gap_after=gap_after)
+
+
+def middle(effect):
+    """Values within the bounds, and a standard deviation that stays within them."""
+    lows, highs = np.array([(p.low, p.high) for p in effect.parameters]).T
+    return (lows + highs) / 2, (highs - lows) / 100
+
+
+def test_each_effect_has_the_intervals_of_its_own_values_and_the_gap_before_it():
+    (scale, scale_sigma), (skid, skid_sigma) = middle(SCALE), middle(SKID)
+    added = (Added(SCALE, scale), Added(SKID, skid))
+    sigmas = np.concatenate([scale_sigma, skid_sigma])
+    found = explained(
+        fitted=SimpleNamespace(effects=added, covariance=np.diag(sigmas**2)),
+        steps=(judged(SCALE, 40.0, 0.3), judged(SKID, 9.0, 0.2)),
+    )
+    one, two = named_effects(found, added, 0.5)
+    for named, values, sigma in ((one, scale, scale_sigma), (two, skid, skid_sigma)):
+        np.testing.assert_allclose(named.low, values - 1.96 * sigma)
+        np.testing.assert_allclose(named.high, values + 1.96 * sigma)
+    assert [(n.gap_before, n.gap_after, n.evidence) for n in (one, two)] == [
+        (0.5, 0.3, 40.0),
+        (0.3, 0.2, 9.0),
+    ]
+
+
+def test_an_interval_ends_at_the_bounds_of_its_search():
+    """A deviation as wide as the search; a variance that rounding made negative is none."""
+    values, _ = middle(SCALE)
+    variances = np.full(len(values), -1e-20)
+    variances[0] = (SCALE.parameters[0].high - SCALE.parameters[0].low) ** 2
+    added = (Added(SCALE, values),)
+    fitted = SimpleNamespace(effects=added, covariance=np.diag(variances))
+    (named,) = named_effects(explained(fitted=fitted, steps=(judged(SCALE, 9, 0.1),)), added, 0.5)
+    assert (named.low[0], named.high[0]) == (SCALE.parameters[0].low, SCALE.parameters[0].high)
+    np.testing.assert_array_equal(named.low[1:], values[1:])
+    np.testing.assert_array_equal(named.high[1:], values[1:])
+
+
+def test_rivals_are_all_candidates_for_the_first_effect_in_their_order():
+    first = (judged(SCALE, 40.0, 0.3), judged(SKID, 9.0, 0.4))
+    found = rivals_of(explained(first=first))
+    assert [(one.name, one.evidence, one.gap_after) for one in found] == [
+        ("wheel_scale", 40.0, 0.3),
+        ("lateral_skid", 9.0, 0.4),
+    ]
