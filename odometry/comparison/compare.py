@@ -6,14 +6,13 @@ from pathlib import Path
 
 from odometry.comparison.candidates import Candidate, GivenParameters, IdentifiedModel
 from odometry.comparison.config import ComparisonConfig
-from odometry.comparison.evaluation import Evaluation, evaluate_all
+from odometry.comparison.evaluation import Evaluation, evaluate_all, run_fitness
 from odometry.comparison.fitting import SplitModels, fit_models
 from odometry.comparison.result import Comparison
 from odometry.comparison.split import of_all, splits
 from odometry.comparison.statistics import Difference, differences
 from odometry.comparison.summary import Place
 from odometry.comparison.training_horizons import training_horizon_errors
-from odometry.comparison.whole_runs import run_fitness
 from odometry.errors import ComparisonError, OdometryError
 from odometry.models.catalogue import MODELS
 from odometry.parameters import ParameterSet, TerrainParameters, read_parameters

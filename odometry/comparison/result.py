@@ -5,13 +5,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from odometry.comparison.config import ComparisonConfig
-from odometry.comparison.evaluation import Evaluation, NotEvaluated
+from odometry.comparison.evaluation import Evaluation, NotEvaluated, RunFitness
 from odometry.comparison.fitting import SplitModels
 from odometry.comparison.sentences import contradictions, sentences
 from odometry.comparison.statistics import Difference
 from odometry.comparison.summary import Place, Summary, summarise
 from odometry.comparison.training_horizons import HorizonErrors
-from odometry.comparison.whole_runs import RunFitness
 from odometry.parameters import ParameterSet
 from odometry.windows.record import summed
 

@@ -3,9 +3,9 @@
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import permutations
 
+from odometry.comparison.evaluation import RunFitness
 from odometry.comparison.statistics import Difference, between
 from odometry.comparison.summary import NOT_IDENTIFIED, QUANTITIES, Place, Summary
-from odometry.comparison.whole_runs import RunFitness
 from odometry.evaluation.open_loop import Fitness, pooled_fitness
 
 EFFECTIVE_WIDTH = "icr_symmetric"

@@ -18,9 +18,9 @@ from odometry.effects.terrain import SHIFTED, Terrain
 from odometry.effects.time_course import InBursts
 from odometry.effects.time_offset import TimeOffset
 from odometry.gap.locate import Region
-from odometry.gap.moved import moves_of
 from odometry.gap.result import Closing, GapResult, NamedEffect
 from odometry.gap.statistic import Gap
+from odometry.gap.words import moves_of
 from odometry.io.files import atomic_write
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN

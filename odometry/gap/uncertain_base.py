@@ -1,11 +1,18 @@
-"""What is uncertain of a base: its identified parameters, and a latency of the recording."""
+"""The base model of a gap: by its name or from a parameter set, and what is uncertain of it."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.effects.base_model import Base
+from odometry.errors import GapError, ParameterError
+from odometry.models.base import KinematicModel
+from odometry.models.catalogue import MODELS, model_named
+from odometry.parameters import read_parameters
+from odometry.run import Run
 
 LONGEST_LATENCY_S = 1.0
 LARGEST_BIAS_RAD_S = 0.5
@@ -81,3 +88,35 @@ class Uncertain:
         latency = [LATENCY_SCALE_S] if self.latency_is_free else []
         own = [LATENCY_SCALE_S, BIAS_SCALE_RAD_S] if self.has_gyroscope else []
         return np.concatenate([np.full(int(self.free.sum()), PARAMETER_SCALE), latency, own])
+
+
+def believed_model(
+    name: str, runs: Sequence[Run], terrain: str | None = None
+) -> tuple[KinematicModel, Mapping[str, float] | None]:
+    """A model of the catalogue, and its parameters where `name` is a file of them.
+
+    Of a set with several terrains, that of `terrain`, else that which the runs name.
+
+    Raises
+    ------
+    GapError
+        If the set has no such terrain, or effects already.
+    ParameterError
+        If there is no such model, or the file is no parameter set.
+    """
+    if Path(name).suffix != ".toml":
+        return model_named(name), None
+    terrains = read_parameters(name).terrains
+    wanted = terrain or next((r.terrain for r in runs if r.terrain in terrains), None)
+    if wanted is None and len(terrains) == 1:
+        wanted = next(iter(terrains))
+    if wanted is None or wanted not in terrains:
+        raise GapError(
+            f"{name}: no terrain {wanted!r}; it has {', '.join(terrains)}; name one with --terrain"
+        )
+    table = terrains[wanted]
+    if table.effects:
+        raise GapError(f"{name}: [terrain.{wanted}] has effects already; expected a plain model")
+    if table.model not in MODELS:
+        raise ParameterError(f"{name}: the model {table.model!r} cannot be computed")
+    return MODELS[table.model], table.values

@@ -23,7 +23,7 @@ from terrain.classification.onnx_graph import (
 )
 from terrain.errors import ImageError, NetworkError
 from terrain.images import to_bytes
-from terrain.texture.image_transformer import ImageTransformer, listed_images, naming_image
+from terrain.texture.transformer import ImageTransformer, listed_images, naming_image
 
 NETWORK_BYTES = 1024**3
 MOST_LAYERS = 4  # that are chosen where none are named

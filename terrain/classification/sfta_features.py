@@ -8,7 +8,7 @@ from terrain.classification.feature_jobs import shared_feature_matrix
 from terrain.classification.features import FeatureSettings, feature_names
 from terrain.classification.presets import PRESETS
 from terrain.images import to_bytes
-from terrain.texture.image_transformer import ImageTransformer, listed_images, naming_image
+from terrain.texture.transformer import ImageTransformer, listed_images, naming_image
 
 
 class SftaFeatures(ImageTransformer):

@@ -75,7 +75,7 @@ def gap(
     from odometry.gap.config import GapConfig
     from odometry.gap.files import write_gap
     from odometry.gap.gap import find_gap
-    from odometry.gap.parameter_set import believed_model
+    from odometry.gap.uncertain_base import believed_model
     from odometry.report.gap_page import write_gap_report
     from terrain.cli.outputs import about, claim_folder
     from terrain.cli.recordings import read_runs

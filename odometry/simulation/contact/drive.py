@@ -8,6 +8,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.errors import SimulationError
 from odometry.simulation.contact.dynamics import MEMORY, POSITION, YAW, YAW_RATE, ContactDynamics
+from odometry.simulation.contact.friction import ComplexArray
 from odometry.simulation.contact.integrate import LONGEST_STEP_S, rosenbrock_step
 from odometry.simulation.contact.one_vehicle import one_vehicle
 from odometry.simulation.contact.slope import Ground, Plane, gravity
@@ -18,7 +19,6 @@ from odometry.simulation.contact.traction import (
     switch_rows,
     switched,
 )
-from odometry.simulation.contact.vectors import ComplexArray
 from odometry.simulation.contact.vehicle import ContactVehicle
 
 Steps = Callable[[ComplexArray, FloatArray, float, int], ComplexArray]

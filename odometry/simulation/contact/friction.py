@@ -1,12 +1,25 @@
 """Friction of one contact: traction per unit of friction limit, from slip and its history."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from odometry.arrays import FloatArray
-from odometry.simulation.contact.vectors import GRAVITY_M_S2, ComplexArray
+
+ComplexArray = NDArray[np.complex128]
+GRAVITY_M_S2 = 9.80665
+
+
+def dot(first: Any, second: Any) -> FloatArray:
+    """Scalar product of plane vectors, elementwise."""
+    return np.asarray((np.conj(first) * second).real)
+
+
+def cross(first: Any, second: Any) -> FloatArray:
+    """Vertical component of the vector product of plane vectors, elementwise."""
+    return np.asarray((np.conj(first) * second).imag)
 
 
 class FrictionLaw(Protocol):

@@ -8,8 +8,7 @@ from math import expm1, sqrt
 from typing import NamedTuple
 
 from odometry.arrays import FloatArray
-from odometry.simulation.contact.friction import Coulomb, Shear
-from odometry.simulation.contact.vectors import ComplexArray
+from odometry.simulation.contact.friction import ComplexArray, Coulomb, Shear
 
 Memory = Sequence[complex]
 

@@ -12,10 +12,10 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.simulation.contact.dynamics import ContactDynamics
+from odometry.simulation.contact.friction import GRAVITY_M_S2, ComplexArray
 from odometry.simulation.contact.integrate import GAMMA
 from odometry.simulation.contact.one_contacts import Forces, Memory, Sums, contacts_of, forces_of
 from odometry.simulation.contact.slope import Ground, Plane, Zones
-from odometry.simulation.contact.vectors import GRAVITY_M_S2, ComplexArray
 
 Body = tuple[complex, float, complex, float, complex]
 """Position, yaw, velocity, yaw rate and the contact force that the loads have followed."""

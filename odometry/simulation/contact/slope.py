@@ -10,7 +10,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.simulation.contact.vectors import GRAVITY_M_S2, ComplexArray, dot
+from odometry.simulation.contact.friction import GRAVITY_M_S2, ComplexArray, dot
 
 
 class Tilt(NamedTuple):

@@ -10,9 +10,9 @@ from odometry.simulation.contact.dynamics import (
     YAW_RATE,
     ContactDynamics,
 )
+from odometry.simulation.contact.friction import GRAVITY_M_S2, ComplexArray
 from odometry.simulation.contact.integrate import LONGEST_STEP_S, rosenbrock_step
 from odometry.simulation.contact.slope import HeldAttitude
-from odometry.simulation.contact.vectors import GRAVITY_M_S2, ComplexArray
 from odometry.simulation.contact.vehicle import ContactVehicle
 
 BLOCK_S = 0.5

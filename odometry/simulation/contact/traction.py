@@ -8,8 +8,7 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.errors import SimulationError
 from odometry.simulation.contact.dynamics import MEMORY, ContactDynamics
-from odometry.simulation.contact.friction import FrictionLaw
-from odometry.simulation.contact.vectors import ComplexArray
+from odometry.simulation.contact.friction import ComplexArray, FrictionLaw
 from odometry.simulation.contact.vehicle import ContactVehicle
 
 

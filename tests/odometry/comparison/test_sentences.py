@@ -2,10 +2,9 @@
 
 import pytest
 
-from odometry.comparison.evaluation import NotEvaluated
+from odometry.comparison.evaluation import NotEvaluated, RunFitness
 from odometry.comparison.sentences import contradictions, sentences
 from odometry.comparison.summary import summarise
-from odometry.comparison.whole_runs import RunFitness
 from odometry.evaluation.open_loop import Fitness
 from tests.odometry.comparison.written_errors import PLACE, difference, evaluation
 

@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.gap.moved import moved_words, moves_of
-from odometry.gap.words import sentences
+from odometry.gap.words import moved_words, moves_of, sentences
 
 
 @pytest.fixture(scope="module")

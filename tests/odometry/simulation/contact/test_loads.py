@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize
 
 from odometry.errors import SimulationError
-from odometry.simulation.contact.loads import NormalLoads
+from odometry.simulation.contact.dynamics import NormalLoads
 
 PLACES = np.array([-0.5 + 0.4j, 0.1 + 0.4j, 0.6 + 0.4j, -0.5 - 0.4j, 0.1 - 0.4j, 0.6 - 0.4j])
 WEIGHT_N, HEIGHT_M = 1000.0, 0.5
