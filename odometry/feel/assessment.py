@@ -13,7 +13,14 @@ from odometry.feel.evidence import calibrated_windows
 from odometry.feel.held_out import HeldOut, by_length, held_out, judged_runs, names_of
 from odometry.feel.limits import STRETCH_S
 from odometry.feel.members import Choice, averaged_sets
-from odometry.feel.scores import balanced_accuracy, bootstrap_interval, calibration_error, confusion
+from odometry.feel.scores import (
+    balanced_accuracy,
+    bootstrap_interval,
+    calibration_error,
+    confusion,
+    error_by_chance,
+    mean_excess,
+)
 from odometry.feel.selection import SHRINKAGES, Selected, main_labels, selected
 from odometry.feel.strangeness import LENGTHS
 from odometry.feel.table import FOLDS, FeelTable, stratified_folds
@@ -52,6 +59,11 @@ class Answers:
             "balanced_accuracy": balanced_accuracy(self.labels, right),
             "interval": list(bootstrap_interval(self.labels, right, self.runs)),
             "calibration_error": calibration_error(self.labels, self.probabilities, names),
+            "mean_excess": mean_excess(self.labels, self.probabilities, names),
+            "error_by_chance": error_by_chance(
+                self.labels, self.probabilities, np.arange(len(right))
+            ),
+            "error_by_chance_of_runs": error_by_chance(self.labels, self.probabilities, self.runs),
             "refused": 1 - balanced_accuracy(self.labels, ~self.novel),
             "confusion": {
                 row: dict(zip(names, line.tolist(), strict=True))

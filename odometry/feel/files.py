@@ -49,7 +49,7 @@ def _more(felt: Felt) -> Iterator[str]:
     if not moving.any():
         yield "The robot stands, or nothing was measured, all the time: nothing can be felt."
         return
-    probabilities, novel = felt.of_run
+    probabilities, _ = felt.of_run
     best = max(probabilities, key=lambda name: probabilities[name])
     if is_unlike(felt):
         share = (felt.answers[moving] == UNKNOWN).mean()
@@ -58,7 +58,11 @@ def _more(felt: Felt) -> Iterator[str]:
             f"{100 * share:.0f} % of the windows feel like nothing that the model was identified "
             f"from; the farthest off are {farthest}: another terrain, load, tyre or sensor?"
         )
-    elif not novel and set(felt.lasting_answers.tolist()) <= {best, UNKNOWN, *SILENT}:
+    elif felt.answer_of_run[0] != UNKNOWN and set(felt.lasting_answers.tolist()) <= {
+        best,
+        UNKNOWN,
+        *SILENT,
+    }:
         yield f"If it is all one terrain, it is {best} with probability {probabilities[best]:.2f}."
     outside = felt.outside_speeds[moving].mean()
     if outside > OFTEN:
@@ -146,7 +150,7 @@ def columns_of(felt: Felt) -> dict[str, AnyArray]:
 
 def content_of(felt: Felt) -> dict[str, Any]:
     """What result.json holds."""
-    probabilities, novel = felt.of_run
+    probabilities, _ = felt.of_run
     return {
         "format": FORMAT,
         "program": f"terrain-odometry {version('terrain-odometry')}",
@@ -163,7 +167,7 @@ def content_of(felt: Felt) -> dict[str, Any]:
         "windows": len(felt.windows),
         "shares_of_windows": shares(felt),
         "run_probabilities": probabilities,
-        "run_is_unknown": novel or is_unlike(felt),
+        "run_is_unknown": felt.answer_of_run[0] == UNKNOWN or is_unlike(felt),
         "balanced_accuracy": _accuracy(felt),
         "notes": list(sentences(felt)[1:]),
     }

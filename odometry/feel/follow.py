@@ -11,6 +11,7 @@ from odometry.feel.model import FeelModel
 from odometry.feel.windows import feel_windows
 from odometry.run import UNKNOWN, Robot, Run
 
+UNLIKE_SHARE = 0.5  # of the time: a run of which more is unknown is of no terrain of the model
 SAME_WIDTH = 0.1  # share by which track widths of one robot may differ
 
 
@@ -42,7 +43,8 @@ class Felt(FeltWindows):
         moving = self.windows.felt
         if not moving.any():
             return (STATIONARY if self.windows.standing.any() else NOT_MEASURED), 0.0, unknown
-        if is_novel or self.outside_speeds[moving].all():
+        is_unlike = (self.lasting_answers[moving] == UNKNOWN).mean() > UNLIKE_SHARE
+        if is_novel or is_unlike or self.outside_speeds[moving].all():
             return UNKNOWN, 0.0, unknown
         is_sure = probabilities[best] >= self.config.sure
         return (best if is_sure else UNDETERMINED), probabilities[best], unknown

@@ -7,6 +7,7 @@ import numpy as np
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 
 DRAWS = 1000  # of a bootstrap
+CHANCE_DRAWS = 200  # of answers that are right as often as they say
 INTERVAL = (0.05, 0.95)
 BINS = 10  # of probability
 
@@ -65,10 +66,45 @@ def calibration_error(labels: AnyArray, probabilities: FloatArray, names: Sequen
     """
     if not len(labels):
         return float("nan")
-    best = probabilities.argmax(axis=1)
-    sure = probabilities.max(axis=1)
-    right = np.array(names, dtype=object)[best] == labels
-    weights = class_weights(labels)
+    right = np.array(names, dtype=object)[probabilities.argmax(axis=1)] == labels
+    return _error(class_weights(labels), right, probabilities.max(axis=1))
+
+
+def mean_excess(labels: AnyArray, probabilities: FloatArray, names: Sequence[str]) -> float:
+    """Mean probability of the most probable answer less the share right: above 0, too sure."""
+    right = np.array(names, dtype=object)[probabilities.argmax(axis=1)] == labels
+    return float(class_weights(labels) @ (probabilities.max(axis=1) - right))
+
+
+def error_by_chance(
+    labels: AnyArray, probabilities: FloatArray, groups: AnyArray, seed: int = 0
+) -> float:
+    """The calibration error to expect of probabilities that are exactly right, by chance alone.
+
+    Answers are drawn, right with their own probability; those of a group are drawn together, by
+    one number, so that they are right and wrong as a whole.
+
+    Parameters
+    ----------
+    labels : (N,)
+        Whose classes count alike.
+    probabilities : (N, K)
+    groups : (N,)
+        All different where answers are independent; runs where their windows are alike.
+    seed : int
+    """
+    if not len(labels):
+        return float("nan")
+    sure, weights = probabilities.max(axis=1), class_weights(labels)
+    numbers, places = np.unique(groups, return_inverse=True)
+    rng = np.random.default_rng(seed)
+    drawn = [
+        _error(weights, rng.random(len(numbers))[places] < sure, sure) for _ in range(CHANCE_DRAWS)
+    ]
+    return float(np.mean(drawn))
+
+
+def _error(weights: FloatArray, right: AnyArray, sure: FloatArray) -> float:
     bins = np.minimum((sure * BINS).astype(np.int64), BINS - 1)
     off = np.bincount(bins, weights=weights * (right - sure), minlength=BINS)
     return float(np.abs(off).sum())

@@ -7,6 +7,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
 from odometry.errors import RunFolderError
+from odometry.feel.clock_check import clock_fault
 from odometry.feel.imu_check import ImuSums
 from odometry.geometry.se3 import rotation_from_roll_pitch_yaw
 from odometry.run import Run
@@ -62,8 +63,9 @@ def feel_signals(run: Run) -> FeelSignals:
     Raises
     ------
     RunFolderError
-        If there is no axis, they are recorded too slowly, or their sizes are not in rad/s and
-        m/s2 with gravity along z; see `imu_checks`.
+        If there is no axis, they are recorded too slowly, their sizes are not in rad/s and m/s2
+        with gravity along z (see `imu_check`), or gyro_z does not turn when the treads do (see
+        `clock_check`).
     """
     table, axes = axes_of(run)
     stamps_s = table.stamps_s
@@ -91,6 +93,8 @@ def feel_signals(run: Run) -> FeelSignals:
         begin_s, rate_hz, even, treads, _currents(run.odometry, held), row_terrains(run)[held]
     )
     fault = ImuSums().plus(signals.axes, treads, run.robot.track_width).fault()
+    if not fault and "gyro_z" in axes:
+        fault = clock_fault(signals.axes["gyro_z"], treads, rate_hz, run.robot.track_width)
     if fault:
         raise RunFolderError(f"{table.file}: {fault}")
     return signals

@@ -56,6 +56,7 @@ def identify_feel(
 
 
 def _print(model: "FeelModel") -> None:
+    from odometry.feel.calibration_words import calibration_words
     from odometry.report.feel_page import LENGTHS, figures
 
     report = model.report
@@ -69,6 +70,10 @@ def _print(model: "FeelModel") -> None:
         for name, word in LENGTHS.items()
     ]
     print_table([header, *rows])
+    for name, word in LENGTHS.items():
+        words = calibration_words(report[name])
+        if words:
+            click.echo(f"By {word}, {words}.")
     click.echo(f"Chosen by runs held out: {report['chosen']}")
     click.echo("Windows by answer:")
     table = report["window"]["confusion"]

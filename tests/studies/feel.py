@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from odometry.feel.assessment import LENGTHS, assessed, speed_alone
+from odometry.feel.calibration_words import calibration_words
 from odometry.feel.design import Design
 from odometry.feel.felt import FeelConfig
 from odometry.feel.held_out import HeldOut, by_length, judged_runs, scored, windows_alone
@@ -64,10 +65,19 @@ def nested(tables, runs, seeds):
         rows = [one.by_length[name].to_table(one.names) for one in found]
         means = {
             key: np.mean([row[key] for row in rows], axis=0)
-            for key in ("balanced_accuracy", "interval", "calibration_error", "refused")
+            for key in (
+                "balanced_accuracy",
+                "interval",
+                "calibration_error",
+                "refused",
+                "mean_excess",
+                "error_by_chance",
+                "error_by_chance_of_runs",
+            )
         }
         spread = np.ptp([row["balanced_accuracy"] for row in rows])
         print(f"{name}: {shown(means)}, over folds dealt anew {spread:.3f}")
+        print(f"  {calibration_words(means)}; too sure by {means['mean_excess']:+.3f}")
     for name in found[0].by_groups:
         print(f"  windows, {name}: {np.mean([one.by_groups[name] for one in found]):.3f}")
     for length in ("window", "run"):

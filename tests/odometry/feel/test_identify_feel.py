@@ -76,6 +76,18 @@ def test_a_terrain_never_felt_is_unknown(model):
     assert any("nothing that the model" in line for line in sentences(felt))
 
 
+def test_a_run_that_is_mostly_unknown_is_of_no_terrain_of_the_model(model):
+    """Where its mean alone still lies near one: probabilities of the run are those of before."""
+    felt = follow_feel(drive("gravel", 701), model)
+    assert felt.answer_of_run[0] == "gravel"
+    doubtful = replace(felt)
+    answers = felt.lasting_answers.copy()
+    answers[: int(0.6 * len(answers))] = UNKNOWN
+    doubtful.__dict__["lasting_answers"] = answers
+    assert doubtful.answer_of_run[0] == UNKNOWN
+    assert not any("If it is all one terrain" in line for line in sentences(doubtful))
+
+
 @pytest.mark.parametrize("factor", [10.0, 0.1])
 def test_another_sensor_or_suspension_is_unknown(model, factor):
     def shaken(columns):

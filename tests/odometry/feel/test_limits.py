@@ -52,6 +52,18 @@ def test_time_shows_what_one_window_does_not(limits):
     assert found[0] < found[1] < found[2]
 
 
+def test_a_rare_terrain_that_feels_far_does_not_decide_how_far_is_far():
+    """Of forty runs two are of a terrain whose runs lie far from each other."""
+    labels = np.where(np.arange(40) < 2, "b", "a").astype(object)
+    offsets = np.where(np.arange(40) < 2, 10.0, np.linspace(0.1, 2.0, 40))[:, None, None]
+    rest = np.ones(40), np.zeros((40, 2)), np.ones(40), offsets
+    one = Stretches(labels, np.arange(40), *rest)
+    found = Limits.of(dict.fromkeys(LENGTHS, one), np.array([0.2, 0.5]), 2.0)
+    expected = np.quantile(offsets**2, KNOWN_SHARE["run"])
+    assert found.farness["run"] == pytest.approx(expected)
+    assert expected < 4.0
+
+
 def test_a_distance_in_all_columns_alone_refuses(limits):
     near = np.zeros((1, 1, 3))
     assert limits.refused(np.ones(1), np.full(1, 2.0), near)[0]

@@ -99,3 +99,19 @@ def test_standing_is_no_feeling_and_a_short_run_is_refused():
     assert not windows.felt.any()
     with pytest.raises(RunFolderError, match="expected a window of 2 s"):
         feel_windows(drive("gravel", 5, seconds=1.0))
+
+
+def delayed(seconds):
+    return lambda columns: columns | {"t": columns["t"] + seconds}
+
+
+@pytest.mark.parametrize(("seconds", "word"), [(5.0, "5.0 s later"), (-3.0, "3.0 s earlier")])
+def test_stamps_of_another_clock_are_refused(seconds, word):
+    run = drive("gravel", 6, seconds=60.0, turning=0.3)
+    feel_signals(with_imu(run, delayed(0.3)))  # what a filter or a log delays
+    with pytest.raises(RunFolderError, match=word):
+        feel_signals(with_imu(run, delayed(seconds)))
+
+
+def test_a_drive_that_does_not_turn_says_nothing_of_the_clock():
+    feel_signals(with_imu(drive("gravel", 7, seconds=60.0, turning=0.0), delayed(5.0)))

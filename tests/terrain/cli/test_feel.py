@@ -44,6 +44,8 @@ def test_what_was_found_with_runs_held_out_is_printed(model):
     found = read_feel_model(file)
     assert f"{found.report['stretch']['balanced_accuracy']:.3f}" in row
     assert "speed alone" in answer.stdout
+    assert "By run, probabilities are off by" in answer.stdout
+    assert answer.stdout.count("exact ones would seem off by") == 3
     assert "Columns that `feel` needs: gyro_x" in answer.stdout
     assert "held out one by one" in answer.stderr
 
