@@ -33,6 +33,7 @@ from odometry.effects.reference_step import ClockStep
 from odometry.effects.residual import Residual
 from odometry.effects.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.slope_icr import SlopeByIcr
+from odometry.effects.straight_lines import StraightLines
 from odometry.effects.terrain import NewIcrs, Terrain
 from odometry.effects.time_course import UNBOUNDED_S, Course, FromAMoment, Gradual, InBursts, Spans
 from odometry.effects.time_offset import ClockDrift, TimeOffset
@@ -90,6 +91,7 @@ EFFECTS: tuple[type[Effect], ...] = (
     SwayingMast,
     CourseForYaw,
     LateByChance,
+    StraightLines,
     GyroscopeError,
 )
 OUTLIERS = (ReferenceOutliers, FrozenPoses, JumpingPoses)

@@ -35,7 +35,7 @@ class LateByChance(MeasurementEffect):
     @classmethod
     def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
         """Where the stamps of poses are uneven."""
-        spreads_s = [float(np.std(uneven_s(of))) for of in recorded.pose_stamps_s if len(of)]
+        spreads_s = [float(np.std(uneven_s(of.stamps_s))) for of in recorded.reported]
         return (cls(),) if max(spreads_s, default=0.0) > LEAST_S else ()
 
     @property

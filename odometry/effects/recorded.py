@@ -5,8 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
-from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
+from odometry.effects.reported import Reported
 from odometry.models.inputs import Inputs
 from odometry.run import UNKNOWN
 
@@ -25,15 +25,15 @@ class Recorded:
         Of each run: when its first window ends and its last one begins, in run time.
     calibrated : frozenset of str
         Terrains on which the base was identified.
-    pose_stamps_s : tuple of (M,)
-        Of each run: stamps of its poses, in run time.
+    reported : tuple of Reported
+        Of each run: what the reference reported.
     """
 
     base: Base
     inputs: tuple[Inputs, ...]
     observed_s: tuple[tuple[float, float], ...]
     calibrated: frozenset[str] = frozenset()
-    pose_stamps_s: tuple[FloatArray, ...] = ()
+    reported: tuple[Reported, ...] = ()
 
     @property
     def longest_s(self) -> float:

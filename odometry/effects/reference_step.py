@@ -127,7 +127,7 @@ class ClockStep(ReferenceStep):
     @classmethod
     def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
         """Where the stamps of a run break."""
-        breaks = tuple(breaks_s(of) for of in recorded.pose_stamps_s)
+        breaks = tuple(breaks_s(of.stamps_s) for of in recorded.reported)
         if not any(breaks):
             return ()
         gyroscope = all(of.yaw_rate_rad_s is not None for of in recorded.inputs)

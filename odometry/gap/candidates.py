@@ -8,6 +8,7 @@ from odometry.effects.recorded import Recorded, labels_of
 from odometry.effects.reference_fault import FEW_HEADINGS
 from odometry.gap.calibration import Calibration
 from odometry.gap.own_moments import observed_s
+from odometry.gap.simulate import reported_of
 from odometry.windows.dense import DenseWindows
 
 
@@ -35,7 +36,7 @@ def _of_catalogue(scenes: Sequence[DenseWindows], calibration: Calibration) -> l
         tuple(scene.inputs for scene in scenes),
         tuple(observed_s(scene) for scene in scenes),
         frozenset().union(*(labels_of(scene.inputs) for _, scene in calibration.held_back)),
-        tuple(scene.pose_s for scene in scenes),
+        tuple(reported_of(scene) for scene in scenes),
     )
     return [effect for form in EFFECTS for effect in form.offered(recorded)]
 

@@ -6,6 +6,7 @@ import pytest
 from odometry.effects.late_by_chance import LateByChance
 from odometry.effects.pose_stamps import uneven_s
 from odometry.effects.recorded import Recorded
+from tests.odometry.effects.reports import at_stamps
 
 EVEN_S = np.arange(0.0, 60.0, 0.1)
 INSIDE = slice(30, -30)
@@ -29,7 +30,7 @@ def test_stamps_of_an_even_clock_are_not_uneven_however_fast_it_runs():
 def test_it_is_a_candidate_where_stamps_are_uneven(bench, rng, most_s, count):
     stamps_s = EVEN_S + rng.uniform(0, most_s, len(EVEN_S))
     inputs = (bench.drive(rng),)
-    recorded = Recorded(bench.base, inputs, ((1.0, 9.0),), pose_stamps_s=(stamps_s,))
+    recorded = Recorded(bench.base, inputs, ((1.0, 9.0),), reported=(at_stamps(stamps_s),))
     assert len(LateByChance.offered(recorded)) == count
 
 

@@ -9,6 +9,7 @@ from odometry.effects.pose_stamps import breaks_s
 from odometry.effects.recorded import Recorded
 from odometry.effects.reference_step import ClockStep
 from odometry.run import Run
+from tests.odometry.effects.reports import at_stamps
 
 SPANS = ((2.0, 30.0), (1.0, 60.0))
 VALUES = np.array([0.25, 10.0, -0.1, 40.0])  # offset and moment of each run
@@ -55,8 +56,13 @@ def test_stamps_break_where_a_clock_is_set_and_nowhere_else(rng):
 
 def test_without_a_break_it_is_no_candidate(bench, rng):
     inputs, even = (bench.drive(rng),), np.arange(0.0, 30.0, 0.1)
-    assert ClockStep.offered(Recorded(bench.base, inputs, SPANS[:1], pose_stamps_s=(even,))) == ()
-    set_on = Recorded(bench.base, inputs, SPANS[:1], pose_stamps_s=(even + 0.3 * (even > 12.34),))
+    assert (
+        ClockStep.offered(Recorded(bench.base, inputs, SPANS[:1], reported=(at_stamps(even),)))
+        == ()
+    )
+    set_on = Recorded(
+        bench.base, inputs, SPANS[:1], reported=(at_stamps(even + 0.3 * (even > 12.34)),)
+    )
     (step,) = ClockStep.offered(set_on)
     assert step.observed_s == SPANS[:1]
     assert step.breaks_s == ((pytest.approx(12.5, abs=0.1),),)

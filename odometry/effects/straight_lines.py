@@ -1,0 +1,111 @@
+"""A reference that knows few poses, and draws straight lines between them."""
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.effects.base import Effect, EffectParameter
+from odometry.effects.recorded import Recorded
+from odometry.effects.reference_filter import NO_INVERSE, ReferenceFilter
+from odometry.effects.reported import Reported
+
+SHORTEST_S, LONGEST_S = 0.8, 5.0  # between fixes
+BEND_S = 0.4  # to each side, over which a bend is measured
+MOST_USUAL = 8.0  # of a bend: larger ones count as this
+FINE = 6  # of the span of a run: over which a period is told from the next
+REFINED = np.linspace(-1.0, 1.0, 21)
+SURE = 12.0  # standard deviations by which bends gather at the fixes
+LEAST_BENDS = 8  # poses between two fixes, or they are fixes themselves
+NORMAL = 1.4826  # standard deviations of the median absolute deviation
+
+
+class StraightLines(ReferenceFilter):
+    """Poses lie on straight lines between fixes at even intervals, which bends of the path show.
+
+    No robot changes its velocity in every direction at even intervals alone.
+    """
+
+    form = "straight_lines"
+    in_words = "poses of the reference that are drawn straight between few fixes"
+    equation = "pose -> (1 - share) pose + share (a straight line from fix to fix)"
+    source = "linear interpolation"
+    looks_like = "a path of straight pieces of the same duration, in turns as well"
+    remedy = "use the fixes alone: " + NO_INVERSE.split(": ")[0]
+    needs = "several poses between two fixes"
+
+    def __init__(self) -> None:
+        self._fixes: dict[bytes, FloatArray] = {}
+
+    @classmethod
+    def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
+        """Where the paths of all runs bend at even intervals."""
+        found = [len(fixes_s(of.stamps_s, of.poses)) > 0 for of in recorded.reported]
+        return (cls(),) if found and all(found) else ()
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`."""
+        return (EffectParameter("share", "", -0.5, 1.5, 0.0, 0.02),)
+
+    def is_meant(self, values: FloatArray) -> bool:
+        """See `Effect.is_meant`: lines are drawn, or not."""
+        return bool(values[0] > 0.5)
+
+    def seen(self, values: FloatArray, poses: FloatArray, reported: Reported) -> FloatArray:
+        """See `MeasurementEffect.seen`."""
+        stamps_s = reported.stamps_s
+        key = stamps_s.tobytes() + reported.poses.tobytes()
+        if key not in self._fixes:
+            self._fixes[key] = fixes_s(stamps_s, reported.poses)
+        fixes = self._fixes[key]
+        if not len(fixes):
+            return poses
+        at_fixes = [np.interp(fixes, stamps_s, column) for column in poses.T]
+        lines = [np.interp(stamps_s, fixes, column) for column in at_fixes]
+        return np.asarray(poses + values[0] * (np.column_stack(lines) - poses))
+
+
+def fixes_s(stamps_s: FloatArray, poses: FloatArray) -> FloatArray:
+    """Moments of fixes at even intervals, by where the path bends; none where it does not."""
+    if len(stamps_s) < LEAST_BENDS**2:
+        return np.empty(0)
+    spacing_s = float(np.median(np.diff(stamps_s)))
+    lag = max(1, round(BEND_S / spacing_s))
+    bends, at_s = _bends(poses, lag), stamps_s[lag:-lag]
+    shortest_s = max(SHORTEST_S, LEAST_BENDS * spacing_s)
+    step_hz = 1 / (FINE * float(np.ptp(at_s)))
+    tried_hz = np.arange(1 / LONGEST_S, 1 / shortest_s, step_hz)
+    sure, phase, rate_hz = max((*_gathered(at_s, bends, of, spacing_s), of) for of in tried_hz)
+    near_hz = rate_hz + step_hz * REFINED
+    sure, phase, rate_hz = max((*_gathered(at_s, bends, of, spacing_s), of) for of in near_hz)
+    if sure < SURE:
+        return np.empty(0)
+    first = np.ceil(stamps_s[0] * rate_hz - phase)
+    count = int(np.floor(stamps_s[-1] * rate_hz - phase) - first) + 1
+    inner_s = (first + np.arange(count) + phase) / rate_hz
+    return np.unique(np.concatenate([stamps_s[:1], inner_s, stamps_s[-1:]]))
+
+
+def _bends(poses: FloatArray, lag: int) -> FloatArray:
+    """By how much the path turns aside at each pose (M - 2 lag,), in what is usual, bounded."""
+    changes = np.abs(poses[2 * lag :] - 2 * poses[lag:-lag] + poses[: -2 * lag])
+    usual = np.maximum(NORMAL * np.median(changes, axis=0), np.finfo(float).tiny)
+    return np.asarray(np.minimum(changes / usual, MOST_USUAL).sum(axis=1))
+
+
+def _gathered(
+    at_s: FloatArray, bends: FloatArray, rate_hz: float, spacing_s: float
+) -> tuple[float, float]:
+    """By how much bends are larger at one phase of a rate, in standard errors; and that phase."""
+    count = max(4, int(1 / (rate_hz * spacing_s)))
+    phase = (at_s * rate_hz) % 1.0
+    place = np.minimum((phase * count).astype(np.int64), count - 1)
+    sums, numbers = np.bincount(place, bends, count), np.bincount(place, minlength=count)
+    sums, numbers = sums + np.roll(sums, -1), numbers + np.roll(numbers, -1)
+    means = sums / np.maximum(numbers, 1)
+    errors = bends.std() / np.sqrt(np.maximum(numbers, 1))
+    sizes = (means - bends.mean()) / np.maximum(errors, np.finfo(float).tiny)
+    best = int(np.argmax(sizes))
+    near = np.isin(place, [best, (best + 1) % count])
+    weights = np.maximum(bends[near] - bends.mean(), 0.0)
+    turned = np.angle(np.sum(weights * np.exp(2j * np.pi * phase[near])))
+    return float(sizes[best]), float(turned / (2 * np.pi) % 1.0)
