@@ -22,6 +22,7 @@ from odometry.models.inputs import Inputs
 MODEL = Contact()
 MEAN_S = 0.2
 REMEMBERED = 64  # answers
+FEWEST, MANY = 2.0, 4.0  # contacts a side
 IN_BALANCE = [0, 4, 5, 2, 8]  # where the parameters are among those of `Contact`
 
 
@@ -32,24 +33,28 @@ class ContactChange(MotionEffect):
     ----------
     half_width : float, optional
         Of the contacts [m]; half the track width of the robot where absent.
+    contacts : float, optional
+        How many a side bear the load, two where absent. It is no number that a search can follow:
+        wheels at the ends alone resist a turn as a longer track would.
     """
 
     form = "contact"
     slow = True
     physics = "contact"
-    constant_names = ("half_width",)
+    constant_names = ("half_width", "contacts")
     source = "force balance of this project (odometry.models.contact)"
 
-    def __init__(self, half_width: float | None = None) -> None:
+    def __init__(self, half_width: float | None = None, contacts: float | None = None) -> None:
         self.half_width = half_width
+        self.contacts = contacts
         self._changes: dict[bytes, FloatArray] = {}
         self._balanced: dict[bytes, FloatArray] = {}
         self._latest: dict[bytes, FloatArray] = {}
 
     @classmethod
     def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
-        """On contacts as wide as the robot."""
-        return (cls(recorded.base.robot.track_width / 2),)
+        """On contacts as wide as the robot, all along the treads."""
+        return (cls(recorded.base.robot.track_width / 2, MANY),)
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
@@ -63,9 +68,9 @@ class ContactChange(MotionEffect):
         )
 
     def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the interface
-        """See `Effect.starts`: contacts under the body, slippery and rough."""
+        """See `Effect.starts`: contacts under the body, slippery and rough, stiff and soft."""
         usual, _ = self.usual(base)
-        return np.array([[mu, *usual[1:]] for mu in (0.4, 0.8)])
+        return np.array([[mu, *usual[1:4], scale] for mu in (0.4, 0.8) for scale in (0.01, 0.08)])
 
     def usual(self, base: Base) -> tuple[FloatArray, FloatArray]:
         """See `Effect.usual`: from the size of the robot; what motion leaves open stays there."""
@@ -83,9 +88,9 @@ class ContactChange(MotionEffect):
     def balance_values(self, values: FloatArray, base: Base, scale: float = 1.0) -> FloatArray:
         """Parameters of `Contact`; `scale` is that of the speeds."""
         mu, height, half_length, x_cm, slip_scale = values
-        half_width = self._half_width_m(base)
+        half_width, contacts = self._half_width_m(base), self.contacts or FEWEST
         return np.array(
-            [mu, 1.0, x_cm, 0.0, height, half_length, half_width, 2.0, scale * slip_scale]
+            [mu, 1.0, x_cm, 0.0, height, half_length, half_width, contacts, scale * slip_scale]
         )
 
     def _half_width_m(self, base: Base) -> float:

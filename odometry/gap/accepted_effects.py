@@ -21,6 +21,7 @@ from odometry.gap.variables import window_variables
 from odometry.gap.verdict import (
     closes_a_part,
     closes_held_out,
+    closes_the_most,
     is_the_main_part,
     leaves_no_structure,
     leaves_noise,
@@ -79,7 +80,11 @@ class Standing(Search):
         if share >= self._most(found.effects):
             return found
         left = structure_left(self.fitter, found.fitted, self.config)
-        reason = closes_a_part(share, self.config) or leaves_no_structure(share, left)
+        reason = (
+            closes_a_part(share, self.config)
+            or closes_the_most(share, self.fitter.spread(found.fitted), self.config)
+            or leaves_no_structure(share, left)
+        )
         if not reason:
             return found
         for effect in found.effects:

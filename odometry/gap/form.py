@@ -12,7 +12,6 @@ import numpy as np
 from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual
 from odometry.effects.time_course import FromAMoment
-from odometry.gap.config import GapConfig
 from odometry.gap.contest import cost_of, margin_of, penalty
 from odometry.gap.course import CHOSEN, best_course
 from odometry.gap.effect_values import is_meant
@@ -20,7 +19,9 @@ from odometry.gap.evenness import unevenness
 from odometry.gap.explanation import Explanation
 from odometry.gap.fit import Fitted, Fitter
 from odometry.gap.input_noise import surely_dearer
+from odometry.gap.own_moments import with_own_moments
 from odometry.gap.search import Search
+from odometry.gap.statistic import gap_of
 from odometry.gap.verdict import is_abrupt, is_by_its_essence, is_even, is_special
 
 
@@ -35,7 +36,7 @@ def of_their_form(search: Search, found: Explanation, smooth: Sequence[Residual]
         alone = names_alone(search.fitter, found)
         names = [added.effect for added in alone.effects]
         place = names.index(effect)
-        instead = smooth_in_place(search.fitter, alone, place, smooth, search.config)
+        instead = smooth_in_place(search, alone, place, smooth)
         of = unevenness(search.fitter, found.fitted, found.effects.index(effect))
         added = alone.effects[place]
         reason = (
@@ -89,24 +90,25 @@ def slow_course_in_place(search: Search, names: Fitted, place: int) -> str:
 
 
 def names_alone(fitter: Fitter, found: Explanation) -> Fitted:
-    """Fitted without smooth functions."""
+    """Fitted without smooth functions, contact forces anew: beside these they had other values."""
     effects = found.fitted.effects
     names = [one for one in effects if not isinstance(one.effect, Residual)]
-    return found.fitted if len(names) == len(effects) else _fit(fitter, names)
+    if len(names) == len(effects):
+        return found.fitted
+    return fitter.fit([one.effect for one in names], names)
 
 
 def smooth_in_place(
-    fitter: Fitter,
-    names: Fitted,
-    place: int,
-    smooth: Sequence[Residual],
-    config: GapConfig,
+    search: Search, names: Fitted, place: int, smooth: Sequence[Residual]
 ) -> Residual | None:
     """The smooth function that takes the place of one name with more evidence.
 
     None where no function beats the name by the margin, or where the name still closes its share
-    beside the best: then the function describes something else.
+    beside the best: then the function describes something else. Nor where the name is one of
+    contact forces, whose equations are right and imperfect, and the function closes less than it
+    on held-out data.
     """
+    fitter, config = search.fitter, search.config
     others = [*names.effects[:place], *names.effects[place + 1 :]]
     before = _fit(fitter, others)
     losses = fitter.linear_losses(before, smooth)
@@ -124,9 +126,21 @@ def smooth_in_place(
     margin = margin_of(config, fitter.spread(fits[best]), closed)
     if surely_dearer(names, fits[best], fitter.measured) < margin:
         return None
+    if names.effects[place].effect.slow and closes_less(search, fits[best], names):
+        return None
     both = _fit(fitter, [*fits[best].effects, names.effects[place]])
     still = (cost - cost_of(both)) / closed
     return best if still < config.least_beside else None
+
+
+def closes_less(search: Search, one: Fitted, other: Fitted) -> bool:
+    """Whether one fit leaves more of the gap on held-out data than another."""
+    fitted, believed = search.fitter.measured.scenes, search.fitter.calibration
+    gaps_m = []
+    for fit in (one, other):
+        of_runs = with_own_moments(fit.base, fit.effects, search.held_out, fitted, believed)
+        gaps_m.append(gap_of(fit.base, *of_runs, search.config.part_s).value)
+    return gaps_m[0] > gaps_m[1]
 
 
 def _fit(fitter: Fitter, effects: Sequence[Added]) -> Fitted:

@@ -130,6 +130,19 @@ def closes_a_part(share_closed: float, config: GapConfig) -> str:
     )
 
 
+def closes_the_most(share_closed: float, spread: float, config: GapConfig) -> str:
+    """Whether names that leave more than noise close at least half of the excess held out.
+
+    `spread` is the chi-squared a degree of freedom that they leave on the measured runs.
+    """
+    if share_closed >= config.least_of_rest or spread <= config.unexplained:
+        return ""
+    return (
+        f"it closes {100 * max(share_closed, 0.0):.0f} % of the gap on held-out data and leaves "
+        f"{spread:.1f} times the chi-squared of noise: not the cause, or not the only one"
+    )
+
+
 def is_unbeaten(gain: float, refused: str, of_refused: float, margin: float) -> str:
     """Whether no candidate that is refused explains more, by more than a margin of chi-squared.
 

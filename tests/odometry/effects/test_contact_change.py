@@ -106,3 +106,12 @@ def test_values_at_an_end_of_the_search_are_no_robot(place, value, meant):
     changed = np.where(np.arange(5) == place, value, VALUES)
     assert SlopeByContact().is_meant(changed) == meant
     assert SlopeByContact().is_meant(np.array([0.5, 0.2, 0.3, 0.02, 1e-3]))
+
+
+def test_contacts_all_along_the_treads_resist_a_turn_less_than_those_at_the_ends(bench):
+    """Cornering, as many as four a side let a robot out of its turn by another angle than two."""
+    fast = constant([0.6, 1.8])
+    ends, many = (change(bench, InertiaByContact(0.3, count), fast) for count in (2.0, 4.0))
+    np.testing.assert_array_equal(ends, change(bench, InertiaByContact(0.3), fast))
+    assert np.abs(many - ends).max() > 0.01
+    assert InertiaByContact(0.3, 4.0).constants() == {"half_width": 0.3, "contacts": 4.0}

@@ -25,6 +25,7 @@ from odometry.gap.verdict import (
     base_left_calibration,
     closes_a_part,
     closes_held_out,
+    closes_the_most,
     is_resolved,
     is_the_main_part,
     is_unbeaten,
@@ -178,6 +179,13 @@ def test_a_gap_within_the_floor_has_no_name():
 @pytest.mark.parametrize(("share", "stands"), [(0.05, False), (0.22, True), (1.0, True)])
 def test_a_name_closes_more_than_a_small_part(share, stands):
     assert (closes_a_part(share, CONFIG) == "") == stands
+
+
+@pytest.mark.parametrize(
+    ("share", "spread", "stands"), [(0.43, 2.0, False), (0.43, 1.1, True), (0.6, 2.0, True)]
+)
+def test_a_name_that_leaves_more_than_noise_closes_half(share, spread, stands):
+    assert (closes_the_most(share, spread, CONFIG) == "") == stands
 
 
 @pytest.mark.parametrize(("of_refused", "stands"), [(115.0, False), (105.0, True), (90.0, True)])
