@@ -9,6 +9,8 @@ from odometry.effects.recorded import Reported
 from odometry.effects.reference_filter import ReferenceFilter
 from odometry.models.inputs import Inputs
 
+BLURRED_M_S = 0.1  # the least speed
+
 
 class CourseForYaw(ReferenceFilter):
     """The yaw is the course of a point ahead of the origin, where the robot is fast enough.
@@ -40,6 +42,10 @@ class CourseForYaw(ReferenceFilter):
     def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the interface
         """See `Effect.starts`."""
         return np.array([[ahead, least] for ahead in (-0.2, 0.2) for least in (0.1, 0.2, 0.4)])
+
+    def resolution(self, values: FloatArray, inputs: Inputs) -> FloatArray:  # noqa: ARG002
+        """See `Effect.resolution`: few turns are driven at about the least speed."""
+        return np.array([0.0, BLURRED_M_S])
 
     def seen(self, values: FloatArray, poses: FloatArray, reported: Reported) -> FloatArray:
         """See `MeasurementEffect.seen`."""

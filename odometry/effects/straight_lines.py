@@ -13,8 +13,9 @@ BEND_S = 0.4  # to each side, over which a bend is measured
 MOST_USUAL = 8.0  # of a bend: larger ones count as this
 FINE = 6  # of the span of a run: over which a period is told from the next
 REFINED = np.linspace(-1.0, 1.0, 21)
-SURE = 12.0  # standard deviations by which bends gather at the fixes
-LEAST_BENDS = 8  # poses between two fixes, or they are fixes themselves
+SURE = 8.0  # standard deviations by which bends gather at the fixes
+LEAST_BENDS = 4  # poses between two fixes, or they are fixes themselves
+LEAST_POSES = 64  # of a run
 NORMAL = 1.4826  # standard deviations of the median absolute deviation
 
 
@@ -66,7 +67,7 @@ class StraightLines(ReferenceFilter):
 
 def fixes_s(stamps_s: FloatArray, poses: FloatArray) -> FloatArray:
     """Moments of fixes at even intervals, by where the path bends; none where it does not."""
-    if len(stamps_s) < LEAST_BENDS**2:
+    if len(stamps_s) < LEAST_POSES:
         return np.empty(0)
     spacing_s = float(np.median(np.diff(stamps_s)))
     lag = max(1, round(BEND_S / spacing_s))
