@@ -5,8 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
+from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
-from odometry.effects.reported import Reported
 from odometry.models.inputs import Inputs
 from odometry.run import UNKNOWN
 
@@ -33,7 +33,7 @@ class Recorded:
     inputs: tuple[Inputs, ...]
     observed_s: tuple[tuple[float, float], ...]
     calibrated: frozenset[str] = frozenset()
-    reported: tuple[Reported, ...] = ()
+    reported: "tuple[Reported, ...]" = ()
 
     @property
     def longest_s(self) -> float:

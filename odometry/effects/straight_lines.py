@@ -4,9 +4,8 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.effects.base import Effect, EffectParameter
-from odometry.effects.recorded import Recorded
+from odometry.effects.recorded import Recorded, Reported
 from odometry.effects.reference_filter import NO_INVERSE, ReferenceFilter
-from odometry.effects.reported import Reported
 
 SHORTEST_S, LONGEST_S = 0.8, 5.0  # between fixes
 BEND_S = 0.4  # to each side, over which a bend is measured

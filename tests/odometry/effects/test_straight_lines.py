@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.effects.recorded import Recorded
-from odometry.effects.reported import Reported
+from odometry.effects.recorded import Recorded, Reported
 from odometry.effects.straight_lines import StraightLines, fixes_s
 
 STAMPS_S = np.arange(0.0, 120.0, 0.1) + 0.03

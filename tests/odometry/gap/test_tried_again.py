@@ -4,8 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
+from odometry.effects.contact_effects import SlopeByContact
 from odometry.effects.residual import Residual
-from odometry.effects.slope_contact import SlopeByContact
 from odometry.effects.slope_icr import SlopeByIcr
 from odometry.gap.explanation import Explanation
 from odometry.gap.name import _tried_again
