@@ -10,6 +10,7 @@ from odometry.checks.finding import Finding, Level
 from odometry.checks.motion import Motion
 
 LEAST_WINDOWS = 6
+ORDINARY = (0.5, 1.5)  # metres moved for each of tread travel; else the unit is another one
 MOVING = 0.1  # share of the fastest speed
 EQUAL = 0.15  # difference of two sides, as a share of their sum, that turns a robot little
 NARROWEST, WIDEST = 0.8, 4.0  # effective width in track widths
@@ -25,7 +26,9 @@ def unsigned(evidence: Evidence) -> Iterator[Finding]:
     Where both sides read about the same, the robot hardly turns: it turns as if one side
     ran backwards. Where both are positive, measured positions go backwards.
     """
-    if (evidence.speeds_m_s < 0).any():
+    metres = evidence.metres_per_metre
+    other_unit = metres is not None and not ORDINARY[0] < metres < ORDINARY[1]
+    if (evidence.speeds_m_s < 0).any() or other_unit:
         return
     spins, backwards = _spins(evidence), _backwards(evidence)
     seen = []
