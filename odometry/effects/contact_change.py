@@ -23,6 +23,7 @@ MODEL = Contact()
 MEAN_S = 0.2
 REMEMBERED = 64  # answers
 FEWEST, MANY = 2.0, 4.0  # contacts a side
+STARTS = ((0.4, 0.01), (0.4, 0.08), (0.8, 0.01), (0.8, 0.08))  # friction, scale of slip
 IN_BALANCE = [0, 4, 5, 2, 8]  # where the parameters are among those of `Contact`
 
 
@@ -53,8 +54,9 @@ class ContactChange(MotionEffect):
 
     @classmethod
     def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
-        """On contacts as wide as the robot, all along the treads."""
-        return (cls(recorded.base.robot.track_width / 2, MANY),)
+        """On contacts as wide as the robot: wheels at its ends, or all along the treads."""
+        half_width = recorded.base.robot.track_width / 2
+        return (cls(half_width), cls(half_width, MANY))
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
@@ -70,7 +72,7 @@ class ContactChange(MotionEffect):
     def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the interface
         """See `Effect.starts`: contacts under the body, slippery and rough, stiff and soft."""
         usual, _ = self.usual(base)
-        return np.array([[mu, *usual[1:4], scale] for mu in (0.4, 0.8) for scale in (0.01, 0.08)])
+        return np.array([[mu, *usual[1:4], scale] for mu, scale in STARTS])
 
     def usual(self, base: Base) -> tuple[FloatArray, FloatArray]:
         """See `Effect.usual`: from the size of the robot; what motion leaves open stays there."""
