@@ -11,7 +11,9 @@ from odometry.checks.relation import Relation, relation
 # Share of the squares explained. Measured poses of 26 real recordings: 0.992 at most along the
 # way, 0.998 in turns; a simulated robot with noise of 1 cm: 0.999.
 COPIED = 0.9999
-SAME = 0.005  # factor of the way, less one: no wheel rolls so exactly as its radius says
+COPIED_WAY = 0.99995  # of the way; poses of a filter with four digits have 0.999999
+SAME = 0.001  # factor of the way, less one: no wheel rolls so exactly as its radius says
+LEAST_TURN_RAD = 2.0  # in all
 OWN_WIDTH = 0.02  # of a width, less one: it is the track_width of run.toml
 
 
@@ -29,7 +31,8 @@ def computed_poses(evidence: Evidence) -> Iterator[Finding]:
     width_m = _width_m(evidence.pose_turn_by_difference) if evidence.yaw_measured else None
     track_m = evidence.run.robot.track_width
     of_track = width_m is not None and abs(track_m / width_m - 1) < OWN_WIDTH
-    rolls = way is not None and _copied(way) and abs(way.slope - 1) < SAME
+    rolls = way is not None and way.explained > COPIED_WAY and abs(way.slope - 1) < SAME
+    rolls = rolls and _turned_rad(evidence) > LEAST_TURN_RAD
     if not of_track and (not rolls or evidence.run.truth is not None):
         return
     seen, source = [], "wheel odometry itself, computed from these treads"
@@ -55,15 +58,22 @@ def computed_poses(evidence: Evidence) -> Iterator[Finding]:
     )
 
 
+def _turned_rad(evidence: Evidence) -> float:
+    """How far the robot turned in all: on a straight line at one speed all is proportional."""
+    turns = evidence.motion.turn_rad if evidence.yaw_measured else evidence.uniform.gyroscope_rad
+    return float(np.nansum(np.abs(turns)))
+
+
 def _way(evidence: Evidence) -> Relation | None:
     """Measured way along the robot's axis, round its turn, from the mean travel of the treads.
 
     Half of the turn is between the chord of a circle and its tangent. A base ahead of or behind
     the middle moves sideways of it alone.
     """
-    if not evidence.yaw_measured:
-        return evidence.distance_by_mean
     m = evidence.motion
+    if not evidence.yaw_measured:
+        half_rad = np.clip(np.nan_to_num(evidence.turn_rad(m)) / 2, -np.pi / 2, np.pi / 2)
+        return relation(m.distance_m / np.sinc(half_rad / np.pi), np.abs(m.mean_m))
     half_rad = m.turn_rad / 2
     middle_rad = m.yaw_rad[:, 0] + half_rad
     chord_m = m.moved_m[:, 0] * np.cos(middle_rad) + m.moved_m[:, 1] * np.sin(middle_rad)

@@ -24,7 +24,8 @@ def clean_run(world, tmp_path_factory):
         x, y, yaw = poses[-1]
         c, s = np.cos(yaw + omega / 2), np.sin(yaw + omega / 2)
         poses.append(np.array([x + c * v_x - s * v_y, y + s * v_x + c * v_y, yaw + omega]))
-    rows = np.column_stack([stamps_s, poses])[::4]
+    measured = np.array(poses) + np.random.default_rng(6).normal(0, 0.002, (len(poses), 3))
+    rows = np.column_stack([stamps_s, measured])[::4]
     world.write_csv(folder / "pose.csv", "t,x,y,yaw", rows)
     treads = zip(stamps_s, left, right, strict=True)
     world.write_csv(folder / "odometry.csv", "t,v_left,v_right", treads)
