@@ -80,8 +80,8 @@ class Effect(ABC):
     slow : bool
         Whether it takes long to compute.
     physics : str
-        Effects of the same physics have the same parameters, which are the same numbers in one
-        model; "" where its parameters are its own.
+        Effects of the same physics have the same parameters and constants, which are the same
+        numbers in one model; "" where its parameters are its own.
     """
 
     name: ClassVar[str]

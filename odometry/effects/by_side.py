@@ -26,6 +26,12 @@ class BySide(CommandEffect):
     looks_like = "turns to one side that nobody asked for, where this tread has its fault"
     of_both: CommandEffect
 
+    def __init_subclass__(cls, of: type[CommandEffect]) -> None:
+        super().__init_subclass__()
+        cls.name, cls.in_words, cls.remedy = of.name, of.in_words, of.remedy
+        cls.equation, cls.source = f"{of.equation}, of each tread", of.source
+        cls.needs, cls.alike = of.needs, of.alike
+
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
         """See `Effect.parameters`: that of the left tread, then that of the right one."""
@@ -81,53 +87,31 @@ def _alone(inputs: Inputs, side: int) -> Inputs:
     return replace(inputs, tread_speeds_m_s=inputs.tread_speeds_m_s[:, [side]])
 
 
-class LagBySide(BySide):
+class LagBySide(BySide, of=ActuatorLag):
     """A first-order lag of each tread's own."""
 
-    name = ActuatorLag.name
     form = "first_order_by_side"
-    in_words = ActuatorLag.in_words
-    equation = ActuatorLag.equation + ", of each tread"
-    source = ActuatorLag.source
-    remedy = ActuatorLag.remedy
-    alike = ActuatorLag.alike
     of_both = ActuatorLag()
 
 
-class DelayBySide(BySide):
+class DelayBySide(BySide, of=CommandDelay):
     """A dead time of each tread's own."""
 
-    name = CommandDelay.name
     form = "by_side"
-    in_words = CommandDelay.in_words
-    equation = CommandDelay.equation + ", of each tread"
-    source = CommandDelay.source
-    remedy = CommandDelay.remedy
-    alike = CommandDelay.alike
     of_both = CommandDelay()
 
 
-class DeadbandBySide(BySide):
+class DeadbandBySide(BySide, of=Deadband):
     """A deadband of each tread's own."""
 
-    name = Deadband.name
     form = "deadband_by_side"
-    in_words = Deadband.in_words
-    equation = Deadband.equation + ", of each tread"
-    source = Deadband.source
-    remedy = Deadband.remedy
     of_both = Deadband()
 
 
-class SaturationBySide(BySide):
+class SaturationBySide(BySide, of=Saturation):
     """A highest speed of each tread's own."""
 
-    name = Saturation.name
     form = "saturation_by_side"
-    in_words = Saturation.in_words
-    equation = Saturation.equation + ", of each tread"
-    source = Saturation.source
-    remedy = Saturation.remedy
 
     def __init__(self, fastest_m_s: float = 20.0) -> None:
         self.of_both = Saturation(fastest_m_s)
@@ -138,16 +122,10 @@ class SaturationBySide(BySide):
         return (cls(recorded.fastest_m_s),)
 
 
-class RateBySide(BySide):
+class RateBySide(BySide, of=RateLimit):
     """A highest change of speed of each tread's own; one that is not reached is none."""
 
-    name = RateLimit.name
     form = "rate_by_side"
-    in_words = RateLimit.in_words
-    equation = RateLimit.equation + ", of each tread"
-    source = RateLimit.source
-    remedy = RateLimit.remedy
-    needs = RateLimit.needs
     of_both = RateLimit()
 
     @property

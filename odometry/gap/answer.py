@@ -94,14 +94,23 @@ def _evidence(one: Judged) -> float:
 
 
 def rivals_of(found: Explanation) -> tuple[Rival, ...]:
-    """All candidates for the first effect, most evidence first."""
-    return tuple(
-        Rival(
-            one.effect.name,
-            one.effect.form,
+    """The candidates for the first effect, most evidence first, with the one that was added.
+
+    Of several that read the same (other constants, other numbers of contacts) it is the best one.
+    """
+    added = [step for step in found.steps[:1] if not isinstance(step.effect, Residual)]
+    added_key = added[0].effect.key if added else None
+    first = [one for one in found.first if one.effect.key != added_key]
+    best: dict[tuple[str, str], Rival] = {}
+    for one in sorted([*added, *first], key=_evidence, reverse=True):
+        effect = one.effect
+        rival = Rival(
+            effect.name,
+            effect.form,
             one.evidence,
             one.gap_after,
-            one.effect.course,
+            effect.course,
+            added=effect.key == added_key,
         )
-        for one in found.first
-    )
+        best.setdefault((rival.name, rival.form_in_words), rival)
+    return tuple(best.values())

@@ -51,6 +51,19 @@ def contact_effects(scenes: Sequence[DenseWindows], calibration: Calibration) ->
     return tuple(e for e in offered_effects(scenes, calibration) if e.slow)
 
 
+def of_the_same_robot(candidates: Sequence[Effect], named: Sequence[Effect]) -> tuple[Effect, ...]:
+    """Candidates whose constants are those of the named effects of the same physics."""
+    return tuple(
+        one
+        for one in candidates
+        if all(
+            one.constants() == other.constants()
+            for other in named
+            if other.physics and other.physics == one.physics
+        )
+    )
+
+
 def told_by(effect: Effect, scenes: Sequence[DenseWindows], calibration: Calibration) -> bool:
     """Whether a run has the data that the effect needs."""
     return any(not effect.lacks(scene.inputs, calibration.base) for scene in scenes)

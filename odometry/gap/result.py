@@ -40,13 +40,25 @@ class NamedEffect:
 
 @dataclass(frozen=True)
 class Rival:
-    """A candidate for the first effect."""
+    """A candidate for the first effect.
+
+    Attributes
+    ----------
+    name, form, course : str
+    evidence : float
+        Twice the log-likelihood gained on windows not fitted, less the penalty.
+    gap_after : float
+        On the measured runs, with it alone [m].
+    added : bool
+        Whether it was added.
+    """
 
     name: str
     form: str
     evidence: float
     gap_after: float
     course: str = ""
+    added: bool = False
 
     @property
     def form_in_words(self) -> str:

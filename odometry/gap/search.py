@@ -9,7 +9,7 @@ from sklearn.linear_model import LassoLarsIC
 
 from odometry.effects.base import Effect
 from odometry.effects.residual import Residual
-from odometry.gap.candidates import contact_effects
+from odometry.gap.candidates import contact_effects, of_the_same_robot
 from odometry.gap.config import GapConfig
 from odometry.gap.contest import Judged, judge, ranked
 from odometry.gap.effect_values import is_the_effect
@@ -96,7 +96,8 @@ class Search:
             return judged
         taken = {added.effect.name for added in before.effects}
         scenes, calibration = self.fitter.measured.scenes, self.fitter.calibration
-        slow = [e for e in contact_effects(scenes, calibration) if e.name not in taken]
+        contacts = [e for e in contact_effects(scenes, calibration) if e.name not in taken]
+        slow = of_the_same_robot(contacts, [added.effect for added in before.effects])
         more = judge(self.fitter, before, slow, self.config, self.progress)
         fits = [one.fitted for one in (*judged, *more)]
         return ranked(self.fitter, before, fits, self.config)

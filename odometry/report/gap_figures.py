@@ -100,8 +100,9 @@ def time_picture(result: GapResult, folder: Path) -> Picture:
 
 def evidence_picture(result: GapResult, folder: Path) -> Picture | None:
     """The evidence of each candidate for the first effect; None without candidates."""
-    rivals = sorted(result.rivals, key=lambda rival: -rival.evidence)[:CANDIDATES]
-    rivals = [rival for rival in rivals if np.isfinite(rival.evidence)]
+    finite = [rival for rival in result.rivals if np.isfinite(rival.evidence)]
+    best = sorted(finite, key=lambda rival: -rival.evidence)
+    rivals = [one for place, one in enumerate(best) if place < CANDIDATES or one.added]
     if not rivals:
         return None
     height_in = 0.8 + 0.27 * len(rivals)
@@ -109,8 +110,7 @@ def evidence_picture(result: GapResult, folder: Path) -> Picture | None:
     def draw(figure: Figure) -> None:
         axes = figure.add_axes((0.4, 0.5 / height_in, 0.5, 1 - 0.65 / height_in))
         for row, rival in enumerate(rivals):
-            chosen = bool(result.effects) and row == 0
-            colour = AFTER.colour if chosen else "#AAAAAA"
+            colour = AFTER.colour if rival.added else "#AAAAAA"
             axes.barh(row, rival.evidence, height=0.65, color=colour)
             axes.annotate(
                 f"{round(rival.evidence)}",
@@ -133,7 +133,8 @@ def evidence_picture(result: GapResult, folder: Path) -> Picture | None:
         save_figure(folder / "gap_evidence.png", (WIDTH_IN, height_in), draw),
         f"Evidence of the candidates {', '.join(rival.name for rival in rivals)}.",
         "Evidence of each candidate for the first effect: twice the log-likelihood gained on "
-        "windows not fitted, less the penalty for its parameters. Blue: added.",
+        "windows not fitted, less the penalty for its parameters."
+        + (" Blue: added." if any(rival.added for rival in rivals) else " None was added."),
     )
 
 

@@ -114,4 +114,7 @@ def test_stamps_of_another_clock_are_refused(seconds, word):
 
 
 def test_a_drive_that_does_not_turn_says_nothing_of_the_clock():
-    feel_signals(with_imu(drive("gravel", 7, seconds=60.0, turning=0.0), delayed(5.0)))
+    """Its samples stay where their stamps say."""
+    straight = drive("gravel", 7, seconds=60.0, turning=0.0)
+    late = feel_signals(with_imu(straight, delayed(5.0)))
+    assert late.begin_s == pytest.approx(feel_signals(straight).begin_s + 5.0, abs=0.1)

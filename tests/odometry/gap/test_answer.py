@@ -7,6 +7,7 @@ import pytest
 
 from odometry.effects.corrected import Added
 from odometry.effects.lateral_skid import LateralSkid
+from odometry.effects.residual import Residual
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.answer import named_effects, rivals_of, verdict_of
 from odometry.gap.result import Closing
@@ -81,10 +82,27 @@ def test_an_interval_ends_at_the_bounds_of_its_search():
     np.testing.assert_array_equal(named.high[1:], values[1:])
 
 
-def test_rivals_are_all_candidates_for_the_first_effect_in_their_order():
-    first = (judged(SCALE, 40.0, 0.3), judged(SKID, 9.0, 0.4))
-    found = rivals_of(explained(first=first))
-    assert [(one.name, one.evidence, one.gap_after) for one in found] == [
-        ("wheel_scale", 40.0, 0.3),
-        ("lateral_skid", 9.0, 0.4),
+def test_rivals_are_all_candidates_for_the_first_effect_most_evidence_first():
+    """Of those that read the same, other constants apart, the best."""
+    first = (judged(SCALE, 40.0, 0.3), judged(SKID, 9.0, 0.4), judged(WheelScale(), 4.0, 0.5))
+    found = rivals_of(explained(first=first, steps=()))
+    assert [(one.name, one.evidence, one.gap_after, one.added) for one in found] == [
+        ("wheel_scale", 40.0, 0.3, False),
+        ("lateral_skid", 9.0, 0.4, False),
     ]
+
+
+def test_what_was_added_is_among_the_rivals():
+    """Marked, also where it was searched later, or has less evidence than one that fell."""
+    steps = (judged(SKID, 30.0, 0.35), judged(SCALE, 5.0, 0.3))
+    found = rivals_of(explained(first=(judged(SCALE, 40.0, 0.3),), steps=steps))
+    assert [(one.name, one.evidence, one.added) for one in found] == [
+        ("wheel_scale", 40.0, False),
+        ("lateral_skid", 30.0, True),
+    ]
+
+
+def test_a_smooth_function_is_no_rival_of_names():
+    first, step = judged(SCALE, 4.0, 0.3), judged(Residual("v"), 9.0, 0.1)
+    (found,) = rivals_of(explained(first=(first,), steps=(step,)))
+    assert (found.name, found.added) == ("wheel_scale", False)

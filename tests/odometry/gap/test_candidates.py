@@ -2,7 +2,9 @@
 
 import pytest
 
-from odometry.gap.candidates import contact_effects, quick_effects
+from odometry.effects.contact_effects import InertiaByContact
+from odometry.effects.wheel_scale import WheelScale
+from odometry.gap.candidates import contact_effects, of_the_same_robot, quick_effects
 
 LOSS = ("traction_loss", "k_m", "from_a_moment")
 
@@ -30,3 +32,12 @@ def test_forms_of_contact_forces_are_apart(scenes, known):
     assert {e.form for e in slow} == {"contact"}
     assert "contact" not in {e.form for e in quick}
     assert [e.key for e in slow if e.name == "slope_sliding"]
+
+
+def test_a_robot_has_one_number_of_contacts():
+    """Of a physics that was named; what has no physics of its own is free."""
+    few, many = InertiaByContact(contacts=2.0), InertiaByContact(contacts=4.0)
+    scale = WheelScale()
+    candidates = (few, many, scale)
+    assert of_the_same_robot(candidates, [few, scale]) == (few, scale)
+    assert of_the_same_robot(candidates, []) == candidates
