@@ -91,13 +91,15 @@ def last_point(x: FloatArray, y: FloatArray) -> tuple[float, float]:
     return float(x[-1]), float(y[-1])
 
 
-def spread(positions: FloatArray, heights: FloatArray) -> FloatArray:
+def spread(positions: FloatArray, heights: FloatArray, low: float = -np.inf) -> FloatArray:
     """Move labels as little as possible, in least squares, so that none overlap.
 
     Parameters
     ----------
     positions, heights : (N,)
         Middles and heights of the labels, in one unit.
+    low : float
+        No label reaches below.
 
     Returns
     -------
@@ -109,7 +111,7 @@ def spread(positions: FloatArray, heights: FloatArray) -> FloatArray:
     sorted_heights = heights[order]
     stacked = np.cumsum(sorted_heights) - sorted_heights / 2
     placed = np.empty(len(positions))
-    placed[order] = isotonic_regression(positions[order] - stacked).x + stacked
+    placed[order] = np.maximum(isotonic_regression(positions[order] - stacked).x, low) + stacked
     return placed
 
 
@@ -124,7 +126,8 @@ def label_points(
         With its final limits and place in the figure.
     points : Mapping of name to (x, y)
         In data units; where they crowd, labels are moved up or down and a thin line leads there.
-        Points to the left or right of the axes have no label.
+        None is written below the axes, where the tick labels are. Points to the left or right of
+        the axes have no label.
     styles : Mapping of name to LineStyle
     """
     left, right = sorted(axes.get_xlim())
@@ -136,7 +139,8 @@ def label_points(
     heights_pt = axes.transData.transform(list(points.values()))[:, 1] * points_per_pixel
     texts = [fill(name, _LETTERS) for name in points]
     sizes_pt = np.array([_LINE_PT * (text.count("\n") + 1) for text in texts])
-    moves_pt = spread(heights_pt, sizes_pt) - heights_pt
+    bottom_pt = axes.bbox.y0 * points_per_pixel
+    moves_pt = spread(heights_pt, sizes_pt, bottom_pt) - heights_pt
     for (name, point), text, move_pt in zip(points.items(), texts, moves_pt, strict=True):
         colour = styles[name].colour
         axes.annotate(

@@ -52,3 +52,22 @@ def test_labels_stand_apart_on_the_axes(axes):
     boxes = sorted(map(Text.get_window_extent, axes.texts), key=lambda box: box.y0)
     assert [text.get_text() for text in axes.texts] == list(points)
     assert all(low.y1 <= high.y0 + 1 for low, high in pairwise(boxes))
+
+
+@given(NUMBERS, st.floats(-50, 50))
+def test_no_label_reaches_below_a_bound(pairs, low):
+    """Labels that were above it stay."""
+    positions, heights = np.array(pairs).T
+    free, bound = spread(positions, heights), spread(positions, heights, low)
+    assert np.all(bound - heights / 2 >= low - 1e-9)
+    if np.all(free - heights / 2 >= low):
+        np.testing.assert_allclose(bound, free)
+
+
+def test_labels_of_points_at_the_bottom_stand_above_the_tick_labels(axes):
+    axes.set(xlim=(0, 1), ylim=(0, 1))
+    points = {"one": (1.0, 0.0), "two": (1.0, 0.01)}
+    label_points(axes, points, {name: LineStyle("#000000") for name in points})
+    axes.figure.canvas.draw()
+    lowest = min(text.get_window_extent().y0 for text in axes.texts)
+    assert lowest >= axes.bbox.y0 - 1
