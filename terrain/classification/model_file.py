@@ -76,22 +76,7 @@ class ModelFile:
                 f"{path}: a model file holds SFTA or an image network (NetworkFeatures), not a "
                 f"{type(made_by).__name__}; pickle or joblib keep such a classifier"
             )
-        settings = ModelSettings(
-            self.preset,
-            self.colour_,
-            self.metres_per_pixel,
-            self.rejected_share,
-            self.patch_size_px,
-            tuple(map(str, self.classes_)),
-            self.n_neighbors_,
-            self.rejection_distance_,
-            features,
-            self.trained_on_,
-            self.rejection_distances_,
-            self.temperature_,
-            self.one_patch_,
-            self.image_rejection_distances_,
-        )
+        settings = ModelSettings.taken_from(self, features)
         write_model(Path(path), settings.to_table(), arrays, made)
 
     @classmethod
@@ -113,25 +98,14 @@ class ModelFile:
     @classmethod
     def _from_file(cls, settings: ModelSettings, arrays: dict[str, AnyArray]) -> Self:
         model = cls()
-        model.preset = settings.preset
-        model.colour = model.colour_ = settings.colour
-        model.metres_per_pixel = settings.metres_per_pixel
-        model.rejected_share = settings.rejected_share
-        model.patch_size_px = settings.patch_size_px
-        model.classes_ = np.array(settings.classes)
-        model.n_neighbors_ = settings.n_neighbors
-        model.rejection_distance_ = settings.rejection_distance
+        settings.put_into(model)
+        model.classes_, model.colour = np.array(settings.classes), settings.colour
         features = settings.features
         if isinstance(features, NetworkSettings):
             model.features = features.restored(arrays)
             model._features = Transformed(model.features, model.colour_)
         else:
             model._features = features
-        model.rejection_distances_ = settings.rejection_distances
-        model.image_rejection_distances_ = settings.image_rejection_distances
-        model.temperature_ = settings.temperature
-        model.one_patch_ = settings.one_patch
-        model.trained_on_ = settings.trained_on
         model.old_samples_ = OldSamples.from_arrays(arrays, model.classes_)
         model.training_look_ = TrainingLook.from_arrays(arrays, len(settings.classes))
         check_codes(arrays["codes"], len(settings.classes))

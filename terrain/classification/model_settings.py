@@ -1,9 +1,10 @@
 """What a model file says beside its arrays, checked when it is read."""
 
-import math
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
-from typing import Any, Self
+import sys
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from types import UnionType
+from typing import Any, Self, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -77,7 +78,12 @@ def read_features(table: Mapping[str, Any]) -> FeatureSettings | NetworkSettings
 
 @dataclass(frozen=True)
 class ModelSettings:
-    """The settings of a trained classifier, as `TerrainClassifier` names them."""
+    """The settings of a trained classifier: attributes of `TerrainClassifier`, keys of its file.
+
+    What has a default is missing from files of older versions: `trained_on` from those of 0.4,
+    `rejection_distances` and `temperature` of 0.9, `one_patch` of 0.11 and
+    `image_rejection_distances` of 0.12.
+    """
 
     preset: str
     colour: bool
@@ -94,6 +100,18 @@ class ModelSettings:
     one_patch: bool = False
     image_rejection_distances: tuple[float, ...] | None = None
 
+    @classmethod
+    def taken_from(cls, model: object, features: FeatureSettings | NetworkSettings) -> Self:
+        """The settings of a trained classifier, whose attribute `classes_` is an array."""
+        values = {name: getattr(model, of) for name, of in ATTRIBUTES.items()}
+        values["classes"] = tuple(map(str, values["classes"]))
+        return cls(features=features, **values)
+
+    def put_into(self, model: object) -> None:
+        """Set the attributes of a classifier, but for what makes its features."""
+        for name, attribute in ATTRIBUTES.items():
+            setattr(model, attribute, getattr(self, name))
+
     def to_table(self) -> dict[str, Any]:
         """Turn into values that JSON can hold."""
         return asdict(self) | {"trained_on": self.trained_on and self.trained_on.to_table()}
@@ -107,63 +125,60 @@ class ModelSettings:
         KeyError, TypeError, ValueError
             If a setting is missing, of another kind, or out of range.
         """
-        kinds: dict[str, type | tuple[type, ...]] = {
-            "preset": str,
-            "colour": bool,
-            "metres_per_pixel": (float, int, type(None)),
-            "rejected_share": float,
-            "patch_size_px": int,
-            "classes": list,
-            "n_neighbors": int,
-            "rejection_distance": float,
-            "features": dict,
+        values: dict[str, Any] = {
+            of.name: tuple(value) if isinstance(value := table[of.name], list) else value
+            for of in fields(cls)
+            if of.name in table
         }
-        for name, kind in kinds.items():
-            if not isinstance(table[name], kind):
-                raise TypeError(f"{name} is {table[name]!r}")
-        limits = {
-            "patch_size_px": (1, 4096),
-            "n_neighbors": (1, 10_000),
-            "rejection_distance": (0.0, 1e12),
-        }
-        for name, (low, high) in limits.items():
-            if not low <= table[name] <= high:
-                raise ValueError(f"{name} = {table[name]}, expected {low:g} to {high:g}")
-        if not 0 < table["rejected_share"] < 1:
-            raise ValueError(f"rejected_share = {table['rejected_share']}, expected 0 to 1")
-        if table["metres_per_pixel"] is not None and not 0 < table["metres_per_pixel"] < math.inf:
-            raise ValueError(f"metres_per_pixel = {table['metres_per_pixel']}, expected above 0")
-        values = {name: table[name] for name in kinds}
-        values["classes"] = tuple(map(str, table["classes"]))
+        values.setdefault("rejection_distances", (table["rejection_distance"],))
         values["features"] = read_features(table["features"])
-        if table.get("trained_on") is not None:  # files of version 0.4 do not say
-            values["trained_on"] = TrainedOn.from_table(table["trained_on"])
-        # files of version 0.9 do not say
-        limits = table.get("rejection_distances", [table["rejection_distance"]])
-        values["rejection_distances"] = _distances(limits, {1, len(PATCHES)})
-        if table.get("temperature") is not None:
-            values["temperature"] = _within(table["temperature"], *TEMPERATURES)
-        # files of version 0.11 do not say
-        values["one_patch"] = _is_true(table.get("one_patch", False))
-        if table.get("image_rejection_distances") is not None:  # files of 0.12 do not say
-            limits = table["image_rejection_distances"]
-            values["image_rejection_distances"] = _distances(limits, {len(PATCHES)})
-        return cls(**values)
+        if values.get("trained_on") is not None:
+            values["trained_on"] = TrainedOn.from_table(values["trained_on"])
+        settings = cls(**values)
+        settings._check()
+        return settings
+
+    def _check(self) -> None:
+        for name, kind in get_type_hints(type(self)).items():
+            value, kinds = getattr(self, name), _plain_kinds(kind)
+            if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
+                raise TypeError(f"{name} is {value!r}")
+        if not all(isinstance(name, str) for name in self.classes):
+            raise TypeError(f"classes are {self.classes}")
+        for name, (low, high) in RANGES.items():
+            values = getattr(self, name)
+            for value in values if isinstance(values, tuple) else (values,):
+                if value is not None and not low <= value <= high:
+                    raise ValueError(f"{name} = {value}, expected {low:g} to {high:g}")
+        limits, of_images = self.rejection_distances, self.image_rejection_distances
+        if len(limits) not in {1, len(PATCHES)}:
+            raise ValueError(f"rejection distances {limits}")
+        if of_images is not None and len(of_images) != len(PATCHES):
+            raise ValueError(f"rejection distances of images {of_images}")
 
 
-def _distances(limits: Sequence[object], lengths: set[int]) -> tuple[float, ...]:
-    if len(limits) not in lengths:
-        raise ValueError(f"rejection distances {limits}")
-    return tuple(_within(limit, 0.0, 1e12) for limit in limits)
+def _plain_kinds(kind: Any) -> tuple[type, ...]:
+    """The classes of a type such as ``tuple[str, ...] | None``; a float may be a whole number."""
+    kinds = get_args(kind) if isinstance(kind, UnionType) else (kind,)
+    plain = tuple(get_origin(of) or of for of in kinds)
+    return (*plain, int) if float in plain else plain
 
 
-def _is_true(value: object) -> bool:
-    if not isinstance(value, bool):
-        raise TypeError(f"one_patch is {value!r}")
-    return value
-
-
-def _within(value: object, low: float, high: float) -> float:
-    if not isinstance(value, float) or not low <= value <= high:
-        raise ValueError(f"{value!r}, expected a number from {low:g} to {high:g}")
-    return value
+SMALLEST, LARGEST = sys.float_info.min, sys.float_info.max
+RANGES = {
+    "metres_per_pixel": (SMALLEST, LARGEST),
+    "rejected_share": (SMALLEST, 1 - sys.float_info.epsilon),
+    "patch_size_px": (1, 4096),
+    "n_neighbors": (1, 10_000),
+    "rejection_distance": (0.0, 1e12),
+    "rejection_distances": (0.0, 1e12),
+    "temperature": TEMPERATURES,
+    "image_rejection_distances": (0.0, 1e12),
+}
+# What was learned has an underscore at the end, as scikit-learn has it.
+GIVEN = {"preset", "metres_per_pixel", "rejected_share", "patch_size_px"}
+ATTRIBUTES = {
+    of.name: of.name if of.name in GIVEN else f"{of.name}_"
+    for of in fields(ModelSettings)
+    if of.name != "features"
+}
