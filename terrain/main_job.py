@@ -27,7 +27,7 @@ from terrain.contradictions_so_far import Contradiction
 from terrain.images_outside_replay import add_images_outside
 from terrain.new_terrain import learned_apart, new_spans
 from terrain.run_presets import run_preset, with_preset
-from terrain.run_result import RunResult, SecondReplay
+from terrain.run_result import RunResult, SecondReplay, is_used_by_filter
 from terrain.sources import (
     BOTH,
     OWN_SOURCE,
@@ -147,8 +147,8 @@ def run_odometry(
         felt = felt_of(run, feel, causal=causal)
         differing = _contradictions(felt, motion, watcher, result, causal=causal)
     reference_name, reference = reference_of(run) or ("", None)
-    second = None
-    if reference_name == "pose":
+    used, second = is_used_by_filter(reference_name), None
+    if used:
         second = _second_replay(run, estimator, result, causal, show_progress=show_progress)
     learned = learned_parameters(parameters, result, run.name, run.robot.track_width)
     unknown_s = new_spans(differing)
@@ -163,7 +163,7 @@ def run_odometry(
         reference_name,
         reference,
         learned,
-        odometer_uncertainty(run, result, reference if reference_name == "truth" else None),
+        odometer_uncertainty(run, result, None if used else reference),
         second,
         BOTH if name == "camera" and feel is not None else name,
         differing,

@@ -16,7 +16,7 @@ from odometry.evaluation.score import JUDGED_EVERY_S, SILENT_S, counted_referenc
 from terrain.evaluation_notes import advice, filter_table, remarks, verdict
 from terrain.label_confusion import label_confusion_table
 from terrain.new_terrain import contradiction_lines
-from terrain.run_result import RunResult, TerrainChange
+from terrain.run_result import RunResult, TerrainChange, is_used_by_filter
 from terrain.switch import SwitchEvent
 from terrain.switch_delay import switch_delays
 
@@ -91,7 +91,7 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "gyroscope": result.replay.has_gyroscope,
         "errors": error_tables(result),
         "off_at_the_end_m": result.off_at_the_end_m,
-        "estimate_has_seen_reference": result.reference_name == "pose",
+        "estimate_has_seen_reference": is_used_by_filter(result.reference_name),
         "remarks": remarks(result.scores, result.off_at_the_end_m, result.replay.events),
         "withheld": _withheld(result),
         "odometer_uncertainty": uncertainty_table(result.uncertainty, result.reference_name),

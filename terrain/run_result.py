@@ -1,6 +1,6 @@
 """The result of a replayed run, and which of its trajectories are evaluated with which poses."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -50,32 +50,9 @@ class EvaluatedTrajectory:
     against: str
 
 
-def evaluated_trajectories(
-    run: Run,
-    replay: Replay,
-    reference_name: str,
-    reference: Trajectory | None,
-    second: SecondReplay | None,
-) -> dict[str, EvaluatedTrajectory]:
-    """Every trajectory that can be evaluated fairly, by name; none without a reference.
-
-    No pose corrects the open-loop ones. The filter uses pose.csv: without a truth its estimate
-    is evaluated in a second replay, with poses that were held out from it.
-    """
-    if reference is None:
-        return {}
-    found = {
-        name: EvaluatedTrajectory(
-            at_reference_point(run, reference_name, trajectory), reference, reference_name
-        )
-        for name, trajectory in replay.open_loop(run.robot.track_width).items()
-    }
-    if reference_name == "truth":
-        found["estimate"] = EvaluatedTrajectory(replay.trajectory(), reference, reference_name)
-    elif second is not None:
-        estimate = at_reference_point(run, reference_name, second.replay.trajectory())
-        found["estimate"] = EvaluatedTrajectory(estimate, second.withheld.judged, "withheld pose")
-    return found
+def is_used_by_filter(reference_name: str) -> bool:
+    """Whether the filter used the reference, which then cannot evaluate its estimate."""
+    return reference_name == "pose"
 
 
 def at_reference_point(run: Run, reference_name: str, trajectory: Trajectory) -> Trajectory:
@@ -165,19 +142,44 @@ class RunResult:
         """Every trajectory that can be evaluated fairly, with the poses that it is compared with.
 
         differential_drive, gyroscope, odometer_without_gyroscope (both only where there is one),
-        odometer, and estimate; see `evaluated_trajectories`.
+        odometer, and estimate; none without a reference. No pose corrects the open-loop ones. The
+        filter uses pose.csv: without a truth its estimate is evaluated in a second replay, with
+        poses that were held out from it.
         """
-        return evaluated_trajectories(
-            self.run, self.replay, self.reference_name, self.reference, self.second
-        )
+        if self.reference is None:
+            return {}
+        lines = self.replay.open_loop(self.run.robot.track_width)
+        found = {name: self.beside_reference(line) for name, line in lines.items()}
+        if not is_used_by_filter(self.reference_name):
+            found["estimate"] = self.beside_reference(self.replay.trajectory())
+        elif self.second is not None:
+            estimate = self.beside_reference(self.second.replay.trajectory())
+            poses = self.second.withheld.judged
+            found["estimate"] = replace(estimate, reference=poses, against="withheld pose")
+        return found
+
+    def beside_reference(self, trajectory: Trajectory) -> EvaluatedTrajectory:
+        """A trajectory of the robot, moved to the point that the reference measures.
+
+        Raises
+        ------
+        ValueError
+            If there is no reference.
+        """
+        if self.reference is None:
+            raise ValueError(f"{self.run.name} has no reference")
+        moved = at_reference_point(self.run, self.reference_name, trajectory)
+        return EvaluatedTrajectory(moved, self.reference, self.reference_name)
 
     @cached_property
     def scores(self) -> dict[str, Score]:
         """Errors of each trajectory that is evaluated, by its name."""
-        return {
-            name: score(self.run, of.trajectory, of.reference, self.config.evaluation)
-            for name, of in self.evaluated.items()
-        }
+        return {name: self.score_of(of) for name, of in self.evaluated.items()}
+
+    def score_of(self, evaluated: EvaluatedTrajectory) -> Score:
+        """Errors of a trajectory of this run."""
+        line, reference = evaluated.trajectory, evaluated.reference
+        return score(self.run, line, reference, self.config.evaluation)
 
     @property
     def off_at_the_end_m(self) -> dict[str, float]:
@@ -188,8 +190,7 @@ class RunResult:
         """
         delivered = dict(self.evaluated)
         if self.reference is not None:
-            line = at_reference_point(self.run, self.reference_name, self.replay.trajectory())
-            delivered["estimate"] = EvaluatedTrajectory(line, self.reference, self.reference_name)
+            delivered["estimate"] = self.beside_reference(self.replay.trajectory())
         distances = {
             name: position_errors(of.trajectory, of.reference)[1] for name, of in delivered.items()
         }

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.evaluation.score import Score, score
+from odometry.evaluation.score import Score
 from odometry.models.catalogue import ICR_NAMES
 from odometry.report.figure import REFERENCE_STYLE, LineStyle, line_styles
 from odometry.report.labels import broken_at_outages
 from odometry.trajectory import Trajectory
-from terrain.run_result import EvaluatedTrajectory, RunResult, at_reference_point
+from terrain.run_result import EvaluatedTrajectory, RunResult
 
 LABELS = {
     "differential_drive": "differential drive",
@@ -51,25 +51,14 @@ class ReportLines:
         if result.reference is None:
             return {}
         own = {LABELS[name]: of for name, of in result.evaluated.items()}
-        others = {
-            name: EvaluatedTrajectory(
-                at_reference_point(result.run, result.reference_name, line),
-                result.reference,
-                result.reference_name,
-            )
-            for name, line in self._other_odometers().items()
-        }
+        others = {n: result.beside_reference(line) for n, line in self._other_odometers().items()}
         return own | others
 
     def scores(self) -> dict[str, Score]:
         """Score of each trajectory that is evaluated; none without a reference."""
         result = self.result
         own = {LABELS[name]: of for name, of in result.scores.items()}
-        return {
-            name: own.get(name)
-            or score(result.run, of.trajectory, of.reference, result.config.evaluation)
-            for name, of in self.evaluated().items()
-        }
+        return {n: own.get(n) or result.score_of(of) for n, of in self.evaluated().items()}
 
     def paths(self) -> dict[str, Trajectory]:
         """Trajectories to be drawn, the reference first so that it lies below.
