@@ -1,4 +1,4 @@
-"""What to drive next: whether driving it tells rivals apart, on blind cases of rivals.
+"""What to drive next: whether driving it distinguishes rivals, on blind cases of rivals.
 
     python tests/studies/gap_next.py [--seeds 1] [--pairs NAME ...] [--out gap_next] [--jobs 2]
 

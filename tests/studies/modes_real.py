@@ -1,4 +1,4 @@
-"""Which ground a real robot is on, told by its motion alone.
+"""Which terrain a real robot is on, by its motion alone.
 
     TERRAIN_ODOMETRY_DATA=... python tests/studies/modes_real.py
 

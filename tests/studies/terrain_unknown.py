@@ -1,4 +1,4 @@
-"""Which distance tells unknown terrain best: chosen with other classes left out.
+"""Which distance detects unknown terrain best: chosen with other classes left out.
 
     TERRAIN_ODOMETRY_DATA=... python tests/studies/terrain_unknown.py [--out FOLDER]
 
