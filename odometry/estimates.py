@@ -155,8 +155,8 @@ class Replay:
         """Body twists (N, 3) of the odometer, each to the next stamp; the last by its treads."""
         twists = self._turned_by_treads()
         by_gyroscope = self._turned_by_gyroscope()
-        told = np.isfinite(by_gyroscope).all(axis=1)
-        twists[:-1][told] = by_gyroscope[told]
+        measured = np.isfinite(by_gyroscope).all(axis=1)
+        twists[:-1][measured] = by_gyroscope[measured]
         return twists
 
     def odometer_without_gyroscope(self) -> Trajectory:
@@ -169,8 +169,8 @@ class Replay:
         Where the gyroscope has no samples, the ideal differential drive turns.
         """
         twists = icr_twist(ideal_icrs(track_width), np.nan_to_num(self.tread_speeds_m_s))
-        told = np.isfinite(self.yaw_rates_rad_s)
-        twists[:-1, 2][told] = self.yaw_rates_rad_s[told]
+        measured = np.isfinite(self.yaw_rates_rad_s)
+        twists[:-1, 2][measured] = self.yaw_rates_rad_s[measured]
         return self._reckon(twists)
 
     def differential_drive(self, track_width: float) -> Trajectory:

@@ -164,8 +164,8 @@ def merged_terrain(
     weights = np.linalg.pinv(covariances + np.diag(between), hermitian=True)
     of_mean = np.linalg.pinv(weights.sum(axis=0), hermitian=True)
     mean = of_mean @ np.einsum("kij,kj->i", weights, values)
-    alike = len(of) if began_alike else 1
-    covariance = np.diag(between) + alike * of_mean
+    factor = len(of) if began_alike else 1
+    covariance = np.diag(between) + factor * of_mean
     merged = replace(
         of[0],
         values={**of[0].values, **dict(zip(names, mean.tolist(), strict=True))},

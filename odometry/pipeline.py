@@ -189,7 +189,7 @@ def _from_start(run: Run) -> Iterator[Frame]:
 
 def _frames_so_far(run: Run) -> Iterator[Frame]:
     """The same, with gaps as far as they are known at each frame."""
-    return map(GapsSoFar().told, _usable(run))
+    return map(GapsSoFar().marked, _usable(run))
 
 
 def _usable(run: Run) -> Iterator[Frame]:

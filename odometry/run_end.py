@@ -89,10 +89,10 @@ def bias_error(replay: Replay, first: int) -> float:
     steps_s, yaws = np.diff(replay.stamps_s[first:]), replay.means[first:, YAW]
     biases = replay.means[first:-1, GYRO_BIAS]
     rates = replay.believed_yaw_rates_rad_s[first:]
-    told = np.isfinite(rates) & (steps_s > 0)
+    known = np.isfinite(rates) & (steps_s > 0)
     off = (rates - biases) * steps_s - wrap(np.diff(yaws))
-    duration_s = float(steps_s[told].sum())
-    return float(off[told].sum()) / duration_s if duration_s > 0 else 0.0
+    duration_s = float(steps_s[known].sum())
+    return float(off[known].sum()) / duration_s if duration_s > 0 else 0.0
 
 
 def _off_at_end(run: Run, replay: Replay) -> list[FilterEvent]:

@@ -80,12 +80,12 @@ class NamedTerrain:
     names: AnyArray
 
     @classmethod
-    def told(
+    def of_answers(
         cls, initial: str, stamps_s: FloatArray, answers: AnyArray, silent: Sequence[str]
     ) -> "NamedTerrain":
         """From answers (N,); those in `silent` keep the terrain in force."""
-        speaks = ~np.isin(answers.astype(str), list(silent))
-        return cls(initial, stamps_s[speaks], answers[speaks])
+        named = ~np.isin(answers.astype(str), list(silent))
+        return cls(initial, stamps_s[named], answers[named])
 
     def terrain(self, frame: Frame, estimate: Estimate) -> str:  # noqa: ARG002 - the protocol's
         """The name in force at the stamp of the frame."""
@@ -94,7 +94,7 @@ class NamedTerrain:
 
 
 @dataclass(frozen=True)
-class ToldFooting:
+class ReplayedFooting:
     """The terrain of an earlier replay: the latest footing at or before each frame.
 
     Attributes
@@ -111,7 +111,7 @@ class ToldFooting:
         return self.estimates[0].terrain
 
     @cached_property
-    def _told(self) -> tuple[FloatArray, list[Footing]]:
+    def _footings(self) -> tuple[FloatArray, list[Footing]]:
         """Stamps (n,) from which on the footing was another one, and that footing."""
         stamps_s, footings, before = [], [], None
         for estimate in self.estimates:
@@ -125,7 +125,7 @@ class ToldFooting:
 
     def terrain(self, frame: Frame, estimate: Estimate) -> Footing:  # noqa: ARG002 - the protocol's
         """The footing in force at the stamp of the frame."""
-        stamps_s, footings = self._told
+        stamps_s, footings = self._footings
         row = int(np.searchsorted(stamps_s, frame.stamp_s, side="right")) - 1
         return footings[max(row, 0)]
 
@@ -150,7 +150,7 @@ def labelled_terrain(run: Run, initial: str | None = None) -> NamedTerrain:
     for table in (run.truth, run.odometry):
         if table is None or "terrain" not in table:
             continue
-        found = NamedTerrain.told("", table.stamps_s, table["terrain"], ("", UNKNOWN))
+        found = NamedTerrain.of_answers("", table.stamps_s, table["terrain"], ("", UNKNOWN))
         if len(found.names):
             return NamedTerrain(initial or str(found.names[0]), found.stamps_s, found.names)
     raise RunFolderError(

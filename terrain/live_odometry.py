@@ -162,7 +162,7 @@ class LiveOdometry:
             self._felt.before(frame)
         if self._estimate is None and not can_start(frame, at_pose=self._at_pose):
             return None
-        frame = self._gaps.told(frame)
+        frame = self._gaps.marked(frame)
         if self._estimate is None or self._odometer is None:
             self._estimate = started(self._ekf, self._source, frame)
             self._odometer = RunningOdometer(self._estimate)

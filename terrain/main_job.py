@@ -18,7 +18,7 @@ from odometry.parameters import ParameterSet, read_parameters
 from odometry.pipeline import Estimator, TerrainSource, replay
 from odometry.pose_delay import without_pose_delay
 from odometry.run import UNKNOWN, Run
-from odometry.run_terrains import NamedTerrain, ToldFooting
+from odometry.run_terrains import NamedTerrain, ReplayedFooting
 from odometry.windows.measured_poses import lacks_yaw
 from terrain.classification.classifier import Classifier, TerrainClassifier
 from terrain.config import Config
@@ -195,7 +195,7 @@ def _second_replay(
     withheld = withhold(run, float(first.stamps_s[0]), float(first.stamps_s[-1]))
     if withheld is None:
         return None
-    source = ToldFooting(first.estimates)
+    source = ReplayedFooting(first.estimates)
     again = replay(withheld.run, estimator, source, causal=causal, show_progress=show_progress)
     return SecondReplay(withheld, again)
 

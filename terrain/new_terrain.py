@@ -13,7 +13,7 @@ from odometry.learned_parameters import learned_parameters
 from odometry.parameters import ParameterSet
 from odometry.pipeline import Estimator, replay
 from odometry.run import UNKNOWN, Run
-from odometry.run_terrains import Footing, ToldFooting
+from odometry.run_terrains import Footing, ReplayedFooting
 from terrain.contradictions_so_far import Contradiction
 from terrain.run_result import RunResult
 
@@ -26,25 +26,25 @@ class Renamed:
 
     Attributes
     ----------
-    told : ToldFooting
+    replayed : ReplayedFooting
     name : str
     spans_s : tuple of (float, float)
     """
 
-    told: ToldFooting
+    replayed: ReplayedFooting
     name: str
     spans_s: tuple[tuple[float, float], ...]
 
     @property
     def initial(self) -> str:
         """The terrain at the first estimate."""
-        return self.told.initial
+        return self.replayed.initial
 
     def terrain(self, frame: Frame, estimate: Estimate) -> Footing:
         """The footing in force at the stamp of the frame."""
         if any(begin_s <= frame.stamp_s <= end_s for begin_s, end_s in self.spans_s):
             return Footing.of(self.name)
-        return self.told.terrain(frame, estimate)
+        return self.replayed.terrain(frame, estimate)
 
 
 def new_name(taken: Iterable[str]) -> str:
@@ -78,7 +78,7 @@ def learned_apart(
     if not spans_s:
         return learned
     name = new_name((*learned.terrains, UNKNOWN))
-    source = Renamed(ToldFooting(first.estimates), name, spans_s)
+    source = Renamed(ReplayedFooting(first.estimates), name, spans_s)
     again = replay(run, estimator, source, causal=causal)
     found = learned_parameters(learned, again, run.name).terrains.get(name)
     if found is None:
@@ -113,7 +113,7 @@ def _lines(result: RunResult) -> Iterator[str]:
     began_s = result.run.began_s
     differ = [one for one in result.contradictions if not one.is_new]
     for one in differ[:MOST_SENTENCES]:
-        yield f"From {one.begin_s - began_s:.1f} to {one.end_s - began_s:.1f} s {_told(one)}."
+        yield f"From {one.begin_s - began_s:.1f} to {one.end_s - began_s:.1f} s {_sentence(one)}."
     if len(differ) > MOST_SENTENCES:
         yield f"{len(differ) - MOST_SENTENCES} more contradictions, see contradictions.csv."
     if differ:
@@ -142,7 +142,7 @@ def _is_new(result: RunResult, name: str) -> bool:
     return name.startswith("unknown ") and name not in result.parameters.terrains
 
 
-def _told(one: Contradiction) -> str:
+def _sentence(one: Contradiction) -> str:
     named = [
         (one.camera, "the camera shows", one.camera_probability),
         (one.feel, "by feel it is", one.feel_probability),

@@ -155,8 +155,8 @@ def _of_run(file: Path) -> Trajectory:
     """An odometry that the run folder keeps; rows without a pose are gaps."""
     table = read_csv_table(file, ("t", "x", "y", "yaw"), ("t",))
     poses = table.stack("x", "y", "yaw")
-    told = np.isfinite(poses).all(axis=1)
-    return Trajectory(table.stamps_s[told], poses[told])
+    finite = np.isfinite(poses).all(axis=1)
+    return Trajectory(table.stamps_s[finite], poses[finite])
 
 
 def _is_table(file: Path) -> bool:

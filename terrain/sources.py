@@ -125,7 +125,9 @@ def terrain_source(
         if feel is None:
             raise ConfigError("the terrain source 'feel' needs a model (`identify-feel`)")
         felt = felt_of(run, feel, causal=config.filter.causal)
-        return NamedTerrain.told(initial, felt.stamps_s, felt.lasting_answers, (*SILENT, UNKNOWN))
+        return NamedTerrain.of_answers(
+            initial, felt.stamps_s, felt.lasting_answers, (*SILENT, UNKNOWN)
+        )
     if name == "modes":
         if modes is None:
             raise ConfigError("the terrain source 'modes' needs a set of modes (`identify-modes`)")
@@ -228,4 +230,4 @@ def felt_terrain(
     config = config or ModesConfig()
     track = follow_modes(run, mode_set, config, show_progress=show_progress)
     answers = named_modes(track, config.sure)
-    return NamedTerrain.told(initial, track.stamps_s, answers, (*NO_MODES, UNKNOWN))
+    return NamedTerrain.of_answers(initial, track.stamps_s, answers, (*NO_MODES, UNKNOWN))

@@ -156,8 +156,8 @@ def _no_reference(
     """What is said where the odometry is compared with nothing."""
     if reference or "topic" in topic_map.reference:
         return
-    told = [name for name, one in topics.items() if one.message_type in TRANSFORM_LISTS]
-    moving = [name for name in told if not name.endswith("static")]
+    transforms = [name for name, one in topics.items() if one.message_type in TRANSFORM_LISTS]
+    moving = [name for name in transforms if not name.endswith("static")]
     if moving and "map" in survey.robot.all.frames:
         yield (
             f"reference: none. {moving[0]} holds the robot's position in the frame map: "

@@ -47,19 +47,19 @@ class Attitudes:
 
         `forces_m_s2` (N, 3 or 0) are the accelerometer's, by which the vertical is checked.
         """
-        rotations, told = rotations_of(orientations)
-        rotations = rotations[told]
+        rotations, valid = rotations_of(orientations)
+        rotations = rotations[valid]
         if not len(rotations):
             return
         if self._first is None:
-            self._first = orientations[told][0]
-        self._turned |= bool((orientations[told] != self._first).any())
+            self._first = orientations[valid][0]
+        self._turned |= bool((orientations[valid] != self._first).any())
         of_robot = rotations @ self._imu_from_robot
         self._robot_up += of_robot[:, :, 2].sum(axis=0)
         if forces_m_s2.shape[1] == 3:
-            self._force += np.einsum("nij,nj->i", rotations, np.nan_to_num(forces_m_s2[told]))
+            self._force += np.einsum("nij,nj->i", rotations, np.nan_to_num(forces_m_s2[valid]))
         angles = se3.roll_pitch_yaw(of_robot)[:, :2]
-        self._file.write(np.column_stack([stamps_ns[told] / 1e9, angles]).tobytes())
+        self._file.write(np.column_stack([stamps_ns[valid] / 1e9, angles]).tobytes())
         self.written += len(rotations)
 
     def doubt(self) -> str:
@@ -136,9 +136,9 @@ class AttitudesOf:
 
     def __call__(self, stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:
         """Columns (N, 6) as POSE_COLUMNS of rows (N, 7); no attitude where there is none."""
-        rotations, told = rotations_of(rows[:, 3:])
+        rotations, valid = rotations_of(rows[:, 3:])
         roll, pitch, yaw = se3.roll_pitch_yaw(rotations @ self._body_from_robot).T
-        angles = np.where(told, np.stack([yaw, roll, pitch]) + 0.0, np.nan)  # -0 becomes 0
+        angles = np.where(valid, np.stack([yaw, roll, pitch]) + 0.0, np.nan)  # -0 becomes 0
         x, y, z = np.where(np.isfinite(rows[:, :3]).all(axis=1), rows[:, :3].T, np.nan)
         return stamps_ns, np.column_stack([x, y, angles[0], z, angles[1], angles[2]])
 
@@ -151,11 +151,11 @@ class PosesOfRobot:
 
     def __call__(self, stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:
         """Columns (N, 3) of rows (N, 7); NaN where there is no attitude."""
-        rotations, told = rotations_of(rows[:, 3:])
+        rotations, valid = rotations_of(rows[:, 3:])
         poses = se3.pose(rows[:, :3], rotations) @ self._body_from_robot
         yaw = se3.roll_pitch_yaw(poses[:, :3, :3])[:, 2]
         columns = np.column_stack([poses[:, 0, 3], poses[:, 1, 3], yaw])
-        return stamps_ns, np.where(told[:, None], columns, np.nan)
+        return stamps_ns, np.where(valid[:, None], columns, np.nan)
 
 
 def fix_row(message: Any) -> Row:
@@ -204,6 +204,6 @@ class LocalMetres:
 def rotations_of(quaternions_wxyz: FloatArray) -> tuple[FloatArray, BoolArray]:
     """Rotations (N, 3, 3), and whether each quaternion (N, 4) is one."""
     lengths = np.linalg.norm(quaternions_wxyz, axis=1)
-    told = np.abs(lengths - 1) < 0.1
-    unit = np.where(told[:, None], quaternions_wxyz, [1.0, 0.0, 0.0, 0.0])
-    return se3.rotation_from_quaternion_wxyz(unit), told
+    valid = np.abs(lengths - 1) < 0.1
+    unit = np.where(valid[:, None], quaternions_wxyz, [1.0, 0.0, 0.0, 0.0])
+    return se3.rotation_from_quaternion_wxyz(unit), valid

@@ -204,9 +204,9 @@ NOT_CURVES = frozenset(
 def without_consequences(findings: Sequence[Finding]) -> list[Finding]:
     """The findings of which none explains another."""
     names = {finding.name for finding in findings}
-    told = {follows for name in names for follows in CONSEQUENCES.get(name, ())}
+    implied = {follows for name in names for follows in CONSEQUENCES.get(name, ())}
     if names & NOT_CURVES:
-        told.add("treads_not_proportional")
+        implied.add("treads_not_proportional")
     if any(f.level is not Level.NOTE and f.name != "sensors_disagree" for f in findings):
-        told.add("sensors_disagree")  # it is for what has no name
-    return [finding for finding in findings if finding.name not in told]
+        implied.add("sensors_disagree")  # it is for what has no name
+    return [finding for finding in findings if finding.name not in implied]

@@ -154,12 +154,12 @@ def _lasts(motion: Motion, distance_m: FloatArray, whole: Relation) -> bool:
     known = np.flatnonzero(np.isfinite(distance_m))
     halves = [_by_course(motion.rows(rows), distance_m[rows]) for rows in np.array_split(known, 2)]
     size = float(np.sum(whole.coefficients[1:] ** 2))
-    alike = [
+    shares = [
         float(half.coefficients[1:] @ whole.coefficients[1:]) / size
         for half in halves
         if half is not None and half.distinct
     ]
-    return len(alike) > 0 and min(alike) > HALF
+    return len(shares) > 0 and min(shares) > HALF
 
 
 def _shortened(along_rad: float, ratio: float) -> Mend:

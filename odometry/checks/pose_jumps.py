@@ -85,12 +85,12 @@ def jumps(
     least_m = LEAST_JUMP_M if evidence.heading is not None else LEAST_WITHOUT_HEADING_M
     odd = known & (step > np.maximum(JUMP_TIMES * usual, least_m * scale + jitter_m))
     peaks = [begin + int(np.argmax(step[begin:end])) for begin, end in runs_of(odd)]
-    told = off if evidence.heading is not None else None
-    steps = Steps(stamps_s, positions, by_treads, told, step)
-    yield from _told(evidence, steps, peaks, usual)
+    measured_off = off if evidence.heading is not None else None
+    steps = Steps(stamps_s, positions, by_treads, measured_off, step)
+    yield from _findings(evidence, steps, peaks, usual)
 
 
-def _told(evidence: Evidence, of: Steps, peaks: list[int], usual_m: float) -> Iterator[Finding]:
+def _findings(evidence: Evidence, of: Steps, peaks: list[int], usual_m: float) -> Iterator[Finding]:
     """By what the treads and the poses did, what a large step is."""
     stood = [i for i in peaks if _stood(of, i)]
     lost = [i for i in peaks if i not in stood and _lost_treads(evidence, of.stamps_s[i])]

@@ -134,9 +134,9 @@ def _lever_arm(evidence: Evidence) -> Iterator[Finding]:
     limit_m = max(LEAST_ARM_M, (evidence.run.robot.length or 1.0) / 2)
     place = 0 if far == abs(x_m) else 1
     columns = (turn,) if place == 0 else (m.mean_m, turn)
-    told = pieces((evidence.sideways_m, evidence.forward_m)[place], *columns)
+    fits = pieces((evidence.sideways_m, evidence.forward_m)[place], *columns)
     size = (x_m, -y_m)[place]
-    swings = [of.coefficients[place] / size for of in told if of.certain(place)]
+    swings = [of.coefficients[place] / size for of in fits if of.certain(place)]
     if far > limit_m and len(swings) > 1 and min(swings) > LASTING:
         yield Finding(
             "far_sensor",

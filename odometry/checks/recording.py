@@ -104,8 +104,8 @@ def check_recording(run: Run | str | Path) -> CheckReport:
     evidence = Evidence(run)
     with np.errstate(over="ignore", invalid="ignore"):
         found = alone(evidence, [*refused, *_found(evidence)], _found)
-        told = confirmed(evidence, without_consequences(found), _found)
-    return CheckReport(run.folder, in_order(told), tuple(_skipped(evidence)))
+        confirmed_ones = confirmed(evidence, without_consequences(found), _found)
+    return CheckReport(run.folder, in_order(confirmed_ones), tuple(_skipped(evidence)))
 
 
 def _found(evidence: Evidence) -> list[Finding]:

@@ -165,8 +165,8 @@ def _terrain_names(evidence: Evidence) -> Iterator[Finding]:
     ordered = sorted((name for name in names if name), key=lambda name: -names[name])
     for place, rare in enumerate(ordered):
         for usual in ordered[:place]:
-            alike = SequenceMatcher(None, rare.lower().strip(), usual.lower().strip()).ratio()
-            if (alike >= ALIKE and names[rare] <= RARE * max(names[usual], 1)) or (
+            similarity = SequenceMatcher(None, rare.lower().strip(), usual.lower().strip()).ratio()
+            if (similarity >= ALIKE and names[rare] <= RARE * max(names[usual], 1)) or (
                 rare.lower().strip() == usual.lower().strip()
             ):
                 yield Finding(

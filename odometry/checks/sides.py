@@ -103,12 +103,12 @@ def _lasts(evidence: Evidence, ratio: float) -> bool:
     m, turns = evidence.uniform, evidence.uniform.gyroscope_rad
     if evidence.gyroscope_by_treads is None:
         m, turns = evidence.turn_motion, evidence.pose_turn_rad
-    told = [
+    ratios = [
         abs(float(piece.coefficients[0] / piece.coefficients[1]))
         for piece in pieces(turns, m.left_m, m.right_m)
         if piece.certain(0, TIMES) and piece.certain(1, TIMES)
     ]
-    return all(np.log(of) / np.log(ratio) > LASTING for of in told)
+    return all(np.log(of) / np.log(ratio) > LASTING for of in ratios)
 
 
 def _offset(evidence: Evidence) -> Iterator[Finding]:

@@ -61,13 +61,13 @@ def too_fast(evidence: Evidence) -> Finding:
 def tread_unit(seen: str, unit: Unit, evidence: Evidence, others: str = "") -> Finding:
     """Tread speeds in another unit, and what else the factor may be: `others`, and known ones."""
     if 1 / 4 < unit.factor < 4:
-        alike = [
+        equal_units = [
             other.words
             for other in tread_units(evidence.run.robot.wheel_radius, evidence.period_s)
             if other.words != unit.words and 0.8 < other.factor / unit.factor < 1.25
         ]
         half = "half" if unit.factor < 1 else "twice"
-        others += "".join(f"; or in {words}" for words in alike)
+        others += "".join(f"; or in {words}" for words in equal_units)
         others += (
             f"; or scaled by {unit.factor:.2g} (wheel diameter for radius gives {half} the speed; "
             "gear ratio): these cannot be distinguished"
@@ -160,18 +160,18 @@ def imported_unit(
     found = matching(others, lambda unit: forward * unit.factor) if others else None
     if found is None or (width is not None and not 0.95 <= width / found.factor <= 4.0):
         return None
-    alike = [
+    equal_units = [
         unit.words
         for unit in others
         if unit is not found and ALIKE[0] < unit.factor / found.factor < ALIKE[1]
     ]
-    units = " or ".join([found.words, *alike])
+    units = " or ".join([found.words, *equal_units])
     return Finding(
         "tread_unit",
         Level.WARNING,
         seen,
         f"The wheel speeds were imported as {said}, and they fit as {units}"
-        + (": these cannot be distinguished" if alike else ""),
+        + (": these cannot be distinguished" if equal_units else ""),
         f"Import the bag again with --unit {found.words}",
         mend=treads_times(1 / found.factor, 1 / found.factor),
     )

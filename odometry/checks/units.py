@@ -123,10 +123,10 @@ def _odd(width: float) -> bool:
 def _slopes(evidence: Evidence, found: Relation) -> list[float]:
     """Turn per difference of the treads in the pieces of the recording that determine it."""
     m = evidence.uniform
-    told = pieces(m.gyroscope_rad, m.difference_m, m.lasts_s)
+    fits = pieces(m.gyroscope_rad, m.difference_m, m.lasts_s)
     if found is evidence.pose_turn_by_difference:
-        told = pieces(evidence.pose_turn_rad, evidence.turn_motion.difference_m)
-    return [abs(of.slope) for of in told if of.certain() and of.explained > HALF]
+        fits = pieces(evidence.pose_turn_rad, evidence.turn_motion.difference_m)
+    return [abs(of.slope) for of in fits if of.certain() and of.explained > HALF]
 
 
 def _gyroscope_factor(evidence: Evidence) -> float | None:
@@ -135,8 +135,8 @@ def _gyroscope_factor(evidence: Evidence) -> float | None:
     if by_gyroscope is not None and by_gyroscope.certain() and by_gyroscope.explained > TIGHT:
         factor = 1 / abs(by_gyroscope.slope)
         m = evidence.turn_motion
-        told = pieces(evidence.pose_turn_rad, m.gyroscope_rad, m.lasts_s)
-        parts = [1 / abs(of.slope) for of in told if of.certain()]
+        fits = pieces(evidence.pose_turn_rad, m.gyroscope_rad, m.lasts_s)
+        parts = [1 / abs(of.slope) for of in fits if of.certain()]
         lasts = all((part > 1.2 if factor > 1 else part < 0.85) for part in parts)
         return factor if lasts and not 0.7 < factor < 1.4 else None
     found, rate = evidence.gyroscope_by_difference, evidence.yaw_rate

@@ -78,7 +78,7 @@ def compare(
         raise ComparisonError(
             "\n  ".join(["no run to compare on", *(left_out | not_used).values()])
         )
-    config, notes = _told_by_positions(found, config)
+    config, notes = _horizons_of_positions(found, config)
     planned = splits(usable, known)
     identified = [each for each in candidates if isinstance(each, IdentifiedModel)]
     on_all = fit_models(
@@ -164,7 +164,7 @@ def _with_poses(
     return usable, reasons, found
 
 
-def _told_by_positions(
+def _horizons_of_positions(
     found: Sequence[FoundHeading], config: ComparisonConfig
 ) -> tuple[ComparisonConfig, tuple[str, ...]]:
     """Horizons over which positions without yaw tell errors, and what a reader should know."""

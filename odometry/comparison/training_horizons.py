@@ -65,13 +65,13 @@ def training_horizon_errors(
     """
     free = [each for each in candidates if not all(p.known for p in each.model.parameters)]
     labels = [each.label for each in free]
-    own_m, asked = config.training.horizon_m, config.training_horizons_m
+    own_m, others_m = config.training.horizon_m, config.training_horizons_m
     found = []
-    if asked and not config.training.horizon_s:
+    if others_m and not config.training.horizon_s:
         found += [HorizonErrors(own_m, summary) for summary in _summaries(compared, labels, config)]
-        asked = tuple(horizon_m for horizon_m in asked if horizon_m != own_m)
+        others_m = tuple(horizon_m for horizon_m in others_m if horizon_m != own_m)
     for training_m in tqdm(
-        asked, desc="training horizons", unit="horizon", disable=None if show_progress else True
+        others_m, desc="training horizons", unit="horizon", disable=None if show_progress else True
     ):
         training = replace(config.training, horizon_m=training_m, horizon_s=0.0)
         here = replace(config, training=training)

@@ -33,7 +33,7 @@ class Deadband(DriveLimit):
     form = "deadband"
     in_words = "commands too small to move the robot"
     equation = "v -> 0 where |v| < least"
-    looks_like = "a robot that stands, or turns about one tread, where it was told to creep"
+    looks_like = "a robot that stands, or turns about one tread, where a slow motion was commanded"
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:

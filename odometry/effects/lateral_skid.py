@@ -10,7 +10,7 @@ from odometry.effects.base import EffectParameter, MotionEffect
 from odometry.effects.base_model import Base
 from odometry.models.inputs import Inputs
 
-TOLD_APART = (
+DISTINGUISHED_BY = (
     "a second pose sensor at another place on the robot, or its place measured with a tape: from "
     "one measured pose both look exactly alike"
 )
@@ -26,11 +26,11 @@ class LateralSkid(MotionEffect):
     source = "Baril 2020 eq. 7, Chen 2023 eq. 3"
     looks_like = "sideways motion in turns, to opposite sides in left and right turns"
     remedy = "keep the shift in the model; see whether the load has moved"
-    alike: ClassVar[Mapping[str, str]] = {"lever_arm": TOLD_APART}
+    alike: ClassVar[Mapping[str, str]] = {"lever_arm": DISTINGUISHED_BY}
 
     def same_as(self, values: FloatArray) -> Mapping[str, str]:  # noqa: ARG002 - of the interface
         """See `Effect.same_as`."""
-        return {"lever_arm": TOLD_APART}
+        return {"lever_arm": DISTINGUISHED_BY}
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.effects.base import EffectParameter, MeasurementEffect
-from odometry.effects.lateral_skid import TOLD_APART
+from odometry.effects.lateral_skid import DISTINGUISHED_BY
 from odometry.effects.recorded import Reported
 from odometry.geometry import se2
 
@@ -23,11 +23,14 @@ class LeverArm(MeasurementEffect):
     looks_like = "sideways motion in turns, and distances that differ in left and right turns"
     remedy = "measure where the sensor sits and state it in run.toml, [sensors]"
     of_reference = True
-    alike: ClassVar[Mapping[str, str]] = {"lateral_skid": TOLD_APART, "terrain": TOLD_APART}
+    alike: ClassVar[Mapping[str, str]] = {
+        "lateral_skid": DISTINGUISHED_BY,
+        "terrain": DISTINGUISHED_BY,
+    }
 
     def same_as(self, values: FloatArray) -> Mapping[str, str]:  # noqa: ARG002 - of the interface
         """See `Effect.same_as`."""
-        return {"lateral_skid": TOLD_APART}
+        return {"lateral_skid": DISTINGUISHED_BY}
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:

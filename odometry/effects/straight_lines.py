@@ -10,7 +10,7 @@ from odometry.effects.reference_filter import NO_INVERSE, ReferenceFilter
 SHORTEST_S, LONGEST_S = 0.8, 5.0  # between fixes
 BEND_S = 0.4  # to each side, over which a bend is measured
 MOST_USUAL = 8.0  # of a bend: larger ones count as this
-FINE = 6  # of the span of a run: over which a period is told from the next
+FINE = 6  # of the span of a run: over which a period is distinguished from the next
 REFINED = np.linspace(-1.0, 1.0, 21)
 SURE = 8.0  # standard deviations by which bends gather at the fixes
 LEAST_BENDS = 4  # poses between two fixes, or they are fixes themselves

@@ -9,7 +9,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base import Effect, EffectParameter, MotionEffect
 from odometry.effects.base_model import Base, slip_factors, tread_icrs
-from odometry.effects.lateral_skid import TOLD_APART
+from odometry.effects.lateral_skid import DISTINGUISHED_BY
 from odometry.effects.recorded import Recorded
 from odometry.errors import ParameterError
 from odometry.models.icr import icr_twist
@@ -105,8 +105,8 @@ class NewIcrs(MotionEffect):
     looks_like = "a model that is off in every turn of a run, always alike"
     remedy = "identify a parameter set on this terrain"
     includes: ClassVar[Mapping[str, str]] = {
-        "lever_arm": TOLD_APART,
-        "lateral_skid": TOLD_APART,
+        "lever_arm": DISTINGUISHED_BY,
+        "lateral_skid": DISTINGUISHED_BY,
         "wheel_scale": "a run on the terrain of the calibration, or wheels measured with a tape",
     }
 

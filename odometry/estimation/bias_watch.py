@@ -93,7 +93,7 @@ def watched(
     )
 
 
-def told_bias(watch: BiasWatch, believed_rad_s: float) -> tuple[float, float] | None:
+def changed_bias(watch: BiasWatch, estimated_rad_s: float) -> tuple[float, float] | None:
     """The bias of the last spans where it is another, and its standard deviation [rad/s].
 
     Runs of spans that follow each other give the error of the mean of one: by noise of poses,
@@ -111,17 +111,17 @@ def told_bias(watch: BiasWatch, believed_rad_s: float) -> tuple[float, float] | 
         sigma = 1.4826 * float(np.median(apart)) * math.sqrt(1 / 2)
         bias = float(means[-1])
         least = max(SIGMAS * sigma, LEAST_RAD / (count * SPAN_S))
-        halves = biases[-count:].reshape(2, -1).mean(axis=1) - believed_rad_s
+        halves = biases[-count:].reshape(2, -1).mean(axis=1) - estimated_rad_s
         sure = abs(halves.sum()) > 2 * least and np.abs(halves).min() > least / 2
-        if sure and halves.prod() > 0 and treads_agree(watch, count, bias, believed_rad_s):
+        if sure and halves.prod() > 0 and treads_agree(watch, count, bias, estimated_rad_s):
             return bias, sigma
     return None
 
 
-def treads_agree(watch: BiasWatch, count: int, bias_rad_s: float, believed_rad_s: float) -> bool:
+def treads_agree(watch: BiasWatch, count: int, bias_rad_s: float, estimated_rad_s: float) -> bool:
     """Whether the treads show in the last spans that the bias is another than the estimated one."""
     past_treads = sum(watch.by_treads_rad_s[-count:]) / count
-    return (past_treads - believed_rad_s) / (bias_rad_s - believed_rad_s) > TREADS_SHARE
+    return (past_treads - estimated_rad_s) / (bias_rad_s - estimated_rad_s) > TREADS_SHARE
 
 
 def changed(belief: Gaussian, bias_rad_s: tuple[float, float]) -> Gaussian:
@@ -134,10 +134,10 @@ def changed(belief: Gaussian, bias_rad_s: tuple[float, float]) -> Gaussian:
     return mean, covariance
 
 
-def change_event(believed_rad_s: float, bias_rad_s: float, stamp_s: float) -> FilterEvent:
+def change_event(estimated_rad_s: float, bias_rad_s: float, stamp_s: float) -> FilterEvent:
     """The event of a bias that is another."""
     text = (
-        f"the bias of the gyroscope changed from {believed_rad_s:.4f} to {bias_rad_s:.4f} rad/s, "
+        f"the bias of the gyroscope changed from {estimated_rad_s:.4f} to {bias_rad_s:.4f} rad/s, "
         "by the poses: the filter took that one"
     )
     return FilterEvent("gyroscope_bias_changed", stamp_s, stamp_s, text, (bias_rad_s,))

@@ -102,24 +102,24 @@ def bias_followed(
     )
     posed = after.innovation is not None and after.innovation.accepted
     bias = bias_watch.watched(watch.bias, rates, step_s, stamp_s, posed=posed)
-    believed_rad_s = float(after.mean[GYRO_BIAS])
+    estimated_rad_s = float(after.mean[GYRO_BIAS])
     if bias.biases_rad_s is watch.bias.biases_rad_s:
         return belief, with_bias(watch, bias), ()
-    found, bias = _another_bias(bias, believed_rad_s)
+    found, bias = _another_bias(bias, estimated_rad_s)
     if found is None:
         return belief, with_bias(watch, bias), ()
-    event = bias_watch.change_event(believed_rad_s, found[0], stamp_s)
+    event = bias_watch.change_event(estimated_rad_s, found[0], stamp_s)
     return bias_watch.changed(belief, found), with_bias(watch, bias), (event,)
 
 
 def _another_bias(
-    watch: BiasWatch, believed_rad_s: float
+    watch: BiasWatch, estimated_rad_s: float
 ) -> tuple[tuple[float, float] | None, BiasWatch]:
     """Another bias and its standard deviation [rad/s] if spans determine one; the watch with it."""
-    stepped = bias_watch.told_bias(watch, believed_rad_s)
+    stepped = bias_watch.changed_bias(watch, estimated_rad_s)
     if stepped is not None:
         return stepped, watch._replace(since=0)
-    drift = drifted_bias(watch, believed_rad_s)
+    drift = drifted_bias(watch, estimated_rad_s)
     if drift is None:
         return None, watch
     return drift.bias_rad_s, watch._replace(since=STILL_OF_IT, walk=drift.walk)
@@ -146,7 +146,7 @@ class Drift(NamedTuple):
     walk: float
 
 
-def drifted_bias(watch: BiasWatch, believed_rad_s: float) -> Drift | None:
+def drifted_bias(watch: BiasWatch, estimated_rad_s: float) -> Drift | None:
     """The bias where the last spans show a drift.
 
     The scatter of all spans about a line gives the error of the mean of some, as if it had no
@@ -161,10 +161,10 @@ def drifted_bias(watch: BiasWatch, believed_rad_s: float) -> Drift | None:
     moments = np.arange(len(biases)) - (len(biases) - 1) / 2
     slope = float(moments @ biases) / float(moments @ moments)
     scatter = float((biases - slope * moments).std())
-    halves = biases[-COUNT:].reshape(2, -1).mean(axis=1) - believed_rad_s
+    halves = biases[-COUNT:].reshape(2, -1).mean(axis=1) - estimated_rad_s
     mean = float(halves.mean())
     least = max(SIGMAS * scatter / math.sqrt(COUNT), LEAST_RAD_S)
     if abs(mean) < least or halves.prod() < 0 or np.abs(halves).min() < least / 2:
         return None
-    found = believed_rad_s + float(halves[1]), scatter / math.sqrt(STILL_OF_IT)
+    found = estimated_rad_s + float(halves[1]), scatter / math.sqrt(STILL_OF_IT)
     return Drift(found, min(max(NOISY_RAD_S / scatter, 1.0), MOST_WALK) if scatter else MOST_WALK)

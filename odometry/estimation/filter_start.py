@@ -81,9 +81,9 @@ def agree(refused: Sequence[FloatArray], pose_covariance: FloatArray) -> bool:
     or a filter that lost its way, differ by about the same from pose to pose.
     """
     last = refused[-1]
-    alike = [residual for residual in refused if len(residual) == len(last)]
+    of_last_kind = [residual for residual in refused if len(residual) == len(last)]
     sigmas = np.sqrt(np.diag(pose_covariance))
-    scaled = np.array(alike) / (sigmas if len(last) == 3 else sigmas[: len(last)])
+    scaled = np.array(of_last_kind) / (sigmas if len(last) == 3 else sigmas[: len(last)])
     most = MOST_APART * float(np.linalg.norm(scaled[-1])) + MOST_SIGMAS
     near = np.linalg.norm(scaled - scaled[-1], axis=1) <= most
     return int(near.sum()) >= max(2.0, SHARE * len(refused))

@@ -136,7 +136,7 @@ def _difference(hold: GyroscopeHold, left: float, right: float) -> tuple[float, 
 def forgotten(belief: Gaussian, hold: GyroscopeHold, begin_s: float, posed_s: float) -> Gaussian:
     """State estimate at `begin_s` without the corrections since the value repeats.
 
-    The next step turns it by what is owed. Where a pose came since, at `posed_s`, that has told
+    The next step turns it by what is owed. Where a pose came since, at `posed_s`, that has measured
     the yaw already, more or less.
     """
     then_mean, then_covariance = hold.before

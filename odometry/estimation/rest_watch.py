@@ -84,8 +84,8 @@ def watched(
     if moved_m <= most[0] and not turn_rad > most[1]:
         return watch._replace(away=()), False
     near_m = max(most[0], moved_m / 2)
-    alike = [each for each in watch.away if math.hypot(*(each[:2] - pose[:2])) <= near_m]
-    away = (*alike, pose)
+    near = [each for each in watch.away if math.hypot(*(each[:2] - pose[:2])) <= near_m]
+    away = (*near, pose)
     if len(away) < IN_A_ROW:
         return watch._replace(away=away), False
     stood_m, since_s = watch.stood_m, watch.moved_since_s

@@ -59,7 +59,7 @@ def begun(frame: Frame, belief: Gaussian) -> TreadWatch:
 
 
 def watched(
-    watch: TreadWatch, frame: Frame, step_s: float, believed_m_s: FloatArray, belief: Gaussian
+    watch: TreadWatch, frame: Frame, step_s: float, kept_m_s: FloatArray, belief: Gaussian
 ) -> tuple[TreadWatch, FloatArray, tuple[FilterEvent, ...]]:
     """The speeds (2,) to use from a frame on, given those used over the step to it.
 
@@ -72,7 +72,7 @@ def watched(
         if not watch.held_out:
             return watch, frame.tread_speeds_m_s, ()
         if frame.odometry_row == watch.row:
-            return watch, believed_m_s, ()
+            return watch, kept_m_s, ()
         return watch._replace(held_out=False), frame.tread_speeds_m_s, ()  # a second row agrees
     stamp_s = frame.stamp_s
     since, before = list(watch.same_since_s), list(watch.before)
@@ -80,7 +80,7 @@ def watched(
         if changed:
             since[tread], before[tread] = stamp_s, belief
     most = JUMP_M_S + JUMP_M_S2 * step_s
-    then_left, then_right = believed_m_s.tolist()
+    then_left, then_right = kept_m_s.tolist()
     held_out = max(abs(left - then_left), abs(right - then_right)) > most and not (
         watch.held_out and max(abs(left - was_left), abs(right - was_right)) <= most
     )
@@ -98,7 +98,7 @@ def watched(
         before=(before[0], before[1]),
         held_out=held_out,
     )
-    return after, believed_m_s if held_out else frame.tread_speeds_m_s, events
+    return after, kept_m_s if held_out else frame.tread_speeds_m_s, events
 
 
 def contradicted(

@@ -173,28 +173,28 @@ def learning_covariances(replay: Replay, path: OpenLoopPath) -> FloatArray:
 
 def _twist_slopes(replay: Replay) -> FloatArray:
     """Derivatives (N - 1, 3, 6) of twists by y_left, y_right, x_icr, bias, alphas."""
-    means, believed = replay.means[:-1, Y_LEFT:], replay.believed_yaw_rates_rad_s
+    means, yaw_rates = replay.means[:-1, Y_LEFT:], replay.believed_yaw_rates_rad_s
     speeds = np.nan_to_num((replay.tread_speeds_m_s + replay.added_speeds_m_s)[:-1])
     slopes = np.zeros((len(speeds), 3, STATES - Y_LEFT))
     for some in (slice(at, at + TOGETHER) for at in range(0, len(speeds), TOGETHER)):
-        _fill_slopes(slopes[some], means[some], speeds[some], believed[some])
+        _fill_slopes(slopes[some], means[some], speeds[some], yaw_rates[some])
     return slopes
 
 
 def _fill_slopes(
-    slopes: FloatArray, means: FloatArray, speeds: FloatArray, believed: FloatArray
+    slopes: FloatArray, means: FloatArray, speeds: FloatArray, yaw_rates: FloatArray
 ) -> None:
     """Put the derivatives of some twists in place, by the gyroscope where it turned the robot."""
     icrs, bias, alphas = np.split(means, [3, 4], axis=1)
     slopes[..., :3] = icr_twist_jacobian(icrs, alphas * speeds)
     slopes[..., 4:] = icr_speed_matrix(icrs) * speeds[:, None, :]
-    told = np.isfinite(believed)
-    omega = (believed - bias[:, 0])[told]
+    known = np.isfinite(yaw_rates)
+    omega = (yaw_rates - bias[:, 0])[known]
     by_gyroscope = np.zeros((len(omega), 3, STATES - Y_LEFT))
     by_gyroscope[:, 0, 0] = by_gyroscope[:, 0, 1] = omega / 2
     by_gyroscope[:, 1, 2] = -omega
-    by_gyroscope[:, 0, 3] = -icrs[told, :2].sum(axis=1) / 2
-    by_gyroscope[:, 1, 3] = icrs[told, 2]
+    by_gyroscope[:, 0, 3] = -icrs[known, :2].sum(axis=1) / 2
+    by_gyroscope[:, 1, 3] = icrs[known, 2]
     by_gyroscope[:, 2, 3] = -1.0
-    by_gyroscope[:, 0, 4:] = speeds[told] / 2
-    slopes[told] = by_gyroscope
+    by_gyroscope[:, 0, 4:] = speeds[known] / 2
+    slopes[known] = by_gyroscope

@@ -56,8 +56,8 @@ def course_headings(
     variance = _sums(np.abs(true) ** 2, begins, ends) / count - np.abs(true_mean) ** 2
     whole = travelled_m[rows] - travelled_m[0] >= reach_m - 1e-9
     whole &= travelled_m[-1] - travelled_m[rows] >= reach_m - 1e-9
-    told = whole & (variance > (LEAST_SPREAD * reach_m) ** 2) & (np.abs(turned) > 0)
-    return np.where(told, poses[rows, 2] + np.angle(turned), np.nan)
+    known = whole & (variance > (LEAST_SPREAD * reach_m) ** 2) & (np.abs(turned) > 0)
+    return np.where(known, poses[rows, 2] + np.angle(turned), np.nan)
 
 
 def _sums(values: FloatArray, begins: IntArray, ends: IntArray) -> FloatArray:
@@ -176,9 +176,9 @@ def relative_errors(
     headings[unknown] = course_headings(
         poses, true_poses, travelled, first[unknown], config.horizon_m
     )
-    told = np.isfinite(headings)
-    first, last = first[told], last[told]
-    true_starts = np.column_stack([true_poses[first, :2], headings[told]])
+    known = np.isfinite(headings)
+    first, last = first[known], last[known]
+    true_starts = np.column_stack([true_poses[first, :2], headings[known]])
     true_ends, ends = (
         _seen_from(true_starts, true_poses[last]),
         _seen_from(poses[first], poses[last]),

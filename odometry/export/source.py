@@ -80,8 +80,8 @@ class ExportSource:
             return self.terrain
         if self.terrain or not names:
             known = f"it has {', '.join(names)}" if names else "it has no parameters of a terrain"
-            asked = f"there is no terrain {self.terrain!r}: " if self.terrain else ""
-            raise ParameterError(f"{self.path}: {asked}{known}")
+            unknown = f"there is no terrain {self.terrain!r}: " if self.terrain else ""
+            raise ParameterError(f"{self.path}: {unknown}{known}")
         if len(names) > 1:
             raise ParameterError(
                 f"{self.path}: a controller knows one terrain; choose with --terrain among "
@@ -175,10 +175,10 @@ def _is_result(content: Any) -> bool:
             "initial_terrain": str(),
             "switches": [*switches],
         }:
-            told = all(isinstance(each, dict) for each in (*errors.values(), *switches))
+            well_formed = all(isinstance(each, dict) for each in (*errors.values(), *switches))
             stamps = [each.get("stamp_s") for each in switches if isinstance(each, dict)]
             numbers = all(isinstance(stamp_s, int | float) for stamp_s in stamps)
-            return told and numbers and None not in {_number(horizon_m), _number(travel_m)}
+            return well_formed and numbers and None not in {_number(horizon_m), _number(travel_m)}
     return False
 
 

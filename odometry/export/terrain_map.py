@@ -71,9 +71,9 @@ def terrain_cells(source: ExportSource) -> list[Cell]:
         return driven
     labels = np.asarray(table["label"], dtype=str)
     places = table.stack("place_x", "place_y")
-    told = np.isfinite(places).all(axis=1) & (labels != "") & estimate.covers(table.stamps_s)
-    seen = se2.transform(estimate.at(table.stamps_s[told]).poses, places[told])
-    return [*driven, *_cells(seen, labels[told], SEEN, source.cell_m)]
+    located = np.isfinite(places).all(axis=1) & (labels != "") & estimate.covers(table.stamps_s)
+    seen = se2.transform(estimate.at(table.stamps_s[located]).poses, places[located])
+    return [*driven, *_cells(seen, labels[located], SEEN, source.cell_m)]
 
 
 def _driven(

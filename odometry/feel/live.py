@@ -160,7 +160,7 @@ class LiveFeel:
 
     def _drive(self, frame: Frame) -> None:
         """Take in the tread speeds of a frame, and for how long those before are not known."""
-        frame = self._gaps.told(frame)
+        frame = self._gaps.marked(frame)
         if frame.in_gap:
             self._gap_s.append((self._row_s, frame.stamp_s))
         if frame.odometry_row != self._row:

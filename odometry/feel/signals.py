@@ -114,7 +114,7 @@ def axes_of(run: Run) -> tuple[Table, dict[str, FloatArray]]:
     for table in (run.imu, run.odometry):
         if table is None:
             continue
-        found = {name: table[name] for name in AXES if name in table and is_told(table[name])}
+        found = {name: table[name] for name in AXES if name in table and has_numbers(table[name])}
         if table is run.imu and run.sensors.imu_rad is not None:
             found = in_robot_frame(found, np.array(run.sensors.imu_rad))
         if found:
@@ -125,7 +125,7 @@ def axes_of(run: Run) -> tuple[Table, dict[str, FloatArray]]:
     )
 
 
-def is_told(column: AnyArray) -> bool:
+def has_numbers(column: AnyArray) -> bool:
     """Whether a column holds numbers that change."""
     if column.dtype.kind != "f":
         return False
@@ -168,7 +168,7 @@ def within_gaps(grid_s: FloatArray, spans_s: FloatArray) -> AnyArray:
 
 
 def _currents(odometry: Table, held: AnyArray) -> FloatArray | None:
-    if not all(name in odometry and is_told(odometry[name]) for name in CURRENTS):
+    if not all(name in odometry and has_numbers(odometry[name]) for name in CURRENTS):
         return None
     return current_sizes(odometry.stack(*CURRENTS)[held])
 

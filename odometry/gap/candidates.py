@@ -15,7 +15,7 @@ from odometry.windows.dense import DenseWindows
 def offered_effects(scenes: Sequence[DenseWindows], calibration: Calibration) -> tuple[Effect, ...]:
     """Effects of the catalogue that the measured runs could determine, in its order."""
     offered = _of_catalogue(scenes, calibration)
-    return tuple(e for e in offered if told_by(e, scenes, calibration))
+    return tuple(e for e in offered if has_data_for(e, scenes, calibration))
 
 
 def effects_of_one_heading(
@@ -64,6 +64,6 @@ def of_the_same_robot(candidates: Sequence[Effect], named: Sequence[Effect]) -> 
     )
 
 
-def told_by(effect: Effect, scenes: Sequence[DenseWindows], calibration: Calibration) -> bool:
+def has_data_for(effect: Effect, scenes: Sequence[DenseWindows], calibration: Calibration) -> bool:
     """Whether a run has the data that the effect needs."""
     return any(not effect.lacks(scene.inputs, calibration.base) for scene in scenes)

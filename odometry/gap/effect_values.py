@@ -20,14 +20,14 @@ def is_the_effect(fit: Fitted, config: GapConfig) -> str:
     if reason := is_meant(added):
         return reason
     if not is_there(fit, config):
-        return f"{added.effect.name} cannot be told from none"
+        return f"{added.effect.name} cannot be distinguished from none"
     return within_bounds(fit, config)
 
 
 def is_meant(added: Added) -> str:
     """Whether an effect agrees with its name and with no other, beside all others too."""
     if rival := added.effect.mimicked_by:
-        return f"{added.effect.in_words}, or {rival}: no data of a run tell them apart"
+        return f"{added.effect.in_words}, or {rival}: no data of a run distinguish them"
     if added.effect.is_meant(added.values):
         return ""
     return f"its values ({_words(added)}) are not what the name says"

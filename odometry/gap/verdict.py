@@ -201,7 +201,7 @@ def is_resolved(added: Added, before: Sequence[Added], scenes: Sequence[DenseWin
         return ""
     return (
         f"{1e3 * off_s:.0f} ms are less than the {1e3 * max(periods_s):.0f} ms from one recorded "
-        "speed to the next: beside treads that act late they cannot be told"
+        "speed to the next: beside treads that act late they cannot be distinguished"
     )
 
 

@@ -134,7 +134,7 @@ def icrs_of_windows(
     duration_s, speeds = _mean_speeds(windows)
     twists = displacements / duration_s[:, None]
     of_twist = of_displacement / np.square(duration_s)[:, None, None]
-    told = turn_is_told(twists[:, 2], np.sqrt(of_twist[:, 2, 2]), probability)
+    known = turn_is_told(twists[:, 2], np.sqrt(of_twist[:, 2, 2]), probability)
     of_speeds = np.square(SPEED_SHARE * speeds)
     return MeasuredIcrs(
         windows.start_s,
@@ -145,7 +145,7 @@ def icrs_of_windows(
         speeds,
         icrs_of_twist(twists, speeds, alphas),
         icr_covariances(twists, speeds, of_twist, of_speeds, alphas),
-    ).where(told)
+    ).where(known)
 
 
 def _mean_speeds(windows: Windows) -> tuple[FloatArray, FloatArray]:

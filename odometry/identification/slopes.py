@@ -65,7 +65,7 @@ def fit_in_two_stages(
             solver_config=solver_config,
         )
 
-    known = model.told_by(windows.inputs)
+    known = model.determined_by(windows.inputs)
     held = {name: value for name, value in known.items() if name not in released} | dict(fixed)
     if not first_free:
         return stage(tilted, held, released)

@@ -53,7 +53,9 @@ def read_rows(
     """
     with opened_lines(file, TrajectoryError) as texts:
         words = (
-            (row, text.strip().split(separator)) for row, text in enumerate(texts, 1) if _told(text)
+            (row, text.strip().split(separator))
+            for row, text in enumerate(texts, 1)
+            if _has_values(text)
         )
         parts = list(_parts(words, columns, file, more=more))
     if not parts:
@@ -73,7 +75,7 @@ def require_increasing(stamps_s: FloatArray, rows: IntArray, file: Path) -> None
         )
 
 
-def _told(text: str) -> bool:
+def _has_values(text: str) -> bool:
     return bool(text.strip()) and not text.startswith("#")
 
 

@@ -160,11 +160,11 @@ def doubt_of_axes(trajectory: SpatialTrajectory) -> str:
     moved = np.diff(trajectory.positions_m, axis=0)
     body = np.einsum("nji,nj->ni", trajectory.poses[:-1, :3, :3], moved)
     squares = np.sum(body**2, axis=0)
-    told = int(np.argmax(squares))
-    if told == 0:  # so it is where nothing moves
+    strongest = int(np.argmax(squares))
+    if strongest == 0:  # so it is where nothing moves
         return ""
     return (
-        f"the body moves most along its {'xyz'[told]} axis; expected x "
+        f"the body moves most along its {'xyz'[strongest]} axis; expected x "
         "forward. Poses of a camera (z along the view, y down) need --axes optical"
     )
 

@@ -171,7 +171,7 @@ class KinematicModel(ABC):
                 sizes.append(robot.track_width / 2 if parameter.unit.startswith("m") else 1.0)
         return np.array(sizes)
 
-    def told_by(self, inputs: Inputs) -> dict[str, float]:  # noqa: ARG002 - of the interface
+    def determined_by(self, inputs: Inputs) -> dict[str, float]:  # noqa: ARG002 - of the interface
         """Known parameters that recorded inputs (N,) determine, by name."""
         return {}
 

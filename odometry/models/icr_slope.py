@@ -96,7 +96,7 @@ class IcrSlope(KinematicModel):
         by_effective = _effective_speed_jacobian(_shifted(values, inputs))
         return np.asarray(by_effective * values[..., None, ALPHAS])
 
-    def told_by(self, inputs: Inputs) -> dict[str, float]:
+    def determined_by(self, inputs: Inputs) -> dict[str, float]:
         """v_max: the largest |V_r + V_l| / 2 (v_y^m of Martinez 2024)."""
         return {"v_max": float(np.abs(inputs.tread_speeds_m_s.mean(axis=-1)).max())}
 

@@ -1,4 +1,4 @@
-"""Which modes answer alike: for how long two must be driven to be told apart."""
+"""Which modes predict the same motion: for how long two must be driven to be distinguished."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -62,10 +62,10 @@ def _velocity_seconds(modes: VelocityModes, speeds: FloatArray, step_s: float) -
     differences = np.einsum("ijqa,ab,ijqb->ijq", apart, squares, apart)
     ratio = variances[:, None] / variances[None]
     divergence = (ratio - 1 - np.log(ratio) + differences / variances[None]).sum(axis=-1) / 2
-    alike = divergence <= 0
+    equal = divergence <= 0
     once_s = max(modes.errors_last_s, step_s)
-    needed = once_s * np.maximum(1.0, LOG_ODDS / np.where(alike, 1.0, divergence))
-    return np.where(alike, np.inf, needed)
+    needed = once_s * np.maximum(1.0, LOG_ODDS / np.where(equal, 1.0, divergence))
+    return np.where(equal, np.inf, needed)
 
 
 def _traction_seconds(modes: TractionModes, speeds: FloatArray, gyro_s: float) -> FloatArray:
@@ -80,5 +80,5 @@ def _traction_seconds(modes: TractionModes, speeds: FloatArray, gyro_s: float) -
     variances = added * TRIED_S[:, None] + modes.measurement_variance[:3]
     of_gyro = squares[..., 2:] / modes.measurement_variance[3] * TRIED_S / gyro_s
     log_odds = ((moved / variances).sum(axis=-1) + of_gyro) / 2
-    told = log_odds >= LOG_ODDS
-    return np.where(told.any(axis=-1), TRIED_S[told.argmax(axis=-1)], np.inf)
+    separable = log_odds >= LOG_ODDS
+    return np.where(separable.any(axis=-1), TRIED_S[separable.argmax(axis=-1)], np.inf)

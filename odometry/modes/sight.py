@@ -53,10 +53,10 @@ def seen_grounds(file: Path, run: Run) -> tuple[SeenGround, ...]:
     length_m = run.robot.length or run.robot.track_width
     places_m = np.interp(table.stamps_s, odometry_s, travel_m) + table["distance_ahead"]
     labels = table["label"].astype(str)
-    told = np.isfinite(places_m) & ~np.isin(labels, NO_LABELS) & (places_m <= travel_m[-1])
+    located = np.isfinite(places_m) & ~np.isin(labels, NO_LABELS) & (places_m <= travel_m[-1])
     found: list[SeenGround] = []
     last_m = -np.inf
-    for row in np.flatnonzero(told)[np.argsort(places_m[told], kind="stable")]:
+    for row in np.flatnonzero(located)[np.argsort(places_m[located], kind="stable")]:
         label, gone_m = str(labels[row]), last_m + BLIND_LENGTHS * length_m
         if found and places_m[row] > gone_m:
             found.append(SeenGround(_when(run, gone_m), UNKNOWN, 0.0))

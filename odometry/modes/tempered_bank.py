@@ -67,10 +67,10 @@ def usable_measurements(signals: Signals, gap_ends: IntArray, fastest_m_s: float
     Not while stationary, nor in a gap, nor far above the speeds that the modes were identified at.
     """
     faster = np.abs(signals.tread_speeds_m_s).max(axis=1) > MOST_FASTER * fastest_m_s
-    tells = moving(signals) & ~np.append(False, faster[:-1])
-    tells &= ~touched(signals.gaps_s, signals.stamps_s, signals.stamps_s)
-    tells[gap_ends] = False
-    return np.where(tells[:, None], signals.measured, np.nan)
+    informative = moving(signals) & ~np.append(False, faster[:-1])
+    informative &= ~touched(signals.gaps_s, signals.stamps_s, signals.stamps_s)
+    informative[gap_ends] = False
+    return np.where(informative[:, None], signals.measured, np.nan)
 
 
 def independent_share(signals: Signals, errors_last_s: float) -> float:

@@ -47,8 +47,8 @@ def contradictions(
     modes = mode_set.modes
     if not isinstance(modes, VelocityModes):
         return None, None, None, None, None
-    asked = modes.steady_yaw_rates(signals.tread_speeds_m_s)
-    before = np.vstack([np.zeros(asked.shape[1]), asked[:-1]])
+    predicted = modes.steady_yaw_rates(signals.tread_speeds_m_s)
+    before = np.vstack([np.zeros(predicted.shape[1]), predicted[:-1]])
     alike = similar_modes(signals, modes, left.leading, config)
     between = between_modes(signals, modes, biases_rad_s, left.independent, config)
     off = turns_are_off(left, before, config)
@@ -58,7 +58,7 @@ def contradictions(
 
 
 def turns_are_off(
-    innovations: Innovations, asked_rad_s: FloatArray, config: ModesConfig | None = None
+    innovations: Innovations, predicted_rad_s: FloatArray, config: ModesConfig | None = None
 ) -> BoolArray:
     """Where (N,) turns contradict the most probable mode.
 
@@ -73,26 +73,26 @@ def turns_are_off(
         of 18 clean runs 3 have a sum beyond 3.5 somewhere.
     """
     config = config or ModesConfig()
-    sums = [turn_sums(innovations, asked_rad_s, window_s) for window_s in WINDOWS_S]
+    sums = [turn_sums(innovations, predicted_rad_s, window_s) for window_s in WINDOWS_S]
     off = np.asarray((np.abs(sums) > config.turn_sigmas).any(axis=(0, 2)))
     last = np.maximum.accumulate(np.where(off, np.arange(len(off)), -1))
     since_s = innovations.stamps_s - innovations.stamps_s[last]
     return np.asarray((last >= 0) & (since_s <= config.turn_holds_s))
 
 
-def turn_sums(innovations: Innovations, asked_rad_s: FloatArray, window_s: float) -> FloatArray:
+def turn_sums(innovations: Innovations, predicted_rad_s: FloatArray, window_s: float) -> FloatArray:
     """Sums (N, 3) over left turns, right turns and both in a window up to each stamp.
 
     In their standard deviations if the mode is true; positive: more was turned than it says.
     """
     rows = np.arange(len(innovations.leading))
-    asked = asked_rad_s[rows, innovations.leading]
+    predicted = predicted_rad_s[rows, innovations.leading]
     left_over = innovations.of_leading[:, -1]
     known = np.isfinite(left_over)
     clipped = np.where(known, np.clip(np.nan_to_num(left_over), -CLIP, CLIP), 0.0)
     sides = []
     for side in (1, -1):
-        weights = np.where(known & (side * asked > LEAST_RAD_S), asked, 0.0)
+        weights = np.where(known & (side * predicted > LEAST_RAD_S), predicted, 0.0)
         columns = np.column_stack([weights * clipped, weights**2, np.abs(weights)])
         summed, squares, sizes = windowed(columns, innovations.stamps_s, window_s).T
         variances = np.minimum(squares / innovations.independent, sizes**2)
@@ -111,9 +111,9 @@ def similar_modes(
     """
     config = config or ModesConfig()
     gains = modes.steady_gains()[:, 1]
-    asked = modes.steady_yaw_rates(signals.tread_speeds_m_s)
-    asked[:-1] *= np.any(np.isfinite(signals.measured[1:]), axis=1, keepdims=True)
-    means, lasts_s = _means(asked, signals.stamps_s)
+    predicted = modes.steady_yaw_rates(signals.tread_speeds_m_s)
+    predicted[:-1] *= np.any(np.isfinite(signals.measured[1:]), axis=1, keepdims=True)
+    means, lasts_s = _means(predicted, signals.stamps_s)
     # the deviation of what lasts of errors in a mean over so long
     share = np.minimum(modes.errors_last_s / lasts_s, 1.0)[:, None]
     lasting = np.sqrt(modes.measurement_variance[:, 1] * share)

@@ -46,8 +46,8 @@ class Heard:
 
     def errors(self, gains: FloatArray, lag_s: float) -> FloatArray:
         """Measured less predicted yaw rates (K,) while driving."""
-        asked = twists_of(gains, self.tread_speeds_m_s, self.track_width)[:, 2]
-        return (self.yaw_rates - lagged(asked, self.stamps_s, lag_s))[self.driving]
+        commanded = twists_of(gains, self.tread_speeds_m_s, self.track_width)[:, 2]
+        return (self.yaw_rates - lagged(commanded, self.stamps_s, lag_s))[self.driving]
 
 
 @dataclass(frozen=True)

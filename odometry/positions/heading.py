@@ -22,7 +22,7 @@ from odometry.windows.measured_poses import YAW_FOUND, lacks_yaw
 from odometry.windows.record import ODOMETRY_GAP
 
 STARTS = 12  # headings all round
-FAR_RAD = np.radians(20.0)  # of another yaw that leaves it untold
+FAR_RAD = np.radians(20.0)  # of another yaw that leaves it undetermined
 RULED_OUT = 1e-3  # share of the probability of the best, below which a start is ruled out
 SURE_RAD = 0.35  # of both filters, where their disagreement counts
 # Chosen on 19 recordings (`tests/studies/positions_yaw.py`), so that 95 % are within 2 of them:
@@ -32,7 +32,7 @@ LARGEST_RAD = np.radians(30.0)  # a larger one is of no use
 LEAST_SHARE = 0.5  # of the positions, at which the yaw must be estimated
 
 
-class ToldYaw(NamedTuple):
+class PositionsYaw(NamedTuple):
     """Yaw (M,) at each position and its standard deviation (M,) [rad]; NaN where not estimated.
 
     `disagreement` is the root mean square difference of the yaws by earlier and by later positions
@@ -49,7 +49,7 @@ class ToldYaw(NamedTuple):
         return float(np.isfinite(self.yaw_rad).mean())
 
 
-def yaw_at_positions(carrier: Carrier) -> ToldYaw:
+def yaw_at_positions(carrier: Carrier) -> PositionsYaw:
     """Yaw at the positions that a carrier moves between.
 
     Raises
@@ -70,9 +70,9 @@ def yaw_at_positions(carrier: Carrier) -> ToldYaw:
     best = int(np.argmax(forwards.log_likelihoods[:STARTS]))
     disagreement = _disagreement(carrier, forwards, best, float(yaws_rad[-1, best]))
     sigma_rad = np.hypot(LASTING * np.fmax(1.0, disagreement) * sigma_rad, LEAST_RAD)
-    told = (away_rad[:, possible].max(axis=1) < FAR_RAD) & (sigma_rad < LARGEST_RAD)
-    found = ToldYaw(
-        np.where(told, mean_rad, np.nan), np.where(told, sigma_rad, np.nan), disagreement
+    known = (away_rad[:, possible].max(axis=1) < FAR_RAD) & (sigma_rad < LARGEST_RAD)
+    found = PositionsYaw(
+        np.where(known, mean_rad, np.nan), np.where(known, sigma_rad, np.nan), disagreement
     )
     if np.isnan(disagreement) or found.share < LEAST_SHARE:
         raise OdometryError(
@@ -162,8 +162,10 @@ class FoundHeading:
     def words(self) -> str:
         """A sentence for a reader."""
         by = "by the gyroscope" if self.by_gyroscope else "by the treads alone"
-        untold = 1 - self.estimated_share
-        except_for = f"; at {untold:.1%} of the positions it cannot be estimated" if untold else ""
+        unknown = 1 - self.estimated_share
+        except_for = (
+            f"; at {unknown:.1%} of the positions it cannot be estimated" if unknown else ""
+        )
         return (
             f"{self.run.folder}: yaw was not measured; it is found from positions with a noise of "
             f"{self.position_sigma_m:.2g} m, to about {np.degrees(self.yaw_sigma_rad):.2g} "
@@ -219,17 +221,17 @@ def found_heading(run: Run) -> FoundHeading:
         the yaw (`yaw_from_positions`).
     """
     carrier = carrier_of(run)
-    told = yaw_at_positions(carrier)
+    found = yaw_at_positions(carrier)
     if run.pose is None:
         return FoundHeading(run, np.nan, np.nan, carrier.by_gyroscope)
     rows = np.searchsorted(run.pose.stamps_s, carrier.record.pose_s)
     yaw, sigma = np.full((2, len(run.pose)), np.nan)
-    yaw[rows], sigma[rows] = told.yaw_rad, told.sigma_rad
+    yaw[rows], sigma[rows] = found.yaw_rad, found.sigma_rad
     columns = {**run.pose.columns, "yaw": yaw, YAW_FOUND: sigma}
     return FoundHeading(
         replace(run, pose=replace(run.pose, columns=columns)),
         float(np.sqrt(carrier.position_variance_m2)),
-        float(np.nanmedian(told.sigma_rad)),
+        float(np.nanmedian(found.sigma_rad)),
         carrier.by_gyroscope,
-        told.share,
+        found.share,
     )

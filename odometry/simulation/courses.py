@@ -130,13 +130,13 @@ def make_course(
     SimulationError
         If a number is beyond LIMITS, or the name or the course is not possible.
     """
-    asked = {
+    given = {
         "duration_s": duration_s,
         "max_speed_m_s": max_speed_m_s,
         "slope_rad": slope_rad,
         "uphill_rad": uphill_rad,
     }
-    for key, value in asked.items():
+    for key, value in given.items():
         low, high = LIMITS[key]
         if not low <= value <= high:
             raise SimulationError(f"{key} = {value:g}, expected {low:g} to {high:g}")

@@ -110,7 +110,7 @@ def calibration_runs(
     rng: np.random.Generator,
     sensors: ContactSensors = SENSORS,
 ) -> dict[str, tuple[Run, ...]]:
-    """Runs of every mode on every course, by the mode's name, which each run is told."""
+    """Runs of every mode on every course, by the name of the mode, which each run states."""
     by_course = [drives_on(vehicle, modes, course) for course in courses]
     return {
         mode.name: tuple(

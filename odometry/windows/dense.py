@@ -149,10 +149,10 @@ def dense_windows_of(run: Run, horizon_s: float) -> DenseWindows:
     pose_s = time_s[record.pose_samples]
     windows, left_out = _windows(pose_s, record, time_s[-1], horizon_s)
     if not len(windows):
-        told = words(left_out)
+        reasons = words(left_out)
         raise WindowError(
             f"{run.folder}: no window of {horizon_s:g} s with {LEAST_POSES} measured poses "
-            f"without a gap; {told + '; ' if told else ''}choose a longer horizon"
+            f"without a gap; {reasons + '; ' if reasons else ''}choose a longer horizon"
         )
     inputs = replace(record.inputs, time_s=time_s, terrain=row_terrains(run)[rows])
     return DenseWindows(

@@ -64,9 +64,9 @@ def odometry_gaps(run: Run) -> Gaps:
     moving = np.abs(speeds).max(axis=1) > STANDING_M_S
     of_changes = np.count_nonzero(repeated & moving[1:]) <= REPEATS * np.count_nonzero(moving)
     long = periods_s[holds] > max(LONG_S, LONG_PERIODS * usual_s)
-    told = by_poses.agrees | (by_gyroscope.agrees & of_changes)
+    supported = by_poses.agrees | (by_gyroscope.agrees & of_changes)
     reasons = np.select(
-        [by_gyroscope.contradicts, by_poses.contradicts, long & moving[holds] & ~told],
+        [by_gyroscope.contradicts, by_poses.contradicts, long & moving[holds] & ~supported],
         [BY_GYROSCOPE, BY_POSES, SILENT],
         "",
     ).astype(object)
@@ -91,7 +91,7 @@ class GapsSoFar:
         self._stamp_s = 0.0
         self._turning = False
 
-    def told(self, frame: Frame) -> Frame:
+    def marked(self, frame: Frame) -> Frame:
         """The frame with its `in_gap`; frames come in order of time."""
         held_s = frame.stamp_s - self._stamp_s
         in_gap = self._turning and held_s > LONG_S and held_s > LONG_PERIODS * self._usual_s()

@@ -54,7 +54,7 @@ class _Blocks:
     ordinary: BoolArray
 
     @property
-    def told_by(self) -> BoolArray:
+    def used(self) -> BoolArray:
         """Blocks (K,) from which scales are found: all where ordinary ones are few."""
         enough = self.ordinary.sum() >= LEAST_BLOCKS
         return self.ordinary if enough else np.ones_like(self.ordinary)
@@ -91,14 +91,14 @@ def gyroscope_evidence(run: Run, holds_s: FloatArray) -> Evidence:
     end_s = begin_s + BLOCK_S
     turn, _, _, silent_s = gyroscope.between(begin_s, end_s)
     odometry_s = run.odometry.stamps_s
-    told = (silent_s == 0) & (begin_s >= odometry_s[0]) & (end_s <= odometry_s[-1])
-    begin_s, end_s, rates = begin_s[told], end_s[told], turn[told] / BLOCK_S
+    known = (silent_s == 0) & (begin_s >= odometry_s[0]) & (end_s <= odometry_s[-1])
+    begin_s, end_s, rates = begin_s[known], end_s[known], turn[known] / BLOCK_S
     differences = tread_travel(run).between(begin_s, end_s)[1] / BLOCK_S
     blocks = _Blocks(begin_s, end_s, ~touched(holds_s, begin_s, end_s))
-    straight = blocks.told_by & (np.abs(differences) < STRAIGHT_M_S)
+    straight = blocks.used & (np.abs(differences) < STRAIGHT_M_S)
     rates = rates - (np.median(rates[straight]) if straight.sum() >= LEAST_BLOCKS else 0.0)
-    asked = differences * _fitted(rates, differences, blocks.told_by, 1 / run.robot.track_width)
-    errors = np.abs(rates - asked) - SLIP * np.abs(asked)
+    expected = differences * _fitted(rates, differences, blocks.used, 1 / run.robot.track_width)
+    errors = np.abs(rates - expected) - SLIP * np.abs(expected)
     limit = blocks.limit(errors, LEAST_RAD_S, UNKNOWN_RAD_S)
     return blocks.evidence(holds_s, errors > limit, errors <= AGREED_RAD_S)
 
@@ -113,10 +113,10 @@ def pose_evidence(run: Run, holds_s: FloatArray) -> Evidence:
     measured, lasts_s = se2.between(poses[begin], poses[end]), end_s - begin_s
     ahead_m, difference_m, _, _ = tread_travel(run).between(begin_s, end_s)
     by_width = 1 / run.robot.track_width
-    rad_per_m = _fitted(measured[:, 2], difference_m, blocks.told_by, by_width)
+    rad_per_m = _fitted(measured[:, 2], difference_m, blocks.used, by_width)
     asked_rad = rad_per_m * difference_m
     chord_m = np.abs(np.sinc(asked_rad / (2 * np.pi)) * ahead_m)
-    scale = _fitted(np.hypot(*measured[:, :2].T), chord_m, blocks.told_by, 1.0)
+    scale = _fitted(np.hypot(*measured[:, :2].T), chord_m, blocks.used, 1.0)
     path = _path(run, stamps_s, scale, rad_per_m)
     off = se2.between(se2.between(path[begin], path[end]), measured)
     errors_m_s = np.hypot(off[:, 0], off[:, 1]) / lasts_s - SLIP * np.abs(ahead_m) / lasts_s
@@ -154,10 +154,10 @@ def _path(run: Run, asked_s: FloatArray, scale: float, rad_per_m: float) -> Floa
     return np.asarray(path.poses[np.searchsorted(stamps_s, asked_s)])
 
 
-def _fitted(measured: FloatArray, asked: FloatArray, told_by: BoolArray, otherwise: float) -> float:
-    """Factor of the measured (K,) by the asked (K,) of some blocks (K,)."""
-    told = told_by & (asked != 0)
-    return slope(measured[told], asked[told]) if told.sum() >= LEAST_BLOCKS else otherwise
+def _fitted(measured: FloatArray, expected: FloatArray, used: BoolArray, otherwise: float) -> float:
+    """Factor of the measured (K,) by the expected (K,) of some blocks (K,)."""
+    known = used & (expected != 0)
+    return slope(measured[known], expected[known]) if known.sum() >= LEAST_BLOCKS else otherwise
 
 
 def _silent(holds: int) -> Evidence:

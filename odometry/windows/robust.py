@@ -19,8 +19,8 @@ def slope(steps: FloatArray, by: FloatArray) -> float:
 
     The weighted median of their ratios makes the sum of the absolute deviations least.
     """
-    told = by != 0
-    return weighted_median(steps[told] / by[told], np.abs(by[told]))
+    known = by != 0
+    return weighted_median(steps[known] / by[known], np.abs(by[known]))
 
 
 def spread(errors: FloatArray) -> float:

@@ -78,9 +78,9 @@ def counted_turns(run: Run, stamps_s: FloatArray, yaw_rad: FloatArray) -> Turns:
     turned, known = measured.copy(), np.zeros(len(measured), dtype=np.bool_)
     for predicted, bound in _predictions(run, stamps_s, yaw_rad):
         whole = 2 * np.pi * np.round((predicted - measured) / (2 * np.pi))
-        told = ~known & (np.abs(predicted - measured - whole) + bound < np.pi)
-        turned[told] += whole[told]
-        known |= told
+        resolved = ~known & (np.abs(predicted - measured - whole) + bound < np.pi)
+        turned[resolved] += whole[resolved]
+        known |= resolved
         if known.all():
             break
     return Turns(yaw_rad[0] + np.append(0.0, np.cumsum(turned)), known)

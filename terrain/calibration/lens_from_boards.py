@@ -25,9 +25,9 @@ def require_variety(seen: BoardViews) -> None:
     advice = "; ".join(what_next(seen, 0.0))
     different = _different(seen)
     if different < FEWEST_VIEWS:
-        alike = f", {different} of them different" if different < found else ""
+        repeated = f", {different} of them different" if different < found else ""
         raise CalibrationError(
-            f"{found} photographs show the board{alike}, expected at least {FEWEST_VIEWS} that "
+            f"{found} photographs show the board{repeated}, expected at least {FEWEST_VIEWS} that "
             f"differ{reason}. Next: {advice}"
         )
     if np.count_nonzero(_cells(seen)) < FEWEST_CELLS:

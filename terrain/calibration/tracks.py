@@ -104,10 +104,10 @@ class Tracker:
                 continue
             warp = None if mount is None else Warp(self.lens, mount, self.steps[number])
             rays = _tracked_rays(first, second, self.lens, warp)
-            told = np.isfinite(np.hstack(rays)).all(axis=1)
-            if np.count_nonzero(told) >= FEWEST:
-                befores.append(rays[0][told])
-                afters.append(rays[1][told])
+            known = np.isfinite(np.hstack(rays)).all(axis=1)
+            if np.count_nonzero(known) >= FEWEST:
+                befores.append(rays[0][known])
+                afters.append(rays[1][known])
                 used.append(number)
         return Tracks(
             np.concatenate([np.empty((0, 2)), *befores]),

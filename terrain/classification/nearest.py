@@ -10,16 +10,16 @@ from odometry.arrays import FloatArray, IntArray
 NEIGHBOURS = 5  # whose mean distance is that to the samples
 
 SMALLEST_SHARE_OF_MEAN = 0.01
-ASKED = 25  # neighbours whose vote says how many classes are left open, whatever the k
+VOTERS = 25  # neighbours whose vote says how many classes are left open, whatever the k
 
 
-def nearest(points: FloatArray, asked: FloatArray, k: int) -> tuple[FloatArray, IntArray]:
+def nearest(points: FloatArray, queries: FloatArray, k: int) -> tuple[FloatArray, IntArray]:
     """The k nearest points of each query, nearest first.
 
     Parameters
     ----------
     points : (n, d) array
-    asked : (m, d) array
+    queries : (m, d) array
     k : int
         At most n.
 
@@ -29,12 +29,12 @@ def nearest(points: FloatArray, asked: FloatArray, k: int) -> tuple[FloatArray, 
         Euclidean distances and rows of `points`. Of points equally far the earlier comes first.
     """
     # |p|^2 - 2 p.q orders points as the distance does, to rounding; distances are then exact
-    order = (points**2).sum(axis=1) - 2.0 * (asked @ points.T)
+    order = (points**2).sum(axis=1) - 2.0 * (queries @ points.T)
     found = np.argpartition(order, k - 1, axis=1)[:, :k] if k < len(points) else _all(order)
-    apart = (asked[:, None] - points[found]).transpose(2, 0, 1)
+    apart = (queries[:, None] - points[found]).transpose(2, 0, 1)
     distances = np.sqrt((apart * apart).sum(axis=0))
     by_distance = np.lexsort((found, distances))
-    rows = np.arange(len(asked))[:, None]
+    rows = np.arange(len(queries))[:, None]
     return distances[rows, by_distance], found[rows, by_distance]
 
 

@@ -20,7 +20,7 @@ from terrain.classification.metric import (
     FourierFeatures,
 )
 from terrain.classification.nearest import (
-    ASKED,
+    VOTERS,
     LocalSparsity,
     brute_force,
     classes_left_open,
@@ -164,10 +164,10 @@ class DiscriminantNeighbours:
         knn, means = self.pipeline_[-1], self.class_means_
         if means is None:
             raise ValueError("no class means, and image_rejection_distances")
-        seen, asked = len(self.sparsity_.points_), min(max(k, ASKED), knn.n_samples_fit_)
+        seen, wanted = len(self.sparsity_.points_), min(max(k, VOTERS), knn.n_samples_fit_)
         places, sparsity = self._places(features)
-        labels, _ = labels_and_sample_distances(knn, places, asked, seen)
-        left_open = classes_left_open(vote(labels[:, :ASKED], self.class_weights_))
+        labels, _ = labels_and_sample_distances(knn, places, wanted, seen)
+        left_open = classes_left_open(vote(labels[:, :VOTERS], self.class_weights_))
         doubt = np.log(left_open) + 3 * np.log(np.maximum(sparsity, SMALLEST))
         middles = np.array([places[rows].mean(axis=0) for rows in images])
         _, to_samples = labels_and_sample_distances(knn, middles, 1, seen)

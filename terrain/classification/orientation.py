@@ -32,7 +32,7 @@ def half_turn_bytes(across: AnyArray, down: AnyArray) -> ByteImage:
     result = numbers.astype(np.uint8)
     levels -= nearest
     unsure = np.abs(levels, out=levels) > 0.5 - MARGIN
-    unsure |= (result == 0) | (result == 255)  # there half a turn is told by the sign alone
+    unsure |= (result == 0) | (result == 255)  # there the sign alone distinguishes half a turn
     near_edges = np.flatnonzero(unsure)
     result.ravel()[near_edges] = _exact(across.ravel()[near_edges], down.ravel()[near_edges])
     return result

@@ -111,7 +111,7 @@ def print_mount(source: "MountSource") -> None:
     click.echo(f"Mount (from {source.where}):")
     half = np.full(6, np.nan) if fit is None else fit.half_interval
     for name, value, width in zip(NAMES, camera.mount, half, strict=True):
-        click.echo(f"  {name:5s} {_told(name, value, width)}")
+        click.echo(f"  {name:5s} {_with_interval(name, value, width)}")
     if fit is None:
         return
     what = "marked points" if source.points is not None else "features that move as terrain does"
@@ -174,7 +174,7 @@ def _print_boards(source: "LensSource") -> None:
         click.echo(f"Note: for a better lens, {photos}", err=True)
 
 
-def _told(name: str, value: float, half: float) -> str:
+def _with_interval(name: str, value: float, half: float) -> str:
     if name in NAMES[:3]:
         return f"{value:.3f} m" + (f" +- {half:.3f} (95 %)" if np.isfinite(half) else "")
     words = f"{round(np.degrees(value), 2) + 0.0:.2f} degrees"

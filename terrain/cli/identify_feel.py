@@ -78,7 +78,8 @@ def _print(model: "FeelModel") -> None:
     click.echo("Windows by answer:")
     table = report["window"]["confusion"]
     lines = [
-        (name, *(str(line.get(told, 0)) for told in model.names)) for name, line in table.items()
+        (name, *(str(line.get(answer, 0)) for answer in model.names))
+        for name, line in table.items()
     ]
     print_table([("true terrain", *model.names), *lines])
     click.echo("What each group of features brings (windows):")

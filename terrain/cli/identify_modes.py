@@ -178,13 +178,13 @@ def _print_alike(found: "tuple[Pair, ...]") -> None:
     if not found:
         click.echo("Note: there is one mode: `modes` needs two or more", err=True)
         return
-    alike = [pair for pair in found if pair.seconds > ALIKE_S]
-    for pair in alike[:PAIRS] or found[:1]:
+    equal = [pair for pair in found if pair.seconds > ALIKE_S]
+    for pair in equal[:PAIRS] or found[:1]:
         both = " and ".join(pair.names)
-        words = "answer alike" if alike else "are the most similar"
+        words = "answer alike" if equal else "are the most similar"
         digits = 0 if pair.seconds >= 10 else 1
         time = f"about {pair.seconds:.{digits}f} s" if pair.seconds < 1e4 else "for ever"
         time = "less than 0.1 s" if pair.seconds < 0.1 else time
         click.echo(f"{both} {words}: driven as in these runs they take {time} to be distinguished.")
-    if len(alike) > PAIRS:
-        click.echo(f"So do {len(alike) - PAIRS} further pairs (more than {ALIKE_S:g} s).")
+    if len(equal) > PAIRS:
+        click.echo(f"So do {len(equal) - PAIRS} further pairs (more than {ALIKE_S:g} s).")

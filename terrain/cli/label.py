@@ -133,17 +133,17 @@ def label(
     read = [read_run(folder, span, images=True) for folder in runs]
     if by_feel is not None:
         model = read_feel_model(by_feel)
-        told = [told_by_feel(run, model, sure or SURE) for run in read]
+        given = [told_by_feel(run, model, sure or SURE) for run in read]
     elif spans:
-        told = [
+        given = [
             told_by_spans(run, by_run[run.folder], run.odometry.stamps_s[0] - span.from_s)
             for run in read
         ]
     else:
-        told = [told_terrain(run, source) for run in read]
+        given = [told_terrain(run, source) for run in read]
     ground = label_runs(
         read,
-        told,
+        given,
         config,
         parameters=read_parameters(parameters) if parameters else None,
         corrections=corrections,
@@ -154,7 +154,7 @@ def label(
         unusable = write_labelled_patches(part, ground, corrections, show_progress=True)
     for file, reason in unusable.items():
         click.echo(f"left out: {file}: {reason}", err=True)
-    click.echo(summary(ground, told))
+    click.echo(summary(ground, given))
     if corrections.moved or corrections.removed:
         moved = sum(each.label != each.of.label for each in ground.chosen)
         click.echo(f"Corrections kept: {moved} moved, {len(corrections.removed)} removed.")

@@ -67,13 +67,13 @@ def _bad(message: str) -> click.BadParameter:
 FEW_PLACES = 5  # as many folds has the cross-validation of `train`
 
 
-def summary(ground: "LabelledTerrain", told: "Sequence[GivenTerrain]") -> str:
+def summary(ground: "LabelledTerrain", given: "Sequence[GivenTerrain]") -> str:
     """Squares of each run, patches of each class, and what is too little for training."""
-    return "\n".join([*_runs(ground, told), "", *_classes(ground), *_notes(ground)])
+    return "\n".join([*_runs(ground, given), "", *_classes(ground), *_notes(ground)])
 
 
-def _runs(ground: "LabelledTerrain", told: "Sequence[GivenTerrain]") -> Iterator[str]:
-    for (folder, seen), of in zip(ground.seen.items(), told, strict=True):
+def _runs(ground: "LabelledTerrain", given: "Sequence[GivenTerrain]") -> Iterator[str]:
+    for (folder, seen), of in zip(ground.seen.items(), given, strict=True):
         left_out = ground.left_out[folder]
         counts = ", ".join(f"{count} {why}" for why, count in sorted(left_out.items()))
         yield (

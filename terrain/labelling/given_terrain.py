@@ -131,7 +131,7 @@ def told_by_spans(run: Run, spans: Sequence[TerrainSpan], start_s: float) -> Giv
             stamps_s, names = [*stamps_s, start_s + end_s], [*names, ""]
         stamps_s, names = [*stamps_s, start_s + span.from_s], [*names, span.terrain]
         end_s = span.to_s
-    return _told(SPANS, np.array([*stamps_s, start_s + end_s]), [*names, ""])
+    return _given(SPANS, np.array([*stamps_s, start_s + end_s]), [*names, ""])
 
 
 def told_terrain(run: Run, source: str | None = None) -> GivenTerrain:
@@ -158,9 +158,9 @@ def told_terrain(run: Run, source: str | None = None) -> GivenTerrain:
     ('truth.csv', 'gravel')
     """
     for name in SOURCES if source is None else (source,):
-        told = _of_file(run, name)
-        if told is not None and told.terrains:
-            return told
+        found = _of_file(run, name)
+        if found is not None and found.terrains:
+            return found
     raise RunFolderError(
         f"{run.folder}: no terrain is named by {source or 'any file'}; expected a column `terrain` "
         "of truth.csv, odometry.csv or images.csv, [run] terrain of run.toml, or spans "
@@ -173,17 +173,17 @@ def _of_file(run: Run, name: str) -> GivenTerrain | None:
     if name == "odometry.csv":
         if "terrain" not in run.odometry:
             return None
-        return _told(name, run.odometry.stamps_s, row_terrains(run).tolist())
+        return _given(name, run.odometry.stamps_s, row_terrains(run).tolist())
     if name == "run.toml":
-        return None if run.terrain is None else _told(name, start_s, [run.terrain])
+        return None if run.terrain is None else _given(name, start_s, [run.terrain])
     table = run.truth if name == "truth.csv" else run.images
     if table is None or "terrain" not in table:
         return None
     of_images = name == "images.csv"
-    return _told(name, table.stamps_s, table["terrain"].tolist(), of_images=of_images)
+    return _given(name, table.stamps_s, table["terrain"].tolist(), of_images=of_images)
 
 
-def _told(
+def _given(
     source: str, stamps_s: FloatArray, names: Sequence[str], *, of_images: bool = False
 ) -> GivenTerrain:
     known = tuple("" if name == UNKNOWN else str(name) for name in names)
@@ -211,7 +211,7 @@ def told_by_feel(run: Run, model: FeelModel, sure: float = SURE) -> GivenTerrain
     model : FeelModel
         Of the same robot.
     sure : float
-        Probability from which a terrain is told.
+        Probability from which a terrain is given.
 
     Raises
     ------

@@ -128,7 +128,7 @@ def label_runs(
 
 
 def square_finder(
-    run: Run, told: GivenTerrain, parameters: ParameterSet | None = None
+    run: Run, given: GivenTerrain, parameters: ParameterSet | None = None
 ) -> SquareFinder:
     """Replay a run without its images, and be ready to find its squares.
 
@@ -143,8 +143,8 @@ def square_finder(
         lacking = "images.csv" if run.images is None else "[camera] in run.toml"
         raise PatchError(f"{run.folder}: the run has no {lacking}; patches are cut from images")
     camera = Camera.from_table(run.settings["camera"], str(run.folder / "run.toml"))
-    named = NamedTerrain.told(told.terrains[0], told.stamps_s, np.array(told.names), ("",))
-    source = None if told.of_images else named
+    named = NamedTerrain.of_answers(given.terrains[0], given.stamps_s, np.array(given.names), ("",))
+    source = None if given.of_images else named
     result = run_odometry(run, vision=False, parameters=parameters, source=source)
     odometer, estimate = result.replay.odometer(), result.replay.trajectory()
     way = DrivenWay.of(run, odometer)

@@ -11,7 +11,7 @@ from odometry.run import Run
 from terrain.labelling.given_terrain import GivenTerrain
 from terrain.labelling.squares import DrivenSquare, SquareFinder
 
-STRADDLES, UNTOLD = "astride two terrains", "of no given terrain"
+STRADDLES, UNNAMED = "astride two terrains", "of no given terrain"
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class LabelledSquare:
     name : str
         Of the patch, and of its file; no other square has it.
     confidence : float
-        The least probability of the label while the footprint was over it; NaN where what told it
+        The least probability of the label while the footprint was over it; NaN where what gave it
         has none.
     """
 
@@ -38,7 +38,7 @@ class LabelledSquare:
 
 
 def labelled_squares(
-    finder: SquareFinder, told: GivenTerrain, squares: Sequence[DrivenSquare], run_name: str
+    finder: SquareFinder, given: GivenTerrain, squares: Sequence[DrivenSquare], run_name: str
 ) -> tuple[list[LabelledSquare], Counter[str]]:
     """Squares of one terrain, and how many others there are, by why they are left out.
 
@@ -49,7 +49,7 @@ def labelled_squares(
     Parameters
     ----------
     finder : SquareFinder
-    told : GivenTerrain
+    given : GivenTerrain
     squares : sequence of DrivenSquare
         Of the finder.
     run_name : str
@@ -57,28 +57,28 @@ def labelled_squares(
     """
     found, left_out = [], Counter[str]()
     for square in squares:
-        names = _names(finder, told, square)
+        names = _names(finder, given, square)
         if len(names - {""}) > 1:
             left_out[STRADDLES] += 1
         elif "" in names:
-            left_out[UNTOLD] += 1
+            left_out[UNNAMED] += 1
         else:
             (label,) = names
             name = f"{run_name}_{_place(square)}.png"
             over = square.passing
-            confidence = told.least_probability(over.begin_s, over.end_s)
+            confidence = given.least_probability(over.begin_s, over.end_s)
             found.append(LabelledSquare(finder.run, square, label, name, confidence))
     return found, left_out
 
 
-def _names(finder: SquareFinder, told: GivenTerrain, square: DrivenSquare) -> frozenset[str]:
-    if not told.of_images:
-        return told.between(square.passing.begin_s, square.passing.end_s)
+def _names(finder: SquareFinder, given: GivenTerrain, square: DrivenSquare) -> frozenset[str]:
+    if not given.of_images:
+        return given.between(square.passing.begin_s, square.passing.end_s)
     first, end = finder.rows_before(square)
     robot = se2.inverse(finder.poses[first:end])
     from_robot = se2.transform(robot, np.array(square.middle_m))
     shows = finder.camera.in_image(finder.camera.ground_to_pixels(from_robot))
-    names = {told.names[first + int(image)] for image in np.flatnonzero(shows)}
+    names = {given.names[first + int(image)] for image in np.flatnonzero(shows)}
     return frozenset(names - {""} or {""})
 
 

@@ -66,9 +66,9 @@ def test_stages_share_out_all_that_is_identified(model):
 @each_model
 def test_what_recorded_inputs_tell_is_known_otherwise(model):
     speeds = np.array([[0.2, 0.6], [-1.0, -0.6]])
-    told = model.told_by(Inputs(speeds))
-    assert set(told) <= {p.name for p in model.parameters if p.known}
-    model.pack(ordinary(model) | told)
+    known = model.determined_by(Inputs(speeds))
+    assert set(known) <= {p.name for p in model.parameters if p.known}
+    model.pack(ordinary(model) | known)
 
 
 @pytest.mark.parametrize("name", ["icr_inertia", "icr_inertia_measured"])

@@ -72,7 +72,7 @@ def test_frames_of_messages_are_those_of_the_run_folder(drive):
     assert frames.too_late == 0
 
 
-def test_a_frame_comes_when_nothing_older_can_and_the_gyroscope_has_told(drive):
+def test_a_frame_comes_when_nothing_older_can_and_the_gyroscope_has_come(drive):
     _, messages = drive
     frames = LiveFrames(wait_s=0.1)
     now_s = -np.inf

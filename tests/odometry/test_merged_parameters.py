@@ -64,7 +64,7 @@ def test_a_next_run_lies_where_the_covariance_says(rng, runs, spread):
     assert np.mean(within) > 0.83
 
 
-def test_of_two_runs_no_spread_is_told_and_the_covariance_covers_both():
+def test_two_runs_give_no_spread_and_a_covariance_that_covers_both():
     tables = {"a": table(TRUE, 1e-6 * np.eye(3)), "b": table(TRUE + 0.2, 1e-6 * np.eye(3))}
     merged = merged_terrain(tables)
     assert merged.spread == {}

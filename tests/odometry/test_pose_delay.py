@@ -56,7 +56,7 @@ def test_a_gyroscope_that_is_early_leaves_poses_alone():
     assert without_pose_delay(given, IcrEkfConfig()) == (given, ())
 
 
-def test_without_a_gyroscope_late_poses_cannot_be_told_from_early_treads():
+def test_without_a_gyroscope_late_poses_cannot_be_distinguished_from_early_treads():
     given = run_of(0.5, with_gyroscope=False)
     assert without_pose_delay(given, IcrEkfConfig()) == (given, ())
 

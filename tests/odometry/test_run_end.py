@@ -42,7 +42,7 @@ def test_a_bias_is_said_and_a_drift():
     assert "not followed" in lost.text
 
 
-def test_the_error_of_a_bias_is_told_from_the_poses():
+def test_the_error_of_a_bias_is_found_from_the_poses():
     """A drift that the filter lags behind, against the bias that was put in."""
     run = run_of(0.0)
     columns = dict(run.odometry.columns)

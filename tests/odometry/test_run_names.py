@@ -6,7 +6,7 @@ from odometry.errors import RunFolderError
 from odometry.run import Robot, Run, check_no_run_twice, robot_labels, run_names
 
 
-def test_runs_of_one_name_are_told_apart_by_their_folders(make_run, tmp_path):
+def test_runs_of_one_name_are_distinguished_by_their_folders(make_run, tmp_path):
     folders = [tmp_path / "a" / "run", tmp_path / "b" / "run", tmp_path / "other"]
     run = Run.read(make_run())
     runs = [replace(run, folder=folder) for folder in folders]

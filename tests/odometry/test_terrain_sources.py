@@ -71,7 +71,7 @@ def test_a_run_that_names_no_terrain_is_an_error(names):
 def test_a_source_says_what_one_would_by_walking_along_the_answers(answers, ask_s):
     stamps_s = np.arange(float(len(answers)))
     named = np.array(answers, dtype=object)
-    source = NamedTerrain.told("sand", stamps_s, named, ("undetermined",))
+    source = NamedTerrain.of_answers("sand", stamps_s, named, ("undetermined",))
     held = "sand"
     for stamp_s, answer in zip(stamps_s, answers, strict=True):
         if stamp_s <= ask_s and answer != "undetermined":

@@ -24,7 +24,7 @@ from terrain_grounds import Grounds, read_grounds
 
 from odometry.arrays import FloatArray
 from terrain.classification.held_out import rejection_roc_area
-from terrain.classification.nearest import ASKED, NEIGHBOURS, classes_left_open, nearest
+from terrain.classification.nearest import NEIGHBOURS, VOTERS, classes_left_open, nearest
 from terrain.classification.neighbours import DiscriminantNeighbours, vote
 from terrain.classification.validation import grouped_folds
 
@@ -56,7 +56,7 @@ def parts(model: DiscriminantNeighbours, features: FloatArray) -> FloatArray:
     """Logarithms (n, 4) of what distances are made of."""
     places = model.discriminants(features)
     points, codes = model.samples()
-    distances, rows = nearest(points, places, ASKED)
+    distances, rows = nearest(points, places, VOTERS)
     scaled = model.scaler.transform(features)
     columns = (
         distances[:, :NEIGHBOURS].mean(axis=1),

@@ -49,7 +49,7 @@ def test_sources_that_agree_are_not_mentioned(felt):
     assert contradictions(felt, None, motion) == ()
 
 
-def test_what_lasts_is_told_and_what_does_not_is_not(felt):
+def test_what_lasts_is_reported_and_what_does_not_is_not(felt):
     (one,) = contradictions(felt, beneath(felt, "tiles", 10.0, 18.0))
     assert (one.camera, one.feel, one.motion) == ("tiles", "snow", "")
     assert one.camera_probability == pytest.approx(0.8)

@@ -46,7 +46,7 @@ def test_where_nothing_is_judged_nothing_is_remarked():
     assert remarks({}, {"differential_drive": 1.0, "estimate": 2.0}) == []
 
 
-def test_an_end_that_the_filter_noticed_is_not_told_twice():
+def test_an_end_that_the_filter_noticed_is_not_reported_twice():
     errors = scores(odometer=0.01)
     off_m = {"differential_drive": 8.2, "odometer": 30.0, "estimate": 51.7}
     assert len(remarks(errors, off_m)) == 2

@@ -35,7 +35,7 @@ def test_events_are_listed_in_order_and_the_initial_yaw_in_numbers(noticed):
     assert table["gyro_bias_rad_s"] is None
 
 
-def test_the_bias_of_a_gyroscope_is_told_with_its_deviation(tmp_path, world):
+def test_the_bias_of_a_gyroscope_is_printed_with_its_deviation(tmp_path, world):
     folder = world.drive_curves(tmp_path / "run")
     header, *rows = (folder / "odometry.csv").read_text().split()
     rates = [np.diff([float(cell) for cell in row.split(",")[1:]])[0] / 0.5 for row in rows]

@@ -65,7 +65,7 @@ def test_what_labels_put_in_force_is_written(labelled_run, tmp_path):
     assert [switch["seen_s"] for switch in content["switches"]] == [None, None]
 
 
-def test_the_page_says_who_told_the_terrain(labelled_run, tmp_path):
+def test_the_page_names_the_source_of_the_terrain(labelled_run, tmp_path):
     write_report(run_odometry(labelled_run, source="labels"), tmp_path)
     page = (tmp_path / "report.html").read_text()
     assert "The source of the terrain was the run&#x27;s own labels" in page

@@ -51,7 +51,7 @@ def test_what_the_clean_recording_has_too_does_not_count(answer):
     assert verdict(answer([other_figures], clean=[WRONG])) == (False, False, False)
 
 
-def test_a_warning_of_something_harmless_is_told(answer):
+def test_a_warning_of_something_harmless_is_reported(answer):
     bias = ("bias", "warning", "0.02 rad/s", "A bias of the gyroscope.")
     assert answer([bias], key="gyro_bias").too_severe
     assert not answer([("bias", "note", *bias[2:])], key="gyro_bias").too_severe
@@ -63,7 +63,7 @@ def test_an_exception_is_a_crash(answer):
     assert verdict(result) == (False, False, False)
 
 
-def test_a_fault_without_a_place_is_told(tmp_path):
+def test_a_fault_without_a_place_is_reported(tmp_path):
     result = scoring.judge([Base("empty", tmp_path, frozenset())], ("pose_late", 0))
     assert result.crash == "not drawn"
 

@@ -158,7 +158,7 @@ def test_a_transform_of_a_motion_capture_system_is_a_reference(tmp_path):
     assert run.pose.stack("x", "y", "yaw") == pytest.approx(COURSE[:, 3:6], abs=1e-8)
 
 
-def test_the_robot_on_a_map_is_told_by_transforms(tmp_path):
+def test_the_robot_on_a_map_is_located_by_transforms(tmp_path):
     """map <- odom turns by a quarter; odom <- base_link is the course: x, y = -y, x."""
     bag = drive("mcap")
     for t_s, _, _, x, y, yaw in COURSE:

@@ -42,7 +42,7 @@ def test_poses_of_another_drive_are_not_late():
 
 
 @pytest.mark.parametrize("ahead_s", [0.5, 2.0, 3.0])
-def test_poses_far_ahead_are_told_as_early_alone(ahead_s):
+def test_poses_far_ahead_are_reported_as_early_alone(ahead_s):
     assert warnings(pose_stamps(turning_all_round(), lambda t: t - ahead_s)) == ["pose_late"]
 
 
@@ -65,7 +65,7 @@ def test_positions_stretched_along_an_axis_are_shortened():
     assert sizes[1] / sizes[0] == pytest.approx(1.0, abs=0.06)
 
 
-def test_commands_are_told_from_stamps_that_are_early():
+def test_commands_are_distinguished_from_stamps_that_are_early():
     run = turning_all_round()
     columns = {}
     for name in ("v_left", "v_right"):
@@ -137,7 +137,7 @@ def test_what_is_left_out_is_in_no_window():
     assert len(evidence.uniform) < len(Evidence(run).uniform)
 
 
-def test_a_mend_is_no_part_of_what_is_told():
+def test_a_mend_is_no_part_of_the_report():
     found = Finding("scale", Level.WARNING, "a", "b", "c", mend=lambda run: run)
     assert found == Finding("scale", Level.WARNING, "a", "b", "c")
     assert "mend" not in found.to_table()

@@ -113,7 +113,7 @@ def test_corrupt_samples_are_looked_for_where_the_yaw_rate_is_read():
     assert found.spans_s == ((15.0, 15.0),)
 
 
-def test_a_clock_that_was_set_is_not_told_as_lost_rows_too():
+def test_a_clock_that_was_set_is_not_reported_as_lost_rows_too():
     run = drive(1200, *DRIVES["curves"])
     later = np.where(run.odometry.stamps_s > 30, 5.0, 0.0) + run.odometry.stamps_s
     run = changed(changed(run, "odometry", t=later), "pose", t=later)

@@ -85,7 +85,7 @@ def test_a_delay_is_measured_with_its_uncertainty(recording):
     assert lags[1] - lags[0] == pytest.approx(0.2, abs=0.01)
 
 
-def test_without_poses_what_cannot_be_told_is_said_so(recording):
+def test_without_poses_what_cannot_be_checked_is_listed(recording):
     run = replace(recording(RECORDINGS[0]), pose=None)
     report = check_recording(treads(run, lambda left, right: (right, left)))
     assert report.findings[0].name == "treads_or_gyroscope_reversed"

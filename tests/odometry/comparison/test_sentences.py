@@ -69,7 +69,7 @@ def summaries_of(**errors):
     return [summarise(PLACE, [one], [], name) for name in errors]
 
 
-def test_mean_and_median_that_disagree_are_both_told():
+def test_mean_and_median_that_disagree_are_both_reported():
     """A few windows with outliers: icr is better in most windows, and worse by the mean."""
     found = summaries_of(icr=[0.02, 0.02, 0.02, 0.9], width=[0.06, 0.06, 0.06, 0.5])
     (translation, rotation) = contradictions(PLACE, found, [])

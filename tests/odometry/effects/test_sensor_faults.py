@@ -48,6 +48,6 @@ def test_a_drive_that_began_at_the_origin_is_bent_by_its_true_heading():
         (None, "headings"),
     ],
 )
-def test_a_compass_is_told_by_headings_all_round_alone(headings, lacking):
+def test_a_compass_needs_headings_all_round(headings, lacking):
     inputs = Inputs(np.zeros((200, 2)), heading_rad=headings)
     assert Compass().lacks(inputs, None) == lacking

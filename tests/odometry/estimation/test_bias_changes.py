@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.estimates import Replay
-from odometry.estimation.bias_watch import BiasWatch, Rates, told_bias, watched
+from odometry.estimation.bias_watch import BiasWatch, Rates, changed_bias, watched
 from odometry.estimation.filter_changes import drifted_bias
 from odometry.estimation.gyroscope_hold import GyroscopeHold
 from odometry.estimation.icr_ekf import IcrEkf
@@ -67,7 +67,7 @@ def test_a_slow_drift_is_followed(by_rad_s, rng):
     assert np.abs(off).max() < 0.004  # the walk of the settings alone lags by 0.010
 
 
-def test_a_drift_is_told_once_it_is_surer_than_the_scatter_of_spans():
+def test_a_drift_is_detected_once_it_is_surer_than_the_scatter_of_spans():
     drift = tuple(0.015 * k / 48 + 0.002 * (-1) ** k for k in range(48))
     watch = BiasWatch(biases_rad_s=drift, by_treads_rad_s=drift, since=48)
     (bias, sigma), walk = drifted_bias(watch, 0.0)
@@ -99,7 +99,7 @@ def test_a_step_is_found_by_positions_alone(driven, rng):
     assert estimates[-1].gyro_bias_rad_s == pytest.approx(STEP_RAD_S, abs=0.02)
 
 
-def test_nothing_is_told_without_poses(driven):
+def test_nothing_is_detected_without_poses(driven):
     assert changes(estimated(driven, stepped(driven), None)) == []
 
 
@@ -124,11 +124,11 @@ def test_spans_hold_the_difference_of_gyroscope_and_estimate(rng):
     assert silent.biases_rad_s == watch.biases_rad_s
 
 
-def test_a_bias_that_is_believed_already_is_not_told():
+def test_a_bias_that_is_estimated_already_is_no_change():
     biases = tuple(0.04 + 0.01 * (-1) ** k for k in range(30))
     watch = BiasWatch(biases_rad_s=biases, by_treads_rad_s=biases, since=30)
-    assert told_bias(watch, 0.04) is None
-    bias, sigma = told_bias(watch, 0.0)
+    assert changed_bias(watch, 0.04) is None
+    bias, sigma = changed_bias(watch, 0.0)
     assert bias == pytest.approx(0.04, abs=0.01)
     assert sigma < 0.01
 
@@ -136,4 +136,4 @@ def test_a_bias_that_is_believed_already_is_not_told():
 def test_poses_that_leave_gyroscope_and_treads_tell_no_bias():
     biases = tuple(0.04 + 0.01 * (-1) ** k for k in range(30))
     watch = BiasWatch(biases_rad_s=biases, by_treads_rad_s=(0.0,) * 30, since=30)
-    assert told_bias(watch, 0.0) is None
+    assert changed_bias(watch, 0.0) is None

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from odometry.estimates import Replay
 from odometry.learned_parameters import learned_parameters
-from odometry.run_terrains import Footing, ToldFooting
+from odometry.run_terrains import Footing, ReplayedFooting
 from tests.odometry.estimation.icr_ekf_drives import driven, filter_of, frame, table
 
 A, B = np.array([0.4, -0.4, 0.0, 1.0, 1.0]), np.array([0.3, -0.35, 0.1, 0.9, 1.0])
@@ -87,30 +87,30 @@ def test_astride_estimates_are_no_knowledge_of_a_terrain():
     assert learned.terrains["a"].values["y_left"] == pytest.approx(whole.belief.icrs[0])
 
 
-def test_a_replay_can_be_told_what_another_one_was():
+def test_a_replay_can_follow_the_terrain_of_another():
     ekf = filter_of(terrains=TERRAINS)
     estimates = [ekf.start(frame(0, (0, 0, 0), speeds=(0.5, 0.5)), "a")]
     for share in (0.0, 0.4, 0.7, 1.0, 1.0):
         estimates.append(carried(ekf, estimates[-1], [share]))
-    told = ToldFooting(tuple(estimates))
+    replayed = ReplayedFooting(tuple(estimates))
     again = estimates[0]
     for estimate in estimates[1:]:
         at = frame(estimate.stamp_s, None, speeds=(0.5, 0.5))
-        again = ekf.step(again, at, told.terrain(at, again))
+        again = ekf.step(again, at, replayed.terrain(at, again))
         np.testing.assert_array_equal(again.mean, estimate.mean)
-    assert told.initial == "a"
+    assert replayed.initial == "a"
 
 
-def test_what_is_told_is_the_footing_at_or_before_each_stamp():
+def test_the_footing_is_that_at_or_before_each_stamp():
     """Held between estimates, the first one before them, the last one after them."""
     ekf = filter_of(terrains=TERRAINS)
     estimates = [ekf.start(frame(0, (0, 0, 0), speeds=(0.5, 0.5)), "a")]
     for share in (0.0, 0.4, 0.4, 1.0):
         estimates.append(carried(ekf, estimates[-1], [share]))
-    told = ToldFooting(tuple(estimates))
+    replayed = ReplayedFooting(tuple(estimates))
 
     def at(stamp_s):
-        return told.terrain(frame(stamp_s, None, speeds=(0.5, 0.5)), estimates[0])
+        return replayed.terrain(frame(stamp_s, None, speeds=(0.5, 0.5)), estimates[0])
 
     for before, after in pairwise(estimates):
         middle_s = (before.stamp_s + after.stamp_s) / 2

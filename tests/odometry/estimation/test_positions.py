@@ -46,7 +46,7 @@ def test_the_heading_is_found_from_the_course(direction, with_gyroscope, rng):
     assert abs(turned(estimates[-1], driven)) < 0.05
 
 
-def test_while_the_robot_stands_no_heading_is_told(rng):
+def test_while_the_robot_stands_no_heading_is_estimated(rng):
     driven = drive(20.0, speeds_of=standing, start=START)
     poses = positions_of(noisy_poses(driven, rng))
     last = estimates_of(frames_of(driven, poses=poses))[-1]

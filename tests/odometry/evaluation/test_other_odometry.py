@@ -57,7 +57,7 @@ def test_our_odometer_is_judged_alike(judge):
     assert found.ours.mean_position_m > 0.1
 
 
-def test_a_scale_is_told_and_not_taken_away(judge):
+def test_a_scale_is_reported_and_not_taken_away(judge):
     """A camera's path of 0.4 of its length: of each straight metre 0.6 m are missing."""
     straight, far = reckoned(turn=0), np.zeros(2)
     judge = replace(
@@ -71,7 +71,7 @@ def test_a_scale_is_told_and_not_taken_away(judge):
     assert found.score.mean_rotation_deg_per_m == pytest.approx(0, abs=1e-9)
 
 
-def test_axes_that_point_elsewhere_are_told(judge):
+def test_axes_that_point_elsewhere_are_reported(judge):
     """A body whose x is the robot's left: its path leaves at a right angle."""
     found = score_other(Trajectory(STAMPS_S, reckoned().poses + np.array([0, 0, np.pi / 2])), judge)
     assert found.turned_rad == pytest.approx(np.pi / 2, abs=0.02)

@@ -101,7 +101,7 @@ def test_with_an_origin_polygons_lie_where_the_cells_do(tmp_path):
         }
 
 
-def test_a_run_whose_terrain_nobody_told_has_no_map(folder):
+def test_a_run_without_named_terrain_has_no_map(folder):
     (folder / "terrain.csv").unlink()
     with pytest.raises(ExportError, match="had no source of terrain"):
         terrain_cells(read_export_source(folder))

@@ -19,7 +19,7 @@ def right_share(model, runs):
     return np.mean([(one.answers == one.run.terrain).mean() for one in found])
 
 
-def test_made_terrains_are_told_on_runs_held_out(model):
+def test_made_terrains_are_recognised_on_runs_held_out(model):
     assert model.names == tuple(sorted(NAMES))
     for length in ("window", "stretch", "run"):
         assert model.report[length]["balanced_accuracy"] > 0.95
@@ -27,7 +27,7 @@ def test_made_terrains_are_told_on_runs_held_out(model):
     assert right_share(model, [drive(name, 900 + i) for i, name in enumerate(NAMES)]) > 0.8
 
 
-def test_terrains_that_are_one_cannot_be_told():
+def test_terrains_that_are_one_cannot_be_distinguished():
     runs = drives(["gravel"], count=12)
     named = [
         replace(run, settings={**run.settings, "run": {"terrain": NAMES[i % 3]}})

@@ -58,7 +58,7 @@ def test_the_shipped_model_is_of_this_version():
     assert not any("older version" in one for one in sentences(follow_feel(run, model)))
 
 
-def test_damage_is_told(model, tmp_path):
+def test_damage_is_reported(model, tmp_path):
     write_feel_model(tmp_path / "a.feel", model)
     data = bytearray((tmp_path / "a.feel").read_bytes())
     data[len(data) // 2] ^= 1

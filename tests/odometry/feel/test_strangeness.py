@@ -84,5 +84,5 @@ def test_what_was_left_out_is_rarely_named_boldly():
     assert share > SHARES[0]
 
 
-def test_what_cannot_be_told_has_no_weights():
+def test_what_cannot_be_distinguished_has_no_weights():
     assert not any(of.any() for of in Strangeness.none().weights.values())

@@ -126,7 +126,7 @@ def limited(make_scene):
     return make_scene(44, planted, duration_s=120.0).numbered(0)
 
 
-def test_a_limit_of_one_tread_is_told_by_its_speed(limited, known):
+def test_a_limit_of_one_tread_is_predicted_by_its_speed(limited, known):
     fitter = Fitter(known, measured_of((limited,), known, CONFIG))
     found = burst_effects(fitter, fitter.fit([]))
     courses = [one.in_time for one in found if isinstance(one.inner, SlipOfLeftTread)]
@@ -140,7 +140,7 @@ def test_nothing_recorded_tells_when_true_bursts_are(scenes, known):
     assert not come_by_themselves(*variable_of_events(course, scenes, known.base), CONFIG)
 
 
-def test_events_after_a_moment_are_told_by_run_time(scenes, known):
+def test_events_after_a_moment_are_predicted_by_run_time(scenes, known):
     end_s = float(scenes[0].inputs.time_s[-1])
     course = InBursts((((60.0, end_s),), ()))
     name, area = variable_of_events(course, scenes[:1], known.base)

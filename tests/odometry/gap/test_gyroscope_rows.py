@@ -70,7 +70,7 @@ def test_chi_squared_is_that_of_noise_with_the_gyroscope(with_gyroscope, recorde
 
 
 @pytest.mark.parametrize("late", ["late_commands", "late_stamps"])
-def test_late_commands_are_told_from_late_stamps(with_gyroscope, recorded, late):
+def test_late_commands_are_distinguished_from_late_stamps(with_gyroscope, recorded, late):
     scene = recorded(703, **{late: True})
     fitter = Fitter(with_gyroscope, measured_of([scene], with_gyroscope, CONFIG))
     commands, stamps = (fitter.fit([effect]) for effect in (CommandDelay(), TimeOffset()))

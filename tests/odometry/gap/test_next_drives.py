@@ -114,7 +114,7 @@ def test_what_follows_the_heading_needs_a_drive_that_looks_all_round(known, fit,
     assert found.words.startswith("curves")
 
 
-def test_slopes_are_told_from_wheels_on_a_slope_alone(scenes, known, fit):
+def test_slopes_are_distinguished_from_wheels_on_a_slope_alone(scenes, known, fit):
     """On level ground the one does nothing; sizes are known to next to nothing."""
     slope = fit(SlopeByIcr(0.3, 0.3), [1.0, 1.0, 2.0], 1e-2)
     wheels = fit(WheelScale(), [1.0, 1.0], SURE)

@@ -41,7 +41,7 @@ def course(pushed, known):
     return best_course(fitter, fitter.fit([]), pushed[1:], CONFIG)
 
 
-def test_a_push_over_the_world_is_told_from_slip(course):
+def test_a_push_over_the_world_is_distinguished_from_slip(course):
     assert isinstance(course.effect, ResidualOfEachRun)
     assert {component for component, _ in course.effect.terms} == {"world_x", "world_y"}
     assert course.least > CONFIG.least_evidence

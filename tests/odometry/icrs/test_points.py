@@ -86,7 +86,7 @@ def test_covariances_are_those_of_samples():
     np.testing.assert_allclose(stated, sampled, rtol=0.02, atol=0.01 * stated.max())
 
 
-def test_a_turn_is_told_by_the_probability_of_its_side():
+def test_a_turn_is_certain_by_the_probability_of_its_side():
     """One side in a hundred is wrong at most where a robot goes straight ahead in truth."""
     noise = np.random.default_rng(5).normal(scale=0.03, size=100_000)
     told = turn_is_told(noise, np.full(100_000, 0.03), 0.99)

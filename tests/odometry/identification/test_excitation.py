@@ -58,7 +58,7 @@ def test_on_the_spot_slip_and_width_look_alike(excited_by):
     assert found.sigmas["x_icr"] < 0.01
 
 
-def test_on_the_spot_the_icrs_are_told_once_the_slip_is_fixed(excited_by):
+def test_on_the_spot_the_icrs_are_determined_once_the_slip_is_fixed(excited_by):
     found = excited_by(
         lambda t: (-0.4, 0.4) if t % 20 < 10 else (0.4, -0.4),
         fixed={"alpha_left": 1.0, "alpha_right": 1.0},

@@ -89,7 +89,7 @@ def test_what_is_known_is_not_identified_unless_released(fitted, synthetic, tmp_
     assert alone.values == pytest.approx({"track_width": 1.0}, abs=1e-9)
 
 
-def test_m_and_the_width_together_are_told_apart_by_nothing(fitted, winding, synthetic):
+def test_m_and_the_width_together_are_distinguished_by_nothing(fitted, winding, synthetic):
     run = synthetic.noisy(winding, np.random.default_rng(1))
     found = fitted("traction_mode", run, released=["track_width"])
     (open_,) = found.undetermined
@@ -108,13 +108,13 @@ def test_a_model_of_which_everything_is_given_is_fitted_all_the_same(fitted, syn
 
 
 @pytest.mark.parametrize("given", [{"fixed": {"mu": 0.5}}, {"released": ["mu"]}])
-def test_an_unknown_name_is_told_with_the_known_ones(fitted, given):
+def test_an_unknown_name_is_reported_with_the_known_ones(fitted, given):
     with pytest.raises(ParameterError, match=r"'mu' is no parameter of 'icr'.*alpha_left"):
         fitted(**given)
 
 
 @pytest.mark.parametrize("fixed", [{"alpha_left": 2.5}, {"y_left": -0.5}, {"x_icr": np.nan}])
-def test_a_fixed_value_out_of_bounds_is_told(fitted, fixed):
+def test_a_fixed_value_out_of_bounds_is_reported(fitted, fixed):
     (name,) = fixed
     with pytest.raises(ParameterError, match=name):
         fitted(fixed=fixed)

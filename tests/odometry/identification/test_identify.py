@@ -149,7 +149,7 @@ def test_a_ground_without_name(make, ice, terrain, expected):
     assert list(found.terrains) == [expected, "ice"]
 
 
-def test_runs_that_name_a_ground_and_runs_that_are_told_to_be_on_it_are_one(make, ice):
+def test_runs_that_name_a_terrain_and_runs_given_to_be_on_it_are_one(make, ice):
     nameless = make("nameless", seed=1)
     found = identify([nameless, ice], "icr", terrain="ice", solver_config=ONE_START)
     assert set(found.terrains["ice"].fit.windows.run) == {"nameless", "ice_run"}
@@ -196,7 +196,7 @@ def test_no_run_is_refused():
         identify([], "icr")
 
 
-def test_an_unknown_model_is_told_with_the_known_ones(ice):
+def test_an_unknown_model_is_reported_with_the_known_ones(ice):
     with pytest.raises(ParameterError, match=r"'icrs'; known: .*icr_symmetric"):
         identify([ice], "icrs")
 

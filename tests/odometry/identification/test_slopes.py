@@ -125,7 +125,7 @@ def test_fixed_parameters_of_either_stage_stay(in_two_stages, synthetic):
     assert found.values == pytest.approx(synthetic.slope, abs=1e-7)
 
 
-def test_an_unknown_name_is_told(in_two_stages):
+def test_an_unknown_name_is_reported(in_two_stages):
     with pytest.raises(ParameterError, match="'mu' is no parameter of 'icr_slope'"):
         in_two_stages(fixed={"mu": 0.5})
 
@@ -137,7 +137,7 @@ def test_an_unknown_name_is_told(in_two_stages):
         (False, r"0 windows lie on terrain flatter than 1\.5 degrees, too few for y_left"),
     ],
 )
-def test_a_stage_without_windows_is_told(in_two_stages, sloped, flat, words):
+def test_a_stage_without_windows_is_reported(in_two_stages, sloped, flat, words):
     windows = windows_of([sloped], WindowConfig())
     tilted = mean_tilt_rad(windows) > np.radians(1.5)
     with pytest.raises(IdentificationError, match=words):

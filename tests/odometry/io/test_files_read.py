@@ -11,12 +11,12 @@ from odometry.io.files import leads_out, opened_lines, read_bytes
 from odometry.io.structured import DEPTH, JSON_BYTES, TOML_BYTES, read_json, read_toml
 
 
-def test_a_name_with_a_nul_is_told():
+def test_a_name_with_a_nul_is_reported():
     with pytest.raises(ConfigError, match="null"):
         read_bytes(Path("a\0b"), ConfigError, 10, "")
 
 
-def test_a_file_that_may_not_be_read_is_told(tmp_path, monkeypatch):
+def test_a_file_that_may_not_be_read_is_reported(tmp_path, monkeypatch):
     file = tmp_path / "a.toml"
     file.touch()
 

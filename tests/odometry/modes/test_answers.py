@@ -72,13 +72,13 @@ def test_time_to_detection_and_the_shares_after_it():
     assert (second.mode, second.from_s, second.after_s, second.right) == ("b", 3.5, 0.0, 1.0)
 
 
-def test_what_is_never_told_has_no_numbers():
+def test_what_is_never_recognised_has_no_numbers():
     (never,) = detections(track(["b", ""], ["a", "a"]), 0.9)
     numbers = (never.after_s, never.right, never.wrong, never.undetermined)
     assert np.isnan(numbers).all()
 
 
-def test_what_is_told_at_the_last_stamp_was_right():
+def test_what_is_recognised_at_the_last_stamp_was_right():
     (late,) = detections(track(["", "", "a"], ["a"] * 3), 0.9)
     assert (late.after_s, late.right, late.wrong, late.undetermined) == (1.0, 1.0, 0.0, 0.0)
 

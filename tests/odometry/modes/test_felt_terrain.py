@@ -43,7 +43,7 @@ def test_the_terrain_follows_the_motion_over_the_change(run):
     assert at(source, CHANGE_S + 5.0) == "tar"
 
 
-def test_while_nothing_can_be_told_the_terrain_in_force_stays(run):
+def test_while_nothing_is_recognised_the_terrain_in_force_stays(run):
     """Nothing is ever sure enough."""
     never = felt_terrain(run, SET, "sand", ModesConfig(sure=1 - 1e-15, floor=1e-6))
     assert at(never, 29.0) == "sand"

@@ -32,7 +32,7 @@ def by_hand(most, labels, **others):
     return Followed(run_of(1.0, size=len(most)), mode_set, ModesConfig(), signals, known, **others)
 
 
-def test_modes_that_were_driven_are_told(halves):
+def test_modes_that_were_driven_are_recognised(halves):
     score = halves.score(halves.motion)
     assert [one.mode for one in score.told] == ["ice", "tar"]
     assert all(one.after_s < 2.0 for one in score.told)
@@ -60,7 +60,7 @@ def test_modes_between_which_the_answer_lies_are_named():
     assert (first["modes"], second["modes"]) == (["b", "c"], ["a", "b", "c"])
 
 
-def test_who_was_always_told_left_nothing_open():
+def test_a_mode_that_was_always_recognised_left_nothing_open():
     told = by_hand(["a"] * 5, ["a"] * 5)
     assert told.left_open(told.motion) == {}
 

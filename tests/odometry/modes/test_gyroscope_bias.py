@@ -43,7 +43,7 @@ def drive(rng, turn, hold_s):
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_modes_that_are_not_told_apart_leave_the_bias_as_certain_as_it_was(seed):
+def test_modes_that_are_not_distinguished_leave_the_bias_as_certain_as_it_was(seed):
     """Each mode explains the turn by a bias of its own, and these differ by little."""
     signals = drive(np.random.default_rng(seed), 1.1, hold_s=6.0)
     track = follow_signals(signals, modes(1.0, 1.2))

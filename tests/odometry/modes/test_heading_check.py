@@ -60,7 +60,7 @@ def test_a_scale_comes_back_and_is_off_soon_after_its_onset(scale):
     assert set(check.bias_windows.tolist()).isdisjoint(np.flatnonzero(check.scale_is_off))
 
 
-def test_no_scale_is_told_where_the_robot_does_not_turn():
+def test_no_scale_is_estimated_where_the_robot_does_not_turn():
     check = heading_check(run_of(np.random.default_rng(2), amplitude=0.0, bias_rad_s=0.02))
     assert not check.scale_is_off.any()
     assert check.bias_rad_s[check.bias_windows] == pytest.approx(0.02, abs=0.006)

@@ -224,7 +224,7 @@ def test_modes_may_change_within_a_run():
         assert np.sqrt((off(gains, name, run) ** 2).mean(axis=0)).max() < 0.006
 
 
-def test_a_run_that_names_no_mode_is_told_by_folder():
+def test_a_run_that_names_no_mode_is_reported_by_folder():
     run = replace(drive(1, "none", size=600, folder="run_3"), settings={})
     with pytest.raises(IdentificationError, match="run_3: names no mode"):
         identify_traction_modes([run])

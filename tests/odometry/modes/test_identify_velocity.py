@@ -123,7 +123,7 @@ def test_a_yaw_rate_may_stand_in_velocity_csv(grounds, modes):
     np.testing.assert_allclose(identify_velocity_modes(bare).A, modes.A)
 
 
-def test_a_ground_without_a_name_is_told_by_folder_and_rows():
+def test_a_ground_without_a_name_is_reported_by_folder_and_rows():
     run = drive(5, [*["ice"] * 600, *["mud"] * 200, *["ice"] * 100], folder="run_17")
     names = np.array(run.odometry["terrain"])
     names[600:800] = "unknown"
@@ -140,7 +140,7 @@ def test_less_than_ten_seconds_of_a_ground_are_too_few():
         identify_velocity_modes([drive(5, labels[:900])])
 
 
-def test_no_yaw_rate_is_told_by_folder(grounds):
+def test_no_yaw_rate_is_reported_by_folder(grounds):
     run = replace(grounds[0], odometry=without(grounds[0].odometry, "gyro_z"), velocity=None)
     with pytest.raises(RunFolderError, match="drive: no yaw rate"):
         identify_velocity_modes([run])

@@ -38,7 +38,7 @@ def test_the_most_alike_come_first():
     assert times == sorted(times, reverse=True)
 
 
-def test_traction_modes_are_told_by_poses_once_those_stand_out_of_their_noise():
+def test_poses_distinguish_traction_modes_once_those_stand_out_of_their_noise():
     """Of the yaw alone: sqrt-free, from the quadratic (w T)^2 = 2 ln 9 (q T + r)."""
     run, modes = run_of(1.0), traction_set((0.5, 0.8)).modes
     columns = {name: run.odometry[name] for name in ("t", "v_left", "v_right")}
@@ -53,7 +53,7 @@ def test_traction_modes_are_told_by_poses_once_those_stand_out_of_their_noise():
     assert sooner.seconds < pair.seconds
 
 
-def test_nothing_is_told_of_a_robot_that_stands():
+def test_a_stationary_robot_distinguishes_no_modes():
     run = run_of(1.0)
     columns = run.odometry.columns | {"v_left": np.zeros(400), "v_right": np.zeros(400)}
     still = replace(run, odometry=replace(run.odometry, columns=columns))

@@ -96,7 +96,7 @@ def edited(tmp_path):
         ("mode.ice", "mode.'none of these'", r"a mode of the name 'none of these'"),
     ],
 )
-def test_what_cannot_be_is_told_with_its_place(edited, old, new, message):
+def test_what_cannot_be_is_reported_with_its_place(edited, old, new, message):
     with pytest.raises(ParameterError, match=message):
         edited(velocity_set(), old, new)
 
@@ -109,7 +109,7 @@ def test_traction_modes_need_their_own_keys(edited):
 
 
 @pytest.mark.parametrize("content", ['[modes]\nkind = "traction"\n', "[modes]\nkind = []\n"])
-def test_a_set_without_modes_is_told(tmp_path, content):
+def test_a_set_without_modes_is_reported(tmp_path, content):
     file = tmp_path / "set.toml"
     file.write_text(content)
     with pytest.raises(ParameterError, match=r"set\.toml: expected "):
@@ -126,7 +126,7 @@ def test_modes_must_be_tables(tmp_path):
         read_mode_set(file)
 
 
-def test_no_file_and_no_text_are_told(tmp_path):
+def test_no_file_and_no_text_are_reported(tmp_path):
     with pytest.raises(ParameterError, match=r"absent\.toml: cannot be read: No such file"):
         read_mode_set(tmp_path / "absent.toml")
     (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe")

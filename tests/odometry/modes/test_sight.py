@@ -65,7 +65,7 @@ def test_a_nearer_place_seen_later_counts_first(seen):
     assert seen_labels(found, stamps_s).tolist() == ["unknown", "mud", "ice"]
 
 
-def test_a_file_of_something_else_is_told(seen):
+def test_a_file_of_something_else_is_reported(seen):
     with pytest.raises(RunFolderError, match=r"terrain\.csv: the column 'distance_ahead'"):
         seen(["0,ice,0.9"], "t,label,confidence\n")
 
@@ -104,6 +104,6 @@ def test_one_mode_alone_is_never_left():
         (SeenGround(3.0, "ice", float("nan")), "confidence nan"),
     ],
 )
-def test_what_cannot_be_weighed_is_told(one, message):
+def test_what_cannot_be_weighed_is_reported(one, message):
     with pytest.raises(ParameterError, match=message):
         mode_chains((one,), NAMES, np.full(3, 20.0))

@@ -59,7 +59,7 @@ def test_velocities_go_to_the_nearest_stamp_alone(run):
     np.testing.assert_array_equal(signals.measured, expected)
 
 
-def test_a_run_without_a_yaw_rate_is_told(run):
+def test_a_run_without_a_yaw_rate_is_reported(run):
     for velocity in (None, table(t=[0.0, 0.1], vx=[1.0, 1.0], wz=[NAN, NAN])):
         with pytest.raises(RunFolderError, match="one: no yaw rate; expected gyro_z in odom"):
             velocity_signals(without_gyro(run, velocity=velocity))
@@ -77,7 +77,7 @@ def test_poses_are_merged_with_odometry_whose_speeds_hold(run):
     np.testing.assert_allclose(signals.measured[:, 3], yaw_rates, atol=1e-12)
 
 
-def test_a_run_without_poses_in_its_time_is_told(run):
+def test_a_run_without_poses_in_its_time_is_reported(run):
     with pytest.raises(RunFolderError, match=r"one: no pose\.csv"):
         pose_signals(run)
     with pytest.raises(RunFolderError, match="one: no pose lies within the time"):

@@ -82,6 +82,6 @@ def test_turns_that_are_not_measured_tell_nothing():
     assert not alike[400:].any()
 
 
-def test_modes_of_one_model_are_told_apart_by_their_noise():
+def test_modes_of_one_model_are_distinguished_by_their_noise():
     alike = similar_modes(drive(np.ones(500)), modes(1.0, 1.0, 1.01), np.zeros(500, dtype=int))
     np.testing.assert_array_equal(alike[-1], [False, False, True])

@@ -55,7 +55,7 @@ def without_labels(run):
     return replace(run, odometry=replace(run.odometry, columns=columns))
 
 
-def test_a_change_of_ground_is_told_within_seconds(run):
+def test_a_change_of_terrain_is_recognised_within_seconds(run):
     track = follow_modes(run, SET)
     sure_of_tar = track.probabilities[:, 1] > 0.9
     assert np.flatnonzero(track.probabilities[:, 0] > 0.9)[0] * STEP_S < 2.0

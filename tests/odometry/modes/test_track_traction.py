@@ -38,7 +38,7 @@ def losing_traction():
     return run, ModeSet(modes, np.full(2, 20.0)), states[-1, :2]
 
 
-def test_traction_that_is_lost_is_told_within_seconds(losing_traction):
+def test_traction_that_is_lost_is_recognised_within_seconds(losing_traction):
     run, mode_set, last = losing_traction
     track = follow_modes(run, mode_set)
     told = [np.flatnonzero(track.probabilities[:, mode] > 0.9)[0] for mode in (0, 1)]

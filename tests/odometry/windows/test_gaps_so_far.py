@@ -11,7 +11,7 @@ def told(stamps_s, rows, speed_m_s=0.5):
     gaps = GapsSoFar()
     speeds = np.full(2, speed_m_s)
     frames = [Frame(t, speeds, row, None, None) for t, row in zip(stamps_s, rows, strict=True)]
-    return [gaps.told(frame).in_gap for frame in frames]
+    return [gaps.marked(frame).in_gap for frame in frames]
 
 
 @pytest.mark.parametrize(("period_s", "longest_s"), [(0.02, 1.0), (0.1, 2.0), (0.5, 10.0)])

@@ -57,7 +57,7 @@ def test_windows_tell_what_a_recording_lost(winding):
     assert dense_windows_of(lost, 2.0).left_out[POSE_GAP] <= 1
 
 
-def test_standing_and_other_terrain_are_told(winding):
+def test_standing_and_other_terrain_are_reported(winding):
     t = winding.odometry.stamps_s
     names = np.where(t < 50.0, "ice", "grass").astype(object)
     standing = (t > 70.0) & (t < 80.0)

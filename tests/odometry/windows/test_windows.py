@@ -220,7 +220,7 @@ def test_distinct_segments_share_their_ends_and_half_a_stride_overlaps(winding):
     assert np.all(overlapping.first_pose[1:] < overlapping.last_pose[:-1])
 
 
-def test_accelerations_are_told_only_where_every_run_has_them(winding):
+def test_accelerations_are_used_only_where_every_run_has_them(winding):
     columns = dict(winding.odometry.columns)
     columns |= {
         name: np.arange(len(winding.odometry), dtype=float) for name in ("accel_x", "accel_y")

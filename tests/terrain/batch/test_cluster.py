@@ -53,7 +53,7 @@ def refused(jobs, address):
     return message
 
 
-def test_a_worker_that_cannot_do_the_jobs_is_told_in_one_line(
+def test_a_worker_that_cannot_do_the_jobs_is_reported_in_one_line(
     scheduler, curvy_run, job_of, tmp_path, monkeypatch
 ):
     job = job_of(curvy_run)
@@ -74,7 +74,7 @@ def test_a_worker_that_cannot_do_the_jobs_is_told_in_one_line(
 
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "host:1:2", "nonsense"])
-def test_a_scheduler_that_does_not_answer_is_told_in_one_line(
+def test_a_scheduler_that_does_not_answer_is_reported_in_one_line(
     job_of, curvy_run, address, monkeypatch
 ):
     monkeypatch.setattr("terrain.batch.connection.CONNECTS_S", 0.5)

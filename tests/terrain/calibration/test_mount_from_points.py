@@ -92,7 +92,7 @@ def test_a_wrong_row_is_named():
         (marked(CAMERA, GROUND[[4, 5, 7, 8]] * 0.02 + [1.5, 0.0]), "do not determine"),
     ],
 )
-def test_what_cannot_be_told_is_said(rows, words):
+def test_what_cannot_be_determined_is_said(rows, words):
     with pytest.raises(CalibrationError, match=words):
         mount_from_points(LENS, points(rows))
 

@@ -85,7 +85,7 @@ def test_what_the_run_folder_keeps_is_a_row_and_ours_at_its_stamps(finished):
     assert "% of the reference's stamps" in said.stderr
 
 
-def test_a_camera_path_is_told_to_be_one(finished, tmp_path):
+def test_a_camera_path_is_reported_as_one(finished, tmp_path):
     """Optical axes at half the scale: doubted as they stand; right, but small, once named."""
     ours = read_trajectory(finished / "results" / "odometer.tum")
     small = ours.poses.copy()

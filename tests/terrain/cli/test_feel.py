@@ -50,7 +50,7 @@ def test_what_was_found_with_runs_held_out_is_printed(model):
     assert "held out one by one" in answer.stderr
 
 
-def test_a_run_is_told_and_written(model, folders, tmp_path):
+def test_a_run_is_recognised_and_written(model, folders, tmp_path):
     answer = invoke(folders / "gravel_1", "--model", model[1], "--out", tmp_path / "felt")
     assert answer.exit_code == 0, answer.output
     assert "gravel" in answer.stdout.splitlines()[0]

@@ -128,7 +128,7 @@ def test_an_option_of_the_other_kind_is_a_usage_error(grounds, out):
         ({"ground": "unknown"}, "velocity", "have no terrain"),
     ],
 )
-def test_runs_that_cannot_be_used_are_told(make, out, settings, kind, message):
+def test_runs_that_cannot_be_used_are_reported(make, out, settings, kind, message):
     run = make("one", 1.0, **({"ground": "ice"} | settings))
     answer = invoke(run, "--kind", kind, "--out", out)
     with pytest.raises(OdometryError, match=message):

@@ -89,7 +89,7 @@ def test_what_cannot_be_done_is_one_message_and_exit_code_1(command, curvy_run, 
     assert_refused(command, command(curvy_run, *options), "Error: ", *words)
 
 
-def test_an_unknown_model_is_told_with_the_known_ones(command, curvy_run):
+def test_an_unknown_model_is_reported_with_the_known_ones(command, curvy_run):
     answer = command(curvy_run, model="icrs")
     assert_refused(command, answer, "'icrs'", "did you mean icr?", "icr_symmetric", code=2)
 

@@ -127,7 +127,7 @@ def test_a_map_with_a_fault_is_named(text, words, bag, tmp_path):
 
 
 @pytest.mark.parametrize("inside", [False, True])
-def test_a_bag_where_a_run_is_expected_is_told_how_to_import(inside, bag, tmp_path):
+def test_a_bag_where_a_run_is_expected_names_the_import(inside, bag, tmp_path):
     path = next(bag.glob("*.mcap")) if inside else bag
     answer = CliRunner().invoke(cli, ["run", str(path), "--out", str(tmp_path / "results")])
     words = f"terrain-odometry import {path} --out drive_run"
@@ -137,7 +137,7 @@ def test_a_bag_where_a_run_is_expected_is_told_how_to_import(inside, bag, tmp_pa
     assert words in found.line
 
 
-def test_a_path_that_is_missing_and_a_call_without_out_are_told(bag, tmp_path):
+def test_a_path_that_is_missing_and_a_call_without_out_are_reported(bag, tmp_path):
     answer = call(tmp_path / "nothing.bag", "--out", tmp_path / "my_run")
     assert "there is no such file or folder" in str(answer.exception)
     answer = call(bag)

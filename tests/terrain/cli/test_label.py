@@ -201,7 +201,7 @@ def test_spans_count_from_the_first_stamp_also_of_a_part(across_run, tmp_path):
         assert 1 <= float(row["t"]) <= 8
 
 
-def test_a_run_that_names_no_terrain_is_told_how_to(across_run, tmp_path):
+def test_a_run_that_names_no_terrain_is_refused_with_the_remedy(across_run, tmp_path):
     answer = invoke(across_run, "--out", tmp_path / "a")
     assert answer.exit_code == 1
     assert "--span 0:20=grass" in str(answer.exception)

@@ -195,14 +195,14 @@ def test_traction_modes_need_poses(make, tmp_path):
         (SEEN.replace("0.5\n", "99\n"), RunFolderError, "named no terrain that .*drive gets to"),
     ],
 )
-def test_a_sight_that_cannot_be_used_is_told(with_sight, content, error, message):
+def test_a_sight_that_cannot_be_used_is_reported(with_sight, content, error, message):
     answer, out = with_sight(content)
     with pytest.raises(error, match=message):
         raise answer.exception
     assert not out.exists()
 
 
-def test_an_unknown_key_of_the_set_is_told_before_anything_is_written(make, models, tmp_path):
+def test_an_unknown_key_of_the_set_is_reported_before_anything_is_written(make, models, tmp_path):
     text = (tmp_path / "set.toml").read_text()
     (tmp_path / "set.toml").write_text(text.replace("dwell_s", "dwell", 1))
     answer = invoke(make("drive"), "--models", models, "--out", tmp_path / "out")

@@ -69,7 +69,7 @@ def told(stamps_s, source="labels"):
     return SimpleNamespace(source=source, initial_terrain="ice", changes=changes, run=run)
 
 
-def test_the_terrain_in_force_is_told_with_its_times(capsys):
+def test_the_terrain_in_force_is_printed_with_its_times(capsys):
     print_changes(told([1.0, 2.04]))
     assert capsys.readouterr().out == "Terrain in force: ice, from 1.0 s t0, from 2.0 s t1\n"
     print_changes(told(range(9)))

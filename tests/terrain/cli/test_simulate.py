@@ -130,7 +130,7 @@ def test_traction_is_named_by_the_truth_and_by_run_toml_where_it_is_one(tmp_path
         (["--traction", "grass", "--friction", "0.3"], "leave out --friction and --law"),
     ],
 )
-def test_traction_that_cannot_be_is_told(tmp_path, arguments, message):
+def test_traction_that_cannot_be_is_reported(tmp_path, arguments, message):
     answer = invoke(tmp_path / "run", *arguments)
     assert answer.exit_code == 2
     assert message in " ".join(answer.output.split())

@@ -50,7 +50,7 @@ def test_spans_run_ahead(times):
         TerrainSpan(*times, "ice")
 
 
-def test_a_stamp_before_the_first_name_is_told_nothing(run):
+def test_a_stamp_before_the_first_name_has_no_terrain(run):
     truth = table(t=[2.0, 3.0], terrain=["ice", "unknown"])
     told = told_terrain(replace(run, truth=truth))
     assert told.between(1.0, 2.5) == {"", "ice"}

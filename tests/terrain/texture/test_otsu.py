@@ -59,7 +59,7 @@ def test_rounding_does_not_settle_ties():
 
 
 @pytest.mark.parametrize("width", range(STRIP - 2, STRIP + 3))
-def test_heaps_are_told_apart_wherever_the_strips_of_the_programme_end(width):
+def test_heaps_are_distinguished_wherever_the_strips_of_the_programme_end(width):
     pixels = dict.fromkeys([*range(width), *range(120, 160), *range(215, 255)], 3)
     thresholds = multilevel_otsu(histogram_of(pixels), 2)
     np.testing.assert_array_equal(thresholds, [width - 1.0, 159.0])

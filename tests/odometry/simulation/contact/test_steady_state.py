@@ -120,6 +120,6 @@ def test_turning_downhill_slides_downhill(make_vehicle):
     assert moved[3, 1] > 0.02
 
 
-def test_what_has_not_settled_is_told(make_vehicle):
+def test_what_has_not_settled_is_reported(make_vehicle):
     _, settled = steady_state(make_vehicle("shear"), PAIRS, longest_s=0.5)
     assert not settled.any()
