@@ -48,7 +48,7 @@ class ExportError(OdometryError):
 
 
 class ComparisonError(OdometryError):
-    """Runs or models that cannot be compared as asked."""
+    """Runs or models that cannot be compared."""
 
 
 class EstimationError(OdometryError):

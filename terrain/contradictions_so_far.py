@@ -43,7 +43,8 @@ class Contradiction:
 def differ(camera: str, feel: str, motion: str) -> bool:
     """Whether two sources that name a terrain name different ones, or feel knows none.
 
-    A camera that knows no terrain contradicts nobody, nor does feel where the camera knows one.
+    A camera that knows no terrain contradicts no other source, nor does feel where the camera knows
+    one.
     """
     named = {name for name in (camera, feel, motion) if name not in ("", UNKNOWN)}
     return len(named) > 1 or (feel == UNKNOWN and not named)

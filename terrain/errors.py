@@ -26,7 +26,7 @@ class ImageError(TerrainError):
 
 
 class PatchError(TerrainError, ValueError):
-    """A set of labelled patches cannot be used for training; scikit-learn asks for a ValueError."""
+    """A set of labelled patches cannot be used for training; scikit-learn requires a ValueError."""
 
 
 class ModelFileError(TerrainError):

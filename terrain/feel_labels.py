@@ -82,7 +82,9 @@ def evident(felt: FeltWindows, rows: IntArray) -> IntArray:
 def given_by(felt: FeltWindows, rows: IntArray) -> FloatArray:
     """Probabilities of the terrains of the model (N, K) by some windows (N,)."""
     given = felt.probabilities[rows]
-    return np.asarray(given + felt.unknown[rows, None] / given.shape[1])  # of none: for all alike
+    return np.asarray(
+        given + felt.unknown[rows, None] / given.shape[1]
+    )  # of none: the same for all
 
 
 def place_label(

@@ -1,4 +1,4 @@
-"""Terrain that nobody knows, learned under a name of its own, and contradictions in sentences."""
+"""Unknown terrain, learned under a name of its own, and contradictions in sentences."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -69,7 +69,7 @@ def learned_apart(
     *,
     causal: bool,
 ) -> ParameterSet:
-    """What was learned, and the ICRs of the stretches that nobody knows under a name of their own.
+    """What was learned, and the ICRs of the stretches on unknown terrain under a name of their own.
 
     The run is replayed once more with that name in force there; the estimates stay those of the
     first replay. Nothing is learned where no pose was taken in, see `learned_parameters`. All

@@ -65,7 +65,7 @@ def units(evidence: Evidence) -> Iterator[Finding]:
     if width is not None and width < WIDTH[0] and (mean := holds_the_mean(evidence)):
         yield disagreement(mean)
     elif width is not None and not WIDTH[0] <= width <= WIDTH[1]:
-        # one scale of the treads lengthens their way and widens the robot alike
+        # one scale of the treads lengthens their way and widens the robot by the same factor
         if forward is None or low <= forward or not WIDTH[0] <= width * forward <= WIDTH[1]:
             yield _across(evidence, forward, width, turn_tight)
     elif evidence.fastest_m_s > PLAUSIBLE_M_S and forward is None:

@@ -167,7 +167,7 @@ def _with_poses(
 def _horizons_of_positions(
     found: Sequence[FoundHeading], config: ComparisonConfig
 ) -> tuple[ComparisonConfig, tuple[str, ...]]:
-    """Horizons over which positions without yaw tell errors, and what a reader should know."""
+    """Horizons over which positions without yaw show errors, and what a reader should know."""
     notes = [heading.words for heading in found]
     least_m = max((heading.least_horizon_m for heading in found), default=0.0)
     horizons_m = tuple(dict.fromkeys(max(each, least_m) for each in config.horizons_m))

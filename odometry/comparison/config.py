@@ -29,7 +29,8 @@ class ComparisonConfig:
     draws : int
         Of the bootstrap.
     block_m : float
-        Wheel travel of the blocks that the bootstrap draws; neighbouring windows err alike.
+        Wheel travel of the blocks that the bootstrap draws; errors of neighbouring windows are
+        correlated.
     seed : int
         Of the bootstrap.
     """
@@ -60,5 +61,5 @@ class ComparisonConfig:
 
     @property
     def evaluated_m(self) -> tuple[float, ...]:
-        """All horizons over which errors are taken: those asked for, and those of the figures."""
+        """All horizons over which errors are taken: those requested, and those of the figures."""
         return tuple(sorted({*self.horizons_m, *CURVE_HORIZONS_M}))

@@ -38,7 +38,7 @@ def write_comparison(
     Returns
     -------
     list of Path
-        comparison.json, windows.csv, training_horizons.csv where training horizons were asked
+        comparison.json, windows.csv, training_horizons.csv where training horizons were given
         for, and one file of parameters/ a model; where there are several robots, in a folder for
         each.
     """
@@ -170,7 +170,7 @@ def _split(models: SplitModels) -> dict[str, Any]:
 
 
 def _write_windows(file: Path, comparison: Comparison) -> None:
-    """One row a model and window, over the horizons that were asked for."""
+    """One row a model and window, over the horizons that were given."""
     rows = [
         (evaluation, model)
         for evaluation in comparison.evaluations

@@ -30,13 +30,13 @@ class Comparison:
     left_out : Mapping of folder to str
         Runs that cannot be evaluated, and why.
     differences : tuple of Difference
-        Over the horizons that were asked for.
+        Over the given horizons.
     fitness : tuple of RunFitness
     parameters : Mapping of (robot, model) to ParameterSet
         Of the identified models, from all that they may see; without those of `not_identified`.
     config : ComparisonConfig
     by_training_horizon : tuple of HorizonErrors
-        Empty where no training horizons were asked for.
+        Empty where no training horizons were given.
     notes : tuple of str
         What a reader should know of the runs.
     not_identified : Mapping of (robot, terrain, model) to tuple of str
@@ -69,7 +69,7 @@ class Comparison:
 
     @property
     def places(self) -> tuple[Place, ...]:
-        """Robots and terrains over the horizons that were asked for."""
+        """Robots and terrains over the given horizons."""
         return tuple(
             Place(robot, terrain, horizon_m)
             for robot, terrain in self.robots_and_terrains

@@ -56,7 +56,7 @@ def training_horizon_errors(
     planned : sequence of Split
     candidates : sequence of IdentifiedModel
     config : ComparisonConfig
-        Where it asks for no training horizons, there are no errors.
+        Without training horizons there are no errors.
     fitted : sequence of SplitModels
         Where the searches start.
     compared : Evaluation and NotEvaluated
@@ -127,7 +127,7 @@ def horizon_sentence(model: str, errors: Sequence[HorizonErrors], quantity: str)
     parts = [
         f"over {_listed(horizons, 'and')} m "
         + (
-            "all err alike"
+            "the errors of all are the same"
             if list(best_m) == tried
             else f"{_listed([f'{h:g}' for h in best_m], 'or')} m errs least"
         )
@@ -136,7 +136,7 @@ def horizon_sentence(model: str, errors: Sequence[HorizonErrors], quantity: str)
     return (
         f"{model}, {quantity}, identified over windows of "
         f"{_listed([f'{h:g}' for h in tried], 'or')} m: {'; '.join(parts)} (medians within "
-        f"{AS_GOOD - 1:.0%} count as alike)."
+        f"{AS_GOOD - 1:.0%} count as equal)."
     )
 
 

@@ -12,7 +12,7 @@ from odometry.models.inputs import Inputs
 
 DISTINGUISHED_BY = (
     "a second pose sensor at another place on the robot, or its place measured with a tape: from "
-    "one measured pose both look exactly alike"
+    "one measured pose both look exactly the same"
 )
 
 

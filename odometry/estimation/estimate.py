@@ -124,7 +124,7 @@ class Estimate:
         The search for a heading that is not known yet: until it is found, the pose follows the
         positions, with a yaw that starts at 0 and is not to be used.
     watch : SensorWatch or None
-        What is remembered of the sensors; None where nobody watches them.
+        What is remembered of the sensors; None where they are not watched.
     events : tuple of FilterEvent
         What the filter noticed at this stamp.
 

@@ -82,7 +82,7 @@ class TerrainBeliefs:
         return mean, covariance
 
     def _opened(self, belief: Gaussian) -> Gaussian:
-        """On terrain that nobody knows: the ICRs as they are, and less certain."""
+        """On unknown terrain: the ICRs as they are, and less certain."""
         covariance = belief[1].copy()
         sigmas = [self._reset_sigma_m] * 3 + [self._reset_sigma_alpha] * 2
         covariance[OF_TERRAIN, OF_TERRAIN] += np.square(sigmas)

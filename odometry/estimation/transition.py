@@ -50,7 +50,7 @@ def transition(
     Notes
     -----
     The two treads pass over the same ICR line: v_x = alpha_left v_left + y_left omega =
-    alpha_right v_right + y_right omega (Baril 2020 eq. 4 to 6). Where the gyroscope tells omega,
+    alpha_right v_right + y_right omega (Baril 2020 eq. 4 to 6). Where the gyroscope measures omega,
     the two disagree by slip, and v_x is their mean.
     """
     x, y, yaw, y_left, y_right, x_icr, bias, alpha_left, alpha_right = state.tolist()

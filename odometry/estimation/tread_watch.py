@@ -107,7 +107,7 @@ def contradicted(
     """The watch after a step whose yaw rate the gyroscope measured.
 
     An encoder is stuck where its reading stays exactly the same while the other tread and the
-    gyroscope say, through the ICRs believed, that it moves otherwise by more than treads slip.
+    gyroscope say, through the estimated ICRs, that it moves otherwise by more than treads slip.
     """
     left_s, right_s = watch.same_since_s
     if watch.stuck >= 0:

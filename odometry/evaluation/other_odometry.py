@@ -126,7 +126,7 @@ def similarity(ours: FloatArray, true: FloatArray) -> tuple[float, float]:
 
 
 def _placed(trajectory: Trajectory, judge: Judge, held: BoolArray) -> Trajectory:
-    """A trajectory from the believed pose at the first held stamp, at the reference's place."""
+    """A trajectory from the estimated pose at the first held stamp, at the reference's place."""
     first_s = judge.reference.stamps_s[held][:1]
     start = judge.believed.at(first_s).poses[0]
     moved = trajectory.moved(se2.compose(start, se2.inverse(trajectory.at(first_s).poses[0])))

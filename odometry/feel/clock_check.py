@@ -15,7 +15,7 @@ LEAST_TURN_RAD_S = 0.05  # of the treads, standard deviation
 def clock_fault(
     yaw_rate_rad_s: FloatArray, treads_m_s: FloatArray, rate_hz: float, track_width_m: float
 ) -> str:
-    """What contradicts one clock; "" if nothing does, or the drive does not tell.
+    """What contradicts one clock; "" if nothing does, or the drive cannot show it.
 
     Parameters
     ----------

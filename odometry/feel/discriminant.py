@@ -172,7 +172,7 @@ def fitted_discriminant(of: Pooled, covariates: int, shrinkage: float) -> Discri
     correlation = (1 - shrinkage) * residual / np.outer(scale, scale)
     correlation[np.diag_indices(size)] = 1.0
     lower = np.linalg.cholesky(correlation + 1e-9 * np.eye(size))
-    # in the order in which a file gives it back, so that products round alike
+    # in the order in which a file gives it back, so that products round in the same way
     whitening = np.ascontiguousarray(solve_triangular(lower, np.diag(1 / scale), lower=True))
     centres = np.asarray(means[:, :size] - means[:, size:] @ slopes)
     return Discriminant(slopes, centres, whitening)

@@ -124,7 +124,7 @@ def calibrated_windows(
     Returns
     -------
     (float, Calibration)
-        The least Brier score, every terrain counting alike, and what has it.
+        The least Brier score, every terrain with the same weight, and what has it.
     """
     codes, weights = _codes(labels, names), class_weights(labels)
     own = [_best(one, codes, weights)[1] for one in np.moveaxis(log_likelihoods, 1, 0)]

@@ -157,10 +157,10 @@ def _notes(table: FeelTable, windows: Sequence[FeelWindows], *, by_day: bool) ->
         if apart > OVERLAP:
             yield (
                 f"{one} ({_range(ranges[one])} m/s) and {other} ({_range(ranges[other])} m/s) were "
-                "driven at different speeds: what tells them apart may be the speed."
+                "driven at different speeds: what distinguishes them may be the speed."
             )
     if not by_day:
-        yield "Runs are held out one by one, not by day: runs of one day may be alike."
+        yield "Runs are held out one by one, not by day: runs of one day may be correlated."
 
 
 def _range(of: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> str:

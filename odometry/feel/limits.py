@@ -46,9 +46,10 @@ class Limits:
     def of(
         cls, by_length: Mapping[str, Stretches], speeds_m_s: FloatArray, window_s: float
     ) -> "Limits":
-        """By what was held out: for novelty every terrain alike, for farness every answer.
+        """From held-out runs: by terrain of equal weight for novelty, by answer for farness.
 
-        With terrains alike, the few runs of the rarest terrain would decide how far is far.
+        With the same weight for each terrain, the few runs of the rarest terrain would decide how
+        far is far.
         """
         return cls(
             {

@@ -141,7 +141,7 @@ def fitted_members(
 def _regression(
     table: FeelTable, runs: BoolArray, names: tuple[str, ...], choice: Choice, of: Pooled
 ) -> Logistic:
-    """Every terrain counts alike, and every run of a terrain."""
+    """Every terrain has the same weight, and so has every run of a terrain."""
     rows = np.flatnonzero(runs[table.runs] & np.isin(table.labels.astype(str), names))
     codes = np.searchsorted(names, table.labels[rows].astype(str))
     parts = np.unique(np.column_stack([codes, table.runs[rows]]), axis=0, return_inverse=True)

@@ -87,10 +87,10 @@ def error_by_chance(
     Parameters
     ----------
     labels : (N,)
-        Whose classes count alike.
+        Whose classes have the same weight.
     probabilities : (N, K)
     groups : (N,)
-        All different where answers are independent; runs where their windows are alike.
+        All different where answers are independent; runs where their windows are correlated.
     seed : int
     """
     if not len(labels):

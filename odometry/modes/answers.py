@@ -83,9 +83,9 @@ def refusals(track: ModeTrack, sure: float) -> dict[str, BoolArray]:
 
     "probability" is that of the mode among the modes and against "none of these": `sure` or more
     where a mode begins to be named, and from there on, while that mode leads, down to
-    `config.most_doubt` times the doubt (`ModesConfig`). In "alike" motion cannot tell the modes
-    apart. The "rolling test" does not refuse a mode because another fits as well where feel says
-    which it is.
+    `config.most_doubt` times the doubt (`ModesConfig`). In "alike" motion cannot distinguish the
+    modes. The "rolling test" does not refuse a mode because another fits as well where feel
+    says which it is.
 
     Parameters
     ----------

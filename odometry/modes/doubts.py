@@ -50,7 +50,7 @@ def doubts(followed: Followed) -> tuple[Doubt, ...]:
         if open_.any():
             found.append(
                 Doubt(
-                    f"a mode would ask for a gyroscope bias of {track.means[open_, -1][-1]:.3f} "
+                    f"a mode would need a gyroscope bias of {track.means[open_, -1][-1]:.3f} "
                     f"rad/s {_when(followed, open_)}, which nothing else confirms",
                     "let the robot rest for a second: that determines the bias",
                     _share(followed, open_),

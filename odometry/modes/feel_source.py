@@ -95,8 +95,8 @@ def with_feel(
     """The track of modes that last `dwell_s` (M,), with what the run feels like.
 
     The probabilities of motion and of feel, each by a Markov chain of its own, are multiplied. What
-    motion cannot tell is left to feel: modes that answer alike are as probable as their mean by
-    motion, and where the rolling test does not agree with motion it says nothing.
+    motion cannot distinguish is left to feel: modes that predict the same motion are as probable as
+    their mean by motion, and where the rolling test does not agree with motion it says nothing.
     """
     felt = source.alone(track.stamps_s, ModeChain(dwell_s).transition, config.floor)
     product = felt * _by_motion(track, config.agreed)
@@ -105,7 +105,7 @@ def with_feel(
 
 
 def _by_motion(track: ModeTrack, agreed: float) -> FloatArray:
-    """Probabilities (N, M) among modes that motion can tell apart."""
+    """Probabilities (N, M) among modes that motion distinguishes."""
     most = track.probabilities.argmax(axis=1)
     of_most = (np.arange(len(most)), most)
     by_motion = track.probabilities.copy()

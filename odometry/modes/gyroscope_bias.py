@@ -57,8 +57,8 @@ def with_reading(
     """Mean (n,) and covariance (n, n) over all modes with a reading; the bias is the last entry.
 
     The reading is weighed with the estimate; where the two are JUMP_SIGMAS apart the bias is
-    another one, and what was believed counts no more. A filter holds the variance of the bias less
-    by the share `independent` (see `start` of the modes).
+    another one, and the earlier estimate counts no more. A filter holds the variance of the bias
+    less by the share `independent` (see `start` of the modes).
     """
     mean, covariance = mean.copy(), covariance.copy()
     believed = covariance[-1, -1] / independent

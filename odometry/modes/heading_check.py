@@ -1,9 +1,10 @@
 """The gyroscope held against the headings of measured poses: its bias and its scale.
 
-Yaw rate alone cannot tell a gyroscope whose scale is off from another terrain, nor, in a turn to
-one side, a bias. Measured headings can: what the gyroscope turned less what they turned grows with
-time by its bias, and with the turn by its scale. Each window is a linear least squares fit of that
-difference; poses that are late add a part in proportion to the yaw rate, which is fitted as well.
+Yaw rate alone cannot distinguish a gyroscope whose scale is off from another terrain, nor, in a
+turn to one side, a bias. Measured headings can: what the gyroscope turned less what they turned
+grows with time by its bias, and with the turn by its scale. Each window is a linear least squares
+fit of that difference; poses that are late add a part in proportion to the yaw rate, which is
+fitted as well.
 """
 
 from dataclasses import dataclass

@@ -100,7 +100,7 @@ def residuals(gains: FloatArray, lag_s: float, scene: DenseWindows) -> FloatArra
     """Measured less predicted motion (K, n, 3) of the windows of a scene."""
     twists = twists_of(gains, scene.inputs.tread_speeds_m_s, scene.run.robot.track_width)
     yaw_rates = lagged(twists[:, 2], scene.time_s, lag_s)
-    # the mean over a step: lag d(omega)/dt = asked - omega, integrated
+    # the mean over a step: lag d(omega)/dt = commanded - omega, integrated
     twists[:-1, 2] -= max(lag_s, SHORTEST_LAG_S) * np.diff(yaw_rates) / np.diff(scene.time_s)
     path = level_path(twists, scene.steps_s, scene.inputs)
     return off_measured(poses_at(path, scene, scene.pose_s), scene)

@@ -41,7 +41,7 @@ class ModesConfig:
         By which the share of a mixture of two modes lies between 0 and 1, over a window and over
         each half of it: a change from one to the other is no mixture.
     alike_sigmas : float
-        Of what lasts of the errors of modes; less apart they are alike.
+        Of what lasts of the errors of modes; below it two modes are taken for equal.
     bias_sigmas : float
         Of the bias that is expected: farther off only a mode that is not true says so.
     """

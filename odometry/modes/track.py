@@ -137,7 +137,7 @@ def follow_signals(
                 belief = with_bias(belief, *merged)
             led = int(probabilities[row - 1].argmax())
             alone = with_bias(with_lead(alone, belief, led), *merged)
-        if row in gap_ends:  # what moved in a gap tells nothing of the modes
+        if row in gap_ends:  # motion in a gap is no evidence on the modes
             begun = ModeBelief.alike(
                 *modes.start(signals.after(row), independent), belief.probabilities
             )

@@ -1,4 +1,4 @@
-"""What is held against the most probable mode: gyroscope, modes alike, turns and travel."""
+"""What contradicts the most probable mode: gyroscope, equal modes, turns and travel."""
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from odometry.modes.velocity import VelocityModes
 
 WINDOWS_S = (6.0, 12.0)
 CLIP = 3.0  # of one innovation
-LEAST_RAD_S = 0.05  # asked for: less is no turn
+LEAST_RAD_S = 0.05  # predicted: less is no turn
 
 
 def gyroscope_trust_of(
@@ -40,7 +40,7 @@ def contradictions(
 ) -> tuple[
     BoolArray | None, BoolArray | None, TravelCheck | None, BetweenModes | None, BoolArray | None
 ]:
-    """Modes alike, turns that contradict, travel, turns between two modes, headings at odds.
+    """Equal modes, turns that contradict, travel, turns between two modes, headings at odds.
 
     None of modes that hear poses themselves.
     """

@@ -2,7 +2,7 @@
 
 The state is x, y, yaw, the yaw rate and the bias of the gyroscope. That of the paper is the pose
 alone; with the yaw rate a gyroscope can be heard, and the robot may turn a little later than it was
-asked to.
+commanded.
 """
 
 from dataclasses import dataclass
@@ -37,7 +37,7 @@ class TractionModes:
     gains : (M, 2, 3, 5)
         For left turns, then for right ones; the turning centre is on that side.
     lag_s : (M,)
-        Time in which the yaw rate follows what is asked for; 0 in eq. 3.
+        Time in which the yaw rate follows what is commanded; 0 in eq. 3.
     track_width : float
         [m]
     process_variance : (3,)
@@ -170,7 +170,7 @@ def requested(tread_speeds_m_s: FloatArray, track_width: float) -> FloatArray:
     r = u_2 track_width / u_1 of the turn. Two such terms are u_3 = u_1 r^2 / (1 + r^2), and
     u_4 = u_1 r / (1 + r^2), which makes wide turns differ from those on the spot, where both are 0.
 
-    Inertia asks for the lateral acceleration u_1 u_2 from the ground. Contacts that roll slip aside
+    Inertia needs the lateral acceleration u_1 u_2 from the ground. Contacts that roll slip aside
     in proportion to force and speed, so that u_5 = |u_1| (u_1 u_2): the less friction, the more.
     Outward, also backward.
     """

@@ -1,8 +1,8 @@
 """What the modes say the robot travelled, held against what measured positions say.
 
-Yaw rate alone cannot tell a load that presses both tyres, or any other change of the wheels' size,
-from another terrain: both turn by less for the same tread speeds. On another terrain the robot
-still travels as far as that mode says.
+Yaw rate alone cannot distinguish a load that presses both tyres, or any other change of the wheels'
+size, from another terrain: both turn by less for the same tread speeds. On another terrain the
+robot still travels as far as that mode says.
 """
 
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Whether gyroscope and headings turn alike, by the measure of what distinguishes the modes.
+"""Whether gyroscope and headings agree on turns, by the measure of what distinguishes the modes.
 
 A gyroscope that reads less in fast turns, or whose scale has drifted, is another terrain to a mode.
 Headings say how far it is off: where that is more than a third of what the most probable mode and

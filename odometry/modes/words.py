@@ -159,7 +159,7 @@ def _in_force(followed: Followed) -> str:
     answers = followed.answers(track)
     named = np.flatnonzero(answers != UNDETERMINED)
     if not len(named):
-        return "nothing that the motion tells: undetermined all the time."
+        return "nothing that the motion distinguishes: undetermined all the time."
     last = str(answers[named[-1]])
     others = np.flatnonzero(answers[named] != last)
     since = named[others[-1] + 1] if len(others) else named[0]
@@ -225,7 +225,7 @@ def _to_do(followed: Followed) -> str:
             "identify the modes again on longer runs that are driven as this one was."
         )
     if followed.shares(followed.last_track).get(UNDETERMINED, 0.0) > MOSTLY:
-        return "drive turns of several radii to both sides: on straights modes are alike."
+        return "drive turns of several radii to both sides: on straights modes do not differ."
     return "nothing; where the answer is undetermined, take the one before it."
 
 

@@ -154,7 +154,7 @@ GROUNDS: Mapping[str, SkidGround] = {
     "grass": SkidGround(0.55, 0.006, 0.85),
     "crushed_concrete": SkidGround(0.35, 0.015, 0.6),
 }
-"""Friction as asked for; the rest is chosen by what is known of such terrains.
+"""Friction as given; the rest is chosen by what is known of such terrains.
 
 Moduli: under rubber on hard floors a millimetre and less (Yu, Chuy, Collins and Hollis 2010), 6 mm
 in clay at its maximum compaction, 10 mm in firm and 25 mm in loose sand (Wong, Theory of Ground

@@ -81,7 +81,7 @@ class GapsSoFar:
     """Decides of each frame whether the speeds that led to it were held for too long to be known.
 
     Too long is more than 1 s and than 20 usual periods with a tread turning, as in
-    `odometry_gaps`; what other sensors say of the held speeds is not asked, because they say it
+    `odometry_gaps`; what other sensors say of the held speeds is not used, because they say it
     later.
     """
 

@@ -1,6 +1,6 @@
 """Whole turns between measured poses, counted by the gyroscope or by the treads.
 
-A measured yaw tells a turn but for whole turns. The number of these between two poses is the one
+A measured yaw gives a turn but for whole turns. The number of these between two poses is the one
 that is nearest to a predicted turn, and it is known where the prediction, with its bound, stays
 within half a turn of it. Three predictions are used in this order:
 

@@ -126,7 +126,9 @@ def _plain(values: Mapping[str, Any], image_size: tuple[int, int] | None) -> Cal
         model = "fisheye"
     size = _size(entries) or image_size
     if size is None:
-        raise CameraError("the size of the image is not stated, and there is no image to tell it")
+        raise CameraError(
+            "the size of the image is not stated, and there is no image to read it from"
+        )
     lens, notes = lens_of(model, size, matrix(intrinsics, "camera_matrix", (3, 3)), distortion)
     return Calibration(str(entries.get("cameraname", "")), lens, notes=notes)
 

@@ -129,7 +129,7 @@ def reliability_by_chance(
     ----------
     probabilities : FloatArray, shape (n, classes)
     groups : array, shape (n,)
-        All different where answers are independent; photographs where their patches are alike.
+        All different where answers are independent; photographs where their patches are correlated.
     seed : int
     """
     confidence = probabilities.max(axis=1)

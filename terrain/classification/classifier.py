@@ -78,7 +78,7 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
     cross_validation_ : CrossValidation
         Of the last `fit`; a loaded classifier has none.
     trained_on_ : TrainedOn or None
-        None where nobody said.
+        None where it was not given.
     old_samples_ : OldSamples or None
         What `adapt` mixes with photographs of another camera; None of features, with ``chen2023``
         and of files of version 0.9.
@@ -88,7 +88,7 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
     Notes
     -----
     X is images, or a table (n, F) of features that were made before, as by `SftaFeatures`. As
-    scikit-learn asks for, `predict` names one of `classes_`, the likeliest; what may be trusted
+    scikit-learn requires, `predict` names one of `classes_`, the likeliest; what may be trusted
     is said by `is_unknown`, and by `classify`, which says both.
 
     References

@@ -15,7 +15,7 @@ from terrain.classification.orientation import half_turn_bytes
 
 
 class Scales:
-    """A grey patch and what several filters ask of it, computed once.
+    """A grey patch and what several filters need of it, computed once.
 
     Parameters
     ----------

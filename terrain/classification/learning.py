@@ -26,7 +26,7 @@ class LearningClassifier(TrainedClassifier):
     def _made_by(
         self, images: Sequence[ByteImage], labels: AnyArray
     ) -> FeatureSettings | Transformed:
-        """What makes features of square patches, the size that the classifier then asks for.
+        """What makes features of square patches, the size that the classifier then requires.
 
         The first of `images` have the labels (n,); altered copies follow them.
         """
@@ -56,7 +56,7 @@ class LearningClassifier(TrainedClassifier):
         except np.linalg.LinAlgError as error:
             raise PatchError(
                 f"{len(samples.codes)} patches of {len(self.classes_)} classes are too few, or too "
-                "much alike, to tell how patches of one class differ"
+                "much alike, to show how patches of one class differ"
             ) from error
         self.cross_validation_: CrossValidation = found
         self.n_neighbors_ = found.n_neighbors

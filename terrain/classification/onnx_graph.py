@@ -1,7 +1,7 @@
 """The part of an ONNX network that leads to some of its layers, as a network of its own.
 
 Only the messages that name nodes, tensors and outputs are read; weights are copied as they are.
-A network that ends at the wanted layers computes no more than these, has no head that asks for one
+A network that ends at the wanted layers computes no more than these, has no head that requires one
 size of image, and gives the layers themselves with every version of OpenCV: 5.0 may give the
 numbers of another layer for one that is not an output.
 

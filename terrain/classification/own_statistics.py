@@ -179,7 +179,7 @@ class OwnStatisticsClassifier:
 
 
 def used_as(classifier: Classifier, config: ClassifierConfig) -> Classifier:
-    """The classifier of a run, as its settings ask for it.
+    """The classifier of a run, as its settings require it.
 
     Raises
     ------

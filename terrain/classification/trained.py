@@ -151,7 +151,7 @@ class TrainedClassifier(ModelFile):
         return other
 
     def likeness(self, images: Iterable[ByteImage]) -> Likeness | None:
-        """Whether images, as a whole, look like the training photographs; None if it cannot tell.
+        """Whether images, as a whole, look like the training photographs; None if unknown.
 
         Sharpness, scale of texture, contrast and exposure of the middle of each image are compared
         with those of the training patches. It says nothing of the terrain.

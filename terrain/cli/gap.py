@@ -39,7 +39,7 @@ FOLDER = RunFolder()
     default="icr",
     show_default=True,
     metavar="NAME|SET.toml",
-    help=f"The model believed so far: {', '.join(MODEL_NAMES)} to identify, or a parameter set "
+    help=f"The model in use so far: {', '.join(MODEL_NAMES)} to identify, or a parameter set "
     "to take as it is.",
 )
 @click.option("--out", required=True, metavar="DIR", type=OUTPUT, help="Folder for the results.")

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 def identify_feel(
     folders: tuple[Path, ...], *, out: Path, windows: tuple[float, ...], seed: int, span: "Span"
 ) -> None:
-    """Identify how the terrains that the run folders RUN name feel, for `feel` to tell them.
+    """Identify how the terrains that the run folders RUN name feel, for `feel` to recognise them.
 
     Uses what all runs have of imu.csv (vibration), the yaw rate and motor currents. Each terrain
     needs two runs or more: whole runs are held out, and the printed figures are theirs.
@@ -61,7 +61,7 @@ def _print(model: "FeelModel") -> None:
 
     report = model.report
     click.echo(
-        f"Whole {report['held_out']} held out, every terrain counting alike (interval of 5 to "
+        f"Whole {report['held_out']} held out, terrains weighted equally (interval of 5 to "
         "95 % over runs drawn anew; calibration error of probabilities; share refused as unknown):"
     )
     header = ("", "answers", "right", "interval", "calibration", "refused")

@@ -174,14 +174,14 @@ def _print_traction(modes: "TractionModes") -> None:
 
 
 def _print_alike(found: "tuple[Pair, ...]") -> None:
-    """Say which modes answer alike, and how long the most similar take to be distinguished."""
+    """Say which modes differ little, and how long it takes to distinguish them."""
     if not found:
         click.echo("Note: there is one mode: `modes` needs two or more", err=True)
         return
     equal = [pair for pair in found if pair.seconds > ALIKE_S]
     for pair in equal[:PAIRS] or found[:1]:
         both = " and ".join(pair.names)
-        words = "answer alike" if equal else "are the most similar"
+        words = "differ little" if equal else "are the most similar"
         digits = 0 if pair.seconds >= 10 else 1
         time = f"about {pair.seconds:.{digits}f} s" if pair.seconds < 1e4 else "for ever"
         time = "less than 0.1 s" if pair.seconds < 0.1 else time

@@ -226,7 +226,7 @@ def _words(found: "Adaptation", model: Path) -> str:
     else:
         lines = [
             f"Adapted from {model}: a terrain has one photograph alone, so that none can be held "
-            "out to tell whether the old ones help; only the new ones are learned from. The "
+            "out to show whether the old ones help; only the new ones are learned from. The "
             "figures below are of other halves of the same photographs and too good."
         ]
     if found.forgotten:

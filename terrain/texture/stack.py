@@ -70,7 +70,7 @@ def _boxes(
 ) -> tuple[FloatArray, FloatArray | None]:
     """Box counts (N, n_sizes, 8) of the borders of eight binary images of each plane.
 
-    If asked for, also the number of pixels of the borders and the sum of their greys, (N, 8, 2).
+    Where wanted, also the number of pixels of the borders and the sum of their greys, (N, 8, 2).
     """
     planes, rows, columns = greys.shape
     histograms = np.zeros((planes, 256), np.float32)

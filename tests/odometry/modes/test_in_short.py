@@ -32,7 +32,7 @@ def small_misfit(lasts):
     [
         (["b", "a", "a"], "a at the end, answered since 0.5 s; "),
         (["b", "a", "", ""], "a answered last, at 0.5 s; undetermined after that; "),
-        (["", ""], "nothing that the motion tells"),
+        (["", ""], "nothing that the motion distinguishes"),
     ],
 )
 def test_an_answer_is_in_force_at_the_end_where_it_is_given_there(most, words):

@@ -68,5 +68,5 @@ def test_on_straights_turns_are_asked_for():
     run = run_of(0.0, labels=ICE)
     run.odometry.columns["v_left"][:] = run.odometry.columns["v_right"][:] = 0.5
     in_force, _, to_do = in_short(followed(run, velocity_set()))
-    assert in_force == "nothing that the motion tells: undetermined all the time."
+    assert in_force == "nothing that the motion distinguishes: undetermined all the time."
     assert to_do.startswith("drive turns of several radii")

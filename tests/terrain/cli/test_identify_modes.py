@@ -72,7 +72,7 @@ def test_modes_that_answer_alike_are_named(make, out):
     alike = [make("ice", 1.0, "ice"), make("snow", 1.0, "snow")]
     answer = invoke(*alike, "--out", out)
     assert answer.exit_code == 0, answer.output
-    assert "ice and snow answer alike: driven as in these runs they take" in answer.stdout
+    assert "ice and snow differ little: driven as in these runs they take" in answer.stdout
 
 
 def test_one_mode_is_not_enough(grounds, out):
@@ -141,8 +141,8 @@ def test_runs_that_cannot_be_used_are_reported(make, out, settings, kind, messag
     [
         (0.01, "are the most similar: driven as in these runs they take less than 0.1 s"),
         (0.52, "are the most similar: driven as in these runs they take about 0.5 s"),
-        (40.0, "answer alike: driven as in these runs they take about 40 s"),
-        (1e9, "answer alike: driven as in these runs they take for ever"),
+        (40.0, "differ little: driven as in these runs they take about 40 s"),
+        (1e9, "differ little: driven as in these runs they take for ever"),
     ],
 )
 def test_the_time_to_tell_two_modes_apart_is_said(capsys, seconds, words):
