@@ -9,6 +9,7 @@ from odometry.gap.config import GapConfig
 from odometry.gap.gap import find_gap
 from odometry.gap.statistic import floor_of, floor_there
 from odometry.run import Run
+from odometry.run_span import Span, cut_run
 from tests.blind.cases import FORMULA, make_case
 
 PAIR = "wheel_scale+lateral_skid", 3
@@ -16,8 +17,16 @@ SINGLE = tuple(kind for kind in FORMULA if kind not in PAIR[0].split("+"))
 CASES = (*((kind, 0) for kind in (*SINGLE, "unknown_pull", "none", "contact_slope")), PAIR)
 
 
+# Of each run with an effect, these are driven of 160 s, to be quick; not where the moment is later.
+LONGEST_S = 80.0
+OTHERS_S = {"inertia": 50.0, PAIR[0]: 50.0, "traction_loss": 160.0, "clock_step": 160.0}
+
+
 def read(case):
-    return [Run.read(folder) for folder in (case.measured, case.calibration, case.holdout)]
+    calibration = Run.read(case.calibration)
+    span = Span(0.0, OTHERS_S.get(case.kind, LONGEST_S))
+    measured, holdout = (cut_run(Run.read(of), span) for of in (case.measured, case.holdout))
+    return measured, calibration, holdout
 
 
 @pytest.fixture(scope="session")

@@ -88,7 +88,7 @@ def test_wandering_is_found():
 
     Taken as an error that lasts longer than a window; and gains are the less exact.
     """
-    run, rng = drive(2, "left", size=20_000), np.random.default_rng(9)
+    run, rng = drive(2, "left", size=10_000), np.random.default_rng(9)
     step_m = np.diff(run.wheel_travel_m[::5], prepend=0.0)
     walked = np.cumsum(np.sqrt(step_m)[:, None] * rng.normal(size=(len(step_m), 3)), axis=0)
     moved = zip(("x", "y", "yaw"), (walked * [0.04, 0.04, 0.03]).T, strict=True)
