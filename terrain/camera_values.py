@@ -44,7 +44,7 @@ def intrinsic_matrix(matrix: ArrayLike) -> FloatArray:
     ):
         raise CameraError(
             f"matrix must be [[fx, 0, cx], [0, fy, cy], [0, 0, 1]] with positive fx and fy, "
-            f"seen {array.tolist()}"
+            f"found {array.tolist()}"
         )
     return array
 
@@ -64,7 +64,7 @@ def size_in_pixels(image_size: tuple[int, int]) -> tuple[int, int]:
     size = finite_array("image_size", image_size, (2,))
     if (size < 1).any() or (size != np.floor(size)).any() or size.prod() > PIXELS:
         raise CameraError(
-            f"image_size must be two positive whole numbers, seen {size.tolist()}, and the image "
+            f"image_size must be two positive whole numbers, found {size.tolist()}, and the image "
             f"have at most {PIXELS} pixels"
         )
     return int(size[0]), int(size[1])
@@ -74,12 +74,12 @@ def pose_key(table: Mapping[str, Any]) -> str:
     """Name of the key of a camera table that gives the ground plane."""
     missing = [key for key in ("image_size", "matrix", "distortion") if key not in table]
     if missing:
-        raise CameraError(f"{', '.join(missing)} missing; seen: {sorted(table)}")
+        raise CameraError(f"{', '.join(missing)} missing; found: {sorted(table)}")
     poses = [key for key in ("mount", "ground_to_image") if key in table]
     if len(poses) != 1:
         raise CameraError(
             "exactly one of mount and ground_to_image is needed; "
-            f"seen: {' and '.join(poses) or 'neither'}"
+            f"found: {' and '.join(poses) or 'neither'}"
         )
     return poses[0]
 

@@ -148,18 +148,18 @@ def with_preset(
         for key, value in keys.items():
             seen = getattr(getattr(config, block), key)
             if seen != value:
-                raise ConfigError(f"{where} has [{block}] {key} = {value}, seen {seen}")
+                raise ConfigError(f"{where} has [{block}] {key} = {value}, found {seen}")
     if source != "camera":
-        raise ConfigError(f"{where} takes the terrain from the camera (a model), seen {source!r}")
+        raise ConfigError(f"{where} takes the terrain from the camera (a model), found {source!r}")
     if model is None or model.preset != preset.model_preset or model.colour_:
         raise ConfigError(
-            f"{where} needs a model of train --preset {preset.model_preset}, without colour; seen "
+            f"{where} needs a model of train --preset {preset.model_preset}, without colour; found "
             + ("none" if model is None else f"one of {model.preset!r}, colour {model.colour_}")
         )
     if parameters.terrains:
         raise ConfigError(
             f"{where} knows no parameter sets: on another terrain it goes on from the ICRs that it "
-            f"has; seen one of {', '.join(parameters.terrains)}"
+            f"has; found one of {', '.join(parameters.terrains)}"
         )
     return _with_look_ahead(config, run), OnePatchClassifier(model)
 

@@ -139,7 +139,7 @@ def _world(topics: Mapping[str, Topic], topic_map: TopicMap, reference: str, sur
     if named not in frames:
         raise BagError(
             f"{reference}: there is no frame {named!r}; name the one in which poses are wanted as "
-            f"world in [reference] of a map; seen: {', '.join(sorted(frames)[:24])}"
+            f"world in [reference] of a map; found: {', '.join(sorted(frames)[:24])}"
         )
     return named
 

@@ -116,7 +116,7 @@ def _base(robot: RobotMessages, topic_map: Mapping[str, Any], bodies: Iterable[s
         named = str(topic_map["frame"]).lstrip("/")
         if frames and named not in frames:
             raise BagError(
-                f"[robot] frame = {named!r}: the bag has no such frame; seen: "
+                f"[robot] frame = {named!r}: the bag has no such frame; found: "
                 f"{', '.join(sorted(frames)[:24])}"
             )
         return named

@@ -164,7 +164,7 @@ def _check_there(topic: Topic, names: tuple[str, ...], joints: list[str] | None)
         if joints is None:
             number_at(name)(topic.sample)
         elif name not in joints:
-            raise BagError(f"{topic.name}: there is no joint {name!r}; seen: {', '.join(joints)}")
+            raise BagError(f"{topic.name}: there is no joint {name!r}; found: {', '.join(joints)}")
 
 
 def _joint_values(

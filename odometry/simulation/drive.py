@@ -129,7 +129,7 @@ def simulate(
 
 def _check_icrs(strip_icrs: FloatArray, disturbances: FloatArray, strips: int) -> None:
     if strip_icrs.shape != (strips, 3):
-        raise SimulationError(f"{strips} strips need ICRs ({strips}, 3), seen {strip_icrs.shape}")
+        raise SimulationError(f"{strips} strips need ICRs ({strips}, 3), found {strip_icrs.shape}")
     widths = strip_icrs[:, 0] - strip_icrs[:, 1]
     narrowing = disturbances[:, 1] - disturbances[:, 0]
     if widths.min() <= max(0.0, narrowing.max()):

@@ -36,7 +36,7 @@ class GroundMap:
         if edges.shape != (len(self.terrains) - 1,) or (np.diff(edges) <= 0).any():
             raise ValueError(
                 f"{len(self.terrains)} strips need {len(self.terrains) - 1} increasing edges, "
-                f"seen {edges.tolist()}"
+                f"found {edges.tolist()}"
             )
         object.__setattr__(self, "edges_m", edges)
 

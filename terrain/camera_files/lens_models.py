@@ -194,7 +194,7 @@ def lens_of(
     name = model.strip().lower()
     if name in FISHEYE:
         if coefficients.size != 4:
-            raise CameraError(f"distortion model {name!r} has 4 values, seen {coefficients.size}")
+            raise CameraError(f"distortion model {name!r} has 4 values, found {coefficients.size}")
         if not np.isfinite(coefficients).all():
             raise CameraError(f"distortion holds values that are not finite: {coefficients}")
         # Lens.of checks size and matrix before they are computed with

@@ -42,7 +42,7 @@ def read_kalibr(values: Mapping[str, Any], name: str | None = None) -> Calibrati
         raise CameraError(f"several cameras: {', '.join(cameras)}; name one")
     chosen = name or next(iter(cameras))
     if chosen not in cameras:
-        raise CameraError(f"no camera {chosen!r}; seen: {', '.join(cameras)}")
+        raise CameraError(f"no camera {chosen!r}; found: {', '.join(cameras)}")
     camera = cameras[chosen]
     model = str(camera.get("camera_model", "pinhole"))
     if model != "pinhole":
@@ -116,7 +116,7 @@ def _plain(values: Mapping[str, Any], image_size: tuple[int, int] | None) -> Cal
     intrinsics = _first(entries, MATRIX)
     if intrinsics is None:
         raise CameraError(
-            f"no camera_matrix (or K); seen: {', '.join(map(str, values))[:200] or 'nothing'}"
+            f"no camera_matrix (or K); found: {', '.join(map(str, values))[:200] or 'nothing'}"
         )
     _refuse_binning(entries)
     coefficients = _first(entries, DISTORTION)

@@ -57,7 +57,7 @@ def mount_in(
     frames = sorted({frame for pair in transforms for frame in pair})
     for frame in (robot, camera):
         if frame not in frames:
-            raise CameraError(f"no frame {frame!r}; seen: {', '.join(frames)}{_advice(frame)}")
+            raise CameraError(f"no frame {frame!r}; found: {', '.join(frames)}{_advice(frame)}")
     reached = {robot: np.eye(4)}
     waiting = deque([robot])
     while waiting:  # by width, so that the fewest rounded transforms are chained

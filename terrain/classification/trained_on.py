@@ -66,7 +66,7 @@ def common_size(images: Sequence[ByteImage]) -> int:
     """Return the side of square patches of one size; PatchError for any others."""
     shapes = {image.shape[:2] for image in images}
     if len(shapes) > 1 or any(rows != columns for rows, columns in shapes):
-        raise PatchError(f"patches must be square and of one size; seen: {sorted(shapes)}")
+        raise PatchError(f"patches must be square and of one size; found: {sorted(shapes)}")
     return int(images[0].shape[0])
 
 

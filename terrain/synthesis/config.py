@@ -127,13 +127,13 @@ class SynthesisConfig:
         for name, (low, high) in LIMITS.items():
             if not low <= getattr(self, name) <= high:
                 raise SynthesisError(
-                    f"{name} must be above zero: {low:g} to {high:g}, seen {getattr(self, name)}"
+                    f"{name} must be above zero: {low:g} to {high:g}, found {getattr(self, name)}"
                 )
         if not 1 <= self.jpeg_quality <= 100:
-            raise SynthesisError(f"jpeg_quality must be in 1 to 100, seen {self.jpeg_quality}")
+            raise SynthesisError(f"jpeg_quality must be in 1 to 100, found {self.jpeg_quality}")
         missing = [name for name in ("track_width", "length", "width") if name not in self.robot]
         if missing:
-            raise SynthesisError(f"[robot] needs {', '.join(missing)}; seen {sorted(self.robot)}")
+            raise SynthesisError(f"[robot] needs {', '.join(missing)}; found {sorted(self.robot)}")
         for name in ("track_width", "length", "width"):
             value = self.robot[name]
             if not isinstance(value, int | float) or not 0.01 <= value <= 100:
@@ -199,5 +199,5 @@ def _read_table(file: Path, name: str) -> dict[str, Any]:
     content = read_toml(file, SynthesisError)
     table = content.get(name)
     if not isinstance(table, dict):
-        raise SynthesisError(f"{file}: the table [{name}] is missing; seen: {sorted(content)}")
+        raise SynthesisError(f"{file}: the table [{name}] is missing; found: {sorted(content)}")
     return table

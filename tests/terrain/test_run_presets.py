@@ -71,13 +71,13 @@ def test_the_filter_has_six_states_and_keeps_its_icrs(result):
         ({"preset": "chen2024"}, "'chen2024' is not one of chen2023"),
         (
             {"config": replace(PAPER, region=replace(PAPER.region, per_tread=True))},
-            r"\[region\] per_tread = False, seen True",
+            r"\[region\] per_tread = False, found True",
         ),
         (
             {"config": replace(PAPER, filter=replace(PAPER.filter, detect_jumps=True))},
-            r"\[filter\] detect_jumps = False, seen True",
+            r"\[filter\] detect_jumps = False, found True",
         ),
-        ({"config": Config()}, r"\[filter\] .* seen "),
+        ({"config": Config()}, r"\[filter\] .* found "),
     ],
 )
 def test_what_contradicts_the_preset_is_an_error(across_run, paper, given, words):

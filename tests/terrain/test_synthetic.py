@@ -229,7 +229,7 @@ def test_shipped_camera_and_vehicle_are_the_defaults():
 def test_description_files_without_their_table(tmp_path):
     file = tmp_path / "camera.toml"
     file.write_text("[lens]\n")
-    with pytest.raises(SynthesisError, match=r"\[camera\] is missing; seen: \['lens'\]"):
+    with pytest.raises(SynthesisError, match=r"\[camera\] is missing; found: \['lens'\]"):
         read_camera(file)
     file.write_text("[lens")
     with pytest.raises(SynthesisError, match="cannot be read as TOML"):

@@ -112,7 +112,7 @@ class Zones:
         if len(edges) != len(self.slopes_rad) - 1 or (np.diff(edges) <= 0).any():
             raise ValueError(
                 f"{len(self.slopes_rad)} zones need {len(self.slopes_rad) - 1} increasing edges, "
-                f"seen {edges.tolist()}"
+                f"found {edges.tolist()}"
             )
 
     def rise(self, points: ComplexArray, heading: ComplexArray) -> ComplexArray:

@@ -68,7 +68,7 @@ class ContactVehicle:
             if array.shape != (2, contacts):
                 raise SimulationError(
                     f"{contacts} contacts a side need {name} of shape (2, {contacts}), "
-                    f"seen {array.shape}"
+                    f"found {array.shape}"
                 )
             if not ((array >= SMALLEST) & (array <= LARGEST)).all():
                 raise SimulationError(
@@ -119,7 +119,7 @@ def read_contact_vehicle(file: Path, changes: Mapping[str, Any] | None = None) -
     content = read_toml(Path(file))
     for name in ("robot", "contact"):
         if not isinstance(content.get(name), Mapping):
-            raise SimulationError(f"{file}: the table [{name}] is missing; seen: {list(content)}")
+            raise SimulationError(f"{file}: the table [{name}] is missing; found: {list(content)}")
     try:
         return contact_vehicle(content["robot"], {**content["contact"], **(changes or {})})
     except KeyError as error:

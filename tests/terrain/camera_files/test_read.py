@@ -142,7 +142,7 @@ def test_a_fisheye_agrees_with_opencvs(tmp_path, coefficients, focus):
         (KALIBR.partition("cam1")[0].replace("radtan", "fov"), "distortion model 'fov'"),
         (KALIBR.partition("cam0:\n")[2].join(["a:\n", ""]).partition("cam1")[0]
          .replace("[640, 480]", "[640.5, 480]"), "expected whole numbers"),
-        (ROS.replace("plumb_bob", "equidistant"), "has 4 values, seen 5"),
+        (ROS.replace("plumb_bob", "equidistant"), "has 4 values, found 5"),
         (ROS.replace("501.5", "nan"), "not finite"),
         (ROS.replace("501.5", "wide"), "expected numbers"),
         (ROS.replace("501.5", "-501.5"), "positive fx"),

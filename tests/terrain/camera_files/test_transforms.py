@@ -52,7 +52,7 @@ def test_a_chain_with_rounded_rotations(tmp_path, world):
     ("transforms", "words"),
     [
         ({"T_base_link__eye": LEVEL}, "base_footprint.*height of the camera above the terrain"),
-        ({"T_base_link__base_footprint": DOWN}, "no frame 'eye'; seen: base_footprint"),
+        ({"T_base_link__base_footprint": DOWN}, "no frame 'eye'; found: base_footprint"),
         ({"T_a__base_footprint": DOWN, "T_b__eye": LEVEL}, "no transforms lead"),
         ({"T_base_link__eye": np.ones((4, 4))}, "last row"),
         ({"T_base_link__eye": np.diag([1.0, 1.0, -1.0, 1.0])}, "no rotation"),

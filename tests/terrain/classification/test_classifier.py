@@ -168,9 +168,9 @@ def test_two_photographs_a_class_suffice_and_one_does_not(rng):
 
 def test_patches_that_cannot_be_used_are_errors(rng):
     images, labels, groups = patches(rng, (grains, stripes), photos=2, each=1)
-    with pytest.raises(PatchError, match=r"one size; seen: \[\(16, 32\), \(32, 32\)\]"):
+    with pytest.raises(PatchError, match=r"one size; found: \[\(16, 32\), \(32, 32\)\]"):
         TerrainClassifier().fit([images[0][:16], *images[1:]], labels, groups)
-    with pytest.raises(PatchError, match=r"one size; seen: \[\(16, 16\), \(32, 32\)\]"):
+    with pytest.raises(PatchError, match=r"one size; found: \[\(16, 16\), \(32, 32\)\]"):
         TerrainClassifier().fit([images[0][:16, :16], *images[1:]], labels, groups)
     with pytest.raises(PatchError, match="4 images, 3 labels and 4 groups"):
         TerrainClassifier().fit(images, labels[1:], groups)

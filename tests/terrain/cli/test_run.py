@@ -150,9 +150,9 @@ def test_after_a_jump_of_the_poses_what_was_learned_is_not_recommended(world, tm
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (["--per-tread"], "per_tread = False, seen True"),
-        (["--detect-jumps"], "detect_jumps = False, seen True"),
-        (["--own-statistics"], "own_statistics = False, seen True"),
+        (["--per-tread"], "per_tread = False, found True"),
+        (["--detect-jumps"], "detect_jumps = False, found True"),
+        (["--own-statistics"], "own_statistics = False, found True"),
         (["--source", "none"], "from the camera"),
     ],
 )
