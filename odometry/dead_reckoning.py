@@ -1,8 +1,11 @@
 """From body twists to a trajectory, in the plane and in space."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.blocks import blocks_of, running_sums
 from odometry.geometry import se2, se3
 from odometry.geometry.angles import wrap
 from odometry.geometry.tilt import level_steps, rises, tilt_of
@@ -35,7 +38,11 @@ def dead_reckon(stamps_s: FloatArray, twists: FloatArray, start: FloatArray) -> 
     >>> odometry.dead_reckon(stamps_s, twists, np.zeros(3)).poses[-1].round(3).tolist()
     [0.0, 0.0, 1.571]
     """
-    return Trajectory(np.asarray(stamps_s), _chain(_steps(stamps_s, twists), np.asarray(start)))
+
+    def steps(rows: slice) -> FloatArray:
+        return _steps(stamps_s[rows.start : rows.stop + 1], twists[rows.start : rows.stop + 1])
+
+    return Trajectory(np.asarray(stamps_s), _chain(steps, len(stamps_s), np.asarray(start)))
 
 
 def dead_reckon_in_space(
@@ -75,7 +82,8 @@ def dead_reckon_in_space(
     x, y, z, yaw = start
     roll, pitch = (level_where_missing(stamps_s, angle) for angle in (roll_rad, pitch_rad))
     steps, tilt = _steps(stamps_s, twists), tilt_of(roll[:-1], pitch[:-1])
-    plane = _chain(level_steps(steps, tilt), np.array([x, y, yaw]))
+    level = level_steps(steps, tilt)
+    plane = _chain(lambda rows: level[rows].copy(), len(stamps_s), np.array([x, y, yaw]))
     heights = z + np.append(0.0, np.cumsum(rises(steps, tilt)))
     rotations = se3.rotation_from_roll_pitch_yaw(np.column_stack([roll, pitch, plane[:, 2]]))
     positions = np.column_stack([plane[:, :2], heights])
@@ -87,12 +95,21 @@ def _steps(stamps_s: FloatArray, twists: FloatArray) -> FloatArray:
     return se2.exp(twists[:-1] * np.diff(stamps_s)[:, None])
 
 
-def _chain(steps: FloatArray, start: FloatArray) -> FloatArray:
-    """Poses (N, 3) reached by one step (N - 1, 3) after another."""
-    yaw = start[2] + np.append(0.0, np.cumsum(steps[:, 2]))
-    cosine, sine = np.cos(yaw[:-1]), np.sin(yaw[:-1])
-    x = np.cumsum(cosine * steps[:, 0] - sine * steps[:, 1])
-    y = np.cumsum(sine * steps[:, 0] + cosine * steps[:, 1])
-    return np.stack(
-        [start[0] + np.append(0.0, x), start[1] + np.append(0.0, y), wrap(yaw)], axis=-1
-    )
+def _chain(steps: Callable[[slice], FloatArray], count: int, start: FloatArray) -> FloatArray:
+    """Poses (count, 3) reached by one step (k, 3) after another, see `running_sums`."""
+    poses = np.empty((count, 3))
+    for rows, turned in running_sums(lambda some: steps(some)[:, 2], count):
+        poses[rows, 2] = start[2] + turned
+
+    def moved(some: slice) -> FloatArray:
+        step, yaw = steps(some), poses[some, 2]
+        cosine, sine = np.cos(yaw), np.sin(yaw)
+        return np.column_stack(
+            [cosine * step[:, 0] - sine * step[:, 1], sine * step[:, 0] + cosine * step[:, 1]]
+        )
+
+    for rows, places in running_sums(moved, count):
+        poses[rows, :2] = start[:2] + places
+    for rows in blocks_of(count):
+        poses[rows, 2] = wrap(poses[rows, 2])
+    return poses

@@ -1,16 +1,17 @@
 """Estimates at every frame of a run, and the trajectories that follow from them."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
+from odometry.blocks import blocks_of
 from odometry.dead_reckoning import dead_reckon
 from odometry.estimation.estimate import ALPHAS, ICRS, Estimate
 from odometry.estimation.filter_event import FilterEvent
-from odometry.estimation.kept_estimates import KeptEstimates
+from odometry.estimation.kept_estimates import EVERY, KeptEstimates
 from odometry.estimation.transition import GYRO_BIAS, STATES
 from odometry.models.icr import icr_twist
 from odometry.trajectory import Trajectory
@@ -45,23 +46,35 @@ class Replay:
     @property
     def stamps_s(self) -> FloatArray:
         """Stamps (N,)."""
-        return self._kept.numbers("stamp_s")
+        return self.numbers("stamp_s")
 
     @property
     def means(self) -> FloatArray:
         """States (N, 9)."""
-        return self._kept.numbers("mean")
+        return self.numbers("mean")
 
     @property
     def sigmas(self) -> FloatArray:
         """Standard deviations (N, 9)."""
-        return np.sqrt(np.maximum(self._kept.numbers("variances"), 0.0))
+        return self.sigmas_of(slice(0, STATES))
+
+    def numbers(self, name: str, rows: slice = EVERY, columns: slice = EVERY) -> FloatArray:
+        """Numbers of all estimates or some rows of them, see `KeptEstimates`."""
+        return self._kept.numbers(name, rows, columns)
+
+    def sigmas_of(self, states: slice, rows: slice = EVERY) -> FloatArray:
+        """Standard deviations (N, states) of some states and rows."""
+        return np.sqrt(np.maximum(self.numbers("variances", rows, states), 0.0))
 
     @property
     def pose_covariances(self) -> FloatArray:
         """Covariances (N, 3, 3) of x, y and yaw."""
-        count = len(self.estimates)
-        return self._kept.numbers("covariance").reshape(count, STATES, STATES)[:, :3, :3]
+        return self.pose_covariances_of(EVERY)
+
+    def pose_covariances_of(self, rows: slice) -> FloatArray:
+        """The same of some rows."""
+        found = self.numbers("covariance", rows, slice(0, 3 * STATES))
+        return found.reshape(-1, 3, STATES)[:, :, :3]
 
     @property
     def terrains(self) -> tuple[str, ...]:
@@ -72,7 +85,7 @@ class Replay:
     @property
     def jumps(self) -> BoolArray:
         """Where a jump of the ICRs was detected (N,)."""
-        return np.equal(self._kept.numbers("jumped"), 1.0)
+        return np.equal(self.numbers("jumped"), 1.0)
 
     @property
     def events(self) -> tuple[FilterEvent, ...]:
@@ -82,12 +95,12 @@ class Replay:
     @property
     def accepted(self) -> BoolArray:
         """Where a measured pose passed the gate (N,)."""
-        return np.equal(self._kept.numbers("accepted"), 1.0)
+        return np.equal(self.numbers("accepted"), 1.0)
 
     @property
     def innovations_squared(self) -> FloatArray:
         """Normalised innovations squared (N,); NaN where no pose was measured."""
-        return self._kept.numbers("normalised_squared")
+        return self.numbers("normalised_squared")
 
     @property
     def is_astride(self) -> BoolArray:
@@ -98,27 +111,27 @@ class Replay:
 
     def trajectory(self) -> Trajectory:
         """The filter's poses, corrected by measurements."""
-        return Trajectory(self.stamps_s, self.means[:, :3])
+        return Trajectory(self.stamps_s, self.numbers("mean", columns=slice(0, 3)))
 
     @property
     def tread_speeds_m_s(self) -> FloatArray:
         """Measured tread speeds (N, 2) in force from each stamp on; NaN where not known."""
-        return self._kept.numbers("tread_speeds_m_s")
+        return self.numbers("tread_speeds_m_s")
 
     @property
     def added_speeds_m_s(self) -> FloatArray:
         """What effects add to these speeds (N, 2)."""
-        return self._kept.numbers("added_speeds_m_s")
+        return self.numbers("added_speeds_m_s")
 
     @property
     def yaw_rates_rad_s(self) -> FloatArray:
         """Yaw rates (N - 1,) of the gyroscope from each stamp to the next; NaN without samples."""
-        return self._kept.numbers("yaw_rate_rad_s")[1:]
+        return self.numbers("yaw_rate_rad_s")[1:]
 
     @property
     def believed_yaw_rates_rad_s(self) -> FloatArray:
         """Yaw rates (N - 1,) that turned the robot, bias included; NaN where the treads did."""
-        return self._kept.numbers("believed_yaw_rate_rad_s")[1:]
+        return self.numbers("believed_yaw_rate_rad_s")[1:]
 
     @property
     def has_gyroscope(self) -> bool:
@@ -128,7 +141,7 @@ class Replay:
     @property
     def used_gyroscope(self) -> bool:
         """Whether a gyroscope turned the robot anywhere: settings may turn it off in the filter."""
-        return bool(np.isfinite(self._kept.numbers("believed_yaw_rate_rad_s")).any())
+        return bool(np.isfinite(self.numbers("believed_yaw_rate_rad_s")).any())
 
     def open_loop(self, track_width: float) -> dict[str, Trajectory]:
         """All trajectories that no pose corrects, the simplest first.
@@ -136,12 +149,17 @@ class Replay:
         `differential_drive` and `odometer`; where there is a gyroscope, also `gyroscope`, and
         where the filter used it, `odometer_without_gyroscope`.
         """
-        found = {"differential_drive": self.differential_drive(track_width)}
+        return {name: reckon() for name, reckon in self.open_loop_by_name(track_width).items()}
+
+    def open_loop_by_name(self, track_width: float) -> dict[str, Callable[[], Trajectory]]:
+        """What computes each of them: all of a long run's do not fit in memory."""
+        found: dict[str, Callable[[], Trajectory]]
+        found = {"differential_drive": partial(self.differential_drive, track_width)}
         if self.has_gyroscope:
-            found["gyroscope"] = self.gyroscope(track_width)
+            found["gyroscope"] = partial(self.gyroscope, track_width)
         if self.used_gyroscope:
-            found["odometer_without_gyroscope"] = self.odometer_without_gyroscope()
-        return found | {"odometer": self.odometer()}
+            found["odometer_without_gyroscope"] = self.odometer_without_gyroscope
+        return found | {"odometer": self.odometer}
 
     def odometer(self) -> Trajectory:
         """The model integrated open loop with what was held at each moment, never corrected.
@@ -153,54 +171,66 @@ class Replay:
 
     def odometer_twists(self) -> FloatArray:
         """Body twists (N, 3) of the odometer, each to the next stamp; the last by its treads."""
-        twists = self._turned_by_treads()
-        by_gyroscope = self._turned_by_gyroscope()
-        measured = np.isfinite(by_gyroscope).all(axis=1)
-        twists[:-1][measured] = by_gyroscope[measured]
-        return twists
+        return self._twists(self._turned_by_gyroscope)
 
     def odometer_without_gyroscope(self) -> Trajectory:
         """The same, the robot turned by its treads throughout."""
-        return self._reckon(self._turned_by_treads())
+        return self._reckon(self._twists(self._turned_by_treads))
 
     def gyroscope(self, track_width: float) -> Trajectory:
         """Mean wheel speed along the heading of the gyroscope as recorded: nothing is fitted.
 
         Where the gyroscope has no samples, the ideal differential drive turns.
         """
-        twists = icr_twist(ideal_icrs(track_width), np.nan_to_num(self.tread_speeds_m_s))
+        twists = self._twists(partial(self._ideal, track_width))
         measured = np.isfinite(self.yaw_rates_rad_s)
         twists[:-1, 2][measured] = self.yaw_rates_rad_s[measured]
         return self._reckon(twists)
 
     def differential_drive(self, track_width: float) -> Trajectory:
         """The same integration with an ideal differential drive."""
-        return self._reckon(
-            icr_twist(ideal_icrs(track_width), np.nan_to_num(self.tread_speeds_m_s))
-        )
+        return self._reckon(self._twists(partial(self._ideal, track_width)))
 
-    def _turned_by_treads(self) -> FloatArray:
-        """`Estimate.twist` (N, 3) of all estimates."""
-        means = self.means
-        speeds = self.tread_speeds_m_s
-        added_twists = self._kept.numbers("added_twist")
-        effective = means[:, ALPHAS] * (speeds + self.added_speeds_m_s)
-        twists = icr_twist(means[:, ICRS], effective) + added_twists
+    def _twists(self, of: Callable[[slice], FloatArray]) -> FloatArray:
+        """Twists (N, 3) by what gives those of some rows."""
+        twists = np.empty((len(self.estimates), 3))
+        for rows in blocks_of(len(twists)):
+            twists[rows] = of(rows)
+        return twists
+
+    def _ideal(self, track_width: float, rows: slice) -> FloatArray:
+        speeds = np.nan_to_num(self.numbers("tread_speeds_m_s", rows))
+        return icr_twist(ideal_icrs(track_width), speeds)
+
+    def _turned_by_treads(self, rows: slice) -> FloatArray:
+        """`Estimate.twist` (k, 3) of some estimates."""
+        means = self.numbers("mean", rows)
+        speeds = self.numbers("tread_speeds_m_s", rows)
+        added_speeds = self.numbers("added_speeds_m_s", rows)
+        effective = means[:, ALPHAS] * (speeds + added_speeds)
+        twists = icr_twist(means[:, ICRS], effective) + self.numbers("added_twist", rows)
         twists[~np.isfinite(speeds).all(axis=1)] = 0.0
         return np.asarray(twists)
 
-    def _turned_by_gyroscope(self) -> FloatArray:
-        """Twists (N - 1, 3) whose omega is measured; NaN where it or the treads are not known."""
-        means, added = self.means[:-1], self._kept.numbers("added_twist")[:-1]
-        effective = means[:, ALPHAS] * (self.tread_speeds_m_s + self.added_speeds_m_s)[:-1]
-        y_left, y_right, x_icr = means[:, 3:6].T
-        omega = self.believed_yaw_rates_rad_s - means[:, GYRO_BIAS] - added[:, 2]
+    def _turned_by_gyroscope(self, rows: slice) -> FloatArray:
+        """The same, omega as measured where it and the treads are known."""
+        twists = self._turned_by_treads(rows)
+        believed = self.numbers("believed_yaw_rate_rad_s", slice(rows.start + 1, rows.stop + 1))
+        rows = slice(rows.start, rows.start + len(believed))  # nothing is believed after the last
+        means, added = self.numbers("mean", rows), self.numbers("added_twist", rows)
+        speeds = self.numbers("tread_speeds_m_s", rows)
+        effective = means[:, ALPHAS] * (speeds + self.numbers("added_speeds_m_s", rows))
+        y_left, y_right, x_icr = means[:, ICRS].T
+        omega = believed - means[:, GYRO_BIAS] - added[:, 2]
         # v_x = alpha v + y omega of either tread (Baril 2020 eq. 4 to 6), the mean of both
         v_x = effective.mean(axis=1) + (y_left + y_right) / 2 * omega
-        return np.asarray(added + np.column_stack([v_x, -x_icr * omega, omega]))
+        by_gyroscope = added + np.column_stack([v_x, -x_icr * omega, omega])
+        measured = np.isfinite(by_gyroscope).all(axis=1)
+        twists[: len(measured)][measured] = by_gyroscope[measured]
+        return twists
 
     def _reckon(self, twists: FloatArray) -> Trajectory:
-        return dead_reckon(self.stamps_s, twists, self.means[0, :3])
+        return dead_reckon(self.stamps_s, twists, self.estimates[0].mean[:3])
 
 
 def ideal_icrs(track_width: float) -> FloatArray:

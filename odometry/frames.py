@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from odometry.arrays import ByteImage, FloatArray, IntArray
+from odometry.blocks import blocks_of
 from odometry.sensors import Gyroscope
 from odometry.table import Table
 
@@ -74,7 +75,6 @@ def merged_frames(
     The gyroscope is integrated from frame to frame; its stamps make no frames.
     """
     odometry_s = odometry.stamps_s
-    speeds = odometry.stack("v_left", "v_right")
     period_s = float(np.median(np.diff(odometry_s))) if len(odometry_s) > 1 else 0.0
     pose_s, poses = _stamps_and_values(pose, POSE_COLUMNS)
     velocity_s, velocities = _stamps_and_values(velocity, VELOCITY_COLUMNS)
@@ -83,27 +83,32 @@ def merged_frames(
     stamps_s = np.unique(np.concatenate([odometry_s, pose_s, velocity_s, image_s]))
     if stamps_s[-1] > end_s:
         stamps_s = np.unique(np.append(stamps_s, end_s))
-    odometry_row = np.searchsorted(odometry_s, stamps_s, side="right") - 1
-    pose_row, velocity_row, image_row = (
-        _row_at(table_s, stamps_s) for table_s in (pose_s, velocity_s, image_s)
-    )
-    nothing = np.full(len(stamps_s), math.nan)
-    yaw_rates = nothing if gyroscope is None else gyroscope.mean_rates_rad_s(stamps_s)
     unknown = np.full(2, math.nan)
-    for i, stamp_s in enumerate(stamps_s):
-        row = int(odometry_row[i])
-        image = None
-        if images is not None and image_row[i] >= 0:
-            image = folder / str(images["file"][image_row[i]])
-        yield Frame(
-            stamp_s=float(stamp_s),
-            tread_speeds_m_s=speeds[row] if row >= 0 and stamp_s < end_s else unknown,
-            odometry_row=row,
-            pose=poses[pose_row[i]] if pose_row[i] >= 0 else None,
-            image=image,
-            yaw_rate_rad_s=float(yaw_rates[i]),
-            velocity=velocities[velocity_row[i]] if velocity_row[i] >= 0 else None,
+    for some in blocks_of(len(stamps_s)):
+        here_s = stamps_s[some]
+        odometry_row = np.searchsorted(odometry_s, here_s, side="right") - 1
+        speeds = np.column_stack([odometry[n][odometry_row] for n in ("v_left", "v_right")])
+        pose_row, velocity_row, image_row = (
+            _row_at(table_s, here_s) for table_s in (pose_s, velocity_s, image_s)
         )
+        yaw_rates = np.full(len(here_s), math.nan)
+        if gyroscope is not None:
+            from_s = stamps_s[max(some.start - 1, 0) : some.stop]
+            yaw_rates = gyroscope.mean_rates_rad_s(from_s)[-len(here_s) :]
+        for i, stamp_s in enumerate(here_s.tolist()):
+            row = int(odometry_row[i])
+            image = None
+            if images is not None and image_row[i] >= 0:
+                image = folder / str(images["file"][image_row[i]])
+            yield Frame(
+                stamp_s=stamp_s,
+                tread_speeds_m_s=speeds[i] if row >= 0 and stamp_s < end_s else unknown,
+                odometry_row=row,
+                pose=poses[pose_row[i]] if pose_row[i] >= 0 else None,
+                image=image,
+                yaw_rate_rad_s=float(yaw_rates[i]),
+                velocity=velocities[velocity_row[i]] if velocity_row[i] >= 0 else None,
+            )
 
 
 def _stamps_and_values(
@@ -116,6 +121,7 @@ def _stamps_and_values(
 
 def _row_at(table_s: FloatArray, stamps_s: FloatArray) -> IntArray:
     """Row of a table at exactly each stamp, -1 where it has none."""
-    rows = np.full(len(stamps_s), -1)
-    rows[np.searchsorted(stamps_s, table_s)] = np.arange(len(table_s))
-    return rows
+    if not len(table_s):
+        return np.full(len(stamps_s), -1)
+    rows = np.minimum(np.searchsorted(table_s, stamps_s), len(table_s) - 1)
+    return np.where(table_s[rows] == stamps_s, rows, -1)

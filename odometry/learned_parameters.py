@@ -38,7 +38,11 @@ def learned_parameters(
         Of the robot: [vehicle] gets it, where it has none.
     """
     terrains = dict(before.terrains)
-    names, astride, accepted = np.array(replay.terrains), replay.is_astride, replay.accepted
+    names, astride, accepted = (
+        np.array(replay.terrains, dtype=object),
+        replay.is_astride,
+        replay.accepted,
+    )
     for name in dict.fromkeys(replay.terrains):
         if name == UNKNOWN:
             continue

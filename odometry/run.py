@@ -121,8 +121,10 @@ class Run:
     @property
     def wheel_travel_m(self) -> FloatArray:
         """Wheel travel (N,) at each row of odometry: the integral of (|v_left| + |v_right|) / 2."""
-        speeds = np.abs(self.odometry.stack("v_left", "v_right")).mean(axis=1)
-        return np.concatenate([[0.0], np.cumsum(speeds[:-1] * np.diff(self.odometry.stamps_s))])
+        speeds = np.abs(self.odometry["v_left"]) + np.abs(self.odometry["v_right"])
+        travel_m = np.zeros(len(speeds))
+        np.cumsum(speeds[:-1] / 2 * np.diff(self.odometry.stamps_s), out=travel_m[1:])
+        return travel_m
 
     def frames(self) -> Iterator[Frame]:
         """All data of the run in time order, see `odometry.frames.merged_frames`."""

@@ -58,7 +58,9 @@ def _refused(replay: Replay) -> list[FilterEvent]:
 
 def _bias(replay: Replay) -> list[FilterEvent]:
     """A bias of the gyroscope that is clearly none of zero, and one that drifts."""
-    biases, sigmas = replay.means[:, GYRO_BIAS], replay.sigmas[:, GYRO_BIAS]
+    of = slice(GYRO_BIAS, GYRO_BIAS + 1)
+    biases = replay.numbers("mean", columns=of)[:, 0]
+    sigmas = replay.sigmas_of(of)[:, 0]
     known = np.flatnonzero((sigmas > 0) & (sigmas < KNOWN_BIAS_RAD_S))
     if not len(known):
         return []
@@ -86,11 +88,14 @@ def bias_error(replay: Replay, first: int) -> float:
 
     How much more the gyroscope less that bias turned than the estimate, which follows the poses.
     """
-    steps_s, yaws = np.diff(replay.stamps_s[first:]), replay.means[first:, YAW]
-    biases = replay.means[first:-1, GYRO_BIAS]
+    steps_s = np.diff(replay.stamps_s[first:])
+    yaws, biases = (
+        replay.numbers("mean", slice(first, None), slice(state, state + 1))[:, 0]
+        for state in (YAW, GYRO_BIAS)
+    )
     rates = replay.believed_yaw_rates_rad_s[first:]
     known = np.isfinite(rates) & (steps_s > 0)
-    off = (rates - biases) * steps_s - wrap(np.diff(yaws))
+    off = (rates - biases[:-1]) * steps_s - wrap(np.diff(yaws))
     duration_s = float(steps_s[known].sum())
     return float(off[known].sum()) / duration_s if duration_s > 0 else 0.0
 

@@ -1,7 +1,7 @@
 """Where the sensors sit on the robot, which yaw rate is preferred, and the angle that it turned."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -81,6 +81,8 @@ def preferred_yaw_rate(imu: Table | None, odometry: Table, sensors: Sensors) -> 
         tables.append((odometry, odometry["gyro_z"], "odometry.csv"))
     for table, rates, file in tables:
         there = np.isfinite(rates)
+        if there.all():
+            return YawRate(table.stamps_s, rates, file)
         if there.any():
             return YawRate(table.stamps_s[there], rates[there], file)
     return None
@@ -155,19 +157,22 @@ def gyroscope_of(yaw_rate: YawRate | None) -> Gyroscope | None:
     """The integrals over measured yaw rates; None without two samples."""
     if yaw_rate is None or len(yaw_rate.stamps_s) < 2:
         return None
-    steps = step_integrals(yaw_rate.stamps_s, yaw_rate.yaw_rate_rad_s)
-    integrals = np.concatenate([np.zeros((1, 4)), np.cumsum(steps, axis=0)])
-    return Gyroscope(yaw_rate.stamps_s, integrals)
+    integrals = np.zeros((4, len(yaw_rate.stamps_s)))
+    for of, steps in zip(
+        integrals, _steps(yaw_rate.stamps_s, yaw_rate.yaw_rate_rad_s), strict=True
+    ):
+        np.cumsum(steps, out=of[1:])
+    return Gyroscope(yaw_rate.stamps_s, integrals.T)
 
 
 def step_integrals(stamps_s: FloatArray, rates_rad_s: FloatArray) -> FloatArray:
     """Integrals (G - 1, 4), as a `Gyroscope` has them, from each sample to the next."""
+    return np.column_stack(list(_steps(stamps_s, rates_rad_s)))
+
+
+def _steps(stamps_s: FloatArray, rates_rad_s: FloatArray) -> Iterator[FloatArray]:
     steps_s = np.diff(stamps_s)
-    return np.column_stack(
-        [
-            (rates_rad_s[1:] + rates_rad_s[:-1]) / 2 * steps_s,
-            (np.abs(rates_rad_s[1:]) + np.abs(rates_rad_s[:-1])) / 2 * steps_s,
-            np.abs(np.diff(rates_rad_s)) / 2 * steps_s,
-            np.where(steps_s > SILENT_S, steps_s, 0.0),
-        ]
-    )
+    yield (rates_rad_s[1:] + rates_rad_s[:-1]) / 2 * steps_s
+    yield (np.abs(rates_rad_s[1:]) + np.abs(rates_rad_s[:-1])) / 2 * steps_s
+    yield np.abs(np.diff(rates_rad_s)) / 2 * steps_s
+    yield np.where(steps_s > SILENT_S, steps_s, 0.0)

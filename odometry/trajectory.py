@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from odometry.arrays import BoolArray, FloatArray
+from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.errors import TrajectoryError
 from odometry.geometry import se2, se3
 from odometry.geometry.angles import wrap
@@ -66,6 +66,10 @@ class Trajectory:
         """Which stamps (M,) lie between the first and the last of this trajectory."""
         return lies_within(self.stamps_s, stamps_s)
 
+    def rows(self, chosen: slice | IntArray) -> "Trajectory":
+        """The same trajectory with only the chosen rows, in their order."""
+        return Trajectory(self.stamps_s[chosen], self.poses[chosen])
+
     def at(self, stamps_s: FloatArray) -> "Trajectory":
         """Poses at other stamps, linear in x, y and along the shorter way in yaw.
 
@@ -75,11 +79,8 @@ class Trajectory:
             If a stamp lies outside of this trajectory.
         """
         stamps_s = require_within(self.stamps_s, stamps_s)
-        continuous = self.poses.copy()
-        continuous[:, 2] = np.unwrap(continuous[:, 2])
-        poses = np.stack(
-            [np.interp(stamps_s, self.stamps_s, column) for column in continuous.T], axis=-1
-        )
+        columns = (*self.poses[:, :2].T, np.unwrap(self.poses[:, 2]))
+        poses = np.stack([np.interp(stamps_s, self.stamps_s, each) for each in columns], axis=-1)
         poses[:, 2] = wrap(poses[:, 2])
         return Trajectory(stamps_s, poses)
 

@@ -14,7 +14,7 @@ from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.open_loop_consistency import DEGREES, OpenLoopConsistency
 from odometry.evaluation.score import JUDGED_EVERY_S, SILENT_S, Score
 from odometry.run_end import DRIFT_FOLLOWED, OFF_AT_END
-from terrain.run_result import SecondReplay
+from terrain.evaluated import SecondReplay
 
 NEEDS_NO_FIT = {
     "gyroscope": "the gyroscope with mean wheel speed",
@@ -185,7 +185,9 @@ def filter_table(replay: Replay) -> dict[str, Any]:
         "jumps_s": replay.stamps_s[replay.jumps].tolist(),
         "gyro_bias_rad_s": float(last.mean[GYRO_BIAS]) if replay.used_gyroscope else None,
         "sigma_gyro_bias_rad_s": (
-            float(replay.sigmas[-1, GYRO_BIAS]) if replay.used_gyroscope else None
+            math.sqrt(max(last.covariance[GYRO_BIAS, GYRO_BIAS], 0.0))
+            if replay.used_gyroscope
+            else None
         ),
         "initial_yaw": None if yaw is None else {"yaw_rad": yaw[0], "sigma_rad": yaw[1]},
         "events": [

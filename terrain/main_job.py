@@ -24,10 +24,11 @@ from terrain.classification.classifier import Classifier, TerrainClassifier
 from terrain.config import Config
 from terrain.contradictions import contradictions, labels_beneath
 from terrain.contradictions_so_far import Contradiction
+from terrain.evaluated import SecondReplay, is_used_by_filter
 from terrain.images_outside_replay import add_images_outside
 from terrain.new_terrain import learned_apart, new_spans
 from terrain.run_presets import run_preset, with_preset
-from terrain.run_result import RunResult, SecondReplay, is_used_by_filter
+from terrain.run_result import RunResult
 from terrain.sources import (
     BOTH,
     OWN_SOURCE,

@@ -13,24 +13,27 @@ from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.open_loop_consistency import DEGREES, OpenLoopConsistency
 from odometry.evaluation.open_loop_errors import SOURCES
 from odometry.evaluation.score import JUDGED_EVERY_S, SILENT_S, counted_reference_yaw
+from terrain.evaluated import is_used_by_filter
 from terrain.evaluation_notes import advice, filter_table, remarks, verdict
 from terrain.label_confusion import label_confusion_table
 from terrain.new_terrain import contradiction_lines
-from terrain.run_result import RunResult, TerrainChange, is_used_by_filter
+from terrain.run_result import RunResult, TerrainChange
 from terrain.switch import SwitchEvent
 from terrain.switch_delay import switch_delays
 
 NAMES = ("x", "y", "yaw")
 PAIRS = ((0, 1), (0, 2), (1, 2))
+COVARIANCE_COLUMNS = (
+    *(f"sigma_{name}" for name in NAMES),
+    *(f"covariance_{NAMES[i]}_{NAMES[j]}" for i, j in PAIRS),
+)
 
 
-def covariance_columns(uncertainty: OdometerUncertainty) -> dict[str, FloatArray]:
-    """Columns of odometer.csv: sigma_x, sigma_y, sigma_yaw and the three covariances."""
-    of = uncertainty.covariances
+def covariance_columns(of: FloatArray) -> dict[str, FloatArray]:
+    """Columns of odometer.csv from covariances (k, 3, 3): three sigmas, three covariances."""
     sigmas = np.sqrt(np.maximum(np.diagonal(of, axis1=1, axis2=2), 0.0))
-    return {f"sigma_{name}": sigmas[:, k] for k, name in enumerate(NAMES)} | {
-        f"covariance_{NAMES[i]}_{NAMES[j]}": of[:, i, j] for i, j in PAIRS
-    }
+    columns = (*sigmas.T, *(of[:, i, j] for i, j in PAIRS))
+    return dict(zip(COVARIANCE_COLUMNS, columns, strict=True))
 
 
 def uncertainty_table(uncertainty: OdometerUncertainty, reference_name: str) -> dict[str, Any]:

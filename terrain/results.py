@@ -1,15 +1,20 @@
 """The output folder of a run: tables, trajectories, numbers, what was learned, figures, page."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from odometry.arrays import FloatArray
+from odometry.blocks import blocks_of
 from odometry.checks.finding import CheckReport
+from odometry.estimates import Replay
 from odometry.estimation.estimate import STATE_NAMES
-from odometry.io.csv_table import write_csv_table
+from odometry.estimation.kept_estimates import EVERY
+from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
+from odometry.io.csv_table import write_csv_blocks, write_csv_table
 from odometry.io.files import atomic_write
 from odometry.io.structured import read_json
 from odometry.io.tum import write_tum
@@ -22,7 +27,13 @@ from terrain.errors import ResultError
 from terrain.image_label import ImageLabel
 from terrain.new_terrain import contradiction_columns
 from terrain.report import page
-from terrain.result_table import FORMAT, covariance_columns, reference_columns, result_table
+from terrain.result_table import (
+    COVARIANCE_COLUMNS,
+    FORMAT,
+    covariance_columns,
+    reference_columns,
+    result_table,
+)
 from terrain.run_result import RunResult, TerrainChange
 
 SAID = ("t", "label", "confidence", "distance_ahead", "terrain_in_force", "reason", "image")
@@ -139,18 +150,20 @@ def write_results(
     """
     out = Path(out)
     replay = result.replay
-    odometer, estimate = replay.odometer(), replay.trajectory()
-    covariances = covariance_columns(result.uncertainty)
-    write_csv_table(out / "odometer.csv", _pose_columns(odometer) | covariances)
-    means, sigmas = replay.means.T, replay.sigmas.T
-    write_csv_table(
-        out / "estimate.csv",
-        {"t": replay.stamps_s}
-        | dict(zip(STATE_NAMES, means, strict=True))
-        | {f"sigma_{name}": sigma for name, sigma in zip(STATE_NAMES, sigmas, strict=True)},
+    odometer = replay.odometer()
+    write_csv_blocks(
+        out / "odometer.csv",
+        ("t", "x", "y", "yaw", *COVARIANCE_COLUMNS),
+        _odometer_blocks(odometer, result.uncertainty),
     )
     write_tum(out / "odometer.tum", odometer)
-    write_tum(out / "estimate.tum", estimate)
+    del odometer  # of a long run the estimate's would not fit beside it
+    write_csv_blocks(
+        out / "estimate.csv",
+        ("t", *STATE_NAMES, *(f"sigma_{name}" for name in STATE_NAMES)),
+        _estimate_blocks(replay),
+    )
+    write_tum(out / "estimate.tum", replay.trajectory())
     names = ["odometer.csv", "odometer.tum", "estimate.csv", "estimate.tum"]
     if result.learned.terrains:
         write_parameters(out / "learned.toml", result.learned)
@@ -175,9 +188,24 @@ def write_results(
     return [out / name for name in (*names, "result.json")]
 
 
-def _pose_columns(trajectory: Trajectory) -> dict[str, Any]:
-    x, y, yaw = trajectory.poses.T
-    return {"t": trajectory.stamps_s, "x": x, "y": y, "yaw": yaw}
+def _odometer_blocks(
+    odometer: Trajectory, uncertainty: OdometerUncertainty
+) -> Iterator[dict[str, FloatArray]]:
+    blocks = zip(blocks_of(len(odometer)), uncertainty.covariance_blocks(), strict=True)
+    for rows, covariances in blocks:
+        x, y, yaw = odometer.poses[rows].T
+        poses = {"t": odometer.stamps_s[rows], "x": x, "y": y, "yaw": yaw}
+        yield poses | covariance_columns(covariances)
+
+
+def _estimate_blocks(replay: Replay) -> Iterator[dict[str, FloatArray]]:
+    for rows in blocks_of(len(replay.estimates)):
+        sigmas = replay.sigmas_of(EVERY, rows).T
+        yield (
+            {"t": replay.numbers("stamp_s", rows)}
+            | dict(zip(STATE_NAMES, replay.numbers("mean", rows).T, strict=True))
+            | {f"sigma_{name}": sigma for name, sigma in zip(STATE_NAMES, sigmas, strict=True)}
+        )
 
 
 def read_errors(folder: str | Path) -> dict[str, Any]:

@@ -1,66 +1,27 @@
-"""The result of a replayed run, and which of its trajectories are evaluated with which poses."""
+"""The result of a replayed run."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
-
-import numpy as np
+from functools import cached_property, partial
 
 from odometry.estimates import Replay
 from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.relative import position_errors
-from odometry.evaluation.score import Score, Withheld, score
+from odometry.evaluation.score import Score
 from odometry.evaluation.stretches import stretches
-from odometry.geometry import se2
 from odometry.parameters import ParameterSet
 from odometry.run import Run
 from odometry.trajectory import Trajectory
 from terrain.config import Config
 from terrain.contradictions_so_far import Contradiction
+from terrain.evaluated import (
+    EvaluatedTrajectory,
+    SecondReplay,
+    at_reference_point,
+    is_used_by_filter,
+)
 from terrain.switch import SwitchEvent
 from terrain.watcher import TerrainWatcher
-
-
-@dataclass(frozen=True)
-class SecondReplay:
-    """The same filter on the same run, without the poses of the evaluation.
-
-    Attributes
-    ----------
-    withheld : Withheld
-    replay : Replay
-    """
-
-    withheld: Withheld
-    replay: Replay
-
-
-@dataclass(frozen=True)
-class EvaluatedTrajectory:
-    """A trajectory, the poses that it is compared with, and their name.
-
-    Attributes
-    ----------
-    trajectory, reference : Trajectory
-    against : str
-        "truth", "pose" or "withheld pose".
-    """
-
-    trajectory: Trajectory
-    reference: Trajectory
-    against: str
-
-
-def is_used_by_filter(reference_name: str) -> bool:
-    """Whether the filter used the reference, which then cannot evaluate its estimate."""
-    return reference_name == "pose"
-
-
-def at_reference_point(run: Run, reference_name: str, trajectory: Trajectory) -> Trajectory:
-    """A trajectory of the point that the reference measures: in pose.csv that is the antenna."""
-    if reference_name != "pose" or run.sensors.pose_m is None:
-        return trajectory
-    places = se2.transform(trajectory.poses, np.array(run.sensors.pose_m[:2]))
-    return Trajectory(trajectory.stamps_s, np.column_stack([places, trajectory.poses[:, 2]]))
 
 
 @dataclass(frozen=True)
@@ -148,17 +109,17 @@ class RunResult:
         """
         if self.reference is None:
             return {}
-        lines = self.replay.open_loop(self.run.robot.track_width)
+        lines = self.replay.open_loop_by_name(self.run.robot.track_width)
         found = {name: self.beside_reference(line) for name, line in lines.items()}
         if not is_used_by_filter(self.reference_name):
-            found["estimate"] = self.beside_reference(self.replay.trajectory())
+            found["estimate"] = self.beside_reference(self.replay.trajectory)
         elif self.second is not None:
-            estimate = self.beside_reference(self.second.replay.trajectory())
+            estimate = self.beside_reference(self.second.replay.trajectory)
             poses = self.second.withheld.judged
             found["estimate"] = replace(estimate, reference=poses, against="withheld pose")
         return found
 
-    def beside_reference(self, trajectory: Trajectory) -> EvaluatedTrajectory:
+    def beside_reference(self, reckon: Callable[[], Trajectory]) -> EvaluatedTrajectory:
         """A trajectory of the robot, moved to the point that the reference measures.
 
         Raises
@@ -168,32 +129,27 @@ class RunResult:
         """
         if self.reference is None:
             raise ValueError(f"{self.run.name} has no reference")
-        moved = at_reference_point(self.run, self.reference_name, trajectory)
-        return EvaluatedTrajectory(moved, self.reference, self.reference_name)
+        moved = partial(at_reference_point, self.run, self.reference_name, reckon)
+        return EvaluatedTrajectory(
+            moved, self.reference, self.reference_name, self.run, self.config.evaluation
+        )
 
     @cached_property
     def scores(self) -> dict[str, Score]:
         """Errors of each trajectory that is evaluated, by its name."""
-        return {name: self.score_of(of) for name, of in self.evaluated.items()}
+        return {name: of.score for name, of in self.evaluated.items()}
 
-    def score_of(self, evaluated: EvaluatedTrajectory) -> Score:
-        """Errors of a trajectory of this run."""
-        line, reference = evaluated.trajectory, evaluated.reference
-        return score(self.run, line, reference, self.config.evaluation)
-
-    @property
+    @cached_property
     def off_at_the_end_m(self) -> dict[str, float]:
         """Distance of each trajectory, as delivered, from the reference at its last stamp.
 
         Where the reference is pose.csv the filter has used it, up to that pose: the distance of the
         estimate is no measure of its error, but a large one shows that the filter lost the poses.
         """
-        delivered = dict(self.evaluated)
+        distances = {name: of.position_errors[1] for name, of in self.evaluated.items()}
         if self.reference is not None:
-            delivered["estimate"] = self.beside_reference(self.replay.trajectory())
-        distances = {
-            name: position_errors(of.trajectory, of.reference)[1] for name, of in delivered.items()
-        }
+            delivered = self.beside_reference(self.replay.trajectory).trajectory
+            distances["estimate"] = position_errors(delivered, self.reference)[1]
         return {name: float(found[-1]) for name, found in distances.items() if len(found)}
 
     @property

@@ -209,7 +209,8 @@ def _spaced(pose_s: FloatArray, rows: IntArray, apart_s: float) -> IntArray:
 def _held(stamps_s: FloatArray, values: FloatArray) -> Callable[[FloatArray], FloatArray]:
     """Integral of values that hold until the next stamp; NaN outside of the stamps."""
     known = np.isfinite(values)
-    stamps_s, values = stamps_s[known], values[known]
+    if not known.all():
+        stamps_s, values = stamps_s[known], values[known]
     if len(stamps_s) < 2:
         return lambda at_s: np.full(len(at_s), np.nan)
     summed = np.concatenate([[0.0], np.cumsum(values[:-1] * np.diff(stamps_s))])

@@ -34,6 +34,7 @@ PLACES = {
     name: slice(end - size, end) for (name, size), end in zip(SIZES.items(), ENDS, strict=True)
 }
 WIDTH = ENDS[-1]
+EVERY = slice(None)
 
 
 class _Lasting(NamedTuple):
@@ -76,13 +77,16 @@ class KeptEstimates(Sequence[Estimate]):
         self._last = last
         self._note(last, self._count - 1)
 
-    def numbers(self, name: str) -> FloatArray:
-        """One of `SIZES` of all estimates, (N,) or (N, size)."""
-        place = PLACES[name]
-        found = np.empty((self._count, place.stop - place.start))
-        for start in range(0, self._count, BLOCK):
-            numbers = self._read(start, place)
-            found[start : start + BLOCK] = numbers[:, : self._count - start].T
+    def numbers(self, name: str, rows: slice = EVERY, columns: slice = EVERY) -> FloatArray:
+        """One of `SIZES` of all estimates or some rows of them, (N,) or (N, columns)."""
+        begin, end, _ = rows.indices(self._count)
+        first, last, _ = columns.indices(SIZES[name])
+        place = slice(PLACES[name].start + first, PLACES[name].start + last)
+        found = np.empty((max(end - begin, 0), last - first))
+        for start in range(begin - begin % BLOCK, end, BLOCK):
+            some = slice(max(begin, start), min(end, start + BLOCK))
+            numbers = self._read(start, place)[:, some.start - start : some.stop - start]
+            found[some.start - begin : some.stop - begin] = numbers.T
         return found[:, 0] if SIZES[name] == 1 else found
 
     def lasting(self, name: str) -> Iterator[tuple[range, Any]]:

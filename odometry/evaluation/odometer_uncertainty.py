@@ -1,12 +1,15 @@
 """How far the open-loop odometer of a replay may be off, as measured on its own run."""
 
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
+from odometry.blocks import blocks_of, running_sums
 from odometry.estimates import Replay
-from odometry.estimation.transition import STATES, Y_LEFT
+from odometry.evaluation.learning_covariances import learning_covariances
 from odometry.evaluation.odometer_noise import USUAL_NOISE, OdometerNoise, measured_noise
 from odometry.evaluation.open_loop_consistency import (
     DISTANCES_M,
@@ -14,9 +17,8 @@ from odometry.evaluation.open_loop_consistency import (
     consistency_by_halves,
     open_loop_consistency,
 )
-from odometry.evaluation.open_loop_errors import TOGETHER, OpenLoopPath
+from odometry.evaluation.open_loop_errors import OpenLoopPath
 from odometry.geometry import se2
-from odometry.models.icr import icr_speed_matrix, icr_twist_jacobian
 from odometry.run import Run
 from odometry.trajectory import Trajectory
 
@@ -27,9 +29,8 @@ class OdometerUncertainty:
 
     Attributes
     ----------
-    covariances : (N, 3, 3)
-        Of x, y [m], yaw [rad] in the frame of the odometer, at each pose; the first is that of
-        the pose at which the odometer starts.
+    covariance_blocks : callable
+        Gives `covariances` (k, 3, 3) block after block: of a long run they do not fit in memory.
     sigmas : dict of float to (3,)
         Standard deviations after so many metres of wheel travel.
     noise : OdometerNoise or None
@@ -44,12 +45,20 @@ class OdometerUncertainty:
         whether the sources can describe the run, not whether they foretell another one.
     """
 
-    covariances: FloatArray
+    covariance_blocks: Callable[[], Iterable[FloatArray]]
     sigmas: dict[float, FloatArray]
     noise: OdometerNoise | None
     source: str
     checks: tuple[OpenLoopConsistency, ...] = ()
     own_checks: tuple[OpenLoopConsistency, ...] = ()
+
+    @property
+    def covariances(self) -> FloatArray:
+        """Covariances (N, 3, 3) of x, y [m], yaw [rad] in the frame of the odometer, at each pose.
+
+        The first is that of the pose at which the odometer starts.
+        """
+        return np.concatenate(list(self.covariance_blocks()))
 
 
 def odometer_uncertainty(
@@ -72,10 +81,10 @@ def odometer_uncertainty(
     path = path_of(replay)
     rows, poses = accepted_poses(run, replay)
     if not len(rows):
-        covariances = replay.pose_covariances
+        own_blocks = partial(_of_filter, replay)
         return OdometerUncertainty(
-            covariances,
-            _after(path, covariances),
+            own_blocks,
+            _after(path, own_blocks()),
             None,
             "that of the filter, which took in no pose: its noise settings and what is known of "
             "the parameters",
@@ -89,8 +98,7 @@ def odometer_uncertainty(
             f"measured on {noise.stretches} stretches of up to {noise.longest_m:g} m between the "
             "poses of the run"
         )
-    covariances = path.carried(replay.estimates[0].covariance[:3, :3], noise.variances)
-    covariances += learning_covariances(replay, path)
+    covariance_blocks = partial(_measured, replay, noise)
     own = []
     if truth is not None:
         checks = open_loop_consistency(path, *_true_poses(replay, truth), noise.without_reference())
@@ -98,17 +106,37 @@ def odometer_uncertainty(
         checks = consistency_by_halves(path, rows, poses)
         own = open_loop_consistency(path, rows, poses, noise) if noise.stretches else []
     return OdometerUncertainty(
-        covariances, _after(path, covariances), noise, source, tuple(checks), tuple(own)
+        covariance_blocks,
+        _after(path, covariance_blocks()),
+        noise,
+        source,
+        tuple(checks),
+        tuple(own),
     )
+
+
+def _of_filter(replay: Replay) -> Iterator[FloatArray]:
+    return map(replay.pose_covariances_of, blocks_of(len(replay.estimates)))
+
+
+def _measured(replay: Replay, noise: OdometerNoise) -> Iterator[FloatArray]:
+    path, start = path_of(replay), replay.estimates[0].covariance[:3, :3]
+    learning = learning_covariances(replay, path)
+    return map(np.add, path.carried(start, noise.variances), learning)
 
 
 def path_of(replay: Replay) -> OpenLoopPath:
     """The odometer of a replay with the travel of its treads."""
-    speeds = np.nan_to_num(replay.tread_speeds_m_s)[:-1]
-    steps_s = np.diff(replay.stamps_s)
-    travel, signed = (
-        np.append(0.0, np.cumsum(each.mean(axis=1) * steps_s)) for each in (np.abs(speeds), speeds)
-    )
+    stamps_s = replay.stamps_s
+
+    def steps(rows: slice) -> FloatArray:
+        speeds = np.nan_to_num(replay.numbers("tread_speeds_m_s", rows))
+        of = np.stack([np.abs(speeds).mean(axis=1), speeds.mean(axis=1)], axis=-1)
+        return np.asarray(of * np.diff(stamps_s[rows.start : rows.stop + 1])[:, None])
+
+    travel, signed = np.empty((2, len(stamps_s)))
+    for rows, sums in running_sums(steps, len(stamps_s)):
+        travel[rows], signed[rows] = sums.T
     return OpenLoopPath(replay.odometer().poses, travel, signed)
 
 
@@ -124,7 +152,8 @@ def accepted_poses(run: Run, replay: Replay) -> tuple[IntArray, FloatArray]:
     rows = rows[np.isin(replay.stamps_s[rows], run.pose.stamps_s)]
     at = np.searchsorted(run.pose.stamps_s, replay.stamps_s[rows])
     poses = run.pose.stack("x", "y", "yaw")[at]
-    poses[:, 2] = np.where(np.isfinite(poses[:, 2]), poses[:, 2], replay.means[rows, 2])
+    filtered = replay.numbers("mean", columns=slice(2, 3))
+    poses[:, 2] = np.where(np.isfinite(poses[:, 2]), poses[:, 2], filtered[rows, 0])
     if run.sensors.pose_m is not None:
         lever_m = np.array(run.sensors.pose_m[:2])
         poses[:, :2] += poses[:, :2] - se2.transform(poses, lever_m)
@@ -139,62 +168,17 @@ def _true_poses(replay: Replay, truth: Trajectory) -> tuple[IntArray, FloatArray
     return rows[known], poses[known]
 
 
-def _after(path: OpenLoopPath, covariances: FloatArray) -> dict[float, FloatArray]:
+def _after(path: OpenLoopPath, covariances: Iterable[FloatArray]) -> dict[float, FloatArray]:
     """Standard deviations (3,) of x, y, yaw after each distance that the path holds."""
-    rows = {distance_m: np.searchsorted(path.travel_m, distance_m) for distance_m in DISTANCES_M}
-    return {
-        distance_m: np.sqrt(np.diag(covariances[row]))
-        for distance_m, row in rows.items()
-        if row < len(covariances)
-    }
-
-
-def learning_covariances(replay: Replay, path: OpenLoopPath) -> FloatArray:
-    """Covariances (N, 3, 3) by which poses of the odometer are less sure than the run's usual.
-
-    The noise of an odometer is measured over the whole run. Where the filter was less sure of a
-    parameter than usual (the median of the run), as it is at first, the difference of the two
-    variances acts along the path besides. The error of a parameter is taken to keep its sign
-    while it shrinks, and those of different parameters to be independent.
-    """
-    variances = np.square(replay.sigmas[:, Y_LEFT:])
-    excess = np.sqrt(np.maximum(variances - np.median(variances, axis=0), 0.0))[:-1]
-    steps_s = np.diff(replay.stamps_s)
-    slopes = _twist_slopes(replay)
-    slopes *= excess[:, None, :]
-    slopes *= steps_s[:, None, None]
-    found = np.zeros((len(variances), 3, 3))
-    for parameter in range(slopes.shape[-1]):
-        moved = path.moved_by(slopes[..., parameter])
-        for some in (slice(at, at + TOGETHER) for at in range(0, len(moved), TOGETHER)):
-            found[some] += moved[some, :, None] * moved[some, None, :]
+    rows = [(distance_m, np.searchsorted(path.travel_m, distance_m)) for distance_m in DISTANCES_M]
+    rows = [(distance_m, row) for distance_m, row in rows if row < len(path.travel_m)]
+    found: dict[float, FloatArray] = {}
+    begin = 0
+    for block in covariances:
+        for distance_m, row in rows[len(found) :]:
+            if row < begin + len(block):
+                found[distance_m] = np.sqrt(np.diag(block[row - begin]))
+        begin += len(block)
+        if len(found) == len(rows):
+            break
     return found
-
-
-def _twist_slopes(replay: Replay) -> FloatArray:
-    """Derivatives (N - 1, 3, 6) of twists by y_left, y_right, x_icr, bias, alphas."""
-    means, yaw_rates = replay.means[:-1, Y_LEFT:], replay.believed_yaw_rates_rad_s
-    speeds = np.nan_to_num((replay.tread_speeds_m_s + replay.added_speeds_m_s)[:-1])
-    slopes = np.zeros((len(speeds), 3, STATES - Y_LEFT))
-    for some in (slice(at, at + TOGETHER) for at in range(0, len(speeds), TOGETHER)):
-        _fill_slopes(slopes[some], means[some], speeds[some], yaw_rates[some])
-    return slopes
-
-
-def _fill_slopes(
-    slopes: FloatArray, means: FloatArray, speeds: FloatArray, yaw_rates: FloatArray
-) -> None:
-    """Put the derivatives of some twists in place, by the gyroscope where it turned the robot."""
-    icrs, bias, alphas = np.split(means, [3, 4], axis=1)
-    slopes[..., :3] = icr_twist_jacobian(icrs, alphas * speeds)
-    slopes[..., 4:] = icr_speed_matrix(icrs) * speeds[:, None, :]
-    known = np.isfinite(yaw_rates)
-    omega = (yaw_rates - bias[:, 0])[known]
-    by_gyroscope = np.zeros((len(omega), 3, STATES - Y_LEFT))
-    by_gyroscope[:, 0, 0] = by_gyroscope[:, 0, 1] = omega / 2
-    by_gyroscope[:, 1, 2] = -omega
-    by_gyroscope[:, 0, 3] = -icrs[known, :2].sum(axis=1) / 2
-    by_gyroscope[:, 1, 3] = icrs[known, 2]
-    by_gyroscope[:, 2, 3] = -1.0
-    by_gyroscope[:, 0, 4:] = speeds[known] / 2
-    slopes[known] = by_gyroscope

@@ -2,17 +2,18 @@
 
 import csv
 import math
+from array import array
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import numpy as np
 
 from odometry.arrays import AnyArray
+from odometry.blocks import blocks_of
 from odometry.errors import RunFolderError
 from odometry.io.csv_columns import (
     NAME_COLUMNS,
     NUMBER_COLUMNS,
-    Cells,
     names,
     numbers,
     numbers_or_names,
@@ -21,8 +22,6 @@ from odometry.io.csv_columns import (
 )
 from odometry.io.files import atomic_write
 from odometry.table import Table
-
-ROWS = 4096  # whose cells are texts at a time
 
 
 def read_csv_table(file: Path, required: Iterable[str], complete: Iterable[str] = ()) -> Table:
@@ -45,8 +44,8 @@ def read_csv_table(file: Path, required: Iterable[str], complete: Iterable[str] 
         Naming file, row (the line of the file, header = 1) and column.
     """
     complete = frozenset(complete)
-    parts: list[dict[str, AnyArray]] = []
-    lines: list[AnyArray] = []
+    lines, numeric = array("q"), {name: array("d") for name in NUMBER_COLUMNS}
+    texts: dict[str, list[AnyArray]] = {}
     with opened_csv(file, RunFolderError) as (header, blocks):
         for name in required:
             if name not in header:
@@ -54,48 +53,58 @@ def read_csv_table(file: Path, required: Iterable[str], complete: Iterable[str] 
                     f"{file}: the column {name!r} is missing; the header has {', '.join(header)}"
                 )
         for block_lines, cells in blocks:
-            parts.append(_block_columns(header, cells, file, block_lines, complete))
-            lines.append(np.array(block_lines))
-    if not parts:
+            lines.extend(block_lines)
+            for name, column in zip(header, cells, strict=True):
+                if name in NUMBER_COLUMNS:
+                    may_miss = name not in complete
+                    values = numbers(column, file, block_lines, name, may_miss=may_miss)
+                    numeric[name].frombytes(values.tobytes())
+                else:
+                    texts.setdefault(name, []).append(names(column, file, block_lines, name))
+    if not lines:
         raise RunFolderError(f"{file}: there are no rows below the header")
-    columns = {name: _whole(name, [part.pop(name) for part in parts]) for name in header}
-    all_lines = np.concatenate(lines)
+    columns = {
+        name: np.frombuffer(numeric[name]) if name in NUMBER_COLUMNS else _whole(name, texts[name])
+        for name in header
+    }
+    all_lines = np.frombuffer(lines, dtype=np.int64)
     _check_not_back(columns["t"], file, all_lines)
     repeated = np.diff(columns["t"], prepend=-math.inf) == 0
     if repeated.any():
         columns = {name: column[~repeated] for name, column in columns.items()}
-    return Table(file, columns, all_lines[~repeated], all_lines[repeated])
+    kept_lines = all_lines[~repeated] if repeated.any() else all_lines
+    return Table(file, columns, kept_lines, all_lines[repeated])
 
 
 def write_csv_table(file: Path, columns: Mapping[str, AnyArray], decimals: int = 9) -> None:
     """Write columns of equal length as CSV; NaN becomes an empty cell, a formula a text."""
-    arrays = [np.asarray(column) for column in columns.values()]
-    lengths = {name: len(array) for name, array in zip(columns, arrays, strict=True)}
+    arrays = {name: np.asarray(column) for name, column in columns.items()}
+    lengths = {name: len(array) for name, array in arrays.items()}
     if len(set(lengths.values())) != 1:
         raise RunFolderError(f"{file}: the columns differ in length: {lengths}")
+    blocks = (
+        {name: array[rows] for name, array in arrays.items()}
+        for rows in blocks_of(next(iter(lengths.values())))
+    )
+    write_csv_blocks(file, columns, blocks, decimals)
+
+
+def write_csv_blocks(
+    file: Path, names: Iterable[str], blocks: Iterable[Mapping[str, AnyArray]], decimals: int = 9
+) -> None:
+    """The same, of columns that come block by block."""
+    names = list(names)
     with atomic_write(file) as part, part.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(map(quoted_text, columns))
-        for start in range(0, max(lengths.values(), default=0), ROWS):
-            cells = [_format(array[start : start + ROWS], decimals) for array in arrays]
+        writer.writerow(map(quoted_text, names))
+        for columns in blocks:
+            cells = [_format(columns[name], decimals) for name in names]
             writer.writerows(zip(*cells, strict=True))
-
-
-def _block_columns(
-    header: list[str], cells: Cells, file: Path, lines: list[int], complete: frozenset[str]
-) -> dict[str, AnyArray]:
-    """Numbers of the columns that are known to hold them, texts of the others."""
-    return {
-        name: numbers(column, file, lines, name, may_miss=name not in complete)
-        if name in NUMBER_COLUMNS
-        else names(column, file, lines, name)
-        for name, column in zip(header, cells, strict=True)
-    }
 
 
 def _whole(name: str, parts: list[AnyArray]) -> AnyArray:
     column = np.concatenate(parts)
-    return column if name in NUMBER_COLUMNS | NAME_COLUMNS else numbers_or_names(column)
+    return column if name in NAME_COLUMNS else numbers_or_names(column)
 
 
 def _check_not_back(stamps_s: AnyArray, file: Path, lines: AnyArray) -> None:

@@ -1,9 +1,11 @@
 """Trajectories as TUM text: stamp x y z qx qy qz qw, which evo and others read."""
 
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
 
+from odometry.blocks import blocks_of
 from odometry.io.csv_columns import LARGEST, LARGEST_BY_NAME
 from odometry.io.files import atomic_write
 from odometry.io.number_rows import Column, poses_of, read_rows, require_increasing
@@ -31,7 +33,13 @@ def write_tum(file: str | Path, trajectory: Trajectory) -> None:
     ...     print(len(odometry.read_tum(f"{folder}/path.tum")))
     2
     """
-    write_spatial_tum(file, SpatialTrajectory.from_plane(trajectory))
+    _write(
+        file,
+        (
+            SpatialTrajectory.from_plane(trajectory.rows(rows))
+            for rows in blocks_of(len(trajectory))
+        ),
+    )
 
 
 def write_spatial_tum(file: str | Path, trajectory: SpatialTrajectory) -> None:
@@ -48,15 +56,18 @@ def write_spatial_tum(file: str | Path, trajectory: SpatialTrajectory) -> None:
     ...     print(odometry.read_spatial_tum(f"{folder}/path.tum").poses[0, 3])
     [0. 0. 0. 1.]
     """
-    columns = zip(
-        trajectory.stamps_s, trajectory.positions_m, trajectory.quaternions_wxyz, strict=True
-    )
+    _write(file, [trajectory])
+
+
+def _write(file: str | Path, parts: Iterable[SpatialTrajectory]) -> None:
     with atomic_write(Path(file)) as part, part.open("w", encoding="ascii") as stream:
-        for stamp_s, (x, y, z), (qw, qx, qy, qz) in columns:
-            stream.write(
-                f"{stamp_s:.9f} {x:.12f} {y:.12f} {z:.12f} "
-                f"{qx:.15f} {qy:.15f} {qz:.15f} {qw:.15f}\n"
-            )
+        for of in parts:
+            columns = zip(of.stamps_s, of.positions_m, of.quaternions_wxyz, strict=True)
+            for stamp_s, (x, y, z), (qw, qx, qy, qz) in columns:
+                stream.write(
+                    f"{stamp_s:.9f} {x:.12f} {y:.12f} {z:.12f} "
+                    f"{qx:.15f} {qy:.15f} {qz:.15f} {qw:.15f}\n"
+                )
 
 
 def read_tum(file: str | Path) -> Trajectory:

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.patheffects import withStroke
 from scipy.optimize import isotonic_regression
 
-from odometry.arrays import FloatArray
+from odometry.arrays import FloatArray, IntArray
 from odometry.estimation.pose_watch import OUTAGE_PERIODS, OUTAGE_S
 from odometry.report.figure import LineStyle
 
@@ -17,7 +17,15 @@ PARTS = 2500  # more than twice the pixels of a page's width
 
 
 def thinned(*columns: FloatArray) -> tuple[FloatArray, ...]:
-    """Columns (N,) of a line with the rows that it needs at the size of a page.
+    """Columns (N,) of a line with the rows that it needs at the size of a page."""
+    if len(columns[0]) <= LONG:
+        return columns
+    rows = thinned_rows(*columns)
+    return tuple(column[rows] for column in columns)
+
+
+def thinned_rows(*columns: FloatArray) -> slice | IntArray:
+    """Rows of a line that it needs at the size of a page; all of a line of up to LONG.
 
     Of each of PARTS parts of a long line the first row stays, and the rows of the least and the
     greatest value of each column; the last row stays, and a break (NaN) in each part that has one.
@@ -29,7 +37,7 @@ def thinned(*columns: FloatArray) -> tuple[FloatArray, ...]:
     """
     count = len(columns[0])
     if count <= LONG:
-        return columns
+        return slice(None)
     width = -(-count // PARTS)
     starts = np.arange(0, count, width)
     rows = [starts, np.array([count - 1])]
@@ -40,8 +48,7 @@ def thinned(*columns: FloatArray) -> tuple[FloatArray, ...]:
         least = np.where(broken, np.inf, parts).argmin(axis=1)
         greatest = np.where(broken, -np.inf, parts).argmax(axis=1)
         rows += [starts + of for of in (least, greatest, broken.argmax(axis=1))]
-    kept = np.unique(np.minimum(np.concatenate(rows), count - 1))
-    return tuple(column[kept] for column in columns)
+    return np.unique(np.minimum(np.concatenate(rows), count - 1))
 
 
 def broken_at_outages(stamps_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -1,5 +1,6 @@
 """What is known of a run at any moment: measured poses, and the travel of its treads."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -97,13 +98,20 @@ class TreadTravel:
 
 def tread_travel(run: Run) -> TreadTravel:
     """Integrate the tread speeds of a run."""
-    left, right = run.odometry.stack("v_left", "v_right").T
-    rates = np.column_stack(
-        [(left + right) / 2, right - left, np.abs(right - left), np.abs(left) + np.abs(right)]
-    )
     stamps_s = run.odometry.stamps_s
-    steps_m = rates[:-1] * np.diff(stamps_s)[:, None]
-    return TreadTravel(stamps_s, np.concatenate([np.zeros((1, 4)), np.cumsum(steps_m, axis=0)]))
+    steps_s, integrals_m = np.diff(stamps_s), np.zeros((4, len(stamps_s)))
+    for of, rates in zip(integrals_m, _rates(run), strict=True):
+        np.cumsum(rates[:-1] * steps_s, out=of[1:])
+    return TreadTravel(stamps_s, integrals_m.T)
+
+
+def _rates(run: Run) -> Iterator[FloatArray]:
+    """What `TreadTravel` integrates, one (N,) after the other."""
+    left, right = run.odometry["v_left"], run.odometry["v_right"]
+    yield (left + right) / 2
+    yield right - left
+    yield np.abs(right - left)
+    yield np.abs(left) + np.abs(right)
 
 
 @dataclass(frozen=True)

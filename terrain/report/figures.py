@@ -5,8 +5,6 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from odometry.evaluation.relative import position_errors
-from odometry.evaluation.score import window_errors
 from odometry.evaluation.stretches import Stretch, stretches
 from odometry.report.figure import save_figure, show_run_time
 from odometry.report.html import Picture
@@ -56,9 +54,7 @@ def path_picture(lines: ReportLines, tints: Tints, folder: Path) -> Picture:
 
 def position_picture(lines: ReportLines, folder: Path) -> Picture | None:
     """Position errors over time; None without a reference."""
-    errors = {
-        name: position_errors(of.trajectory, of.reference) for name, of in lines.evaluated().items()
-    }
+    errors = {name: of.position_errors for name, of in lines.evaluated().items()}
     errors = {n: broken_at_outages(*error) for n, error in errors.items() if len(error[0])}
     if not errors:
         return None
@@ -80,10 +76,7 @@ def position_picture(lines: ReportLines, folder: Path) -> Picture | None:
 def distribution_picture(lines: ReportLines, folder: Path) -> Picture | None:
     """Errors per metre of all horizons; None where there is no whole horizon."""
     result = lines.result
-    relative = {
-        name: window_errors(result.run, of.trajectory, of.reference, result.config.evaluation)
-        for name, of in lines.evaluated().items()
-    }
+    relative = {name: of.window_errors for name, of in lines.evaluated().items()}
     if not any(len(errors.start_s) for errors in relative.values()):
         return None
     translation = {name: errors.translation_per_m for name, errors in relative.items()}

@@ -1,17 +1,19 @@
 """The lines of a report: its trajectories, their names and styles."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.estimation.transition import Y_LEFT
 from odometry.evaluation.score import Score
 from odometry.models.catalogue import ICR_NAMES
 from odometry.report.figure import REFERENCE_STYLE, LineStyle, line_styles
-from odometry.report.labels import broken_at_outages
+from odometry.report.labels import broken_at_outages, thinned_rows
 from odometry.trajectory import Trajectory
-from terrain.run_result import EvaluatedTrajectory, RunResult
+from terrain.evaluated import EvaluatedTrajectory
+from terrain.run_result import RunResult
 
 LABELS = {
     "differential_drive": "differential drive",
@@ -56,30 +58,30 @@ class ReportLines:
 
     def scores(self) -> dict[str, Score]:
         """Score of each trajectory that is evaluated; none without a reference."""
-        result = self.result
-        own = {LABELS[name]: of for name, of in result.scores.items()}
-        return {n: own.get(n) or result.score_of(of) for n, of in self.evaluated().items()}
+        return {name: of.score for name, of in self.evaluated().items()}
 
     def paths(self) -> dict[str, Trajectory]:
         """Trajectories to be drawn, the reference first so that it lies below.
 
-        The reference has NaN where it has no pose for long.
+        The reference has NaN where it has no pose for long; of long lines what a map shows is left.
         """
         result, lines = self.result, {}
         if result.reference is not None:
             stamps_s, poses = result.reference.stamps_s, result.reference.poses
             lines[self.reference_name] = Trajectory(*broken_at_outages(stamps_s, poses))
-        own = result.replay.open_loop(result.run.robot.track_width)
-        lines |= {LABELS[name]: line for name, line in own.items()}
-        return lines | self._other_odometers() | {ESTIMATE: result.replay.trajectory()}
+        own = result.replay.open_loop_by_name(result.run.robot.track_width)
+        reckoned = {LABELS[name]: reckon for name, reckon in own.items()}
+        reckoned |= self._other_odometers() | {ESTIMATE: result.replay.trajectory}
+        return lines | {name: _drawn(reckon()) for name, reckon in reckoned.items()}
 
     def icr_lines(self, coordinate: int) -> dict[str, IcrLine]:
         """Stamps, values and sigmas of one ICR coordinate (0, 1, 2) by each result."""
         replays = {ESTIMATE: self.result.replay} | {
             name: other.replay for name, other in self.compared_with.items()
         }
+        of = slice(Y_LEFT + coordinate, Y_LEFT + coordinate + 1)
         return {
-            name: (r.stamps_s, r.means[:, 3 + coordinate], r.sigmas[:, 3 + coordinate])
+            name: (r.stamps_s, r.numbers("mean", columns=of)[:, 0], r.sigmas_of(of)[:, 0])
             for name, r in replays.items()
         }
 
@@ -106,11 +108,17 @@ class ReportLines:
         styles = self.styles()
         return styles | {ESTIMATE: styles[ODOMETER]}
 
-    def _other_odometers(self) -> dict[str, Trajectory]:
+    def _other_odometers(self) -> dict[str, Callable[[], Trajectory]]:
         return {
-            other_odometer(name): other.replay.odometer()
+            other_odometer(name): other.replay.odometer
             for name, other in self.compared_with.items()
         }
+
+
+def _drawn(path: Trajectory) -> Trajectory:
+    """A path with the poses that a map of it shows."""
+    x, y, _ = path.poses.T
+    return path.rows(thinned_rows(x, y))
 
 
 def other_odometer(name: str) -> str:

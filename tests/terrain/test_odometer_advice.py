@@ -14,7 +14,7 @@ def check(mean, distance_m=5.0):
 
 
 def found(*checks, noise=USUAL_NOISE, own=()):
-    return OdometerUncertainty(np.eye(3)[None], {}, noise, "", checks, own)
+    return OdometerUncertainty(lambda: [np.eye(3)[None]], {}, noise, "", checks, own)
 
 
 @pytest.mark.parametrize(

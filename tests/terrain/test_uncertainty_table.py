@@ -11,8 +11,7 @@ from terrain.result_table import covariance_columns, uncertainty_table
 
 def test_columns_hold_deviations_and_covariances():
     matrix = np.array([[4.0, 0.1, 0.2], [0.1, 9.0, 0.3], [0.2, 0.3, 0.25]])
-    of = OdometerUncertainty(matrix[None], {}, None, "")
-    found = {name: float(column[0]) for name, column in covariance_columns(of).items()}
+    found = {name: float(of[0]) for name, of in covariance_columns(matrix[None]).items()}
     assert found == {
         "sigma_x": 2.0,
         "sigma_y": 3.0,
@@ -25,7 +24,7 @@ def test_columns_hold_deviations_and_covariances():
 
 def test_the_table_names_its_sources_and_what_was_found():
     of = OdometerUncertainty(
-        np.eye(3)[None],
+        lambda: [np.eye(3)[None]],
         {5.0: np.array([0.1, 0.2, 0.03])},
         USUAL_NOISE,
         "usual",

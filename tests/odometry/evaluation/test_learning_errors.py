@@ -7,7 +7,8 @@ import pytest
 
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.estimation.transition import STATES, Y_LEFT
-from odometry.evaluation.odometer_uncertainty import learning_covariances, path_of
+from odometry.evaluation.learning_covariances import learning_covariances
+from odometry.evaluation.odometer_uncertainty import path_of
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.pipeline import ConstantTerrain, replay
 from odometry.run import Run
@@ -54,7 +55,8 @@ def test_a_parameter_that_is_unsure_at_first_moves_the_odometer_as_another_one_w
         mean[state] += STEP * (k < CHANGED)
         return replace(estimate, mean=mean)
 
-    found = learning_covariances(with_estimates(winding, unsure), path_of(winding))[-1]
+    (of_all,) = learning_covariances(with_estimates(winding, unsure), path_of(winding))
+    found = of_all[-1]
     ends = [each.odometer().poses[-1] for each in (winding, with_estimates(winding, other))]
     slope = (ends[1] - ends[0]) / STEP
     np.testing.assert_allclose(found, np.outer(slope, slope), rtol=5e-3, atol=5e-3)
@@ -65,4 +67,5 @@ def test_what_is_as_sure_as_ever_adds_nothing(winding):
         return replace(estimate, covariance=0.01 * np.eye(STATES))
 
     same = with_estimates(winding, alike)
-    assert not learning_covariances(same, path_of(same)).any()
+    (found,) = learning_covariances(same, path_of(same))
+    assert not found.any()
