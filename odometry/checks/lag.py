@@ -14,7 +14,7 @@ GRID_S = 0.05
 LEAST_CORRELATION = 0.7
 RIVAL = 0.9  # a second peak as high as this share of the first: the motion is periodic
 LEAST_SIZE = 1e-9  # of the product of both; smaller ones stand still
-TOGETHER_ROWS = 32  # of shifts; what is made of them stays in the cache
+TOGETHER = 2**15  # numbers of shifted signals; what is made of them stays in the cache
 PIECES = 8
 LEAST_PIECE_S = 8.0
 TOGETHER_S, CUTOFF = 0.15, 4.0  # seconds, or standard deviations, from the line through the pieces
@@ -120,22 +120,17 @@ def _rate(heading: Signal, at_s: FloatArray, width_s: float) -> FloatArray:
 
 def _correlations(one: FloatArray, others: FloatArray) -> FloatArray:
     """`_correlation` of one signal (n,) with each of others (m, n)."""
-    whole = np.isfinite(one).all() & np.isfinite(others).all(axis=1)
     correlations = np.full(len(others), np.nan)
-    correlations[~whole] = [_correlation(one, other) for other in others[~whole]]
-    correlations[whole] = _of_whole(one, others[whole])
-    return correlations
-
-
-def _of_whole(one: FloatArray, others: FloatArray) -> FloatArray:
-    """The same of signals without gaps."""
-    a = one - one.mean()
-    correlations = np.full(len(others), np.nan)
-    for of in range(0, len(others), TOGETHER_ROWS):
-        b = others[of : of + TOGETHER_ROWS] - others[of : of + TOGETHER_ROWS].mean(axis=1)[:, None]
+    known = np.array([np.isfinite(other).all() for other in others], dtype=np.bool_)
+    whole = known & np.isfinite(one).all()
+    for row in np.flatnonzero(~whole):
+        correlations[row] = _correlation(one, others[row])
+    a, count = one - one.mean(), max(TOGETHER // len(one), 1)
+    for rows in np.split(np.flatnonzero(whole), range(count, int(whole.sum()), count)):
+        b = others[rows] - others[rows].mean(axis=1)[:, None]
         sizes = np.sqrt(np.sum(a**2) * np.sum(b**2, axis=1))
         clear = sizes > LEAST_SIZE
-        correlations[of : of + TOGETHER_ROWS][clear] = (np.sum(a * b, axis=1)[clear]) / sizes[clear]
+        correlations[rows[clear]] = np.sum(a * b, axis=1)[clear] / sizes[clear]
     return correlations
 
 

@@ -98,7 +98,6 @@ def odometer_uncertainty(
             f"measured on {noise.stretches} stretches of up to {noise.longest_m:g} m between the "
             "poses of the run"
         )
-    covariance_blocks = partial(_measured, replay, noise)
     own = []
     if truth is not None:
         checks = open_loop_consistency(path, *_true_poses(replay, truth), noise.without_reference())
@@ -106,8 +105,8 @@ def odometer_uncertainty(
         checks = consistency_by_halves(path, rows, poses)
         own = open_loop_consistency(path, rows, poses, noise) if noise.stretches else []
     return OdometerUncertainty(
-        covariance_blocks,
-        _after(path, covariance_blocks()),
+        partial(_measured, replay, noise),
+        _after(path, _along(path, replay, noise)),
         noise,
         source,
         tuple(checks),
@@ -120,7 +119,11 @@ def _of_filter(replay: Replay) -> Iterator[FloatArray]:
 
 
 def _measured(replay: Replay, noise: OdometerNoise) -> Iterator[FloatArray]:
-    path, start = path_of(replay), replay.estimates[0].covariance[:3, :3]
+    return _along(path_of(replay), replay, noise)
+
+
+def _along(path: OpenLoopPath, replay: Replay, noise: OdometerNoise) -> Iterator[FloatArray]:
+    start = replay.estimates[0].covariance[:3, :3]
     learning = learning_covariances(replay, path)
     return map(np.add, path.carried(start, noise.variances), learning)
 
