@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import ParameterError
-from odometry.estimation.terrain_beliefs import prior_belief
+from odometry.estimation.terrain_beliefs import crossed, prior_belief
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
 from odometry.parameters import ParameterSet, TerrainParameters
@@ -161,3 +161,21 @@ def test_slip_factors_can_be_held_as_given(order):
         belief = prior_belief(ParameterSet({"here": table}), terrain, WIDTH, RESET_M, 0.0)
         assert np.all(belief.covariance[3:] == 0)
         assert np.all(belief.covariance[:, 3:] == 0)
+
+
+def test_slip_factors_that_are_held_are_not_correlated_with_the_icrs():
+    values = {"y_left": 0.4, "y_right": -0.5, "x_icr": 0.1}
+    together = np.array([[4e-4, 1e-4], [1e-4, 4e-4]])
+    table = TerrainParameters("icr", values, ("y_left", "alpha_left"), together)
+    belief = prior_belief(ParameterSet({"here": table}), "here", WIDTH, RESET_M, 0.0)
+    expected = np.diag([4e-4, RESET_M**2, RESET_M**2, 0.0, 0.0])
+    np.testing.assert_allclose(belief.covariance, expected)
+
+
+def test_a_terrain_that_keeps_its_share_opens_nothing(rng):
+    """What it would add to the covariance is not even looked up."""
+    belief = rng.standard_normal(9), np.eye(9)
+    known = {"mud": prior_belief(ParameterSet(), "mud", WIDTH, RESET_M, RESET_ALPHA)}
+    mean, covariance = crossed(belief, known, {"mud": 0.4}, {"mud": 0.4}, {})
+    np.testing.assert_array_equal(mean, belief[0])
+    np.testing.assert_array_equal(covariance, belief[1])

@@ -1,8 +1,9 @@
 """What is kept of a belief whose pose is not to be taught."""
 
 import numpy as np
+import pytest
 
-from odometry.estimation.sensor_watch import parted
+from odometry.estimation.sensor_watch import _moved, parted
 
 
 def test_the_pose_says_nothing_of_the_rest_and_the_rest_nothing_of_the_pose(rng):
@@ -14,3 +15,15 @@ def test_the_pose_says_nothing_of_the_rest_and_the_rest_nothing_of_the_pose(rng)
         np.testing.assert_array_equal(found[block, block], covariance[block, block])
     np.testing.assert_array_equal(found[:3, 3:], 0.0)
     np.testing.assert_array_equal(found, found.T)
+
+
+@pytest.mark.parametrize(
+    ("speeds", "yaw_rate", "expected"),
+    [
+        ([-1.0, 3.0], 0.5, (0.2, 0.05)),
+        ([np.nan, 3.0], 0.5, (0.0, 0.05)),
+        ([-1.0, 3.0], np.nan, (0.2, 0.0)),
+    ],
+)
+def test_wheel_travel_of_a_step_is_the_mean_of_both_treads(speeds, yaw_rate, expected):
+    assert _moved(np.array(speeds), yaw_rate, 0.1) == pytest.approx(expected)
