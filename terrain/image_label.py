@@ -64,13 +64,15 @@ def answered(
             probabilities=answer.probabilities,
             class_distance=answer.distance,
             patches=answer.patches,
+            reason=answer.reason,
         )
     distance = max(answer.distance for answer in answers)
     left, right = (answer.label for answer in answers)
     confidence = min(answer.confidence for answer in answers)
     if left == right:
+        why = answers[0].reason or answers[1].reason
         return ImageLabel(
-            stamp_s, name, left, confidence, region, "", left, right, class_distance=distance
+            stamp_s, name, left, confidence, region, why, left, right, class_distance=distance
         )
     reason = f"astride: {left} on the left, {right} on the right"
     return ImageLabel(

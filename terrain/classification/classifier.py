@@ -14,6 +14,7 @@ from odometry.errors import ConfigError
 from terrain.classification.feature_jobs import Transformer, shared_feature_matrix
 from terrain.classification.learning import LearningClassifier
 from terrain.classification.likeness import TrainingLook, spread_rows
+from terrain.classification.no_ground import ShownGround
 from terrain.classification.old_samples import OldSamples, SamplesBesideOld
 from terrain.classification.patches import LabelledPatches
 from terrain.classification.presets import PRESETS
@@ -84,6 +85,9 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
         and of files of version 0.9.
     training_look_ : TrainingLook or None
         What `likeness` compares images with; None of features and of files of version 0.9.
+    shown_ground_ : ShownGround or None
+        What tells images that show no ground; None of features, with ``chen2023`` and of files
+        before version 0.14.
 
     Notes
     -----
@@ -199,8 +203,9 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
         self.trained_on_ = trained_on
         self.training_look_ = TrainingLook.of(X, codes, photos) if holds_images(X) else None
         samples = Samples(features[: len(labels)], codes, photos)
-        self.old_samples_ = None
+        self.old_samples_, self.shown_ground_ = None, None
         if self.training_look_ is not None and not PRESETS[self.preset].as_published:
+            self.shown_ground_ = ShownGround.of(list(X), codes)
             rows = spread_rows(photos)
             self.old_samples_ = OldSamples(samples.features[rows], labels[rows])
         if beside is not None:

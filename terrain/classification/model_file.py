@@ -15,6 +15,7 @@ from terrain.classification.likeness import TrainingLook
 from terrain.classification.model_settings import ModelSettings, NetworkSettings
 from terrain.classification.neighbours import Neighbours
 from terrain.classification.network_features import NetworkFeatures
+from terrain.classification.no_ground import ShownGround
 from terrain.classification.old_samples import OldSamples
 from terrain.classification.presets import PRESETS
 from terrain.classification.trained_on import TrainedOn, check_codes
@@ -42,6 +43,7 @@ class ModelFile:
     one_patch_: bool
     trained_on_: TrainedOn | None
     training_look_: TrainingLook | None
+    shown_ground_: ShownGround | None
     old_samples_: OldSamples | None
     features: Transformer | None
     _features: FeatureSettings | Transformed | None
@@ -64,6 +66,8 @@ class ModelFile:
         arrays = self._neighbours.arrays()
         if self.training_look_ is not None:
             arrays |= self.training_look_.arrays()
+        if self.shown_ground_ is not None:
+            arrays |= self.shown_ground_.arrays()
         if self.old_samples_ is not None:
             arrays |= self.old_samples_.arrays(self.classes_)
         if isinstance(self._features, FeatureSettings):
@@ -108,6 +112,7 @@ class ModelFile:
             model._features = features
         model.old_samples_ = OldSamples.from_arrays(arrays, model.classes_)
         model.training_look_ = TrainingLook.from_arrays(arrays, len(settings.classes))
+        model.shown_ground_ = ShownGround.from_arrays(arrays, len(settings.classes))
         check_codes(arrays["codes"], len(settings.classes))
         model._neighbours = PRESETS[model.preset].neighbours.from_arrays(arrays)
         model._check_that_parts_fit(model._features)

@@ -163,7 +163,10 @@ class OwnStatisticsClassifier:
         """
         features = [self.see(image) for image in images]
         standardised = self.standardised()
-        return [standardised.classify_features(of) for of in features]
+        return [
+            standardised.checked(image, standardised.classify_features(of))
+            for image, of in zip(images, features, strict=True)
+        ]
 
     def middle_used(self, shape: tuple[int, int]) -> tuple[int, int]:
         """As `TerrainClassifier.middle_used`."""

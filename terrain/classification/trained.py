@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol, Self
 
 import numpy as np
@@ -38,6 +38,8 @@ class Classification:
         One per known terrain; they add up to 1.
     patches : int
         That the image was cut into.
+    reason : str
+        Why the image shows no ground, where the label is ``unknown`` for that; else "".
 
     Examples
     --------
@@ -52,6 +54,7 @@ class Classification:
     distance: float
     probabilities: dict[str, float]
     patches: int = 1
+    reason: str = ""
 
 
 class Classifier(Protocol):
@@ -82,7 +85,13 @@ class TrainedClassifier(ModelFile):
         return self._votes_and_distances(X)[0]
 
     def is_unknown(self, X: Sequence[ByteImage] | AnyArray) -> BoolArray:
-        """Whether each image or row of features (n,) lies beyond the rejection distance."""
+        """Whether each row of features (n,) lies beyond the rejection distance.
+
+        Of images whether `classify` says so: also where they show no ground.
+        """
+        if holds_images(X):
+            check_is_fitted(self)
+            return np.array([answer.label == UNKNOWN for answer in self.classify(X)])
         return self._votes_and_distances(X)[1] > self.rejection_distance_
 
     def classify(self, images: Sequence[ByteImage]) -> list[Classification]:
@@ -91,14 +100,27 @@ class TrainedClassifier(ModelFile):
         A larger image is cut into patches side by side; their probabilities are averaged, and
         their distance together, on the scale of one patch, decides whether it is unknown: that of
         their mean place among the discriminants, or with ``chen2023`` and models of files before
-        version 0.13 the median of their distances.
+        version 0.13 the median of their distances. It is unknown as well where it shows no ground,
+        see `Classification.reason`; ``chen2023``, models of features and of files before version
+        0.14 do not check that.
 
         Raises
         ------
         ImageError
             If an image is smaller than a patch, or grey where the classifier needs colour.
         """
-        return [self.classify_features(self.patch_features(image)) for image in images]
+        return [
+            self.checked(image, self.classify_features(self.patch_features(image)))
+            for image in images
+        ]
+
+    def checked(self, image: ByteImage, answer: Classification) -> Classification:
+        """The answer for an image, or the same as `unknown` where the image shows no ground."""
+        if self.shown_ground_ is None:
+            return answer
+        code = int(np.argmax(list(answer.probabilities.values())))
+        reason = self.shown_ground_.lacks(cut_patches(image, self.patch_size_px), code)
+        return replace(answer, label=UNKNOWN, reason=reason) if reason else answer
 
     def middle_used(self, shape: tuple[int, int]) -> tuple[int, int]:
         """Rows and columns in the middle of an image of such a shape: whole patches, or one."""

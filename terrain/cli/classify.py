@@ -38,7 +38,7 @@ def classify(model: Path, images: tuple[Path, ...], *, as_json: bool, own_statis
       terrain-odometry classify terrain.model other_photos
     """
     from terrain.classification.classifier import TerrainClassifier
-    from terrain.cli.labelled_images import print_held_out, print_likeness
+    from terrain.cli.labelled_images import print_held_out, print_likeness, print_no_ground
 
     classifier = TerrainClassifier.load(model)
     folders = [path for path in images if path.is_dir()]
@@ -51,6 +51,7 @@ def classify(model: Path, images: tuple[Path, ...], *, as_json: bool, own_statis
     else:
         rows = [_row(classifier, path) for path in images]
         print_likeness(classifier, images)
+        print_no_ground([row.get("reason", "") for row in rows])
         click.echo(json.dumps(rows, indent=2) if as_json else _table(classifier, rows))
         all_used = not any("error" in row for row in rows)
     if not all_used:
@@ -97,7 +98,7 @@ def _table(classifier: "TerrainClassifier", rows: list[dict[str, Any]]) -> str:
         else:
             lines.append(
                 f"{row['image']:{width}}  {row['label']:{names}}  {row['confidence']:10.2f}  "
-                f"{row['distance']:8.4g}"
+                f"{row['distance']:8.4g}  {row['reason']}".rstrip()
             )
     lines.append(f"Beyond a distance of {classifier.rejection_distance_:.4g} the label is unknown.")
     return "\n".join(lines)

@@ -8,6 +8,7 @@ import numpy as np
 
 from odometry.estimation.filter_event import FilterEvent
 from odometry.run import UNKNOWN
+from terrain.classification.no_ground import no_ground_note
 from terrain.classification.own_statistics import OwnStatisticsClassifier
 from terrain.evaluation_notes import event_line
 from terrain.image_label import ImageLabel
@@ -48,6 +49,9 @@ def hints(result: RunResult, *, vision: bool, named: str | None = None) -> list[
         likeness = result.watcher.seen.likeness
         if likeness is not None and likeness.note is not None:
             found.append(f"{likeness.note}. Here they count less")
+        empty = no_ground_note([image_label.reason for image_label in result.watcher.image_labels])
+        if empty is not None:
+            found.append(empty)
         found += _blind(result.watcher.image_labels)
         if named is None and len(known) > 1:
             found += _start(result.initial_terrain, result.run.terrain, result.watcher.image_labels)

@@ -45,6 +45,7 @@ def print_held_out(
     for note in (*_notes(classifier, model, answers), *_of_scale(classifier, folder)):
         click.echo(f"Note: {note}", err=True)
     print_likeness(classifier, [each.photo.path for each in held_out])
+    print_no_ground([each.answer.reason for each in held_out])
     score = held_out_score(classifier.classes_.tolist(), held_out)
     click.echo(
         json.dumps(_json(score, answers), indent=2) if as_json else _text(score, len(held_out))
@@ -155,6 +156,15 @@ def print_likeness(classifier: "TerrainClassifier", paths: Sequence[Path]) -> No
     likeness = classifier.likeness(_readable(paths))
     if likeness is not None and likeness.note is not None:
         click.echo(f"Note: {likeness.note}", err=True)
+
+
+def print_no_ground(reasons: Sequence[str]) -> None:
+    """Say how many images show no ground, by the reasons of all, if any does not."""
+    from terrain.classification.no_ground import no_ground_note
+
+    note = no_ground_note(reasons)
+    if note is not None:
+        click.echo(f"Note: {note}", err=True)
 
 
 def _readable(paths: Sequence[Path]) -> Iterator["ByteImage"]:

@@ -6,6 +6,7 @@ import numpy as np
 
 from odometry.estimation.filter_event import FilterEvent
 from terrain.classification.likeness import Likeness
+from terrain.classification.no_ground import SKY
 from terrain.cli.hints import hints
 
 
@@ -48,6 +49,14 @@ def test_images_that_are_unlike_the_training_photographs_come_before_their_label
     assert "93 % of held-out training patches" in hint
     of.watcher.seen.likeness = Likeness(40, 0.6, 0.5, ())
     assert not any("unlike" in one for one in hints(of, vision=True))
+
+
+def test_images_that_show_no_ground_are_counted():
+    of = starting(["grass", "unknown", "unknown"])
+    for image_label in of.watcher.image_labels[1:]:
+        image_label.reason = SKY
+    (hint,) = [one for one in hints(of, vision=True) if "no ground" in one]
+    assert hint.startswith("2 of 3 images show no ground and are unknown: smooth and blue")
 
 
 def test_a_terrain_without_a_table_is_named():
