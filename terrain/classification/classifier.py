@@ -86,8 +86,7 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
     training_look_ : TrainingLook or None
         What `likeness` compares images with; None of features and of files of version 0.9.
     shown_ground_ : ShownGround or None
-        What tells images that show no ground; None of features, with ``chen2023`` and of files
-        before version 0.14.
+        Limits by terrain; None of features, with ``chen2023`` and of files before version 0.14.
 
     Notes
     -----
@@ -203,7 +202,7 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
         self.trained_on_ = trained_on
         self.training_look_ = TrainingLook.of(X, codes, photos) if holds_images(X) else None
         samples = Samples(features[: len(labels)], codes, photos)
-        self.old_samples_, self.shown_ground_ = None, None
+        self.old_samples_ = self.shown_ground_ = None
         if self.training_look_ is not None and not PRESETS[self.preset].as_published:
             self.shown_ground_ = ShownGround.of(list(X), codes)
             rows = spread_rows(photos)
