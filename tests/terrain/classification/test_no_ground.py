@@ -23,6 +23,7 @@ from terrain.classification.no_ground import (
 from terrain.classification.own_statistics import OwnStatisticsClassifier
 from terrain.cli.classify import classify
 from terrain.errors import ModelFileError
+from terrain.image_label import answered
 
 SIZE = 64
 
@@ -191,3 +192,12 @@ def test_classify_says_so_of_each_image_and_of_all(model, rng, tmp_path):
     assert "no ground: black" in answer.stdout.splitlines()[1]
     answer = CliRunner().invoke(classify, [str(tmp_path / "a.model"), *files, "--json"])
     assert [row["reason"] for row in json.loads(answer.stdout)] == ["no ground: black", ""]
+
+
+def test_the_label_of_a_region_says_why(model, rng):
+    dark, known = model.classify([EMPTY[DARK](rng), photographs(2)[0][-1]])
+    label = answered(0.0, "a.png", None, [dark])
+    assert (label.label, label.reason) == ("unknown", DARK)
+    assert answered(0.0, "a.png", None, [dark, dark]).reason == DARK
+    astride = answered(0.0, "a.png", None, [dark, known])
+    assert astride.reason == "astride: unknown on the left, slabs on the right"
