@@ -38,7 +38,7 @@ class RunLikeness:
         self._training: TrainingLook | None = getattr(classifier, "training_look_", None)
         self._classifier = classifier
         self._looks: deque[FloatArray] = deque(maxlen=KEPT)
-        self._ranks: deque[tuple[float, float]] = deque(maxlen=KEPT)
+        self._ranks: deque[tuple[float, float, float]] = deque(maxlen=KEPT)
 
     def add(self, views: Sequence[ByteImage]) -> None:
         """Add the regions of one image."""

@@ -1,4 +1,4 @@
-"""Whether images look like the training photographs: sharpness, scale of texture, exposure."""
+"""Whether images look like the training photographs: sharpness, scale, exposure, compression."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -13,21 +13,25 @@ from scipy.spatial.distance import cdist
 from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
 from terrain.images import to_grey
 
-NUMBERS = 6  # of a look
+NUMBERS = 7  # of a look; files before version 0.14 have the first six
+TEXTURE = slice(2, 6)
 # what it is to be low or high in them
 WORDS = (
     ("darker", "brighter"),
     ("of less contrast", "of more contrast"),
     ("more blurred", "sharper or noisier"),
-    ("coarser", "finer"),  # of all octaves
+    *[("coarser", "finer")] * 3,  # of all octaves
+    ("more compressed", "less compressed"),
 )
 SIGMAS_PX = (0.7, 1.4, 2.8, 5.6, 11.2)  # between two of them lies an octave of texture
 PATCHES_PER_PHOTO = 12
 MOST_PATCHES = 2000
 NEAREST = 3
+ALIKE = 30  # patches of the most similar texture
 FEWEST_IMAGES = 5
 # chosen on ground/, pavements/ and frames of other cameras, so these are no independent test;
 UNLIKE_RANK, UNLIKE_RANK_IN_CLASS = 0.75, 0.7
+UNLIKE_EXPOSURE = 0.36  # from one half
 MOST_WORDS = 3
 WORTH_NAMING = 0.5  # deviations within a terrain
 
@@ -45,27 +49,32 @@ class Likeness:
         images are like the photographs, 1 where none is. NaN without images.
     how : tuple of str
         In what the images differ most.
+    exposure : float
+        Mean share of the 30 training patches of the most similar texture that are darker: 0.5
+        where the light is that of training, 1 where every image is brighter.
     """
 
     images: int
     rank: float
     rank_in_class: float
     how: tuple[str, ...]
+    exposure: float = 0.5
 
     @classmethod
-    def of(cls, ranks: Sequence[tuple[float, float]], how: tuple[str, ...] = ()) -> Self:
+    def of(cls, ranks: Sequence[tuple[float, float, float]], how: tuple[str, ...] = ()) -> Self:
         """The summary of the `TrainingLook.ranks` of images."""
         if not ranks:
             return cls(0, float("nan"), float("nan"), ())
-        among_all, in_class = zip(*ranks, strict=True)
-        return cls(len(ranks), float(np.mean(among_all)), float(np.mean(in_class)), how)
+        rank, in_class, exposure = np.mean(ranks, axis=0).tolist()
+        return cls(len(ranks), rank, in_class, how, exposure)
 
     @property
     def is_unlike(self) -> bool | None:
         """None where there are too few images."""
         if self.images < FEWEST_IMAGES:
             return None
-        return self.rank > UNLIKE_RANK and self.rank_in_class > UNLIKE_RANK_IN_CLASS
+        is_far = self.rank > UNLIKE_RANK and self.rank_in_class > UNLIKE_RANK_IN_CLASS
+        return is_far or abs(self.exposure - 0.5) > UNLIKE_EXPOSURE
 
     @property
     def note(self) -> str | None:
@@ -75,8 +84,9 @@ class Likeness:
         how = f" ({', '.join(self.how)})" if self.how else ""
         return (
             f"the images are unlike the training photographs of the model{how}: another camera, "
-            f"distance or light. {100 * self.rank:.0f} % of held-out training patches are nearer "
-            "to the others than these images are. Many labels may be wrong; label images of this "
+            f"distance, light or compression. {100 * self.rank:.0f} % of held-out training patches "
+            f"are nearer to the others than these images are, and {100 * self.exposure:.0f} % of "
+            "those of similar texture are darker. Many labels may be wrong; label images of this "
             "camera and train with them"
         )
 
@@ -87,7 +97,7 @@ class TrainingLook:
 
     Attributes
     ----------
-    looks : FloatArray, shape (n, 6)
+    looks : FloatArray, shape (n, 7)
     codes : IntArray, shape (n,)
         Terrains.
     distances : FloatArray, shape (n,)
@@ -113,7 +123,7 @@ class TrainingLook:
 
     @cached_property
     def spread(self) -> FloatArray:
-        """Deviation of each number (6,) within a terrain, not quite zero."""
+        """Deviation of each number (7,) within a terrain, not quite zero."""
         means = np.array([self.looks[self.codes == c].mean(axis=0) for c in self.codes])
         return np.asarray(np.maximum((self.looks - means).std(axis=0), 1e-3))
 
@@ -126,31 +136,39 @@ class TrainingLook:
         return self.looks / self.spread
 
     def compared(self, looks: FloatArray) -> Likeness:
-        """Compare the looks (m, 6) of images."""
+        """Compare the looks (m, 7) of images."""
         ranks = [self.ranks(look) for look in looks]
         return Likeness.of(ranks, self.how(looks) if ranks else ())
 
-    def ranks(self, look: FloatArray) -> tuple[float, float]:
-        """Share of the training patches nearer than a look (6,): of all, and of its terrain."""
+    def ranks(self, look: FloatArray) -> tuple[float, float, float]:
+        """Share of the training patches nearer than a look (7,): of all, and of its terrain.
+
+        The third is the share that is darker of the patches of the most similar texture.
+        """
         (distance,), (nearest,) = self._nearest(look[None])
         nearer = self.distances < distance
-        return float(nearer.mean()), float(nearer[self.codes == self.codes[nearest]].mean())
+        apart = (self.looks[:, TEXTURE] - look[TEXTURE]) / self.spread[TEXTURE]
+        alike = np.argsort((apart**2).sum(axis=1), kind="stable")[:ALIKE]
+        return (
+            float(nearer.mean()),
+            float(nearer[self.codes == self.codes[nearest]].mean()),
+            float(np.mean(self.looks[alike, 0] < look[0])),
+        )
 
     def how(self, looks: FloatArray) -> tuple[str, ...]:
-        """In what looks (m, 6) of images differ from those in training, most of all first."""
-        apart = (np.median(looks, axis=0) - self._middle) / self.spread
-        words: dict[int, str] = {}
+        """In what looks (m, 7) of images differ from those in training, most of all first."""
+        apart = (np.median(looks, axis=0)[: len(self.spread)] - self._middle) / self.spread
+        words: dict[tuple[str, str], str] = {}
         for i in np.argsort(-np.abs(apart)):
-            kind = min(int(i), len(WORDS) - 1)
             if abs(apart[i]) > WORTH_NAMING:
-                words.setdefault(kind, WORDS[kind][int(apart[i] > 0)])
+                words.setdefault(WORDS[i], WORDS[i][int(apart[i] > 0)])
         return tuple(words.values())[:MOST_WORDS]
 
     def _nearest(
         self, looks: FloatArray, left_out: AnyArray | None = None
     ) -> tuple[FloatArray, IntArray]:
-        """Mean distance of looks (m, 6) to the nearest patches, and the nearest of them."""
-        apart = cdist(looks / self.spread, self._scaled)
+        """Mean distance of looks (m, 7) to the nearest patches, and the nearest of them."""
+        apart = cdist(looks[:, : len(self.spread)] / self.spread, self._scaled)
         if left_out is not None:
             apart[left_out] = np.inf
         few = min(NEAREST, apart.shape[1])
@@ -177,7 +195,7 @@ class TrainingLook:
         if "look_points" not in arrays:
             return None
         looks, codes, own = (arrays[f"look_{of}"] for of in ("points", "codes", "distances"))
-        fits = looks.ndim == 2 and looks.shape[1] == NUMBERS and len(looks) > 0
+        fits = looks.ndim == 2 and looks.shape[1] in {NUMBERS - 1, NUMBERS} and len(looks) > 0
         if not fits or codes.shape != own.shape or codes.shape != looks.shape[:1]:
             raise ValueError(f"looks of shapes {looks.shape}, {codes.shape}, {own.shape}")
         if codes.dtype.kind != "i" or not 0 <= codes.min() <= codes.max() < classes:
@@ -186,15 +204,19 @@ class TrainingLook:
 
 
 def look_of(patch: ByteImage) -> FloatArray:
-    """Six numbers (6,) of a patch: mean grey, contrast, and how octaves of texture compare.
+    """Seven numbers (7,) of a patch: mean grey, contrast, how octaves compare, and compression.
 
-    The mean is in units of white, the others are natural logarithms: of the deviation of grey, and
-    of the variance of an octave over that of the next coarser one, finest first.
+    The mean is in units of white, the others are natural logarithms: of the deviation of grey, of
+    the variance of an octave over that of the next coarser one, finest first, and of the median
+    size of the finest octave over its deviation, which compression sets to zero in most places.
     """
     grey = to_grey(patch).astype(np.float32)
     levels = [grey, *(cv2.GaussianBlur(grey, (0, 0), sigma) for sigma in SIGMAS_PX)]
     octaves = np.log([float(np.var(a - b)) + 0.05 for a, b in pairwise(levels)])
-    return np.array([grey.mean() / 255, np.log(grey.std() + 1), *(octaves[:-1] - octaves[1:])])
+    finest = np.abs(grey - levels[1])
+    usual = np.log((np.median(finest) + 0.1) / (np.sqrt(np.mean(finest**2)) + 0.1))
+    exposure = [grey.mean() / 255, np.log(grey.std() + 1)]
+    return np.array([*exposure, *(octaves[:-1] - octaves[1:]), usual])
 
 
 def middle_of(image: ByteImage, size_px: int) -> ByteImage:
