@@ -55,12 +55,15 @@ class FeltWindows:
     windows : FeelWindows
     scores : Scores
         Of W windows; zeros where one has no evidence.
+    foreign : (W,)
+        Whether what is known at each window shows another IMU than the model's, see `sensor`.
     """
 
     model: FeelModel
     config: FeelConfig
     windows: FeelWindows
     scores: Scores
+    foreign: BoolArray
 
     @property
     def stamps_s(self) -> FloatArray:
@@ -126,18 +129,20 @@ class FeltWindows:
     def _answers(self, of: Probabilities) -> AnyArray:
         names = np.array(self.model.names, dtype=object)[of.probabilities.argmax(axis=1)]
         named = np.where(of.probabilities.max(axis=1) >= self.config.sure, names, UNDETERMINED)
-        named = np.where(of.is_novel | self.outside_speeds, UNKNOWN, named)
+        named = np.where(of.is_novel | self.outside_speeds | self.foreign, UNKNOWN, named)
         named = np.where(self.windows.standing, STATIONARY, named)
         return np.where(self.windows.whole, named, NOT_MEASURED)
 
     def since(self, first: int) -> "FeltWindows":
         """Those from a row on."""
         windows = windows_since(self.windows, first)
-        return FeltWindows(self.model, self.config, windows, self.scores.since(first))
+        scores = self.scores.since(first)
+        return FeltWindows(self.model, self.config, windows, scores, self.foreign[first:])
 
     @classmethod
     def joined(cls, parts: Sequence["FeltWindows"]) -> "FeltWindows":
         """Windows of one run, one part after another."""
         windows = joined_windows([one.windows for one in parts])
         scores = Scores.joined([one.scores for one in parts])
-        return cls(parts[0].model, parts[0].config, windows, scores)
+        foreign = np.concatenate([one.foreign for one in parts])
+        return cls(parts[0].model, parts[0].config, windows, scores, foreign)

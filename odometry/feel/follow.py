@@ -44,7 +44,7 @@ class Felt(FeltWindows):
         if not moving.any():
             return (STATIONARY if self.windows.standing.any() else NOT_MEASURED), 0.0, unknown
         is_unlike = (self.lasting_answers[moving] == UNKNOWN).mean() > UNLIKE_SHARE
-        if is_novel or is_unlike or self.outside_speeds[moving].all():
+        if is_novel or is_unlike or self.foreign[-1] or self.outside_speeds[moving].all():
             return UNKNOWN, 0.0, unknown
         is_sure = probabilities[best] >= self.config.sure
         return (best if is_sure else UNDETERMINED), probabilities[best], unknown
@@ -78,7 +78,8 @@ def follow_feel(run: Run, model: FeelModel, config: FeelConfig | None = None) ->
     windows = feel_windows(run, model.design.window_s)
     model.design.check(windows, str(run.folder))
     check_robot(model, run.robot, str(run.folder))
-    return Felt(model, config or FeelConfig(), windows, model.scores(windows), run)
+    foreign = model.foreign(windows)
+    return Felt(model, config or FeelConfig(), windows, model.scores(windows), foreign, run)
 
 
 def check_robot(model: FeelModel, robot: Robot, where: str) -> None:

@@ -12,6 +12,7 @@ from odometry.feel.design import Design
 from odometry.feel.members import fitted_members
 from odometry.feel.model import FeelModel
 from odometry.feel.selection import main_labels, selected
+from odometry.feel.sensor import SensorShape
 from odometry.feel.table import FeelTable, days_of, fold_groups
 from odometry.feel.windows import LONGEST_S, SHORTEST_S, FeelWindows, feel_windows
 from odometry.identification.identify import robot_of
@@ -86,6 +87,7 @@ def identify_feel(
         best.calibration,
         best.strangeness,
         best.limits,
+        SensorShape.of(windows[best.place], table.design),
         robot.track_width,
         robot.name,
         ", ".join(dict.fromkeys(run.name for run in runs)),

@@ -105,7 +105,7 @@ class LiveFeel:
         self._gaps, self._gap_s = GapsSoFar(), list[tuple[float, float]]()
         self._row, self._row_s = -1, -math.inf
         self._next = 0  # sample at which the next window begins
-        self._sums = ImuSums()
+        self._sums, self._shape = ImuSums(), model.shape_so_far
         self._felt: FeltWindows | None = None
 
     def imu(
@@ -197,7 +197,9 @@ class LiveFeel:
             return None
         known_s = np.maximum(window.ends_s, complete_s)
         window = replace(window, complete_s=known_s)
-        alone = FeltWindows(self._model, self.config, window, self._model.scores(window))
+        self._shape = self._shape.plus(window)
+        scores, foreign = self._model.scores(window), np.array([self._shape.is_foreign])
+        alone = FeltWindows(self._model, self.config, window, scores, foreign)
         self._felt = _latest([self._felt, alone] if self._felt else [alone])
         return self._felt
 

@@ -31,7 +31,7 @@ def follow_feel_live(run: Run, model: FeelModel, config: FeelConfig | None = Non
     if not parts:
         return felt
     found = FeltWindows.joined(parts)
-    return replace(felt, windows=found.windows, scores=found.scores)
+    return replace(felt, windows=found.windows, scores=found.scores, foreign=found.foreign)
 
 
 def _followed(run: Run, live: LiveFeel) -> Iterator[FeltWindows]:

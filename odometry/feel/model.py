@@ -12,6 +12,7 @@ from odometry.feel.evidence import Calibration
 from odometry.feel.held_out import Scores
 from odometry.feel.limits import Limits
 from odometry.feel.members import Choice, Members
+from odometry.feel.sensor import SensorShape, ShapeSoFar
 from odometry.feel.strangeness import Strangeness, unknown_probability
 from odometry.feel.windows import STEPS, FeelWindows
 
@@ -30,6 +31,8 @@ class FeelModel:
     calibration : Calibration
     strangeness : Strangeness
     limits : Limits
+    sensor : SensorShape or None
+        None of few runs, and of files before version 0.14.
     track_width_m : float
     robot : str
         Its name.
@@ -53,6 +56,7 @@ class FeelModel:
     calibration: Calibration
     strangeness: Strangeness
     limits: Limits
+    sensor: SensorShape | None
     track_width_m: float
     robot: str
     source: str = ""
@@ -72,6 +76,15 @@ class FeelModel:
         found.novelty[felt] = scores.novelty
         found.offsets[felt] = scores.offsets
         return found
+
+    def foreign(self, windows: FeelWindows) -> BoolArray:
+        """Whether W windows are of another IMU, by all of them; see `SensorShape`."""
+        return np.full(len(windows), self.shape_so_far.plus(windows).is_foreign)
+
+    @property
+    def shape_so_far(self) -> ShapeSoFar:
+        """That of no windows yet."""
+        return ShapeSoFar.none(self.sensor, self.design.axes)
 
     def farthest_columns(self, windows: FeelWindows, most: int = 3) -> tuple[str, ...]:
         """The columns that lie farthest from the nearest terrain, in their own spread."""

@@ -17,6 +17,7 @@ from odometry.feel.logistic import Logistic
 from odometry.feel.members import Choice, Members
 from odometry.feel.model import FeelModel
 from odometry.feel.motion_features import SPEED_NAMES
+from odometry.feel.sensor import SensorShape
 from odometry.feel.strangeness import LENGTHS, TERMS, Strangeness
 from odometry.io.array_file import FileKind, read_array_file, write_array_file
 
@@ -57,6 +58,8 @@ def write_feel_model(
             "logistic_weights": model.members.logistic.weights,
             "logistic_levels": model.members.logistic.levels,
         }
+    if model.sensor is not None:
+        arrays |= model.sensor.arrays()
     arrays |= {f"strangeness_{name}": of for name, of in model.strangeness.weights.items()}
     write_array_file(Path(path), FEEL, _settings(model), arrays, made)
 
@@ -137,6 +140,7 @@ def _model(settings: dict[str, Any], arrays: dict[str, AnyArray]) -> FeelModel:
         _calibration(settings["calibration"]),
         _strangeness(settings, arrays),
         _limits(settings["limits"], design.window_s),
+        SensorShape.from_arrays(arrays),
         float(settings["track_width_m"]),
         str(settings["robot"]),
         str(settings["source"]),

@@ -31,7 +31,7 @@ ALIKE = 30  # patches of the most similar texture
 FEWEST_IMAGES = 5
 # chosen on ground/, pavements/ and frames of other cameras, so these are no independent test;
 UNLIKE_RANK, UNLIKE_RANK_IN_CLASS = 0.75, 0.7
-UNLIKE_EXPOSURE = 0.36  # from one half
+UNLIKE_EXPOSURE = 0.4  # from one half
 MOST_WORDS = 3
 WORTH_NAMING = 0.5  # deviations within a terrain
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.likeness import FEWEST_IMAGES, TrainingLook, look_of
+from terrain.classification.likeness import FEWEST_IMAGES, Likeness, TrainingLook, look_of
 from terrain.classification.model_file import read_model, write_model
 from terrain.errors import ModelFileError
 from terrain.image_labeller import WORTH_OF_UNLIKE, RunLikeness
@@ -51,7 +51,13 @@ ALTERED = {
     "finer": lambda image: cv2.resize(
         np.tile(image, (4, 4)), image.shape, interpolation=cv2.INTER_AREA
     ),
+    "more compressed": lambda image: compressed(image, 8),
 }
+
+
+def compressed(image, quality):
+    coded = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, quality])[1]
+    return cv2.imdecode(coded, cv2.IMREAD_GRAYSCALE)
 
 
 def test_unseen_photographs_of_the_same_camera_are_like_the_training(training):
@@ -98,10 +104,10 @@ def test_a_look_follows_light_contrast_and_grain(rng):
     look = look_of(image)
     assert look[0] == pytest.approx(image.mean() / 255)
     assert look[1] == pytest.approx(np.log(image.std() + 1))
-    np.testing.assert_allclose(look_of(image + np.uint8(40))[1:], look[1:], atol=1e-6)
+    np.testing.assert_allclose(look_of(image + np.uint8(40))[1:], look[1:], atol=1e-5)
     np.testing.assert_allclose(look_of(np.stack([image] * 3, axis=-1)), look, atol=1e-6)
     twice = look_of(cv2.resize(image, None, fx=2, fy=2, interpolation=cv2.INTER_CUBIC))
-    np.testing.assert_allclose(twice[4:], look[3:5], atol=0.1)  # an octave up
+    np.testing.assert_allclose(twice[4:6], look[3:5], atol=0.1)  # an octave up
     assert np.isfinite(look_of(np.zeros((3, 2), np.uint8))).all()
 
 
@@ -147,3 +153,30 @@ def test_labels_of_unlike_images_count_less(classifier, training_patches):
     assert less["boards"] == pytest.approx(WORTH_OF_UNLIKE * 0.9 + (1 - WORTH_OF_UNLIKE) / 2)
     assert unlike.weighed("unknown", {}) == {}
     assert unlike.weighed("boards", {})["boards"] == pytest.approx(0.65)
+
+
+@pytest.mark.parametrize("power", [0.4, 2.5])
+def test_another_exposure_is_noticed_among_textures_alike(training, power):
+    """Also where ranks among all alone would not show it."""
+    table = np.rint(255 * (np.arange(256) / 255) ** power).astype(np.uint8)
+    images = photographs(2)[0]
+    assert abs(compared(training, images).exposure - 0.5) < 0.2
+    exposure = compared(training, [table[image] for image in images]).exposure
+    assert exposure == pytest.approx(float(power < 1), abs=0.05)
+    only = Likeness(20, 0.6, 0.6, ("brighter",), exposure)
+    assert only.is_unlike
+    assert f"{100 * exposure:.0f} % of those of similar texture are darker" in only.note
+
+
+def test_compression_sets_most_of_the_finest_octave_to_nothing():
+    images = photographs(2)[0]
+    usual = [np.mean([look_of(compressed(i, q))[-1] for i in images]) for q in (95, 30, 10)]
+    assert usual[0] > usual[1] > usual[2]
+
+
+def test_looks_of_older_files_have_no_compression(training):
+    arrays = training.arrays() | {"look_points": training.looks[:, :6]}
+    old = TrainingLook.from_arrays(arrays, 2)
+    images = photographs(2)[0]
+    assert compared(old, images).is_unlike is False
+    assert compared(old, [ALTERED["more blurred"](image) for image in images]).is_unlike

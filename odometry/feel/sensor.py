@@ -1,0 +1,167 @@
+"""Whether a spectrum can be that of the IMU which a model was identified with, by its shape."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from odometry.arrays import AnyArray, FloatArray
+from odometry.feel.design import LEAST_STEPS, Design
+from odometry.feel.spectra import LEAST_POWER, LOWEST_HZ, band_edges_hz, pair_rows
+from odometry.feel.windows import FeelWindows
+from odometry.run import UNKNOWN
+
+BANDS = 12
+LEAST_RUNS = 8  # of fewer the usual shape is not known
+LEAST_WINDOWS = 8  # that move; the mean of fewer is no shape of a run
+
+
+@dataclass(frozen=True)
+class SensorShape:
+    """The shape of the spectrum that the runs of a model share, whatever their terrain.
+
+    A shape is the logarithm of the density in equally wide bands less its mean, and the mean of
+    that over all axes. Terrains change it less than a filter, another sampling rate or a soft
+    mounting of the IMU, which change all axes alike.
+
+    Attributes
+    ----------
+    edges_hz : (B + 1,)
+    mean, deviation : (B,)
+        Over runs.
+    limit : float
+        Greatest distance (see `distance`) of one of the runs from the others.
+    """
+
+    edges_hz: FloatArray
+    mean: FloatArray
+    deviation: FloatArray
+    limit: float
+
+    @classmethod
+    def of(cls, windows: Sequence[FeelWindows], design: Design) -> "SensorShape | None":
+        """Of the runs of a model; None where they are few, or no axis has bands."""
+        bands = _bands(windows, design)
+        edges_hz = band_edges_hz(bands, design.top_hz)
+        named = [one.felt & (one.labels != UNKNOWN) for one in windows]
+        runs = [
+            shapes(one, design.axes, edges_hz)[of].mean(axis=0)
+            for one, of in zip(windows, named, strict=True)
+            if bands and of.sum() >= LEAST_WINDOWS
+        ]
+        if len(runs) < LEAST_RUNS:
+            return None
+        table = np.array(runs)
+        others = [np.delete(table, row, axis=0) for row in range(len(table))]
+        apart = [
+            float(_distance(row, of.mean(axis=0), of.std(axis=0, ddof=1)))
+            for row, of in zip(table, others, strict=True)
+        ]
+        return cls(edges_hz, table.mean(axis=0), table.std(axis=0, ddof=1), max(apart))
+
+    def excess(self, shape: FloatArray) -> FloatArray:
+        """Distance of shapes (..., B) in units of the limit."""
+        return np.asarray(_distance(shape, self.mean, self.deviation) / self.limit)
+
+    def words(self, shape: FloatArray) -> str:
+        """Where a shape (B,) is farthest off, and how."""
+        off = (shape - self.mean) / self.deviation
+        most = int(np.abs(off).argmax())
+        low, high = self.edges_hz[most : most + 2]
+        return f"{'weaker' if off[most] < 0 else 'stronger'} from {low:.0f} to {high:.0f} Hz"
+
+    def arrays(self) -> dict[str, AnyArray]:
+        """Everything learned, by name."""
+        return {
+            "sensor_edges": self.edges_hz,
+            "sensor_mean": self.mean,
+            "sensor_deviation": self.deviation,
+            "sensor_limit": np.array([self.limit]),
+        }
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, AnyArray]) -> "SensorShape | None":
+        """Rebuild from what `arrays` gave; None of a file without.
+
+        Raises
+        ------
+        KeyError, ValueError
+            If the arrays do not fit.
+        """
+        if "sensor_mean" not in arrays:
+            return None
+        edges, mean, deviation, limit = (
+            arrays[f"sensor_{name}"] for name in ("edges", "mean", "deviation", "limit")
+        )
+        if not mean.shape == deviation.shape == (len(edges) - 1,) or limit.shape != (1,):
+            raise ValueError(f"shapes of spectra: {mean.shape}, {deviation.shape}, {edges.shape}")
+        if not (deviation > 0).all() or limit[0] <= 0:
+            raise ValueError("shapes of spectra without spread")
+        return cls(edges, mean, deviation, float(limit[0]))
+
+
+@dataclass(frozen=True)
+class ShapeSoFar:
+    """The mean shape of windows that move; every method gives a new one.
+
+    Attributes
+    ----------
+    sensor : SensorShape or None
+        Without one no IMU is another.
+    axes : tuple of str
+        Of the model.
+    total : (B,)
+    count : int
+    """
+
+    sensor: SensorShape | None
+    axes: tuple[str, ...]
+    total: FloatArray
+    count: int
+
+    @classmethod
+    def none(cls, sensor: SensorShape | None, axes: tuple[str, ...]) -> "ShapeSoFar":
+        """Of no window yet."""
+        return cls(sensor, axes, np.zeros(0 if sensor is None else len(sensor.mean)), 0)
+
+    def plus(self, windows: FeelWindows) -> "ShapeSoFar":
+        """With more windows."""
+        if self.sensor is None or not windows.felt.any():
+            return self
+        more = shapes(windows, self.axes, self.sensor.edges_hz)[windows.felt]
+        total = self.total + more.sum(axis=0)
+        return ShapeSoFar(self.sensor, self.axes, total, self.count + len(more))
+
+    @property
+    def is_foreign(self) -> bool:
+        """Whether it is of another IMU."""
+        if self.sensor is None or self.count < LEAST_WINDOWS:
+            return False
+        return bool(self.sensor.excess(self.total / self.count) > 1)
+
+    @property
+    def words(self) -> str:
+        """Where it is farthest off."""
+        return "" if self.sensor is None else self.sensor.words(self.total / max(self.count, 1))
+
+
+def shapes(windows: FeelWindows, axes: Sequence[str], edges_hz: FloatArray) -> FloatArray:
+    """The shape (W, B) of the spectrum of each window."""
+    rows = [windows.axes.index(axis) for axis in axes]
+    both = windows.densities[:, pair_rows(len(windows.axes), rows)]
+    logs = np.log(both[:, np.equal(*np.triu_indices(len(rows)))] + LEAST_POWER)
+    first = np.searchsorted(np.arange(logs.shape[-1]) * windows.step_hz, edges_hz - 1e-9)
+    bands = np.stack([logs[..., a:b].mean(axis=-1) for a, b in pairwise(first)], axis=-1)
+    return np.asarray((bands - bands.mean(axis=-1, keepdims=True)).mean(axis=1))
+
+
+def _bands(windows: Sequence[FeelWindows], design: Design) -> int:
+    step_hz = max(one.step_hz for one in windows)
+    most = int((design.top_hz - LOWEST_HZ) / (LEAST_STEPS * step_hz))
+    return min(BANDS, most) if design.axes else 0
+
+
+def _distance(shape: FloatArray, mean: FloatArray, deviation: FloatArray) -> AnyArray:
+    """Mean square of the differences of shapes (..., B), in deviations of each band."""
+    return np.asarray((((shape - mean) / deviation) ** 2).mean(axis=-1))

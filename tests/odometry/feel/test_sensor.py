@@ -1,0 +1,128 @@
+"""A spectrum that cannot come from the IMU of a model is unknown, and it is said why."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.feel.design import Design
+from odometry.feel.files import sentences
+from odometry.feel.follow import follow_feel
+from odometry.feel.live_run import follow_feel_live
+from odometry.feel.model_file import FEEL, FeelFileError, read_feel_model, write_feel_model
+from odometry.feel.sensor import LEAST_RUNS, LEAST_WINDOWS, SensorShape, ShapeSoFar, shapes
+from odometry.feel.windows import feel_windows
+from odometry.io.array_file import read_array_file, write_array_file
+from odometry.run import UNKNOWN
+from tests.odometry.feel.feel_drives import drive, drives, with_imu
+
+NAMES = ("tiles", "gravel", "snow")
+
+
+def averaged(samples):
+    """A moving average over so many samples, of every axis."""
+
+    def change(columns):
+        for name in columns:
+            if name != "t":
+                padded = np.concatenate([np.full(samples - 1, columns[name][0]), columns[name]])
+                columns[name] = np.convolve(padded, np.full(samples, 1 / samples), "valid")
+        return columns
+
+    return change
+
+
+def every_other(columns):
+    """Sampled half as often, and interpolated."""
+    for name in columns:
+        if name != "t":
+            columns[name] = np.interp(columns["t"], columns["t"][::2], columns[name][::2])
+    return columns
+
+
+def blind(model):
+    """The same model without the shape of its spectra."""
+    return replace(model, sensor=None)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("change", [averaged(3), averaged(5), every_other])
+def test_a_filter_or_another_rate_is_unknown_and_said(model, name, change):
+    felt = follow_feel(with_imu(drive(name, 950), change), model)
+    assert felt.foreign.all()
+    assert set(felt.answers) == set(felt.lasting_answers) == {UNKNOWN}
+    assert felt.answer_of_run[0] == UNKNOWN
+    (why,) = [line for line in sentences(felt) if "spectrum" in line]
+    assert "another filter, sampling rate or mounting of the IMU" in why
+    assert " Hz)" in why
+
+
+def test_fresh_runs_of_the_same_imu_are_not_foreign(model):
+    felt = [follow_feel(drive(name, 960 + i), model) for i, name in enumerate(NAMES * 4)]
+    assert np.mean([one.foreign.any() for one in felt]) <= 1 / 6
+    known = [one for one in felt if not one.foreign.any()]
+    assert not any("spectrum" in line for one in known for line in sentences(one))
+
+
+def test_live_says_so_once_enough_is_known(model):
+    run = with_imu(drive("gravel", 950), averaged(5))
+    felt = follow_feel_live(run, model)
+    moving = np.cumsum(felt.windows.felt)
+    assert not felt.foreign[moving < LEAST_WINDOWS].any()
+    assert felt.foreign[moving >= LEAST_WINDOWS].all()
+    assert felt.answer_of_run[0] == UNKNOWN
+    same = follow_feel_live(drive("gravel", 960), model)
+    assert not same.foreign.any()
+
+
+def test_a_shape_is_that_of_all_axes_whatever_their_size(model):
+    windows = feel_windows(drive("gravel", 970))
+    axes, edges = model.design.axes, model.sensor.edges_hz
+    one, other = (
+        shapes(replace(windows, densities=windows.densities * factor), axes, edges)
+        for factor in (1.0, 9.0)
+    )
+    np.testing.assert_allclose(one, other, atol=1e-4)  # the least power is added to both
+    np.testing.assert_allclose(one.mean(axis=1), 0, atol=1e-12)
+
+
+def test_the_limit_is_the_farthest_of_the_runs_from_the_others(model):
+    windows = [feel_windows(run) for run in drives(NAMES)]
+    found = SensorShape.of(windows, model.design)
+    table = np.array(
+        [shapes(w, model.design.axes, found.edges_hz)[w.felt].mean(0) for w in windows]
+    )
+    apart = []
+    for row in range(len(table)):
+        others = np.delete(table, row, axis=0)
+        off = (table[row] - others.mean(0)) / others.std(0, ddof=1)
+        apart.append(np.mean(off**2))
+    assert found.limit == pytest.approx(max(apart))
+    np.testing.assert_allclose(found.excess(found.mean), 0)
+    so_far = ShapeSoFar.none(found, model.design.axes)
+    assert not so_far.is_foreign
+    np.testing.assert_allclose(so_far.plus(windows[0]).total / windows[0].felt.sum(), table[0])
+
+
+def test_few_runs_and_no_axis_know_no_shape(model):
+    windows = [feel_windows(run) for run in drives(NAMES)]
+    assert SensorShape.of(windows[: LEAST_RUNS - 1], model.design) is None
+    no_axis = Design(2.0, (), ("yaw",), 50.0, (0,), shaped=False)
+    assert SensorShape.of(windows, no_axis) is None
+    assert not follow_feel(with_imu(drive("snow", 950), averaged(5)), blind(model)).foreign.any()
+
+
+def test_a_file_keeps_it_and_older_ones_have_none(model, tmp_path):
+    file = tmp_path / "a.feel"
+    write_feel_model(file, model)
+    read = read_feel_model(file).sensor
+    assert read.limit == model.sensor.limit
+    np.testing.assert_array_equal(read.mean, model.sensor.mean)
+    settings, arrays = read_array_file(file, FEEL)
+    old = {name: of for name, of in arrays.items() if not name.startswith("sensor_")}
+    write_array_file(tmp_path / "old.feel", FEEL, settings, old)
+    assert read_feel_model(tmp_path / "old.feel").sensor is None
+    for bad in ({"sensor_limit": np.zeros(1)}, {"sensor_mean": np.zeros(3)}):
+        write_array_file(tmp_path / "bad.feel", FEEL, settings, arrays | bad)
+        with pytest.raises(FeelFileError, match="shapes of spectra"):
+            read_feel_model(tmp_path / "bad.feel")

@@ -1,0 +1,178 @@
+"""Recordings as another IMU would give them: which names they get by feel, and what is refused.
+
+Run `python -m tests.studies.feel_sensors FOLDER`; FOLDER holds run folders with imu.csv of all six
+axes that name one terrain each. Whole runs are held out in five folds; each is judged as it is and
+altered, by the model of the others as before (distances alone) and with the shape of its spectrum.
+"""
+
+import argparse
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from scipy.signal import butter, sosfilt, sosfilt_zi
+
+from odometry.arrays import FloatArray
+from odometry.errors import OdometryError
+from odometry.feel.design import Design
+from odometry.feel.felt import FeelConfig
+from odometry.feel.follow import Felt
+from odometry.feel.members import fitted_members
+from odometry.feel.model import FeelModel
+from odometry.feel.selection import main_labels, selected
+from odometry.feel.sensor import SensorShape
+from odometry.feel.signals import AXES
+from odometry.feel.table import FeelTable, stratified_folds
+from odometry.feel.windows import FeelWindows, feel_windows
+from odometry.run import UNKNOWN, Run
+from odometry.table import Table
+
+WINDOW_S = 2.0
+Change = Callable[[FloatArray], FloatArray]
+
+
+def average(samples: int) -> Change:
+    """A moving average of so many samples."""
+    weights = np.full(samples, 1 / samples)
+
+    def change(axes: FloatArray) -> FloatArray:
+        padded = np.hstack([np.repeat(axes[:, :1], samples - 1, axis=1), axes])
+        return np.array([np.convolve(one, weights, "valid") for one in padded])
+
+    return change
+
+
+def low_pass(order: int, corner: float, rows: slice = slice(None)) -> Change:
+    """A Butterworth filter of some axes; its corner in shares of the sampling rate."""
+    sos = butter(order, corner, fs=1.0, output="sos")
+
+    def change(axes: FloatArray) -> FloatArray:
+        start = sosfilt_zi(sos)[:, None, :] * axes[None, rows, :1]
+        found = axes.copy()
+        found[rows] = sosfilt(sos, axes[rows], axis=1, zi=start)[0]
+        return found
+
+    return change
+
+
+def half_as_often(axes: FloatArray) -> FloatArray:
+    """Every other sample, and straight lines between them."""
+    at = np.arange(axes.shape[1])
+    return np.array([np.interp(at, at[::2], one[::2]) for one in axes])
+
+
+def turned(axes: FloatArray) -> FloatArray:
+    """The IMU mounted with its x to the left."""
+    return axes[[1, 0, 2, 4, 3, 5]] * np.array([-1, 1, 1, -1, 1, 1])[:, None]
+
+
+def scaled(factor: float, rows: slice) -> Change:
+    """Some axes by a factor, their means aside."""
+
+    def change(axes: FloatArray) -> FloatArray:
+        found, mean = axes.copy(), axes[rows].mean(axis=1, keepdims=True)
+        found[rows] = mean + factor * (axes[rows] - mean)
+        return found
+
+    return change
+
+
+GYRO, ACCEL = slice(0, 3), slice(3, 6)
+ALTERED: dict[str, Change] = {
+    "as it is": lambda axes: axes,
+    "average of 3": average(3),
+    "average of 5": average(5),
+    "average of 7": average(7),
+    "average of 11": average(11),
+    "1st order, .05": low_pass(1, 0.05),
+    "1st order, .2": low_pass(1, 0.2),
+    "2nd order, .3": low_pass(2, 0.3),
+    "4th order, .4": low_pass(4, 0.4),
+    "gyro, 2nd, .15": low_pass(2, 0.15, GYRO),
+    "accel, 2nd, .15": low_pass(2, 0.15, ACCEL),
+    "half the rate": half_as_often,
+    "x to the left": turned,
+    "accel twice": scaled(2.0, ACCEL),
+    "gyro in degrees/s": lambda axes: np.vstack([np.rad2deg(axes[GYRO]), axes[ACCEL]]),
+    "accel in g": lambda axes: np.vstack([axes[GYRO], axes[ACCEL] / 9.81]),
+    "x and z swapped": lambda axes: axes[[2, 1, 0, 5, 4, 3]],
+    "constant": lambda axes: np.repeat(axes[:, :1], axes.shape[1], axis=1),
+}
+
+
+def altered(run: Run, change: Change) -> FeelWindows | None:
+    """Windows of the run as another IMU would give it; None where it is refused."""
+    axes = change(np.stack([run.imu[name] for name in AXES]))
+    columns = {**run.imu.columns, **dict(zip(AXES, axes, strict=True))}
+    table = Table(run.imu.file, columns, np.arange(2, 2 + len(run.imu)))
+    try:
+        return feel_windows(replace(run, imu=table), WINDOW_S)
+    except OdometryError:
+        return None
+
+
+def fitted(runs: list[Run], windows: list[FeelWindows], known: np.ndarray) -> FeelModel:
+    """The model of some of the runs, every choice made among them."""
+    table = FeelTable.of(windows, Design.shared(windows))
+    best = selected([table], np.arange(len(runs)), known, np.random.default_rng(0))
+    names = tuple(sorted(set(main_labels(table, len(runs))[known])))
+    members = fitted_members(table, known, names, [best.choice])[0]
+    sensor = SensorShape.of([windows[row] for row in np.flatnonzero(known)], table.design)
+    return FeelModel(names, table.design, best.choice, members, best.calibration, best.strangeness,
+                     best.limits, sensor, runs[0].robot.track_width, "")  # fmt: skip
+
+
+def answers(model: FeelModel, windows: FeelWindows, run: Run) -> list[float]:
+    """Run right, wrong, unknown; windows right, wrong, unknown."""
+    felt = Felt(model, FeelConfig(), windows, model.scores(windows), model.foreign(windows), run)
+    of_run, of_windows = felt.answer_of_run[0], felt.answers[felt.windows.felt]
+    rows = (np.array([of_run]), of_windows)
+    return [
+        float(np.mean(kind))
+        for of in rows
+        for kind in (
+            of == run.terrain,
+            np.isin(of.astype(str), model.names) & (of != run.terrain),
+            of == UNKNOWN,
+        )
+    ]
+
+
+def said(rows: list[list[list[float]]]) -> str:
+    """Means over runs, before and with the shape."""
+    means = np.mean(rows, axis=0) if rows else []
+    return "; ".join(" ".join(f"{cell:.2f}" for cell in row) for row in means)
+
+
+def main() -> None:
+    """Print the shares."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path)
+    folder = parser.parse_args().folder
+    runs = [Run.read(file.parent) for file in sorted(folder.glob("*/run.toml"))]
+    windows = [feel_windows(run, WINDOW_S) for run in runs]
+    labels = np.array([run.terrain for run in runs], dtype=object)
+    folds = stratified_folds(np.arange(len(runs)), labels, 5, np.random.default_rng(0))
+    models = [fitted(runs, windows, folds != fold) for fold in range(5)]
+    print("runs right, wrong, unknown; windows likewise: before; with the shape; runs refused")
+    for name, change in ALTERED.items():
+        found = [altered(run, change) for run in runs]
+        judged = [
+            [answers(one, of, run) for one in (replace(models[fold], sensor=None), models[fold])]
+            for run, of, fold in zip(runs, found, folds, strict=True)
+            if of is not None
+        ]
+        print(f"{name:18s} {said(judged)}; {sum(of is None for of in found)}", flush=True)
+    for name in models[0].names:
+        known = labels != name
+        model = fitted(runs, windows, known)
+        rows = [
+            [answers(one, windows[row], runs[row]) for one in (replace(model, sensor=None), model)]
+            for row in np.flatnonzero(~known)
+        ]
+        print(f"never felt {name}: {said(rows)}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
