@@ -71,3 +71,28 @@ def test_a_simulated_run_may_be_exact():
     run = reckoned(winding(), by_gyroscope(winding()))
     simulated = replace(run, truth=run.pose)
     assert "poses_are_wheel_odometry" not in names(simulated)
+
+
+@pytest.mark.parametrize("delay_s", [-0.05, 0.1, 0.25])
+def test_poses_that_come_later_or_belong_to_another_row_are_computed_all_the_same(delay_s):
+    run = winding()
+    found = put(reckoned(run, by_gyroscope(run)), "pose", t=run.pose.stamps_s + delay_s)
+    assert names(found)[0] == "poses_are_wheel_odometry"
+
+
+def test_a_program_that_filters_what_it_computes_is_no_reference():
+    """A low pass of 0.1 s, on turns that are half of the gyroscope and half of the treads."""
+    run = winding()
+    t, tau_s = run.odometry.stamps_s, 0.1
+    decay = np.exp(-np.diff(t) / tau_s)
+
+    def filtered(values):
+        slow = np.array(values, dtype=float)
+        for row in range(1, len(slow)):
+            slow[row] = decay[row - 1] * slow[row - 1] + (1 - decay[row - 1]) * values[row]
+        return slow
+
+    treads = {name: filtered(run.odometry[name]) for name in ("v_left", "v_right")}
+    mixed = filtered((by_gyroscope(run) + by_treads(run, 1.9)) / 2)
+    poses = reckoned(put(run, "odometry", **treads), mixed).pose
+    assert names(replace(run, pose=poses))[0] == "poses_are_wheel_odometry"
