@@ -133,6 +133,10 @@ class ShapeSoFar:
         total = self.total + more.sum(axis=0)
         return ShapeSoFar(self.sensor, self.axes, total, self.count + len(more))
 
+    def less(self, part: "ShapeSoFar") -> "ShapeSoFar":
+        """Without the windows of a part of it."""
+        return ShapeSoFar(self.sensor, self.axes, self.total - part.total, self.count - part.count)
+
     @property
     def is_foreign(self) -> bool:
         """Whether it is of another IMU."""
