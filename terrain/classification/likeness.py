@@ -27,9 +27,9 @@ SIGMAS_PX = (0.7, 1.4, 2.8, 5.6, 11.2)  # between two of them lies an octave of 
 PATCHES_PER_PHOTO = 12
 MOST_PATCHES = 2000
 NEAREST = 3
-ALIKE = 30  # patches of the most similar texture
+SIMILAR = 30  # patches of the most similar texture
 FEWEST_IMAGES = 5
-# chosen on ground/, pavements/ and frames of other cameras, so these are no independent test;
+# chosen on ground/, pavements/ and frames of other cameras: these are no independent test
 UNLIKE_RANK, UNLIKE_RANK_IN_CLASS = 0.75, 0.7
 UNLIKE_EXPOSURE = 0.4  # from one half
 MOST_WORDS = 3
@@ -148,11 +148,11 @@ class TrainingLook:
         (distance,), (nearest,) = self._nearest(look[None])
         nearer = self.distances < distance
         apart = (self.looks[:, TEXTURE] - look[TEXTURE]) / self.spread[TEXTURE]
-        alike = np.argsort((apart**2).sum(axis=1), kind="stable")[:ALIKE]
+        similar = np.argsort((apart**2).sum(axis=1), kind="stable")[:SIMILAR]
         return (
             float(nearer.mean()),
             float(nearer[self.codes == self.codes[nearest]].mean()),
-            float(np.mean(self.looks[alike, 0] < look[0])),
+            float(np.mean(self.looks[similar, 0] < look[0])),
         )
 
     def how(self, looks: FloatArray) -> tuple[str, ...]:

@@ -165,15 +165,11 @@ class ShownGround:
         """
         if "shown_least_texture" not in arrays:
             return None
-        found = cls(*(arrays[f"shown_{field.name}"] for field in fields(cls)))
-        shapes = {found.least_texture.shape} | {(*of.shape, OCTAVES) for of in found._single}
-        if shapes != {(classes, OCTAVES)}:
+        limits = [arrays[f"shown_{field.name}"] for field in fields(cls)]
+        shapes = [limit.shape for limit in limits]
+        if shapes != [(classes, OCTAVES)] + [(classes,)] * (len(limits) - 1):
             raise ValueError(f"what {classes} terrains show has shapes {shapes}")
-        return found
-
-    @property
-    def _single(self) -> tuple[FloatArray, ...]:
-        return self.most_white, self.most_black, self.noise, self.smooth, self.most_blue
+        return cls(*limits)
 
 
 def _limits(texture: FloatArray, others: FloatArray) -> tuple[AnyArray | float, ...]:
