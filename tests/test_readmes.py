@@ -228,7 +228,7 @@ def test_the_python_imports_public_names(readme: Path) -> None:
 
 @needs_new_stubs
 def test_the_python_of_the_guides_is_typed(tmp_path: Path) -> None:
-    """One program for each README, judged by mypy as strictly as the packages."""
+    """One program for each README, checked by mypy as strictly as the packages."""
     for readme in README_FILES:
         program = tmp_path / f"{'_'.join(readme.relative_to(ROOT).parts[:-1])}_readme.py"
         program.write_text("\n".join(blocks(readme, "python")), encoding="utf-8")

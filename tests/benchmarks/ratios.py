@@ -16,7 +16,7 @@ class Ratio:
     aim : float
         At most so much; where `more_is_better`, at least.
     told : bool
-        Whether `of` tells its figure itself, as `figure` in its extra info.
+        Whether `of` states its own figure, as `figure` in its extra info.
     more_is_better : bool
     """
 

@@ -15,7 +15,7 @@ SETTINGS = {"as it comes": {}, "as published": PAPER}
 
 
 def step(with_gyroscope, settings):
-    """The third step of a filter: it has seen a pose and yaw rates before."""
+    """The third step of a filter: a pose and yaw rates came before."""
     ekf = IcrEkf(0.6, config=IcrEkfConfig(**settings))
     rates = np.array([math.nan, 0.021, 0.019, 0.02]) if with_gyroscope else [math.nan] * 4
     first, *others, last = (

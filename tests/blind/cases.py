@@ -3,7 +3,7 @@
     from tests.blind.cases import KINDS, make_case
     case = make_case("slope_sliding", seed=3, folder=Path("somewhere"), noise=1.0)
 
-Nothing here knows the catalogue of effects: the formulae are written from the papers again.
+Nothing here uses the catalogue of effects: the formulae are written from the papers again.
 """
 
 from dataclasses import dataclass
@@ -66,7 +66,7 @@ PLAIN = {
     "unknown": "unknown",
     "none": "none",
 }
-# What no data of these cases can tell from the truth: a reference that drifts, a gust or current.
+# What no data of these cases distinguish from it: a reference that drifts, a gust or current.
 ALIKE = {"unknown_pull": ("reference",)}
 KINDS = {
     "formula": FORMULA,

@@ -116,7 +116,7 @@ def test_nees_lies_in_its_bounds(make_filter, experiments):
     """Mean of e' P^-1 e over 60 runs: chi-squared with 360 degrees over 60, 95 % two-sided.
 
     Of ten stamps half are bound to be outside once or so by chance; two are allowed. The whole
-    state is judged, and the ICRs alone.
+    state is checked, and the ICRs alone.
     """
     truth, poses = experiments
     estimates = [filtered(make_filter(), poses[:, run], every=2) for run in range(60)]

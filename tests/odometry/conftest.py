@@ -88,7 +88,7 @@ def make_scene():
 
 @pytest.fixture(scope="session")
 def known():
-    """A calibration that knows the truth."""
+    """A calibration that holds the truth."""
     model = Icr()
     values = {"y_left": Y_LEFT, "y_right": Y_RIGHT, "x_icr": X_ICR}
     base = Base(model, model.pack({**values, "alpha_left": 1.0, "alpha_right": 1.0}), ROBOT)

@@ -123,7 +123,7 @@ def test_a_stamp_that_is_no_number_is_dropped_and_harms_nothing(stamp_s):
     frames.gyroscope(stamp_s, 0.1)
     frames.gyroscope(1.0, np.nan)
     assert frames.too_late == 4
-    assert frames.ready() == []  # the gyroscope has told nothing yet
+    assert frames.ready() == []  # no row of the gyroscope yet
     frames.gyroscope(1.1, 0.1)
     frames.treads(1.1, 0.5, 0.5)
     assert [frame.stamp_s for frame in frames.ready()] == [1.0, 1.1]

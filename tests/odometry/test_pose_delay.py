@@ -40,7 +40,7 @@ def test_a_delay_is_found_and_undone(late_s):
 
 @pytest.mark.parametrize("late_s", [-0.4, -0.1, 0.0, 0.03])
 def test_what_is_not_certain_is_left_alone(late_s):
-    """Early poses have another cause, and very short delays cannot be told."""
+    """Early poses have another cause, and very short delays cannot be estimated."""
     given = run_of(late_s)
     run, events = without_pose_delay(given, IcrEkfConfig())
     assert run is given

@@ -195,7 +195,7 @@ def test_relative_pose_errors(evo, trajectories, kind, relation, delta):
 )
 @pytest.mark.parametrize("relation", RELATIONS)
 def test_other_formats_are_read_alike(evo, trajectories, name, files, relation):
-    """KITTI files have other axes, body and fixed frame alike: no error depends on them."""
+    """KITTI files have other axes, of body and fixed frame: no error depends on them."""
     folder, reference, drifting = trajectories["space"]
     write_trajectory(folder, "reference", reference, name)
     write_trajectory(folder, "drifting", drifting, name)

@@ -1,6 +1,6 @@
 """SFTA against values of programs written by others.
 
-The values are those of `sfta-reference` in the data folder: its README tells how each was made.
+The values are those of `sfta-reference` in the data folder: its README says how each was made.
 `ramp_100x256` has exact ties between thresholds, which every program settles in its own way.
 """
 

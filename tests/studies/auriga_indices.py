@@ -6,7 +6,8 @@ The truth is the 441 steady states of the contact simulator (`auriga.py`). The c
 eq. 25-27 are refitted as the paper did, each index by least squares with the simulated |F| and H.
 The model then predicts every pair from its speeds alone, with the |F| of its own twist. Errors of
 all pairs that settled are printed beside constant ICRs and beside the paper's Table II; and,
-because a fit is judged by other data, those of pairs left out in turn (ten folds of random pairs).
+because a fit is evaluated on other data, those of pairs left out in turn (ten folds of random
+pairs).
 """
 
 import argparse
@@ -33,7 +34,7 @@ MODEL = IcrInertia()
 
 
 def main() -> None:
-    """Fit, judge, draw."""
+    """Fit, evaluate, draw."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, default=None)
     arguments = parser.parse_args()

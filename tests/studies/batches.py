@@ -140,7 +140,7 @@ def cluster(words: tuple[str, ...], whole: Contents) -> None:
         one.communicate()
     replayed = Counter(row["run"] for row in table("far/times.csv"))
     print(
-        f"cluster, one of two workers killed half way: {len(replayed)} jobs, each told of "
+        f"cluster, one of two workers killed half way: {len(replayed)} jobs, each reported "
         f"{max(replayed.values())} time; same bytes: {contents('far') == whole}",
         flush=True,
     )

@@ -170,7 +170,7 @@ def summarise(rows: list[Any]) -> None:
     for name in dict.fromkeys(row[0] for row in rows):
         told = [(error, half) for one, error, half in rows if one == name and error is not None]
         refused = sum(one == name and error is None for one, error, _ in rows)
-        print(f"-- {name}: {len(told)} told, {refused} refused")
+        print(f"-- {name}: {len(told)} calibrated, {refused} refused")
         if not told:
             continue
         errors, halves = (np.abs(np.array(part)) for part in zip(*told, strict=True))

@@ -123,7 +123,7 @@ def mistakes(table):
 
 
 def found(robot, table, size):
-    """Causes of warnings, in the order in which the check tells them."""
+    """Causes of warnings, in the order in which the check prints them."""
     findings = []
     try:
         camera = Camera.from_table(table)

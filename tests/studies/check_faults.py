@@ -8,9 +8,9 @@ split; figures are stated of the second, whose drives the first does not have
 (tests/blind/faults/bases.py lists both).
 
 Noticed: a finding at the fault's level or a more severe one, which the clean recording does not
-have. Cause first: the first such refusal or warning (of a fault that is only noted: finding)
-names the cause, or that of a fault which the files cannot tell from it. Wrong: the first names
-another cause, and not that none can be told. An exception is a crash.
+have. Cause first: the first such refusal or warning (of a fault that is only noted: finding) names
+the cause, or that of a fault which the files cannot distinguish from it. Wrong: the first names
+another cause, and not that none can be determined. An exception is a crash.
 """
 
 import argparse

@@ -1,4 +1,4 @@
-"""What the check says of faulty and of clean recordings, judged."""
+"""What the check says of faulty and of clean recordings, scored."""
 
 import math
 import signal
@@ -22,7 +22,7 @@ SEVERITY = {"note": 0, "warning": 1, "refused": 2}
 class Answer:
     """Of one faulty recording: what was noticed, whether its cause was named, what was said.
 
-    `wrong` where another cause stands first, and not that none can be told.
+    `wrong` where another cause stands first, and not that none can be determined.
     """
 
     key: str
@@ -38,7 +38,7 @@ class Answer:
 
 
 def check(folder):
-    """Findings of the whole check as (name, level, seen, cause); at most two minutes."""
+    """Findings of the whole check as (name, level, what was found, cause); at most two minutes."""
     checked = getattr(terrain, "check_run", None) or odometry.check_recording
     signal.signal(signal.SIGALRM, _give_up)
     signal.alarm(120)
@@ -70,7 +70,7 @@ def new_findings(fault, found, clean):
 
 
 def judge(bases, task):
-    """Draw one case, check it and judge the answer."""
+    """Draw one case, check it and score the answer."""
     key, seed = task
     fault = FAULTS[key]
     with tempfile.TemporaryDirectory() as place:

@@ -5,7 +5,7 @@
 
 The drives are those of `coverage.py`, their yaw left out; every second one has a gyroscope.
 `--wander` adds slip that the model does not have (relative size, over about 3 s); `--lasting`
-makes the noise of positions alike over so many seconds, as that of GNSS is. The length of
+makes the noise of positions last so many seconds, as that of GNSS is. The length of
 the stretches is chosen as `identify` chooses it.
 """
 

@@ -3,13 +3,13 @@
     python tests/studies/estimation_consistency.py [--seeds 20] [--duration 60] [--gyroscope]
                                                    [--real [--seven]]
 
-The true state is drawn from what the filter believes at its start; it wanders by the process
+The true state is drawn from the filter's estimate at its start; it wanders by the process
 noise of its settings, and poses and yaw rates are measured with theirs. Then the mean of N runs
 lies within the 95 % bounds of chi-squared (Bar-Shalom, Li and Kirubarajan 2001, 5.4.2) at 95 % of
 the steps. The steps of one run are dependent, so that the whole mean spreads more than the bounds.
 Nobody watches the sensors: white slip turns the robot by jumps that would be held out as spikes.
 It is also ten times the variance at which the filter weighs the yaw rate of treads, whose slip it
-takes to last: with the gyroscope, what is believed of the width is too sure under it.
+takes to last: with the gyroscope, the estimate of the width is overconfident under it.
 Open loop: the odometer's error under the covariance in odometer.csv after 5, 20 and 100 m, also
 (--real, TERRAIN_ODOMETRY_DATA) on recordings with poses that are cut at four moments.
 """
@@ -49,7 +49,7 @@ HORIZONS_M = (5.0, 20.0, 100.0)
 
 @dataclass(frozen=True)
 class Squares:
-    """Normalised squared errors of one run at its steps; NaN where nothing is told."""
+    """Normalised squared errors of one run at its steps; NaN where nothing is estimated."""
 
     pose: np.ndarray
     state: np.ndarray
@@ -95,7 +95,7 @@ def parameters():
 
 
 def matching_noise(config):
-    """The noise that the settings of the filter speak of; what a version does not have is none.
+    """The noise that the settings of the filter describe; what a version does not have is none.
 
     The treads turn the robot with the noise of slip, whether a gyroscope measures it or not.
     """
@@ -113,7 +113,7 @@ def matching_noise(config):
 
 
 def drawn_drive(ekf, duration_s, rng):
-    """A drive from a state that is drawn from what the filter believes at its start.
+    """A drive from a state that is drawn from the filter's estimate at its start.
 
     The pose at the start is measured with the noise of every pose.
     """

@@ -3,8 +3,8 @@
     python tests/studies/estimation_lockout.py [--only NAME ...] [--save FILE]
 
 Needs TERRAIN_ODOMETRY_DATA. On recordings of fast drives and of ice, pose.csv is thinned, delayed
-and made noisy; the estimate is judged on all recorded poses. "Worse" is farther off than the ideal
-drive, at the end or in the mean; it is allowed only where an event of the filter says so.
+and made noisy; the estimate is evaluated on all recorded poses. "Worse" is farther off than the
+ideal drive, at the end or in the mean; it is allowed only where an event of the filter says so.
 """
 
 import argparse

@@ -4,9 +4,9 @@
                                                  [--against FILE]
 
 Needs TERRAIN_ODOMETRY_DATA. The world is turned by 120 degrees, and the yaw column of pose.csv
-emptied. Every second second of poses is withheld, and the estimate is judged there after the first
-20 m of wheel travel: its mean distance with positions alone, by that with full poses. Initial yaw:
-how far the odometer's first yaw is off the measured one. Loops: models are identified from
+emptied. Every second second of poses is withheld, and the estimate is evaluated there after the
+first 20 m of wheel travel: its mean distance with positions alone, by that with full poses. Initial
+yaw: how far the odometer's first yaw is off the measured one. Loops: models are identified from
 positions alone, and the treads are reckoned open loop by a loop of the study's own; root mean
 square distance by length, from the measured first pose, and (turned) with the heading that fits
 best, as positions cannot give one.

@@ -85,7 +85,7 @@ def error_per_metre(path, reference, travel_m, horizon_m=HORIZON_M):
     """Mean over a window from every reference pose; travel (N,) is that at the reference's stamps.
 
     A window ends at the first pose at which its wheel travel is reached. Its error is the
-    distance of the two end positions, each seen from its own start pose, by the horizon.
+    distance of the two end positions, each in the frame of its own start pose, by the horizon.
     """
     seen = at(path, reference.stamps_s)
     errors, end = [], 0

@@ -5,7 +5,7 @@
 Needs TERRAIN_ODOMETRY_DATA. Error per metre: over 5 m of wheel travel, a window from every pose,
 mean, metres per metre. The ideal drive and the gyroscope with mean wheel speed are computed by
 loops of the study's own; the odometer (open loop) and the estimate come out of the program. The
-estimate is judged on poses that it did not see: every second second of pose.csv is taken away.
+estimate is evaluated on withheld poses: every second second of pose.csv is taken away.
 "Ends" is the distance from the last pose. `--against` shows the figures of an earlier run beside.
 """
 

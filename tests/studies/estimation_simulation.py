@@ -1,4 +1,4 @@
-"""A drive simulated by its own loop: ICRs that are true, and noise that a filter may believe in.
+"""A drive simulated by its own loop: ICRs that are true, and noise as a filter assumes it.
 
 Speeds hold over a step; the pose moves along the exact arc. Nothing here is of the project but
 the containers `Frame`, `Run` and `Table`.

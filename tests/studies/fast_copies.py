@@ -2,8 +2,8 @@
 
 Copies are chosen one after another, each time the one with which balanced accuracy by patch, mean
 over both sets of photographs, is best out of fold. The choice is nested: it is made anew on the
-training part of every outer fold, and judged on photographs that took no part in it. Candidates are
-copies that cost little beside the grey image.
+training part of every outer fold, and evaluated on photographs that took no part in it. Candidates
+are copies that cost little beside the grey image.
 
 usage: python tests/studies/fast_copies.py DATA/terrain-images/ground DATA/terrain-images/pavements
 """
@@ -74,7 +74,7 @@ class Photos:
         return self.scores(votes)[0]
 
     def scores(self, votes: FloatArray) -> tuple[float, float]:
-        """Balanced accuracy by patch and by photograph, of those that were judged."""
+        """Balanced accuracy by patch and by photograph, of those that were evaluated."""
         judged: BoolArray = np.isfinite(votes[:, 0])
         codes, groups, votes = self.codes[judged], self.groups[judged], votes[judged]
         by_photo = [

@@ -1,4 +1,4 @@
-"""Terrain by feel on recordings: whole runs held out, terrains and speeds never felt.
+"""Terrain by feel on recordings: whole runs held out, terrains and speeds left out of training.
 
 Run `python -m tests.studies.feel FOLDER`; FOLDER holds run folders with imu.csv that name one
 terrain each.
@@ -23,7 +23,7 @@ from odometry.feel.table import FeelTable, stratified_folds
 from odometry.feel.windows import feel_windows
 from odometry.run import Run
 
-SLOW_M_S = 0.3  # mean speed of a run: slower ones train, faster ones are judged, and back
+SLOW_M_S = 0.3  # mean speed of a run: slower ones train, faster ones are evaluated, and back
 SURE = 0.9
 
 
@@ -93,9 +93,9 @@ def shown(means):
 
 
 def unknown(table, runs):
-    """Each terrain in turn is never felt; a fifth of the known runs are held out beside it.
+    """Each terrain in turn is left out of training, and a fifth of the known runs beside it.
 
-    Each fifth once, so that each known run is judged once and each unknown one five times.
+    Each fifth once, so that each known run is evaluated once and each unknown one five times.
     """
     labels, groups = main_labels(table, runs), np.arange(runs)
     lines = {length: [] for length in LENGTHS}
@@ -147,13 +147,13 @@ def figures(known, never):
 
 def said(figures_of):
     return (
-        "area {:.2f}; unknown {:.3f} of known, {:.3f} of never felt; named with 0.6 or more {:.3f} "
-        "of known, {:.3f} of never felt ({:.3f} of known wrongly); with 0.9 {:.3f} and {:.3f}"
+        "area {:.2f}; unknown {:.3f} of known, {:.3f} of left out; named with 0.6 or more {:.3f} "
+        "of known, {:.3f} of left out ({:.3f} of known wrongly); with 0.9 {:.3f} and {:.3f}"
     ).format(*figures_of)
 
 
 def other_speeds(table, runs):
-    """Slow runs train and fast ones are judged, and back; beside it what speed alone tells."""
+    """Slow runs train and fast ones are evaluated, and back; beside it what speed alone says."""
     speeds = np.array([table.speeds_m_s[table.runs == run].mean() for run in range(runs)])
     slow = speeds < SLOW_M_S
     groups = np.arange(runs)
@@ -167,7 +167,7 @@ def other_speeds(table, runs):
         low, high = bootstrap_interval(held.labels, right, held.runs)
         own = balanced_accuracy(held.labels, right)
         print(
-            f"{name} runs train ({', '.join(sorted(known))}), the others are judged: {own:.3f} "
+            f"{name} runs train ({', '.join(sorted(known))}), the others are evaluated: {own:.3f} "
             f"({low:.3f} to {high:.3f}), of {len(set(held.labels.tolist()))} terrains; speed alone "
             f"{speed_alone(table, fitted.astype(int)):.3f} (both ways)"
         )

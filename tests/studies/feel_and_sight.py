@@ -6,7 +6,7 @@ Courses of `switching_courses` over three terrains, with vibration that is made 
 speed: band-limited noise, whose centre and size differ from drive to drive. The labels of the
 camera are right six or eight times in ten, in stretches. Feel is identified on other drives.
 Printed: share of the way on which the terrain in force is the true one, every terrain counting
-alike, and the difference to both, with an interval over drives drawn anew.
+the same, and the difference to both, with an interval over drives drawn anew.
 """
 
 import argparse
@@ -77,7 +77,7 @@ def main():
                     for seed, course, of in zip(seeds, courses, felt, strict=True)
                 ]
             )
-            say(f"sight right {name} of the time", shares)
+            say(f"camera right {name} of the time", shares)
 
 
 def shaken(course, seed):
@@ -119,7 +119,7 @@ def labelled(course, seed):
 
 
 def judged(course, felt, accuracy, seed):
-    """Share of the way that is right by sight, by feel, and by both."""
+    """Share of the way that is right by camera, by feel, and by both."""
     config = Config()
     config = replace(config, switch=replace(config.switch, label_accuracy=accuracy))
     found = []
@@ -142,7 +142,7 @@ def say(title, shares):
     rng = np.random.default_rng(0)
     drawn = shares[rng.integers(len(shares), size=(2000, len(shares)))].mean(axis=1)
     sight, feel, both = shares.mean(axis=0)
-    print(f"{title}: sight {sight:.3f}, feel {feel:.3f}, both {both:.3f}")
+    print(f"{title}: camera {sight:.3f}, feel {feel:.3f}, both {both:.3f}")
     for place, name in enumerate(("sight", "feel")):
         low, high = np.quantile(drawn[:, 2] - drawn[:, place], [0.05, 0.95])
         print(

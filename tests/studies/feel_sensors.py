@@ -1,8 +1,9 @@
 """Recordings as another IMU would give them: which names they get by feel, and what is refused.
 
 Run `python -m tests.studies.feel_sensors FOLDER`; FOLDER holds run folders with imu.csv of all six
-axes that name one terrain each. Whole runs are held out in five folds; each is judged as it is and
-altered, by the model of the others as before (distances alone) and with the shape of its spectrum.
+axes that name one terrain each. Whole runs are held out in five folds; each is evaluated as it is
+and altered, by the model of the others as before (distances alone) and with the shape of its
+spectrum.
 """
 
 import argparse
@@ -171,7 +172,7 @@ def main() -> None:
             [answers(one, windows[row], runs[row]) for one in (replace(model, sensor=None), model)]
             for row in np.flatnonzero(~known)
         ]
-        print(f"never felt {name}: {said(rows)}", flush=True)
+        print(f"left out {name}: {said(rows)}", flush=True)
 
 
 if __name__ == "__main__":

@@ -6,8 +6,8 @@
 A case whose effect is in the catalogue is answered without the name of the effect and those that
 the equations make the same: `unknown` and `none` are right and any other name is wrong. With
 `--whole` it is answered with the whole catalogue, too. Every row of left_out.csv is one answer,
-with what two gates of `odometry.gap.verdict` were given, so that their thresholds can be judged by
-many cases.
+with what two gates of `odometry.gap.verdict` were given, so that their thresholds can be compared
+on many cases.
 """
 
 import argparse

@@ -1,6 +1,6 @@
 """Which names of the program mean which families of answers, and the score of one answer.
 
-A family is a plain word of `tests/blind`; this table alone knows what the program calls it.
+A family is a plain word of `tests/blind`; this table alone holds what the program calls it.
 """
 
 from collections.abc import Sequence

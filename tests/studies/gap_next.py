@@ -42,8 +42,8 @@ SHAPES = {
     "straights with steps": "steps",
     "curves with steps": "curves",
 }
-# What no drive tells apart, by the equations: an arm ahead moves the sensor as ICRs behind move the
-# robot; a constant loss of traction is a change of the ICRs, and one of distance alone a map of
+# What no drive distinguishes, by the equations: an arm ahead moves the sensor as ICRs behind move
+# the robot; a constant loss of traction is a change of the ICRs, and one of distance alone a map of
 # another scale; without gyroscope commands that are late are stamps that are late.
 ALIKE = {
     "sensor place": ("sideways",),

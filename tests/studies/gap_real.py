@@ -4,9 +4,9 @@
 
 Four kinds of cases, on recordings with a pose, each ground as INDEX.csv names it:
 
-- real: nothing was done to the data. The Husky on tile with a base that is told x_icr = 0; the
+- real: nothing was done to the data. The Husky on tile with a base that is given x_icr = 0; the
   Warthog on the steepest grass recorded; the Marmotte, one sequence each to calibrate, measure
-  and judge;
+  and evaluate;
 - withheld: a ground that the calibration never saw, joined with one that it did; stamps of the
   poses late by 0.15 s; roll and pitch taken out of a run on a slope;
 - control: each recording by halves, calibrated on one half and measured on the other, both ways
@@ -162,7 +162,7 @@ def count_of_controls(rows: Sequence[dict[str, str]]) -> list[str]:
     judged = sum(verdicts.values()) - verdicts["not judged"]
     named = judged - verdicts["none"] - verdicts["unknown"]
     which = ", ".join(f"{name} {count}" for name, count in verdicts.most_common())
-    return [f"Controls: {named} of {judged} judged are given a name ({which})."]
+    return [f"Controls: {named} of {judged} evaluated are given a name ({which})."]
 
 
 if __name__ == "__main__":

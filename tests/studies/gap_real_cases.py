@@ -1,4 +1,4 @@
-"""Cases of the gap study on real recordings: which runs calibrate, measure and judge."""
+"""Cases of the gap study on real recordings: which runs calibrate, measure and evaluate."""
 
 import csv
 from collections.abc import Mapping, Sequence

@@ -80,7 +80,7 @@ CHANGES: Mapping[str, tuple[str, Callable[[Run], Run]]] = {
 def count_of_changes(rows: Sequence[dict[str, str]]) -> list[str]:
     """How often each is named, where the gap is twice the floor and of all.
 
-    And over all changes at twice the floor, of recordings whose halves are alike without a change.
+    And over all changes at twice the floor, of recordings whose halves agree without a change.
     """
     judged = [r for r in rows if r["kind"] == "changed" and r["verdict"] != "not judged"]
     lines = []

@@ -4,7 +4,7 @@
 
 Each search for values from a start, as it comes up in blind cases, is made by all: with the same
 derivatives, bounds and scales, SciPy's ending where a step gains a ten-thousandth of the cost or
-0.1. The workflow goes on with ours. `lm` knows no bounds: a fit that left them is a failure.
+0.1. The workflow goes on with ours. `lm` takes no bounds: a fit that left them is a failure.
 """
 
 import argparse

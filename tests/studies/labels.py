@@ -5,11 +5,11 @@
 Without --photos both runs lie on the left halves of scikit-image's photographs, laid at other
 places: a robot that comes back to a site. With FOLDER/<terrain>/*.jpg the photographs are parted by
 photo_id: one half for the first run and everything that is trained on, the other for the next run,
-whose ground nobody has seen. Printed of the first run: the share of patches that lie on the terrain
-of their label, whole and with their middle, by the true map, computed here. Of the next run, for
-classifiers trained on the labelled patches, on the photographs of the first run, and on as many of
-these as its ground has: error per metre over 5 m, switches and those within 0.25 m of the true
-edge, changes that were missed, and the share of labels that are right.
+whose ground is in no training image. Printed of the first run: the share of patches that lie on the
+terrain of their label, whole and with their middle, by the true map, computed here. Of the next
+run, for classifiers trained on the labelled patches, on the photographs of the first run, and on as
+many of these as its ground has: error per metre over 5 m, switches and those within 0.25 m of the
+true edge, changes that were missed, and the share of labels that are right.
 """
 
 import argparse
@@ -106,7 +106,7 @@ def two_runs(out: Path, seed, terrains, photos, image_rate_hz) -> list[Path]:
 
 
 def patches_of(out: Path, first: Path) -> dict[str, tuple[int, int, int]]:
-    """Patches of the first run by what tells the terrain; those of truth.csv are written."""
+    """Patches of the first run by what states the terrain; those of truth.csv are written."""
     run = Run.read(first)
     without = replace(run, pose=None, odometry=without_gyroscope(run.odometry))
     found = {}

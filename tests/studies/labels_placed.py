@@ -2,11 +2,11 @@
 
     python tests/studies/labels_placed.py [--seeds 10]
 
-Courses of `switching_courses`; `label` opens no image to find squares, so none is drawn. Told by
-truth.csv, by spans whose ends are rounded to whole seconds, and by truth.csv with neither poses nor
-gyroscope. Printed: squares that become patches, the share whose middle, and that of which all 25
-points, lie on the terrain of the label by the true pose and the true map; the same of a label that
-is taken at the moment of the image; and the share of squares that were left out as astride.
+Courses of `switching_courses`; `label` opens no image to find squares, so none is drawn. Labelled
+by truth.csv, by spans whose ends are rounded to whole seconds, and by truth.csv with neither poses
+nor gyroscope. Printed: squares that become patches, the share whose middle, and that of which all
+25 points, lie on the terrain of the label by the true pose and the true map; the same of a label
+that is taken at the moment of the image; and the share of squares that were left out as astride.
 """
 
 import argparse
@@ -60,7 +60,7 @@ def study(name, settings, out, seeds) -> None:
 
 
 def sources(run):
-    """Runs and what is told of their terrain."""
+    """Runs and what states their terrain."""
     blind = replace(run, pose=None, odometry=without_gyroscope(run.odometry))
     return {
         "truth.csv": (run, told_terrain(run, "truth.csv")),

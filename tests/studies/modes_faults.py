@@ -3,13 +3,13 @@
     python tests/studies/modes_faults.py --folder FOLDER [--seeds 10 11] [--faults KEY ...]
 
 Robots, modes, drives and faults are those of tests/blind/modes, which know nothing of how modes are
-told. Modes are identified on a minute or two in each; every run changes between two of them, and
-the fault begins later. Shares are of the time from its onset to the end (of the whole run where
+recognised. Modes are identified on a minute or two in each; every run changes between two of them,
+and the fault begins later. Shares are of the time from its onset to the end (of the whole run where
 clean): with a mode named that is not the true one (`wrong`), with the true one (`right`), with
 `none of these`, with `undetermined`; of that with the true mode among candidates that are fewer
-than all (`narrowed`). On a terrain that is no mode, any mode is wrong. Simulated
-runs are kept in FOLDER; every run is a row of FOLDER/answers.csv. Faults that were made later are
-not run unless they are named (`--faults further_cable_dragged robot_payload_shifts ...`).
+than all (`narrowed`). On a terrain that is no mode, any mode is wrong. Simulated runs are kept in
+FOLDER; every run is a row of FOLDER/answers.csv. Faults that were made later are not run unless
+they are named (`--faults further_cable_dragged robot_payload_shifts ...`).
 """
 
 import argparse

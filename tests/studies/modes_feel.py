@@ -6,8 +6,8 @@ FOLDER holds run folders with imu.csv that name one terrain each. In each of fiv
 modes and feel are identified on the other runs, and each run held out is followed. Shares are of
 the time of a run, the mean over terrains of the mean over runs, with 5 to 95 % of a bootstrap over
 runs. `most probable` is the share in which the true terrain has the largest probability, named or
-not. Nothing is chosen on these figures. `--made` judges runs that are made here instead: vibration
-by terrain and speed, and yaw gains of which two are alike.
+not. Nothing is chosen on these figures. `--made` evaluates runs that are made here instead:
+vibration by terrain and speed, and yaw gains of which two are equal.
 """
 
 import argparse

@@ -3,7 +3,7 @@
     python tests/studies/positions.py [--model icr] [RUN ...]
 
 For each recording of data/motion (TERRAIN_ODOMETRY_DATA names the folder of shared recordings):
-the held-out error over windows of 2 m, each half by the other (judged by the full poses), and
+the held-out error over windows of 2 m, each half by the other (evaluated with the full poses), and
 the root mean square error of the whole run reckoned open loop with the model identified on all
 of it, as a share of its length, its start and direction laid over the measured ones. Rows: full
 poses; positions alone with the gyroscope, with the treads alone, with one position in a second,

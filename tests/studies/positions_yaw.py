@@ -4,8 +4,9 @@
 
 For each recording of data/motion (TERRAIN_ODOMETRY_DATA names the folder of shared recordings),
 noise of the positions, and with and without its gyroscope: the share of positions at which yaw is
-told, the root mean square error against the measured yaw, the median stated standard deviation,
-and how much of the errors is within 2 and beyond 4 of these; or that the yaw cannot be told.
+estimated, the root mean square error against the measured yaw, the median stated standard
+deviation, and how much of the errors is within 2 and beyond 4 of these; or that the yaw cannot be
+estimated.
 """
 
 import argparse

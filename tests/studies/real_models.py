@@ -82,7 +82,7 @@ class Remembered(Candidate):
 
 @dataclass(frozen=True)
 class Least(Candidate):
-    """The candidate that errs least where the seen parts are split once more.
+    """The candidate that errs least where the fitted parts are split once more.
 
     Attributes
     ----------

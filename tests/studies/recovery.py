@@ -35,7 +35,7 @@ BASE = {"half_width": 0.25, "half_length": 0.25}
 
 @dataclass(frozen=True)
 class Case:
-    """A true parameter set and the drive that shall tell it."""
+    """A true parameter set and the drive from which it shall be identified."""
 
     values: dict[str, float]
     speed_m_s: float = 1.0
@@ -212,7 +212,7 @@ def _undetermined(name: str, case: Case) -> str:
         )
         found = identify([run], name, fixed=case.fixed, window_config=config)
     (ground,) = found.terrains.values()
-    return "\n".join(f"  {open_.words()}" for open_ in ground.fit.undetermined) or "  all told"
+    return "\n".join(f"  {open_.words()}" for open_ in ground.fit.undetermined) or "  all found"
 
 
 if __name__ == "__main__":

@@ -1,16 +1,16 @@
-"""How many images get a label where a corner of the region is out of sight, and how good it is.
+"""How many images get a label where they miss a corner of the region, and how good it is.
 
     python tests/studies/region_sight.py [--data FOLDER] [--every 2.0]
     python tests/studies/region_sight.py --accuracy [--seeds 2] [--data FOLDER]
 
 The first counts, for real cameras (data/camera-frames) and the motion of real recordings
 (data/motion, whose robots turn by an ordinary effective width): of the moments at which the middle
-of the footprint comes into sight, those without a region, where all of the footprint must be
-shown, and with the settings as they are; in sight alone, and for patches of 96 pixels of 3 mm.
+of the footprint enters the image, those without a region, where all of the footprint must be shown,
+and with the settings as they are; inside the image alone, and for patches of 96 pixels of 3 mm.
 
-The second drives wild curves over photographs (data/terrain-images/ground) and judges labels by
+The second drives wild curves over photographs (data/terrain-images/ground) and evaluates labels by
 the share of the region that was shown; and reads regions that were shown whole again with a part
-of them hidden, so that the same ground is judged.
+of them hidden, so that the same ground is evaluated.
 """
 
 import argparse
@@ -40,8 +40,8 @@ from terrain.warp import coarsest_m, ground_view, scale_mismatch
 PATCHES = SimpleNamespace(metres_per_pixel=0.003, patch_size_px=96)
 WHOLE, DEFAULT = RegionConfig(least_share=1.0), RegionConfig()
 ASKED = {  # settings, and whether patches must fit and be shown finely enough
-    "all, in sight": (WHOLE, False),
-    "part, in sight": (DEFAULT, False),
+    "all, in the image": (WHOLE, False),
+    "part, in the image": (DEFAULT, False),
     "all, patches": (WHOLE, True),
     "part, patches": (DEFAULT, True),
     "treads, patches": (replace(DEFAULT, per_tread=True), True),
@@ -74,7 +74,9 @@ def count(data: Path, every_s: float) -> None:
         "mast": default_camera(),
     }
     runs = [Run.read(file.parent) for file in sorted((data / "motion").glob("*/run.toml"))]
-    print(f"{len(runs)} recordings; moments without a region, of those whose middle is in sight")
+    print(
+        f"{len(runs)} recordings; moments without a region, of those with the middle in the image"
+    )
     print(f"{'camera':12} {'moments':>8} {'middle':>8}" + "".join(f" {name:>16}" for name in ASKED))
     for name, camera in cameras.items():
         moments = 0
@@ -116,7 +118,7 @@ def moving(run, every_s):
 
 
 def middle_comes(camera, robot, twist, speed_m_s):
-    """Whether the middle of the footprint ever comes into sight within the limits."""
+    """Whether the middle of the footprint ever enters the image within the limits."""
     length_m = robot.length or robot.track_width
     latest_s = min(DEFAULT.most_ahead_s, DEFAULT.most_ahead_lengths * length_m / speed_m_s)
     places = se2.exp(twist * np.linspace(0.0, latest_s, 300)[:, None])[:, :2]
@@ -198,7 +200,7 @@ def without(r: Rectangle, near: float, side: float) -> Rectangle:
 
 
 def terrain_of(run, config, stamp_s, rectangle):
-    """The terrain of a rectangle seen at a stamp; "" where it lies across an edge."""
+    """The terrain of a rectangle in the image of a stamp; "" where it lies across an edge."""
     row = int(np.searchsorted(run.truth.stamps_s, stamp_s))
     pose = run.truth.stack("x", "y", "yaw")[min(row, len(run.truth) - 1)]
     x = se2.transform(pose, rectangle.corners)[:, 0]

@@ -13,7 +13,7 @@ noise differs from seed to seed (gyro 0.02 rad/s, pose 2 cm and 0.5 degrees at 1
   each of the 16 combinations among all 16.
 
 Every stretch of a mode is a row of FOLDER/stretches.csv. Shares are of the time after the mode was
-first told, or of all of it where it never was. The way is curved where the radius driven is less
+first named, or of all of it where it never was. The way is curved where the radius driven is less
 than 6 m, straight where it is more than 12 m.
 """
 
@@ -69,7 +69,7 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class Experiment:
-    """A drive of which noisy runs are made, and the modes that it is judged by."""
+    """A drive of which noisy runs are made, and the modes that evaluate it."""
 
     figure: str
     speed_m_s: float
@@ -244,7 +244,7 @@ def share(chosen: np.ndarray) -> float:
 def print_table(rows: list[dict[str, object]]) -> None:
     """By figure, speed and mode: times to detection and shares."""
     print(
-        f"{'figure':18} {'m/s':>4} {'mode':45} {'told':>5}  {'after, median [5-95 %]':24} "
+        f"{'figure':18} {'m/s':>4} {'mode':45} {'named':>5}  {'after, median [5-95 %]':24} "
         f"{'false':>6}  {'curved: right':>13} {'wrong':>6}  {'straight: right':>15} {'wrong':>6} "
         f"{'open':>5}  {'NIS':>5}"
     )

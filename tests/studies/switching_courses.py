@@ -134,7 +134,7 @@ def make_course(folder: Path, seed: int, zones, *, manoeuvres=False, rear=False)
 
 
 class LabellingWatcher(TerrainWatcher):
-    """A watcher that is told what lies in the middle of each region, rightly or not."""
+    """A watcher that is given what lies in the middle of each region, rightly or not."""
 
     def __init__(self, course: Course, config: Config, *, accuracy, held_m=0.0, seed=0):
         super().__init__(

@@ -3,8 +3,8 @@
     TERRAIN_ODOMETRY_DATA=... python tests/studies/terrain_cameras.py [PART...] [--out FOLDER]
 
 Folds keep photographs (photo_id) whole, and altered copies follow their photograph. k, temperature
-and rejection distances are chosen inside the training photographs alone; `unknown` judges on two
-of the five folds. Other cameras are the folder pavements/, and photographs of ground/ that were
+and rejection distances are chosen inside the training photographs alone; `unknown` is evaluated on
+two of the five folds. Other cameras are the folder pavements/, and photographs of ground/ that were
 blurred, darkened, made noisy or reduced to a quarter. Features are kept in --out.
 """
 
@@ -149,7 +149,7 @@ def judged(name: str, model: Chosen, classes: AnyArray, shown: Grounds) -> None:
 
 
 def other_cameras(folder: Path, grounds: Grounds, copies: Grounds | None, store: Path) -> None:
-    """Train on four folds, judge the fifth as other cameras show it."""
+    """Train on four folds, evaluate on the fifth as other cameras show it."""
     train, test = grouped_folds(grounds.codes, grounds.groups)[0]
     model = learnt(GREY, grounds.bank[train], grounds.only(train), copies)
     classes, held = np.unique(grounds.labels), grounds.only(test)
@@ -161,7 +161,7 @@ def other_cameras(folder: Path, grounds: Grounds, copies: Grounds | None, store:
 
 
 def new_camera(old: Grounds, copies: Grounds | None, new: Grounds) -> None:
-    """Train on all of one folder's shared classes, judge another's."""
+    """Train on all of one folder's shared classes, evaluate on another's."""
     common = np.intersect1d(old.labels, new.labels)
     old, new = (g.only(np.isin(g.labels, common)) for g in (old, new))
     model = learnt(GREY, old.bank, old, copies)

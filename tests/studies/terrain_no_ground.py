@@ -3,8 +3,8 @@
     TERRAIN_ODOMETRY_DATA=... python tests/studies/terrain_no_ground.py
 
 Five folds by photo_id of ground/ (128 px) and pavements/ (96 px), 12 patches a photograph in
-training. Each fold's model judges the held-out photographs (whole, and their patches), patches of
-real skies (the upper parts of camera-frames/husky, and of pictures of scikit-image), made skies,
+training. Each fold's model classifies the held-out photographs (whole, and their patches), patches
+of real skies (the upper parts of camera-frames/husky, and of pictures of scikit-image), made skies,
 black, white, walls, noise, and patches of held-out photographs that were blurred, over- and
 underexposed. "Before" is the distance to the nearest class alone.
 """

@@ -4,11 +4,11 @@
 
 One class of ground/ is left out (grey, 128 px, 12 patches a photograph, two of five folds by
 photograph, curved discriminants): is it farther away than held-out photographs of the others? For
-each class the distance is chosen by how well it tells pairs of the other classes, left out one at
-a time as well, so that the class has no part in the choice. Products of powers of four parts:
-the distance to the nearest samples and to the nearest mean of a class among the discriminants, the
-local sparsity, and the classes that the vote of 25 neighbours leaves open. Features are kept in
---out.
+each class the distance is chosen by how well it distinguishes pairs of the other classes, left out
+one at a time as well, so that the class has no part in the choice. Products of powers of four
+parts: the distance to the nearest samples and to the nearest mean of a class among the
+discriminants, the local sparsity, and the classes that the vote of 25 neighbours leaves open.
+Features are kept in --out.
 """
 
 import argparse

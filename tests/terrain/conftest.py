@@ -1,4 +1,4 @@
-"""A tiny world of two grounds, seen by rays that are cast here, with no code of the packages."""
+"""A tiny world of two grounds: rays are cast here, with no code of the packages."""
 
 from types import SimpleNamespace
 

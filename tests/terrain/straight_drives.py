@@ -19,13 +19,13 @@ def start(in_force="grass", **settings_):
 
 
 def seen_at(x, label, ahead_m=AHEAD_M, probabilities=None):
-    """A label seen by a robot at (x, 0), heading along x."""
+    """A label of an image taken by a robot at (x, 0), heading along x."""
     place = np.array([x + ahead_m, 0.0])
     return PlaceLabel(label, 2 * x, x, place, ahead_m, probabilities or {})
 
 
 def drive(switch, labels, spacing_m=0.25, step_m=0.05, to_m=None):
-    """Drive along x at 0.5 m/s; labels[k] is seen at k * spacing_m, "" is no label.
+    """Drive along x at 0.5 m/s; labels[k] is of the image at k * spacing_m, "" is no label.
 
     Returns what was in force at every step as (x, terrain), and all events.
     """

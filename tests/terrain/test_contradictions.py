@@ -1,4 +1,4 @@
-"""Where sight, feel and motion differ for long, and what none of them knows."""
+"""Where camera, feel and motion differ for long, and what is unknown to all of them."""
 
 from dataclasses import replace
 

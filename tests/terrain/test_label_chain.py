@@ -74,7 +74,7 @@ def test_a_thousand_places_stay_finite():
 
 
 def test_a_stretch_says_the_same_in_few_labels_and_in_many():
-    """The nearest of 0.4 m of places seen every 0.1 m and every 0.01 m, and of 1.2 m."""
+    """The nearest of 0.4 m of places with a label every 0.1 m and every 0.01 m, and of 1.2 m."""
 
     def believed(length_m, spacing_m):
         count = round(length_m / spacing_m)

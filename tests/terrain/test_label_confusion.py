@@ -49,7 +49,7 @@ def test_a_label_that_never_is_true_is_wrong():
 
 
 def test_the_truth_counts_where_the_robot_is_when_it_gets_there():
-    """Mud from 5 s on, seen 2 m before: the image at 3 s shows it, that at 2.9 s does not."""
+    """Mud from 5 s on, in images 2 m before: that of 3 s shows it, that of 2.9 s does not."""
     truth = {"t": np.arange(11.0), "terrain": np.repeat(["ice", "mud"], [5, 6]).astype(object)}
     labels = ["ice"] * 3 + ["mud"] * 8
     found = label_confusions(result_of(labels, 2.0, truth=truth))["truth.csv"]

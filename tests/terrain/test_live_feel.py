@@ -58,7 +58,7 @@ def fed(run, note="", **settings):
 
 
 def assert_same(steps, run, result, model):
-    """Estimates to the last bit; what is felt at the frame from which it is known."""
+    """Estimates to the last bit; an answer by feel at the frame from which it is known."""
     means = np.array([step.estimate.mean for step in steps])
     assert means.tobytes() == result.replay.means.tobytes()
     assert [step.terrain for step in steps] == list(result.replay.terrains)

@@ -73,7 +73,7 @@ def test_where_a_corner_stays_outside_the_visible_part_is_the_region(
     most = max(shares)
     if isinstance(region, NoRegion):
         assert region.reason == "the region lies outside the image"
-        assert most < least_share + 0.08  # 49 points tell a share by so much
+        assert most < least_share + 0.08  # 49 points give a share to so much
         return
     assert most > least_share - 0.08
     reached = shares[min(round(region.distance_ahead_m / 0.02), len(shares) - 1)]
@@ -87,7 +87,7 @@ def test_where_a_corner_stays_outside_the_visible_part_is_the_region(
 
 
 def test_the_place_is_the_middle_of_what_is_labelled():
-    """At the time given the near half is out of sight: the label belongs to the far half."""
+    """At the time given the near half is outside the image: the label belongs to the far half."""
     forward = np.array([1.0, 0.0, 0.0])
     whole = predict_region(ROBOT, AHEAD, forward, 1.0, RegionConfig())
     np.testing.assert_allclose(whole.place, whole.pose_ahead[:2], atol=1e-12)

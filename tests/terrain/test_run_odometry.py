@@ -150,7 +150,7 @@ def test_a_run_and_a_model_may_be_given_as_objects_or_paths(astride_run, model_f
 
 
 def test_what_there_is_to_judge_by_decides_what_is_judged(tmp_path, world, curvy_run):
-    """The filter has seen pose.csv, so only truth.csv or poses withheld from it may judge it."""
+    """The filter used pose.csv, so only truth.csv or poses withheld from it may evaluate it."""
     by_pose = run_odometry(curvy_run)
     assert by_pose.reference_name == "pose"
     assert set(by_pose.scores) == {"odometer", "differential_drive", "estimate"}
@@ -187,7 +187,7 @@ def test_a_gyroscope_adds_its_rows_and_they_stand_side_by_side(tmp_path, world):
     by_gyroscope = result.evaluated["gyroscope"].trajectory.poses
     turned = np.exp(1j * by_gyroscope[:, 2])  # held from row to row, where it is interpolated
     np.testing.assert_allclose(turned, np.exp(1j * truth[:, 2]), atol=0.06)
-    # mean wheel speed knows nothing of x_icr nor of the middle between the treads' ICRs
+    # mean wheel speed does not depend on x_icr nor of the middle between the treads' ICRs
     assert result.scores["gyroscope"].final_position_m > 0.02
     assert (
         result.scores["odometer"].final_position_m

@@ -1,6 +1,6 @@
 """Switches on random drives with spins, reversals and returns, against where edges truly are.
 
-The drives and their truth are those of `switch_drives`, which knows nothing of the switch.
+The drives and their truth are those of `switch_drives`, which does not use the switch.
 """
 
 import numpy as np

@@ -70,7 +70,7 @@ def test_a_place_the_robot_turned_away_from_is_not_reached(rule):
 
 
 def test_a_strip_narrower_than_the_look_ahead():
-    """Gravel of 0.75 m is seen whole, and grass beyond it, before the robot is there."""
+    """Gravel of 0.75 m is labelled whole, and grass beyond it, before the robot is there."""
     labels = ["grass"] * 3 + ["gravel"] * 3 + ["grass"] * 3
     found = changes(drive(start(labels_in_row=2), labels)[0])
     assert [name for _, name in found] == ["gravel", "grass"]
@@ -111,7 +111,7 @@ def test_on_request_the_terrain_changes_in_one_step():
 
 @BOTH_RULES
 def test_what_lies_behind_is_forgotten_and_changes_nothing(rule):
-    """300 m of grass and gravel by turns: as many places are kept as the odometer can tell."""
+    """300 m of grass and gravel by turns: as many places are kept as the odometer resolves."""
     switch = start(**rule)
     for x in 0.25 * np.arange(400):
         switch = switch.add_label(seen_at(x, ("grass", "gravel")[int(x // 30) % 2]))

@@ -1,4 +1,4 @@
-"""Rules that the switch keeps, wherever the robot goes and whatever it is told."""
+"""Rules that the switch keeps, wherever the robot goes and whatever labels it gets."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ FOOTPRINT = Footprint(0.6, 0.5)
 
 
 class AnyDrive(RuleBasedStateMachine):
-    """A robot that goes anywhere and is told anything."""
+    """A robot that goes anywhere and gets any labels."""
 
     needed = 2
 

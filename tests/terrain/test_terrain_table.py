@@ -41,7 +41,7 @@ def test_labels_follow_from_the_numbers_in_the_terrain_table(across_out, classif
     given, distance = given.astype(float), np.array(table["class_distance"], float)
     names = np.array(["boards", "gravel"])[given.argmax(axis=1)]
     beyond = distance > classifier.rejection_distance_
-    tied = np.isclose(*given.T, atol=1e-8)  # the table's digits do not tell which one is first
+    tied = np.isclose(*given.T, atol=1e-8)  # the table's digits do not show which one is first
     asked = (np.array(table["label"]) != "") & (beyond | ~tied)
     expected = np.where(beyond, "unknown", names)[asked]
     assert expected.tolist() == np.array(table["label"])[asked].tolist()

@@ -170,7 +170,7 @@ LENSES = {
 
 
 @pytest.mark.parametrize("lens", LENSES.values(), ids=LENSES)
-@pytest.mark.parametrize("x_min", [0.4, 0.8], ids=["all in sight", "partly in sight"])
+@pytest.mark.parametrize("x_min", [0.4, 0.8], ids=["all in the image", "partly in the image"])
 def test_each_cell_shows_what_lies_at_the_pixel_of_its_ground(lens, x_min):
     """The view of an image whose grey is u, then v, against `ground_to_pixels` of each cell."""
     matrix = [[300.0, 0.0, 127.0], [0.0, 310.0, 90.0], [0.0, 0.0, 1.0]]

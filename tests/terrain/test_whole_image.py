@@ -54,7 +54,7 @@ def test_cells_do_not_overlap_and_come_row_by_row(camera):
 
 
 def test_a_row_leaves_no_room_for_another_cell(camera):
-    """Where both edges of a row are seen without a gap, which the lens makes in the farthest."""
+    """Where both edges of a row are shown without a gap, which the lens makes in the farthest."""
     cells = visible_cells(camera, SIZE_M, 1.0)
     checked = 0
     for x_min in sorted({cell.x_min for cell in cells}):

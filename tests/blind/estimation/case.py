@@ -24,7 +24,7 @@ class Case:
     begin_s, end_s : float
         When the fault acts.
     size_m : float
-        How far an honest filter may be led astray by poses that are consistently wrong.
+        How far a correct filter may be off by poses that are consistently wrong.
     reckons : bool
         Whether the robot must reckon while the fault acts, so that an error grows with travel.
     """

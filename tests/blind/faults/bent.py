@@ -1,7 +1,7 @@
 """Faults that bend a measurement along the run: reflections, magnetism, projections, ticks.
 
 Of most of them no repair is known beforehand: that the sensors differ, and that the cause cannot
-be told, is a right answer as well. Another cause is not.
+be determined, is a right answer as well. Another cause is not.
 """
 
 import math

@@ -67,6 +67,6 @@ def make_case(fault, bases, seed, folder):
 
 
 def right(fault, seen, cause):
-    """Whether a cause is that of the fault, or of one that the files cannot tell from it."""
+    """Whether a cause is that of the fault, or of one that the files cannot distinguish from it."""
     faults = [fault, *(FAULTS[key] for key in fault.equal)]
     return any(says(seen, cause, one.words) for one in faults)

@@ -1,7 +1,7 @@
 """Clean recordings in legal variants: none of them may raise a warning.
 
 Other real recordings stand apart (`is_clean`): their references are poor, a warning there may be
-true, and is shown with what was seen, not counted as a false alarm.
+true, and is shown with what was found, not counted as a false alarm.
 """
 
 from dataclasses import dataclass
@@ -28,10 +28,10 @@ class Variant:
 VARIANTS = (
     Variant("as_it_is", "as recorded", legal.as_it_is),
     Variant("epoch", "stamps count from 1970 in all files", legal.epoch),
-    Variant("common_offset", "stamps start anywhere, in all files alike", legal.common_offset),
+    Variant("common_offset", "stamps start anywhere, the same in all files", legal.common_offset),
     Variant("on_change", "odometry logged on change only", legal.on_change, POSE),
     Variant("other_rate", "odometry at 8 to 60 Hz", legal.other_rate, POSE),
-    Variant("more_columns", "columns that nobody knows", legal.more_columns),
+    Variant("more_columns", "columns of unknown names", legal.more_columns),
     Variant("long_start", "at rest for minutes first", legal.long_start, POSE),
     Variant("slow_poses", "poses at 1 Hz, a fifth lost", legal.slow_poses, POSE),
     Variant("other_world", "the world turned and moved by 100 m", legal.other_world, POSE),

@@ -1,4 +1,4 @@
-"""Poses computed from what they are to judge, magnitudes for speeds, maps and sides too large."""
+"""Poses computed from treads that they check, magnitudes for speeds, maps and sides too large."""
 
 import math
 
@@ -50,7 +50,7 @@ def of_another_width(recording, rng):
 
 
 def magnitudes(recording, rng):  # noqa: ARG001
-    """Encoders of one channel count both ways alike."""
+    """Encoders of one channel count up in both directions."""
     table = recording["odometry"]
     steps = np.diff(table["t"], append=table["t"][-1])
     sides = [table[name] for name in ("v_left", "v_right")]

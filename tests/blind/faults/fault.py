@@ -25,14 +25,14 @@ class Fault:
         The cause, in one sentence.
     words : tuple of str
         Alternatives. An alternative is right when each of its words begins a word of the cause,
-        or of what was seen where the word is marked by @ (a word is a regular expression;
+        or of what was found where the word is marked by @ (a word is a regular expression;
         capitals do not matter).
     draw : callable
         Recording and Generator to the faulty Recording.
     needs : frozenset of str
         What the recording must have (`bases.traits`).
     equal : tuple of str
-        Faults that nothing in the files can tell from this one.
+        Faults that nothing in the files distinguishes from this one.
     named : bool
         The issue names it.
     harmless : bool

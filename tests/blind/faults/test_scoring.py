@@ -1,4 +1,4 @@
-"""Answers are judged as the study's docstring says."""
+"""Answers are scored as the study's docstring says."""
 
 import pytest
 

@@ -93,7 +93,7 @@ def forward_and_turn(recording, rng):  # noqa: ARG001
 
 
 def scale_one(recording, rng):
-    """One side is 20 to 50 % off: another tyre or gear than its driver believes."""
+    """One side is 20 to 50 % off: another tyre or gear than its driver has set."""
     table = recording["odometry"]
     factor = rng.uniform(1.2, 1.5) ** rng.choice([-1, 1])
     if rng.random() < 0.5:
@@ -163,7 +163,7 @@ FAULTS = (
           metres_so_far, GOOD),
     Fault("treads_swapped", "warning", "Left and right are exchanged.", SWAP, swap, GOOD,
           named=True),
-    Fault("turn_reversed_without_pose", "warning", "Treads exchanged; no pose to judge the gyro.",
+    Fault("turn_reversed_without_pose", "warning", "Treads exchanged; no pose to check the gyro.",
           (*SWAP, *SIGN), swap, frozenset({"turns by gyro only"})),
     Fault("treads_both_negative", "warning", "Both treads have the wrong sign.",
           about(("tread", "wheel", "encoder", "both", "motor"), SIGN), _times(-1.0), GOOD,

@@ -106,7 +106,7 @@ def encoder_dropouts(rng, scene):
 
 
 def unsigned_encoder(rng, scene):
-    """One encoder knows no direction: its speed is always reported forward."""
+    """One encoder has no direction: its speed is always reported forward."""
     side = np.arange(2) == rng.integers(2)
 
     def hide(rng, clock):

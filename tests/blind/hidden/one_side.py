@@ -118,7 +118,7 @@ def hot_side(rng, scene):
 
 
 def coarse_side(rng, scene):
-    """The controller of one side knows speeds in steps of 0.1 to 0.3 m/s."""
+    """The controller of one side sets speeds in steps of 0.1 to 0.3 m/s."""
     side, step_m_s = side_of(rng), rng.uniform(0.1, 0.3)
 
     def hide(rng, clock):

@@ -1,4 +1,4 @@
-"""Kinds that were seen to mislead the gap workflow."""
+"""Kinds that misled an earlier version of the gap workflow."""
 
 import numpy as np
 

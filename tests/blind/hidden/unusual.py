@@ -27,7 +27,7 @@ def hot_motor(rng, scene):
 
 
 def coarse_controller(rng, scene):
-    """A controller that knows speeds in steps of 0.1 to 0.25 m/s."""
+    """A controller that sets speeds in steps of 0.1 to 0.25 m/s."""
     step_m_s = rng.uniform(0.1, 0.25)
 
     def hide(rng, clock):
@@ -152,7 +152,7 @@ def course_for_yaw(rng, scene):
 
 
 def straight_between_fixes(rng, scene):
-    """The reference knows a pose each 1 to 3 s and draws straight lines between them."""
+    """The reference has a pose each 1 to 3 s and draws straight lines between them."""
     period_s = rng.uniform(1.0, 3.0)
 
     def hide(rng, clock):

@@ -1,4 +1,4 @@
-"""Faults and terrains that were made last: nothing of the modes was chosen with them in sight.
+"""Faults and terrains that were made last: no setting of the modes was chosen with them.
 
 Those of the drive move the robot by other tread speeds than its encoders count, or change the
 terrain in patches; those of the record change tables of its run folder.

@@ -1,7 +1,7 @@
 """What wears, loosens, shifts, sags or warms up on a robot, from a moment on.
 
-Written from what happens to robots, without a look at how modes are told. Those of the drive move
-the robot by other tread speeds than its encoders count; those of the record change tables.
+Written from what happens to robots, without a look at how modes are recognised. Those of the drive
+move the robot by other tread speeds than its encoders count; those of the record change tables.
 """
 
 import numpy as np

@@ -2,7 +2,7 @@
 
 A world is a robot with its modes, of which calibration runs are made, and drives through two modes
 that it knows. Three worlds follow the papers' formulae, three stand on simulated contacts. Nothing
-here knows how modes are identified or followed.
+here depends on how modes are identified or followed.
 """
 
 from collections.abc import Callable

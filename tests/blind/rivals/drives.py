@@ -49,7 +49,7 @@ class Proposal:
 
 
 def handful(width_m):
-    """Drives of which one tells most rivals apart."""
+    """Drives of which one distinguishes most rivals."""
     return (
         Proposal("spin", 0.4, 1.0, 20.0),
         Proposal("spin", 0.4, -1.0, 20.0),

@@ -1,6 +1,6 @@
 """More pairs, of other sorts of drives: to and fro, backward, eights, and others of the same kinds.
 
-Written after `pairs`, by the equations alone: a second set on which changes are judged.
+Written after `pairs`, by the equations alone: a second set on which changes are evaluated.
 """
 # ruff: noqa: ARG001 - all have one face, and few need all of it
 

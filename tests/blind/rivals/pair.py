@@ -1,4 +1,4 @@
-"""Two hypotheses that a drive of one sort does not tell apart."""
+"""Two hypotheses that one sort of drive does not distinguish."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,11 +13,11 @@ class Pair:
     names : (str, str)
         In plain words, families of `tests/studies/gap_names.py`.
     given : str
-        The drive that cannot tell them apart: a name of `given.GIVEN`.
+        The drive that cannot distinguish them: a name of `given.GIVEN`.
     match : callable
         rng, scene, given to (hide, hide): the makers of both.
     gyroscope : bool
-        Whether it is recorded; where it alone would tell them apart, it is not.
+        Whether it is recorded; where it alone would distinguish them, it is not.
     """
 
     names: tuple[str, str]

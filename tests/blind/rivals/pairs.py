@@ -1,4 +1,4 @@
-"""Pairs of hypotheses that drives of one sort cannot tell apart, matched by closed forms.
+"""Pairs of hypotheses that drives of one sort cannot distinguish, matched by closed forms.
 
 Each pair draws the size of the first and sets the second so that both make the same twist, or the
 same pose, on the drive that is given: a straight at one speed, a circle, a spin, slow waves, a

@@ -1,4 +1,4 @@
-"""Rivals say the same about the drive that is given, and one of a handful tells them apart."""
+"""Rivals predict the same for the drive that is given; one of a handful distinguishes them."""
 
 from types import SimpleNamespace
 

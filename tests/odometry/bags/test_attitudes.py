@@ -68,7 +68,7 @@ def test_wheels_in_a_file_before_that_of_the_sensor_get_its_attitude(tmp_path):
             "its vertical is 29 degrees off",
         ),
     ],
-    ids=["not told", "z down", "not filled in", "against gravity"],
+    ids=["none given", "z down", "not filled in", "against gravity"],
 )
 def test_an_orientation_that_is_none_of_the_robot_is_left_out_and_said(bag, reason, tmp_path):
     run, said = imported(tmp_path / "run", bag().write(tmp_path / "drive"))

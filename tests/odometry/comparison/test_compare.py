@@ -173,7 +173,7 @@ def test_grounds_within_one_run_have_models_of_their_own(tmp_path, bench, quick)
 
 
 def test_a_candidate_of_ones_own_may_hold_values_and_see_fewer_windows(grass, quick):
-    """Every second window or so, from the first to the last of what may be seen."""
+    """Every second window or so, from the first to the last of what may be fitted."""
     held = IdentifiedModel(MODELS["icr_symmetric"], {"b_hat": 0.7}, most_windows=9)
     comparison = compare(grass, [held], config=quick)
     for models in comparison.split_models:

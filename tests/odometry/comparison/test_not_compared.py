@@ -82,7 +82,7 @@ def test_a_fit_at_its_bound_is_evaluated_and_neither_ranked_nor_written(in_anoth
 
 
 def test_a_fit_that_leaves_something_open_is_evaluated_and_flagged(tmp_path, bench, quick):
-    """Straight ahead, nothing tells the width."""
+    """Straight ahead, nothing determines the width."""
     runs = [
         Run.read(bench.write(tmp_path / f"run_{i}", np.full((400, 2), 0.5), seed=i))
         for i in range(2)

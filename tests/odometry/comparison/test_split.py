@@ -1,4 +1,4 @@
-"""Who may see what: no row is evaluated with a model that was identified on it."""
+"""What each fit may use: no row is evaluated with a model that was identified on it."""
 
 from dataclasses import replace
 from pathlib import Path

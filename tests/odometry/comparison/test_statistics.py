@@ -51,7 +51,7 @@ def test_what_differs_from_run_to_run_widens_the_interval(rng):
 
 
 def test_the_interval_holds_the_truth_about_as_often_as_it_says():
-    """Six runs with their own means, windows alike within blocks of four."""
+    """Six runs with their own means, windows equal within blocks of four."""
     held = 0
     for seed in range(200):
         rng = np.random.default_rng(seed)

@@ -134,7 +134,7 @@ def test_under_effects_on_commands_alone_the_derivative_is_the_base_s(bench, rng
 
 
 def test_ordinary_sizes_are_those_of_the_base(bench):
-    """What is per newton is judged by the robot's mass, with an effect added as without."""
+    """What is per newton is scaled by the robot's mass, with an effect added as without."""
     base, robot = MODELS["icr_inertia"], replace(bench.robot, mass=50.0)
     model = Corrected(base, robot, [SCALE])
     np.testing.assert_array_equal(model.ordinary_sizes(robot), base.ordinary_sizes(robot))

@@ -17,7 +17,7 @@ def test_positions_stay_and_headings_turn(rng):
 
 
 def test_straight_ahead_seems_to_drift_to_one_side():
-    """Seen from the sensor's first heading, turned left by 0.1, the robot drifts to the right."""
+    """From the sensor's first heading, turned left by 0.1, the robot drifts to the right."""
     poses = np.column_stack([np.linspace(0, 2, 5), np.zeros(5), np.zeros(5)])
     yaw = EFFECT.seen(np.array([0.1]), poses, reported(poses))[0, 2]
     across = -np.sin(yaw) * poses[:, 0] + np.cos(yaw) * poses[:, 1]

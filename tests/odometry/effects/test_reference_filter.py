@@ -61,7 +61,7 @@ def test_a_mast_answers_a_circle_as_an_oscillator_does(bend, frequency, damping)
 
 @pytest.mark.parametrize("effect", [SmoothedPoses(), FilteredPositions(), SwayingMast()])
 def test_where_the_drive_began_and_looked_does_not_matter(effect):
-    """Simulated poses begin at the origin: a turned and moved course is filtered alike."""
+    """Simulated poses begin at the origin: a turned and moved course is filtered the same way."""
     poses = circle() * [3.0, 2.0, 1.0]
     turn = np.exp(0.7j)
     moved = (poses[:, 0] + 1j * poses[:, 1]) * turn + 5 - 2j

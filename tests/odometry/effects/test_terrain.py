@@ -39,7 +39,7 @@ def test_its_parameters_are_named_after_the_terrains():
 
 
 def test_new_terrains_are_offered_together_and_known_ones_each(bench, rng):
-    """One that the calibration has seen may have changed since."""
+    """A terrain of the calibration may have changed since."""
     recorded = Recorded(bench.base, (bench.drive(rng),), ((1.0, 4.0),), frozenset({"sand"}))
     assert [effect.labels for effect in Terrain.offered(recorded)] == [("ice",), ("sand",)]
     nowhere = Recorded(bench.base, (bench.drive(rng),), ((1.0, 4.0),))

@@ -1,4 +1,4 @@
-"""A gyroscope whose bias steps or drifts: poses tell it, the open-loop odometer turns by it."""
+"""A gyroscope whose bias steps or drifts: poses show it, the open-loop odometer turns by it."""
 
 from dataclasses import replace
 

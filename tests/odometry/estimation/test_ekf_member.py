@@ -77,7 +77,7 @@ def test_entries_that_are_nan_are_left_out(rng, missing):
 
 
 def test_headings_meet_on_the_short_way():
-    """Seen at -3.1, believed at 3.1, equally sure: the answer lies 0.04 from both, at pi."""
+    """Measured -3.1, predicted 3.1, with equal variance: the answer lies 0.04 from both, at pi."""
     member = EkfMember(pose_model(1.0, 1.0, np.eye(3)))
     mean, _, _, squared = member.updated(np.array([0, 0, 3.1]), np.eye(3), np.array([0, 0, -3.1]))
     assert abs(mean[2]) == pytest.approx(np.pi, abs=1e-12)

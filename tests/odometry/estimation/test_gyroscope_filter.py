@@ -18,7 +18,7 @@ BIAS = 0.016  # [rad/s], as large as one of a real robot
 
 
 def test_without_poses_it_teaches_the_width_of_the_treads():
-    """Slip factors cannot be told without poses: the width that it learns is for alpha = 1.
+    """Slip factors cannot be estimated without poses: the width that it learns is for alpha = 1.
 
     A yaw rate of the treads is the difference of speeds over (y_left - y_right) / alpha.
     """

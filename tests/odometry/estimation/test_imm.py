@@ -20,7 +20,7 @@ from tests.odometry.estimation.imm_banks import (
 
 
 def drive(rng, steps=100):
-    """Speeds, poses seen (now and then in part, or not at all) and steps."""
+    """Speeds, measured poses (now and then in part, or not at all) and steps."""
     truth = np.array([0.0, 0.0, 3.0])
     for step in range(steps):
         u, step_s = np.array([1.0, 2.0]) + rng.normal(size=2), rng.uniform(0.02, 0.1)

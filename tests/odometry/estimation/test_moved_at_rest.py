@@ -1,4 +1,4 @@
-"""A robot that is moved while its treads stand: the filter follows, says so, and learns nothing."""
+"""A robot that is moved while its treads stand: the filter follows, says so, keeps its ICRs."""
 
 import numpy as np
 import pytest
@@ -59,7 +59,7 @@ def test_a_push_is_followed_and_flagged(driven, rng, pushed_m):
 
 
 def test_a_push_teaches_nothing_of_the_icrs(driven, rng):
-    """What is believed when it ends is what was believed when the treads came to stand."""
+    """The estimate when it ends is the estimate of the moment when the treads came to stand."""
     estimates, _ = estimated(driven, rng, 1.0)
     found = next(k for k, e in enumerate(estimates) if not np.isnan(_moved_since(e)))
     at_rest, after = estimates[STOP], estimates[found]

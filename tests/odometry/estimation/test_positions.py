@@ -56,7 +56,7 @@ def test_while_the_robot_stands_no_heading_is_estimated(rng):
 
 
 def test_noise_of_a_metre_takes_a_longer_way(rng):
-    """Residuals tell the noise, whatever the setting says."""
+    """Residuals give the noise, whatever the setting says."""
     driven = drive(60.0, start=START)
     poses = positions_of(noisy_poses(driven, rng, position_m=0.5))
     estimates = estimates_of(frames_of(driven, poses=poses, yaw_rates=driven.yaw_rates_rad_s))
@@ -117,7 +117,7 @@ def test_positions_alone_are_enough_for_a_filter_that_knows_its_heading(rng):
 
 
 def test_an_unknown_bias_widens_the_yaw_by_half_of_what_it_turned(rng, monkeypatch):
-    """The course tells the yaw of its middle: the search takes 6 m, here at a tenth of the speed.
+    """The course gives the yaw of its middle: the search takes 6 m, here at a tenth of the speed.
 
     A wide yaw is said in words.
     """

@@ -13,7 +13,7 @@ SLIP = CONFIG.slip_noise**2
 
 
 def added(speeds=(0.4, 0.4), step_s=0.2, **changes):
-    """Variances (9,) of half a step, by treads unless told otherwise."""
+    """Variances (9,) of half a step, by treads unless given otherwise."""
     how = {"slip_scale": 1.0, "by_gyroscope": False, "in_gap": False} | changes
     covariance = ProcessNoise(CONFIG, WIDTH_M).over_half(np.array(speeds), step_s, **how)
     np.testing.assert_array_equal(covariance, np.diag(np.diag(covariance)))

@@ -18,7 +18,7 @@ R = np.array([[0.05]])
 
 
 def filtered(believed_q, believed_r, runs=100, steps=100):
-    """NEES and NIS (runs, steps) of a Kalman filter that believes these noises."""
+    """NEES and NIS (runs, steps) of a Kalman filter that assumes these noises."""
     rng = np.random.default_rng(11)
     truth = rng.normal(size=(runs, 2))
     mean, P = np.zeros((runs, 2)), np.eye(2)
@@ -47,7 +47,7 @@ def test_a_matched_filter_is_inside():
 
 @pytest.mark.parametrize("factor", [0.5, 2.0])
 def test_noise_wrong_by_a_factor_of_two_is_outside(factor):
-    """Too sure: the mean lies above; too timid: below."""
+    """Variances too small: the mean lies above the bounds; too large: below."""
     for result, degrees in zip(filtered(Q * factor, R * factor), (2, 1), strict=True):
         assert result.mean == pytest.approx(degrees / factor, rel=0.15)
         assert not result.mean_bounds[0] < result.mean < result.mean_bounds[1]

@@ -41,7 +41,7 @@ def test_a_short_run_takes_usual_values_and_says_so(make_run):
 
 
 def test_it_is_measured_between_poses_and_grows_with_distance(make_run, rng):
-    """5 cm a step of 0.2 m: 0.5 m after 20 m, to what 60 m can tell of it."""
+    """5 cm a step of 0.2 m: 0.5 m after 20 m, as far as 60 m determine it."""
     run, result = drive(make_run, 60, slip=rng.normal(0, 0.05, 301))
     found = odometer_uncertainty(run, result)
     assert "measured on" in found.source

@@ -33,7 +33,7 @@ def path_of(steps, signed):
 
 
 def with_error(step, error):
-    """A step with an error in the middle of it, seen in the robot's frame there."""
+    """A step with an error in the middle of it, in the robot's frame there."""
     half = np.array([step[0] / 2, step[1] / 2, step[2] / 2])
     forward = np.array([*half[:2], half[2]])
     rest = se2.between(forward, step)

@@ -34,7 +34,7 @@ def seen(trajectory, place_m=PLACE_M):
 
 @pytest.fixture
 def judge():
-    """The robot moves as the filter believes; the reference sees its antenna."""
+    """The robot moves as the filter estimates; the reference measures its antenna."""
     config = EvaluationConfig(horizon_m=5.0, stride_m=1.0)
     return Judge(seen(reckoned()), STAMPS_S, reckoned(), reckoned(turn=1.02), PLACE_M, config)
 

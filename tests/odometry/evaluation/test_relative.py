@@ -73,7 +73,7 @@ def test_errors_are_per_metre_of_wheel_travel_not_of_path():
 
 
 def test_a_spin_on_the_spot_counts():
-    """No path, but wheel travel: 1 m/s of treads, a turn of 2 rad/s seen as 1.8."""
+    """No path, but wheel travel: 1 m/s of treads, a turn of 2 rad/s estimated as 1.8."""
     stamps_s = np.arange(0, 20.1, 0.125)
 
     def spin(omega):
@@ -171,7 +171,7 @@ def test_relative_errors_by_composition(rng):
 
 
 def test_turns_count_in_full():
-    """5 m of wheel travel in 5 s: 3.5 rad/s seen as 2 are 7.5 rad off, not 7.5 - 2 pi."""
+    """5 m of wheel travel in 5 s: 3.5 rad/s estimated as 2 are 7.5 rad off, not 7.5 - 2 pi."""
     errors = errors_of(on_a_circle(1.0, 2.0), on_a_circle(1.0, 3.5), 1.0)
     np.testing.assert_allclose(errors.rotation_per_m, 7.5 / 5, rtol=1e-11)
 

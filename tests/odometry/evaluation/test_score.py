@@ -119,7 +119,7 @@ def test_without_yaw_there_is_no_heading_error(straight_run):
 
 
 def test_turns_between_sparse_poses_are_counted_by_the_gyroscope(make_run):
-    """A spin of 4.1 rad/s seen once a second, and an odometer that misses all of it."""
+    """A spin of 4.1 rad/s measured once a second, and an odometer that misses all of it."""
     t = np.arange(0, 20.01, 0.05)
     turn = 4.1 * np.clip(t - 5, 0, 10)  # it stands still, spins for 10 s and stands
     rate = np.where((t > 5) & (t < 15), 4.1, 0.0)

@@ -39,7 +39,7 @@ def test_dense_poses_lose_a_second_in_two(make_run):
     ("period_s", "judged"), [(1.0, [2, 4, 6, 8, 10]), (3.0, [3, 9]), (5.0, [5])]
 )
 def test_of_sparse_poses_one_is_always_given_between_two(make_run, period_s, judged):
-    """A run of 5 s period has 0, 5, 10: only one could judge, and one alone judges nothing."""
+    """A run of 5 s period has 0, 5, 10: only one could be withheld, which evaluates nothing."""
     found = withhold(run_with(make_run, np.arange(0, 11, period_s)), 0.0, 12.0)
     if len(judged) < 2:
         assert found is None
@@ -77,7 +77,7 @@ def test_poses_before_the_replay_are_not_touched(make_run):
 
 
 def test_a_wrong_pose_that_is_withheld_changes_no_estimate(make_run):
-    """The filter is told everything but what judges it: same answer if that is nonsense."""
+    """The filter gets everything but the withheld poses: same answer if those are nonsense."""
     run = run_with(make_run, np.arange(0, 11, 0.5))
     found = withhold(run, 0.0, 12.0)
     wrong = run_with(make_run, np.arange(0, 11, 0.5))

@@ -1,4 +1,4 @@
-"""A folder as `run` writes it: a bend to the left over gravel, then grass that was seen ahead."""
+"""A folder as `run` writes it: a bend to the left over gravel, then grass, from images ahead."""
 
 import json
 

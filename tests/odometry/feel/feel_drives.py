@@ -1,4 +1,4 @@
-"""Made drives: band-limited vibration by terrain and speed, which knows nothing of the features."""
+"""Made drives: band-limited vibration by terrain and speed, without the features in use."""
 
 from pathlib import Path
 

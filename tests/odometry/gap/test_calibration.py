@@ -1,4 +1,4 @@
-"""The model believed so far: as near to the true robot as its information says."""
+"""The model of the calibration: as near to the true robot as its information says."""
 
 from dataclasses import replace
 

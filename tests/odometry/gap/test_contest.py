@@ -25,7 +25,7 @@ def fitter(make_scene, known):
 
 @pytest.fixture(scope="module")
 def gaining(fitter):
-    """Judge an effect by what it gains in each piece, shared evenly by the piece's windows."""
+    """Score an effect by what it gains in each piece, shared evenly by the piece's windows."""
     before = fitter.fit([])
     _, piece = np.unique(fitter.measured.pieces, return_inverse=True)
 

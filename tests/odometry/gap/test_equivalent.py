@@ -134,7 +134,7 @@ def test_a_short_delay_is_slip_in_proportion_to_force():
 
 
 def test_no_drive_distinguishes_what_has_the_equations_of_the_name(beside, monkeypatch):
-    """An arm ahead is a skid, as near as it may be on the data; other rivals can be told by one."""
+    """An arm ahead equals a skid, as far as data show; a drive distinguishes the other rivals."""
     candidates = judged(LeverArm(), 90.0, 104.0), judged(LateralSkid(), 89.0, 101.0)
     candidates = (*candidates, judged(TimeOffset(), 88.0, 103.0))
     found = beside(*candidates)

@@ -35,7 +35,7 @@ def scenes(make_scene):
 
 @pytest.fixture(scope="module")
 def open_base(known):
-    """A calibration that knows the ICRs to a centimetre or two and the factors to a percent."""
+    """A calibration that has the ICRs to a centimetre or two and the factors to a percent."""
     free = np.ones(5, dtype=bool)
     information = np.diag(1 / np.square([0.015, 0.015, 0.02, 0.01, 0.01, 0.01]))
     return replace(

@@ -1,4 +1,4 @@
-"""What a gyroscope adds: late commands are told from late stamps, and its own bias is no gap."""
+"""What a gyroscope adds: it distinguishes late commands from late stamps; its bias is no gap."""
 
 from dataclasses import replace
 

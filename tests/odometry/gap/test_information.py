@@ -1,4 +1,4 @@
-"""What a calibration knows: errors that are alike within pieces of the runs count as one."""
+"""Information of a calibration: errors that are equal within pieces of the runs count as one."""
 
 import numpy as np
 import pytest
@@ -44,7 +44,7 @@ def test_a_mean_is_as_sure_as_the_scatter_of_the_means_of_pieces(scenes, count, 
 
 
 def test_copies_within_a_piece_divide_what_many_rows_would_say(scenes, count, rng):
-    """All rows of a piece alike: known is what one row of each says, times its own scatter."""
+    """All rows of a piece equal: the information is that of one row of each, times its scatter."""
     single, error = rng.normal(size=(count[0], 2)), rng.normal(size=count[0])
     repeated = solved(np.repeat(single, count[1], axis=0), np.repeat(error, count[1]))
     found = _information(repeated, scenes)

@@ -1,4 +1,4 @@
-"""Which drive tells two effects apart, and with what odds."""
+"""Which drive distinguishes two effects, and with what odds."""
 
 from dataclasses import replace
 
@@ -66,7 +66,7 @@ def test_the_odds_are_those_of_drawn_noise():
 
 
 def test_no_drive_tells_what_is_equal_by_its_equations(scenes, known, fit):
-    """An arm ahead and turning about a point behind move the sensor alike."""
+    """An arm ahead and turning about a point behind move the sensor in the same way."""
     arm = fit(LeverArm(), [0.1, 0.0], 1e-4)
     skid = fit(LateralSkid(), [-0.1], 1e-4)
     assert not next_drives({"lever_arm": arm, "lateral_skid": skid}, scenes, known, CONFIG)
@@ -84,7 +84,7 @@ def test_without_gyroscope_late_commands_are_late_stamps(scenes, known, fit):
 
 
 def test_the_most_varied_drive_is_proposed_for_all_that_it_decides(scenes, known, fit):
-    """Of a speed lost, any drive tells a yaw that is off; none tells equal equations."""
+    """Any drive distinguishes a lost speed from a turned yaw; none does so for equal equations."""
     rivals = {
         "lateral_skid": fit(LateralSkid(), [-0.1], 1e-4),
         "lever_arm": fit(LeverArm(), [0.1, 0.0], 1e-4),

@@ -1,4 +1,4 @@
-"""A moment of one run is not carried to another: each has its own, and is judged elsewhere."""
+"""A moment of one run is not carried to another: each has its own, evaluated on other runs."""
 
 import numpy as np
 import pytest

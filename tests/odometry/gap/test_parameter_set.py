@@ -1,4 +1,4 @@
-"""The model believed so far, by name or from a file."""
+"""The model of the calibration, by name or from a file."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""What recordings of one sort of drive cannot tell is said to be as near as the first name."""
+"""What one sort of drive cannot distinguish is listed as equivalent to the first name."""
 
 from pathlib import Path
 

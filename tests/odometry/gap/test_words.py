@@ -1,4 +1,4 @@
-"""Sentences of a result: honest where nothing, something unknown, or something named is missing."""
+"""Sentences of a result: nothing is missing, something unknown is, or something with a name."""
 
 from dataclasses import replace
 

@@ -49,7 +49,7 @@ def test_terrains_and_sides_are_apart():
 
 
 def test_intervals_hold_the_truth():
-    """Heavy tails, 40 points: 95 % of the intervals, within what 100 draws can tell."""
+    """Heavy tails, 40 points: 95 % of the intervals, within the error of 100 draws."""
     holds = []
     for seed in range(100):
         (median,) = icr_medians(points(scattered(seed)))

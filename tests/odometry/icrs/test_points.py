@@ -58,7 +58,7 @@ def test_a_mirrored_turn_has_mirrored_icrs():
 
 
 def test_units():
-    """Lengths in another unit change the ICRs alike, times do not."""
+    """Another unit of length scales all ICRs by the same factor, another unit of time does not."""
     icrs = icrs_of_twist(TWIST, SPEEDS)
     np.testing.assert_allclose(icrs_of_twist(TWIST * [1e3, 1e3, 1], SPEEDS * 1e3), icrs * 1e3)
     np.testing.assert_allclose(icrs_of_twist(TWIST / 60, SPEEDS / 60), icrs)

@@ -50,7 +50,7 @@ def test_a_straight_run_tells_the_slip_but_no_icr(excited_by):
 
 
 def test_on_the_spot_slip_and_width_look_alike(excited_by):
-    """Two numbers (drift forward, turn rate) for four parameters; x_icr alone is told."""
+    """Two numbers (drift forward, turn rate) for four parameters; x_icr alone is determined."""
     found = excited_by(lambda t: (-0.4, 0.4) if t % 20 < 10 else (0.4, -0.4))
     assert len(found.undetermined) == 2
     assert {"alpha_left", "alpha_right"} <= named(found)

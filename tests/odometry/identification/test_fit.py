@@ -138,7 +138,7 @@ def test_what_is_open_goes_by_the_residuals_where_these_are_larger_than_stated(
 def test_what_is_open_goes_by_the_stated_noise_where_the_residuals_are_smaller(
     fitted, winding, synthetic
 ):
-    """Poses that happen to agree tell no more than their sensor can."""
+    """Poses that agree by chance determine no more than their sensor can."""
     run = synthetic.noisy(winding, np.random.default_rng(1))
     deviations = []
     for share in (2, 8):
@@ -193,7 +193,7 @@ def test_a_fixed_sign_is_not_tried(fitted, inertial, synthetic):
 
 
 def test_the_force_of_inertia_does_not_tell_the_mass(fitted, inertial, synthetic):
-    """Mass times the coefficients is all that shows: whoever releases it is told."""
+    """Mass times the coefficients is all that shows: a message says so to whoever releases it."""
     run = synthetic.noisy(inertial, np.random.default_rng(1))
     fixed = {name: synthetic.inertia[name] for name in ("x_cm", "y_cm", "track_width", "h")}
     found = fitted("icr_inertia", run, fixed=fixed, released=["mass"])

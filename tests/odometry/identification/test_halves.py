@@ -1,4 +1,4 @@
-"""Halves that tell different parameters are noted; those that tell the same are not."""
+"""Halves with different parameters are noted; those with the same are not."""
 
 from dataclasses import replace
 

@@ -118,7 +118,7 @@ def test_the_halves_of_the_only_run_are_the_parts(runs):
 
 
 def test_each_part_is_predicted_by_the_others_alone(runs):
-    """What is asked to fit never holds a window of the part that it is judged on."""
+    """A fit never gets a window of the part on which it is evaluated."""
     windows = windows_of(list(runs.values()), CONFIG)
     windows = replace(windows, start_s=np.arange(len(windows)) * 1.0)  # a name for each
     parts = by_runs(windows)

@@ -156,7 +156,7 @@ def test_runs_that_name_a_terrain_and_runs_given_to_be_on_it_are_one(make, ice):
 
 
 def test_held_out_errors_are_of_other_runs_and_of_the_halves_of_one(make, ice):
-    """Two runs of unlike robots, though of one ground: neither tells of the other."""
+    """Two runs of unlike robots, though on one terrain: neither gives parameters of the other."""
     other = make("other", truth=ICE | {"y_left": 1.4}, terrain="ice", seed=1)
     halves = identify([ice], "icr", solver_config=ONE_START).terrains["ice"]
     assert np.all(halves.held_out.translation_per_m < 1e-9)
@@ -166,7 +166,7 @@ def test_held_out_errors_are_of_other_runs_and_of_the_halves_of_one(make, ice):
 
 
 def test_without_enough_for_the_parts_there_is_no_held_out_error(ice):
-    """Five windows tell five parameters; two or three would not tell nine numbers."""
+    """Five windows determine five parameters; two or three would not determine nine numbers."""
     config = WindowConfig(horizon_m=20.0, shortest=0.9)
     found = identify([ice], "icr_symmetric", window_config=config, solver_config=ONE_START)
     assert len(found.terrains["ice"].fit.windows) == 1
@@ -215,7 +215,7 @@ def test_fixed_and_released_reach_the_fit(ice):
 
 
 def test_what_the_runs_leave_open_is_refused_with_numbers(make, synthetic, stated):
-    """Half a millimetre forward a second: slip and width look alike, but for a whiff."""
+    """Half a millimetre forward a second: slip and width are nearly indistinguishable."""
     odometry = np.column_stack([np.arange(0, 60, 0.1), np.full(600, -0.4), np.full(600, 0.401)])
     run = make("spin", terrain="ice")
     poses, _ = synthetic.walk(odometry, run.pose.stamps_s, synthetic.icr_twist(ICE))

@@ -1,4 +1,4 @@
-"""The lines of a report against the numbers of the fit that they tell."""
+"""The lines of a report against the numbers of the fit that they state."""
 
 from dataclasses import replace
 

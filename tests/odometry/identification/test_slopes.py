@@ -157,7 +157,7 @@ def test_with_the_icrs_given_a_run_on_the_slope_alone_will_do(in_two_stages, slo
 def test_two_stages_and_all_at_once_agree_within_their_deviations(
     in_two_stages, sloped, synthetic, stated
 ):
-    """A joint search over all windows; it knows more, so its errors are part of the other's."""
+    """A joint search over all windows; it has more data, so its errors are part of the other's."""
     run = synthetic.noisy(sloped, np.random.default_rng(1))
     found = in_two_stages(run, stated)
     free = np.array([name in NAMES for name in synthetic.slope])

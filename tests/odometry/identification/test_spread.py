@@ -67,8 +67,8 @@ def test_the_mean_of_equal_groups_has_students_own_degrees():
     assert freedom == pytest.approx(5.0, rel=1e-9)
 
 
-def test_a_direction_that_nothing_tells_and_one_that_one_group_tells_alone(regression):
-    """Neither makes numbers that are not finite; what the others tell stays as it is."""
+def test_a_direction_without_data_and_one_that_a_single_group_determines(regression):
+    """Neither makes numbers that are not finite; the variances of the others stay as it is."""
     groups, design, residuals = regression
     alone = np.where((groups == 2)[:, None, None], 1.0, 0.0) * np.ones((1, 3, 1))
     wide = np.concatenate([design, np.zeros_like(design[..., :1]), alone], axis=-1)

@@ -84,7 +84,7 @@ def test_the_noise_of_the_poses(errors_of, stated, loss):
 
 
 def test_the_noise_of_the_poses_in_overlapping_windows(errors_of, stated):
-    """Half the windows tell nothing new, and the covariance knows."""
+    """Half the windows are copies and add nothing; the covariance shows it."""
     assert_covers(*errors_of(replace(stated, stride=0.5), "squares"))
 
 
@@ -182,7 +182,7 @@ def test_without_surplus_it_is_the_sandwich_of_the_poses_noise(problem, syntheti
 
 
 def test_windows_that_stand_there_twice_say_no_more(driven, synthetic, stated, rng):
-    """The model's own errors are alike on the same way; so few windows make no groups."""
+    """The model's own errors are equal on the same way; so few windows make no groups."""
     truth = Icr().pack(synthetic.icrs)
     windows = windows_of([driven], stated)
     windows = windows.where(np.arange(len(windows)) < 14)

@@ -110,7 +110,7 @@ def test_friction_shows_on_a_slope_alone():
     centre=st.tuples(st.floats(-0.1, 0.1), st.floats(-0.1, 0.1)),
 )
 def test_symmetry_of_the_contacts(speeds, angles, centre):
-    """Seen in a mirror, and with front and rear exchanged."""
+    """Mirrored, and with front and rear exchanged."""
     (left, right), (roll, pitch), (x_cm, y_cm) = speeds, angles, centre
     v_x, v_y, omega = twist([left, right], roll, pitch, x_cm=x_cm, y_cm=y_cm)
     mirrored = twist([right, left], -roll, pitch, x_cm=x_cm, y_cm=-y_cm)
@@ -144,7 +144,7 @@ def test_cornering_drifts_outwards():
 
 
 def test_slow_speeds_scale():
-    """Coulomb friction knows no speed: slip_scale scales with all speeds, gravity stays."""
+    """Coulomb friction is the same at any speed: slip_scale scales with all speeds, not gravity."""
     once = creeping([0.1, 0.5], 0.1, -0.1, slip_scale=0.02)
     thrice = creeping([0.3, 1.5], 0.1, -0.1, slip_scale=0.06)
     np.testing.assert_allclose(thrice, 3 * once, rtol=1e-8)

@@ -16,7 +16,7 @@ STEP_S = 0.5
 
 
 def track(most, labels, names=("a", "b", "c"), probability=0.95):
-    """A stamp each half second; `most` is the probable mode, "" where all are alike."""
+    """A stamp each half second; `most` is the probable mode, "" where all are equal."""
     count = len(names)
     rows = np.full((len(most), count), 1 / count)
     for row, name in enumerate(most):

@@ -148,7 +148,7 @@ def test_the_fewest_modes_that_are_sure_together(probabilities, chosen):
 
 
 def test_modes_that_the_drive_does_not_distinguish_are_candidates_too():
-    """Whatever their probability: of two that are alike the wrong one may be 0.99 probable."""
+    """Whatever their probability: of two equal modes the wrong one may be 0.99 probable."""
     known = track(["a", "a"], ["b", "b"], probability=0.99)
     alike = np.array([[False, True, False], [False, False, False]])
     chosen = candidates(replace(known, alike=alike), 0.9)

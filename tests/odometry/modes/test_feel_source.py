@@ -46,7 +46,7 @@ def model():
 
 @pytest.fixture(scope="module")
 def alike_set():
-    """Modes of two terrains that turn alike: motion cannot tell them apart."""
+    """Modes of two terrains that turn alike: motion cannot distinguish them."""
     runs = [
         named(turning_as_tiles(drive(terrain, seed, seconds=60.0), terrain), label)
         for seed, label in enumerate(NAMES)
@@ -85,7 +85,7 @@ def test_windows_are_worth_what_they_were_on_runs_held_out(model):
 
 
 def test_terrains_that_are_no_modes_say_nothing_of_any(model):
-    """Feel is for grates, which is no mode: tiles and what it does not know stay alike."""
+    """Feel names grates, which is no mode: tiles and a mode that it lacks stay equally probable."""
     run = drive("grates", 901)
     source = feel_source(run, model, ("tiles", "snow", "ice"), np.full(3, 20.0))
     assert np.ptp(source.log_evidence, axis=1).max() < 0.5

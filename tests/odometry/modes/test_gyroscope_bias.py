@@ -1,4 +1,4 @@
-"""The bias of the gyroscope while modes are not told apart: the truth lies between two modes."""
+"""The bias of the gyroscope while modes are undetermined: the truth lies between two modes."""
 
 import numpy as np
 import pytest

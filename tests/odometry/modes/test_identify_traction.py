@@ -52,7 +52,7 @@ def off(gains, name, run):
 
 
 def test_twists_of_both_turns_are_found(modes):
-    """Gains alone go together where turns are of one tightness. Forty poses of 1 cm over 4 s tell
+    """Gains alone go together where turns are of one tightness. Forty poses of 1 cm over 4 s give
     a speed to 0.01 sqrt(12 / 40) / 4 = 0.0014 m/s, ten such windows of each turn to 0.0004; four
     gains share them."""
     assert modes.names == ("left", "none")
@@ -252,7 +252,7 @@ def test_poses_that_are_chained_for_two_seconds_alone():
 
 
 def test_turns_to_one_side_do_not_tell_all_gains():
-    """Straight ahead and always to the left; the paper's gains are told all the same."""
+    """Straight ahead and always to the left; the paper's gains are identified all the same."""
     run = drive_by_eq_3(1, "none", turn_m_s=0.0)
     with pytest.raises(IdentificationError, match=r"none: 0.0 s of left turns and 0.0 s of r"):
         identify_traction_modes([run])

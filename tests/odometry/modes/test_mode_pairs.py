@@ -1,4 +1,4 @@
-"""How long it takes to tell modes apart, against closed forms."""
+"""How long it takes to distinguish modes, against closed forms."""
 
 from dataclasses import replace
 

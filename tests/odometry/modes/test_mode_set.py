@@ -1,4 +1,4 @@
-"""A set of modes as TOML: what is written is what is read, and what cannot be is told."""
+"""A set of modes as TOML: what is written is what is read, and what cannot be read is refused."""
 
 import numpy as np
 import pytest

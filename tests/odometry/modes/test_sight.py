@@ -71,7 +71,7 @@ def test_a_file_of_something_else_is_reported(seen):
 
 
 def test_a_certain_sight_pulls_all_modes_within_its_time():
-    """A chain of two exponential clocks: what is not seen is left at both rates together."""
+    """A chain of two exponential clocks: a mode without a label is left at both rates together."""
     dwell_s = np.array([10.0, 20.0, 40.0])
     usual, pulled = mode_chains((SeenGround(3.0, "mud", 1.0),), NAMES, dwell_s)
     np.testing.assert_allclose(np.diag(usual.rates), -1 / dwell_s)

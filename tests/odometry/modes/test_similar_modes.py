@@ -1,4 +1,4 @@
-"""Modes that answer alike within their own lasting errors, by gains that are put in."""
+"""Modes whose motions are equal within their own lasting errors, by gains that are put in."""
 
 import numpy as np
 import pytest

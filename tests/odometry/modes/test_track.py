@@ -40,7 +40,7 @@ def run():
 
 @pytest.fixture(scope="module")
 def straight():
-    """Both grounds answer alike to treads that go together."""
+    """Both terrains move the same when treads go together."""
     rng, size = np.random.default_rng(4), 500
     treads = np.repeat(wandering(rng, size, STEP_S)[:, :1], 2, axis=1)
     true = velocities([A[0]] * size, [B[0]] * size, treads, STEP_S)
@@ -115,7 +115,7 @@ def test_errors_that_last_are_those_of_the_probable_mode(run):
 
 
 def test_a_rough_stretch_says_less():
-    """The same turn, told while the treads are steady and left open while they are not."""
+    """The same turn, named while the treads are steady and left open while they are not."""
     gains = np.zeros((2, 2, 3, 5))
     gains[:, :, 0, 0], gains[:, :, 2, 1] = 1.0, np.array([0.8, 0.7])[:, None]
     noise = np.array([1e-6, 1e-6, 1e-8]), np.array([1e-4, 1e-4, 1e-4, 0.02**2])
@@ -178,7 +178,7 @@ def test_a_straight_leaves_it_open(straight):
 
 
 def test_sight_decides_what_motion_leaves_open(straight):
-    """From the place on where it was seen, and not before; a guess of even odds says nothing."""
+    """From the place of the label on, and not before; a label of even odds changes nothing."""
     motion = follow_modes(straight, SET).probabilities
     for column, name in enumerate(NAMES):
         sighted = follow_modes(straight, SET, seen=(SeenGround(4.0, name, 0.98),)).probabilities
@@ -255,7 +255,7 @@ def test_one_mode_is_a_kalman_filter():
 
 
 def test_errors_that_last_count_once(run, monkeypatch):
-    """Measured each 0.02 s, alike for 0.2 s: a tenth of the log-odds. No mode is ever left.
+    """Measured each 0.02 s, one error for 0.2 s: a tenth of the log-odds. No mode is ever left.
 
     A bias would be learnt from all of them.
     """

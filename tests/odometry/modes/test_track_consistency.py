@@ -22,7 +22,7 @@ from tests.odometry.modes.mode_drives import integrated
 
 RUNS, STEPS, STEP_S = 100, 120, 0.05
 DWELL_S = np.array([4.0, 3.0, 2.0])
-SHARES = DWELL_S / DWELL_S.sum()  # of all time, as all lead to all alike
+SHARES = DWELL_S / DWELL_S.sum()  # of all time, as each mode leads to every other equally
 A = np.array([[[-4.0, 0.2], [0.0, -6.0]], [[-4.0, 0.0], [0.3, -5.0]], [[-3.0, 0.0], [0.5, -4.0]]])
 SETTLED = np.array(
     [[[0.5, 0.5], [-0.7, 0.7]], [[0.48, 0.48], [-0.5, 0.5]], [[0.45, 0.45], [-0.3, 0.3]]]
@@ -92,7 +92,7 @@ def filtered(factor=1.0, runs=RUNS):
             nees[run, row - 1] = normalised_squared_errors(off, P[:2, :2])
             right[run, row - 1] = belief.probabilities.argmax() == truth[row]
             means.append(mean)
-        if run < 3:  # what is judged here is what `follow_modes` does
+        if run < 3:  # what is checked here is what `follow_modes` does
             track = follow_signals(signals, with_set)
             np.testing.assert_allclose(track.means[1:], means, atol=1e-12)
     return nees, nis, float(right.mean())

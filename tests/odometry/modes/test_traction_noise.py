@@ -1,4 +1,4 @@
-"""Traction modes: noise of steps, lag of treads, and what is believed at the start."""
+"""Traction modes: noise of steps, lag of treads, and the covariance at the start."""
 
 import numpy as np
 import pytest
@@ -66,7 +66,7 @@ def test_a_lag_follows_as_a_loop_does(values, lag_s):
 
 
 def test_a_lag_over_stamps_merged_from_two_clocks():
-    """A step of 1 at 1 s, seen at uneven stamps: 1 - exp(-(t - 1) / lag)."""
+    """A step of 1 at 1 s, sampled at uneven stamps: 1 - exp(-(t - 1) / lag)."""
     stamps_s = np.union1d(np.arange(0, 3, 0.02), np.arange(0.007, 3, 0.1))
     found = lagged((stamps_s >= 1.0).astype(float), stamps_s, 0.3)
     expected = np.where(stamps_s > 1.0, 1 - np.exp(-(stamps_s - 1.0) / 0.3), 0.0)

@@ -68,7 +68,7 @@ def test_treads_that_count_another_way_are_off(factor, expected):
 
 @pytest.mark.parametrize("wrong", [{"yaw_rad": 0.5}, {"turn_m": 0.03}, {"yaw_rad": np.nan}])
 def test_a_heading_at_fault_is_no_other_travel(wrong):
-    """The gyroscope knows the direction but for a turn of the whole window."""
+    """The gyroscope gives the direction but for a turn of the whole window."""
     assert not checked(run_of(**wrong)).off.any()
 
 

@@ -31,7 +31,7 @@ def test_without_noise_the_yaw_is_the_driven_one(gyroscope):
 
 @pytest.mark.parametrize("gyroscope", [False, True])
 def test_with_noise_it_is_as_good_as_stated(gyroscope):
-    """Over 160 s at 5 positions in a second; errors of neighbours are alike."""
+    """Over 160 s at 5 positions in a second; errors of neighbours are correlated."""
     found, errors = errors_rad(drive(2, gyroscope=gyroscope, noise_m=0.3, duration_s=160.0))
     sigma = found.run.pose[YAW_FOUND]
     assert found.position_sigma_m == pytest.approx(0.3, rel=0.1)

@@ -64,7 +64,7 @@ def test_speeds_over_run_time_with_marks(axes):
     assert right.get_ydata() == pytest.approx(run.odometry["v_right"])
     spans = [p.get_extents().transformed(axes.transData.inverted()) for p in axes.patches]
     assert (spans[0].x0, spans[0].x1) == pytest.approx((1.0, 3.0))
-    assert spans[1].x0 < 5.0 < spans[1].x1  # a single sample is seen, too
+    assert spans[1].x0 < 5.0 < spans[1].x1  # a single sample is visible, too
     assert names(axes) == ["left tread", "right tread", "stuck"]
     assert axes.get_ylabel() == "tread speed [m/s]"
 

@@ -100,7 +100,7 @@ def test_long_runs_are_drawn_in_part_with_both_ends(monkeypatch):
 
 @pytest.fixture(scope="module")
 def grounds():
-    """Ice, then tar, with a sight that lies."""
+    """Ice, then tar, with a camera that labels wrongly."""
     turns, labels = np.repeat([1.0, 2.0], 200), ["ice"] * 200 + ["tar"] * 200
     sight = (SeenGround(0.0, "tar", 0.8),)
     return followed(run_of(turns, labels=labels), velocity_set(), seen=sight)

@@ -1,4 +1,4 @@
-"""Colours: told apart by readers with any of the three kinds of colour blindness."""
+"""Colours: distinguished by readers with any of the three kinds of colour blindness."""
 
 from itertools import combinations
 

@@ -1,4 +1,4 @@
-"""Experiments as runs: modes in the truth alone, calibration that is told its mode, noise."""
+"""Experiments as runs: modes in the truth alone, calibration runs that state their mode, noise."""
 
 from pathlib import Path
 

@@ -59,7 +59,7 @@ def test_no_window_is_lost_where_every_third_pose_is_missing(run):
 
 @pytest.mark.parametrize("rate_hz", [50, 20])
 def test_a_burst_of_poses_is_thinned_to_the_rate_of_the_rest(run, rate_hz):
-    """Of 5 Hz and of a burst alike: eleven poses at even distances over two seconds."""
+    """The same for 5 Hz and for a burst: eleven poses at even distances over two seconds."""
     even_s = np.arange(0.0, DURATION_S - 0.1, 0.2)
     burst_s = np.arange(20.6, 38.61, 1 / rate_hz)  # nine windows
     scene = scene_at(run, np.unique(np.round(np.concatenate([even_s, burst_s]), 9)))

@@ -16,7 +16,7 @@ def told(stamps_s, rows, speed_m_s=0.5):
 
 @pytest.mark.parametrize(("period_s", "longest_s"), [(0.02, 1.0), (0.1, 2.0), (0.5, 10.0)])
 def test_a_hold_is_a_gap_beyond_one_second_and_twenty_periods(period_s, longest_s):
-    """Until then nobody knows; the row that ends it still ends a gap."""
+    """A hold is no gap until it is longer; the row that ends it still ends a gap."""
     stamps_s = [*(period_s * np.arange(50))]
     last_s = stamps_s[-1]
     later_s = [last_s + 0.99 * longest_s, last_s + 1.01 * longest_s, last_s + 1.1 * longest_s]

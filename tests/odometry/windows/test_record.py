@@ -1,4 +1,4 @@
-"""Merging by hand-written folders; poses are placed by their stamps, so that x tells which."""
+"""Merging by hand-written folders; poses are placed by their stamps, so that x shows which."""
 
 import numpy as np
 import pytest

@@ -36,7 +36,7 @@ def test_all_results_arrive_though_a_worker_is_killed(
             states[outcome.job.name] = outcome.state
             first.kill()  # with the first outcome that comes: there is more to do
         assert states.pop("absent") == FAILED
-        assert set(states) == set("abcd")  # what its worker did not tell any more is found done
+        assert set(states) == set("abcd")  # what its worker did not report any more is found done
         assert set(states.values()) <= {REPLAYED, KEPT}
         again = list(cluster_outcomes(jobs[:2], scheduler))
     assert [outcome.state for outcome in again] == [KEPT, KEPT]

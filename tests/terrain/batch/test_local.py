@@ -33,7 +33,7 @@ def test_what_is_broken_off_ends_at_once():
 
 
 def test_a_process_of_the_pool_ends_with_its_parent():
-    """A parent that is killed can tell nobody."""
+    """A parent that is killed can report nothing."""
     program = """
 import os, sys, time
 from terrain.batch.batch import pool

@@ -1,4 +1,4 @@
-"""What is in sight and how large a metre is, by hand; a pitch that shows the region."""
+"""What the image shows and how large a metre is, by hand; a pitch that shows the region."""
 
 import numpy as np
 import pytest

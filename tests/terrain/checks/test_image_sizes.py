@@ -60,4 +60,4 @@ def test_matrix_of_another_resolution(faulty, world, factor):
     assert "camera_matrix" in found
     assert "another resolution" in found["camera_matrix"].cause
     assert "focal length" in found["camera_matrix"].cause
-    assert "region_outside" not in found  # mended by that factor, the region is seen
+    assert "region_outside" not in found  # mended by that factor, the region is inside the image

@@ -1,4 +1,4 @@
-"""The distance of an image: its patches are judged together."""
+"""The distance of an image: its patches are evaluated together."""
 
 import numpy as np
 import pytest

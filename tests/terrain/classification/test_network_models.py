@@ -25,10 +25,10 @@ NEW = np.random.default_rng(11).integers(0, 256, (4, 32, 32), dtype=np.uint8)
 
 
 class Moments(TransformerMixin, BaseEstimator):
-    """Mean and deviation of the image and of its rows' differences, centred by what was seen."""
+    """Mean and deviation of the image and its rows' differences, centred on the training images."""
 
     def fit(self, X, y=None):
-        assert y is None, "the terrain is not told"
+        assert y is None, "the terrain is not given"
         self.centre_ = np.mean([self._of(image) for image in X], axis=0)
         return self
 

@@ -139,7 +139,7 @@ def test_added_and_lost_members_are_refused(file):
 
 
 def test_an_exchanged_array_is_noticed(file, tmp_path):
-    """The zip is whole: only the checksum can tell."""
+    """The zip is whole: only the checksum shows it."""
     write_model(tmp_path / "other.model", SETTINGS, ARRAYS | {"points": -ARRAYS["points"]})
     with zipfile.ZipFile(file) as one, zipfile.ZipFile(tmp_path / "other.model") as other:
         members = {name: one.read(name) for name in one.namelist()}

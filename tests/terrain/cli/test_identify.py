@@ -134,7 +134,7 @@ def test_windows_that_are_shorter_than_asked_are_explained(command, curvy_run, t
 
 
 def test_positions_without_yaw_are_enough(command, tmp_path):
-    """The yaw column emptied: what was done instead is said, and what positions cannot tell."""
+    """The yaw column emptied: it says what was done instead, and what positions leave open."""
     bare = drive_curves(tmp_path / "gnss", stamps_s=np.arange(0.0, 40.0, 0.05))
     header, *lines = (bare / "pose.csv").read_text().splitlines()
     place = header.split(",").index("yaw")

@@ -34,7 +34,7 @@ def test_a_picture_that_cannot_be_written_is_refused_first(
 def test_a_picture_that_cannot_be_drawn_costs_no_parameters(
     command, curvy_run, tmp_path, monkeypatch
 ):
-    """As where positions do not tell the yaw: a picture of an earlier call must not stay."""
+    """As where positions do not determine the yaw: a picture of an earlier call must not stay."""
     picture = tmp_path / "icrs.png"
     assert command(curvy_run, *SHORT, "--picture", picture)[0] == 0
     command.out.unlink()

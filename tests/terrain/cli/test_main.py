@@ -18,7 +18,7 @@ SLOW = ("numpy", "scipy", "sklearn", "skimage", "cv2", "matplotlib", "filterpy",
 
 
 def command(*arguments, cwd=None):
-    """The command in a process of its own; what it imported is told on the last line."""
+    """The command in a process of its own; the last line says what it imported."""
     program = (
         "import atexit, sys\n"
         f"slow = {SLOW!r}\n"

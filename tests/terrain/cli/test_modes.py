@@ -56,7 +56,7 @@ def seen(tmp_path):
 
 @pytest.fixture
 def with_sight(make, models, seen, tmp_path):
-    """What the verb answers to this sight, and where it would write."""
+    """What the verb answers with these image labels, and where it would write."""
 
     def run(content):
         out = tmp_path / "out"

@@ -47,7 +47,7 @@ def assert_one_line(*arguments):
     else:
         assert isinstance(answer.exception, OdometryError), answer.exception
         assert len(str(answer.exception).splitlines()) == 1
-        assert "absent" not in str(answer.exception)  # the number is what is told
+        assert "absent" not in str(answer.exception)  # the message is about the number
 
 
 @pytest.mark.parametrize("odd", ODD)

@@ -27,7 +27,7 @@ def test_what_is_no_assignment_is_shown(text):
 
 @pytest.fixture
 def told():
-    """A command that keeps the settings it was told."""
+    """A command that keeps the settings it was given."""
     kept = []
 
     @click.command()

@@ -1,4 +1,4 @@
-"""The run over gravel, boards and gravel, told by spans of time."""
+"""The run over gravel, boards and gravel, labelled by spans of time."""
 
 import pytest
 
@@ -12,7 +12,7 @@ SMALL = LabelConfig(place_m=1.0)
 
 @pytest.fixture(scope="session")
 def told_spans(world):
-    """Spans of a run over the world's three stretches; the robot's middle is told exactly."""
+    """Spans of a run over the world's three stretches; those of the robot's middle are exact."""
     ends_s = [0.0, *(edge / world.speed_m_s for edge in world.edges_m), 60.0]
     names = ("gravel", "boards", "gravel")
     spans = [TerrainSpan(*ends_s[k : k + 2], name) for k, name in enumerate(names)]

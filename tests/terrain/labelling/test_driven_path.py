@@ -60,7 +60,7 @@ def test_ground_is_passed_first_and_again(tmp_path, world):
 
 
 def test_ground_before_which_the_robot_went_back_is_not_passed(tmp_path, world):
-    """The front of the footprint is over it; the middle, of which terrain is told, never."""
+    """The front of the footprint is over it; the middle, whose terrain is given, never."""
     stamps_s = np.arange(0.0, 12.0, 0.1)
     speeds = np.where(stamps_s > 5.95, -SPEED_M_S, SPEED_M_S)
     there = way(tmp_path / "back", world, speeds, stamps_s)

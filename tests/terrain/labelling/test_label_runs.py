@@ -68,7 +68,7 @@ def test_a_patch_shows_the_ground_that_it_is_of(files, labelled, world):
     for each in labelled.chosen[:: len(labelled.chosen) // 12]:
         patch = read_image(files / each.label / each.of.name).astype(float)
         truth = cv2.resize(world.across(ground_of(world, each.of.square)), patch.shape[::-1])
-        near = each.of.square.rectangle.x_max < 0.9  # farther ground is seen too coarsely
+        near = each.of.square.rectangle.x_max < 0.9  # farther ground is imaged too coarsely
         assert np.corrcoef(patch.ravel(), truth.ravel())[0, 1] > (0.8 if near else 0.3)
 
 

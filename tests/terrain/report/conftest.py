@@ -1,4 +1,4 @@
-"""A run that was seen, the same one unseen, and the fullest report of it."""
+"""A run with vision, the same one without, and the fullest report of it."""
 
 import dataclasses
 

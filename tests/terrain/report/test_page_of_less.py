@@ -1,4 +1,4 @@
-"""The page of a run: what it is judged by, and that it never fails for want of data."""
+"""The page of a run: what it is evaluated on, and that it never fails for want of data."""
 
 import dataclasses
 

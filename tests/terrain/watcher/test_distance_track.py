@@ -35,7 +35,7 @@ def test_four_places_beyond_the_limit_of_four_patches_are_unknown():
     assert [label.label for label in said] == ["mud"] * 3 + ["unknown"] * 3
     assert "the last 2 m together" in said[-1].reason
     assert said[-1].class_distance == 7.0
-    # five of the latest 2 m are judged against the limit of four to five patches, below 6
+    # five of the latest 2 m are compared with the limit of four to five patches, below 6
     assert {label.label for label in labels([5.5] * 6)} == {"mud"}
 
 

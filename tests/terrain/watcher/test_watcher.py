@@ -46,7 +46,7 @@ def test_the_place_counts_along_the_driven_path(watch, corrected):
 
 @pytest.mark.parametrize(("gap_ends_s", "terrain"), [(0.0, "snow"), (2.0, "mud")])
 def test_over_a_gap_of_odometry_places_are_forgotten(watch, gap_ends_s, terrain):
-    """Snow is seen before the gap and after it; one label alone brings nothing into force."""
+    """Images show snow before the gap and after it; one label alone brings nothing into force."""
     watched = watch([DARK, BRIGHT, BRIGHT])
     frames = list(watched.run.frames())
     frames = [dataclasses.replace(f, in_gap=1.4 < f.stamp_s <= gap_ends_s) for f in frames]
@@ -57,7 +57,7 @@ def test_over_a_gap_of_odometry_places_are_forgotten(watch, gap_ends_s, terrain)
 
 
 def test_the_region_follows_the_speeds_commanded_from_the_image_on(watch):
-    """Straight until now; from this frame on a turn to the left about the believed ICRs."""
+    """Straight until now; from this frame on a turn to the left about the estimated ICRs."""
     watched = watch([DARK])
     frame = next(f for f in watched.run.frames() if f.image is not None)
     turning = dataclasses.replace(frame, tread_speeds_m_s=np.array([0.48, 0.52]))
@@ -133,7 +133,7 @@ def test_the_classifier_is_shown_the_metric_scale_it_was_trained_at(watch):
 
 
 def test_without_a_metric_scale_the_classifier_is_shown_pixels_of_the_raw_image(watch, world):
-    """Pixels tell their own place; those that show the region's ground are in the crop."""
+    """Pixels encode their own place; those that show the region's ground are in the crop."""
     v, u = np.indices((120, 160)).astype(np.uint8)
     classifier = ByBrightness(None, 16)
     watched = watch([np.stack([v, v, u], axis=-1)], classifier)  # OpenCV writes blue first
