@@ -216,7 +216,7 @@ class Replay:
         """The same, omega as measured where it and the treads are known."""
         twists = self._turned_by_treads(rows)
         believed = self.numbers("believed_yaw_rate_rad_s", slice(rows.start + 1, rows.stop + 1))
-        rows = slice(rows.start, rows.start + len(believed))  # nothing is believed after the last
+        rows = slice(rows.start, rows.start + len(believed))  # nothing is estimated after the last
         means, added = self.numbers("mean", rows), self.numbers("added_twist", rows)
         speeds = self.numbers("tread_speeds_m_s", rows)
         effective = means[:, ALPHAS] * (speeds + self.numbers("added_speeds_m_s", rows))

@@ -140,7 +140,7 @@ class LiveOdometry:
 
     @property
     def feel_note(self) -> str:
-        """Why nothing is felt, such as accelerations in g; "" where all is well."""
+        """Why there are no answers by feel, such as accelerations in g; "" where all is well."""
         return "" if self._felt is None else self._felt.live.note
 
     def step(self, frame: Frame) -> LiveStep | None:

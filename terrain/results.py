@@ -134,7 +134,7 @@ def write_results(
     list of Path
         odometer.csv and .tum, estimate.csv and .tum, result.json; learned.toml where there is
         anything to store; terrain.csv where there is a source of terrain; contradictions.csv where
-        sight, feel and motion differ for long; reference.csv where there are poses to evaluate
+        camera, feel and motion differ for long; reference.csv where there are poses to evaluate
         with, and reference.tum where they have a yaw.
 
     Examples

@@ -1,4 +1,4 @@
-"""Who may see what: no window is evaluated with a model that was identified on it."""
+"""What each fit may use: no window is evaluated with a model that was identified on it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -181,7 +181,7 @@ def folds(robot: str, terrain: str, parts: Sequence[Part]) -> list[Split]:
 
     More than ten parts are put into ten groups, and each group is held out in turn. Neighbours
     are in one group: runs that are given one after the other were often recorded so, and are
-    alike.
+    similar.
     """
     if len(parts) == 1:
         first, second = halves(parts[0])

@@ -102,7 +102,7 @@ class NewIcrs(MotionEffect):
     in_words = "a terrain on which the robot turns and slips otherwise throughout"
     equation = "(y_left, y_right, x_icr, alphas) -> the same + shifts"
     source = "Chen 2023, Baril 2020 eq. 7"
-    looks_like = "a model that is off in every turn of a run, always alike"
+    looks_like = "a model that is off in every turn of a run, always by the same share"
     remedy = "identify a parameter set on this terrain"
     includes: ClassVar[Mapping[str, str]] = {
         "lever_arm": DISTINGUISHED_BY,

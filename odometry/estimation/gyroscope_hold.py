@@ -134,10 +134,10 @@ def _difference(hold: GyroscopeHold, left: float, right: float) -> tuple[float, 
 
 
 def forgotten(belief: Gaussian, hold: GyroscopeHold, begin_s: float, posed_s: float) -> Gaussian:
-    """State estimate at `begin_s` without the corrections since the value repeats.
+    """State estimate at `begin_s` without what was learned since the value began to repeat.
 
-    The next step turns it by what is owed. Where a pose came since, at `posed_s`, that has measured
-    the yaw already, more or less.
+    The next step adds the turn that the gyroscope missed (`owed_rad`). Where a pose corrected the
+    yaw in that time, last at `posed_s`, the yaw holds that turn already, and it is subtracted here.
     """
     then_mean, then_covariance = hold.before
     mean, covariance = np.append(belief[0][:3], then_mean[3:]), np.zeros((STATES, STATES))

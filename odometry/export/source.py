@@ -68,7 +68,7 @@ class ExportSource:
 
     @property
     def chosen_terrain(self) -> str:
-        """The terrain for whom knows one: that someone says, or the only one.
+        """The terrain whose numbers a controller of one terrain gets: that named, or the only one.
 
         Raises
         ------

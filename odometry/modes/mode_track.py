@@ -32,7 +32,7 @@ class ModeTrack:
     fit : ModeFit or None
         Whether a mode fits at all; without it one is taken to.
     gyroscope : GyroscopeTrust or None
-        Whether the gyroscope can be trusted; without it it is.
+        Whether the gyroscope can be used; None: it is taken as sound.
     alike : (N, M) or None
         Modes that the drive does not distinguish from the most probable one; None: not tested.
     turns_are_off : (N,) or None

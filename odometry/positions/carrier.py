@@ -1,4 +1,4 @@
-"""What carries a robot between its measured positions, and how far that is to be trusted."""
+"""What carries a robot between its measured positions, and how accurate that is."""
 
 from dataclasses import dataclass
 

@@ -24,7 +24,7 @@ def skidpad(
 ) -> FloatArray:
     """Turns of one radius from rest to rest, to the left and to the right at each speed.
 
-    All have equal times: who starts in a turn slips by more than who turns steadily.
+    All have equal times: a robot that starts in a turn slips by more than one that turns steadily.
 
     Raises
     ------
