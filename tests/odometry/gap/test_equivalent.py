@@ -1,5 +1,6 @@
 """What is as near as a name: by its equations, by evidence, or as the main part of it."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -17,6 +18,7 @@ from odometry.gap.config import GapConfig
 from odometry.gap.contest import Judged
 from odometry.gap.equivalent import equivalents
 from odometry.gap.explanation import Explanation
+from odometry.gap.result import Equivalent
 from odometry.gap.simulate import residuals
 from odometry.models.inputs import Inputs
 
@@ -59,6 +61,23 @@ def beside(monkeypatch):
 
 
 @pytest.fixture
+def names_beside_noise(monkeypatch):
+    """Names as near as the first of candidates, of which noise makes so much in each piece."""
+
+    def names(noises, *candidates):
+        made = dict(zip((id(one.fitted) for one in candidates), noises, strict=True))
+        monkeypatch.setattr(
+            equivalent,
+            "noise_of_windows",
+            lambda fits, _: [np.full(PIECES, made[id(fit)]) for fit in fits],
+        )
+        found = equivalents(explained_by(*candidates), (), Alone(), GapConfig())
+        return [one.name for one in found]
+
+    return names
+
+
+@pytest.fixture
 def names_beside(beside):
     """Their names."""
     return lambda *candidates: [one.name for one in beside(*candidates)]
@@ -74,6 +93,31 @@ def test_one_of_near_evidence_is_equivalent(names_beside):
     first = judged(TimeOffset(), 100.0, 104.0)
     assert names_beside(first, judged(HeadingOffset(), 95.0, 103.0)) == ["heading_offset"]
     assert names_beside(first, judged(HeadingOffset(), 93.0, 103.0)) == []
+
+
+@pytest.mark.parametrize(("gain", "expected"), [(51.0, []), (53.0, ["heading_offset"])])
+def test_one_of_near_evidence_that_gains_less_than_half_is_none(names_beside, gain, expected):
+    """What it loses it saves in freedom: small, and not the same."""
+    assert names_beside(judged(TimeOffset(), 50.0, 104.0), judged(HeadingOffset(), 48.0, gain)) == (
+        expected
+    )
+
+
+@pytest.mark.parametrize(
+    ("noises", "lost", "expected"),
+    [
+        ((0.0, 1.0), 53.0, ["heading_offset"]),
+        ((0.0, 1.0), 55.0, []),
+        ((0.0, 0.0), 15.0, []),
+        ((1.0, 0.0), 7.0, []),
+    ],
+)
+def test_what_noise_of_the_treads_makes_of_a_rival_is_not_held_against_it(
+    names_beside_noise, noises, lost, expected
+):
+    """A chi-squared of 30, and 18 by which it scatters (1.645 times twice its root), beside 6."""
+    candidates = judged(TimeOffset(), 150.0, 154.0), judged(HeadingOffset(), 150 - lost, 154 - lost)
+    assert names_beside_noise(noises, *candidates) == expected
 
 
 @pytest.mark.parametrize(
@@ -143,6 +187,16 @@ def test_no_drive_distinguishes_what_has_the_equations_of_the_name(beside, monke
     assert asked_about(candidates, found, monkeypatch).keys() == {"lever_arm", "time_offset"}
 
 
+def test_a_drive_distinguishes_the_first_of_two_names(monkeypatch):
+    """The one that the answer is called by; the second has been fitted beside it."""
+    first, second, rival = (
+        judged(one, 90.0, 104.0) for one in (LeverArm(), HeadingOffset(), TimeOffset())
+    )
+    found = (Equivalent("time_offset", "lever_arm", "a drive"),)
+    asked = asked_about((first, rival), found, monkeypatch, steps=(first, second))
+    assert asked == {"lever_arm": first.fitted, "time_offset": rival.fitted}
+
+
 def test_a_drive_is_for_the_form_of_most_evidence(beside, monkeypatch):
     """On one heading a form that came as near may have been no candidate."""
     first, far, near = (judged(HeadingOffset(), 90.0, 104.0), *ICRS)
@@ -153,11 +207,12 @@ def test_a_drive_is_for_the_form_of_most_evidence(beside, monkeypatch):
 ICRS = judged(NewIcrs(), 20.0, 50.0), judged(NewIcrs(), 89.0, 103.0)
 
 
-def asked_about(candidates, found, monkeypatch):
-    """The fits that drives are proposed for, by name."""
+def asked_about(candidates, found, monkeypatch, steps=()):
+    """The fits that drives are proposed for, by name; the first candidate alone was added."""
     asked = {}
     monkeypatch.setattr(answer, "next_drives", lambda rivals, *_: asked.update(rivals))
     fitter = SimpleNamespace(measured=SimpleNamespace(scenes=()), calibration=None)
     explained = explained_by(*candidates)
+    explained = replace(explained, steps=steps or explained.steps)
     answer.drives_apart(explained, candidates, found, fitter, GapConfig())
     return asked
