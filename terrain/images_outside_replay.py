@@ -12,7 +12,7 @@ AFTER_ODOMETRY = "after the end of odometry.csv"
 
 
 def add_images_outside(watcher: TerrainWatcher, run: Run, images: Table, replay: Replay) -> None:
-    """Add a image label without a label for each image of the run that the replay did not come to.
+    """Add an image label without a label for each image of the run that the replay did not come to.
 
     The terrain in force is the initial one before the replay, and the last one after it.
 

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.patheffects import withStroke
 from scipy.optimize import isotonic_regression
 
-from odometry.arrays import FloatArray, IntArray
+from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.estimation.pose_watch import OUTAGE_PERIODS, OUTAGE_S
 from odometry.report.figure import LineStyle
 
@@ -132,9 +132,9 @@ def label_points(
     axes : Axes
         With its final limits and place in the figure.
     points : Mapping of name to (x, y)
-        In data units; where they crowd, labels are moved up or down and a thin line leads there.
-        None is written below the axes, where the tick labels are. Points to the left or right of
-        the axes have no label.
+        In data units; where they crowd, labels are moved up or down into one column right of all
+        points, and a thin line leads there. None is written below the axes, where the tick labels
+        are. Points to the left or right of the axes have no label.
     styles : Mapping of name to LineStyle
     """
     left, right = sorted(axes.get_xlim())
@@ -143,17 +143,19 @@ def label_points(
         return
     axes.apply_aspect()
     points_per_pixel = 72.0 / axes.figure.dpi
-    heights_pt = axes.transData.transform(list(points.values()))[:, 1] * points_per_pixel
+    places_pt = axes.transData.transform(list(points.values())) * points_per_pixel
     texts = [fill(name, _LETTERS) for name in points]
     sizes_pt = np.array([_LINE_PT * (text.count("\n") + 1) for text in texts])
-    bottom_pt = axes.bbox.y0 * points_per_pixel
-    moves_pt = spread(heights_pt, sizes_pt, bottom_pt) - heights_pt
+    x_pt, y_pt = places_pt.T
+    label_y_pt = spread(y_pt, sizes_pt, axes.bbox.y0 * points_per_pixel)
+    label_x_pt = np.where(_crowded(label_y_pt, sizes_pt), x_pt.max(), x_pt) + _ASIDE_PT
+    moves_pt = np.column_stack([label_x_pt, label_y_pt]) - places_pt
     for (name, point), text, move_pt in zip(points.items(), texts, moves_pt, strict=True):
         colour = styles[name].colour
         axes.annotate(
             text,
             xy=point,
-            xytext=(_ASIDE_PT, move_pt),
+            xytext=tuple(move_pt),
             textcoords="offset points",
             va="center",
             color=colour,
@@ -161,5 +163,18 @@ def label_points(
             path_effects=HALO,
             annotation_clip=False,
             parse_math=False,
-            arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.6, "shrinkB": 0.0},
+            arrowprops={
+                "arrowstyle": "-",
+                "color": colour,
+                "linewidth": 0.6,
+                "relpos": (0.0, 0.5),  # from the left edge of the text, not from its middle
+                "shrinkB": 0.0,
+            },
         )
+
+
+def _crowded(middles: FloatArray, heights: FloatArray) -> BoolArray:
+    """Which labels (N,) touch another one, above or below."""
+    apart = np.abs(np.subtract.outer(middles, middles))
+    touch = apart < np.add.outer(heights, heights) / 2 + 1.0
+    return np.asarray(touch.sum(axis=1) > 1)

@@ -29,7 +29,7 @@ def plot_image(axes: Axes, image: ByteImage, title: str) -> None:
 def draw_region(
     axes: Axes, camera: Camera, image_label: ImageLabel, tints: Mapping[str, str]
 ) -> None:
-    """Outline the region of a image label on the raw image, with its label and confidence.
+    """Outline the region of an image label on the raw image, with its label and confidence.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def draw_cells(axes: Axes, camera: Camera, cells: Sequence[Cell], tints: Mapping
             Polygon(shape, facecolor=tints[label], alpha=0.45, edgecolor="none", gid=label)
         )
         axes.add_patch(Polygon(shape, fill=False, edgecolor="white", linewidth=0.7))
-        _write_inside(axes, shape, label, 7.0)
+        _write_inside(axes, shape, label, 6.0)
 
 
 def plot_labels(

@@ -71,3 +71,16 @@ def test_labels_of_points_at_the_bottom_stand_above_the_tick_labels(axes):
     axes.figure.canvas.draw()
     lowest = min(text.get_window_extent().y0 for text in axes.texts)
     assert lowest >= axes.bbox.y0 - 1
+
+
+def test_no_leader_crosses_another_label(axes):
+    """Lines that end in nearly one place, but not at the same x, as paths do."""
+    axes.set(xlim=(0, 1), ylim=(0, 1))
+    points = {"one": (0.90, 0.45), "another one": (0.99, 0.46), "a third": (0.96, 0.44)}
+    label_points(axes, points, {name: LineStyle("#000000") for name in points})
+    axes.figure.canvas.draw()
+    for text in axes.texts:
+        leader = text.arrow_patch.get_path().transformed(text.arrow_patch.get_transform())
+        others = [other for other in axes.texts if other is not text]
+        for box in map(Text.get_window_extent, others):
+            assert not leader.intersects_bbox(box.padded(-1))
