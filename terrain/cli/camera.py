@@ -91,7 +91,7 @@ def camera(
     write: bool,
     span: "Span",
 ) -> None:
-    """Show the terrain that the camera of the run folder RUN images, or calibrate the camera.
+    """Show where the terrain lies in the images of the run folder RUN, or calibrate the camera.
 
     Draws a metric grid, the footprint and the look-ahead place on images of the run. Without
     other options it shows [camera] of run.toml. A lens comes from --file or --chessboard, a mount

@@ -48,7 +48,7 @@ def feel(
     sure: float,
     span: "Span",
 ) -> None:
-    """Tell which terrain the run folders RUN feel like, window by window.
+    """Recognise the terrain of the run folders RUN by what the robot feels, window by window.
 
     Writes feel.csv with the answers and the probability of each terrain, and one page. "unknown"
     is the answer where the run feels like none of the terrains of the model, "stationary" where

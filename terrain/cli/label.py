@@ -46,7 +46,7 @@ SOURCES = ("truth.csv", "odometry.csv", "images.csv", "run.toml")
 @click.option(
     "--sure",
     type=click.FloatRange(0.0, 1.0, min_open=True, max_open=True),
-    help="With --by-feel: probability from which it labels.  [default: 0.8]",
+    help="With --by-feel: lowest probability of a terrain that labels an image.  [default: 0.8]",
 )
 @click.option(
     "--parameters",

@@ -62,7 +62,7 @@ def modes(
     sure: float,
     span: "Span",
 ) -> None:
-    """Tell on the run folders RUN, by motion alone, which mode the robot is in.
+    """Recognise the robot's mode in the run folders RUN, by motion alone.
 
     Writes the probability of each mode over time, the answers, and how soon and how often they
     were right where the run says what is true. "none of these" is the answer where no mode fits,

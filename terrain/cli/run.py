@@ -49,7 +49,9 @@ def run_options(command: Callable[..., None]) -> Callable[..., None]:
     )
     @click.option("--terrain", metavar="NAME", help="In force until the first switch.")
     @click.option("--config", type=FILE, help="Settings (TOML): [filter] [region] [switch] ...")
-    @click.option("--per-tread", is_flag=True, help="Classify the terrain under each tread apart.")
+    @click.option(
+        "--per-tread", is_flag=True, help="Classify the terrain under each tread by itself."
+    )
     @click.option(
         "--own-statistics",
         is_flag=True,

@@ -60,8 +60,8 @@ if TYPE_CHECKING:
     default=0.05,
     show_default=True,
     metavar="SHARE",
-    help="Share of known patches that may be called unknown: with more, less that is foreign gets "
-    "a name.",
+    help="Share of known patches that may be called unknown; a larger share also refuses more of "
+    "what was not in training.",
 )
 @click.option("--colour", is_flag=True, help="Use colour: for one camera in training and in use.")
 @network_options
@@ -83,8 +83,8 @@ if TYPE_CHECKING:
     "--picture",
     metavar="FILE.png",
     type=OUTPUT,
-    help="Draw how often answers were right in cross-validation, by how probable they were said to "
-    "be.",
+    help="Draw the reliability diagram of cross-validation: how often answers of each probability "
+    "were right.",
 )
 @processes_option
 @scheduler_option
