@@ -12,9 +12,9 @@ from odometry.feel.evidence import Calibration
 from odometry.feel.held_out import Scores
 from odometry.feel.limits import Limits
 from odometry.feel.members import Choice, Members
-from odometry.feel.sensor import LEAST_WINDOWS, SensorShape, ShapeSoFar
+from odometry.feel.sensor import SensorShape, ShapeSoFar
 from odometry.feel.strangeness import Strangeness, unknown_probability
-from odometry.feel.windows import STEPS, FeelWindows, windows_since
+from odometry.feel.windows import STEPS, FeelWindows
 
 
 @dataclass(frozen=True)
@@ -78,15 +78,8 @@ class FeelModel:
         return found
 
     def foreign(self, windows: FeelWindows) -> BoolArray:
-        """Whether W windows are of another IMU, by all of them; see `SensorShape`.
-
-        By each half, too: a run may go from a known terrain to one never felt, its IMU stays.
-        """
-        whole = self.shape_so_far.plus(windows)
-        later = self.shape_so_far.plus(windows_since(windows, len(windows) // 2))
-        parts = (whole, later, whole.less(later))
-        judged = [part.is_foreign for part in parts if part.count >= LEAST_WINDOWS]
-        return np.full(len(windows), bool(judged) and all(judged))
+        """Whether W windows are of another IMU, by all of them; see `ShapeSoFar`."""
+        return np.full(len(windows), self.shape_so_far.plus(windows).is_foreign)
 
     @property
     def shape_so_far(self) -> ShapeSoFar:

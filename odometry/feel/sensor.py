@@ -15,6 +15,7 @@ from odometry.run import UNKNOWN
 BANDS = 12
 LEAST_RUNS = 8  # of fewer the usual shape is not known
 LEAST_WINDOWS = 8  # that move; the mean of fewer is no shape of a run
+LIKE_SHARE = 0.2  # of the parts of a run of another IMU: filters leave 0 to 0.11, its own 0.97
 
 
 @dataclass(frozen=True)
@@ -103,7 +104,10 @@ class SensorShape:
 
 @dataclass(frozen=True)
 class ShapeSoFar:
-    """The mean shape of windows that move; every method gives a new one.
+    """The mean shape of windows that move, of all and by parts; every method gives a new one.
+
+    An IMU stays the same through a run, terrains do not: it is another one only where the mean is
+    unlike, and at most LIKE_SHARE of the parts of LEAST_WINDOWS, one after another, are like.
 
     Attributes
     ----------
@@ -111,36 +115,48 @@ class ShapeSoFar:
         Without one no IMU is another.
     axes : tuple of str
         Of the model.
-    total : (B,)
+    total, part : (B,)
+        Sums over all windows, and over those of the part that goes on.
     count : int
+        Of windows.
+    like : int
+        Of the parts that lie within the limit.
     """
 
     sensor: SensorShape | None
     axes: tuple[str, ...]
     total: FloatArray
-    count: int
+    part: FloatArray
+    count: int = 0
+    like: int = 0
 
     @classmethod
     def none(cls, sensor: SensorShape | None, axes: tuple[str, ...]) -> "ShapeSoFar":
         """Of no window yet."""
-        return cls(sensor, axes, np.zeros(0 if sensor is None else len(sensor.mean)), 0)
+        nothing = np.zeros(0 if sensor is None else len(sensor.mean))
+        return cls(sensor, axes, nothing, nothing)
 
     def plus(self, windows: FeelWindows) -> "ShapeSoFar":
         """With more windows."""
         if self.sensor is None or not windows.felt.any():
             return self
-        more = shapes(windows, self.axes, self.sensor.edges_hz)[windows.felt]
-        total = self.total + more.sum(axis=0)
-        return ShapeSoFar(self.sensor, self.axes, total, self.count + len(more))
+        found = self
+        for shape in shapes(windows, self.axes, self.sensor.edges_hz)[windows.felt]:
+            found = found._with(self.sensor, shape)
+        return found
 
-    def less(self, part: "ShapeSoFar") -> "ShapeSoFar":
-        """Without the windows of a part of it."""
-        return ShapeSoFar(self.sensor, self.axes, self.total - part.total, self.count - part.count)
+    def _with(self, sensor: SensorShape, shape: FloatArray) -> "ShapeSoFar":
+        total, part, count, like = self.total + shape, self.part + shape, self.count + 1, self.like
+        if count % LEAST_WINDOWS == 0:
+            like += int(sensor.excess(part / LEAST_WINDOWS) <= 1)
+            part = np.zeros_like(part)
+        return ShapeSoFar(sensor, self.axes, total, part, count, like)
 
     @property
     def is_foreign(self) -> bool:
         """Whether it is of another IMU."""
-        if self.sensor is None or self.count < LEAST_WINDOWS:
+        parts = self.count // LEAST_WINDOWS
+        if self.sensor is None or not parts or self.like > LIKE_SHARE * parts:
             return False
         return bool(self.sensor.excess(self.total / self.count) > 1)
 

@@ -11,10 +11,10 @@ from odometry.feel.follow import follow_feel
 from odometry.feel.live_run import follow_feel_live
 from odometry.feel.model_file import FEEL, FeelFileError, read_feel_model, write_feel_model
 from odometry.feel.sensor import LEAST_RUNS, LEAST_WINDOWS, SensorShape, ShapeSoFar, shapes
-from odometry.feel.windows import feel_windows
+from odometry.feel.windows import BY_WINDOW, feel_windows
 from odometry.io.array_file import read_array_file, write_array_file
 from odometry.run import UNKNOWN
-from tests.odometry.feel.feel_drives import drive, drives, with_imu
+from tests.odometry.feel.feel_drives import drive, drives, table, with_imu
 
 NAMES = ("tiles", "gravel", "snow")
 
@@ -38,6 +38,25 @@ def every_other(columns):
         if name != "t":
             columns[name] = np.interp(columns["t"], columns["t"][::2], columns[name][::2])
     return columns
+
+
+def one_after_another(*runs):
+    """One run that drives all of them."""
+    found = runs[0]
+    for run in runs[1:]:
+        rows = []
+        for one, other in ((found.odometry, run.odometry), (found.imu, run.imu)):
+            after_s = one["t"][-1] + one["t"][1] - one["t"][0]
+            columns = other.columns | {"t": other["t"] + after_s}
+            rows.append(table({n: np.concatenate([one[n], columns[n]]) for n in columns}))
+        found = replace(found, odometry=rows[0], imu=rows[1])
+    return found
+
+
+def windows_before(windows, count):
+    """The first windows."""
+    rows = {name: getattr(windows, name)[:count] for name in BY_WINDOW}
+    return replace(windows, **rows)
 
 
 def blind(model):
@@ -73,6 +92,40 @@ def test_live_says_so_once_enough_is_known(model):
     assert felt.answer_of_run[0] == UNKNOWN
     same = follow_feel_live(drive("gravel", 960), model)
     assert not same.foreign.any()
+
+
+@pytest.mark.parametrize("names", [("gravel", "grates"), ("grates", "gravel")])
+def test_a_terrain_without_training_in_a_part_of_a_run_is_no_other_imu(model, names):
+    """Of all windows together the shape is unlike; of those on gravel it is not."""
+    parts = [drive(name, 950) for name in names]
+    run = one_after_another(*parts)
+    so_far = model.shape_so_far.plus(feel_windows(run))
+    assert model.sensor.excess(so_far.total / so_far.count) > 1
+    assert not follow_feel(run, model).foreign.any()
+    alone = [follow_feel(part, model).foreign.all() for part in parts]
+    assert alone == [name == "grates" for name in names]
+
+
+def test_live_is_at_each_window_the_run_up_to_there(model):
+    """Known terrain, one without training runs, and known again; and another filter."""
+    changes = [drive("gravel", 950), drive("grates", 951), drive("tiles", 952, seconds=60.0)]
+    filtered = with_imu(drive("gravel", 950), averaged(5))
+    found = []
+    for run in (one_after_another(*changes), one_after_another(*changes[1:]), filtered):
+        felt = follow_feel_live(run, model)
+        counts = range(1, len(felt.windows) + 1)
+        upto = [model.foreign(windows_before(felt.windows, count))[-1] for count in counts]
+        np.testing.assert_array_equal(felt.foreign, upto)
+        found.append((felt.foreign.any(), felt.foreign[-1], follow_feel(run, model).foreign[-1]))
+    assert found == [(False, False, False), (True, False, False), (True, True, True)]
+
+
+def test_one_part_that_is_like_leaves_another_imu_another_one(model):
+    run = one_after_another(
+        drive("gravel", 950, seconds=LEAST_WINDOWS + 1.0),
+        with_imu(drive("tiles", 951, seconds=90.0), averaged(5)),
+    )
+    assert follow_feel(run, model).foreign.all()
 
 
 def test_a_shape_is_that_of_all_axes_whatever_their_size(model):
