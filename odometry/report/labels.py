@@ -80,6 +80,7 @@ HALO = (withStroke(linewidth=2.5, foreground="white"),)
 _LINE_PT = 12.0
 _ASIDE_PT = 9.0
 _LETTERS = 25  # of a line of a label
+_WIDEST_PT = 5.0 * _LETTERS
 
 
 def draw_line(axes: Axes, x: FloatArray, y: FloatArray, name: str, style: LineStyle) -> None:
@@ -132,8 +133,8 @@ def label_points(
     axes : Axes
         With its final limits and place in the figure.
     points : Mapping of name to (x, y)
-        In data units; where they crowd, labels are moved up or down into one column right of all
-        points, and a thin line leads there. None is written below the axes, where the tick labels
+        In data units; where they crowd, labels are moved up or down into one column to their
+        right, and a thin line leads there. None is written below the axes, where the tick labels
         are. Points to the left or right of the axes have no label.
     styles : Mapping of name to LineStyle
     """
@@ -146,10 +147,13 @@ def label_points(
     places_pt = axes.transData.transform(list(points.values())) * points_per_pixel
     texts = [fill(name, _LETTERS) for name in points]
     sizes_pt = np.array([_LINE_PT * (text.count("\n") + 1) for text in texts])
-    x_pt, y_pt = places_pt.T
-    label_y_pt = spread(y_pt, sizes_pt, axes.bbox.y0 * points_per_pixel)
-    label_x_pt = np.where(_crowded(label_y_pt, sizes_pt), x_pt.max(), x_pt) + _ASIDE_PT
-    moves_pt = np.column_stack([label_x_pt, label_y_pt]) - places_pt
+    labels_pt = np.empty_like(places_pt)
+    for beside in _beside(places_pt[:, 0]):
+        x_pt, y_pt = places_pt[beside].T
+        label_y_pt = spread(y_pt, sizes_pt[beside], axes.bbox.y0 * points_per_pixel)
+        column_x_pt = np.where(_crowded(label_y_pt, sizes_pt[beside]), x_pt.max(), x_pt)
+        labels_pt[beside] = np.column_stack([column_x_pt + _ASIDE_PT, label_y_pt])
+    moves_pt = labels_pt - places_pt
     for (name, point), text, move_pt in zip(points.items(), texts, moves_pt, strict=True):
         colour = styles[name].colour
         axes.annotate(
@@ -171,6 +175,13 @@ def label_points(
                 "shrinkB": 0.0,
             },
         )
+
+
+def _beside(x_pt: FloatArray) -> list[IntArray]:
+    """Indices of points whose labels may touch, from left to right; the others are too far off."""
+    order = np.argsort(x_pt, kind="stable")
+    far = np.diff(x_pt[order]) > _WIDEST_PT
+    return np.split(order, np.flatnonzero(far) + 1)
 
 
 def _crowded(middles: FloatArray, heights: FloatArray) -> BoolArray:

@@ -84,3 +84,13 @@ def test_no_leader_crosses_another_label(axes):
         others = [other for other in axes.texts if other is not text]
         for box in map(Text.get_window_extent, others):
             assert not leader.intersects_bbox(box.padded(-1))
+
+
+def test_a_label_far_to_one_side_stays_beside_its_point(axes):
+    """Two lines end at one height, far apart: neither label moves."""
+    axes.set(xlim=(0, 1), ylim=(0, 1))
+    points = {"one": (0.1, 0.5), "two": (0.9, 0.5)}
+    label_points(axes, points, {name: LineStyle("#000000") for name in points})
+    one, two = (text.xyann for text in axes.texts)
+    assert one == pytest.approx(two)
+    assert one[1] == pytest.approx(0.0, abs=1e-9)
