@@ -182,8 +182,8 @@ def is_by_its_essence(without: float, added: Added, config: GapConfig) -> str:
     if without <= config.most_without:
         return ""
     return (
-        f"it closes {100 * without:.0f} % of that without {', '.join(added.effect.essential)}: "
-        "another effect"
+        f"without {', '.join(added.effect.essential)}, which makes it this effect, it closes "
+        f"{100 * without:.0f} % of the same"
     )
 
 

@@ -27,7 +27,7 @@ def sentences(result: GapResult) -> tuple[str, ...]:
         _disagreement(result),
         *_where(result),
         *(_effect(effect, number) for number, effect in enumerate(result.effects, start=1)),
-        *(moved_words(one) for one in moves_of(result.calibration, result.base) if one.is_far),
+        *_moved(result),
         *(
             f"Not {_refused(one.name)}, though it has evidence: {one.reason}."
             for one in result.refusals
@@ -140,12 +140,20 @@ def moves_of(calibration: Calibration, base: Base) -> tuple[Moved, ...]:
     )
 
 
+def _moved(result: GapResult) -> Iterator[str]:
+    """What moved farther than its calibration allows; with `none`, that no gap shows it."""
+    shown = "" if result.verdict != "none" else ", though the gap on held-out data does not show it"
+    for moved in moves_of(result.calibration, result.base):
+        if moved.is_far:
+            yield f"{moved_words(moved)}{shown}."
+
+
 def moved_words(moved: Moved) -> str:
-    """A sentence."""
+    """How far it moved, a sentence without its full stop."""
     unit = f" {moved.unit}" if moved.unit else ""
     share = (moved.after - moved.before) / moved.before if moved.before else 0.0
     by = f" ({100 * share:+.1f} %)" if not moved.unit and share else ""
     return (
         f"{moved.name} of the base moved from {moved.before:.4g} to {moved.after:.4g}{unit}{by}, "
-        f"{moved.sigmas:.0f} standard deviations of its calibration: more than that allows."
+        f"{moved.sigmas:.0f} standard deviations of its calibration: more than that allows"
     )

@@ -13,6 +13,7 @@ from odometry.gap.result import GapResult
 from odometry.gap.statistic import Gap, squared_errors
 from odometry.report.figure import LINE_STYLES, LineStyle, save_figure
 from odometry.report.html import Picture
+from odometry.report.labels import broken_beyond
 from odometry.windows.dense import DenseWindows
 
 WIDTH_IN = 7.0
@@ -72,7 +73,7 @@ def time_picture(result: GapResult, folder: Path) -> Picture:
     """The gap over run time, one panel a run."""
     scenes = [("measured", s) for s in result.measured_scenes[:RUNS]]
     scenes += [("held out", s) for s in result.holdout_scenes[:RUNS]]
-    height_in = 0.65 + 1.5 * len(scenes)
+    height_in = 0.95 + 1.5 * len(scenes)
 
     def draw(figure: Figure) -> None:
         panels = figure.subplots(len(scenes), 1, squeeze=False)[:, 0]
@@ -85,9 +86,9 @@ def time_picture(result: GapResult, folder: Path) -> Picture:
         panels[-1].set_xlabel("run time [s]")
         figure.supylabel("RMS position error [m]", fontsize=10)
         lines, names = panels[0].get_legend_handles_labels()
-        figure.legend(lines, names, loc="upper right", ncols=3, frameon=False, fontsize=9)
+        figure.legend(lines, names, loc="lower left", ncols=3, frameon=False, fontsize=9)
         figure.subplots_adjust(
-            left=0.12, right=0.98, bottom=0.5 / height_in, top=1 - 0.35 / height_in, hspace=0.55
+            left=0.12, right=0.98, bottom=0.8 / height_in, top=1 - 0.35 / height_in, hspace=0.55
         )
 
     return Picture(
@@ -166,8 +167,9 @@ def _draw_over_time(axes: Axes, result: GapResult, scene: DenseWindows) -> None:
         style = STAGES[name]
         rms = rolling_rms(scene.start_s, squared_errors(base, effects, scene), ROLLING_S)
         axes.plot(
-            scene.start_s,
-            rms,
+            *broken_beyond(ROLLING_S / 2, scene.start_s, rms),
+            marker=".",
+            markersize=3,
             color=style.colour,
             linestyle=style.dashes,
             linewidth=1.6,

@@ -69,9 +69,15 @@ def broken_at_outages(stamps_s: FloatArray, values: FloatArray) -> tuple[FloatAr
     """
     if len(stamps_s) < 2:
         return stamps_s, values
-    lasts_s = np.diff(stamps_s)
-    long = lasts_s > max(OUTAGE_S, OUTAGE_PERIODS * float(np.median(lasts_s)))
-    rows = np.flatnonzero(long) + 1
+    longest_s = max(OUTAGE_S, OUTAGE_PERIODS * float(np.median(np.diff(stamps_s))))
+    return broken_beyond(longest_s, stamps_s, values)
+
+
+def broken_beyond(
+    longest_s: float, stamps_s: FloatArray, values: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Rising stamps (N,) and values with a row of NaN in each gap that lasts longer."""
+    rows = np.flatnonzero(np.diff(stamps_s) > longest_s) + 1
     middles_s = (stamps_s[rows - 1] + stamps_s[rows]) / 2
     return np.insert(stamps_s, rows, middles_s), np.insert(values, rows, np.nan, axis=0)
 

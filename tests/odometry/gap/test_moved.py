@@ -52,7 +52,15 @@ def test_a_move_that_is_not_allowed_is_said(scaled_result, calibration):
     (said,) = [text for text in sentences(moved) if "of the base moved" in text]
     assert said.startswith("alpha_left of the base moved from ")
     assert "(+5.0 %)" in said
+    assert said.endswith("more than that allows.")
     assert not [text for text in sentences(scaled_result) if "of the base moved" in text]
+
+
+def test_none_says_that_no_gap_shows_a_move(scaled_result, calibration):
+    none = replace(scaled_result, verdict="none", effects=())
+    moved = with_move(none, calibration, "latency", 0.2)
+    (said,) = [text for text in sentences(moved) if "of the base moved" in text]
+    assert said.endswith(", though the gap on held-out data does not show it.")
 
 
 def test_words_of_a_number_with_a_unit(scaled_result, calibration):
