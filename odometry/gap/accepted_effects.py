@@ -171,9 +171,9 @@ class Standing(Search):
             self.fitter.measured.scenes,
             self.fitter.calibration,
         )
-        within = within_noise(gap_of(*pairs[1], held_out, self.config.part_s), self.held_floor)
+        at_first = gap_of(believed, (), held_out, self.config.part_s)
         reasons = [
-            within,
+            within_noise(at_first, self.held_floor, self.config),
             raises_measured(self._believed_gap(), self._gap(fit)),
             *(
                 closes_held_out(

@@ -36,11 +36,19 @@ class Refusal:
     reason: str
 
 
-def within_noise(held_out: Gap, floor: Gap) -> str:
-    """Whether there is a gap on held-out data that a name could close."""
-    if held_out.value > floor.value:
+def within_noise(held_out: Gap, floor: Gap, config: GapConfig) -> str:
+    """Whether the gap on held-out data, before anything is added, is surely above the noise floor.
+
+    By the lower bound of a difference of two values that have intervals of their own (Zou and
+    Donner 2008, Statistics in Medicine 27, 1693).
+    """
+    unsure_m = float(np.hypot(held_out.value - held_out.low, floor.high - floor.value))
+    if held_out.value - floor.value > config.above_floor * unsure_m:
         return ""
-    return f"the gap on held-out data, {held_out.value:.3g} m, is within noise"
+    return (
+        f"the gap on held-out data, {held_out.value:.3g} m, is within noise: the floor is "
+        f"{floor.value:.3g} m, and the difference is known to {unsure_m:.2g} m"
+    )
 
 
 def raises_measured(before_m: float, after_m: float) -> str:

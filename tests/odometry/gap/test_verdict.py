@@ -170,10 +170,15 @@ def test_names_leave_no_structure(discovered):
     assert not reason or "closes 60 % of the gap, and what it leaves depends on speed" in reason
 
 
-def test_a_gap_within_the_floor_has_no_name():
-    floor = Gap(0.03, 0.02, 0.04)
-    assert within_noise(Gap(0.05, 0.04, 0.06), floor) == ""
-    assert "within noise" in within_noise(Gap(0.029, 0.02, 0.04), floor)
+@pytest.mark.parametrize(
+    ("low", "high", "stands"),
+    [(0.034, 0.041, True), (0.034, 0.043, False), (0.029, 0.03, False), (0.05, 0.049, True)],
+)
+def test_a_name_needs_a_gap_that_is_surely_above_the_floor(low, high, stands):
+    """0.02 m above it: more than 0.016 and 0.011 at right angles, less than 0.016 and 0.013."""
+    reason = within_noise(Gap(0.05, low, 0.06), Gap(0.03, 0.025, high), CONFIG)
+    assert (reason == "") == stands
+    assert stands or "0.05 m, is within noise" in reason
 
 
 @pytest.mark.parametrize(("share", "stands"), [(0.05, False), (0.22, True), (1.0, True)])
