@@ -160,9 +160,9 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "treads_still": TREADS | POSES,
     "treads_unrelated": TREADS | YAW | {"pose_late", "treads_late", "clocks_apart"},
     "poses_unrelated": (POSES - {"clocks_apart"})
-    | YAW
+    | (YAW - {"yaw_unrelated"})
     | {"position_unit", "pose_mirrored", "positions_mirrored"},
-    "yaw_unrelated": YAW | {"pose_late", "poses_unrelated"},
+    "yaw_unrelated": (YAW - {"yaw_unrelated"}) | {"pose_late", "poses_unrelated"},
     "gyroscope_unrelated": frozenset({"gyroscope_unit", "gyroscope_bias", "treads_late"}),
     "tread_left_reversed": TREADS | YAW | POSES | {"treads_both_reversed"},
     "tread_right_reversed": TREADS | YAW | POSES | {"treads_both_reversed"},
@@ -176,6 +176,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     ),
     "gyroscope_clipped": frozenset(
         {"yaw_jumps", "gyroscope_unit", "gyroscope_dead", "gyroscope_bias", "yaw_bent"}
+        | {"track_width", "slip_in_turns"}
     ),
     "gyroscope_dead": frozenset(
         {"yaw_bent", "gyroscope_unit", "yaw_jumps", "stuck_encoder", "turns_at_rest"}

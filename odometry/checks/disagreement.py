@@ -72,7 +72,7 @@ def agreement(evidence: Evidence) -> Iterator[Finding]:
             if evidence.pose_turn_by_treads
             else "",
             "pose.csv is of another recording or another clock, or its yaw is no heading (the "
-            "course over ground, a component of a quaternion, another axis)",
+            "course over ground, a component of a quaternion, another axis, noise)",
             "Plot the three yaw rates: check --picture",
         )
     elif gyroscope is unrelated and _moves(evidence.gyroscope_by_treads) and not together:
@@ -98,8 +98,7 @@ def yaw_against_course(evidence: Evidence) -> Iterator[Finding]:
     distance = evidence.distance_by_mean
     if distance is None or distance.correlation < 0.9 or distance.measured < 3 * LEAST_WINDOWS:
         return
-    by_gyroscope = evidence.pose_turn_by_gyroscope
-    if by_gyroscope is not None and by_gyroscope.correlation > 0.9:
+    if pose_sense(evidence) is not Sense.UNRELATED:
         return
     if evidence.best_concentration is None or evidence.best_concentration > POOR:
         return

@@ -124,12 +124,14 @@ class Evidence(CleanedRecording):
         return along_m(self.motion, self.heading)
 
     def turn_rad(self, motion: Motion) -> FloatArray:
-        """Turn (K,) in rad, by the gyroscope where there is one, whatever its unit."""
+        """Turn (K,) in rad, by the gyroscope where there is one in rad/s or degrees per second."""
         if self.yaw_rate is None:
             return motion.turn_rad
+        fastest = np.nanquantile(np.abs(self.yaw_rate[1]), 0.99)
+        if fastest > np.degrees(DEGREES_RAD_S):
+            return motion.turn_rad  # neither: counts
         turn = motion.gyroscope_rad
-        in_degrees = np.nanquantile(np.abs(self.yaw_rate[1]), 0.99) > DEGREES_RAD_S
-        return np.asarray(np.radians(turn)) if in_degrees else turn
+        return np.asarray(np.radians(turn)) if fastest > DEGREES_RAD_S else turn
 
     @cached_property
     def sideways_m(self) -> FloatArray:

@@ -3,10 +3,13 @@
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
+from odometry.windows.spans import runs_of
 
 NEIGHBOURS = 4.0  # a spike exceeds both neighbours by this many ordinary steps (99 in 100)
 OF_FASTEST = 0.6  # and by this share of the ordinary fastest value (99 in 100)
 LONGEST = 3  # samples of a spike or poses of an outlier: a longer one is a jump
+FAR_TIMES = 20.0  # a placeholder (-999) for what was not measured is so far above all speeds
+MOST_FAR = 0.1  # share of the samples
 REACH = 5  # poses to each side whose median is compared
 LEAST_M = 0.5
 TIMES = 8.0  # the usual distance from that median
@@ -19,6 +22,10 @@ def spikes(values: FloatArray) -> BoolArray:
     """
     if len(values) < 10:
         return np.zeros(len(values), dtype=np.bool_)
+    far = _far_off(values)
+    if far.any():
+        rows = np.arange(len(values))
+        return np.asarray(far | spikes(np.interp(rows, rows[~far], values[~far])))
     ordinary = min(0.99, 1 - 2 * LONGEST / len(values))  # one spike is not to be ordinary
     usual_step = np.quantile(np.abs(np.diff(values)), ordinary)
     fastest = np.quantile(np.abs(values), ordinary)
@@ -33,6 +40,20 @@ def spikes(values: FloatArray) -> BoolArray:
         for offset in range(length):
             found[begins + offset] = True
     return found
+
+
+def _far_off(values: FloatArray) -> BoolArray:
+    """Which samples (N,) are far above all others, for a moment each, however often: a placeholder.
+
+    Their size is on the other side of a gap that no other sample lies in.
+    """
+    size = np.sort(np.abs(values))
+    top = size[int((1 - MOST_FAR) * len(size)) :]
+    gaps = np.flatnonzero((top[1:] > FAR_TIMES * top[:-1]) & (top[:-1] > 0))
+    if not len(gaps):
+        return np.zeros(len(values), dtype=np.bool_)
+    far = np.abs(values) > top[gaps[-1]]
+    return far if np.diff(runs_of(far), axis=1).max() <= LONGEST else np.zeros_like(far)
 
 
 def without_spikes(values: FloatArray) -> FloatArray:

@@ -17,6 +17,8 @@ LONGEST_HOLD_S = 1000.0  # commands are usually not held for longer
 SHORTEST_PERIOD_S = 2e-5  # nor is any log faster
 EPOCH_S = 1e8  # stamps above count from 1970 (1e8 s is in 1973)
 USUAL_PERIODS_S = (0.002, 2.0)
+LEAST_STEP_S, STEP_PERIODS = 5.0, 20.0  # of a clock that was set, amid rows and to both sides
+LATER = 0.05  # share of the rows after such a step
 STAMP_UNITS = (("nanoseconds", 1e9), ("microseconds", 1e6), ("milliseconds", 1e3))
 
 
@@ -90,6 +92,20 @@ def _share_inside(stamps_s: FloatArray, odometry_s: FloatArray) -> float:
     return float(np.mean((stamps_s >= odometry_s[0]) & (stamps_s <= odometry_s[-1])))
 
 
+def _step_beyond(stamps_s: FloatArray, odometry_s: FloatArray) -> int | None:
+    """The row before a step of the stamps from amid the odometry to after its end; None without."""
+    if len(stamps_s) < 3:
+        return None
+    steps_s = np.diff(stamps_s)
+    row = int(np.argmax(steps_s))
+    least_s = max(LEAST_STEP_S, STEP_PERIODS * float(np.median(steps_s)))
+    before_s, after_s = stamps_s[row : row + 2] - odometry_s[-1]
+    amid = odometry_s[0] - odometry_s[-1] <= before_s < -least_s
+    return (
+        row if amid and after_s > least_s and np.mean(stamps_s > odometry_s[-1]) > LATER else None
+    )
+
+
 def _apart(name: str, stamps_s: FloatArray, odometry_s: FloatArray) -> Iterator[Finding]:
     begin_s, end_s = float(odometry_s[0]), float(odometry_s[-1])
     inside = _share_inside(stamps_s, odometry_s)
@@ -109,6 +125,17 @@ def _apart(name: str, stamps_s: FloatArray, odometry_s: FloatArray) -> Iterator[
             cause,
             f"Shift the stamps of {name} (they start {offset_s:+.3f} s after odometry.csv), or "
             "leave the file out",
+        )
+    elif (step := _step_beyond(stamps_s, odometry_s)) is not None:
+        before_s, after_s = stamps_s[step : step + 2]
+        yield Finding(
+            "clock_set",
+            Level.WARNING,
+            f"stamps of {name} go from {before_s:.3f} to {after_s:.3f} s in one step, to after the "
+            f"end of odometry.csv, which has rows for {end_s - before_s:.1f} s more",
+            f"The clock of {name} was set ahead while recording (a time zone, satellite time), or "
+            "odometry.csv was cut",
+            f"Subtract the step from the later stamps of {name}, or cut with --to",
         )
     elif inside < 0.5:
         yield Finding(

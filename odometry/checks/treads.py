@@ -15,6 +15,7 @@ LEAST_CHANGES = 15  # of a tread speed, and as a share of the rows: else it is a
 DROPPED = 0.001  # share of samples that are lost, from which it is a warning
 STILL_RAD = 0.1  # range of the heading of a stationary robot
 STOP_S = 0.3  # no robot stops and is at full speed again within
+STEPS = 1.5  # of coarse readings, above which a speed does not round to zero
 CHANGING = 0.005
 SATURATED = 0.05  # share of rows at the very largest value
 EQUAL = 0.98  # share of the rows in motion; encoders of two treads differ in their last digits
@@ -47,7 +48,8 @@ def _absurd(evidence: Evidence) -> Iterator[Finding]:
             f"{values[worst]:.4g} m/s (row {evidence.run.odometry.lines[worst]}), where "
             f"{evidence.fastest_m_s:.3g} m/s is the ordinary fastest; this moves the odometer by "
             f"{travel_m.sum():.3g} m",
-            "Single corrupt samples (an outlier or spike: a counter that overflowed, a lost byte)",
+            "Single corrupt samples (an outlier or spike: a counter that overflowed, a lost byte, "
+            "a placeholder for what was not measured)",
             "Remove these rows: the speed before them holds meanwhile",
             tuple(
                 (evidence.run_time_s(s), evidence.run_time_s(s)) for s in evidence.stamps_s[rows]
@@ -87,16 +89,18 @@ def _step(values: FloatArray) -> float | None:
 
 
 def _saturated(evidence: Evidence) -> Iterator[Finding]:
+    """A largest value that is reached to both directions, or by both treads: a limit."""
+    tops = np.abs(evidence.speeds_m_s).max(axis=0)
+    shared = abs(float(tops[0] - tops[1])) < 1e-9
     for side, name in enumerate(("v_left", "v_right")):
-        values = evidence.speeds_m_s[:, side]
-        largest = float(np.abs(values).max())
+        values, largest = evidence.speeds_m_s[:, side], float(tops[side])
         if largest <= 0:
             continue
         at_top = np.abs(np.abs(values) - largest) < 1e-9
         changes = int(np.sum(np.diff(at_top.astype(np.int8)) == 1))
         lively = len(np.unique(np.round(np.abs(values[~at_top]), 4))) > 50
         both = bool((values[at_top] > 0).any() and (values[at_top] < 0).any())
-        if at_top.mean() > SATURATED and changes >= 3 and both and lively:
+        if at_top.mean() > SATURATED and changes >= 3 and (both or shared) and lively:
             yield Finding(
                 "saturated_speed",
                 Level.WARNING,
@@ -113,8 +117,9 @@ def _dropped(evidence: Evidence) -> Iterator[Finding]:
     counts, spans = {}, []
     for name in ("v_left", "v_right"):
         values = evidence.run.odometry[name]
-        zero = (np.abs(values[1:-1]) < 1e-9) & (np.abs(values[:-2]) > 0.1 * evidence.fastest_m_s)
-        zero &= np.abs(values[2:]) > 0.1 * evidence.fastest_m_s
+        least_m_s = max(0.1 * evidence.fastest_m_s, STEPS * (_step(values) or 0.0))
+        zero = (np.abs(values[1:-1]) < 1e-9) & (np.abs(values[:-2]) > least_m_s)
+        zero &= np.abs(values[2:]) > least_m_s
         zero &= np.sign(values[:-2]) == np.sign(values[2:])
         zero &= np.diff(evidence.stamps_s)[1:] < STOP_S
         counts[name] = int(zero.sum())

@@ -22,9 +22,19 @@ CAUSES = (
         "Convert the column t to seconds",
     ),
     (
-        r"'[^']*;[^']*'|'[^']*\\t[^']*'|the header has 1 columns|header has [^,]*;",
+        r"'[^']*;[^']*'|'[^']*\\t[^']*'|the header has 1 columns|header has [^,]*[;\t]",
         "Cells are separated by semicolons or tabs, not commas",
         "Write the file with commas, and a point in numbers",
+    ),
+    (
+        r"the header has $",
+        "The file is empty: not even a header was written",
+        "Remove the file where it is optional, or record again",
+    ),
+    (
+        r"the header has #",
+        "The first line is a comment, where the names of the columns are expected",
+        "Remove the lines above the header",
     ),
     (
         r"the column '-?[\d.]+' is there twice|the header has -?\d+\.\d+|header has -?[\d.]+,",
@@ -50,6 +60,12 @@ CAUSES = (
         r"\\x00|NUL|\x00|row \d+: 1 cells, but the header has",
         "The file ends in zeros or was cut: the recorder was switched off or the disk was full",
         "Remove the last rows",
+    ),
+    (
+        r"row 2: \d+ cells, but the header has",
+        "The first row does not fit the header: numbers with decimal commas (1,5 for 1.5), a comma "
+        "after the last cell of each row, or a column without a name",
+        "Write numbers with a point, and one name in the header for each cell of a row",
     ),
     (
         r"row \d+: \d+ cells, but the header has",

@@ -1,0 +1,88 @@
+"""Faults that were once named as others, or not at all."""
+
+from graphlib import TopologicalSorter
+
+import numpy as np
+import pytest
+
+from odometry.checks.catalogue import CONSEQUENCES
+from odometry.checks.finding import Level
+from odometry.checks.recording import check_recording
+from tests.odometry.checks.faulty import gyroscope, pose_stamps, treads, yaw
+from tests.odometry.checks.test_confirmed_causes import turning_all_round, warnings
+from tests.odometry.checks.test_other_robots import drive, winding
+
+
+def test_no_finding_is_its_own_consequence():
+    """Two that explain each other would both be left out, and the recording be called clean."""
+    TopologicalSorter(CONSEQUENCES).prepare()
+
+
+def test_yaw_that_lost_its_sign_is_no_heading():
+    run = yaw(turning_all_round(), lambda angle: np.abs(np.angle(np.exp(1j * angle))))
+    assert warnings(run) == ["yaw_unrelated"]
+
+
+def standing_mostly(seed):
+    at_s = 0.05 * np.arange(3000)
+    moves = (at_s % 75 > 60) & (at_s % 75 < 63)
+    return drive(0.8 * moves, 0.2 * moves, seed=seed)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_robot_that_stands_most_of_the_time_is_clean(seed):
+    assert warnings(standing_mostly(seed)) == []
+
+
+def test_a_placeholder_in_one_of_fifty_rows_is_corrupt():
+    def corrupt(speeds):
+        return np.where(np.arange(len(speeds)) % 50 == 7, -999.0, speeds)
+
+    run = treads(winding(), lambda left, right: (corrupt(left), corrupt(right)))
+    found = check_recording(run).at(Level.WARNING)
+    assert [finding.name for finding in found] == ["absurd_speed"] * 2
+    assert "in 48 samples, up to -999 m/s" in found[0].seen
+
+
+def test_a_yaw_rate_in_counts_does_not_accuse_the_track_width():
+    counts = gyroscope(winding(), lambda rate: np.round(131 * np.degrees(rate)))
+    (found,) = check_recording(counts).at(Level.WARNING)
+    assert found.name == "gyroscope_unit"
+    assert float(found.seen.split(" is ")[1].split(" times")[0]) == pytest.approx(7505.7, rel=0.02)
+
+
+def test_speeds_clipped_forwards_alone_are_no_stuck_encoders():
+    run = treads(winding(), lambda *speeds: tuple(np.minimum(speed, 1.2) for speed in speeds))
+    assert set(warnings(run)) == {"saturated_speed"}
+
+
+def test_a_clock_of_the_poses_that_was_set_amid_the_drive_is_no_jump_of_positions():
+    run = pose_stamps(winding(), lambda t: t + np.where(t > 60, 3600.0, 0.0))
+    assert warnings(run) == ["clock_set"]
+
+
+def test_speeds_that_round_to_zero_are_not_lost():
+    run = winding()
+    wobble = 0.3 * np.sin(np.arange(len(run.odometry)) * 1.7)
+    slow = treads(run, lambda left, right: (0.15 * left + wobble, 0.15 * right + wobble))
+    coarse = treads(slow, lambda *speeds: tuple(np.round(speed / 0.2) * 0.2 for speed in speeds))
+    assert "coarse_speeds" in warnings(coarse)
+    assert "dropped_speeds" not in [finding.name for finding in check_recording(coarse).findings]
+
+
+ROWS = "t,v_left,v_right\n" + "".join(f"{0.1 * row:.1f},0.5,0.6\n" for row in range(20))
+FILES = {
+    "": "The file is empty",
+    "# Monday\n" + ROWS: "a comment",
+    ROWS.replace(",", "\t"): "semicolons or tabs",
+    ROWS.replace(".", ","): "decimal commas",
+    ROWS + "2.0,0.5\n": "The last row was cut",
+}
+
+
+@pytest.mark.parametrize("text", FILES)
+def test_why_a_file_cannot_be_read(tmp_path, text):
+    (tmp_path / "run.toml").write_text("[robot]\ntrack_width = 0.6\n")
+    (tmp_path / "odometry.csv").write_text(text)
+    (found,) = check_recording(tmp_path).findings
+    assert FILES[text] in found.cause
