@@ -11,9 +11,10 @@ BITS_OF_BYTE: FloatArray = np.unpackbits(
 ).astype(np.float64)
 """(256, 8): which bits are set in each value of a byte."""
 
-BYTES_OF_BITS = BITS_OF_BYTE.astype(np.uint8).view(np.uint64).ravel()
-"""(256,): a byte for each bit, 0 or 1; up to 255 of them add up without a carry."""
-SMALL = 15  # pixels of a side; smaller images are counted together, a byte for each bit
+BYTES_OF_BITS = BITS_OF_BYTE.astype(np.uint8).view(np.float64).ravel()
+"""(256,): eight bytes, one for each bit, 0 or 1, held as a float64 for `cv2.LUT`."""
+MOST_ADDED = 255  # as whole numbers of eight bytes so many add up without a carry
+SMALL = 48  # pixels of a side; smaller images are counted together, a byte for each bit
 
 
 def byte_histogram(values: ByteImage) -> FloatArray:
@@ -65,10 +66,14 @@ def _small_box_counts(planes: ByteImage, n_sizes: int) -> FloatArray:
     for size in range(1, n_sizes):
         planes = or_of_2x2(planes, f"small {size}")
         sizes.append(planes.reshape(len(planes), -1))
-    starts = np.cumsum([0, *(of.shape[1] for of in sizes[:-1])])
-    set_bits = BYTES_OF_BITS[np.concatenate(sizes, axis=1)]
-    sums = np.add.reduceat(set_bits, starts, axis=1).view(np.uint8)
-    return np.asarray(sums.reshape(-1, n_sizes, 8), np.float64)
+    ends = np.cumsum([of.shape[1] for of in sizes])
+    parts = [
+        np.arange(end - of.shape[1], end, MOST_ADDED) for of, end in zip(sizes, ends, strict=True)
+    ]
+    set_bits = np.asarray(cv2.LUT(np.concatenate(sizes, axis=1), BYTES_OF_BITS)).view(np.uint64)
+    sums = np.add.reduceat(set_bits, np.concatenate(parts), axis=1).view(np.uint8)
+    starts = np.cumsum([0, *(len(of) for of in parts[:-1])])
+    return np.add.reduceat(sums.reshape(len(planes), -1, 8), starts, axis=1, dtype=np.float64)
 
 
 def count_bytes(planes: ByteImage, histograms: AnyArray) -> None:

@@ -5,9 +5,8 @@ import numpy as np
 from odometry.arrays import FloatArray
 
 TIE = 1e-12  # relative to the largest between-class sum: below this, two choices are equal
-STRIP = 80
-ROWS = np.arange(STRIP)
-NO_CLASS = np.where(ROWS[:, None] <= ROWS, np.inf, 0.0)  # one that ends before it begins
+STRIP = 64
+NO_CLASS = np.where(np.tri(STRIP, dtype=np.bool_), np.inf, 0.0)  # one that ends before it begins
 
 
 def multilevel_otsu(histogram: FloatArray, n_thresholds: int) -> FloatArray:
@@ -71,17 +70,16 @@ def _best_scores(pixels: FloatArray, sums: FloatArray, n_classes: int) -> FloatA
     for start in range(1, pixels.size if n_classes > 1 else 0, STRIP):
         stop, first = min(start + STRIP, pixels.size), begins[1]
         no_class = NO_CLASS[: stop - start, : stop - start]
-        weights = np.subtract.outer(pixels[start:stop], pixels[first:stop])
-        weights[:, start - first :] += no_class
-        scores = np.subtract.outer(sums[start:stop], sums[first:stop])
+        weights = pixels[start:stop] - pixels[first:stop, None]
+        weights[start - first :] += no_class
+        scores = sums[start:stop] - sums[first:stop, None]
         scores *= scores
         scores /= weights
-        scores[:, start - first :] -= no_class
+        scores[start - first :] -= no_class
         for c in range(1, n_classes):
-            totals = scores[:, begins[c] - first :] + best[c - 1, begins[c] : stop]
-            at = totals.argmax(axis=1)
-            best[c, start:stop] = totals[ROWS[: stop - start], at]
-            begins[c] += int(at[-1])
+            totals = scores[begins[c] - first :] + best[c - 1, begins[c] : stop, None]
+            np.maximum.reduce(totals, axis=0, out=best[c, start:stop])
+            begins[c] += int(totals[:, -1].argmax())
     return best
 
 

@@ -11,6 +11,7 @@ from odometry.errors import ConfigError
 from terrain.texture.otsu import multilevel_otsu, recursive_otsu
 
 GREYS = np.arange(256.0)
+WEIGHTS_OF_BITS = 1 << np.arange(8, dtype=np.uint8)
 
 VariantName = Literal["chen2023", "costa2012"]
 
@@ -66,7 +67,10 @@ def packed_tables(members: BoolArray) -> ByteImage:
     (..., ceil(n / 8), 256) array of uint8
         Bit b of table j at a grey is set where the grey belongs to image 8 j + b.
     """
-    return np.packbits(members, axis=-2, bitorder="little")
+    n = members.shape[-2]
+    padded = np.zeros((*members.shape[:-2], -(-n // 8), 8, members.shape[-1]), np.uint8)
+    padded.reshape(*members.shape[:-2], -1, members.shape[-1])[..., :n, :] = members
+    return np.asarray(np.einsum("...bg,b->...g", padded, WEIGHTS_OF_BITS))
 
 
 @dataclass(frozen=True)
