@@ -84,6 +84,9 @@ CATALOGUE: dict[str, str] = {
     "poses_unrelated": "poses of another recording",
     "poses_are_wheel_odometry": "poses computed from these treads",
     # Gyroscope, attitude
+    "gyroscope_is_treads": "a yaw rate computed from the treads",
+    "treads_are_gyroscope": "treads computed from a speed and the gyroscope",
+    "turns_recorded_once": "treads and yaw rate, one of which was computed from the other",
     "gyroscope_bias": "a bias of the yaw rate",
     "gyroscope_unit": "yaw rate in degrees per second",
     "gyroscope_reversed": "yaw rate with the wrong sign",

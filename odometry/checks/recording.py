@@ -9,6 +9,7 @@ from odometry.checks.attitude import attitude
 from odometry.checks.catalogue import CATALOGUE, without_consequences
 from odometry.checks.compass_error import bent
 from odometry.checks.computed_poses import computed_poses
+from odometry.checks.copied_turns import copied_turns, without_gyroscope
 from odometry.checks.course import course
 from odometry.checks.disagreement import (
     agreement,
@@ -101,11 +102,14 @@ def check_recording(run: Run | str | Path) -> CheckReport:
         return CheckReport(run.folder, refused)
     if len(run.odometry) < LEAST_ROWS:
         return CheckReport(run.folder, refused, ("fewer than ten rows of odometry.csv",))
-    evidence = Evidence(run)
     with np.errstate(over="ignore", invalid="ignore"):
+        copies = list(copied_turns(Evidence(run)))
+        # two columns that are one are no two sensors that agree
+        evidence = Evidence(without_gyroscope(run) if copies else run)
         found = alone(evidence, [*refused, *_found(evidence)], _found)
         confirmed_ones = confirmed(evidence, without_consequences(found), _found)
-    return CheckReport(run.folder, in_order(confirmed_ones), tuple(_skipped(evidence)))
+    findings = in_order([*copies, *confirmed_ones])
+    return CheckReport(run.folder, findings, tuple(_skipped(evidence)))
 
 
 def _found(evidence: Evidence) -> list[Finding]:

@@ -1,0 +1,187 @@
+"""A gyroscope that was computed from the treads, or treads from a gyroscope."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from odometry.checks.evidence import Evidence
+from odometry.checks.finding import Finding, Level
+from odometry.checks.repetition import Repetition, repetition
+from odometry.run import Run
+from odometry.table import Table
+
+# Shares of the squares explained, of the changes from row to row and of the values. Of 70 real
+# recordings at most 0.49 and 0.9943, of simulated ones with ordinary noise 0.93 and 0.9996.
+# Copies reach 1; of treads and a gyroscope with stamps of their own, digits or a filter 0.98.
+CHANGES, VALUES = 0.97, 0.999
+LEAST_TURN_RAD = 2.0  # in all
+ONE_MEASURED = 0.95  # share of the measured turns explained by the gyroscope, from which it counts
+AS_MEASURED = 0.1  # of the turns: a gyroscope has no larger scale error
+EXACT_POSES = 0.9999  # share of the measured turns explained: then nothing here has any noise
+ONE_SIDE = 0.01  # of the difference of the treads, that the mean adds: sides of different scale
+OWN_WIDTH = 0.01  # of a width, less one: it is the track_width of run.toml
+LEAST_DELAY_S = 0.01
+SIMULATED = "; or the drive was simulated without noise"
+
+
+def copied_turns(evidence: Evidence) -> Iterator[Finding]:
+    """Turns that are recorded twice: gyro_z and v_right - v_left go together in each row.
+
+    Which of the two was computed is said where only one of them can be: it is smoother, comes in
+    fewer rows, mixes sides of different scale, or turns otherwise than measured poses.
+    """
+    if evidence.yaw_rate is None:
+        return
+    turns = CopiedTurns(evidence)
+    if turns.gyroscope is None and turns.treads is None:
+        return
+    if turns.without_noise:
+        return
+    if turns.gyroscope is not None and (turns.treads is None or turns.is_no_gyroscope):
+        yield _gyroscope_is_treads(evidence, turns)
+    elif turns.gyroscope is None:
+        yield _treads_are_gyroscope(evidence, turns)
+    else:
+        yield _one_of_both(evidence, turns)
+
+
+@dataclass(frozen=True)
+class CopiedTurns:
+    """Whether gyroscope and treads repeat each other.
+
+    Attributes
+    ----------
+    evidence : Evidence
+        With a gyroscope.
+    """
+
+    evidence: Evidence
+
+    @cached_property
+    def gyroscope(self) -> Repetition | None:
+        """The yaw rate by difference and mean of the treads; None where it is not exact."""
+        assert self.evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
+        left, right = self.evidence.speeds_m_s.T
+        sources = np.stack([right - left, (left + right) / 2], axis=-1)
+        return self._exact(repetition(*self.evidence.yaw_rate, self.evidence.stamps_s, sources))
+
+    @cached_property
+    def treads(self) -> Repetition | None:
+        """The difference of the treads by the yaw rate; None where it is not exact."""
+        assert self.evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
+        stamps_s, rates = self.evidence.yaw_rate
+        left, right = self.evidence.speeds_m_s.T
+        return self._exact(
+            repetition(self.evidence.stamps_s, right - left, stamps_s, rates[:, None])
+        )
+
+    @property
+    def width_m(self) -> float:
+        """Over which the difference of the treads is the turn; negative where it is reversed."""
+        if self.gyroscope is not None:
+            return float(1 / self.gyroscope.coefficients[0])
+        assert self.treads is not None  # noqa: S101 - one of them is a copy
+        return float(self.treads.coefficients[0])
+
+    @property
+    def is_no_gyroscope(self) -> bool:
+        """Whether the yaw rate is surely none: sides of different scale, or other turns."""
+        assert self.gyroscope is not None  # noqa: S101 - checked by the caller
+        difference, mean = self.gyroscope.coefficients
+        measured = self._measured_turn
+        return abs(mean) > ONE_SIDE * abs(difference) or (
+            measured is not None and abs(measured - 1) > AS_MEASURED
+        )
+
+    @property
+    def without_noise(self) -> bool:
+        """Whether the measured turns are as exact: a simulation, in which all is one motion."""
+        found = self.evidence.pose_turn_by_gyroscope
+        return found is not None and found.explained > EXACT_POSES
+
+    @property
+    def _measured_turn(self) -> float | None:
+        """Measured turn for each rad by the gyroscope; None where poses do not say it."""
+        found = self.evidence.pose_turn_by_gyroscope
+        if found is None or not found.certain() or found.explained < ONE_MEASURED:
+            return None
+        return found.slope
+
+    def _exact(self, found: Repetition | None) -> Repetition | None:
+        turned_rad = float(np.nansum(np.abs(self.evidence.uniform.gyroscope_rad)))
+        if found is None or turned_rad < LEAST_TURN_RAD:
+            return None
+        exact = found.of_changes > CHANGES and found.of_values > VALUES
+        return found if exact else None
+
+
+def _seen(evidence: Evidence, turns: CopiedTurns) -> str:
+    found = turns.gyroscope or turns.treads
+    assert found is not None  # noqa: S101 - one of them is a copy
+    width_m, track_m = turns.width_m, evidence.run.robot.track_width
+    own = " (the track_width)" if abs(abs(width_m) / track_m - 1) < OWN_WIDTH else ""
+    sign = "-" if width_m < 0 else ""
+    words = (
+        f"gyro_z of {evidence.gyroscope_file} is {sign}(v_right - v_left) / {abs(width_m):.4g} m"
+        f"{own} from row to row: {100 * found.of_changes:.2f} % of its changes are explained, and "
+        "no gyroscope is so free of noise"
+    )
+    if abs(found.delay_s) > LEAST_DELAY_S:
+        later = "gyro_z" if (found.delay_s > 0) == (found is turns.gyroscope) else "the treads"
+        words += f"; {later} {abs(found.delay_s):.2g} s later"
+    if found.smoothed_s > LEAST_DELAY_S:
+        words += f"; through a low pass of {found.smoothed_s:.2g} s"
+    return words
+
+
+def _gyroscope_is_treads(evidence: Evidence, turns: CopiedTurns) -> Finding:
+    return Finding(
+        "gyroscope_is_treads",
+        Level.WARNING,
+        _seen(evidence, turns),
+        "gyro_z was computed from the treads (the twist of an odometry topic saved as a "
+        f"gyroscope): it is no sensor and adds nothing{SIMULATED}",
+        "Save the yaw rate of the IMU itself (sensor_msgs/Imu), or remove the column; until then "
+        "the commands leave it out",
+        mend=without_gyroscope,
+    )
+
+
+def _treads_are_gyroscope(evidence: Evidence, turns: CopiedTurns) -> Finding:
+    return Finding(
+        "treads_are_gyroscope",
+        Level.WARNING,
+        _seen(evidence, turns),
+        "v_left and v_right were computed from a speed and the turn rate of the gyroscope (v -+ "
+        "w b/2: the twist of a filter or a driver, not wheels): their difference adds nothing"
+        + SIMULATED,
+        "Save the speeds of the wheels themselves (sensor_msgs/JointState): how this robot turns "
+        "by its treads (ICRs, slip in turns) cannot be learned from these",
+    )
+
+
+def _one_of_both(evidence: Evidence, turns: CopiedTurns) -> Finding:
+    return Finding(
+        "turns_recorded_once",
+        Level.WARNING,
+        _seen(evidence, turns),
+        "Either gyro_z was computed from the treads (the twist of an odometry topic saved as a "
+        "gyroscope), or v_left and v_right from a speed and the turn rate of the gyroscope (v -+ "
+        f"w b/2): these cannot be distinguished{SIMULATED}",
+        "Save what the wheels (sensor_msgs/JointState) and the IMU (sensor_msgs/Imu) measure; "
+        "until then one of both columns adds nothing, and neither confirms the other",
+    )
+
+
+def without_gyroscope(run: Run) -> Run:
+    """The run without the yaw rate that is read."""
+    found = run.yaw_rate
+    if run.imu is not None and found is not None and found.file == "imu.csv":
+        return replace(run, imu=_without(run.imu))
+    return replace(run, odometry=_without(run.odometry))
+
+
+def _without(table: Table) -> Table:
+    return replace(table, columns={n: c for n, c in table.columns.items() if n != "gyro_z"})

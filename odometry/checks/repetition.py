@@ -1,0 +1,220 @@
+"""How exactly one column repeats others: copied, delayed, filtered or resampled."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray
+
+MOST_ROWS = 3000  # the liveliest ones, in which delay and filter are searched
+LEAST_ROWS = 100
+LEAST_CHANGES = 50  # of the values: a few held ones are repeated by chance
+MOST_DELAY_S = 0.3
+SMOOTHED_S = (0.0, 0.05, 0.1, 0.2, 0.3)  # time constants from which the search begins
+LEAST_CORRELATION = 0.6  # of the changes, from which a search is worth its time
+ROUNDED = 0.1  # of the squares of the changes, that rounding may leave: else nothing is known
+SAME_STAMP_S = 1e-9
+REFINED = 50  # evaluations
+
+ORDINARY = 0.95  # share of the changes that are not zero
+EXACT = 1e-5  # share of the changes left, below which nothing is searched
+
+Sampled = Callable[[FloatArray, float, FloatArray, FloatArray], FloatArray]
+
+
+@dataclass(frozen=True)
+class Repetition:
+    """`values = sources(delayed, smoothed) @ coefficients + constant`.
+
+    Attributes
+    ----------
+    of_changes, of_values : float
+        Share of the squares explained, of the changes from row to row and of the values; what
+        rounding to the digits of the columns leaves is not counted.
+    delay_s : float
+        By which the values are later than the sources.
+    smoothed_s : float
+        Time constant of a low pass of first order through which the sources went.
+    coefficients : (P,)
+    """
+
+    of_changes: float
+    of_values: float
+    delay_s: float
+    smoothed_s: float
+    coefficients: FloatArray
+
+
+def repetition(
+    at_s: FloatArray, values: FloatArray, source_s: FloatArray, sources: FloatArray
+) -> Repetition | None:
+    """How values come from sources of any stamps; None where their changes are not alike at all.
+
+    Two sensors of one motion have noise of their own, and changes from row to row show it most.
+    The changes of a copy are those of its source.
+
+    Parameters
+    ----------
+    at_s, values : (N,)
+    source_s : (S,)
+    sources : (S, P)
+        Delay and filter are searched by the first of them.
+    """
+    inside = (at_s >= source_s[0]) & (at_s <= source_s[-1])
+    at_s, values = at_s[inside], values[inside]
+    if len(at_s) < LEAST_ROWS or np.sum(np.diff(values) != 0) < LEAST_CHANGES:
+        return None
+    rows = _liveliest(values)
+    found = [
+        _searched(_Trial(at_s[rows], values[rows], source_s, sources, sampled))
+        for sampled in _ways(at_s, source_s)
+    ]
+    best = min((one for one in found if one is not None), key=lambda one: one[0], default=None)
+    if best is None:
+        return None
+    _, delay_s, smoothed_s, sampled = best
+    return _Trial(at_s, values, source_s, sources, sampled).fit(delay_s, smoothed_s)
+
+
+@dataclass(frozen=True)
+class _Trial:
+    at_s: FloatArray
+    values: FloatArray
+    source_s: FloatArray
+    sources: FloatArray
+    sampled: Sampled
+
+    def columns(self, delay_s: float, smoothed_s: float) -> FloatArray:
+        """Sources (N, P) through the filter, at the stamps less the delay."""
+        through = _low_pass(self.sources, smoothed_s, float(np.median(np.diff(self.source_s))))
+        return np.stack(
+            [self.sampled(self.at_s, delay_s, self.source_s, one) for one in through.T], axis=-1
+        )
+
+    def left(self, delay_s: float, smoothed_s: float) -> float:
+        """Share of the squares of the changes that is left."""
+        return 1 - self.fit(delay_s, smoothed_s).of_changes
+
+    def fit(self, delay_s: float, smoothed_s: float) -> Repetition:
+        columns = self.columns(delay_s, smoothed_s)
+        changes, of_columns = (np.diff(of, axis=0)[self._ordinary] for of in (self.values, columns))
+        coefficients = np.linalg.lstsq(of_columns, changes, rcond=None)[0]
+        rounded = (self._digit**2 + np.sum((coefficients * self._digits) ** 2)) / 12
+        left = float(np.mean((changes - of_columns @ coefficients) ** 2))
+        whole = float(np.mean(changes**2))
+        away = self.values - columns @ coefficients
+        left_of_values = float(np.var(away))
+        if 2 * rounded < ROUNDED * whole:
+            left, left_of_values = max(left - 2 * rounded, 0.0), max(left_of_values - rounded, 0.0)
+        of_values = left_of_values / max(float(np.mean(self.values**2)), 1e-300)
+        return Repetition(
+            1 - left / max(whole, 1e-300),
+            1 - of_values,
+            delay_s,
+            smoothed_s,
+            np.asarray(coefficients, dtype=np.float64),
+        )
+
+    @cached_property
+    def _ordinary(self) -> BoolArray:
+        """Changes (N - 1,) without the largest: a few steps of any drive are alike in all."""
+        sizes = np.abs(np.diff(self.values))
+        return np.asarray(sizes <= np.quantile(sizes[sizes > 0], ORDINARY))
+
+    @cached_property
+    def _digits(self) -> FloatArray:
+        return np.array([_digit(one) for one in self.sources.T])
+
+    @cached_property
+    def _digit(self) -> float:
+        return _digit(self.values)
+
+
+def _searched(trial: _Trial) -> tuple[float, float, float, Sampled] | None:
+    """What is left, delay, time constant and way of sampling that explain most of the changes."""
+    from scipy.optimize import minimize  # noqa: PLC0415 - slow to load
+
+    period_s = float(np.median(np.diff(trial.at_s)))
+    starts = [(*_shift(trial, smoothed_s, period_s), smoothed_s) for smoothed_s in SMOOTHED_S]
+    alike, delay_s, smoothed_s = max(starts)
+    if alike < LEAST_CORRELATION:
+        return None
+    start = (trial.left(delay_s, smoothed_s), delay_s, smoothed_s, trial.sampled)
+    if start[0] < EXACT:
+        return start
+    steps = np.array([[0, 0], [period_s / 2, 0], [0, 0.03]])
+    found = minimize(
+        lambda at: trial.left(at[0], abs(at[1])),
+        (delay_s, smoothed_s),
+        method="Nelder-Mead",
+        options={"maxfev": REFINED, "initial_simplex": steps + np.array([delay_s, smoothed_s])},
+    )
+    refined = (float(found.fun), float(found.x[0]), float(abs(found.x[1])), trial.sampled)
+    return min(start, refined, key=lambda one: one[0])
+
+
+def _shift(trial: _Trial, smoothed_s: float, period_s: float) -> tuple[float, float]:
+    """Correlation of the changes at the best whole row of delay, and that delay."""
+    from scipy.signal import correlate  # noqa: PLC0415 - slow to load
+
+    changes = np.diff(trial.values)
+    of_source = np.diff(trial.columns(0.0, smoothed_s)[:, 0])
+    reach = max(round(MOST_DELAY_S / period_s), 1)
+    size = float(np.sqrt(np.sum(changes**2) * np.sum(of_source**2)))
+    middle = len(changes) - 1
+    products = np.abs(correlate(changes, of_source, method="fft"))[middle - reach :][
+        : 2 * reach + 1
+    ]
+    best = int(np.argmax(products))
+    return float(products[best]) / max(size, 1e-300), (best - reach) * period_s
+
+
+def _ways(at_s: FloatArray, source_s: FloatArray) -> tuple[Sampled, Sampled]:
+    """How a program may take a source at stamps (N,) less a delay."""
+    return _between_rows, _by_row if np.array_equal(at_s, source_s) else _held
+
+
+def _between_rows(
+    at_s: FloatArray, delay_s: float, source_s: FloatArray, source: FloatArray
+) -> FloatArray:
+    return np.interp(at_s - delay_s, source_s, source)
+
+
+def _by_row(
+    at_s: FloatArray, delay_s: float, source_s: FloatArray, source: FloatArray
+) -> FloatArray:
+    """The same number of rows later throughout, however uneven the stamps are."""
+    rows = np.searchsorted(source_s, at_s) - round(delay_s / float(np.median(np.diff(source_s))))
+    return np.asarray(source[np.clip(rows, 0, len(source) - 1)])
+
+
+def _held(at_s: FloatArray, delay_s: float, source_s: FloatArray, source: FloatArray) -> FloatArray:
+    rows = np.searchsorted(source_s, at_s - delay_s + SAME_STAMP_S, side="right") - 1
+    return np.asarray(source[np.clip(rows, 0, None)])
+
+
+def _low_pass(sources: FloatArray, smoothed_s: float, period_s: float) -> FloatArray:
+    """Sources (S, P) through a low pass of first order that begins at rest with the first row."""
+    from scipy.signal import lfilter  # noqa: PLC0415 - slow to load
+
+    if smoothed_s < period_s / 10:
+        return sources
+    kept = np.exp(-period_s / smoothed_s)
+    return np.asarray(lfilter([1 - kept], [1, -kept], sources, axis=0, zi=kept * sources[:1])[0])
+
+
+def _liveliest(values: FloatArray) -> slice:
+    """The stretch of MOST_ROWS in which the values change most."""
+    if len(values) <= MOST_ROWS:
+        return slice(None)
+    summed = np.concatenate([[0.0], np.cumsum(np.diff(values) ** 2)])
+    begin = int(np.argmax(summed[MOST_ROWS - 1 :] - summed[: -MOST_ROWS + 1]))
+    return slice(begin, begin + MOST_ROWS)
+
+
+def _digit(values: FloatArray) -> float:
+    """The step to which values were rounded: the usual smallest distance of two of them."""
+    steps = np.diff(np.unique(values))
+    return float(np.quantile(steps, 0.02)) if len(steps) > 2 else 0.0
