@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from math import comb
 
 import numpy as np
 
@@ -18,6 +19,7 @@ ROUNDED = 0.1  # of the squares of the changes, that rounding may leave: else no
 SAME_STAMP_S = 1e-9
 REFINED = 50  # evaluations
 
+ORDER = 2  # of the differences: what is smooth is alike in all sensors
 ORDINARY = 0.95  # share of the changes that are not zero
 EXACT = 1e-5  # share of the changes left, below which nothing is searched
 
@@ -99,28 +101,30 @@ class _Trial:
 
     def fit(self, delay_s: float, smoothed_s: float) -> Repetition:
         columns = self.columns(delay_s, smoothed_s)
-        changes, of_columns = (np.diff(of, axis=0)[self._ordinary] for of in (self.values, columns))
-        coefficients = np.linalg.lstsq(of_columns, changes, rcond=None)[0]
-        rounded = (self._digit**2 + np.sum((coefficients * self._digits) ** 2)) / 12
-        left = float(np.mean((changes - of_columns @ coefficients) ** 2))
-        whole = float(np.mean(changes**2))
-        away = self.values - columns @ coefficients
-        left_of_values = float(np.var(away))
-        if 2 * rounded < ROUNDED * whole:
-            left, left_of_values = max(left - 2 * rounded, 0.0), max(left_of_values - rounded, 0.0)
-        of_values = left_of_values / max(float(np.mean(self.values**2)), 1e-300)
+        changes, of_columns = (
+            np.diff(of, ORDER, axis=0)[self._ordinary] for of in (self.values, columns)
+        )
+        of_columns = of_columns @ np.linalg.lstsq(of_columns, changes, rcond=None)[0]
+        design = np.column_stack([columns, np.ones(len(columns))])
+        solution = np.linalg.lstsq(design, self.values, rcond=None)[0]
+        coefficients = np.asarray(solution[:-1], dtype=np.float64)
+        digits = np.append(coefficients * self._digits, self._digit)
+        rounded = float(np.sum(digits**2)) / 12
+        left_of_changes = comb(2 * ORDER, ORDER) * rounded  # the sum of the squared binomials
+        if left_of_changes > ROUNDED * float(np.mean(changes**2)):
+            rounded = left_of_changes = 0.0
         return Repetition(
-            1 - left / max(whole, 1e-300),
-            1 - of_values,
+            _explained(changes, of_columns, left_of_changes),
+            _explained(self.values, design @ solution, rounded),
             delay_s,
             smoothed_s,
-            np.asarray(coefficients, dtype=np.float64),
+            coefficients,
         )
 
     @cached_property
     def _ordinary(self) -> BoolArray:
-        """Changes (N - 1,) without the largest: a few steps of any drive are alike in all."""
-        sizes = np.abs(np.diff(self.values))
+        """Changes (N - ORDER,) without the largest: a few steps of any drive are alike in all."""
+        sizes = np.abs(np.diff(self.values, ORDER))
         return np.asarray(sizes <= np.quantile(sizes[sizes > 0], ORDINARY))
 
     @cached_property
@@ -130,6 +134,12 @@ class _Trial:
     @cached_property
     def _digit(self) -> float:
         return _digit(self.values)
+
+
+def _explained(values: FloatArray, fitted: FloatArray, rounded: float) -> float:
+    """Share of the squares of values (N,); a variance by rounding is not counted as left."""
+    left = max(float(np.mean((values - fitted) ** 2)) - rounded, 0.0)
+    return 1 - left / max(float(np.mean(values**2)), 1e-300)
 
 
 def _searched(trial: _Trial) -> tuple[float, float, float, Sampled] | None:

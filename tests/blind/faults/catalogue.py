@@ -9,6 +9,7 @@ import numpy as np
 from tests.blind.faults import (
     bent,
     computed,
+    copied,
     encoders,
     frames,
     images,
@@ -38,6 +39,7 @@ ROOMS = (
     texts,
     bent,
     computed,
+    copied,
 )
 FAULTS = {fault.key: fault for room in ROOMS for fault in room.FAULTS}
 MOTION = frozenset({"motion"})

@@ -1,9 +1,14 @@
 """The check of a recording with its camera."""
 
+import numpy as np
+
 import odometry
 from odometry.checks.finding import Level
-from terrain.checks.recording import check_run
+from odometry.run_span import Span
+from terrain.checks.recording import check_run, checked_run
 from terrain.classification.classifier import TerrainClassifier
+from tests.odometry.checks.test_copied_turns import by_treads
+from tests.odometry.checks.test_other_robots import winding
 
 
 def test_a_run_without_images_is_checked_as_ever(curvy_run):
@@ -79,3 +84,17 @@ def test_a_model_of_another_scale_will_label_nothing(faulty, classifier, monkeyp
     finding = faulty.found(classifier)["model_unsuited"]
     assert "smaller than a training patch" in finding.seen
     assert "mm" in finding.cause
+
+
+def test_a_gyroscope_that_repeats_the_treads_is_left_out(tmp_path):
+    """The commands estimate as if it were not there."""
+    run = by_treads(winding())
+    (tmp_path / "run.toml").write_text("[robot]\ntrack_width = 0.6\n")
+    for name, columns in (("odometry", run.odometry.columns), ("pose", run.pose.columns)):
+        values = np.column_stack(list(columns.values()))
+        header = ",".join(columns)
+        np.savetxt(tmp_path / f"{name}.csv", values, "%.9f", ",", header=header, comments="")
+    read, report = checked_run(tmp_path, Span())
+    assert [finding.name for finding in report.findings] == ["gyroscope_is_treads"]
+    assert "gyro_z" in odometry.Run.read(tmp_path).odometry
+    assert "gyro_z" not in read.odometry
