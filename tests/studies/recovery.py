@@ -21,9 +21,11 @@ from odometry.dead_reckoning import dead_reckon_in_space
 from odometry.identification.fitters import fitter
 from odometry.identification.identify import identify
 from odometry.identification.start import SolverConfig
+from odometry.installed import shipped_data
 from odometry.io.run_folder import write_run_folder
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
+from odometry.parameters import read_parameters
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.windows import windows_of
@@ -31,6 +33,7 @@ from odometry.windows.windows import windows_of
 POSITION_M, YAW_RAD = 0.01, np.radians(0.3)
 ICR = {"y_left": 0.45, "y_right": -0.38, "x_icr": 0.04, "alpha_left": 0.96, "alpha_right": 0.93}
 BASE = {"half_width": 0.25, "half_length": 0.25}
+AURIGA = read_parameters(shipped_data() / "parameters" / "auriga_alpha.toml")  # Martinez 2017
 
 
 @dataclass(frozen=True)
@@ -66,20 +69,7 @@ CASES = {
         fixed={"v_max": 1.0, **BASE},
     ),
     "icr_inertia": Case(
-        {
-            "zeta_0": 0.048,
-            "zeta_1": 0.0002424,
-            "epsilon_0": 0.106,
-            "epsilon_1": 0.0011,
-            "eta_0": 2.62,
-            "eta_1": 0.0019,
-            "eta_2": 0.00001,
-            "h": 0.67134,
-            "mass": 258.0,
-            "x_cm": 0.04,
-            "y_cm": 0.015,
-            "track_width": 0.42,
-        },
+        AURIGA.terrains["hard_ground"].values,
         fixed={"mass": 258.0, "x_cm": 0.04, "y_cm": 0.015, "track_width": 0.42},
     ),
     "contact": Case(

@@ -4,26 +4,16 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from odometry.installed import shipped_data
 from odometry.models.icr import Icr
 from odometry.models.icr_inertia import IcrInertia
 from odometry.models.inertia_forces import LEAST_ETA
 from odometry.models.inputs import Inputs
+from odometry.parameters import read_parameters
 
 MODEL = IcrInertia()
-AURIGA = {
-    "zeta_0": 0.048,
-    "zeta_1": 0.0002424,
-    "epsilon_0": 0.106,
-    "epsilon_1": 0.0011,
-    "eta_0": 2.62,
-    "eta_1": 0.0019,
-    "eta_2": 0.00001,
-    "h": 0.67134,
-    "mass": 258.0,
-    "x_cm": 0.04,
-    "y_cm": 0.015,
-    "track_width": 0.42,
-}
+PRINTED = read_parameters(shipped_data() / "parameters" / "auriga_alpha.toml")  # Martinez 2017
+AURIGA = PRINTED.terrains["hard_ground"].values
 G = 9.80665
 
 
