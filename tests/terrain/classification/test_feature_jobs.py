@@ -1,5 +1,7 @@
 """Features shared by processes and by the workers of a cluster."""
 
+import shutil
+
 import cv2
 import numpy as np
 import pytest
@@ -51,6 +53,15 @@ def test_processes_share_the_patches_and_give_the_same_bytes(images, monkeypatch
     assert {one.tobytes() for one in shared} == {feature_matrix(images, GREY).tobytes()}
 
 
+def test_jobs_that_end_in_another_order_keep_the_order_of_the_patches(images, monkeypatch):
+    def from_the_last(parts, settings, _processes):
+        return ((at, feature_matrix(some, settings)) for at, some in reversed(parts.items()))
+
+    monkeypatch.setattr(feature_jobs, "_local", from_the_last)
+    found = shared_feature_matrix(images, GREY, processes=2)
+    np.testing.assert_array_equal(found, feature_matrix(images, GREY))
+
+
 def test_libraries_compute_with_one_thread_each(images, monkeypatch):
     threads = []
 
@@ -96,11 +107,18 @@ def test_workers_run_an_image_network(cluster, images, colour):
 
 
 def test_a_model_has_the_same_bytes_whoever_computed_it(cluster, tmp_path, monkeypatch):
-    monkeypatch.setattr(feature_jobs, "WORTH_A_PROCESS", 40)
+    monkeypatch.setattr(feature_jobs, "WORTH_A_PROCESS", 10)
+    patches = tmp_path / "patches"
+    for file in (shipped_data() / "patches").glob("*/*[05].jpg"):
+        (patches / file.parent.name).mkdir(parents=True, exist_ok=True)
+        shutil.copy(file, patches / file.parent.name)
     models = []
     for options in (("--processes", "1"), ("--processes", "2"), ("--scheduler", cluster[0])):
         out = tmp_path / f"{len(models)}.model"
-        words = [str(shipped_data() / "patches"), "--preset", "chen2023", "--out", str(out)]
+        words = [
+            str(patches),
+            *("--metres-per-pixel", "0.003", "--preset", "chen2023", "--out", str(out)),
+        ]
         answer = CliRunner().invoke(train, [*words, *options], catch_exceptions=False)
         assert answer.exit_code == 0, answer.output
         models.append(out.read_bytes())
