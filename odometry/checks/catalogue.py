@@ -86,6 +86,9 @@ CATALOGUE: dict[str, str] = {
     # Gyroscope, attitude
     "gyroscope_is_treads": "a yaw rate computed from the treads",
     "treads_are_gyroscope": "treads computed from a speed and the gyroscope",
+    "gyroscope_is_yaw": "a yaw rate computed from yaw",
+    "yaw_is_gyroscope": "yaw that integrates the gyroscope",
+    "yaw_is_treads": "yaw computed from the treads, beside measured positions",
     "turns_recorded_once": "treads and yaw rate, one of which was computed from the other",
     "gyroscope_bias": "a bias of the yaw rate",
     "gyroscope_unit": "yaw rate in degrees per second",

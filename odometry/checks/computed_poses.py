@@ -23,6 +23,7 @@ MEASURED_M = 0.001  # median of what is left over half a second: no sensor measu
 EXACT_TURN = 0.9999  # by the treads alone
 LEAST_TURN_RAD = 2.0  # in all
 OWN_WIDTH = 0.02  # of a width, less one: it is the track_width of run.toml
+NO_WAY = 0.999  # with less, yaw alone is computed: positions are measured
 NEARLY = 0.95  # of the way at the stamps as they are; below, no delay is searched for
 MOST_DELAY_S = 0.3  # of what a program takes, or of the moment that it integrates from
 DELAY_TO_S = 0.0005
@@ -41,6 +42,7 @@ def computed_poses(evidence: Evidence) -> Iterator[Finding]:
     at = Copy(evidence, _on_time(evidence))
     track_m, width_m = evidence.run.robot.track_width, at.width_m
     of_track = width_m is not None and abs(track_m / width_m - 1) < OWN_WIDTH
+    of_track &= at.way is None or at.way.explained > NO_WAY
     rolls = at.rolls and evidence.run.truth is None
     if not of_track and not rolls:
         return

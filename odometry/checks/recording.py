@@ -9,7 +9,7 @@ from odometry.checks.attitude import attitude
 from odometry.checks.catalogue import CATALOGUE, without_consequences
 from odometry.checks.compass_error import bent
 from odometry.checks.computed_poses import computed_poses
-from odometry.checks.copied_turns import copied_turns, without_gyroscope
+from odometry.checks.copied_columns import copied_columns
 from odometry.checks.course import course
 from odometry.checks.disagreement import (
     agreement,
@@ -103,9 +103,7 @@ def check_recording(run: Run | str | Path) -> CheckReport:
     if len(run.odometry) < LEAST_ROWS:
         return CheckReport(run.folder, refused, ("fewer than ten rows of odometry.csv",))
     with np.errstate(over="ignore", invalid="ignore"):
-        copies = list(copied_turns(Evidence(run)))
-        # two columns that are one are no two sensors that agree
-        evidence = Evidence(without_gyroscope(run) if copies else run)
+        copies, evidence = copied_columns(run)
         found = alone(evidence, [*refused, *_found(evidence)], _found)
         confirmed_ones = confirmed(evidence, without_consequences(found), _found)
     findings = in_order([*copies, *confirmed_ones])

@@ -181,9 +181,10 @@ def _shift(trial: _Trial, smoothed_s: float, period_s: float) -> tuple[float, fl
     return float(products[best]) / max(size, 1e-300), (best - reach) * period_s
 
 
-def _ways(at_s: FloatArray, source_s: FloatArray) -> tuple[Sampled, Sampled]:
+def _ways(at_s: FloatArray, source_s: FloatArray) -> tuple[Sampled, ...]:
     """How a program may take a source at stamps (N,) less a delay."""
-    return _between_rows, _by_row if np.array_equal(at_s, source_s) else _held
+    same = np.array_equal(at_s, source_s)
+    return (_between_rows, _by_row) if same else (_between_rows, _held, _mean_to_next)
 
 
 def _between_rows(
@@ -203,6 +204,15 @@ def _by_row(
 def _held(at_s: FloatArray, delay_s: float, source_s: FloatArray, source: FloatArray) -> FloatArray:
     rows = np.searchsorted(source_s, at_s - delay_s + SAME_STAMP_S, side="right") - 1
     return np.asarray(source[np.clip(rows, 0, None)])
+
+
+def _mean_to_next(
+    at_s: FloatArray, delay_s: float, source_s: FloatArray, source: FloatArray
+) -> FloatArray:
+    """What a program that integrates held values adds up between two stamps, for each second."""
+    summed = np.concatenate([[0.0], np.cumsum(source[:-1] * np.diff(source_s))])
+    edges_s = np.append(at_s, 2 * at_s[-1] - at_s[-2])
+    return np.asarray(np.diff(np.interp(edges_s - delay_s, source_s, summed)) / np.diff(edges_s))
 
 
 def _low_pass(sources: FloatArray, smoothed_s: float, period_s: float) -> FloatArray:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from odometry.checks.copied_columns import NO_GYROSCOPES
 from odometry.checks.copied_turns import without_gyroscope
 from odometry.checks.finding import CheckReport, Finding, Level
 from odometry.checks.recording import check_recording
@@ -176,7 +177,7 @@ def lens(camera: Camera) -> Iterator[Finding]:
 def checked_run(folder: Path, span: Span, *, images: bool = False) -> tuple[Run, CheckReport]:
     """Read one run folder, cut to the span, and check it.
 
-    A yaw rate that was computed from the treads is left out: the treads would confirm themselves.
+    A yaw rate that was computed from treads or yaw is left out: they would confirm themselves.
 
     Parameters
     ----------
@@ -196,6 +197,6 @@ def checked_run(folder: Path, span: Span, *, images: bool = False) -> tuple[Run,
     refused = report.at(Level.REFUSED)
     if refused:
         raise RunFolderError(f"{folder}: {refused[0].line.removeprefix('refused: ')}")
-    if any(finding.name == "gyroscope_is_treads" for finding in report.findings):
+    if any(finding.name in NO_GYROSCOPES for finding in report.findings):
         run = without_gyroscope(run)
     return run, report
