@@ -1,4 +1,4 @@
-"""Whether the stamps of the IMU and of odometry are of one clock: gyro_z follows the treads."""
+"""Whether gyro_z follows the treads: stamps of one clock, and turns of the same sense."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ LEAST_TURN_RAD_S = 0.05  # of the treads, standard deviation
 def clock_fault(
     yaw_rate_rad_s: FloatArray, treads_m_s: FloatArray, rate_hz: float, track_width_m: float
 ) -> str:
-    """What contradicts one clock; "" if nothing does, or the drive cannot show it.
+    """What contradicts one clock, or one sense of turns; "" where nothing does or can.
 
     Parameters
     ----------
@@ -32,7 +32,13 @@ def clock_fault(
         return ""
     lags = np.arange(-most, most + 1)
     found = np.array([_correlation(measured, expected, int(lag)) for lag in lags])
-    best, without = int(found.argmax()), found[np.abs(lags) <= usual].max()
+    usually = found[np.abs(lags) <= usual]
+    if -usually.min() >= max(LEAST_CORRELATION, found.max()):
+        return (
+            f"gyro_z turns against the treads (correlation {usually.min():.2f}); expected the same "
+            "sense: left is positive; is a sign, or left and right, the other way round?"
+        )
+    best, without = int(found.argmax()), usually.max()
     if found[best] < LEAST_CORRELATION or without > MOST_SHARE * found[best]:
         return ""
     lag_s = lags[best] * step / rate_hz

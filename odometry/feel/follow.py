@@ -8,10 +8,12 @@ import numpy as np
 from odometry.errors import RunFolderError
 from odometry.feel.felt import NOT_MEASURED, STATIONARY, UNDETERMINED, FeelConfig, FeltWindows
 from odometry.feel.model import FeelModel
-from odometry.feel.windows import feel_windows
+from odometry.feel.windows import FeelWindows, feel_windows
 from odometry.run import UNKNOWN, Robot, Run
 
 UNLIKE_SHARE = 0.5  # of the time: a run of which more is unknown is of no terrain of the model
+MOST_REPEATS = 0.3  # of samples; real recordings repeat 0.02, rounded to 0.02 rad/s 0.33 and more
+REPEATS_MARGIN = 0.1  # above the runs of a model that repeat as much
 SAME_WIDTH = 0.1  # share by which track widths of one robot may differ
 
 
@@ -63,8 +65,8 @@ def follow_feel(run: Run, model: FeelModel, config: FeelConfig | None = None) ->
     Raises
     ------
     RunFolderError
-        If the run lacks a column of the model, is recorded more slowly, is of another robot, or as
-        `feel_signals`.
+        If the run lacks a column of the model, is recorded more slowly, is rounded more coarsely,
+        is of another robot, or as `feel_signals`.
 
     Examples
     --------
@@ -78,8 +80,19 @@ def follow_feel(run: Run, model: FeelModel, config: FeelConfig | None = None) ->
     windows = feel_windows(run, model.design.window_s)
     model.design.check(windows, str(run.folder))
     check_robot(model, run.robot, str(run.folder))
+    check_repeats(model, windows, str(run.folder))
     foreign = model.foreign(windows)
     return Felt(model, config or FeelConfig(), windows, model.scores(windows), foreign, run)
+
+
+def check_repeats(model: FeelModel, windows: FeelWindows, where: str) -> None:
+    """Raise RunFolderError if samples repeat often, and more than in the runs of the model."""
+    if windows.repeats > max(MOST_REPEATS, model.repeats + REPEATS_MARGIN):
+        raise RunFolderError(
+            f"{where}: {100 * windows.repeats:.0f} % of the samples of an axis of the IMU are the "
+            f"same as the one before while the robot moves, at most {100 * model.repeats:.0f} % in "
+            "the runs of the model: rounded more coarsely, clipped, or held for several rows?"
+        )
 
 
 def check_robot(model: FeelModel, robot: Robot, where: str) -> None:

@@ -40,6 +40,9 @@ class FeelModel:
         Which runs it was identified from.
     report : Mapping
         What was found with runs held out; plain values.
+    repeats : float
+        The most that the samples of one of the runs repeat, see `FeelSignals`; 1 where that is
+        not known, as in files before version 0.15.
 
     Examples
     --------
@@ -61,6 +64,7 @@ class FeelModel:
     robot: str
     source: str = ""
     report: Mapping[str, Any] = field(default_factory=dict)
+    repeats: float = 1.0
 
     def scores(self, windows: FeelWindows) -> Scores:
         """Of W windows; rows of windows without signals are zeros."""

@@ -116,6 +116,7 @@ def _settings(model: FeelModel) -> dict[str, Any]:
         "robot": model.robot,
         "source": model.source,
         "report": dict(model.report),
+        "repeats": model.repeats,
     }
 
 
@@ -145,6 +146,7 @@ def _model(settings: dict[str, Any], arrays: dict[str, AnyArray]) -> FeelModel:
         str(settings["robot"]),
         str(settings["source"]),
         dict(settings["report"]),
+        float(settings.get("repeats", 1.0)),
     )
 
 

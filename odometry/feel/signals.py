@@ -41,6 +41,9 @@ class FeelSignals:
         Left and right, as held; a zero is a dropout, and NaN.
     labels : (N,) of str
         The terrain that the run names; "unknown" where it names none.
+    repeats : float
+        Share of the recorded samples, while the treads move, that are the same as the one before:
+        of the axis with most. They come from rounding, clipping, or samples that are held.
     """
 
     begin_s: float
@@ -49,6 +52,7 @@ class FeelSignals:
     treads_m_s: FloatArray
     currents_a: FloatArray | None
     labels: AnyArray
+    repeats: float = 0.0
 
     def __len__(self) -> int:
         return len(self.treads_m_s)
@@ -90,7 +94,13 @@ def feel_signals(run: Run) -> FeelSignals:
     treads = run.odometry.stack("v_left", "v_right")[held]
     treads[within_gaps(grid_s, odometry_gaps(run).spans_s)] = np.nan
     signals = FeelSignals(
-        begin_s, rate_hz, even, treads, _currents(run.odometry, held), row_terrains(run)[held]
+        begin_s,
+        rate_hz,
+        even,
+        treads,
+        _currents(run.odometry, held),
+        row_terrains(run)[held],
+        _repeats(run, stamps_s, axes),
     )
     fault = ImuSums().plus(signals.axes, treads, run.robot.track_width).fault()
     if not fault and "gyro_z" in axes:
@@ -165,6 +175,13 @@ def within_gaps(grid_s: FloatArray, spans_s: FloatArray) -> AnyArray:
         return np.zeros(len(grid_s), dtype=bool)
     span = np.clip(np.searchsorted(spans_s[:, 0], grid_s, side="left") - 1, 0, None)
     return np.asarray((grid_s > spans_s[span, 0]) & (grid_s < spans_s[span, 1]))
+
+
+def _repeats(run: Run, stamps_s: FloatArray, axes: Mapping[str, FloatArray]) -> float:
+    speeds_m_s = np.abs(run.odometry.stack("v_left", "v_right")).max(axis=1)
+    moving = speeds_m_s[held_rows(run.odometry.stamps_s, stamps_s[1:])] > 0
+    counts = [int(np.sum(np.diff(of)[moving] == 0)) for of in axes.values()]
+    return max(counts) / max(int(moving.sum()), 1)
 
 
 def _currents(odometry: Table, held: AnyArray) -> FloatArray | None:

@@ -48,6 +48,8 @@ class FeelWindows:
         Of the frequencies; the highest that the sampling rate carries.
     complete_s : (W,), optional
         The stamp of the sample that completed each; by default its end.
+    repeats : float
+        See `FeelSignals`.
     """
 
     run_name: str
@@ -64,6 +66,7 @@ class FeelWindows:
     step_hz: float
     top_hz: float
     complete_s: FloatArray | None = None
+    repeats: float = 0.0
 
     def __len__(self) -> int:
         return len(self.begins_s)
@@ -178,6 +181,7 @@ def windows_of(
         axes,
         signals.rate_hz / count,
         signals.rate_hz / 2,
+        repeats=signals.repeats,
     )
 
 

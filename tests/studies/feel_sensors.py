@@ -7,18 +7,15 @@ spectrum.
 """
 
 import argparse
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from scipy.signal import butter, sosfilt, sosfilt_zi
 
-from odometry.arrays import FloatArray
 from odometry.errors import OdometryError
 from odometry.feel.design import Design
 from odometry.feel.felt import FeelConfig
-from odometry.feel.follow import Felt
+from odometry.feel.follow import Felt, check_repeats
 from odometry.feel.members import fitted_members
 from odometry.feel.model import FeelModel
 from odometry.feel.selection import main_labels, selected
@@ -28,89 +25,23 @@ from odometry.feel.table import FeelTable, stratified_folds
 from odometry.feel.windows import FeelWindows, feel_windows
 from odometry.run import UNKNOWN, Run
 from odometry.table import Table
+from tests.studies.feel_alterations import ALTERED, Change
 
 WINDOW_S = 2.0
-Change = Callable[[FloatArray], FloatArray]
 
 
-def average(samples: int) -> Change:
-    """A moving average of so many samples."""
-    weights = np.full(samples, 1 / samples)
-
-    def change(axes: FloatArray) -> FloatArray:
-        padded = np.hstack([np.repeat(axes[:, :1], samples - 1, axis=1), axes])
-        return np.array([np.convolve(one, weights, "valid") for one in padded])
-
-    return change
-
-
-def low_pass(order: int, corner: float, rows: slice = slice(None)) -> Change:
-    """A Butterworth filter of some axes; its corner in shares of the sampling rate."""
-    sos = butter(order, corner, fs=1.0, output="sos")
-
-    def change(axes: FloatArray) -> FloatArray:
-        start = sosfilt_zi(sos)[:, None, :] * axes[None, rows, :1]
-        found = axes.copy()
-        found[rows] = sosfilt(sos, axes[rows], axis=1, zi=start)[0]
-        return found
-
-    return change
-
-
-def half_as_often(axes: FloatArray) -> FloatArray:
-    """Every other sample, and straight lines between them."""
-    at = np.arange(axes.shape[1])
-    return np.array([np.interp(at, at[::2], one[::2]) for one in axes])
-
-
-def turned(axes: FloatArray) -> FloatArray:
-    """The IMU mounted with its x to the left."""
-    return axes[[1, 0, 2, 4, 3, 5]] * np.array([-1, 1, 1, -1, 1, 1])[:, None]
-
-
-def scaled(factor: float, rows: slice) -> Change:
-    """Some axes by a factor, their means aside."""
-
-    def change(axes: FloatArray) -> FloatArray:
-        found, mean = axes.copy(), axes[rows].mean(axis=1, keepdims=True)
-        found[rows] = mean + factor * (axes[rows] - mean)
-        return found
-
-    return change
-
-
-GYRO, ACCEL = slice(0, 3), slice(3, 6)
-ALTERED: dict[str, Change] = {
-    "as it is": lambda axes: axes,
-    "average of 3": average(3),
-    "average of 5": average(5),
-    "average of 7": average(7),
-    "average of 11": average(11),
-    "1st order, .05": low_pass(1, 0.05),
-    "1st order, .2": low_pass(1, 0.2),
-    "2nd order, .3": low_pass(2, 0.3),
-    "4th order, .4": low_pass(4, 0.4),
-    "gyro, 2nd, .15": low_pass(2, 0.15, GYRO),
-    "accel, 2nd, .15": low_pass(2, 0.15, ACCEL),
-    "half the rate": half_as_often,
-    "x to the left": turned,
-    "accel twice": scaled(2.0, ACCEL),
-    "gyro in degrees/s": lambda axes: np.vstack([np.rad2deg(axes[GYRO]), axes[ACCEL]]),
-    "accel in g": lambda axes: np.vstack([axes[GYRO], axes[ACCEL] / 9.81]),
-    "x and z swapped": lambda axes: axes[[2, 1, 0, 5, 4, 3]],
-    "constant": lambda axes: np.repeat(axes[:, :1], axes.shape[1], axis=1),
-}
-
-
-def altered(run: Run, change: Change) -> FeelWindows | None:
+def altered(run: Run, change: Change, model: FeelModel) -> FeelWindows | None:
     """Windows of the run as another IMU would give it; None where it is refused."""
     axes = change(np.stack([run.imu[name] for name in AXES]))
     columns = {**run.imu.columns, **dict(zip(AXES, axes, strict=True))}
     table = Table(run.imu.file, columns, np.arange(2, 2 + len(run.imu)))
     try:
-        return feel_windows(replace(run, imu=table), WINDOW_S)
+        windows = feel_windows(replace(run, imu=table), WINDOW_S)
+        model.design.check(windows, run.name)
+        check_repeats(model, windows, run.name)
     except OdometryError:
         return None
+    return windows
 
 
 def fitted(runs: list[Run], windows: list[FeelWindows], known: np.ndarray) -> FeelModel:
@@ -120,8 +51,10 @@ def fitted(runs: list[Run], windows: list[FeelWindows], known: np.ndarray) -> Fe
     names = tuple(sorted(set(main_labels(table, len(runs))[known])))
     members = fitted_members(table, known, names, [best.choice])[0]
     sensor = SensorShape.of([windows[row] for row in np.flatnonzero(known)], table.design)
+    repeats = max(windows[row].repeats for row in np.flatnonzero(known))
     return FeelModel(names, table.design, best.choice, members, best.calibration, best.strangeness,
-                     best.limits, sensor, runs[0].robot.track_width, "")  # fmt: skip
+                     best.limits, sensor, runs[0].robot.track_width, "",
+                     repeats=repeats)  # fmt: skip
 
 
 def answers(model: FeelModel, windows: FeelWindows, run: Run) -> list[float]:
@@ -158,7 +91,7 @@ def main() -> None:
     models = [fitted(runs, windows, folds != fold) for fold in range(5)]
     print("runs right, wrong, unknown; windows likewise: before; with the shape; runs refused")
     for name, change in ALTERED.items():
-        found = [altered(run, change) for run in runs]
+        found = [altered(run, change, models[fold]) for run, fold in zip(runs, folds, strict=True)]
         judged = [
             [answers(one, of, run) for one in (replace(models[fold], sensor=None), models[fold])]
             for run, of, fold in zip(runs, found, folds, strict=True)

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from odometry.errors import RunFolderError
 from odometry.feel.design import Design
 from odometry.feel.files import sentences
 from odometry.feel.follow import follow_feel
@@ -155,6 +156,22 @@ def test_the_limit_is_the_farthest_of_the_runs_from_the_others(model):
     so_far = ShapeSoFar.none(found, model.design.axes)
     assert not so_far.is_foreign
     np.testing.assert_allclose(so_far.plus(windows[0]).total / windows[0].felt.sum(), table[0])
+
+
+def test_samples_that_repeat_more_than_in_training_are_refused(model, tmp_path):
+    def rounded(columns):
+        return columns | {"gyro_x": np.round(columns["gyro_x"] / 0.2) * 0.2}
+
+    run = with_imu(drive("gravel", 980), rounded)
+    assert model.repeats == 0
+    with pytest.raises(RunFolderError, match="rounded more coarsely"):
+        follow_feel(run, model)
+    write_feel_model(tmp_path / "a.feel", replace(model, repeats=feel_windows(run).repeats))
+    assert len(follow_feel(run, read_feel_model(tmp_path / "a.feel")).windows)
+    settings, arrays = read_array_file(tmp_path / "a.feel", FEEL)
+    del settings["repeats"]
+    write_array_file(tmp_path / "old.feel", FEEL, settings, arrays)
+    assert len(follow_feel(run, read_feel_model(tmp_path / "old.feel")).windows)
 
 
 def test_few_runs_and_no_axis_know_no_shape(model):

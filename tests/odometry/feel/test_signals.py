@@ -113,6 +113,27 @@ def test_stamps_of_another_clock_are_refused(seconds, word):
         feel_signals(with_imu(run, delayed(seconds)))
 
 
+def against(columns):
+    return columns | {"gyro_z": -columns["gyro_z"]}
+
+
+def test_a_gyroscope_that_turns_against_the_treads_is_refused():
+    run = drive("gravel", 6, seconds=60.0, turning=0.3)
+    with pytest.raises(RunFolderError, match="turns against the treads"):
+        feel_signals(with_imu(run, against))
+    feel_signals(with_imu(drive("gravel", 7, seconds=60.0, turning=0.0), against))
+
+
+def test_samples_that_repeat_are_counted_while_the_robot_moves():
+    run = drive("gravel", 8, seconds=12.0)
+    assert feel_signals(run).repeats == 0
+    rows = np.arange(len(run.imu)) // 2 * 2
+    twice = with_imu(run, lambda c: c | {"accel_y": c["accel_y"][rows]})
+    assert feel_signals(twice).repeats == pytest.approx(0.5, abs=0.01)
+    still = drive("gravel", 8, seconds=12.0, speed=0.0, turning=0.0)
+    assert feel_signals(with_imu(still, lambda c: c | {"gyro_y": c["gyro_y"][rows]})).repeats == 0
+
+
 def test_a_drive_that_does_not_turn_says_nothing_of_the_clock():
     """Its samples stay where their stamps say."""
     straight = drive("gravel", 7, seconds=60.0, turning=0.0)
