@@ -1,6 +1,6 @@
 """Auriga-alpha in the contact simulator: the 441 steady states of Martinez 2017.
 
-    python tests/studies/auriga.py [--vehicle FILE] [--law coulomb|shear] [--out FOLDER]
+    python -m tests.studies.auriga [--vehicle FILE] [--law coulomb|shear] [--out FOLDER]
 
 Left and right track speeds from -1 to 1 m/s in steps of 0.1 m/s. Printed beside the paper's: the
 mean ICRs, the speed ratio H of turning on the spot, and the errors of constant ICRs (Table II).

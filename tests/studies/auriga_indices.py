@@ -1,6 +1,6 @@
 """The inertia model on Auriga-alpha: printed and refitted coefficients (Martinez 2017, Table II).
 
-    python tests/studies/auriga_indices.py [--out auriga]
+    python -m tests.studies.auriga_indices [--out auriga]
 
 The truth is the 441 steady states of the contact simulator (`auriga.py`). The coefficients of
 eq. 25-27 are refitted as the paper did, each index by least squares with the simulated |F| and H.
@@ -14,7 +14,6 @@ import argparse
 from pathlib import Path
 
 import numpy as np
-from auriga import VEHICLE, SteadyStates, constant_icr_errors, solve, spot_turn_ratio
 from matplotlib.figure import Figure
 
 from odometry.arrays import BoolArray, FloatArray
@@ -23,6 +22,7 @@ from odometry.models.inputs import Inputs
 from odometry.parameters import read_parameters
 from odometry.report.figure import save_figure
 from odometry.simulation.contact.vehicle import read_contact_vehicle
+from tests.studies.auriga import VEHICLE, SteadyStates, constant_icr_errors, solve, spot_turn_ratio
 
 PRINTED = Path(__file__).parents[2] / "data" / "parameters" / "auriga_alpha.toml"
 PAPER_RMSE = {

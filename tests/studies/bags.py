@@ -1,7 +1,7 @@
 """Time, memory and damage of the import of bags, beside rosbags' own reading.
 
-python tests/studies/bags.py size --folder FOLDER [--gigabytes 1] [--kind mcap ...]
-python tests/studies/bags.py cut --folder FOLDER [--places 20] [--kind mcap ...]
+python -m tests.studies.bags size --folder FOLDER [--gigabytes 1] [--kind mcap ...]
+python -m tests.studies.bags cut --folder FOLDER [--places 20] [--kind mcap ...]
 
 `size` writes a bag of that size (and one of a tenth), reads and decodes every message with rosbags,
 imports it, and prints times and the largest memory of either. `cut` truncates a bag at random

@@ -1,6 +1,6 @@
 """Five models on a Warthog's recordings, fitted as in Baril 2020: Table I, and Fig. 4 to 8.
 
-    TERRAIN_ODOMETRY_DATA=... python tests/studies/baril.py [--out FOLDER]
+    TERRAIN_ODOMETRY_DATA=... python -m tests.studies.baril [--out FOLDER]
 
 The robot of the paper on asphalt and ice, where the paper has concrete and snow (Table I on
 grass, gravel and sand, too). Loss and windows are those of the paper: eq. 13 with the identity,
@@ -15,7 +15,6 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
-from real_models import recordings
 
 from odometry.comparison.compare import compare
 from odometry.comparison.config import ComparisonConfig
@@ -30,6 +29,7 @@ from odometry.report.comparison_page import write_comparison_report
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.windows import windows_of
+from tests.studies.real_models import recordings
 
 PRINTED = Path(__file__).parents[2] / "data" / "parameters"
 FITTED = ("icr_symmetric", "icr", "radius_of_curvature", "full_linear")

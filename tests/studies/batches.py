@@ -1,6 +1,6 @@
 """Many runs: two processes against one, kills, a run that fails, a cluster that loses a worker.
 
-    python tests/studies/batches.py [--runs 40] [--seconds 60] [--seed 1] [--only speeds kills]
+    python -m tests.studies.batches [--runs 40] [--seconds 60] [--seed 1] [--only speeds kills]
 
 Simulates the runs, replays them as a user does, and prints what it took. One and two processes
 take turns on halves of the runs (one, two, two, one), so that what else the machine does falls on

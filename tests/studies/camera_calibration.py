@@ -1,6 +1,6 @@
 """Lens and mount of random cameras: how far they are from the truth, and what the intervals hold.
 
-    python tests/studies/camera_calibration.py [--cameras 8] [--first-seed 0] [--part PART]
+    python -m tests.studies.camera_calibration [--cameras 8] [--first-seed 0] [--part PART]
 
 Cameras of 640 x 480 pixels, fields of view of 60 to 95 degrees, distortion of real lenses, 0.3 to
 1.6 m above the terrain, pitch 8 to 60 degrees down, roll and yaw of some degrees.
@@ -13,7 +13,6 @@ Cameras of 640 x 480 pixels, fields of view of 60 to 95 degrees, distortion of r
 """
 
 import argparse
-import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -22,8 +21,6 @@ from typing import Any
 
 import cv2
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from odometry.run import Run
 from odometry.table import Table

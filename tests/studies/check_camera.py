@@ -1,6 +1,6 @@
 """Mistakes in [camera] on random cameras: how many are noticed, and named first.
 
-    python tests/studies/check_camera.py [--cameras 40] [--first-seed 0]
+    python -m tests.studies.check_camera [--cameras 40] [--first-seed 0]
 
 Robots of 0.3 to 1.2 m, cameras 0.3 to 2 m above the ground that look 15 to 70 degrees down, fields
 of view of 45 to 100 degrees; kept are those that see the region of a robot that drives straight on.

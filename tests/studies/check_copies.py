@@ -1,7 +1,7 @@
 """What the check says of columns that were computed from other columns, treatment by treatment.
 
-    python tests/studies/check_copies.py --split first
-    python tests/studies/check_copies.py --split second --seed 5 --only gyro_is_twist_of_treads
+    python -m tests.studies.check_copies --split first
+    python -m tests.studies.check_copies --split second --seed 5 --only gyro_is_twist_of_treads
 
 TERRAIN_ODOMETRY_DATA names the folder of shared recordings. Each fault of
 tests/blind/faults/copied.py is put into each recording that has what it needs, with each treatment.

@@ -1,7 +1,7 @@
 """Faults that the check of recordings notices, causes that it names, and its false alarms.
 
-    python tests/studies/check_faults.py --seeds 1 --split first
-    python tests/studies/check_faults.py --seeds 10 --split second --only pose_late
+    python -m tests.studies.check_faults --seeds 1 --split first
+    python -m tests.studies.check_faults --seeds 10 --split second --only pose_late
 
 TERRAIN_ODOMETRY_DATA names the folder of shared recordings. Thresholds are chosen on the first
 split; figures are stated of the second, whose drives the first does not have

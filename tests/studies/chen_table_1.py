@@ -1,6 +1,6 @@
 """The confusion of Chen 2023, Table 1, on real photographs: SFTA and plain neighbours.
 
-    TERRAIN_ODOMETRY_DATA=... python tests/studies/chen_table_1.py
+    TERRAIN_ODOMETRY_DATA=... python -m tests.studies.chen_table_1
 
 Nobody else has the paper's photographs. Asphalt and concrete are there with tile in place of
 marble (close views), and with grass (crops of street scenes). The paper does not say what was

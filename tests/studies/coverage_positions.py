@@ -1,6 +1,6 @@
 """How often 95 % intervals from positions without yaw hold the truth.
 
-    python tests/studies/coverage_positions.py [--seeds 200] [--model icr] [--wander 0.05]
+    python -m tests.studies.coverage_positions [--seeds 200] [--model icr] [--wander 0.05]
         [--lasting 20]
 
 The drives are those of `coverage.py`, their yaw left out; every second one has a gyroscope.

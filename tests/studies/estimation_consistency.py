@@ -1,6 +1,6 @@
 """Whether the filter errs as much as it says: NEES and NIS over seeds, in simulation.
 
-    python tests/studies/estimation_consistency.py [--seeds 20] [--duration 60] [--gyroscope]
+    python -m tests.studies.estimation_consistency [--seeds 20] [--duration 60] [--gyroscope]
                                                    [--real [--seven]]
 
 The true state is drawn from the filter's estimate at its start; it wanders by the process

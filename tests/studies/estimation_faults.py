@@ -1,6 +1,6 @@
 """What faults of a drive do to odometer and estimate, and what the filter says of them.
 
-    python tests/studies/estimation_faults.py [--only KEY ...] [--bases NAME ...] [--seeds 1]
+    python -m tests.studies.estimation_faults [--only KEY ...] [--bases NAME ...] [--seeds 1]
                                               [--half] [--save FILE] [--against FILE]
 
 Needs TERRAIN_ODOMETRY_DATA. Faults come from tests/blind/estimation, at random moments; half of

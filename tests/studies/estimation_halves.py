@@ -1,6 +1,6 @@
 """How often `identify` notes halves that differ: on recordings as they are, and with a change.
 
-    python tests/studies/estimation_halves.py [--model icr]
+    python -m tests.studies.estimation_halves [--model icr]
 
 Needs TERRAIN_ODOMETRY_DATA. A change is put into the second half of every recording: the difference
 of the tread speeds grows, as if the robot were so much wider there. The threshold was chosen on

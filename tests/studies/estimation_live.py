@@ -1,6 +1,6 @@
 """The live face of the filter, `IcrEkf.start` and `step`, fed with frames that are odd.
 
-    python tests/studies/estimation_live.py [--seeds 30]
+    python -m tests.studies.estimation_live [--seeds 30]
 
 Of each kind of frame: it must be taken or answered by an error of the project's own; every
 estimate must be finite, with a symmetric covariance without negative variances, and the estimate

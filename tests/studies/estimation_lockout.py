@@ -1,6 +1,6 @@
 """Whether poses that are few, late or noisy lock the filter out: the estimate against ideal drive.
 
-    python tests/studies/estimation_lockout.py [--only NAME ...] [--save FILE]
+    python -m tests.studies.estimation_lockout [--only NAME ...] [--save FILE]
 
 Needs TERRAIN_ODOMETRY_DATA. On recordings of fast drives and of ice, pose.csv is thinned, delayed
 and made noisy; the estimate is evaluated on all recorded poses. "Worse" is farther off than the

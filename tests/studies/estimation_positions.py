@@ -1,6 +1,6 @@
 """Positions without yaw: the estimate against that of full poses, and identification from them.
 
-    python tests/studies/estimation_positions.py [--seven] [--loops-only] [--save FILE]
+    python -m tests.studies.estimation_positions [--seven] [--loops-only] [--save FILE]
                                                  [--against FILE]
 
 Needs TERRAIN_ODOMETRY_DATA. The world is turned by 120 degrees, and the yaw column of pose.csv

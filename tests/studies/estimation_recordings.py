@@ -1,6 +1,6 @@
 """Error of every trajectory on the real recordings with poses, against plain baselines.
 
-    python tests/studies/estimation_recordings.py [--seven] [--save FILE] [--against FILE]
+    python -m tests.studies.estimation_recordings [--seven] [--save FILE] [--against FILE]
 
 Needs TERRAIN_ODOMETRY_DATA. Error per metre: over 5 m of wheel travel, a window from every pose,
 mean, metres per metre. The ideal drive and the gyroscope with mean wheel speed are computed by

@@ -5,7 +5,7 @@ over both sets of photographs, is best out of fold. The choice is nested: it is 
 training part of every outer fold, and evaluated on photographs that took no part in it. Candidates
 are copies that cost little beside the grey image.
 
-usage: python tests/studies/fast_copies.py DATA/terrain-images/ground DATA/terrain-images/pavements
+usage: python -m tests.studies.fast_copies DATA/terrain-images/ground DATA/terrain-images/pavements
 """
 
 import argparse

@@ -1,6 +1,6 @@
 """What the robot feels and what the camera sees, together and alone, on made courses.
 
-    python tests/studies/feel_and_sight.py [--seeds 20] [--first-seed 4]
+    python -m tests.studies.feel_and_sight [--seeds 20] [--first-seed 4]
 
 Courses of `switching_courses` over three terrains, with vibration that is made here by terrain and
 speed: band-limited noise, whose centre and size differ from drive to drive. The labels of the
@@ -10,18 +10,12 @@ the same, and the difference to both, with an interval over drives drawn anew.
 """
 
 import argparse
-import sys
 import tempfile
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from scipy.signal import butter, sosfilt
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
-sys.path.insert(0, str(Path(__file__).parent))
-
-from switching_courses import LabellingWatcher, make_course
 
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.feel.follow import follow_feel
@@ -32,6 +26,7 @@ from odometry.table import Table
 from terrain.config import Config
 from terrain.feel_labels import FeelLabels
 from terrain.image_label import ImageLabel
+from tests.studies.switching_courses import LabellingWatcher, make_course
 
 ZONES = ("gravel", "grass", "brick", "gravel", "brick", "grass")
 RATE_HZ = 100.0

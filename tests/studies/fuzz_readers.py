@@ -1,6 +1,6 @@
 """Every reader against inputs made wrong at random: only the project's own errors may come out.
 
-    python tests/studies/fuzz_readers.py [--changes 20000] [--seed 0] [--only NAME]
+    python -m tests.studies.fuzz_readers [--changes 20000] [--seed 0] [--only NAME]
 
 A row a reader: how many changed inputs were read and how many refused, the longest time of one,
 and the errors that are not the project's, of which the first of each kind is printed. Memory is

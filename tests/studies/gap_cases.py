@@ -1,6 +1,6 @@
 """The gap workflow on blind cases: what it names, and how much of the held-out excess it closes.
 
-    python tests/studies/gap_cases.py [--seeds 20] [--group seen slips] [--kinds KIND ...]
+    python -m tests.studies.gap_cases [--seeds 20] [--group seen slips] [--kinds KIND ...]
                                       [--out gap_cases] [--jobs 2]
 
 Cases come from `tests/blind`, whose generators know nothing of the catalogue of effects. Seeds
@@ -11,7 +11,6 @@ it is known; a case that fails is a row, too. Cases that are in cases.csv are no
 import argparse
 import csv
 import json
-import sys
 import tempfile
 import time
 from pathlib import Path
@@ -19,8 +18,6 @@ from typing import Any
 
 import numpy as np
 from joblib import Parallel, delayed
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from odometry.errors import OdometryError
 from odometry.gap.files import write_gap

@@ -1,6 +1,6 @@
 """The gap workflow with the true name left out of the catalogue: which other names it gives.
 
-    python tests/studies/gap_left_out.py [--first-seed 80] [--seeds 3] [--kinds KIND ...]
+    python -m tests.studies.gap_left_out [--first-seed 80] [--seeds 3] [--kinds KIND ...]
                                          [--out gap_left_out] [--jobs 2] [--whole]
 
 A case whose effect is in the catalogue is answered without the name of the effect and those that
@@ -12,7 +12,6 @@ on many cases.
 
 import argparse
 import csv
-import sys
 import tempfile
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -21,8 +20,6 @@ from pathlib import Path
 from unittest.mock import patch
 
 from joblib import Parallel, delayed
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from odometry.effects.catalogue import EFFECTS
 from odometry.gap import accepted_effects, candidates, search

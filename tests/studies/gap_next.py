@@ -1,6 +1,6 @@
 """What to drive next: whether driving it distinguishes rivals, on blind cases of rivals.
 
-    python tests/studies/gap_next.py [--seeds 1] [--pairs NAME ...] [--out gap_next] [--jobs 2]
+    python -m tests.studies.gap_next [--seeds 1] [--pairs NAME ...] [--out gap_next] [--jobs 2]
 
 `tests/blind/rivals` writes runs about which two hypotheses say the same; one of them is the truth.
 The gap workflow proposes a drive in words; it is driven with the truth for as long as it is meant
@@ -15,7 +15,6 @@ import csv
 import json
 import math
 import re
-import sys
 import tempfile
 import time
 from pathlib import Path
@@ -23,8 +22,6 @@ from typing import Any
 
 import numpy as np
 from joblib import Parallel, delayed
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from odometry.errors import OdometryError
 from odometry.gap.files import write_gap

@@ -1,6 +1,6 @@
 """The gap workflow on real recordings: what it names, what that closes, what it leaves unknown.
 
-    TERRAIN_ODOMETRY_DATA=... python tests/studies/gap_real.py [--out gap_real] [--only WORD ...]
+    TERRAIN_ODOMETRY_DATA=... python -m tests.studies.gap_real [--out gap_real] [--only WORD ...]
 
 Four kinds of cases, on recordings with a pose, each ground as INDEX.csv names it:
 
@@ -24,15 +24,12 @@ FOLDER/CASE/report.html (controls have none); at the end the table goes to FOLDE
 import argparse
 import csv
 import os
-import sys
 import time
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from odometry.effects.residual import Residual
 from odometry.errors import OdometryError

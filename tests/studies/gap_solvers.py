@@ -1,6 +1,6 @@
 """The search of odometry/gap/solve.py against SciPy's on fits of the gap workflow.
 
-    python tests/studies/gap_solvers.py [--kinds KIND ...] [--seed 31] [--out gap_solvers.csv]
+    python -m tests.studies.gap_solvers [--kinds KIND ...] [--seed 31] [--out gap_solvers.csv]
 
 Each search for values from a start, as it comes up in blind cases, is made by all: with the same
 derivatives, bounds and scales, SciPy's ending where a step gains a ten-thousandth of the cost or
@@ -9,7 +9,6 @@ derivatives, bounds and scales, SciPy's ending where a step gains a ten-thousand
 
 import argparse
 import csv
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Sequence
@@ -19,8 +18,6 @@ from typing import Any
 
 import numpy as np
 import scipy.optimize
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from odometry.gap import hypothesis as gap_fit
 from odometry.gap.gap import find_gap

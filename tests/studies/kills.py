@@ -1,6 +1,6 @@
 """Kills (SIGKILL) at random moments: nothing torn, nothing mixed, and every rerun the same.
 
-    python tests/studies/kills.py [--kills 100] [--seed 1] [--verb run ...]
+    python -m tests.studies.kills [--kills 100] [--seed 1] [--verb run ...]
 
 For each verb a result is made undisturbed once, and once with another setting. Then it is made in
 child processes, each killed at a random moment of the time that the verb takes; every other kill

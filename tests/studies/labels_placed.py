@@ -1,6 +1,6 @@
 """Where the squares that `label` finds truly lie, on drives with spins, reversals, a rear camera.
 
-    python tests/studies/labels_placed.py [--seeds 10]
+    python -m tests.studies.labels_placed [--seeds 10]
 
 Courses of `switching_courses`; `label` opens no image to find squares, so none is drawn. Labelled
 by truth.csv, by spans whose ends are rounded to whole seconds, and by truth.csv with neither poses
@@ -15,14 +15,14 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from labels import rounded_spans, without_gyroscope
-from switching_courses import make_course
-from switching_labels import COURSES
 from tqdm import tqdm
 
 from terrain.labelling.given_terrain import told_terrain
 from terrain.labelling.label_runs import label_runs
 from terrain.labelling.square_labels import STRADDLES
+from tests.studies.labels import rounded_spans, without_gyroscope
+from tests.studies.switching_courses import make_course
+from tests.studies.switching_labels import COURSES
 
 
 def main() -> None:

@@ -1,6 +1,6 @@
 """The live main job on the real recordings with poses: the same as `run`, and what it costs.
 
-    python tests/studies/live.py [--seven]
+    python -m tests.studies.live [--seven]
 
 Needs TERRAIN_ODOMETRY_DATA. Each recording is replayed without images by `run_odometry`, as it
 comes and with `[filter] causal`, and its frames are fed one by one to `LiveOdometry`. Printed:

@@ -1,6 +1,6 @@
 """Modes under faults that begin at some moment of a run: how often a wrong mode is named.
 
-    python tests/studies/modes_faults.py --folder FOLDER [--seeds 10 11] [--faults KEY ...]
+    python -m tests.studies.modes_faults --folder FOLDER [--seeds 10 11] [--faults KEY ...]
 
 Robots, modes, drives and faults are those of tests/blind/modes, which know nothing of how modes are
 recognised. Modes are identified on a minute or two in each; every run changes between two of them,
@@ -14,14 +14,11 @@ they are named (`--faults further_cable_dragged robot_payload_shifts ...`).
 
 import argparse
 import csv
-import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from odometry.modes.answers import candidates, named_modes
 from odometry.modes.identify_traction import identify_traction_modes

@@ -1,6 +1,6 @@
 """Which terrain a real robot is on, by its motion alone.
 
-    TERRAIN_ODOMETRY_DATA=... python tests/studies/modes_real.py
+    TERRAIN_ODOMETRY_DATA=... python -m tests.studies.modes_real
 
 Warthog runs on five grounds, joined end to end, and Husky runs with yaw rate and wheels only.
 Modes are identified on other runs (Warthog: each run is held out once), or on the other half where
@@ -10,15 +10,12 @@ Traction modes are followed on each Warthog run alone: poses of one do not go on
 
 import csv
 import os
-import sys
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from odometry.arrays import FloatArray
 from odometry.modes.detection import confusion

@@ -1,6 +1,6 @@
 """How far the odometer is off on recordings, by source, and whether its covariance is right.
 
-    python tests/studies/odometer_noise.py [--all]
+    python -m tests.studies.odometer_noise [--all]
 
 The 19 recordings of data/motion with poses that are not the seven of the final figures gave
 `USUAL_NOISE`: the mean variance of each source, with `LEAST_SHARE` 0. NEES of a recording by its

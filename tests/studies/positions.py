@@ -1,6 +1,6 @@
 """Real recordings with their yaw column emptied, beside the same with full poses.
 
-    python tests/studies/positions.py [--model icr] [RUN ...]
+    python -m tests.studies.positions [--model icr] [RUN ...]
 
 For each recording of data/motion (TERRAIN_ODOMETRY_DATA names the folder of shared recordings):
 the held-out error over windows of 2 m, each half by the other (evaluated with the full poses), and

@@ -1,6 +1,6 @@
 """Every model on the real recordings: held-out errors by robot and ground, against `icr`.
 
-    TERRAIN_ODOMETRY_DATA=... python tests/studies/real_models.py [--out FOLDER] [--jobs 2]
+    TERRAIN_ODOMETRY_DATA=... python -m tests.studies.real_models [--out FOLDER] [--jobs 2]
 
 Runs with a pose are grouped by robot and ground as INDEX.csv names them; recordings whose ground
 is not stated are one ground of each robot. A run is evaluated with models identified on the other

@@ -1,6 +1,6 @@
 """Do a model's own parameters come back, and do 95 % intervals cover them?
 
-    python tests/studies/recovery.py [--seeds 50] [--model NAME ...] [--workers 2]
+    python -m tests.studies.recovery [--seeds 50] [--model NAME ...] [--workers 2]
 
 Each model drives 120 s of random commands at 50 Hz; its own twists are integrated in space, the
 reference has 1 cm and 0.3 degrees of noise at 10 Hz. Models that need slopes or speed get them.

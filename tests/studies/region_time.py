@@ -1,6 +1,6 @@
 """Region against whole image: time and agreement (Chen 2023, Table 2 and Fig. 6).
 
-    python tests/studies/region_time.py [--images 60]
+    python -m tests.studies.region_time [--images 60]
 
 On a synthesised run the ground ahead is classified twice in every image: the region where the
 kinematic model predicts the robot, and all the ground that the image resolves. They agree where

@@ -1,6 +1,6 @@
 """Skid modes in the contact simulator: the experiments of Salvi 2024, Fig. 3 to 6.
 
-    python tests/studies/skid_modes.py [--seeds 50] [--jobs 2] [--only WORD ...] [--out skid_modes]
+    python -m tests.studies.skid_modes [--seeds 50] [--jobs 2] [--only WORD ...] [--out skid_modes]
 
 Modes are identified once for each speed, on skidpad, clothoid and sinusoid drives of a Husky-like
 robot in every mode; experiments are outward spirals, to the left and to the right in turn, whose
@@ -19,7 +19,6 @@ than 6 m, straight where it is more than 12 m.
 
 import argparse
 import csv
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -27,8 +26,6 @@ from pathlib import Path
 import numpy as np
 from joblib import Parallel, delayed
 from tqdm import tqdm
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from odometry.modes.answers import named_modes
 from odometry.modes.detection import detections, false_switches

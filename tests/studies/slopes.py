@@ -1,6 +1,6 @@
 """ICRs on slopes (Martinez 2024): the ovals of Fig. 2, the slope of Fig. 8, and Table II.
 
-    python tests/studies/slopes.py [--out slopes] [--seeds 5]
+    python -m tests.studies.slopes [--out slopes] [--seeds 5]
 
 The truth is the contact simulator, for a vehicle like the paper's J8: `icr` is identified on
 level ground, `icr_slope` in two stages with a turn on the spot on 4 degrees as the paper does it,

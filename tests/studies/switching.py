@@ -1,6 +1,6 @@
 """Chen's experiment on synthesised runs: terrain A - B - A, with and without vision.
 
-    python tests/studies/switching.py [--seeds 20] [--out FOLDER] [--tuned]
+    python -m tests.studies.switching [--seeds 20] [--out FOLDER] [--tuned]
 
 For each seed a run is made, a classifier is trained on its patches (photos that do not lie on its
 ground), and the run is replayed with vision, with the true labels at the true edge, by the

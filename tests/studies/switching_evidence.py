@@ -1,6 +1,6 @@
 """Where the switch happens by labels that may be wrong, alone, in pairs or in stretches.
 
-    PYTHONPATH=. python tests/studies/switching_evidence.py [--seeds 20] [--half kept]
+    PYTHONPATH=. python -m tests.studies.switching_evidence [--seeds 20] [--half kept]
 
 Drives of `tests/terrain/switch_drives.py` over terrains 3 to 9 m wide, ahead alone and with
 turns on the spot, reversals and returns; labels of the ground 0.95 m ahead every 0.15 m, of which

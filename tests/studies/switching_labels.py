@@ -1,6 +1,6 @@
 """Where the switch happens, on drives with spins and reversals, with labels that may be wrong.
 
-    python tests/studies/switching_labels.py [--seeds 20] [--out FOLDER]
+    python -m tests.studies.switching_labels [--seeds 20] [--out FOLDER]
 
 Courses of `switching_courses`: Chen's A - B - A, three terrains, three terrains with turns on the
 spot and reversals, and these with a rear camera. Sources of terrain: labels of regions ahead that
@@ -17,7 +17,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from switching_courses import LabellingWatcher, TrueFooting, make_course
 from tqdm import tqdm
 
 from odometry.estimation.icr_ekf import IcrEkf
@@ -25,6 +24,7 @@ from odometry.evaluation.score import reference_of, score
 from odometry.pipeline import ConstantTerrain, replay
 from odometry.run_terrains import labelled_terrain
 from terrain.config import Config
+from tests.studies.switching_courses import LabellingWatcher, TrueFooting, make_course
 
 A_B_A, THREE = ("gravel", "grass", "gravel"), ("gravel", "grass", "brick", "gravel", "brick")
 COURSES = {

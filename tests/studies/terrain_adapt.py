@@ -1,6 +1,6 @@
 """A few labelled photographs of a new camera: alone, mixed with the old, or the old model as it is.
 
-    TERRAIN_ODOMETRY_DATA=... python tests/studies/terrain_adapt.py [--draws N] [--out FOLDER]
+    TERRAIN_ODOMETRY_DATA=... python -m tests.studies.terrain_adapt [--draws N] [--out FOLDER]
 
 From ground/ to pavements/ (four shared terrains, squares of 96 px): 1, 3 and 10 photographs a
 terrain of pavements/ are drawn, each draw with its own seed; balanced accuracy by patch on all
@@ -16,7 +16,6 @@ from collections import Counter
 from pathlib import Path
 
 import numpy as np
-from terrain_grounds import COPIES, PER_COPY, Grounds
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from terrain.classification.adaptation import ALONE, MIXED, OLD, clearly_best
@@ -27,6 +26,7 @@ from terrain.classification.old_samples import SamplesBesideOld
 from terrain.classification.patches import find_photos, load_patches
 from terrain.classification.presets import PRESETS
 from terrain.classification.validation import Samples, cross_validate
+from tests.studies.terrain_grounds import COPIES, PER_COPY, Grounds
 
 PRESET = PRESETS["default"]
 GREY = slice(0, COPIES["bank"] * PER_COPY)

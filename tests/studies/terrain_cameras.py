@@ -1,6 +1,6 @@
 """What altered copies bring: the own camera, other cameras, unknown terrain, calibration.
 
-    TERRAIN_ODOMETRY_DATA=... python tests/studies/terrain_cameras.py [PART...] [--out FOLDER]
+    TERRAIN_ODOMETRY_DATA=... python -m tests.studies.terrain_cameras [PART...] [--out FOLDER]
 
 Folds keep photographs (photo_id) whole, and altered copies follow their photograph. k, temperature
 and rejection distances are chosen inside the training photographs alone; `unknown` is evaluated on
@@ -18,7 +18,6 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from terrain_grounds import Chosen, Grounds, choose, read_copies, read_grounds
 
 from odometry.arrays import AnyArray, ByteImage
 from terrain.classification.calibration import reliability
@@ -35,6 +34,7 @@ from terrain.classification.presets import PRESETS
 from terrain.classification.trained_on import image_sum
 from terrain.classification.validation import grouped_folds
 from terrain.images import read_image
+from tests.studies.terrain_grounds import Chosen, Grounds, choose, read_copies, read_grounds
 
 SHOWN_PATCHES = 4  # of each photograph by a simulated camera
 UNKNOWN_FOLDS = 2

@@ -1,6 +1,6 @@
 """The terrain classifiers on real photographs: confusion, a new camera, unknown terrain.
 
-    TERRAIN_ODOMETRY_DATA=... python tests/studies/terrain_images.py [--out FOLDER]
+    TERRAIN_ODOMETRY_DATA=... python -m tests.studies.terrain_images [--out FOLDER]
 
 Patches overlap by half, at most 60 a photograph, as `train` cuts them. All folds keep photographs
 (photo_id) whole. In each outer fold the structure (which copies of the image), k and the rejection
@@ -15,7 +15,6 @@ from collections import Counter
 from pathlib import Path
 
 import numpy as np
-from terrain_grounds import Grounds, Way, choose, joined, read_grounds
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
 from terrain.classification.held_out import (
@@ -28,6 +27,7 @@ from terrain.classification.held_out import (
 )
 from terrain.classification.presets import PRESETS
 from terrain.classification.validation import grouped_folds
+from tests.studies.terrain_grounds import Grounds, Way, choose, joined, read_grounds
 
 NEW_CAMERA_DRAWS = 5
 

@@ -1,6 +1,6 @@
 """Whether a model notices images that are unlike its training photographs, and its false alarms.
 
-    TERRAIN_ODOMETRY_DATA=... python tests/studies/terrain_likeness.py
+    TERRAIN_ODOMETRY_DATA=... python -m tests.studies.terrain_likeness
 
 A run is twelve squares at random, up to four of a photograph, of one terrain or of all. The own
 camera: photographs of ground/ and pavements/ that were held out (five folds by photo_id), as they

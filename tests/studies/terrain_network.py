@@ -1,6 +1,6 @@
 """Features by an image network against SFTA, on real photographs, with the same folds.
 
-    TERRAIN_ODOMETRY_DATA=... python tests/studies/terrain_network.py NETWORK.onnx
+    TERRAIN_ODOMETRY_DATA=... python -m tests.studies.terrain_network NETWORK.onnx
         [--layers NAME,...] [--input-range LOW:HIGH] [--per-photo PATCHES]
 
 Five folds by photograph (photo_id), k chosen inside the training photographs; balanced accuracy by

@@ -1,6 +1,6 @@
 """Images that show no ground: how many are unknown, before and with the check, and its price.
 
-    TERRAIN_ODOMETRY_DATA=... python tests/studies/terrain_no_ground.py
+    TERRAIN_ODOMETRY_DATA=... python -m tests.studies.terrain_no_ground
 
 Five folds by photo_id of ground/ (128 px) and pavements/ (96 px), 12 patches a photograph in
 training. Each fold's model classifies the held-out photographs (whole, and their patches), patches

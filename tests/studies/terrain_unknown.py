@@ -1,6 +1,6 @@
 """Which distance detects unknown terrain best: chosen with other classes left out.
 
-    TERRAIN_ODOMETRY_DATA=... python tests/studies/terrain_unknown.py [--out FOLDER]
+    TERRAIN_ODOMETRY_DATA=... python -m tests.studies.terrain_unknown [--out FOLDER]
 
 One class of ground/ is left out (grey, 128 px, 12 patches a photograph, two of five folds by
 photograph, curved discriminants): is it farther away than held-out photographs of the others? For
@@ -20,13 +20,13 @@ from pathlib import Path
 
 import numpy as np
 from scipy.spatial.distance import cdist
-from terrain_grounds import Grounds, read_grounds
 
 from odometry.arrays import FloatArray
 from terrain.classification.held_out import rejection_roc_area
 from terrain.classification.nearest import NEIGHBOURS, VOTERS, classes_left_open, nearest
 from terrain.classification.neighbours import DiscriminantNeighbours, vote
 from terrain.classification.validation import grouped_folds
+from tests.studies.terrain_grounds import Grounds, read_grounds
 
 PER_PHOTO, FOLDS, GREY = 12, 2, slice(0, 456)
 REJECTED = 0.05  # of known patches, and of known photographs, at the limit of the last columns

@@ -1,6 +1,6 @@
 """Unknown terrain by several patches of a photograph: by the median of distances, or together.
 
-    TERRAIN_ODOMETRY_DATA=... python tests/studies/terrain_unknown_images.py [--out FOLDER]
+    TERRAIN_ODOMETRY_DATA=... python -m tests.studies.terrain_unknown_images [--out FOLDER]
 
 One class is left out in turn: is it farther away than held-out photographs of the others? All five
 folds by photograph, grey, 12 patches a photograph in training and 1, 2, 4 or 12 in use, on ground/
@@ -15,14 +15,14 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from terrain_grounds import Grounds, read_grounds
-from terrain_unknown import FOLDS as FEWER_FOLDS
-from terrain_unknown import GREY, REJECTED, parts, thinned
 
 from odometry.arrays import FloatArray, IntArray
 from terrain.classification.held_out import rejection_roc_area
 from terrain.classification.neighbours import DiscriminantNeighbours, linear_neighbours
 from terrain.classification.validation import grouped_folds
+from tests.studies.terrain_grounds import Grounds, read_grounds
+from tests.studies.terrain_unknown import FOLDS as FEWER_FOLDS
+from tests.studies.terrain_unknown import GREY, REJECTED, parts, thinned
 
 PATCHES = (1, 2, 4, 12)
 WAYS = ("version 0.4, median", "in use, median", "in use, together")
