@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import BoolArray, FloatArray
 from odometry.effects.base import Effect, EffectParameter
 from odometry.effects.recorded import Recorded, Reported
 from odometry.effects.reference_filter import NO_INVERSE, ReferenceFilter
@@ -74,9 +74,9 @@ def fixes_s(stamps_s: FloatArray, poses: FloatArray) -> FloatArray:
     shortest_s = max(SHORTEST_S, LEAST_BENDS * spacing_s)
     step_hz = 1 / (FINE * float(np.ptp(at_s)))
     tried_hz = np.arange(1 / LONGEST_S, 1 / shortest_s, step_hz)
-    sure, phase, rate_hz = max((*_gathered(at_s, bends, of, spacing_s), of) for of in tried_hz)
+    _, _, rate_hz = _most_gathered(at_s, bends, tried_hz, spacing_s)
     near_hz = rate_hz + step_hz * REFINED
-    sure, phase, rate_hz = max((*_gathered(at_s, bends, of, spacing_s), of) for of in near_hz)
+    sure, phase, rate_hz = _most_gathered(at_s, bends, near_hz, spacing_s)
     if sure < SURE:
         return np.empty(0)
     first = np.ceil(stamps_s[0] * rate_hz - phase)
@@ -92,20 +92,42 @@ def _bends(poses: FloatArray, lag: int) -> FloatArray:
     return np.asarray(np.minimum(changes / usual, MOST_USUAL).sum(axis=1))
 
 
-def _gathered(
-    at_s: FloatArray, bends: FloatArray, rate_hz: float, spacing_s: float
-) -> tuple[float, float]:
-    """By how much bends are larger at one phase of a rate, in standard errors; and that phase."""
+def _most_gathered(
+    at_s: FloatArray, bends: FloatArray, tried_hz: FloatArray, spacing_s: float
+) -> tuple[float, float, float]:
+    """By how much bends are larger at one phase of a rate, in standard errors; phase and rate.
+
+    Of the rates tried that at which they are largest.
+    """
+    usual = float(bends.mean()), float(bends.std())
+    tried = [(*_largest(at_s, bends, of, spacing_s, usual), of) for of in tried_hz.tolist()]
+    sure = max(size for size, _, _ in tried)
+    alike = [one for one in tried if not one[0] < sure]
+    return max((size, _phase(at_s, bends, place, of), of) for size, place, of in alike)
+
+
+def _largest(
+    at_s: FloatArray,
+    bends: FloatArray,
+    rate_hz: float,
+    spacing_s: float,
+    usual: tuple[float, float],
+) -> tuple[float, BoolArray]:
+    """By how much bends are larger at one phase of a rate, and which bends are there."""
     count = max(4, int(1 / (rate_hz * spacing_s)))
-    phase = (at_s * rate_hz) % 1.0
-    place = np.minimum((phase * count).astype(np.int64), count - 1)
+    place = np.minimum(((at_s * rate_hz) % 1.0 * count).astype(np.int64), count - 1)
     sums, numbers = np.bincount(place, bends, count), np.bincount(place, minlength=count)
     sums, numbers = sums + np.roll(sums, -1), numbers + np.roll(numbers, -1)
-    means = sums / np.maximum(numbers, 1)
-    errors = bends.std() / np.sqrt(np.maximum(numbers, 1))
-    sizes = (means - bends.mean()) / np.maximum(errors, np.finfo(float).tiny)
+    numbers = np.maximum(numbers, 1)
+    errors = np.maximum(usual[1] / np.sqrt(numbers), np.finfo(float).tiny)
+    sizes = (sums / numbers - usual[0]) / errors
     best = int(np.argmax(sizes))
-    near = np.isin(place, [best, (best + 1) % count])
+    return float(sizes[best]), (place == best) | (place == (best + 1) % count)
+
+
+def _phase(at_s: FloatArray, bends: FloatArray, near: BoolArray, rate_hz: float) -> float:
+    """The mean phase of the larger ones of some bends."""
+    phase = (at_s[near] * rate_hz) % 1.0
     weights = np.maximum(bends[near] - bends.mean(), 0.0)
-    turned = np.angle(np.sum(weights * np.exp(2j * np.pi * phase[near])))
-    return float(sizes[best]), float(turned / (2 * np.pi) % 1.0)
+    turned = np.angle(np.sum(weights * np.exp(2j * np.pi * phase)))
+    return float(turned / (2 * np.pi) % 1.0)

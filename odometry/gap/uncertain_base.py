@@ -66,10 +66,15 @@ class Uncertain:
         parameters = self.base.values.copy()
         parameters[self.free] = values[:count]
         latency_s = float(values[count]) if self.latency_is_free else self.base.latency_s
-        moved = replace(self.base, values=parameters, latency_s=latency_s)
-        if not self.has_gyroscope:
-            return moved
-        return replace(moved, gyro_latency_s=float(values[-2]), gyro_bias_rad_s=float(values[-1]))
+        own = (self.base.gyro_latency_s, self.base.gyro_bias_rad_s)
+        gyro_latency_s, gyro_bias_rad_s = values[-2:].tolist() if self.has_gyroscope else own
+        return replace(
+            self.base,
+            values=parameters,
+            latency_s=latency_s,
+            gyro_latency_s=gyro_latency_s,
+            gyro_bias_rad_s=gyro_bias_rad_s,
+        )
 
     @property
     def bounds(self) -> tuple[FloatArray, FloatArray]:

@@ -219,7 +219,10 @@ class KinematicModel(ABC):
 
 def vectors(*entries: FloatArray) -> FloatArray:
     """Vectors (..., M) of M entries, which are broadcast to one stack (...)."""
-    return np.moveaxis(np.stack(np.broadcast_arrays(*entries)), 0, -1)
+    packed = np.empty((len(entries), *np.broadcast_shapes(*map(np.shape, entries))))
+    for row, entry in enumerate(entries):
+        packed[row] = entry
+    return np.moveaxis(packed, 0, -1)
 
 
 def zero_matrices(stack: tuple[int, ...], rows: int, columns: int) -> FloatArray:

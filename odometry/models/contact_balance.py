@@ -65,7 +65,7 @@ class Balance:
     @property
     def friction(self) -> FloatArray:
         """Wrench (3, N) of all contacts."""
-        return np.asarray(np.sum(self.load * self.contact_wrenches, axis=1))
+        return np.asarray((self.load * self.contact_wrenches).sum(axis=1))
 
     @cached_property
     def residual(self) -> FloatArray:
@@ -77,14 +77,15 @@ class Balance:
         slip, stance = self.slip_m_s, self.stance
         along = (slip[0] * change[0] + slip[1] * change[1]) * self.resistance**2
         stiffness = -self.load * self.resistance * stance.mu
-        force = np.stack(
+        force = np.array(
             [stiffness * (part - slip * along) for part, slip in zip(change, slip, strict=True)]
         )
         return np.asarray(wrench(force, stance.places_m).sum(axis=1))
 
     def by_shift(self, change: FloatArray) -> FloatArray:
         """Change (3, N) when the centre of pressure moves (2, N), held at the edge of the base."""
-        held = change - self.heading * np.sum(self.edge * change, axis=0)
+        at_edge = self.edge[0] * change[0] + self.edge[1] * change[1]
+        held = change - self.heading * at_edge
         return np.asarray(self.by_centre[:, 0] * held[0] + self.by_centre[:, 1] * held[1])
 
     def by_pull(self, change: FloatArray) -> FloatArray:
@@ -102,7 +103,7 @@ class Balance:
         derivative = self._friction_by_twist()
         pulls = (zero, -omega), (omega, zero), (v_y + omega * x_cm, omega * y_cm - v_x)
         for column, pull in enumerate(pulls):
-            derivative[:, column] += self.by_pull(np.stack(pull) / G_M_S2)
+            derivative[:, column] += self.by_pull(np.array(pull) / G_M_S2)
         return derivative
 
     def _friction_by_twist(self) -> FloatArray:
@@ -129,11 +130,11 @@ def balance_at(stance: Stance, twist: FloatArray) -> Balance:
     x_cm, y_cm = stance.centre_m
     left, right = stance.tread_speeds_m_s
     tread = np.where(stance.layout.places[2] > 0, left, right)
-    slip = np.stack([v_x - omega * y - tread, v_y + omega * x])
+    slip = np.array([v_x - omega * y - tread, v_y + omega * x])
     resistance = 1 / np.sqrt(slip[0] ** 2 + slip[1] ** 2 + stance.slip_scale_m_s**2)
     contact_wrenches = wrench(-stance.mu * resistance * slip, stance.places_m)
-    centre_speeds = np.stack([v_x - omega * y_cm, v_y + omega * x_cm])  # Martinez 2017 eq. 9-10
-    centrifugal = np.stack([omega * centre_speeds[1], -omega * centre_speeds[0]]) / G_M_S2
+    centre_speeds = np.array([v_x - omega * y_cm, v_y + omega * x_cm])  # Martinez 2017 eq. 9-10
+    centrifugal = np.array([omega * centre_speeds[1], -omega * centre_speeds[0]]) / G_M_S2
     pull = stance.gravity + centrifugal
     shift = stance.height_m * pull / (stance.normal * stance.base_m)
     reach, edge, heading = _held_within_base(stance.centre, shift)
@@ -158,7 +159,7 @@ def balance_at(stance: Stance, twist: FloatArray) -> Balance:
 
 def wrench(force: FloatArray, place_m: FloatArray) -> FloatArray:
     """Forces (2, ...) at places (2, ...) with their moments about the origin: (3, ...)."""
-    return np.stack([force[0], force[1], place_m[0] * force[1] - place_m[1] * force[0]])
+    return np.array([force[0], force[1], place_m[0] * force[1] - place_m[1] * force[0]])
 
 
 def _held_within_base(
@@ -174,7 +175,7 @@ def _held_within_base(
     np.divide(np.copysign(TIPPING, shift) - centre, shift, out=room, where=far)
     reach = np.minimum(1.0, room.min(axis=0))
     first = room[0] <= room[1]
-    edge = np.stack([first, ~first]) * (reach < 1)
+    edge = np.array([first, ~first]) * (reach < 1)
     heading = np.zeros(shift.shape)
     at_edge = np.where(first, shift[0], shift[1])
     np.divide(shift, at_edge, out=heading, where=reach < 1)

@@ -91,7 +91,7 @@ def solve_3x3(matrix: FloatArray, right: FloatArray) -> FloatArray:
     first, second, third = np.moveaxis(matrix, 1, 0)
     normals = [_cross(second, third), _cross(third, first), _cross(first, second)]
     determinant = _dot(first, normals[0])
-    numerators = np.stack([_dot(right, normal) for normal in normals])
+    numerators: FloatArray = np.array([_dot(right, normal) for normal in normals])
     solution = np.zeros_like(numerators)
     return np.divide(numerators, determinant, out=solution, where=determinant != 0)
 
@@ -99,7 +99,7 @@ def solve_3x3(matrix: FloatArray, right: FloatArray) -> FloatArray:
 def _start(stance: Stance) -> FloatArray:
     left, right = stance.tread_speeds_m_s
     omega = (right - left) / (2 * GUESSED_WIDTHS * stance.base_m[1])
-    return np.stack([(left + right) / 2, np.zeros_like(omega), omega])
+    return np.array([(left + right) / 2, np.zeros_like(omega), omega])
 
 
 def _led_by_slip_scale(stance: Stance) -> FloatArray:
@@ -148,7 +148,7 @@ def _size(stance: Stance, force: FloatArray) -> FloatArray:
 
 
 def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    return np.stack(
+    return np.array(
         [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
     )
 
