@@ -95,6 +95,7 @@ CATALOGUE: dict[str, str] = {
     "gyroscope_reversed": "yaw rate with the wrong sign",
     "gyroscope_clipped": "yaw rate clipped at a limit",
     "gyroscope_dead": "yaw rate that repeats one value",
+    "gyroscope_held": "yaw rate that is renewed more rarely than it is logged",
     "gyroscope_late": "stamps of the gyroscope late or early",
     "gyroscope_unrelated": "another axis or another recording",
     "absurd_yaw_rate": "single corrupt samples",
@@ -184,6 +185,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
         {"yaw_jumps", "gyroscope_unit", "gyroscope_dead", "gyroscope_bias", "yaw_bent"}
         | {"track_width", "slip_in_turns"}
     ),
+    "gyroscope_held": frozenset({"gyroscope_dead", "yaw_jumps", "yaw_bent"}),
     "gyroscope_dead": frozenset(
         {"yaw_bent", "gyroscope_unit", "yaw_jumps", "stuck_encoder", "turns_at_rest"}
     ),

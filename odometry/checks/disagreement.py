@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from odometry.checks.carried import carried_along
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, disagreement
 from odometry.checks.heading import headings
@@ -42,6 +43,7 @@ def lasting_disagreements(evidence: Evidence) -> list[str]:
         paths_apart(evidence),
         one_side_not_proportional(evidence),
         holds_the_mean(evidence),
+        carried_along(evidence),
         *treads_unlike(evidence),
     )
     return [words for words in seen if words]

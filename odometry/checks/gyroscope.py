@@ -19,14 +19,18 @@ CLIPPED = 0.01  # share of rows at the very largest rate
 LIVELY = 20  # other values: a rate without noise that is held (a simulation) is not clipped
 HELD = 0.01  # of the ordinary fastest speed, by which treads change that hold a turn
 DEAD_S = 1.0
+LEAST_HOLDS, LONG_HOLD_S = 20, 0.3  # from which a rate that is held makes headings late
+EVEN = 1.5  # ratio of a long to a short hold below which they have one pace
+OFTEN = 0.3  # share of these holds in which the treads change
 
 
 def gyroscope(evidence: Evidence) -> Iterator[Finding]:
-    """A bias (a note), clipping, dead stretches, corrupt samples."""
+    """A bias (a note), clipping, held values, dead stretches, corrupt samples."""
     if evidence.yaw_rate is None:
         return
     yield from _bias(evidence)
     yield from _clipped(evidence)
+    yield from _held(evidence)
     yield from _dead(evidence)
     yield from _absurd(evidence)
 
@@ -104,6 +108,45 @@ def _clipped(evidence: Evidence) -> Iterator[Finding]:
             "The gyroscope is clipped (saturates): its full-scale range is too small",
             "Choose a larger range; do not use these rows",
         )
+
+
+def held_s(evidence: Evidence) -> float:
+    """How long each yaw rate is repeated that is renewed at an even, slow pace; 0 elsewhere."""
+    if evidence.yaw_rate is None:
+        return 0.0
+    stamps_s, rates = evidence.yaw_rate
+    renewed_s = stamps_s[1:][np.diff(rates) != 0]
+    if len(renewed_s) < LEAST_HOLDS:
+        return 0.0
+    short_s, usual_s, long_s = np.quantile(np.diff(renewed_s), [0.1, 0.5, 0.9])
+    slow = usual_s > LONG_HOLD_S and usual_s > 2.5 * float(np.median(np.diff(stamps_s)))
+    even = long_s < EVEN * short_s
+    return float(usual_s) if slow and even and _treads_change(evidence, renewed_s) else 0.0
+
+
+def _held(evidence: Evidence) -> Iterator[Finding]:
+    """A rate that is renewed far more rarely than it is logged."""
+    if not (lasts_s := held_s(evidence)):
+        return
+    yield Finding(
+        "gyroscope_held",
+        Level.WARNING,
+        f"gyro_z is renewed only every {lasts_s:.2g} s and repeated in the rows between, while "
+        "the speeds of the treads change",
+        "The gyroscope is read more slowly than it is logged: the log holds its last value, which "
+        "is late, and turns between two readings are lost",
+        "Log the yaw rate at 10 Hz or more, or leave gyro_z empty",
+    )
+
+
+def _treads_change(evidence: Evidence, renewed_s: FloatArray) -> bool:
+    """Whether the treads change their turn within many of the times between these stamps."""
+    rows = np.unique(
+        np.searchsorted(evidence.stamps_s, renewed_s).clip(0, len(evidence.stamps_s) - 1)
+    )
+    turning = np.diff(evidence.speeds_m_s, axis=1)[:, 0]
+    changed = np.maximum.reduceat(turning, rows) - np.minimum.reduceat(turning, rows)
+    return bool(np.mean(changed > HELD * evidence.fastest_m_s) > OFTEN)
 
 
 def _dead(evidence: Evidence) -> Iterator[Finding]:

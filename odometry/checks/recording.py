@@ -14,6 +14,7 @@ from odometry.checks.course import course
 from odometry.checks.disagreement import (
     agreement,
     lasting_disagreements,
+    scales_apart,
     sensors_disagree,
     yaw_against_course,
 )
@@ -181,6 +182,8 @@ def confirmed(evidence: Evidence, found: Sequence[Finding], find: Found) -> list
     cuts = sorted(span[0] for finding in jumps for span in finding.spans_s)
     parts = _parts(in_turn(*mends)(evidence.run), cuts, spans)
     left = _left(parts)
+    if cuts and (scales := scales_apart(Evidence(in_turn(*mends)(evidence.run), spans))):
+        left = list(dict.fromkeys([*left, scales]))  # jumps are outliers of it, parts may be short
     only = _explains_all(evidence, causes, find) if left and len(warnings) > 1 else None
     if only is not None:
         return [only, *_notes(found)]

@@ -8,6 +8,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding
+from odometry.checks.gyroscope import held_s
 from odometry.checks.lag import Lag, Signal, lag_between
 from odometry.checks.late_stamps import (
     clocks_apart,
@@ -41,6 +42,7 @@ def found_in(evidence: Evidence, lags: dict[tuple[str, str], Lag]) -> Iterator[F
     if drifting:
         yield clocks_apart(evidence, drifting)
         return
+    held = held_s(evidence)
     late = {
         pair: lag
         for pair, lag in lags.items()
@@ -49,6 +51,7 @@ def found_in(evidence: Evidence, lags: dict[tuple[str, str], Lag]) -> Iterator[F
             max(
                 OF_PERIOD * pose_period_s(evidence) * ("pose" in pair),
                 LEAST_LAG_S + evidence.period_s - USUAL_PERIOD_S,
+                held * ("gyroscope" in pair),
             ),
         )
     }

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from odometry.checks.carried import carried_along
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, disagreement
 from odometry.checks.proportion import holds_the_mean
@@ -58,7 +59,8 @@ def units(evidence: Evidence) -> Iterator[Finding]:
     low, high = FORWARD[0] * (1 - evidence.arm_share), FORWARD[1] * (1 + evidence.arm_share)
     high *= 1 + _longer_by_noise(evidence)
     if forward is not None and not low <= forward <= high:
-        yield _along(evidence, forward, forward_tight, width)
+        carried = carried_along(evidence) if 1 / EXTREME < forward < EXTREME else ""
+        yield disagreement(carried) if carried else _along(evidence, forward, forward_tight, width)
     elif (straight := beyond_treads(evidence)) is not None:
         seen = f"the robot moves {straight:.3g} m for each m of tread travel on straight lines"
         yield scale_along(seen, straight, evidence.run.robot.wheel_radius is not None)

@@ -8,7 +8,8 @@ import pytest
 from odometry.checks.catalogue import CONSEQUENCES
 from odometry.checks.finding import Level
 from odometry.checks.recording import check_recording
-from tests.odometry.checks.faulty import gyroscope, pose_stamps, treads, yaw
+from odometry.run import Run
+from tests.odometry.checks.faulty import gyroscope, pose_stamps, positions, treads, yaw
 from tests.odometry.checks.test_confirmed_causes import turning_all_round, warnings
 from tests.odometry.checks.test_other_robots import drive, winding
 
@@ -68,6 +69,32 @@ def test_speeds_that_round_to_zero_are_not_lost():
     coarse = treads(slow, lambda *speeds: tuple(np.round(speed / 0.2) * 0.2 for speed in speeds))
     assert "coarse_speeds" in warnings(coarse)
     assert "dropped_speeds" not in [finding.name for finding in check_recording(coarse).findings]
+
+
+def test_a_gyroscope_that_is_read_once_a_second_is_not_late():
+    def read_slowly(rate):
+        return rate[np.arange(len(rate)) // 20 * 20]
+
+    assert warnings(gyroscope(turning_all_round(), read_slowly)) == ["gyroscope_held"]
+
+
+def test_half_the_yaw_is_no_heading_that_was_corrected(shared_data):
+    """Its jumps by half a turn, where the yaw wraps, hide no scale of a half."""
+    recording = Run.read(shared_data / "motion" / "warthog_grass_20240729_1446")
+    run = yaw(recording, lambda angle: np.angle(np.exp(1j * angle)) / 2)
+    (found,) = check_recording(run).at(Level.WARNING)
+    assert found.name == "sensors_disagree"
+    assert "turns by 0.5" in found.seen
+
+
+def test_a_robot_on_a_ferry_has_no_wrong_wheel_radius():
+    run = turning_all_round()
+    t = run.pose.stamps_s
+    carried = positions(run, lambda x, y: (x + 0.9 * t, y + 0.3 * t))
+    (found,) = check_recording(carried).at(Level.WARNING)
+    assert found.name == "sensors_disagree"
+    speed = float(found.seen.split("move on by ")[1].split(" m/s")[0])
+    assert speed == pytest.approx(np.hypot(0.9, 0.3), rel=0.05)
 
 
 ROWS = "t,v_left,v_right\n" + "".join(f"{0.1 * row:.1f},0.5,0.6\n" for row in range(20))
