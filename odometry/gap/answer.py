@@ -21,11 +21,16 @@ MOMENT_KNOWN_S = SPACING_S  # the moment of a run held out is known as well as i
 
 
 def verdict_of(found: Explanation, held_out: Closing) -> str:
-    """The first name; else "none" where noise explains what the base leaves, also held out."""
+    """The first name; else "none" where noise explains what the base leaves, also held out.
+
+    Where an effect had evidence and was refused, the gap itself must be within the floor's
+    interval for "none"; else its interval alone must reach into it.
+    """
     if found.names:
         return found.names[0]
-    above = held_out.before.low > held_out.noise_floor.high
-    return "unknown" if found.unexplained or above else "none"
+    before, floor = held_out.before, held_out.noise_floor
+    least_m = before.value if found.refusals else before.low
+    return "unknown" if found.unexplained or least_m > floor.high else "none"
 
 
 def named_effects(

@@ -50,6 +50,14 @@ def _instead(equivalent: Sequence[Equivalent]) -> dict[str, list[str]]:
 
 
 def _nothing_named(result: GapResult, model: str) -> str:
+    held = result.holdout
+    if result.verdict == "unknown" and not (
+        held.before.is_above(held.noise_floor) or _is_doubtful(result)
+    ):
+        return (
+            f"Whether something is missing in {model} is undetermined (unknown): the gap on "
+            f"held-out data is above the noise floor, though not surely{_refused(result)}."
+        )
     if result.verdict == "unknown":
         return (
             f"Something is missing in {model} (unknown): neither an effect of the catalogue, nor "
@@ -61,13 +69,16 @@ def _nothing_named(result: GapResult, model: str) -> str:
             "one stretch, of which the gap has no interval."
         )
     if _is_doubtful(result):
-        names = list(dict.fromkeys(_named(one) for one in result.refusals))[:REFUSED]
-        fit = f": {listed(names, 'or')} would close part of it there" if names else ""
         return (
             f"Nothing is missing in {model} that held-out data confirm (none), but the gap on the "
-            f"measured runs is above the noise floor{fit}."
+            f"measured runs is above the noise floor{_refused(result)}."
         )
     return f"Nothing that these runs could show is missing in {model} (none)."
+
+
+def _refused(result: GapResult) -> str:
+    names = list(dict.fromkeys(_named(one) for one in result.refusals))[:REFUSED]
+    return f": {listed(names, 'or')} would close part of it there" if names else ""
 
 
 def _how_sure(result: GapResult, share: Share | None) -> str:

@@ -1,5 +1,6 @@
 """The answer: a verdict by what stands and what noise explains, and intervals by hand."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,13 +13,14 @@ from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.answer import named_effects, rivals_of, verdict_of
 from odometry.gap.result import Closing
 from odometry.gap.statistic import Gap
+from odometry.gap.verdict import Refusal
 
 FLOOR = Gap(0.1, 0.08, 0.12)
 SCALE, SKID = WheelScale(), LateralSkid()
 
 
 def explained(names=(), **others):
-    return SimpleNamespace(names=names, **{"unexplained": False, **others})
+    return SimpleNamespace(names=names, **{"unexplained": False, "refusals": (), **others})
 
 
 def held_out(low):
@@ -39,6 +41,15 @@ def held_out(low):
 def test_the_first_name_else_whether_noise_explains_what_is_left(names, unexplained, low, verdict):
     """Only a gap whose whole interval is above that of the floor is more than noise."""
     assert verdict_of(explained(names, unexplained=unexplained), held_out(low)) == verdict
+
+
+@pytest.mark.parametrize(("floor_high", "verdict"), [(0.19, "unknown"), (0.2, "none")])
+def test_an_effect_that_was_refused_leaves_none_only_within_the_floor(floor_high, verdict):
+    """0.2 m [0.05, 0.3]: without a refusal `none`, as the interval reaches below the floor."""
+    closing = replace(held_out(0.05), noise_floor=Gap(0.1, 0.08, floor_high))
+    refused = (Refusal("wheel_scale", "factors", "it is within noise"),)
+    assert verdict_of(explained(refusals=refused), closing) == verdict
+    assert verdict_of(explained(), closing) == "none"
 
 
 def judged(effect, evidence, gap_after):

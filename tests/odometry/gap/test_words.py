@@ -116,9 +116,17 @@ def test_none_admits_a_gap_above_the_floor(none_result):
 
 
 def test_unknown_without_any_name_says_so(none_result):
-    first, _, to_do, *_ = sentences(replace(none_result, verdict="unknown"))
+    sure = replace(none_result.holdout, before=Gap(0.2, 0.15, 0.3))
+    first, _, to_do, *_ = sentences(replace(none_result, verdict="unknown", holdout=sure))
     assert first.startswith("Something is missing in icr (unknown): neither an effect")
     assert to_do.startswith("Look at the worst stretches")
+
+
+def test_unknown_of_a_gap_that_is_not_surely_above_the_floor_says_so(none_result):
+    refused = (Refusal("time_offset", "constant", "within noise"),)
+    first, *_ = sentences(replace(none_result, verdict="unknown", refusals=refused))
+    assert first.startswith("Whether something is missing in icr is undetermined (unknown)")
+    assert first.endswith("not surely: time_offset would close part of it there.")
 
 
 def test_unknown_says_what_it_depends_on_and_what_is_left(unknown_result):
