@@ -16,6 +16,7 @@ from odometry.run import Run
 
 LEAST_POSES = 100
 LEAST_TURN_RAD = 2.0  # in all
+MORE_ROWS = 1.5
 SIMULATED = "; or the drive was simulated without noise"
 
 
@@ -33,10 +34,10 @@ def copied_yaw(evidence: Evidence) -> Iterator[Finding]:
     if yaw.by_treads is not None:
         if by_gyroscope is None and gyroscope is None and yaw.positions_measured:
             yield _is_treads(yaw.by_treads)
+    elif gyroscope is not None and (by_gyroscope is None or yaw.in_fewer_rows):
+        yield _gyroscope_is_yaw(evidence, gyroscope)
     elif by_gyroscope is not None:
         yield _is_gyroscope(evidence, by_gyroscope, either=gyroscope is not None)
-    elif gyroscope is not None:
-        yield _gyroscope_is_yaw(evidence, gyroscope)
 
 
 @dataclass(frozen=True)
@@ -102,6 +103,12 @@ class CopiedYaw:
         difference = (right - left)[:, None]
         found = repetition(self.stamps_s[:-1], self.rates, self.evidence.stamps_s, difference)
         return _exact(found)
+
+    @property
+    def in_fewer_rows(self) -> bool:
+        """Whether yaw has so few rows that a gyroscope would hold more than they say."""
+        rate = self.evidence.yaw_rate
+        return rate is not None and len(rate[0]) > MORE_ROWS * len(self.stamps_s)
 
     @property
     def positions_measured(self) -> bool:

@@ -105,3 +105,14 @@ def test_sensors_of_a_tenth_of_the_noise_are_two():
     )
     gyro_z = rate + rng.normal(0, 0.0003, len(at_s))
     assert names(put(run, "odometry", v_left=left, v_right=right, gyro_z=gyro_z)) == []
+
+
+def test_an_average_of_rows_is_a_copy():
+    run = by_treads(winding())
+    averaged = gyroscope(run, lambda rate: np.convolve(rate, np.ones(5) / 5, "same"))
+    assert findings_first(averaged).name == "gyroscope_is_treads"
+    assert "neighbouring rows" in findings_first(averaged).seen
+
+
+def findings_first(run):
+    return check_recording(run).findings[0]
