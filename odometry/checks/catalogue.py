@@ -138,7 +138,10 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     | {"far_sensor", "tread_right_reversed", "treads_unrelated", "yaw_backwards"},
     "treads_equal": TREADS
     | POSES
-    | {"treads_unrelated", "far_sensor", "treads_are_twist", "treads_unequal", "stuck_encoder"},
+    | {"treads_unrelated", "far_sensor", "treads_are_twist", "treads_unequal", "stuck_encoder"}
+    | {"treads_or_gyroscope_reversed", "treads_swapped", "gyroscope_reversed", "pose_mirrored"}
+    | {"gyroscope_unrelated", "poses_unrelated", "treads_late", "tread_offset", "gyroscope_unit"}
+    | {"yaw_reversed", "turns_at_rest"},
     "treads_unsigned": TREADS
     | POSES
     | YAW

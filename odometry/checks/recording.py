@@ -22,6 +22,7 @@ from odometry.checks.evidence import Evidence
 from odometry.checks.finding import CheckReport, Finding, Level, disagreement, in_order
 from odometry.checks.gaps import gaps
 from odometry.checks.gyroscope import gyroscope
+from odometry.checks.one_encoder import one_encoder
 from odometry.checks.pose_values import pose_values
 from odometry.checks.poses import pose_outages, poses
 from odometry.checks.proportion import proportion
@@ -51,6 +52,7 @@ CHECKS: tuple[Check, ...] = (
     turning,
     course,
     equal_treads,
+    one_encoder,
     unsigned,
     scale_change,
     units,
