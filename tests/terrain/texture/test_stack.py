@@ -11,7 +11,7 @@ from hypothesis.extra.numpy import arrays
 from terrain.texture import multilevel_otsu, region_borders, sfta
 from terrain.texture import stack as stack_file
 from terrain.texture.borders import _KEPT, MOST_SHAPES, kept
-from terrain.texture.coarse_otsu import coarse_otsu
+from terrain.texture.coarse_otsu import FEW, coarse_otsu
 from terrain.texture.stack import stack_features
 from terrain.texture.ttbd import VARIANTS
 
@@ -71,11 +71,14 @@ few_pixels = st.sampled_from([0, 0, 0, 1, 2, 5, 5, 300])
 @settings(max_examples=60)
 @given(arrays(np.float64, (5, 256), elements=few_pixels), st.integers(1, 6))
 def test_thresholds_in_bins_are_those_of_the_binned_histogram(histograms, n_thresholds):
+    """Enough of them for the stack; one with a single grey goes one by one."""
     histograms[0] = 0.0
     histograms[0, 40] = 9.0
+    histograms = np.concatenate([histograms, histograms[:, ::-1], np.roll(histograms, 37, axis=1)])
+    assert len(histograms) > FEW
     for n_bins in (64, 16):
-        binned = np.zeros((5, 256))
-        binned[:, :n_bins] = histograms.reshape(5, n_bins, -1).sum(axis=2)
+        binned = np.zeros((len(histograms), 256))
+        binned[:, :n_bins] = histograms.reshape(len(histograms), n_bins, -1).sum(axis=2)
         width = 256 // n_bins
         expected = [
             multilevel_otsu(of, n_thresholds) * width + width - 1 for of in binned if of.any()
