@@ -12,7 +12,8 @@ from odometry.estimation.estimate import Estimate
 from odometry.frames import Frame
 from odometry.run import UNKNOWN, Robot
 from terrain.camera import Camera
-from terrain.classification.likeness import Likeness, TrainingLook, look_of, middle_of
+from terrain.classification.likeness import Likeness, TrainingLook
+from terrain.classification.look import look_of, middle_of
 from terrain.classification.trained import Classifier
 from terrain.errors import CameraError, ImageError
 from terrain.image_label import ImageLabel, answered
@@ -38,7 +39,7 @@ class RunLikeness:
         self._training: TrainingLook | None = getattr(classifier, "training_look_", None)
         self._classifier = classifier
         self._looks: deque[FloatArray] = deque(maxlen=KEPT)
-        self._ranks: deque[tuple[float, float, float]] = deque(maxlen=KEPT)
+        self._differences: deque[FloatArray] = deque(maxlen=KEPT)
 
     def add(self, views: Sequence[ByteImage]) -> None:
         """Add the regions of one image."""
@@ -46,20 +47,20 @@ class RunLikeness:
             looks = [look_of(middle_of(view, self._classifier.patch_size_px)) for view in views]
             look = np.mean(looks, axis=0)
             self._looks.append(look)
-            self._ranks.append(self._training.ranks(look))
+            self._differences.append(self._training.differences(look[None])[0])
 
     @property
     def likeness(self) -> Likeness | None:
         """Of the images so far; None where there is no comparison."""
         if self._training is None:
             return None
-        how = self._training.how(np.array(self._looks)) if self._looks else ()
-        return Likeness.of(self._ranks, how)
+        return self._training.summary(np.array(self._looks), np.array(self._differences))
 
     def weighed(self, label: str, probabilities: Mapping[str, float]) -> Mapping[str, float]:
         """Probabilities of each terrain by a label; closer to chance where images are unlike."""
         given = probabilities or ({} if label == UNKNOWN else {label: 1.0})
-        if not Likeness.of(self._ranks).is_unlike or not given:
+        likeness = self.likeness
+        if likeness is None or not likeness.is_unlike or not given:
             return probabilities
         names = list(map(str, self._classifier.classes_))
         chance = (1 - WORTH_OF_UNLIKE) / len(names)

@@ -13,7 +13,8 @@ from odometry.arrays import AnyArray, ByteImage
 from odometry.errors import ConfigError
 from terrain.classification.feature_jobs import Transformer, shared_feature_matrix
 from terrain.classification.learning import LearningClassifier
-from terrain.classification.likeness import TrainingLook, spread_rows
+from terrain.classification.likeness import TrainingLook
+from terrain.classification.look import spread_rows
 from terrain.classification.no_ground import ShownGround
 from terrain.classification.old_samples import OldSamples, SamplesBesideOld
 from terrain.classification.patches import LabelledPatches

@@ -1,19 +1,17 @@
 """Whether images look like the training photographs: sharpness, scale, exposure, compression."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 from typing import Self
 
-import cv2
 import numpy as np
 from scipy.spatial.distance import cdist
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
-from terrain.images import to_grey
+from terrain.classification.look import NUMBERS, look_of, spread_rows
+from terrain.classification.run_limits import RunLimits
 
-NUMBERS = 7  # of a look; files before version 0.14 have the first six
 TEXTURE = slice(2, 6)
 # what it is to be low or high in them
 WORDS = (
@@ -23,13 +21,10 @@ WORDS = (
     *[("coarser", "finer")] * 3,  # of all octaves
     ("more compressed", "less compressed"),
 )
-SIGMAS_PX = (0.7, 1.4, 2.8, 5.6, 11.2)  # between two of them lies an octave of texture
-PATCHES_PER_PHOTO = 12
-MOST_PATCHES = 2000
 NEAREST = 3
 SIMILAR = 30  # patches of the most similar texture
 FEWEST_IMAGES = 5
-# chosen on ground/, pavements/ and frames of other cameras: these are no independent test
+# of models without limits of their own; chosen on ground/, pavements/ and frames of other cameras
 UNLIKE_RANK, UNLIKE_RANK_IN_CLASS = 0.75, 0.7
 UNLIKE_EXPOSURE = 0.4  # from one half
 MOST_WORDS = 3
@@ -52,6 +47,10 @@ class Likeness:
     exposure : float
         Mean share of the 30 training patches of the most similar texture that are darker: 0.5
         where the light is that of training, 1 where every image is brighter.
+    beyond : float or None
+        How far the images are from training over what runs of training photographs are: unlike
+        above 1, see `RunLimits`. None of files before version 0.15, where limits of the ranks
+        and of the exposure decide.
     """
 
     images: int
@@ -59,20 +58,15 @@ class Likeness:
     rank_in_class: float
     how: tuple[str, ...]
     exposure: float = 0.5
-
-    @classmethod
-    def of(cls, ranks: Sequence[tuple[float, float, float]], how: tuple[str, ...] = ()) -> Self:
-        """The summary of the `TrainingLook.ranks` of images."""
-        if not ranks:
-            return cls(0, float("nan"), float("nan"), ())
-        rank, in_class, exposure = np.mean(ranks, axis=0).tolist()
-        return cls(len(ranks), rank, in_class, how, exposure)
+    beyond: float | None = None
 
     @property
     def is_unlike(self) -> bool | None:
         """None where there are too few images."""
         if self.images < FEWEST_IMAGES:
             return None
+        if self.beyond is not None:
+            return self.beyond > 1
         is_far = self.rank > UNLIKE_RANK and self.rank_in_class > UNLIKE_RANK_IN_CLASS
         return is_far or abs(self.exposure - 0.5) > UNLIKE_EXPOSURE
 
@@ -102,11 +96,14 @@ class TrainingLook:
         Terrains.
     distances : FloatArray, shape (n,)
         Of each patch to the nearest of other photographs.
+    limits : RunLimits or None
+        None of files before version 0.15.
     """
 
     looks: FloatArray
     codes: IntArray
     distances: FloatArray
+    limits: RunLimits | None = None
 
     @classmethod
     def of(cls, patches: Sequence[ByteImage], codes: IntArray, groups: AnyArray) -> Self:
@@ -119,7 +116,9 @@ class TrainingLook:
         )
         unknown = cls(looks, codes, np.zeros(len(looks)))
         own = groups[:, None] == groups
-        return cls(looks, codes, unknown._nearest(looks, own)[0])
+        first = replace(unknown, distances=unknown._nearest(looks, own)[0])
+        differences = first.differences(looks, own)
+        return replace(first, limits=RunLimits.of(first._scaled, differences, codes, groups))
 
     @cached_property
     def spread(self) -> FloatArray:
@@ -137,23 +136,38 @@ class TrainingLook:
 
     def compared(self, looks: FloatArray) -> Likeness:
         """Compare the looks (m, 7) of images."""
-        ranks = [self.ranks(look) for look in looks]
-        return Likeness.of(ranks, self.how(looks) if ranks else ())
+        return self.summary(looks, self.differences(looks) if len(looks) else looks)
 
-    def ranks(self, look: FloatArray) -> tuple[float, float, float]:
-        """Share of the training patches nearer than a look (7,): of all, and of its terrain.
+    def differences(self, looks: FloatArray, left_out: AnyArray | None = None) -> FloatArray:
+        """How each of looks (m, 7) differs from the training patches, (m, 10): see `RunLimits`."""
+        distances, nearest = self._nearest(looks, left_out)
+        nearer = self.distances < distances[:, None]
+        own = self.codes == self.codes[nearest][:, None]
+        in_terrain = (nearer & own).sum(axis=1) / own.sum(axis=1)
+        scaled = looks[:, : len(self.spread)] / self.spread
+        similar = self._scaled[self._similar(scaled, slice(None), left_out)].mean(axis=1)
+        darker = self.looks[self._similar(scaled, TEXTURE, left_out), 0] < looks[:, :1]
+        exposures = darker.mean(axis=1) - 0.5
+        return np.column_stack([nearer.mean(axis=1), in_terrain, exposures, scaled - similar])
 
-        The third is the share that is darker of the patches of the most similar texture.
-        """
-        (distance,), (nearest,) = self._nearest(look[None])
-        nearer = self.distances < distance
-        apart = (self.looks[:, TEXTURE] - look[TEXTURE]) / self.spread[TEXTURE]
-        similar = np.argsort((apart**2).sum(axis=1), kind="stable")[:SIMILAR]
-        return (
-            float(nearer.mean()),
-            float(nearer[self.codes == self.codes[nearest]].mean()),
-            float(np.mean(self.looks[similar, 0] < look[0])),
-        )
+    def summary(self, looks: FloatArray, differences: FloatArray) -> Likeness:
+        """Of the looks (m, 7) of a run and their `differences` (m, 10)."""
+        if not len(looks):
+            return Likeness(0, float("nan"), float("nan"), ())
+        rank, in_class, exposure = differences.mean(axis=0)[:3].tolist()
+        beyond = None
+        if self.limits is not None:
+            beyond = self.limits.beyond(looks / self.spread, differences)
+        return Likeness(len(looks), rank, in_class, self.how(looks), exposure + 0.5, beyond)
+
+    def _similar(self, scaled: FloatArray, numbers: slice, left_out: AnyArray | None) -> IntArray:
+        """Rows (m, 30) of the most similar patches by some numbers of scaled looks (m, 7)."""
+        apart = cdist(scaled[:, numbers], self._scaled[:, numbers])
+        few = min(SIMILAR, apart.shape[1])
+        if left_out is not None:
+            apart[left_out] = np.inf
+            few = min(few, int((~left_out).sum(axis=1).min()))
+        return np.argsort(apart, axis=1, kind="stable")[:, :few]
 
     def how(self, looks: FloatArray) -> tuple[str, ...]:
         """In what looks (m, 7) of images differ from those in training, most of all first."""
@@ -181,7 +195,7 @@ class TrainingLook:
             "look_points": self.looks,
             "look_codes": self.codes,
             "look_distances": self.distances,
-        }
+        } | ({} if self.limits is None else self.limits.arrays())
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, AnyArray], classes: int) -> Self | None:
@@ -200,37 +214,5 @@ class TrainingLook:
             raise ValueError(f"looks of shapes {looks.shape}, {codes.shape}, {own.shape}")
         if codes.dtype.kind != "i" or not 0 <= codes.min() <= codes.max() < classes:
             raise ValueError(f"codes of looks do not name {classes} classes")
-        return cls(looks, codes, own)
-
-
-def look_of(patch: ByteImage) -> FloatArray:
-    """Seven numbers (7,) of a patch: mean grey, contrast, how octaves compare, and compression.
-
-    The mean is in units of white, the others are natural logarithms: of the deviation of grey, of
-    the variance of an octave over that of the next coarser one, finest first, and of the median
-    size of the finest octave over its deviation, which compression sets to zero in most places.
-    """
-    grey = to_grey(patch).astype(np.float32)
-    levels = [grey, *(cv2.GaussianBlur(grey, (0, 0), sigma) for sigma in SIGMAS_PX)]
-    octaves = np.log([float(np.var(a - b)) + 0.05 for a, b in pairwise(levels)])
-    finest = np.abs(grey - levels[1])
-    usual = np.log((np.median(finest) + 0.1) / (np.sqrt(np.mean(finest**2)) + 0.1))
-    exposure = [grey.mean() / 255, np.log(grey.std() + 1)]
-    return np.array([*exposure, *(octaves[:-1] - octaves[1:]), usual])
-
-
-def middle_of(image: ByteImage, size_px: int) -> ByteImage:
-    """The square in the middle of an image; smaller where the image is."""
-    top, left = (max(0, (length - size_px) // 2) for length in image.shape[:2])
-    return image[top : top + size_px, left : left + size_px]
-
-
-def spread_rows(groups: AnyArray) -> IntArray:
-    """Rows of at most 12 patches of each photograph, spread evenly, and 2000 in all."""
-    rows: list[int] = []
-    for group in dict.fromkeys(groups.tolist()):
-        of = np.flatnonzero(groups == group)
-        count = min(len(of), PATCHES_PER_PHOTO)
-        rows += of[np.linspace(0, len(of) - 1, count).astype(int)].tolist()
-    kept = np.linspace(0, len(rows) - 1, min(len(rows), MOST_PATCHES)).astype(int)
-    return np.asarray(np.array(rows, dtype=np.intp)[kept])
+        limits = RunLimits.from_arrays(arrays) if looks.shape[1] == NUMBERS else None
+        return cls(looks, codes, own, limits)

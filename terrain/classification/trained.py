@@ -12,7 +12,8 @@ from odometry.arrays import AnyArray, BoolArray, ByteImage, FloatArray
 from odometry.run import UNKNOWN
 from terrain.classification.calibration import tempered
 from terrain.classification.feature_jobs import features_of
-from terrain.classification.likeness import Likeness, look_of, middle_of
+from terrain.classification.likeness import Likeness
+from terrain.classification.look import look_of, middle_of
 from terrain.classification.model_file import ModelFile
 from terrain.classification.neighbours import Neighbours, vote
 from terrain.classification.patches import cut_patches

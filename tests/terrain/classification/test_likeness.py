@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.likeness import FEWEST_IMAGES, Likeness, TrainingLook, look_of
+from terrain.classification.likeness import FEWEST_IMAGES, Likeness, TrainingLook
+from terrain.classification.look import look_of
 from terrain.classification.model_file import read_model, write_model
 from terrain.errors import ModelFileError
 from terrain.image_labeller import WORTH_OF_UNLIKE, RunLikeness

@@ -1,0 +1,47 @@
+"""Numbers that say how an image looks: exposure, sharpness, scale and compression."""
+
+from itertools import pairwise
+
+import cv2
+import numpy as np
+
+from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
+from terrain.images import to_grey
+
+NUMBERS = 7  # of a look; files before version 0.14 have the first six
+SIGMAS_PX = (0.7, 1.4, 2.8, 5.6, 11.2)  # between two of them lies an octave of texture
+PATCHES_PER_PHOTO = 12
+MOST_PATCHES = 2000
+
+
+def look_of(patch: ByteImage) -> FloatArray:
+    """Seven numbers (7,) of a patch: mean grey, contrast, how octaves compare, and compression.
+
+    The mean is in units of white, the others are natural logarithms: of the deviation of grey, of
+    the variance of an octave over that of the next coarser one, finest first, and of the median
+    size of the finest octave over its deviation, which compression sets to zero in most places.
+    """
+    grey = to_grey(patch).astype(np.float32)
+    levels = [grey, *(cv2.GaussianBlur(grey, (0, 0), sigma) for sigma in SIGMAS_PX)]
+    octaves = np.log([float(np.var(a - b)) + 0.05 for a, b in pairwise(levels)])
+    finest = np.abs(grey - levels[1])
+    usual = np.log((np.median(finest) + 0.1) / (np.sqrt(np.mean(finest**2)) + 0.1))
+    exposure = [grey.mean() / 255, np.log(grey.std() + 1)]
+    return np.array([*exposure, *(octaves[:-1] - octaves[1:]), usual])
+
+
+def middle_of(image: ByteImage, size_px: int) -> ByteImage:
+    """The square in the middle of an image; smaller where the image is."""
+    top, left = (max(0, (length - size_px) // 2) for length in image.shape[:2])
+    return image[top : top + size_px, left : left + size_px]
+
+
+def spread_rows(groups: AnyArray) -> IntArray:
+    """Rows of at most 12 patches of each photograph, spread evenly, and 2000 in all."""
+    rows: list[int] = []
+    for group in dict.fromkeys(groups.tolist()):
+        of = np.flatnonzero(groups == group)
+        count = min(len(of), PATCHES_PER_PHOTO)
+        rows += of[np.linspace(0, len(of) - 1, count).astype(int)].tolist()
+    kept = np.linspace(0, len(rows) - 1, min(len(rows), MOST_PATCHES)).astype(int)
+    return np.asarray(np.array(rows, dtype=np.intp)[kept])

@@ -1,0 +1,142 @@
+"""How far the images of a run may look from the training photographs: learned from these."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Self
+
+import numpy as np
+from scipy.stats import rankdata
+
+from odometry.arrays import AnyArray, FloatArray, IntArray
+from terrain.classification.look import NUMBERS
+
+FALSE_ALARMS = 0.05  # share of runs over one known terrain beyond a limit
+PHOTOS = 3  # of such a run: the least that a run is taken to show
+RUNS = 200  # drawn of each terrain
+# power of the number of photographs; with 0.5, as if they were independent, runs over all terrains
+# of ground/ had false alarms in one of ten
+VARIED = 0.25
+LEAST_VARIANCE = 1e-3  # of the mean variance, so that a number that never varies decides nothing
+
+
+@dataclass(frozen=True)
+class RunLimits:
+    """What runs of three training photographs of one terrain differ from the others.
+
+    The difference of an image is ten numbers, of which the first is not used here: the shares of
+    training patches, and of those of the nearest terrain, that are nearer to other photographs
+    than it is; its exposure, the share that is darker of the training patches of the most similar
+    texture, less one half; and its displacement, its look in deviations within a terrain less the
+    mean of the most similar training looks. The last two vary around zero for images of the
+    camera of training; a change of camera, focus or light moves all images in one direction.
+
+    Attributes
+    ----------
+    middle : FloatArray, shape (7,)
+        Mean displacement of the photographs, terrains weighted alike.
+    precision : FloatArray, shape (7, 7)
+        Inverse of the covariance of their mean displacements.
+    variances : FloatArray, shape (2,)
+        Of looks within and between photographs, summed over the numbers.
+    limits : FloatArray, shape (3,)
+        Of the displacement (Mahalanobis distance), and, times the fourth root of the number of
+        photographs that a run looks like, of the exposure and of the share within the nearest
+        terrain above one half.
+    """
+
+    middle: FloatArray
+    precision: FloatArray
+    variances: FloatArray
+    limits: FloatArray
+
+    @classmethod
+    def of(
+        cls, looks: FloatArray, differences: FloatArray, codes: IntArray, groups: AnyArray
+    ) -> Self:
+        """Of training patches: scaled looks (n, 7), differences (n, 10), terrains, photographs.
+
+        Differences are from the patches of other photographs.
+        """
+        photos = _photos(codes, groups)
+        terrains = np.array([codes[rows[0]] for rows in photos])
+        weights = 1.0 / np.bincount(terrains)[terrains]
+        weights /= weights.sum()
+        means = np.array([differences[rows, 3:].mean(axis=0) for rows in photos])
+        middle = weights @ means
+        spread = (weights[:, None] * (means - middle)).T @ (means - middle)
+        spread += max(LEAST_VARIANCE * np.trace(spread) / len(spread), 1e-9) * np.eye(len(spread))
+        places = np.array([looks[rows].mean(axis=0) for rows in photos])
+        within = weights @ np.array([looks[rows].var(axis=0).sum() for rows in photos])
+        between = weights @ ((places - weights @ places) ** 2).sum(axis=1)
+        variances = np.array([within, max(float(between), 1e-9)])
+        unlimited = cls(middle, np.linalg.inv(spread), variances, np.ones(3))
+        runs = _runs(photos, terrains)
+        apart = np.array([unlimited.apart(looks[rows], differences[rows]) for rows in runs])
+        shares = rankdata(apart, axis=0) / len(apart)
+        level = np.quantile(shares.max(axis=1), 1 - FALSE_ALARMS)  # of all limits together
+        limits = np.maximum(np.quantile(apart, level, axis=0), 1e-9)
+        return cls(middle, unlimited.precision, variances, limits)
+
+    def apart(self, looks: FloatArray, differences: FloatArray) -> tuple[float, float, float]:
+        """How far a run of m images is from training, in the measures of `limits`."""
+        _, in_terrain, exposure, *displacement = differences.mean(axis=0)
+        mean = np.array(displacement) - self.middle
+        varied = self.photographs(looks) ** VARIED
+        return (
+            float(np.sqrt(mean @ self.precision @ mean)),
+            float(abs(exposure) * varied),
+            float(max(in_terrain - 0.5, 0.0) * varied),
+        )
+
+    def beyond(self, looks: FloatArray, differences: FloatArray) -> float:
+        """The largest of them over its limit: above 1 the images are unlike the photographs."""
+        return float(np.max(self.apart(looks, differences) / self.limits))
+
+    def photographs(self, looks: FloatArray) -> float:
+        """How many photographs of all terrains vary as much as looks (m, 7): 1 to m.
+
+        With p photographs the images of a run have (1 - 1/p) of the variance between photographs.
+        """
+        within, between = self.variances
+        share = (looks.var(axis=0).sum() - within) / between
+        return float(1 / np.clip(1 - share, 1 / len(looks), 1))
+
+    def arrays(self) -> dict[str, AnyArray]:
+        """Everything learned, by name."""
+        return {f"run_{field.name}": getattr(self, field.name) for field in fields(self)}
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, AnyArray]) -> Self | None:
+        """Rebuild from what `arrays` gave; None of files before version 0.15, which have none.
+
+        Raises
+        ------
+        KeyError, ValueError
+            If the arrays do not fit.
+        """
+        if "run_limits" not in arrays:
+            return None
+        found = [arrays[f"run_{field.name}"] for field in fields(cls)]
+        shapes = [array.shape for array in found]
+        if shapes != [(NUMBERS,), (NUMBERS, NUMBERS), (2,), (3,)]:
+            raise ValueError(f"limits of runs of shapes {shapes}")
+        return cls(*found)
+
+
+def _photos(codes: IntArray, groups: AnyArray) -> list[IntArray]:
+    """Rows of each photograph of each terrain."""
+    numbers = np.unique(groups, return_inverse=True)[1]
+    _, members = np.unique(np.column_stack([codes, numbers]), axis=0, return_inverse=True)
+    return [np.flatnonzero(members.ravel() == photo) for photo in range(members.max() + 1)]
+
+
+def _runs(photos: list[IntArray], terrains: IntArray) -> list[IntArray]:
+    """Rows of runs over one terrain each, of photographs drawn at random."""
+    rng = np.random.default_rng(0)
+    runs = []
+    for terrain in np.unique(terrains):
+        own = np.flatnonzero(terrains == terrain)
+        for _ in range(RUNS):
+            drawn = rng.choice(own, min(PHOTOS, len(own)), replace=False)
+            runs.append(np.concatenate([photos[i] for i in drawn]))
+    return runs
