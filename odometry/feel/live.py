@@ -60,7 +60,8 @@ class LiveFeel:
     Notes
     -----
     A window is measured as by `follow_feel`, from rows up to the stamp from which it is known, and
-    given at the first frame there or later. Memory does not grow with time.
+    given at the first frame there or later. Memory does not grow with time. What needs the whole
+    run is not checked: one clock, the sense of gyro_z, samples that repeat.
 
     Examples
     --------
