@@ -1,9 +1,11 @@
 """Box-counting dimension of up to eight binary images at once."""
 
+from functools import lru_cache
+
 import cv2
 import numpy as np
 
-from odometry.arrays import AnyArray, ByteImage, FloatArray
+from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
 from terrain.texture.borders import kept
 
 BITS_OF_BYTE: FloatArray = np.unpackbits(
@@ -66,14 +68,22 @@ def _small_box_counts(planes: ByteImage, n_sizes: int) -> FloatArray:
     for size in range(1, n_sizes):
         planes = or_of_2x2(planes, f"small {size}")
         sizes.append(planes.reshape(len(planes), -1))
-    ends = np.cumsum([of.shape[1] for of in sizes])
-    parts = [
-        np.arange(end - of.shape[1], end, MOST_ADDED) for of, end in zip(sizes, ends, strict=True)
-    ]
+    parts, firsts = _parts(tuple(of.shape[1] for of in sizes))
     set_bits = np.asarray(cv2.LUT(np.concatenate(sizes, axis=1), BYTES_OF_BITS)).view(np.uint64)
-    sums = np.add.reduceat(set_bits, np.concatenate(parts), axis=1).view(np.uint8)
-    starts = np.cumsum([0, *(len(of) for of in parts[:-1])])
-    return np.add.reduceat(sums.reshape(len(planes), -1, 8), starts, axis=1, dtype=np.float64)
+    sums = np.add.reduceat(set_bits, parts, axis=1).view(np.uint8)
+    return np.add.reduceat(sums.reshape(len(planes), -1, 8), firsts, axis=1, dtype=np.float64)
+
+
+@lru_cache(maxsize=64)  # of few sizes of images
+def _parts(pixels: tuple[int, ...]) -> tuple[IntArray, IntArray]:
+    """Where parts of at most MOST_ADDED of so many pixels of each size begin, side by side.
+
+    And which part is the first of each size.
+    """
+    ends = np.cumsum(pixels)
+    parts = [np.arange(end - of, end, MOST_ADDED) for of, end in zip(pixels, ends, strict=True)]
+    firsts = np.cumsum([0, *(len(of) for of in parts[:-1])])
+    return np.concatenate(parts), firsts
 
 
 def count_bytes(planes: ByteImage, histograms: AnyArray) -> None:

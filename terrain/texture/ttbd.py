@@ -67,10 +67,12 @@ def packed_tables(members: BoolArray) -> ByteImage:
     (..., ceil(n / 8), 256) array of uint8
         Bit b of table j at a grey is set where the grey belongs to image 8 j + b.
     """
-    n = members.shape[-2]
-    padded = np.zeros((*members.shape[:-2], -(-n // 8), 8, members.shape[-1]), np.uint8)
-    padded.reshape(*members.shape[:-2], -1, members.shape[-1])[..., :n, :] = members
-    return np.asarray(np.einsum("...bg,b->...g", padded, WEIGHTS_OF_BITS))
+    bits = members.view(np.uint8)
+    tables = []
+    for first in range(0, members.shape[-2], 8):
+        eight = bits[..., first : first + 8, :]
+        tables.append(np.einsum("...bg,b->...g", eight, WEIGHTS_OF_BITS[: eight.shape[-2]]))
+    return np.stack(tables, axis=-2)
 
 
 @dataclass(frozen=True)
