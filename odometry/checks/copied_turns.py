@@ -20,6 +20,7 @@ CHANGES, VALUES = 0.95, 0.999
 # Of the second differences, by a weighted sum of rows: at most 0.07 in the same recordings; of
 # copies that are averaged, republished or rounded coarsely 0.9 to 1.
 BY_ROWS = 0.9
+QUIET_RAD_S = 0.0005  # noise of a gyroscope on a stationary robot: none that moves has less
 LEAST_TURN_RAD = 2.0  # in all
 ONE_MEASURED = 0.95  # share of the measured turns explained by the gyroscope, from which it counts
 AS_MEASURED = 0.1  # of the turns: a gyroscope has no larger scale error
@@ -68,7 +69,8 @@ class CopiedTurns:
         assert self.evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
         left, right = self.evidence.speeds_m_s.T
         sources = np.stack([right - left, (left + right) / 2], axis=-1)
-        return self._exact(repetition(*self.evidence.yaw_rate, self.evidence.stamps_s, sources))
+        found = repetition(*self.evidence.yaw_rate, self.evidence.stamps_s, sources)
+        return self._exact(found, 1.0)
 
     @cached_property
     def treads(self) -> Repetition | None:
@@ -76,13 +78,15 @@ class CopiedTurns:
         assert self.evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
         stamps_s, rates = self.evidence.yaw_rate
         left, right = self.evidence.speeds_m_s.T
-        return self._exact(
-            repetition(self.evidence.stamps_s, right - left, stamps_s, rates[:, None])
-        )
+        found = repetition(self.evidence.stamps_s, right - left, stamps_s, rates[:, None])
+        return self._exact(found, 1.0 if found is None else float(1 / found.coefficients[0]))
 
     @cached_property
     def by_rows(self) -> float:
-        """Share of the changes of one that a weighted sum of rows of the other explains."""
+        """Share of the changes of one that a weighted sum of rows of the other explains.
+
+        0 where what is left is the noise of a gyroscope.
+        """
         found = self.evidence.gyroscope_by_difference
         assert self.evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
         if found is None or not found.certain() or self._turned_rad < LEAST_TURN_RAD:
@@ -90,7 +94,13 @@ class CopiedTurns:
         left, right = self.evidence.speeds_m_s.T
         treads = (self.evidence.stamps_s, right - left)
         gyroscope = self.evidence.yaw_rate
-        return max(explained_by_rows(*gyroscope, *treads), explained_by_rows(*treads, *gyroscope))
+        of_gyroscope = explained_by_rows(*gyroscope, *treads)
+        of_treads = explained_by_rows(*treads, *gyroscope)
+        noise_rad_s = {
+            of_gyroscope.share: of_gyroscope.noise,
+            of_treads.share: abs(found.slope) * of_treads.noise,
+        }
+        return max((s for s, noise in noise_rad_s.items() if noise < QUIET_RAD_S), default=0.0)
 
     @property
     def width_m(self) -> float:
@@ -144,11 +154,11 @@ class CopiedTurns:
             return None
         return found.slope
 
-    def _exact(self, found: Repetition | None) -> Repetition | None:
+    def _exact(self, found: Repetition | None, rad_of_value: float) -> Repetition | None:
         if found is None or self._turned_rad < LEAST_TURN_RAD:
             return None
         exact = found.of_changes > CHANGES and found.of_values > VALUES
-        return found if exact else None
+        return found if exact and abs(rad_of_value) * found.noise < QUIET_RAD_S else None
 
 
 def _seen(evidence: Evidence, turns: CopiedTurns) -> str:

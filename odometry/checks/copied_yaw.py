@@ -8,7 +8,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.computed_poses import COPIED_WAY, Copy
-from odometry.checks.copied_turns import CHANGES, VALUES, without_gyroscope
+from odometry.checks.copied_turns import CHANGES, QUIET_RAD_S, VALUES, without_gyroscope
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.repetition import Repetition, repetition
@@ -120,7 +120,7 @@ class CopiedYaw:
 def _exact(found: Repetition | None) -> Repetition | None:
     if found is None or found.of_changes < CHANGES or found.of_values < VALUES:
         return None
-    return found
+    return found if found.noise < QUIET_RAD_S else None
 
 
 def _share(found: Repetition) -> str:

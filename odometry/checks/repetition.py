@@ -20,6 +20,7 @@ SAME_STAMP_S = 1e-9
 REFINED = 50  # evaluations
 
 ORDER = 2  # of the differences: what is smooth is alike in all sensors
+OF_NOISE = comb(2 * ORDER, ORDER)  # mean square of such differences of a noise of one: binomials
 ORDINARY = 0.95  # share of the changes that are not zero
 EXACT = 1e-5  # share of the changes left, below which nothing is searched
 
@@ -40,6 +41,9 @@ class Repetition:
     smoothed_s : float
         Time constant of a low pass of first order through which the sources went.
     coefficients : (P,)
+    noise : float
+        Standard deviation of a white noise that would leave as much of the changes, in the unit of
+        the values.
     """
 
     of_changes: float
@@ -47,6 +51,7 @@ class Repetition:
     delay_s: float
     smoothed_s: float
     coefficients: FloatArray
+    noise: float
 
 
 def repetition(
@@ -110,15 +115,17 @@ class _Trial:
         coefficients = np.asarray(solution[:-1], dtype=np.float64)
         digits = np.append(coefficients * self._digits, self._digit)
         rounded = float(np.sum(digits**2)) / 12
-        left_of_changes = comb(2 * ORDER, ORDER) * rounded  # the sum of the squared binomials
+        left_of_changes = OF_NOISE * rounded
         if left_of_changes > ROUNDED * float(np.mean(changes**2)):
             rounded = left_of_changes = 0.0
+        of_changes = _explained(changes, of_columns, left_of_changes)
         return Repetition(
-            _explained(changes, of_columns, left_of_changes),
+            of_changes,
             _explained(self.values, design @ solution, rounded),
             delay_s,
             smoothed_s,
             coefficients,
+            noise_of((1 - of_changes) * float(np.mean(changes**2))),
         )
 
     @cached_property
@@ -129,11 +136,16 @@ class _Trial:
 
     @cached_property
     def _digits(self) -> FloatArray:
-        return np.array([_digit(one) for one in self.sources.T])
+        return np.array([digit_of(one) for one in self.sources.T])
 
     @cached_property
     def _digit(self) -> float:
-        return _digit(self.values)
+        return digit_of(self.values)
+
+
+def noise_of(mean_square: float) -> float:
+    """Standard deviation of a white noise whose changes have this mean square."""
+    return float(np.sqrt(mean_square / OF_NOISE))
 
 
 def _explained(values: FloatArray, fitted: FloatArray, rounded: float) -> float:
@@ -234,7 +246,7 @@ def _liveliest(values: FloatArray) -> slice:
     return slice(begin, begin + MOST_ROWS)
 
 
-def _digit(values: FloatArray) -> float:
+def digit_of(values: FloatArray) -> float:
     """The step to which values were rounded: the usual smallest distance of two of them."""
     steps = np.diff(np.unique(values))
     return float(np.quantile(steps, 0.02)) if len(steps) > 2 else 0.0

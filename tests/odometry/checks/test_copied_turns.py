@@ -107,6 +107,18 @@ def test_sensors_of_a_tenth_of_the_noise_are_two():
     assert names(put(run, "odometry", v_left=left, v_right=right, gyro_z=gyro_z)) == []
 
 
+@pytest.mark.parametrize("fastest_rad_s", [2.0, 6.0])
+def test_a_quiet_gyroscope_over_exact_treads_is_a_sensor(fastest_rad_s):
+    """In a lively drive little of the changes is noise; what is left is that of a gyroscope."""
+    run, rng = winding(), np.random.default_rng(5)
+    at_s = run.odometry.stamps_s
+    rate = 0.5 * np.sin(fastest_rad_s * at_s) + 0.3 * np.sin(at_s / 3)
+    left, right = (1 + 0.3 * np.sin(at_s / 7) + side * rate * 0.45 for side in (-1, 1))
+    gyro_z = rate + rng.normal(0, 0.003, len(at_s))
+    found = names(put(run, "odometry", v_left=left, v_right=right, gyro_z=gyro_z))
+    assert not {"gyroscope_is_treads", "treads_are_gyroscope", "turns_recorded_once"} & set(found)
+
+
 def test_an_average_of_rows_is_a_copy():
     run = by_treads(winding())
     averaged = gyroscope(run, lambda rate: np.convolve(rate, np.ones(5) / 5, "same"))
