@@ -60,6 +60,11 @@ def test_a_copy_is_one_whatever_a_program_does_to_it(change):
     assert found[0].name == "gyroscope_is_treads"
 
 
+def test_the_time_of_the_low_pass_is_said():
+    found = check_recording(low_pass(by_treads(winding()), 0.3)).findings
+    assert "through a low pass of 0.3 s" in found[0].seen
+
+
 def test_treads_through_a_low_pass_of_the_gyroscope_were_computed():
     raw = winding()
     slow = by_gyroscope(low_pass(raw, 0.1), 0.9)

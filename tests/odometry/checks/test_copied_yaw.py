@@ -30,12 +30,13 @@ def test_yaw_that_integrates_the_gyroscope_is_a_note(digits):
     assert "leave it empty" in finding.remedy
 
 
-def test_yaw_of_wheel_odometry_beside_measured_positions():
+@pytest.mark.parametrize("width_m", [0.6, 1.3], ids=["track width", "tuned"])
+def test_yaw_of_wheel_odometry_beside_measured_positions(width_m):
     run = winding()
-    rate = (run.odometry["v_right"] - run.odometry["v_left"]) / 1.3
+    rate = (run.odometry["v_right"] - run.odometry["v_left"]) / width_m
     (finding,) = findings(integrated(run, rate))
     assert finding.name == "yaw_is_treads"
-    assert "/ 1.3 m" in finding.seen
+    assert f"/ {width_m} m" in finding.seen
 
 
 @pytest.mark.parametrize("central", [True, False])

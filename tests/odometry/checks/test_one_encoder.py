@@ -31,6 +31,6 @@ def test_one_encoder_for_both_sides_is_noticed(copy):
 def test_a_circle_may_have_treads_of_one_ratio():
     at_s = 0.05 * np.arange(2400)
     speed = 1 + 0.3 * np.sin(at_s / 7)
-    run = drive(speed, 0.2 * speed)
-    left, right = (speed * (1 + side * 0.09) for side in (-1, 1))
+    run = drive(speed, 0.6 * speed)
+    left, right = (speed * (1 + side * 0.27) for side in (-1, 1))
     assert "treads_equal" not in names(put(run, "odometry", v_left=left, v_right=right))
