@@ -58,20 +58,34 @@ def _durations_s(windows: Windows) -> FloatArray:
 
 FEW_FREEDOM = 5.0
 NEAR_BOUND = 1e-2
+ABSURD = 0.1  # of the least usual gain: a robot that hardly moves shows no parameters
 FAR_RESIDUALS = 3.0  # times the poses' stated noise
 CAUSES = (
-    "tread speeds in another unit (rad/s, RPM, mm/s), swapped or of the wrong sign; yaw in degrees "
-    "or reversed; a wrong track_width; poses much worse than --position-sigma and --yaw-sigma say"
+    "tread speeds in another unit (rad/s, RPM, mm/s), swapped or of the wrong sign; positions in "
+    "degrees or kilometres; yaw in degrees or reversed; a wrong track_width; poses much worse than "
+    "--position-sigma and --yaw-sigma say"
 )
 
 
 def refusals(fit: Fit) -> tuple[str, ...]:
-    """Parameters at a bound while the predicted motion is far from the measured one.
+    """Gains that no slip leaves, and parameters at a bound while the residuals are large.
 
     A search that would have gone on beyond its bound has not found a model of the motion. Where
     the residuals are as the noise explains, the bound is near enough to the truth, and a bound at
     which a parameter has no effect is an answer.
     """
+    absurd = tuple(
+        f"{parameter.name} is {fit.values[parameter.name]:.2g}, and slip leaves "
+        f"{parameter.usual[0]:g} to {parameter.usual[1]:g} of the tread speed"
+        for parameter in fit.model.parameters
+        if parameter.usual
+        and parameter.name in fit.names
+        and abs(fit.values[parameter.name]) < ABSURD * parameter.usual[0]
+    )
+    return absurd or _at_bounds(fit)
+
+
+def _at_bounds(fit: Fit) -> tuple[str, ...]:
     if fit.scale <= FAR_RESIDUALS:
         return ()
     parameters = {parameter.name: parameter for parameter in fit.model.parameters}

@@ -47,6 +47,18 @@ def test_swapped_treads_are_refused(winding):
         identified(run, "icr_symmetric").require_determined()
 
 
+def test_positions_in_kilometres_are_refused_though_residuals_are_small(winding):
+    columns = dict(winding.pose.columns)
+    columns |= {name: columns[name] / 1000 for name in ("x", "y")}
+    run = replace(winding, pose=replace(winding.pose, columns=columns))
+    found = identified(run, "icr_symmetric")
+    assert found.terrains["gravel"].fit.scale < 3
+    with pytest.raises(
+        IdentificationError, match=r"alpha is 0\.00\d+, and slip leaves 0\.3 to 1\.5"
+    ):
+        found.require_determined()
+
+
 def test_gains_that_slip_does_not_make_are_doubted(winding):
     """Speeds 0.6 of the true: 1.6 is within the bounds, and no slip."""
     found = identified(with_speeds_times(winding, 0.6))
