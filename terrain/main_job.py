@@ -1,6 +1,7 @@
 """The main job: from a run with images and odometry to terrain-aware odometry."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from odometry.effects.catalogue import added_effects
 from odometry.effects.corrected import Added
@@ -20,7 +21,7 @@ from odometry.pose_delay import without_pose_delay
 from odometry.run import UNKNOWN, Run
 from odometry.run_terrains import NamedTerrain, ReplayedFooting
 from odometry.windows.measured_poses import lacks_yaw
-from terrain.classification.classifier import Classifier, TerrainClassifier
+from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config
 from terrain.contradictions import contradictions, labels_beneath
 from terrain.contradictions_so_far import Contradiction
@@ -39,6 +40,9 @@ from terrain.sources import (
     terrain_source,
 )
 from terrain.watcher import TerrainWatcher
+
+if TYPE_CHECKING:
+    from terrain.classification.trained import Classifier
 
 __all__ = ["RunResult", "run_odometry"]
 

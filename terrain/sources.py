@@ -19,8 +19,8 @@ from odometry.pipeline import ConstantTerrain, TerrainSource
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
 from odometry.run_terrains import NamedTerrain, labelled_terrain
 from terrain.camera import Camera
-from terrain.classification.classifier import Classifier
 from terrain.classification.own_statistics import used_as
+from terrain.classification.trained import Classifier
 from terrain.config import Config
 from terrain.feel_labels import FeelLabels
 from terrain.watcher import TerrainWatcher

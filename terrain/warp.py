@@ -8,7 +8,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage
 from terrain.camera import Camera
-from terrain.classification.classifier import Classifier
+from terrain.classification.trained import Classifier
 from terrain.region import COARSE, Rectangle
 
 

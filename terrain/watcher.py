@@ -15,7 +15,7 @@ from odometry.geometry import se2
 from odometry.run import Robot
 from odometry.run_terrains import Footing
 from terrain.camera import Camera
-from terrain.classification.classifier import Classifier
+from terrain.classification.trained import Classifier
 from terrain.distance_track import DistanceTrack
 from terrain.feel_labels import FeltPlaces
 from terrain.image_label import ImageLabel

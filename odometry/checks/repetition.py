@@ -1,6 +1,5 @@
 """How exactly one column repeats others: copied, delayed, filtered or resampled."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import comb
@@ -8,6 +7,7 @@ from math import comb
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
+from odometry.checks.resampling import Sampled, low_pass, ways
 
 MOST_ROWS = 3000  # the liveliest ones, in which delay and filter are searched
 LEAST_ROWS = 100
@@ -16,15 +16,12 @@ MOST_DELAY_S = 0.3
 SMOOTHED_S = (0.0, 0.05, 0.1, 0.2, 0.3)  # time constants from which the search begins
 LEAST_CORRELATION = 0.6  # of the changes, from which a search is worth its time
 ROUNDED = 0.1  # of the squares of the changes, that rounding may leave: else nothing is known
-SAME_STAMP_S = 1e-9
 REFINED = 50  # evaluations
 
 ORDER = 2  # of the differences: what is smooth is alike in all sensors
 OF_NOISE = comb(2 * ORDER, ORDER)  # mean square of such differences of a noise of one: binomials
 ORDINARY = 0.95  # share of the changes that are not zero
 EXACT = 1e-5  # share of the changes left, below which nothing is searched
-
-Sampled = Callable[[FloatArray, float, FloatArray, FloatArray], FloatArray]
 
 
 @dataclass(frozen=True)
@@ -76,7 +73,7 @@ def repetition(
     rows = _liveliest(values)
     found = [
         _searched(_Trial(at_s[rows], values[rows], source_s, sources, sampled))
-        for sampled in _ways(at_s, source_s)
+        for sampled in ways(at_s, source_s)
     ]
     best = min((one for one in found if one is not None), key=lambda one: one[0], default=None)
     if best is None:
@@ -95,7 +92,7 @@ class _Trial:
 
     def columns(self, delay_s: float, smoothed_s: float) -> FloatArray:
         """Sources (N, P) through the filter, at the stamps less the delay."""
-        through = _low_pass(self.sources, smoothed_s, float(np.median(np.diff(self.source_s))))
+        through = low_pass(self.sources, smoothed_s, float(np.median(np.diff(self.source_s))))
         return np.stack(
             [self.sampled(self.at_s, delay_s, self.source_s, one) for one in through.T], axis=-1
         )
@@ -191,50 +188,6 @@ def _shift(trial: _Trial, smoothed_s: float, period_s: float) -> tuple[float, fl
     ]
     best = int(np.argmax(products))
     return float(products[best]) / max(size, 1e-300), (best - reach) * period_s
-
-
-def _ways(at_s: FloatArray, source_s: FloatArray) -> tuple[Sampled, ...]:
-    """How a program may take a source at stamps (N,) less a delay."""
-    same = np.array_equal(at_s, source_s)
-    return (_between_rows, _by_row) if same else (_between_rows, _held, _mean_to_next)
-
-
-def _between_rows(
-    at_s: FloatArray, delay_s: float, source_s: FloatArray, source: FloatArray
-) -> FloatArray:
-    return np.interp(at_s - delay_s, source_s, source)
-
-
-def _by_row(
-    at_s: FloatArray, delay_s: float, source_s: FloatArray, source: FloatArray
-) -> FloatArray:
-    """The same number of rows later throughout, however uneven the stamps are."""
-    rows = np.searchsorted(source_s, at_s) - round(delay_s / float(np.median(np.diff(source_s))))
-    return np.asarray(source[np.clip(rows, 0, len(source) - 1)])
-
-
-def _held(at_s: FloatArray, delay_s: float, source_s: FloatArray, source: FloatArray) -> FloatArray:
-    rows = np.searchsorted(source_s, at_s - delay_s + SAME_STAMP_S, side="right") - 1
-    return np.asarray(source[np.clip(rows, 0, None)])
-
-
-def _mean_to_next(
-    at_s: FloatArray, delay_s: float, source_s: FloatArray, source: FloatArray
-) -> FloatArray:
-    """What a program that integrates held values adds up between two stamps, for each second."""
-    summed = np.concatenate([[0.0], np.cumsum(source[:-1] * np.diff(source_s))])
-    edges_s = np.append(at_s, 2 * at_s[-1] - at_s[-2])
-    return np.asarray(np.diff(np.interp(edges_s - delay_s, source_s, summed)) / np.diff(edges_s))
-
-
-def _low_pass(sources: FloatArray, smoothed_s: float, period_s: float) -> FloatArray:
-    """Sources (S, P) through a low pass of first order that begins at rest with the first row."""
-    from scipy.signal import lfilter  # noqa: PLC0415 - slow to load
-
-    if smoothed_s < period_s / 10:
-        return sources
-    kept = np.exp(-period_s / smoothed_s)
-    return np.asarray(lfilter([1 - kept], [1, -kept], sources, axis=0, zi=kept * sources[:1])[0])
 
 
 def _liveliest(values: FloatArray) -> slice:

@@ -8,7 +8,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.run import Robot
 from terrain.camera import Camera
-from terrain.classification.classifier import Classifier
+from terrain.classification.trained import Classifier
 from terrain.footprint_parts import Rectangle
 from terrain.region import NoRegion, Region, RegionConfig, predict_region
 from terrain.warp import coarsest_m, scale_mismatch

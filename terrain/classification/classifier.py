@@ -19,11 +19,8 @@ from terrain.classification.no_ground import ShownGround
 from terrain.classification.old_samples import OldSamples, SamplesBesideOld
 from terrain.classification.patches import LabelledPatches
 from terrain.classification.presets import PRESETS
-from terrain.classification.trained import Classification, Classifier
 from terrain.classification.trained_on import TrainedOn, check_labels, holds_images
 from terrain.classification.validation import Samples
-
-__all__ = ["Classification", "Classifier", "TerrainClassifier"]
 
 
 class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # type: ignore[misc]

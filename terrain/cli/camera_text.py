@@ -15,7 +15,7 @@ from terrain.calibration.mount_fit import NAMES
 from terrain.calibration.mount_sources import MountSource
 from terrain.camera import Camera
 from terrain.checks.region_ahead import no_mount, region_ahead
-from terrain.classification.classifier import Classifier
+from terrain.classification.trained import Classifier
 from terrain.region import NoRegion, RegionConfig
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from odometry.report.figure import save_figure, show_run_time
 from odometry.report.html import Picture
 from terrain.camera import Camera
-from terrain.classification.classifier import Classifier
+from terrain.classification.trained import Classifier
 from terrain.image_label import ImageLabel
 from terrain.images import read_image
 from terrain.report.figures import Tints, in_force

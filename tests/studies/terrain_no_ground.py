@@ -19,8 +19,9 @@ from skimage import data as pictures
 
 from odometry.arrays import AnyArray, ByteImage
 from odometry.run import UNKNOWN
-from terrain.classification.classifier import Classification, TerrainClassifier
+from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.patches import LabelledPatches, cut_patches, find_photos, load_patches
+from terrain.classification.trained import Classification
 from terrain.classification.validation import grouped_folds
 from terrain.images import read_image
 
