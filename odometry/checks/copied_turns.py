@@ -6,10 +6,11 @@ from functools import cached_property
 
 import numpy as np
 
+from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.repetition import Repetition, repetition
-from odometry.checks.weighted_rows import explained_by_rows
+from odometry.checks.weighted_rows import explained_by_rows, left_by_own_rows
 from odometry.run import Run
 from odometry.table import Table
 
@@ -21,6 +22,7 @@ CHANGES, VALUES = 0.95, 0.999
 # copies that are averaged, republished or rounded coarsely 0.9 to 1.
 BY_ROWS = 0.9
 QUIET_RAD_S = 0.0005  # noise of a gyroscope on a stationary robot: none that moves has less
+SMOOTH_RAD_S = 0.1 * QUIET_RAD_S  # left by own rows: a simulation without noise
 LEAST_TURN_RAD = 2.0  # in all
 ONE_MEASURED = 0.95  # share of the measured turns explained by the gyroscope, from which it counts
 AS_MEASURED = 0.1  # of the turns: a gyroscope has no larger scale error
@@ -70,7 +72,7 @@ class CopiedTurns:
         left, right = self.evidence.speeds_m_s.T
         sources = np.stack([right - left, (left + right) / 2], axis=-1)
         found = repetition(*self.evidence.yaw_rate, self.evidence.stamps_s, sources)
-        return self._exact(found, 1.0)
+        return self._exact(found, self.evidence.yaw_rate[1])
 
     @cached_property
     def treads(self) -> Repetition | None:
@@ -79,7 +81,7 @@ class CopiedTurns:
         stamps_s, rates = self.evidence.yaw_rate
         left, right = self.evidence.speeds_m_s.T
         found = repetition(self.evidence.stamps_s, right - left, stamps_s, rates[:, None])
-        return self._exact(found, 1.0 if found is None else float(1 / found.coefficients[0]))
+        return self._exact(found, right - left, 1.0 if found is None else found.coefficients[0])
 
     @cached_property
     def by_rows(self) -> float:
@@ -154,11 +156,25 @@ class CopiedTurns:
             return None
         return found.slope
 
-    def _exact(self, found: Repetition | None, rad_of_value: float) -> Repetition | None:
+    def _exact(
+        self, found: Repetition | None, values: FloatArray, of_rad: float = 1.0
+    ) -> Repetition | None:
+        """What repeats in values (N,) of so much for each rad; None where they are no copy."""
         if found is None or self._turned_rad < LEAST_TURN_RAD:
             return None
-        exact = found.of_changes > CHANGES and found.of_values > VALUES
-        return found if exact and abs(rad_of_value) * found.noise < QUIET_RAD_S else None
+        return found if is_copy(found, values, of_rad) else None
+
+
+def is_copy(found: Repetition, values: FloatArray, of_rad: float = 1.0) -> bool:
+    """Whether values (N,), of so much for each rad/s, are surely those that they repeat.
+
+    What differs must be quieter than a gyroscope, and they must not be smooth.
+    """
+    if found.of_changes < CHANGES or found.of_values < VALUES:
+        return False
+    if found.noise > QUIET_RAD_S * abs(of_rad):
+        return False
+    return left_by_own_rows(values) > SMOOTH_RAD_S * abs(of_rad)
 
 
 def _seen(evidence: Evidence, turns: CopiedTurns) -> str:

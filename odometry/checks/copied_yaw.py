@@ -8,7 +8,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.computed_poses import COPIED_WAY, Copy
-from odometry.checks.copied_turns import CHANGES, QUIET_RAD_S, VALUES, without_gyroscope
+from odometry.checks.copied_turns import is_copy, without_gyroscope
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.repetition import Repetition, repetition
@@ -83,16 +83,18 @@ class CopiedYaw:
         if self.evidence.yaw_rate is None:
             return None
         stamps_s, rates = self.evidence.yaw_rate
-        return _exact(repetition(self.stamps_s[:-1], self.rates, stamps_s, rates[:, None]))
+        found = repetition(self.stamps_s[:-1], self.rates, stamps_s, rates[:, None])
+        return _exact(found, self.rates)
 
     @cached_property
     def gyroscope(self) -> Repetition | None:
         """The yaw rate by that of yaw, forwards or about each row; None where it is not exact."""
-        if self.evidence.yaw_rate is None:
+        measured = self.evidence.yaw_rate
+        if measured is None:
             return None
         stamps_s, yaw = self._known
         ways = ((stamps_s[:-1], self.rates), (stamps_s, np.gradient(yaw, stamps_s)))
-        found = [_exact(repetition(*self.evidence.yaw_rate, s, r[:, None])) for s, r in ways]
+        found = [_exact(repetition(*measured, s, r[:, None]), measured[1]) for s, r in ways]
         exact = [one for one in found if one is not None]
         return max(exact, key=lambda one: one.of_changes, default=None)
 
@@ -102,7 +104,7 @@ class CopiedYaw:
         left, right = self.evidence.speeds_m_s.T
         difference = (right - left)[:, None]
         found = repetition(self.stamps_s[:-1], self.rates, self.evidence.stamps_s, difference)
-        return _exact(found)
+        return _exact(found, self.rates)
 
     @property
     def in_fewer_rows(self) -> bool:
@@ -117,10 +119,8 @@ class CopiedYaw:
         return way is None or way.explained < COPIED_WAY
 
 
-def _exact(found: Repetition | None) -> Repetition | None:
-    if found is None or found.of_changes < CHANGES or found.of_values < VALUES:
-        return None
-    return found if found.noise < QUIET_RAD_S else None
+def _exact(found: Repetition | None, rates: FloatArray) -> Repetition | None:
+    return found if found is not None and is_copy(found, rates) else None
 
 
 def _share(found: Repetition) -> str:

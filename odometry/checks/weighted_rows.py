@@ -57,16 +57,19 @@ def explained_by_rows(
     weights = np.linalg.lstsq(of_rows, changes, rcond=None)[0]
     left_square = float(np.mean((changes - of_rows @ weights) ** 2))
     noise = noise_of(max(left_square - OF_NOISE * digit_of(values) ** 2 / 12, 0.0))
-    if noise > OWN_ROWS * _by_own_rows(values):
+    if noise > OWN_ROWS * left_by_own_rows(values):
         return NOTHING
     return ByRows(1 - left_square / float(np.mean(changes**2)), noise)
 
 
-def _by_own_rows(values: FloatArray) -> float:
-    """What rows before and after leave of values (N,), root mean square: nothing of a smooth one.
+def left_by_own_rows(values: FloatArray) -> float:
+    """What rows before and after leave of values (N,), root mean square: nothing of smooth ones.
 
-    Any smooth values are a weighted sum of rows of any noisy sensor of the same motion.
+    Smooth values, as of a simulation without noise, follow from any sensor of the same motion.
     """
+    if len(values) < LEAST_ROWS:
+        return np.inf
+    values = values[:MOST_ROWS]
     rows = np.lib.stride_tricks.sliding_window_view(values, 2 * REACH + 1)
     others = np.delete(rows, REACH, axis=1)
     weights = np.linalg.lstsq(others, rows[:, REACH], rcond=None)[0]

@@ -87,9 +87,10 @@ def follow_feel(run: Run, model: FeelModel, config: FeelConfig | None = None) ->
 
 def check_repeats(model: FeelModel, windows: FeelWindows, where: str) -> None:
     """Raise RunFolderError if samples repeat often, and more than in the runs of the model."""
-    if windows.repeats > max(MOST_REPEATS, model.repeats + REPEATS_MARGIN):
+    repeats = windows.most_repeats(model.design.axes)
+    if repeats > max(MOST_REPEATS, model.repeats + REPEATS_MARGIN):
         raise RunFolderError(
-            f"{where}: {100 * windows.repeats:.0f} % of the samples of an axis of the IMU are the "
+            f"{where}: {100 * repeats:.0f} % of the samples of an axis of the IMU are the "
             f"same as the one before while the robot moves, at most {100 * model.repeats:.0f} % in "
             "the runs of the model: rounded more coarsely, clipped, or held for several rows?"
         )

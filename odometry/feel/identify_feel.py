@@ -97,7 +97,7 @@ def identify_feel(
             "held_out": "days" if by_day else "runs",
             "notes": list(notes_of(table, windows[best.place], by_day=by_day)),
         },
-        max(one.repeats for one in windows[best.place]),
+        max(one.most_repeats(table.design.axes) for one in windows[best.place]),
     )
 
 

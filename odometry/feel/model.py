@@ -41,8 +41,8 @@ class FeelModel:
     report : Mapping
         What was found with runs held out; plain values.
     repeats : float
-        The most that the samples of one of the runs repeat, see `FeelSignals`; 1 where that is
-        not known, as in files before version 0.15.
+        The most that samples of one of the runs repeat, see `FeelSignals`, of the axes in use; 1
+        where that is not known, as in files before version 0.15.
 
     Examples
     --------

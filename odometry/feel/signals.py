@@ -1,7 +1,7 @@
 """Signals for terrain by feel on one even grid of time: IMU in checked units, treads, currents."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -41,9 +41,9 @@ class FeelSignals:
         Left and right, as held; a zero is a dropout, and NaN.
     labels : (N,) of str
         The terrain that the run names; "unknown" where it names none.
-    repeats : float
-        Share of the recorded samples, while the treads move, that are the same as the one before:
-        of the axis with most. They come from rounding, clipping, or samples that are held.
+    repeats : Mapping of str to float
+        By axis, the share of the recorded samples, while the treads move, that are the same as the
+        one before. They come from rounding, clipping, or samples that are held.
     """
 
     begin_s: float
@@ -52,7 +52,7 @@ class FeelSignals:
     treads_m_s: FloatArray
     currents_a: FloatArray | None
     labels: AnyArray
-    repeats: float = 0.0
+    repeats: Mapping[str, float] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.treads_m_s)
@@ -177,11 +177,11 @@ def within_gaps(grid_s: FloatArray, spans_s: FloatArray) -> AnyArray:
     return np.asarray((grid_s > spans_s[span, 0]) & (grid_s < spans_s[span, 1]))
 
 
-def _repeats(run: Run, stamps_s: FloatArray, axes: Mapping[str, FloatArray]) -> float:
+def _repeats(run: Run, stamps_s: FloatArray, axes: Mapping[str, FloatArray]) -> Mapping[str, float]:
     speeds_m_s = np.abs(run.odometry.stack("v_left", "v_right")).max(axis=1)
     moving = speeds_m_s[held_rows(run.odometry.stamps_s, stamps_s[1:])] > 0
-    counts = [int(np.sum(np.diff(of)[moving] == 0)) for of in axes.values()]
-    return max(counts) / max(int(moving.sum()), 1)
+    samples = max(int(moving.sum()), 1)
+    return {name: int(np.sum(np.diff(of)[moving] == 0)) / samples for name, of in axes.items()}
 
 
 def _currents(odometry: Table, held: AnyArray) -> FloatArray | None:

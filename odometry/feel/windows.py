@@ -1,7 +1,7 @@
 """Windows of a run and their features, of vibration and of motion."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -48,7 +48,7 @@ class FeelWindows:
         Of the frequencies; the highest that the sampling rate carries.
     complete_s : (W,), optional
         The stamp of the sample that completed each; by default its end.
-    repeats : float
+    repeats : Mapping of str to float
         See `FeelSignals`.
     """
 
@@ -66,10 +66,14 @@ class FeelWindows:
     step_hz: float
     top_hz: float
     complete_s: FloatArray | None = None
-    repeats: float = 0.0
+    repeats: Mapping[str, float] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.begins_s)
+
+    def most_repeats(self, axes: Iterable[str]) -> float:
+        """`repeats` of that of the axes which has most; 0 where it is not known."""
+        return max((self.repeats.get(name, 0.0) for name in axes), default=0.0)
 
     @property
     def ends_s(self) -> FloatArray:

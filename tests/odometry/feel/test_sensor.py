@@ -166,12 +166,21 @@ def test_samples_that_repeat_more_than_in_training_are_refused(model, tmp_path):
     assert model.repeats == 0
     with pytest.raises(RunFolderError, match="rounded more coarsely"):
         follow_feel(run, model)
-    write_feel_model(tmp_path / "a.feel", replace(model, repeats=feel_windows(run).repeats))
+    write_feel_model(
+        tmp_path / "a.feel", replace(model, repeats=feel_windows(run).repeats["gyro_x"])
+    )
     assert len(follow_feel(run, read_feel_model(tmp_path / "a.feel")).windows)
     settings, arrays = read_array_file(tmp_path / "a.feel", FEEL)
     del settings["repeats"]
     write_array_file(tmp_path / "old.feel", FEEL, settings, arrays)
     assert len(follow_feel(run, read_feel_model(tmp_path / "old.feel")).windows)
+
+
+def test_samples_of_an_axis_that_is_not_used_may_repeat():
+    run = drive("gravel", 981)
+    windows = feel_windows(with_imu(run, lambda c: c | {"gyro_z": np.zeros(len(run.imu))}))
+    assert windows.most_repeats(["gyro_x", "accel_y"]) == 0
+    assert windows.most_repeats(["gyro_x", "gyro_z"]) == 1
 
 
 def test_few_runs_and_no_axis_know_no_shape(model):
