@@ -178,9 +178,10 @@ def test_samples_that_repeat_more_than_in_training_are_refused(model, tmp_path):
 
 def test_samples_of_an_axis_that_is_not_used_may_repeat():
     run = drive("gravel", 981)
-    windows = feel_windows(with_imu(run, lambda c: c | {"gyro_z": np.zeros(len(run.imu))}))
+    rows = np.arange(len(run.imu)) // 2 * 2
+    windows = feel_windows(with_imu(run, lambda c: c | {"gyro_z": c["gyro_z"][rows]}))
     assert windows.most_repeats(["gyro_x", "accel_y"]) == 0
-    assert windows.most_repeats(["gyro_x", "gyro_z"]) == 1
+    assert windows.most_repeats(["gyro_x", "gyro_z"]) == pytest.approx(0.5, abs=0.02)
 
 
 def test_few_runs_and_no_axis_know_no_shape(model):
