@@ -1,4 +1,4 @@
-"""Features of training patches by two processes and by one."""
+"""Features of training patches by two processes and by one, in wall time whatever the timer is."""
 
 import time
 
@@ -13,14 +13,18 @@ PATCHES = 400
 def test_training_by_two_processes(benchmark):
     rng = np.random.default_rng(1)
     patches = [rng.integers(0, 256, (128, 128), dtype=np.uint8) for _ in range(PATCHES)]
-    settings, alone_s = PRESETS["default"].features, []
+    lasted_s = {1: [], 2: []}
+
+    def timed(processes):
+        started = time.perf_counter()
+        found = shared_feature_matrix(patches, PRESETS["default"].features, processes=processes)
+        lasted_s[processes].append(time.perf_counter() - started)
+        return found
 
     def alone_before_each_round():
-        started = time.perf_counter()
-        shared_feature_matrix(patches, settings, processes=1)
-        alone_s.append(time.perf_counter() - started)
-        return (patches, settings), {"processes": 2}
+        timed(1)
+        return (2,), {}
 
-    found = benchmark.pedantic(shared_feature_matrix, setup=alone_before_each_round, rounds=2)
+    found = benchmark.pedantic(timed, setup=alone_before_each_round, rounds=2)
     assert len(found) == PATCHES
-    benchmark.extra_info["figure"] = min(alone_s) / benchmark.stats.stats.min
+    benchmark.extra_info["figure"] = min(lasted_s[1]) / min(lasted_s[2])
