@@ -19,7 +19,7 @@ from odometry.table import Table
 # a low pass or with digits 0.98.
 CHANGES, VALUES = 0.95, 0.999
 # Of the second differences, by a weighted sum of rows: at most 0.07 in the same recordings; of
-# copies that are averaged, republished or rounded coarsely 0.9 to 1.
+# copies that are averaged or rounded coarsely 0.9 to 1.
 BY_ROWS = 0.9
 QUIET_RAD_S = 0.0005  # noise of a gyroscope on a stationary robot: none that moves has less
 SMOOTH_RAD_S = 0.1 * QUIET_RAD_S  # left by own rows: a simulation without noise
@@ -31,6 +31,27 @@ ONE_SIDE = 0.01  # of the difference of the treads, that the mean adds: sides of
 OWN_WIDTH = 0.01  # of a width, less one: it is the track_width of run.toml
 LEAST_DELAY_S = 0.01
 SIMULATED = "; or the drive was simulated without noise"
+CAUSES = {  # and remedies
+    "gyroscope_is_treads": (
+        "gyro_z was computed from the treads (the twist of an odometry topic saved as a "
+        "gyroscope): it is no sensor and adds nothing",
+        "Save the yaw rate of the IMU itself (sensor_msgs/Imu), or remove the column; until then "
+        "the commands leave it out",
+    ),
+    "treads_are_gyroscope": (
+        "v_left and v_right were computed from a speed and the turn rate of the gyroscope (v -+ "
+        "w b/2: the twist of a filter or a driver, not wheels): their difference adds nothing",
+        "Save the speeds of the wheels themselves (sensor_msgs/JointState): how this robot turns "
+        "by its treads (ICRs, slip in turns) cannot be learned from these",
+    ),
+    "turns_recorded_once": (
+        "Either gyro_z was computed from the treads (the twist of an odometry topic saved as a "
+        "gyroscope), or v_left and v_right from a speed and the turn rate of the gyroscope (v -+ "
+        "w b/2): these cannot be distinguished",
+        "Save what the wheels (sensor_msgs/JointState) and the IMU (sensor_msgs/Imu) measure; "
+        "until then one of both columns adds nothing, and neither confirms the other",
+    ),
+}
 
 
 def copied_turns(evidence: Evidence) -> Iterator[Finding]:
@@ -45,12 +66,13 @@ def copied_turns(evidence: Evidence) -> Iterator[Finding]:
     copied = turns.gyroscope or turns.treads or turns.by_rows > BY_ROWS
     if not copied or turns.without_noise:
         return
+    name = "turns_recorded_once"
     if turns.is_no_gyroscope:
-        yield _gyroscope_is_treads(evidence, turns)
+        name = "gyroscope_is_treads"
     elif turns.are_no_treads:
-        yield _treads_are_gyroscope(evidence, turns)
-    else:
-        yield _one_of_both(evidence, turns)
+        name = "treads_are_gyroscope"
+    cause, remedy = CAUSES[name]
+    yield Finding(name, Level.WARNING, _seen(evidence, turns), cause + SIMULATED, remedy)
 
 
 @dataclass(frozen=True)
@@ -96,13 +118,11 @@ class CopiedTurns:
         left, right = self.evidence.speeds_m_s.T
         treads = (self.evidence.stamps_s, right - left)
         gyroscope = self.evidence.yaw_rate
-        of_gyroscope = explained_by_rows(*gyroscope, *treads)
-        of_treads = explained_by_rows(*treads, *gyroscope)
-        noise_rad_s = {
-            of_gyroscope.share: of_gyroscope.noise,
-            of_treads.share: abs(found.slope) * of_treads.noise,
-        }
-        return max((s for s, noise in noise_rad_s.items() if noise < QUIET_RAD_S), default=0.0)
+        ways = (
+            (explained_by_rows(*gyroscope, *treads), 1.0),
+            (explained_by_rows(*treads, *gyroscope), abs(found.slope)),  # from m/s to rad/s
+        )
+        return max((by.share for by, rad in ways if rad * by.noise < QUIET_RAD_S), default=0.0)
 
     @property
     def width_m(self) -> float:
@@ -196,44 +216,6 @@ def _seen(evidence: Evidence, turns: CopiedTurns) -> str:
     if found.smoothed_s > LEAST_DELAY_S:
         words += f"; through a low pass of {found.smoothed_s:.2g} s"
     return words
-
-
-def _gyroscope_is_treads(evidence: Evidence, turns: CopiedTurns) -> Finding:
-    return Finding(
-        "gyroscope_is_treads",
-        Level.WARNING,
-        _seen(evidence, turns),
-        "gyro_z was computed from the treads (the twist of an odometry topic saved as a "
-        f"gyroscope): it is no sensor and adds nothing{SIMULATED}",
-        "Save the yaw rate of the IMU itself (sensor_msgs/Imu), or remove the column; until then "
-        "the commands leave it out",
-    )
-
-
-def _treads_are_gyroscope(evidence: Evidence, turns: CopiedTurns) -> Finding:
-    return Finding(
-        "treads_are_gyroscope",
-        Level.WARNING,
-        _seen(evidence, turns),
-        "v_left and v_right were computed from a speed and the turn rate of the gyroscope (v -+ "
-        "w b/2: the twist of a filter or a driver, not wheels): their difference adds nothing"
-        + SIMULATED,
-        "Save the speeds of the wheels themselves (sensor_msgs/JointState): how this robot turns "
-        "by its treads (ICRs, slip in turns) cannot be learned from these",
-    )
-
-
-def _one_of_both(evidence: Evidence, turns: CopiedTurns) -> Finding:
-    return Finding(
-        "turns_recorded_once",
-        Level.WARNING,
-        _seen(evidence, turns),
-        "Either gyro_z was computed from the treads (the twist of an odometry topic saved as a "
-        "gyroscope), or v_left and v_right from a speed and the turn rate of the gyroscope (v -+ "
-        f"w b/2): these cannot be distinguished{SIMULATED}",
-        "Save what the wheels (sensor_msgs/JointState) and the IMU (sensor_msgs/Imu) measure; "
-        "until then one of both columns adds nothing, and neither confirms the other",
-    )
 
 
 def without_gyroscope(run: Run) -> Run:

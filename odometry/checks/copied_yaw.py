@@ -8,16 +8,14 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.computed_poses import COPIED_WAY, Copy
-from odometry.checks.copied_turns import is_copy, without_gyroscope
+from odometry.checks.copied_turns import LEAST_TURN_RAD, SIMULATED, is_copy, without_gyroscope
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.repetition import Repetition, repetition
 from odometry.run import Run
 
 LEAST_POSES = 100
-LEAST_TURN_RAD = 2.0  # in all
 MORE_ROWS = 1.5
-SIMULATED = "; or the drive was simulated without noise"
 
 
 def copied_yaw(evidence: Evidence) -> Iterator[Finding]:

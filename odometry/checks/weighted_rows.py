@@ -1,4 +1,4 @@
-"""How exactly a column is a weighted sum of neighbouring rows of another: averaged, republished."""
+"""How exactly a column is a weighted sum of neighbouring rows of another: averaged, filtered."""
 
 from dataclasses import dataclass
 

@@ -16,7 +16,8 @@ from tests.odometry.checks.test_other_robots import drive, winding
 
 def test_no_finding_is_its_own_consequence():
     """Two that explain each other would both be left out, and the recording be called clean."""
-    TopologicalSorter(CONSEQUENCES).prepare()
+    causes_first = list(TopologicalSorter(CONSEQUENCES).static_order())  # CycleError of a circle
+    assert set(CONSEQUENCES) <= set(causes_first)
 
 
 def test_yaw_that_lost_its_sign_is_no_heading():
