@@ -22,7 +22,7 @@ from .frames import Frame
 from .gap.gap import find_gap
 from .geometry.tilt import steepest_slope
 from .icrs.measured import icr_medians, measured_icrs
-from .icrs.points import icr_covariances, icr_indices, icrs_of_twist, turn_is_told
+from .icrs.points import icr_covariances, icr_indices, icrs_of_twist, turn_is_known
 from .identification.identify import identify
 from .identification.start import SolverConfig
 from .installed import shipped_data
@@ -118,7 +118,7 @@ __all__ = [
     "simulate_contact",
     "steepest_slope",
     "stretches",
-    "turn_is_told",
+    "turn_is_known",
     "window_errors",
     "windows_of",
     "write_feel_model",

@@ -74,7 +74,7 @@ def evaluated_with(second: SecondReplay) -> str:
 
 
 def simple_is_better(scores: Mapping[str, Score]) -> list[str]:
-    """A sentence where a trajectory that needs no fit errs less than the odometer."""
+    """A sentence where a trajectory that needs no fit has a smaller error than the odometer."""
     own = scores["odometer"].mean_translation_per_m
     errors = {name: scores[name].mean_translation_per_m for name in NEEDS_NO_FIT if name in scores}
     better = {error: name for name, error in errors.items() if error is not None}

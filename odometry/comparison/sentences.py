@@ -18,7 +18,7 @@ def sentences(
     found: Sequence[Difference],
     fitness: Sequence[RunFitness] = (),
 ) -> list[str]:
-    """Which model errs least, which cannot be distinguished from it, and what contradicts that.
+    """Which model has the smallest error, which cannot be distinguished, what contradicts it.
 
     Parameters
     ----------
@@ -100,9 +100,9 @@ def _best(
         and difference.interval.holds_zero
     ]
     if not tied:
-        return [f"{best} errs least {where}, {error}; {others} errs more."]
+        return [f"{best} has the smallest error {where}, {error}; {others} has a larger one."]
     return [
-        f"{best} errs least {where}, {error}.",
+        f"{best} has the smallest error {where}, {error}.",
         f"{best} cannot be distinguished {where} from {'; '.join(tied)}.",
     ]
 
@@ -119,9 +119,9 @@ def _medians(place: Place, quantity: str, ranked: Mapping[str, Summary]) -> list
         return []
     first, second = (ranked[model] for model in min(ratios, key=lambda pair: ratios[pair]))
     return [
-        f"Mean and median disagree on {place.terrain} in {quantity}: {first.model} errs less than "
-        f"{second.model} by the mean ({first.means[quantity]:.4f} against "
-        f"{second.means[quantity]:.4f} {QUANTITIES[quantity]}) and more by the median "
+        f"Mean and median disagree on {place.terrain} in {quantity}: {first.model} has a smaller "
+        f"error than {second.model} by the mean ({first.means[quantity]:.4f} against "
+        f"{second.means[quantity]:.4f} {QUANTITIES[quantity]}) and a larger one by the median "
         f"({first.medians[quantity]:.4f} against {second.medians[quantity]:.4f}): a few windows "
         "with large errors decide the means."
     ]
@@ -130,7 +130,7 @@ def _medians(place: Place, quantity: str, ranked: Mapping[str, Summary]) -> list
 def _whole_runs(
     place: Place, ranked: Mapping[str, Summary], fitness: Sequence[RunFitness]
 ) -> list[str]:
-    """Models that err less than others over windows, and more on whole runs."""
+    """Models with smaller errors than others over windows, and larger ones on whole runs."""
     of_all = _whole_runs_of_all(list(ranked), fitness)
     if not of_all:
         return []
@@ -145,8 +145,8 @@ def _whole_runs(
         ]
         if better:
             said.append(
-                f"On whole runs on {place.terrain} {model} (J/N {pooled[model]:.3g}) errs more "
-                f"than {', '.join(better)}, although its mean translation error over "
+                f"On whole runs on {place.terrain} {model} (J/N {pooled[model]:.3g}) has a larger "
+                f"error than {', '.join(better)}, although its mean translation error over "
                 f"{place.horizon_m:g} m is less."
             )
     return said
@@ -184,7 +184,7 @@ def _effective_width(
         for model in pooled
         if pooled[model] < CLEARLY_LESS * pooled[EFFECTIVE_WIDTH]
     ]
-    also = f"; on whole runs these err less: {', '.join(better)}" if better else ""
+    also = f"; on whole runs these have smaller errors: {', '.join(better)}" if better else ""
     return [f"{said}{also}."]
 
 
@@ -204,6 +204,6 @@ def _pooled(models: Iterable[str], of_all: Sequence[Mapping[str, Fitness]]) -> d
 
 
 def _lost(model: str, other: str, of_all: Sequence[Mapping[str, Fitness]]) -> str:
-    """On how many runs a model errs more than another one."""
+    """On how many runs the error of a model is larger than that of another one."""
     lost = sum(of_run[model].mean > of_run[other].mean for of_run in of_all)
     return f"{lost} of {len(of_all)} runs"

@@ -89,7 +89,7 @@ class Difference:
     first, second : str
     windows : int
     interval : Interval
-        Below 0 where the first errs less, in the unit of the quantity.
+        Below 0 where the first has the smaller error, in the unit of the quantity.
     """
 
     place: Place

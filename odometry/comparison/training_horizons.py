@@ -98,9 +98,9 @@ def _summaries(
 def best_training_horizons(
     errors: Sequence[HorizonErrors], quantity: str
 ) -> dict[float, tuple[float, ...]]:
-    """By evaluation horizon, the training horizons with the least median error of one model.
+    """By evaluation horizon, the training horizons with the smallest median error of one model.
 
-    All that err at most 5 % more than the least, in increasing order; those with which the model
+    All with errors at most 5 % above the smallest, in increasing order; those with which the model
     could not be evaluated on all windows do not take part.
     """
     by_horizon: dict[float, dict[float, float]] = {}
@@ -117,7 +117,7 @@ def best_training_horizons(
 
 
 def horizon_sentence(model: str, errors: Sequence[HorizonErrors], quantity: str) -> str:
-    """Which training horizon (`--horizon`) errs least over which evaluation horizons."""
+    """The training horizon (`--horizon`) of the smallest error over each evaluation horizon."""
     tried = sorted({each.training_m for each in errors if each.summary.complete})
     over: dict[tuple[float, ...], list[str]] = {}
     for evaluation_m, best_m in best_training_horizons(errors, quantity).items():
@@ -129,7 +129,7 @@ def horizon_sentence(model: str, errors: Sequence[HorizonErrors], quantity: str)
         + (
             "the errors of all are the same"
             if list(best_m) == tried
-            else f"{_listed([f'{h:g}' for h in best_m], 'or')} m errs least"
+            else f"the error with {_listed([f'{h:g}' for h in best_m], 'or')} m is the smallest"
         )
         for best_m, horizons in over.items()
     ]

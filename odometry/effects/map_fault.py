@@ -64,7 +64,7 @@ class StretchedMap(MapFault):
     remedy = "measure two known distances across each other, and scale the map by them"
     needs = "headings over half a turn or more"
     alike: ClassVar[dict[str, str]] = {
-        "wheel_scale": "a distance that a tape measures: wheels that are off err in any direction"
+        "wheel_scale": "a distance that a tape measures: wheels are wrong in every direction"
     }
 
     def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the interface

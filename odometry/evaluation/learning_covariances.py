@@ -1,4 +1,4 @@
-"""What an odometer errs by while its filter still learns its parameters."""
+"""The error of an odometer while its filter still learns its parameters."""
 
 from collections.abc import Iterator
 

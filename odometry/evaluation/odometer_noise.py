@@ -67,7 +67,7 @@ def motion_errors(
 def measured_noise(
     path: OpenLoopPath, rows: IntArray, reference: FloatArray
 ) -> OdometerNoise | None:
-    """Find the variances by which an odometer errs as it does.
+    """Find the variances of noise that explain the errors of an odometer.
 
     Squared errors of stretches of several lengths are the sum of what each source adds, weighed
     with the same weight for each length: least squares over variances with a lower limit (the

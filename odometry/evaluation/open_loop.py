@@ -105,8 +105,8 @@ class Fitness:
         How many of them have a measured z.
     x_m2, y_m2, z_m2, yaw_rad2 : float
         Sums of squared errors, divided by N. A pose without a measured z adds nothing to z.
-        Whole turns of yaw count: an odometer that is two turns off errs more than one that is
-        right.
+        Whole turns of yaw count: an odometer that is two turns off has a larger error
+        than one that is right.
     """
 
     poses: int

@@ -63,8 +63,8 @@ def _follow_a_variable(search: Search, found: Explanation) -> str:
     scenes, base = search.fitter.measured.scenes, search.fitter.calibration.base
     for effect in found.effects:
         if isinstance(effect, InCourse) and isinstance(effect.in_time, InBursts):
-            told = variable_of_events(effect.in_time, scenes, base)
-            reason = come_by_themselves(*told, search.config)
+            followed = variable_of_events(effect.in_time, scenes, base)
+            reason = come_by_themselves(*followed, search.config)
             if reason:
                 return reason
     return ""

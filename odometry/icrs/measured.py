@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.geometry import se2
-from odometry.icrs.points import NO_SLIP, icr_covariances, icrs_of_twist, turn_is_told
+from odometry.icrs.points import NO_SLIP, icr_covariances, icrs_of_twist, turn_is_known
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.noise import pose_variances, window_covariances
@@ -123,7 +123,7 @@ def icrs_of_windows(
     alphas : (2,)
         Slip factors of the left and the right tread.
     probability : float
-        Of the side of a turn: see `turn_is_told`.
+        Of the side of a turn: see `turn_is_known`.
     """
     moved = np.abs(windows.measured[:, 2]) < HALF_TURN_RAD
     windows = windows.where(moved)
@@ -134,7 +134,7 @@ def icrs_of_windows(
     duration_s, speeds = _mean_speeds(windows)
     twists = displacements / duration_s[:, None]
     of_twist = of_displacement / np.square(duration_s)[:, None, None]
-    known = turn_is_told(twists[:, 2], np.sqrt(of_twist[:, 2, 2]), probability)
+    known = turn_is_known(twists[:, 2], np.sqrt(of_twist[:, 2, 2]), probability)
     of_speeds = np.square(SPEED_SHARE * speeds)
     return MeasuredIcrs(
         windows.start_s,

@@ -30,7 +30,7 @@ def icrs_of_twist(
     Returns
     -------
     (..., 3)
-        y_left, y_right, x_icr [m]; NaN without any turn. `turn_is_told` says which points noise
+        y_left, y_right, x_icr [m]; NaN without any turn. `turn_is_known` says which points noise
         leaves a meaning.
 
     Examples
@@ -64,7 +64,7 @@ def icr_covariances(
 ) -> FloatArray:
     """Covariance of `icrs_of_twist` by the noise of twists and speeds, to first order.
 
-    First order holds where omega is several times its standard deviation: see `turn_is_told`.
+    First order holds where omega is several times its standard deviation: see `turn_is_known`.
 
     Parameters
     ----------
@@ -101,7 +101,9 @@ def icr_covariances(
         return np.asarray(of_numerators / np.square(twists[..., 2, None, None]))
 
 
-def turn_is_told(omega_rad_s: FloatArray, sigma_rad_s: FloatArray, probability: float) -> BoolArray:
+def turn_is_known(
+    omega_rad_s: FloatArray, sigma_rad_s: FloatArray, probability: float
+) -> BoolArray:
     """Whether a robot surely turned, and to which side: the sign of omega has this probability.
 
     Where it has not, the interval of an ICR at this probability has no ends (Fieller 1954): the
@@ -119,7 +121,7 @@ def turn_is_told(omega_rad_s: FloatArray, sigma_rad_s: FloatArray, probability: 
     >>> import numpy as np
     >>> import odometry
     >>> omega_rad_s = np.array([0.5, 0.01])  # a turn, and nearly straight
-    >>> odometry.turn_is_told(omega_rad_s, np.array([0.02, 0.02]), probability=0.95).tolist()
+    >>> odometry.turn_is_known(omega_rad_s, np.array([0.02, 0.02]), probability=0.95).tolist()
     [True, False]
     """
     least_sigmas = NormalDist().inv_cdf(probability)

@@ -145,9 +145,9 @@ class Halves:
         ]
         return (
             "the first and the second half of the runs give different parameters "
-            f"({', '.join(named)}); with those of the other, each half errs {self.worse:.1f} "
-            "times as much: the values are an average of both. Identify parts alone (--from, "
-            "--to), or name the terrain of each row (column terrain of odometry.csv)"
+            f"({', '.join(named)}); with those of the other, the error of each half is "
+            f"{self.worse:.1f} times as large: the values are an average of both. Identify parts "
+            "alone (--from, --to), or name the terrain of each row (column terrain of odometry.csv)"
         )
 
     @property

@@ -74,9 +74,10 @@ def profile_interval(fit: Fit, name: str, problem: AnyProblem, sizes: FloatArray
 
     It holds the values at which the least loss over the other parameters is above the best by
     less than t^2 (Venzon and Moolgavkar 1988; an F test with one degree of freedom, as in lmfit).
-    As neighbouring windows share noise and the model errs itself, the loss is scaled so that its
-    curvature agrees with the variance of sandwich form (Chandler and Bate 2007 eq. 9): where the
-    loss is quadratic the interval is that of Student's t. The weights of outliers are held.
+    As neighbouring windows share noise and the model has errors of its own, the loss is scaled so
+    that its curvature agrees with the variance of sandwich form (Chandler and Bate 2007 eq. 9):
+    where the loss is quadratic the interval is that of Student's t. The weights of outliers are
+    held.
 
     Parameters
     ----------

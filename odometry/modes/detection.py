@@ -136,14 +136,18 @@ class Score:
     false_switches: int
 
     @property
-    def told(self) -> tuple[Detection, ...]:
+    def detected(self) -> tuple[Detection, ...]:
         """Stretches whose mode was named."""
         return tuple(one for one in self.detections if np.isfinite(one.after_s))
 
     @property
     def median_after_s(self) -> float:
         """Median time to detection, NaN without one."""
-        return float(np.median([one.after_s for one in self.told])) if self.told else float("nan")
+        return (
+            float(np.median([one.after_s for one in self.detected]))
+            if self.detected
+            else float("nan")
+        )
 
 
 def score_of(track: ModeTrack, sure: float) -> Score:

@@ -180,7 +180,7 @@ def track_content(followed: Followed, track: ModeTrack) -> dict[str, Any]:
         ],
         "detections": [_detection(one) for one in score.detections],
         "stretches": len(score.detections),
-        "told": len(score.told),
+        "told": len(score.detected),
         "median_after_s": _finite(score.median_after_s),
         "right": _finite(score.right),
         "wrong": _finite(score.wrong),

@@ -138,8 +138,8 @@ def _stretch(one: Detection, answered: str) -> str:
 
 
 def _together(score: Score) -> str:
-    count = f"{len(score.told)} of {len(score.detections)} stretches were detected"
-    if not score.told:
+    count = f"{len(score.detected)} of {len(score.detections)} stretches were detected"
+    if not score.detected:
         return f"{count}; wrong {percent(score.wrong_of_all)} of all the time."
     return (
         f"{count}, after {score.median_after_s:.1f} s in the median; right "

@@ -26,7 +26,7 @@ FAR_RAD = np.radians(20.0)  # of another yaw that leaves it undetermined
 RULED_OUT = 1e-3  # share of the probability of the best, below which a start is ruled out
 SURE_RAD = 0.35  # of both filters, where their disagreement counts
 # Chosen on 19 recordings (`tests/studies/positions_yaw.py`), so that 95 % are within 2 of them:
-LASTING = 2.5  # slip lasts, so that the yaw errs by so many of the filter's standard deviations
+LASTING = 2.5  # slip lasts, so that the error of yaw is so many of the filter's standard deviations
 LEAST_RAD = np.radians(3.0)
 LARGEST_RAD = np.radians(30.0)  # a larger one is of no use
 LEAST_SHARE = 0.5  # of the positions, at which the yaw must be estimated
@@ -124,7 +124,7 @@ def _disagreement(carrier: Carrier, of: Filtered, best: int, last_yaw_rad: float
     return float(np.sqrt(np.mean(off)))
 
 
-NOISE_LENGTHS = 28.0  # a window so many times longer than the noise errs by 0.05 m per m for it
+NOISE_LENGTHS = 28.0  # a window so many times longer than the noise is off by 0.05 m per m for it
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,7 @@ def training_horizon_picture(
         f"Median errors of {name} by training and evaluation horizon.",
         f"{name}: median held-out errors by training horizon h_t and evaluation horizon h_e (as "
         "Baril 2020 Fig. 4). Colour: how many times the least of the column; framed: the least of "
-        "the column, and what errs at most 5 % more. Every column is of the same "
+        "the column, and what is at most 5 % above it. Every column is of the same "
         "windows; white: not evaluated on all of them.",
     )
 

@@ -47,7 +47,7 @@ def lead(rows: Sequence[Row]) -> str:
         worst = max(errors, key=errors.__getitem__)
         median = float(np.median(list(errors.values())))
         said.append(
-            f"The odometer errs by {median:.4f} m per m in the median run, and by "
+            f"The error of the odometer is {median:.4f} m per m in the median run, and "
             f"{errors[worst]:.4f} in the worst, {worst}."
         )
     return " ".join(said)

@@ -87,7 +87,7 @@ class Tracker:
         mount : (6,), optional
             Where there is one, each second image is first warped to what the first would show if
             all were terrain: the remaining motion is small, and the features keep their shape,
-            by which a tracker of windows errs.
+            by which a tracker of windows is off.
 
         Raises
         ------

@@ -105,7 +105,7 @@ def pinhole_of_equidistant(
     ------
     CameraError
         If the image shows rays of more than WIDEST_DEG off the axis, the model turns back on
-        itself within the image, or the fit errs by more than WORST_PX.
+        itself within the image, or the fit is off by more than WORST_PX.
     """
     corners = np.array([[0, 0], [1, 0], [0, 1], [1, 1]]) * (np.array(image_size) - 1)
     focus = matrix[[0, 1], [0, 1]]

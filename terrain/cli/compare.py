@@ -139,8 +139,8 @@ FOLDER = RunFolder()
     type=float,
     metavar="H",
     help="Identify over windows of this wheel travel [m] as well as over those of --horizon (2 m "
-    "if not given); repeat. Says which of these errs least over which evaluation horizon; each "
-    "costs as many fits as the comparison.",
+    "if not given); repeat. Says which of these has the smallest error over which evaluation "
+    "horizon; each costs as many fits as the comparison.",
 )
 @click.option("--terrain", metavar="NAME", help="Terrain of runs that name none.")
 @click.option(

@@ -148,6 +148,6 @@ def _no_gain(found: "Identified") -> list[str]:
     ):
         return []
     return [
-        "held out, it errs no less than no model at all: too little data, or an effect that this "
-        "model does not have"
+        "held out, its error is no smaller than that of no model at all: too little data, or an "
+        "effect that this model does not have"
     ]

@@ -47,7 +47,7 @@ def read_corrections(folder: Path) -> Corrections:
     output = read_manifest(folder)
     whole = output is not None and output.state == FINISHED
     moved, paths, removed = {}, [], set()
-    for path, told in _rows(manifest):
+    for path, first in _rows(manifest):
         name = Path(path).name
         found = [path] if (folder / path).is_file() else _elsewhere(folder, name)
         if len(found) > 1:
@@ -56,8 +56,8 @@ def read_corrections(folder: Path) -> Corrections:
             )
         if not found and whole:
             removed.add(name)
-        label = Path(found[0]).parent.name if found else told
-        if label != told:
+        label = Path(found[0]).parent.name if found else first
+        if label != first:
             moved[name] = label
         paths += [place for place in found if place != path]
     return Corrections(moved, frozenset(removed), tuple(paths))
@@ -68,11 +68,11 @@ def _rows(manifest: Path) -> list[tuple[str, str]]:
         if not set(header) >= COLUMNS:
             return []
         cells = [cells for _, cells in blocks]
-    path, told = (header.index(name) for name in ("path", "told"))
+    path, label = (header.index(name) for name in ("path", "told"))
     return [
         (unquoted_text(name), unquoted_text(terrain))
         for block in cells
-        for name, terrain in zip(block[path], block[told], strict=True)
+        for name, terrain in zip(block[path], block[label], strict=True)
     ]
 
 

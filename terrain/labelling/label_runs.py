@@ -66,7 +66,7 @@ class LabelledTerrain:
 
 def label_runs(
     runs: Sequence[Run],
-    told: Sequence[GivenTerrain],
+    given: Sequence[GivenTerrain],
     config: LabelConfig | None = None,
     *,
     parameters: ParameterSet | None = None,
@@ -79,7 +79,7 @@ def label_runs(
     ----------
     runs : sequence of Run
         With images and a camera.
-    told : sequence of GivenTerrain
+    given : sequence of GivenTerrain
         Of each run.
     config : LabelConfig, optional
     parameters : ParameterSet, optional
@@ -104,11 +104,11 @@ def label_runs(
     ['gravel']
     """
     config, corrections = config or LabelConfig(), corrections or Corrections()
-    finders = [square_finder(run, of, parameters) for run, of in zip(runs, told, strict=True)]
+    finders = [square_finder(run, of, parameters) for run, of in zip(runs, given, strict=True)]
     scale = patch_scale(finders, config)
     squares: list[LabelledSquare] = []
     seen, left_out = {}, {run.folder: Counter[str]() for run in runs}
-    for finder, of, name in zip(finders, told, _names(runs), strict=True):
+    for finder, of, name in zip(finders, given, _names(runs), strict=True):
         rows = finder.image_rows(scale.side_m / 2)
         coarsest_m = scale.coarsest_m
         found = list(finder.squares(scale.side_m, coarsest_m, rows, show_progress=show_progress))

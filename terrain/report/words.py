@@ -45,8 +45,8 @@ def headline(lines: ReportLines, scores: Mapping[str, Score]) -> str:
         if of.mean_translation_per_m is not None
     ]
     compared = (
-        f"Over stretches of {horizon_m:g} m the odometer errs by {number(own, 4)} m per m of wheel "
-        f"travel against the {lines.reference_name}: {', '.join(parts)}."
+        f"Over stretches of {horizon_m:g} m the error of the odometer is {number(own, 4)} m per m "
+        f"of wheel travel against the {lines.reference_name}: {', '.join(parts)}."
     )
     by_name = {name: scores[label] for name, label in LABELS.items() if label in scores}
     return " ".join([compared, *remarks(by_name, result.off_at_the_end_m, result.replay.events)])

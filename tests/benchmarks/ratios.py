@@ -12,10 +12,10 @@ class Ratio:
     ----------
     work : str
     of, to : str
-        Names of two benchmarks; the ratio of their times. With `told`, what the figure of `of` is.
+        Names of two benchmarks; the ratio of their times. With `is_figure`, what that of `of` is.
     aim : float
         At most so much; where `more_is_better`, at least.
-    told : bool
+    is_figure : bool
         Whether `of` states its own figure, as `figure` in its extra info.
     more_is_better : bool
     """
@@ -24,7 +24,7 @@ class Ratio:
     of: str
     to: str
     aim: float
-    told: bool = False
+    is_figure: bool = False
     more_is_better: bool = False
 
 
@@ -62,7 +62,7 @@ RATIOS = (
             f"test_imm_against_filterpys[all filters at once-{modes}]",
             "times faster than filterpy's",
             aim,
-            told=True,
+            is_figure=True,
             more_is_better=True,
         )
         for modes, aim in ((3, 3), (16, 15))
@@ -72,17 +72,17 @@ RATIOS = (
         "test_identification_against_a_loop",
         "times faster than a plain loop",
         50,
-        told=True,
+        is_figure=True,
         more_is_better=True,
     ),
-    Ratio("gap, a case by formulas", "test_a_gap_case[curvature]", "s", 1, told=True),
-    Ratio("gap, a case with contacts", "test_a_gap_case[contact_slope]", "s", 4, told=True),
+    Ratio("gap, a case by formulas", "test_a_gap_case[curvature]", "s", 1, is_figure=True),
+    Ratio("gap, a case with contacts", "test_a_gap_case[contact_slope]", "s", 4, is_figure=True),
     Ratio(
         "contact simulator, one drive",
         "test_simulate_contact[coulomb-1]",
         "times faster than real time",
         200,
-        told=True,
+        is_figure=True,
         more_is_better=True,
     ),
     Ratio(
@@ -90,7 +90,7 @@ RATIOS = (
         "test_training_by_two_processes",
         "times faster than 1 process",
         1.8,
-        told=True,
+        is_figure=True,
         more_is_better=True,
     ),
     Ratio(
@@ -98,11 +98,11 @@ RATIOS = (
         "test_peak_memory_of_a_long_run",
         "times that of the demo five times over",
         1.1,
-        told=True,
+        is_figure=True,
     ),
-    Ratio("--help", "test_a_start[help]", "s", 0.08, told=True),
-    Ratio("first output of run", "test_a_start[run]", "s", 1.0, told=True),
-    Ratio("import of the packages", "test_a_start[import]", "s", 0.05, told=True),
+    Ratio("--help", "test_a_start[help]", "s", 0.08, is_figure=True),
+    Ratio("first output of run", "test_a_start[run]", "s", 1.0, is_figure=True),
+    Ratio("import of the packages", "test_a_start[import]", "s", 0.05, is_figure=True),
 )
 
 
@@ -118,9 +118,9 @@ def ratio_table(medians_s: Mapping[str, float], figures: Mapping[str, float]) ->
     rows = []
     for ratio in RATIOS:
         aim = f"at {'least' if ratio.more_is_better else 'most'} {ratio.aim:g}"
-        if ratio.told and ratio.of in figures:
+        if ratio.is_figure and ratio.of in figures:
             rows.append(Row(ratio.work, figures[ratio.of], ratio.to, aim))
-        elif not ratio.told and ratio.of in medians_s and ratio.to in medians_s:
+        elif not ratio.is_figure and ratio.of in medians_s and ratio.to in medians_s:
             figure = medians_s[ratio.of] / medians_s[ratio.to]
             rows.append(Row(ratio.work, figure, f"times {ratio.to}", aim))
     return rows

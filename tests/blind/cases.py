@@ -94,10 +94,10 @@ class Case:
     truth : dict
         Parameters by effect, and "base": the ICRs of the calibration.
     acceptable : tuple of str
-        Other names that would be honest.
+        Names of other effects that mislead nobody.
     parts : tuple of tuples of str
         The truth in plain words: for each effect, the families of answers that are right.
-    honest : tuple of str
+    acceptable_families : tuple of str
         Families of answers that mislead nobody, "family course" where the course is needed.
     course : str
         Course in time of the truth, or "".
@@ -115,7 +115,7 @@ class Case:
     truth: dict[str, Any]
     acceptable: tuple[str, ...] = ()
     parts: tuple[tuple[str, ...], ...] = ()
-    honest: tuple[str, ...] = ()
+    acceptable_families: tuple[str, ...] = ()
     course: str = ""
     gyroscope: bool = True
 
@@ -142,7 +142,7 @@ def _paper_case(kind, seed, folder, noise, rng):
         truth=drawn.truth,
         acceptable=drawn.acceptable,
         parts=tuple((PLAIN[name],) for name in drawn.effects),
-        honest=(*(PLAIN[name] for name in drawn.acceptable), *ALIKE.get(kind, ())),
+        acceptable_families=(*(PLAIN[name] for name in drawn.acceptable), *ALIKE.get(kind, ())),
         course="from_a_moment" if kind == "traction_loss" else "",
     )
 
@@ -161,7 +161,7 @@ def _hidden_case(kind, seed, folder, noise, rng):
         effects=tuple(part[0] for part in row.true),
         truth=drawn.truth,
         parts=row.true,
-        honest=row.honest if gyroscope else (*row.honest, *row.without_gyroscope),
+        acceptable_families=(*row.acceptable, *(() if gyroscope else row.without_gyroscope)),
         course=row.course,
         gyroscope=gyroscope,
     )

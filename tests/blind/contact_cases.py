@@ -17,7 +17,7 @@ GRAVITY_M_S2 = 9.80665
 ATTEMPTS = 8
 LEAST_SIZE_OF_FLOOR = 2.0
 
-# kind: (true effects, other honest names)
+# kind: (true effects, other acceptable names)
 CONTACT = {
     "contact_slope": (("slope_sliding",), ()),
     "contact_inertia": (("inertia",), ()),

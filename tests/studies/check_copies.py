@@ -5,7 +5,7 @@
 
 TERRAIN_ODOMETRY_DATA names the folder of shared recordings. Each fault of
 tests/blind/faults/copied.py is put into each recording that has what it needs, with each treatment.
-Right, honest (sensors disagree), another cause first, or nothing; as in check_faults.py.
+Right, acceptable (sensors disagree), another cause first, or nothing; as in check_faults.py.
 """
 
 import argparse
@@ -28,7 +28,7 @@ TREATED = tuple(fault for fault in copied.FAULTS if fault.draw.__code__.co_argco
 
 
 def answer(fault, base, seed, treatment):
-    """One of right, honest, wrong, nothing; and the first new finding."""
+    """One of right, acceptable, wrong, nothing; and the first new finding."""
     rng = np.random.default_rng([seed, *fault.key.encode(), *base.name.encode()])
     more = () if treatment is None else (treatment,)
     with tempfile.TemporaryDirectory() as place:
@@ -41,7 +41,7 @@ def answer(fault, base, seed, treatment):
     first = found[0]
     if right(fault, *first[2:]):
         return "right", first[0]
-    return "honest" if first[0] == UNNAMED else "wrong", f"{first[0]}: {first[2]}"
+    return "acceptable" if first[0] == UNNAMED else "wrong", f"{first[0]}: {first[2]}"
 
 
 def main():
@@ -62,7 +62,7 @@ def main():
     for fault in copied.FAULTS:
         if options.only and fault.key not in options.only:
             continue
-        print(f"\n{fault.key}: {'right honest wrong nothing':>30}")
+        print(f"\n{fault.key}: {'right  acceptable  wrong  nothing':>38}")
         for treatment in copied.TREATMENTS if fault in TREATED else (None,):
             print_row(fault, suitable(fault, bases), options.seed, treatment)
 
@@ -78,7 +78,7 @@ def print_row(fault, bases, seed, treatment):
         if kind != "right":
             lines.append(f"      {kind}: {base.name}: {words[:180]}")
     name = "drawn" if treatment is None else treatment.__name__
-    print(f"  {name:18}", *(f"{counts[k]:6}" for k in ("right", "honest", "wrong", "nothing")))
+    print(f"  {name:18}", *(f"{counts[k]:8}" for k in ("right", "acceptable", "wrong", "nothing")))
     print("\n".join(lines), flush=True)
 
 

@@ -1,4 +1,4 @@
-"""Whether the filter errs as much as it says: NEES and NIS over seeds, in simulation.
+"""Whether the errors of the filter are as large as it says: NEES and NIS over seeds, in simulation.
 
     python -m tests.studies.estimation_consistency [--seeds 20] [--duration 60] [--gyroscope]
                                                    [--real [--seven]]

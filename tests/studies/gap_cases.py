@@ -30,7 +30,15 @@ from tests.studies.gap_table import mistakes_of, table_of
 NOISES = (1.0, 0.5, 2.0)
 COLUMNS = (
     *("group", "kind", "seed", "noise", "gyroscope", "score", "verdict", "form", "effects"),
-    *("equivalent", "true", "honest", "course", "all_named", "course_right", "named_equivalent"),
+    *(
+        "equivalent",
+        "true",
+        "acceptable",
+        "course",
+        "all_named",
+        "course_right",
+        "named_equivalent",
+    ),
     *("before", "after", "floor", "worse", "closed", "cpu_s", "error"),
 )
 
@@ -109,13 +117,15 @@ def judged(case: Case, found: dict[str, Any]) -> dict[str, str]:
     share = held["share_closed"]
     return {
         "gyroscope": f"{int(case.gyroscope)}",
-        "score": score(verdict, course, case.parts, case.honest, [name for name, _ in others]),
+        "score": score(
+            verdict, course, case.parts, case.acceptable_families, [name for name, _ in others]
+        ),
         "verdict": verdict,
         "form": "; ".join(one["form"] for one in found["effects"]),
         "effects": "+".join(name for name, _ in named),
         "equivalent": "+".join(name for name, _ in others),
         "true": "+".join("|".join(part) for part in case.parts),
-        "honest": "|".join(case.honest),
+        "acceptable": "|".join(case.acceptable_families),
         "course": case.course,
         "all_named": f"{int(all_named(named, case.parts))}",
         "course_right": f"{int(course == case.course)}",

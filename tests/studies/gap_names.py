@@ -49,19 +49,18 @@ def score(
     verdict: str,
     course: str,
     parts: Sequence[Sequence[str]],
-    honest: Sequence[str],
+    acceptable: Sequence[str],
     equivalent: Sequence[str] = (),
 ) -> str:
-    """Score of a first name: right, honest, unknown, none, or wrong.
+    """Score of a first name: right, acceptable, unknown, none, or wrong.
 
-    Honest is also the name of an effect beside which the answer says that it may as well be a true
-    one.
+    Acceptable is also the name of an effect that the answer calls equivalent to a true one.
     """
     true = [family for part in parts for family in part] or ["none"]
     if meant(verdict, course, true):
         return "right"
-    if meant(verdict, course, honest) or any(meant(name, "", true) for name in equivalent):
-        return "honest"
+    if meant(verdict, course, acceptable) or any(meant(name, "", true) for name in equivalent):
+        return "acceptable"
     return verdict if verdict in ("unknown", "none") else "wrong"
 
 

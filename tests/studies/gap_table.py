@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 Row = Mapping[str, str]
-SCORES = ("right", "honest", "wrong", "unknown", "none", "failed")
+SCORES = ("right", "acceptable", "wrong", "unknown", "none", "failed")
 Z_95 = 1.959964
 
 

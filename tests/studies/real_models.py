@@ -4,13 +4,13 @@
 
 Runs with a pose are grouped by robot and ground as INDEX.csv names them; recordings whose ground
 is not stated are one ground of each robot. A run is evaluated with models identified on the other
-runs of its group, where there is one run each half by the other. `least` is the candidate that errs
-least, translation and rotation as ratios to those of `icr` added up, when the runs that it may see
-are split once more in the same way; `chosen` is the same among those that err no more than `icr`
-in either. Neither sees what it is evaluated on, but the rule of `chosen` was added after a first
-look at how `least` fares. H of the inertia models is held at 1, since it acts
-inside a sign alone. Slow models are identified on a part of the windows, evenly picked: at most 120
-for inertia, 45 for `contact`.
+runs of its group, where there is one run each half by the other. `least` is the candidate with the
+smallest error, translation and rotation as ratios to those of `icr` added up, when the runs that
+are not held out are split once more in the same way; `chosen` is the same among those with errors
+no larger than `icr` in either. Neither uses what it is evaluated on, but the rule of `chosen` was
+added after a first look at the results of `least`. H of the inertia models is held at 1, since it
+acts inside a sign alone. Slow models are identified on a part of the windows, evenly picked: at
+most 120 for inertia, 45 for `contact`.
 
 Printed, and written to FOLDER/real_models.md: a table robot x ground x model of mean errors per
 metre over 2 m, with paired 95 % intervals of the difference to `icr`, and what they say.
@@ -82,7 +82,7 @@ class Remembered(Candidate):
 
 @dataclass(frozen=True)
 class Least(Candidate):
-    """The candidate that errs least where the fitted parts are split once more.
+    """The candidate with the smallest error where the fitted parts are split once more.
 
     Attributes
     ----------

@@ -20,7 +20,7 @@ def found(*checks, noise=USUAL_NOISE, own=()):
 @pytest.mark.parametrize(
     ("mean", "word"), [(3.0, "consistent"), (9.0, "too small"), (0.5, "too large")]
 )
-def test_a_verdict_says_which_way_a_covariance_errs(mean, word):
+def test_a_verdict_says_in_which_direction_a_covariance_is_wrong(mean, word):
     assert verdict(check(mean)) == word
 
 

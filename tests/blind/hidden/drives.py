@@ -229,34 +229,38 @@ def tread_trim(rng, scene):
 
 
 DRIVES = {
-    "top_speed": Kind(top_speed, (("drive limits",),), honest=("tread slip",)),
-    "acceleration_limit": Kind(acceleration_limit, (("drive limits",),), honest=("slow drive",)),
+    "top_speed": Kind(top_speed, (("drive limits",),), acceptable=("tread slip",)),
+    "acceleration_limit": Kind(
+        acceleration_limit, (("drive limits",),), acceptable=("slow drive",)
+    ),
     "weak_side": Kind(weak_side, (("drive limits",),), style="crawl"),
-    "backlash": Kind(backlash, honest=("drive limits",)),
+    "backlash": Kind(backlash, acceptable=("drive limits",)),
     "low_battery": Kind(
         low_battery,
         (("unknown", "drive limits gradual"),),
-        honest=("wheel size gradual", "traction gradual", "tread slip gradual"),
+        acceptable=("wheel size gradual", "traction gradual", "tread slip gradual"),
         course="gradual",
     ),
-    "voltage_sag": Kind(voltage_sag, honest=("tread slip", "drive limits")),
+    "voltage_sag": Kind(voltage_sag, acceptable=("tread slip", "drive limits")),
     "rubbing_brake": Kind(
         rubbing_brake,
-        honest=("wheel size in_bursts", "traction in_bursts", "tread slip in_bursts"),
+        acceptable=("wheel size in_bursts", "traction in_bursts", "tread slip in_bursts"),
         course="in_bursts",
     ),
-    "lost_commands": Kind(lost_commands, honest=("late commands in_bursts",), course="in_bursts"),
+    "lost_commands": Kind(
+        lost_commands, acceptable=("late commands in_bursts",), course="in_bursts"
+    ),
     "radio_jitter": Kind(radio_jitter, (("late commands",),)),
-    "late_side": Kind(late_side, (("late commands",),), honest=("slow drive",)),
-    "sluggish_side": Kind(sluggish_side, (("slow drive",),), honest=("late commands",)),
-    "overshoot": Kind(overshoot, honest=("slow drive", "late commands")),
+    "late_side": Kind(late_side, (("late commands",),), acceptable=("slow drive",)),
+    "sluggish_side": Kind(sluggish_side, (("slow drive",),), acceptable=("late commands",)),
+    "overshoot": Kind(overshoot, acceptable=("slow drive", "late commands")),
     "shared_pump": Kind(shared_pump),
     "turtle_mode": Kind(
         turtle_mode,
         (("wheel size", "drive limits"),),
-        honest=("traction from_a_moment", "tread slip from_a_moment"),
+        acceptable=("traction from_a_moment", "tread slip from_a_moment"),
         course="from_a_moment",
     ),
-    "slipping_clutch": Kind(slipping_clutch, honest=("tread slip",)),
+    "slipping_clutch": Kind(slipping_clutch, acceptable=("tread slip",)),
     "tread_trim": Kind(tread_trim),
 }

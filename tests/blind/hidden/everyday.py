@@ -180,24 +180,26 @@ EVERYDAY = {
     "warming_tyres": Kind(
         warming_tyres,
         (("wheel size gradual", "unknown"),),
-        honest=("traction gradual",),
+        acceptable=("traction gradual",),
         course="gradual",
     ),
-    "cold_grease": Kind(cold_grease, honest=("traction gradual", "wheel size gradual")),
-    "play_in_gears": Kind(play_in_gears, honest=("drive limits", "slow drive", "late commands")),
-    "swinging_payload": Kind(swinging_payload, honest=("tread slip", "traction in_bursts")),
+    "cold_grease": Kind(cold_grease, acceptable=("traction gradual", "wheel size gradual")),
+    "play_in_gears": Kind(
+        play_in_gears, acceptable=("drive limits", "slow drive", "late commands")
+    ),
+    "swinging_payload": Kind(swinging_payload, acceptable=("tread slip", "traction in_bursts")),
     "weather_vane": Kind(weather_vane),
     "ruts": Kind(ruts),
-    "inner_brake": Kind(inner_brake, honest=("turn radius", "tread slip", "drive limits")),
+    "inner_brake": Kind(inner_brake, acceptable=("turn radius", "tread slip", "drive limits")),
     "slow_encoder": Kind(
-        slow_encoder, honest=("late stamps",), without_gyroscope=("slow drive", "late commands")
+        slow_encoder, acceptable=("late stamps",), without_gyroscope=("slow drive", "late commands")
     ),
-    "filtered_positions": Kind(filtered_positions, REFERENCE, honest=("late stamps",)),
-    "slow_yaw": Kind(slow_yaw, REFERENCE, honest=("unknown",)),
+    "filtered_positions": Kind(filtered_positions, REFERENCE, acceptable=("late stamps",)),
+    "slow_yaw": Kind(slow_yaw, REFERENCE, acceptable=("unknown",)),
     "slipped_mount": Kind(
         slipped_mount,
         (("reference", "sensor heading from_a_moment"),),
-        honest=("unknown",),
+        acceptable=("unknown",),
         course="from_a_moment",
     ),
 }

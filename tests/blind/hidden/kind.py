@@ -1,4 +1,4 @@
-"""What a kind of case hides, and which answers about it are true, honest or wrong."""
+"""What a kind of case hides, and which answers about it are true, acceptable or wrong."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -64,10 +64,10 @@ class Kind:
         the robot is drawn once, and moments and places anew for each run.
     true : tuple of tuples of str
         For each effect that is hidden, the families that are right.
-    honest : tuple of str
+    acceptable : tuple of str
         Families that are not the truth, but that nobody could call misled.
     without_gyroscope : tuple of str
-        More honest families where no gyroscope is recorded.
+        More acceptable families where no gyroscope is recorded.
     course : str
         Course in time of the truth: from_a_moment, gradual, in_bursts, or "" (steady).
     style : str
@@ -82,7 +82,7 @@ class Kind:
 
     draw: Callable
     true: tuple[tuple[str, ...], ...] = (("unknown",),)
-    honest: tuple[str, ...] = ()
+    acceptable: tuple[str, ...] = ()
     without_gyroscope: tuple[str, ...] = ()
     course: str = ""
     style: str = "any"

@@ -50,7 +50,7 @@ def mix(first, second):
     return Kind(
         draw,
         true=(*first.true, *second.true),
-        honest=(*first.honest, *second.honest),
+        acceptable=(*first.acceptable, *second.acceptable),
         without_gyroscope=(*first.without_gyroscope, *second.without_gyroscope),
         style="crawl" if "crawl" in (first.style, second.style) else "any",
         gyroscope="always" if "always" in (first.gyroscope, second.gyroscope) else "either",

@@ -168,20 +168,21 @@ def gentle_side(rng, scene):
 
 
 ONE_SIDE = {
-    "dragging_brake": Kind(dragging_brake, honest=("drive limits", "tread slip")),
+    "dragging_brake": Kind(dragging_brake, acceptable=("drive limits", "tread slip")),
     "late_encoder": Kind(late_encoder),
     "smooth_encoder": Kind(smooth_encoder),
     "side_on_ice": Kind(
         side_on_ice,
-        honest=("wheel size in_bursts", "traction in_bursts", "tread slip in_bursts"),
+        acceptable=("wheel size in_bursts", "traction in_bursts", "tread slip in_bursts"),
         course="in_bursts",
     ),
-    "side_runs_on": Kind(side_runs_on, honest=("slow drive", "drive limits")),
-    "weak_in_turns": Kind(weak_in_turns, honest=("tread slip",)),
+    "side_runs_on": Kind(side_runs_on, acceptable=("slow drive", "drive limits")),
+    "weak_in_turns": Kind(weak_in_turns, acceptable=("tread slip",)),
     "hot_side": Kind(
-        hot_side, honest=("tread slip", "traction gradual", "wheel size gradual", "drive limits")
+        hot_side,
+        acceptable=("tread slip", "traction gradual", "wheel size gradual", "drive limits"),
     ),
-    "coarse_side": Kind(coarse_side, honest=("drive limits",)),
-    "slack_side": Kind(slack_side, honest=("drive limits", "slow drive", "late commands")),
-    "gentle_side": Kind(gentle_side, (("drive limits",),), honest=("slow drive",)),
+    "coarse_side": Kind(coarse_side, acceptable=("drive limits",)),
+    "slack_side": Kind(slack_side, acceptable=("drive limits", "slow drive", "late commands")),
+    "gentle_side": Kind(gentle_side, (("drive limits",),), acceptable=("slow drive",)),
 }

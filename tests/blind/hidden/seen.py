@@ -139,7 +139,7 @@ SEEN = {
     "deflation": Kind(
         deflation,
         (("wheel size",),),
-        honest=("traction gradual", "tread slip gradual"),
+        acceptable=("traction gradual", "tread slip gradual"),
         course="gradual",
     ),
     "late_commands": Kind(late_commands, (("late commands",),), gyroscope="always"),
@@ -150,7 +150,7 @@ SEEN = {
     "slip_bursts": Kind(
         slip_bursts,
         (("traction", "tread slip"),),
-        honest=("wheel size in_bursts", "terrain in_bursts"),
+        acceptable=("wheel size in_bursts", "terrain in_bursts"),
         course="in_bursts",
     ),
     "changed_terrain": Kind(changed_terrain, (("terrain",),), labels=2),

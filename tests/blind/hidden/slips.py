@@ -231,23 +231,25 @@ def other_terrain(rng, scene):
 IN_BURSTS = ("wheel size in_bursts", "traction in_bursts", "tread slip in_bursts")
 SLIPS = {
     "slip_by_speed": Kind(slip_by_speed, (("tread slip",),)),
-    "slip_by_acceleration": Kind(slip_by_acceleration, (("tread slip",),), honest=("slow drive",)),
+    "slip_by_acceleration": Kind(
+        slip_by_acceleration, (("tread slip",),), acceptable=("slow drive",)
+    ),
     "slip_backward": Kind(slip_backward, (("tread slip",),)),
-    "slip_by_turning": Kind(slip_by_turning, honest=("tread slip", "turn radius")),
+    "slip_by_turning": Kind(slip_by_turning, acceptable=("tread slip", "turn radius")),
     "one_turn_slips": Kind(one_turn_slips),
-    "loose_track": Kind(loose_track, honest=("tread slip", *IN_BURSTS)),
+    "loose_track": Kind(loose_track, acceptable=("tread slip", *IN_BURSTS)),
     "stick_and_slip": Kind(stick_and_slip),
-    "side_slip_by_force": Kind(side_slip_by_force, honest=("inertia",)),
+    "side_slip_by_force": Kind(side_slip_by_force, acceptable=("inertia",)),
     "grip_lost": Kind(grip_lost, (("traction",),), course="from_a_moment"),
     "lost_tyre": Kind(lost_tyre, (("wheel size",),), course="from_a_moment"),
     "one_side_deflates": Kind(one_side_deflates, (("wheel size",),), course="gradual"),
     "slippery_patches": Kind(
-        slippery_patches, (("unknown", "terrain"),), honest=IN_BURSTS, course="in_bursts"
+        slippery_patches, (("unknown", "terrain"),), acceptable=IN_BURSTS, course="in_bursts"
     ),
-    "puddles": Kind(puddles, honest=IN_BURSTS, course="in_bursts"),
+    "puddles": Kind(puddles, acceptable=IN_BURSTS, course="in_bursts"),
     "clogging_mud": Kind(
         clogging_mud,
-        honest=("traction gradual", "turn radius gradual", "terrain gradual"),
+        acceptable=("traction gradual", "turn radius gradual", "terrain gradual"),
         course="gradual",
     ),
     "other_terrain": Kind(other_terrain, (("terrain",),)),

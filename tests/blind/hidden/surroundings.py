@@ -228,15 +228,15 @@ def carried(yaw, twist, speed, direction):
 
 
 SURROUNDINGS = {
-    "wind_gusts": Kind(wind_gusts, honest=("reference",)),
+    "wind_gusts": Kind(wind_gusts, acceptable=("reference",)),
     "head_wind": Kind(head_wind),
     "tow_rope": Kind(tow_rope),
-    "conveyor": Kind(conveyor, honest=("reference",)),
+    "conveyor": Kind(conveyor, acceptable=("reference",)),
     "dragging_caster": Kind(dragging_caster),
-    "shifting_payload": Kind(shifting_payload, honest=("inertia",)),
+    "shifting_payload": Kind(shifting_payload, acceptable=("inertia",)),
     "put_down_load": Kind(
         put_down_load,
-        honest=("sideways from_a_moment", "terrain from_a_moment", "traction from_a_moment"),
+        acceptable=("sideways from_a_moment", "terrain from_a_moment", "traction from_a_moment"),
         course="from_a_moment",
     ),
     "trailer": Kind(trailer),

@@ -13,7 +13,7 @@ from tests.studies.gap_table import mistakes_of, table_of, with_interval
     ("verdict", "course", "kind", "expected"),
     [
         ("wheel_scale", "", "deflation", "right"),
-        ("traction_loss", "gradual", "deflation", "honest"),
+        ("traction_loss", "gradual", "deflation", "acceptable"),
         ("traction_loss", "", "deflation", "wrong"),
         ("unknown", "", "deflation", "unknown"),
         ("unknown", "", "shared_pump", "right"),
@@ -24,18 +24,18 @@ from tests.studies.gap_table import mistakes_of, table_of, with_interval
     ],
 )
 def test_the_score_of_an_answer(verdict, course, kind, expected):
-    assert score(verdict, course, HIDDEN[kind].true, HIDDEN[kind].honest) == expected
+    assert score(verdict, course, HIDDEN[kind].true, HIDDEN[kind].acceptable) == expected
 
 
 def test_a_name_that_may_as_well_be_the_true_one_is_honest():
     parts = (("late commands",),)
-    assert score("time_offset", "", parts, (), ["command_delay"]) == "honest"
+    assert score("time_offset", "", parts, (), ["command_delay"]) == "acceptable"
     assert score("time_offset", "", parts, (), ["inertia"]) == "wrong"
 
 
 def test_every_family_has_a_meaning_and_every_kind_is_listed_once():
     for kind in HIDDEN.values():
-        families = [*(one for part in kind.true for one in part), *kind.honest]
+        families = [*(one for part in kind.true for one in part), *kind.acceptable]
         for family in (*families, *kind.without_gyroscope):
             plain, _, last = family.rpartition(" ")
             assert (plain if last in COURSES else family) in MEANING

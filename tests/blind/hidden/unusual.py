@@ -169,15 +169,16 @@ def straight_between_fixes(rng, scene):
 
 UNUSUAL = {
     "hot_motor": Kind(
-        hot_motor, honest=("tread slip", "traction gradual", "wheel size gradual", "drive limits")
+        hot_motor,
+        acceptable=("tread slip", "traction gradual", "wheel size gradual", "drive limits"),
     ),
-    "coarse_controller": Kind(coarse_controller, honest=("drive limits",)),
-    "crabbing": Kind(crabbing, honest=("sensor heading",)),
-    "leaning_load": Kind(leaning_load, honest=("inertia",)),
+    "coarse_controller": Kind(coarse_controller, acceptable=("drive limits",)),
+    "crabbing": Kind(crabbing, acceptable=("sensor heading",)),
+    "leaning_load": Kind(leaning_load, acceptable=("inertia",)),
     "dragged_cable": Kind(dragged_cable),
-    "stiff_turns": Kind(stiff_turns, honest=("drive limits", "turn radius")),
-    "slow_turns": Kind(slow_turns, honest=("slow drive", "late commands", "inertia")),
-    "coasting": Kind(coasting, honest=("slow drive", "drive limits")),
+    "stiff_turns": Kind(stiff_turns, acceptable=("drive limits", "turn radius")),
+    "slow_turns": Kind(slow_turns, acceptable=("slow drive", "late commands", "inertia")),
+    "coasting": Kind(coasting, acceptable=("slow drive", "drive limits")),
     "course_for_yaw": Kind(course_for_yaw, (("reference",),)),
     "straight_between_fixes": Kind(straight_between_fixes, (("reference",),)),
 }

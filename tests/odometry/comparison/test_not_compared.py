@@ -68,8 +68,10 @@ def test_a_fit_at_its_bound_is_evaluated_and_neither_ranked_nor_written(in_anoth
     assert rows["differential_drive"].complete
     assert rows["full_linear"].complete  # gamma_12 is 1.5 and has no bound there
     lines = comparison.sentences_at(place)
-    assert lines[0].startswith("full_linear errs least over 2 m on grass in translation")
-    assert lines[0].endswith("every other ranked model errs more.")
+    assert lines[0].startswith(
+        "full_linear has the smallest error over 2 m on grass in translation"
+    )
+    assert lines[0].endswith("every other ranked model has a larger one.")
     assert not any("icr_symmetric" in line for line in lines[:-1])
     assert lines[-1].startswith("icr_symmetric is not ranked, and its parameters are not written")
     assert "(at a bound: parameters not identified). It predicts all the same" in lines[-1]

@@ -31,7 +31,7 @@ def test_models_that_cannot_be_distinguished_are_named_with_numbers():
         },
     )
     assert lines[:2] == [
-        "icr errs least over 2 m on grass in translation, 0.0196 m per m.",
+        "icr has the smallest error over 2 m on grass in translation, 0.0196 m per m.",
         "icr cannot be distinguished over 2 m on grass in translation from icr_symmetric "
         "(difference -0.0004 [-0.0017, 0.0010] m per m).",
     ]
@@ -46,8 +46,8 @@ def test_a_model_that_beats_all_others():
         {"icr_symmetric": 0.03, "icr": 0.02}, {("icr_symmetric", "icr"): (0.01, 0.005, 0.02)}
     )
     assert lines[0] == (
-        "icr errs least over 2 m on grass in translation, 0.0200 m per m; every other model errs "
-        "more."
+        "icr has the smallest error over 2 m on grass in translation, 0.0200 m per m; every "
+        "other model has a larger one."
     )
     assert not any("effective width" in line for line in lines)
 
@@ -60,7 +60,7 @@ def test_a_model_that_was_not_evaluated_everywhere_is_not_ranked():
     not_evaluated = [NotEvaluated("rover", "grass", "b", "part", "too few windows")]
     summaries = [summarise(PLACE, evaluations, not_evaluated, m) for m in ("icr", "width", "part")]
     lines = sentences(PLACE, summaries, [difference("icr", "width", -0.1, -0.2, -0.05)])
-    assert lines[0].startswith("icr errs least")
+    assert lines[0].startswith("icr has the smallest error")
     assert lines[-1] == "part is not in this comparison on grass: b: too few windows."
 
 
@@ -74,11 +74,11 @@ def test_mean_and_median_that_disagree_are_both_reported():
     found = summaries_of(icr=[0.02, 0.02, 0.02, 0.9], width=[0.06, 0.06, 0.06, 0.5])
     (translation, rotation) = contradictions(PLACE, found, [])
     assert translation == (
-        "Mean and median disagree on grass in translation: width errs less than icr by the mean "
-        "(0.1700 against 0.2400 m per m) and more by the median (0.0600 against 0.0200): a few "
-        "windows with large errors decide the means."
+        "Mean and median disagree on grass in translation: width has a smaller error than "
+        "icr by the mean (0.1700 against 0.2400 m per m) and a larger one by the median (0.0600 "
+        "against 0.0200): a few windows with large errors decide the means."
     )
-    assert "rotation: width errs less" in rotation
+    assert "rotation: width has a smaller error" in rotation
 
 
 def test_medians_that_are_all_but_equal_do_not_disagree():
@@ -95,8 +95,8 @@ def test_a_model_that_wins_over_windows_and_loses_on_whole_runs():
     fitness = [fit_of("a", "icr", 9.0), fit_of("a", "ideal", 1.0)]
     fitness += [fit_of("b", "icr", 1.0), fit_of("b", "ideal", 2.0)]
     assert contradictions(PLACE, found, fitness) == [
-        "On whole runs on grass icr (J/N 5) errs more than ideal (1.5; on 1 of 2 runs), although "
-        "its mean translation error over 2 m is less."
+        "On whole runs on grass icr (J/N 5) has a larger error than ideal (1.5; on 1 of 2 runs), "
+        "although its mean translation error over 2 m is less."
     ]
     assert contradictions(PLACE, found, fitness[2:]) == []
     assert contradictions(PLACE, found, fitness[:1]) == []  # nothing of the other
@@ -115,12 +115,13 @@ def test_contradictions_follow_the_best_models():
         (9.6, "translation."),
         (
             4.0,
-            "translation; on whole runs these err less: icr (J/N 4 against 10; on 1 of 1 runs).",
+            "translation; on whole runs these have smaller errors: icr (J/N 4 against 10; on 1 "
+            "of 1 runs).",
         ),
     ],
 )
 def test_an_effective_width_that_loses_on_whole_runs_is_not_said_to_win(of_icr, said):
-    """Neither model is shown to err less over windows."""
+    """Neither model is shown to have the smaller error over windows."""
     found = summaries_of(icr_symmetric=[0.02] * 4, icr=[0.03] * 4)
     fitness = [fit_of("a", "icr", of_icr), fit_of("a", "icr_symmetric", 10.0)]
     tied = [

@@ -50,7 +50,7 @@ def test_differences_are_taken_on_the_windows_of_both():
 
 
 def test_differences_pair_windows(rng):
-    """Errors vary by 1, but the second model always errs 0.01 more: the interval sees it."""
+    """Errors vary by 1, those of the second model are always 0.01 larger: the interval shows it."""
     hard = rng.uniform(0, 1, 60)
     evaluations = [evaluation("a", one=hard, two=hard + 0.01 + rng.normal(0, 0.001, 60))]
     (found, _) = differences(PLACE, evaluations, ("one", "two"), ComparisonConfig(draws=200))

@@ -57,7 +57,7 @@ def integrated(speeds, start, parts=4):
 
 
 def test_it_follows_as_newton_and_euler_say():
-    """To first order: most of what the balance errs while speeds change."""
+    """To first order: most of the error of the balance while speeds change."""
     inputs = inputs_of(speeding_up_in_turns())
     balance = balanced(inputs)
     truth = integrated(inputs.tread_speeds_m_s, balance[0])

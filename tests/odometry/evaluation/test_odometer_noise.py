@@ -122,7 +122,7 @@ def test_the_right_noise_is_consistent_and_a_wrong_one_is_not(rng):
 
 
 def test_each_half_is_judged_by_the_noise_of_the_other(rng):
-    """A second half that errs three times as much: NEES far above 3 there, far below before."""
+    """A second half with three times the error: NEES far above 3 there, far below before."""
     truth, path = drive(rng, 800)
     rows = np.arange(len(truth))
     alike = consistency_by_halves(path, rows, truth)

@@ -76,7 +76,7 @@ def test_no_window_is_surer_than_outliers_allow():
     np.testing.assert_allclose(softmax(np.zeros((1, 3))), 1 / 3)
 
 
-def test_one_window_that_errs_cannot_outvote_many():
+def test_one_wrong_window_cannot_outvote_many():
     calibration = Calibration((1.0,), 0.05, 0.0)
     windows = np.array([[1.0, 0.0, 0.0]] * 9 + [[-1e6, 0.0, -1e6]])[:, None]
     found = calibration.probabilities(

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.icrs.points import icr_covariances, icr_indices, icrs_of_twist, turn_is_told
+from odometry.icrs.points import icr_covariances, icr_indices, icrs_of_twist, turn_is_known
 from odometry.models.icr import icr_twist
 
 side = st.floats(0.1, 2)
@@ -89,6 +89,6 @@ def test_covariances_are_those_of_samples():
 def test_a_turn_is_certain_by_the_probability_of_its_side():
     """One side in a hundred is wrong at most where a robot goes straight ahead in truth."""
     noise = np.random.default_rng(5).normal(scale=0.03, size=100_000)
-    told = turn_is_told(noise, np.full(100_000, 0.03), 0.99)
+    told = turn_is_known(noise, np.full(100_000, 0.03), 0.99)
     assert told.mean() == pytest.approx(2 * 0.01, abs=0.002)
-    assert turn_is_told(np.array([-0.2]), np.array([0.03]), 0.99).all()
+    assert turn_is_known(np.array([-0.2]), np.array([0.03]), 0.99).all()

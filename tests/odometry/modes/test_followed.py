@@ -34,8 +34,8 @@ def by_hand(most, labels, **others):
 
 def test_modes_that_were_driven_are_recognised(halves):
     score = halves.score(halves.motion)
-    assert [one.mode for one in score.told] == ["ice", "tar"]
-    assert all(one.after_s < 2.0 for one in score.told)
+    assert [one.mode for one in score.detected] == ["ice", "tar"]
+    assert all(one.after_s < 2.0 for one in score.detected)
     assert score.right > 0.7
     assert halves.tracks == {MOTION: halves.motion}
     assert halves.last_track is halves.motion
@@ -96,7 +96,7 @@ def test_numbers_of_all_stretches_weigh_their_time():
     most = ["a", "a", "b", "", "a", "a", "b", "b"]
     answers = by_hand(most, ["a"] * 4 + ["b"] * 4)
     score = answers.score(answers.motion)
-    assert [one.after_s for one in score.told] == [0.0, 1.0]
+    assert [one.after_s for one in score.detected] == [0.0, 1.0]
     assert score.median_after_s == 0.5
     shares = (score.right, score.wrong, score.undetermined)
     weighed = np.array([1.5, 0.5]) @ [[0.5, 0.25, 0.25], [1, 0, 0]] / 2

@@ -105,7 +105,7 @@ def test_errors_that_last_are_in_the_sigmas(run):
 
 
 def test_errors_that_last_are_those_of_the_probable_mode(run):
-    """On tar, which errs three times as much as ice."""
+    """On tar, where errors are three times as large as on ice."""
     variances = SIGMA**2 * np.array([[1.0, 1.0], [9.0, 9.0]])
     modes = replace(SET.modes, measurement_variance=variances, errors_last_s=10 * STEP_S)
     track = follow_modes(run, replace(SET, modes=modes))

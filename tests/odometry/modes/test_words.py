@@ -49,10 +49,10 @@ def test_where_no_mode_fits_it_is_said_since_when_and_in_which_signal(leaving):
 
 def test_none_of_these_is_neither_right_nor_wrong(leaving):
     score = leaving.score(leaving.motion)
-    (told,) = score.told
-    assert told.none_of_these == score.none_of_these > 0.3
-    assert told.wrong < 0.1
-    total = told.right + told.wrong + told.undetermined + told.none_of_these
+    (detected,) = score.detected
+    assert detected.none_of_these == score.none_of_these > 0.3
+    assert detected.wrong < 0.1
+    total = detected.right + detected.wrong + detected.undetermined + detected.none_of_these
     assert total == pytest.approx(1.0)
     assert score.wrong_of_all < 0.1
 

@@ -47,7 +47,7 @@ def test_errors_are_what_the_gains_leave(rng):
     assert found.accelerations_m_s2.min() == 0.0  # held for a second each
 
 
-def test_who_stands_errs_not(rng):
+def test_a_stationary_robot_has_no_error(rng):
     run = drive(rng, 300, np.arange(300.0))
     still = {name: run.odometry[name] * (np.arange(300) >= 100) for name in ("v_left", "v_right")}
     run = replace(run, odometry=replace(run.odometry, columns=run.odometry.columns | still))

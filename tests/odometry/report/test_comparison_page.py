@@ -103,7 +103,7 @@ def test_the_numbers_on_the_page_are_those_of_the_comparison(written, compared):
     assert any("0 windows are tilted" in cell for cell in cells)
 
 
-def test_the_lead_counts_where_a_model_errs_least(compared):
+def test_the_lead_counts_where_the_error_of_a_model_is_smallest(compared):
     assert lead(compared).startswith("Least mean translation error at 2 places: icr_symmetric 2")
     place = compared.places[0]
     alone = replace(
@@ -125,7 +125,7 @@ def test_the_lead_says_what_contradicts_it(compared):
         split_models=tuple(p for p in compared.split_models if p.split.terrain == place.terrain),
         fitness=fitness,
     )
-    assert "icr_symmetric (J/N 900) errs more than differential_drive (" in lead(alone)
+    assert "icr_symmetric (J/N 900) has a larger error than differential_drive (" in lead(alone)
     both = replace(compared, fitness=fitness)
     assert "At 2 of them medians or whole runs give another order" in lead(both)
 

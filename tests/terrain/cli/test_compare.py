@@ -74,7 +74,7 @@ def test_a_row_for_each_model_then_what_it_means(runs, tmp_path):
         assert float(row[8]) == pytest.approx(model["rotation_deg_per_m"]["mean"], abs=5e-5)
         assert float(row[9]) == pytest.approx(model["rotation_deg_per_m"]["median"], abs=5e-5)
     assert "rover on grass: run_0: run_1" in answer.stdout
-    assert "icr_symmetric errs least over 2 m on grass in translation" in answer.stdout
+    assert "icr_symmetric has the smallest error over 2 m on grass in translation" in answer.stdout
     assert answer.stdout.rstrip().endswith(f"Next: open {out / 'report.html'}")
     wrote = answer.stdout.split(f"Wrote to {out}: ")[1].splitlines()[0].split(", ")
     assert set(wrote) == {

@@ -112,7 +112,7 @@ def test_icrs_of_straight_drives_stand_beside_what_is_true(full):
 
 def test_the_first_sentence_compares(full):
     text = Reader(full[0] / "report.html").text
-    assert "Over stretches of 1 m the odometer errs by" in text
+    assert "Over stretches of 1 m the error of the odometer is" in text
     assert "than an ideal differential drive" in text
     assert "than without <vision>" in text
 

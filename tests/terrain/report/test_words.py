@@ -16,7 +16,7 @@ LINES = SimpleNamespace(
 )
 
 
-def errs(metres_per_metre):
+def of_error(metres_per_metre):
     return Score(
         7,
         np.array([0.5, 1.0, 2.0]) * metres_per_metre,
@@ -31,19 +31,19 @@ def errs(metres_per_metre):
 
 def scores(own, ideal, without, tuned):
     names = ("odometer", "differential drive", "odometer, without vision", "odometer, tuned")
-    return dict(zip(names, map(errs, (own, ideal, without, tuned)), strict=True))
+    return dict(zip(names, map(of_error, (own, ideal, without, tuned)), strict=True))
 
 
 def test_the_first_sentence_says_how_much_less_or_more():
     assert headline(LINES, scores(0.02, 0.2, 0.08, 0.016)) == (
-        "Over stretches of 5 m the odometer errs by 0.0200 m per m of wheel travel against the "
-        "measured pose: 90% less than an ideal differential drive (0.2000), 75% less than "
+        "Over stretches of 5 m the error of the odometer is 0.0200 m per m of wheel travel against "
+        "the measured pose: 90% less than an ideal differential drive (0.2000), 75% less than "
         "without vision (0.0800), 25% more than tuned (0.0160)."
     )
 
 
 def test_the_first_sentences_say_where_the_simple_is_better():
-    own = scores(0.02, 0.2, 0.08, 0.016) | {"gyroscope, mean speed": errs(0.015)}
+    own = scores(0.02, 0.2, 0.08, 0.016) | {"gyroscope, mean speed": of_error(0.015)}
     lead = headline(LINES, own)
     assert "33% more than gyroscope with mean wheel speed (0.0150)" in lead
     assert lead.endswith(
@@ -65,6 +65,6 @@ def test_the_first_sentence_without_scores_or_horizons():
 
 
 def test_the_table_is_in_metres_and_degrees_per_metre():
-    rows = error_table(LINES, {"a": errs(0.0234), "b": Score(0, mean_position_m=0.1)}).rows
+    rows = error_table(LINES, {"a": of_error(0.0234), "b": Score(0, mean_position_m=0.1)}).rows
     assert rows[0] == ("a", "0.0234", "0.0234", "2.5000", "2.0000", "0.250", "0.125", "0.500", "7")
     assert rows[1] == ("b", *[NOTHING] * 4, "0.100", NOTHING, NOTHING, "0")
