@@ -20,7 +20,8 @@ from odometry.io.files import opened_lines
 BLOCK_ROWS = 1000  # more do not stay in the cache and take three times as long
 Cells = list[tuple[str, ...]]  # of each column
 Block = tuple[list[int], Cells]  # and the line of the file on which each row ends, header = 1
-FORMULA = ("=", "+", "-", "@", "\t", "\r")  # with these a spreadsheet's formula begins
+# with these, or their full-width forms, a spreadsheet's formula begins (OWASP, CSV injection)
+FORMULA = tuple("=+-@\uff1d\uff0b\uff0d\uff20\t\r\n")
 
 
 def quoted_text(text: str) -> str:

@@ -1,5 +1,6 @@
 """Many runs replayed into one folder: a folder each, one table and one page over all of them."""
 
+import csv
 import os
 import signal
 import threading
@@ -15,6 +16,7 @@ from pathlib import Path
 
 from tqdm import tqdm
 
+from odometry.io.csv_columns import quoted_text
 from odometry.outputs.leftovers import stage_name
 from odometry.outputs.manifest import FINISHED, UNFINISHED, Manifest
 from odometry.outputs.output_folder import claim_folder
@@ -96,13 +98,14 @@ def run_batch(
             else cluster_outcomes(jobs, scheduler)
         )
         bar = tqdm(total=len(jobs), unit="run", disable=None if show_progress else True)
-        with bar, (out / TIMES).open("a", encoding="utf-8") as times:
+        with bar, (out / TIMES).open("a", newline="", encoding="utf-8") as times:
+            writer = csv.writer(times, lineterminator="\n")
             if not times.tell():
-                times.write("run,state,wall_s,cpu_s\n")
+                writer.writerow(("run", "state", "wall_s", "cpu_s"))
             for outcome in outcomes:
                 found[outcome.job.name] = outcome
                 if outcome.state != KEPT:
-                    times.write(_times_line(outcome))
+                    writer.writerow(_times(outcome))
                     times.flush()
                 bar.update()
         wall_s = time.monotonic() - began_s
@@ -147,8 +150,8 @@ def _made(asked: Asked, outcomes: Sequence[Outcome]) -> Made:
     return Made(asked.verb, asked.command, asked.settings, inputs, installed_packages())
 
 
-def _times_line(of: Outcome) -> str:
-    return f"{of.job.name},{of.state},{of.wall_s:.3f},{of.cpu_s:.3f}\n"
+def _times(of: Outcome) -> tuple[str, ...]:
+    return quoted_text(of.job.name), of.state, f"{of.wall_s:.3f}", f"{of.cpu_s:.3f}"
 
 
 KILLED = "the process that replayed it was killed; was there too little memory?"

@@ -157,6 +157,17 @@ def test_a_misled_run_is_flagged_and_not_merged(here):
     assert "2 runs" in table.source
 
 
+def test_a_folder_named_like_a_formula_is_a_text_in_every_table(here):
+    """With a comma, which ends no cell."""
+    name = "=1+1,2"
+    (here / "bad").rename(here / name)
+    assert call(batch, name, "--processes", "1").exit_code == 1
+    for table in ("batch.csv", "times.csv"):
+        (row,) = rows(here / "out", table)
+        assert row["run"] == f"'{name}"
+    assert row["state"] == "failed"
+
+
 def test_the_page_shows_the_worst_first_and_links_to_each(here):
     assert call(batch, *NAMES, "bad", "--processes", "1").exit_code == 1
     page = (here / "out" / "report.html").read_text()
