@@ -13,6 +13,7 @@ from odometry.report.figure import LineStyle
 from odometry.report.labels import draw_line, label_points, last_point, thinned
 
 LOGARITHMIC_FROM = 8.0  # times the smallest median
+SHOWN_BELOW = 100.0  # parts of the smallest median, down to which whiskers are drawn
 MANY_TICKS_FROM = 100.0  # times the left end of a logarithmic axis
 
 
@@ -123,7 +124,7 @@ def plot_error_distribution(
     styles : Mapping of name to LineStyle
     unit : str
         Written below the axis, which is logarithmic where medians differ so much that the small
-        ones could not be compared.
+        ones could not be compared; an arrow at its left end is a whisker that goes on.
     """
     shown = {name: values for name, values in errors.items() if len(values)}
     for place, (name, values) in enumerate(shown.items()):
@@ -149,9 +150,16 @@ def plot_error_distribution(
     axes.grid(visible=True, axis="x")
     medians = [float(np.median(values)) for values in shown.values()]
     if medians and max(medians) > LOGARITHMIC_FROM * min(medians) > 0:
-        least = min(float(np.quantile(values, 0.05)) for values in shown.values())
+        lowest = [float(np.quantile(values, 0.05)) for values in shown.values()]
+        shown_from = max(0.8 * min(lowest), min(medians) / SHOWN_BELOW)
         axes.set_xscale("log")
-        axes.set_xlim(left=max(0.8 * least, min(medians) / 10))
+        axes.set_xlim(left=shown_from)
+        for place, (name, low) in enumerate(zip(shown, lowest, strict=True)):
+            if low < shown_from:
+                beside = axes.get_yaxis_transform()
+                axes.plot(
+                    0.0, place, "<", color=styles[name].colour, transform=beside, clip_on=False
+                )
         least, most = axes.get_xlim()
         steps = (1.0, 2.0, 5.0) if most < MANY_TICKS_FROM * least else (1.0,)
         axes.xaxis.set_major_locator(LogLocator(subs=steps))

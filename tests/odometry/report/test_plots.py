@@ -98,6 +98,17 @@ def test_boxes_that_differ_much_have_a_logarithmic_axis(axes):
     assert {"1", "10"} <= {label.get_text() for label in axes.get_xticklabels()}
 
 
+@pytest.mark.parametrize(("low", "arrows"), [(0.05, 0), (1e-4, 1), (0.0, 1)])
+def test_a_whisker_ends_on_the_axis_or_in_an_arrow(axes, low, arrows):
+    few, many = np.append(np.full(3, low), np.linspace(0.5, 2.0, 18)), np.linspace(5.0, 60.0, 21)
+    plot_error_distribution(axes, {"a": few, "$b^$": many}, STYLES, "cm")
+    found = [line for line in axes.lines if line.get_marker() == "<"]
+    assert len(found) == arrows
+    assert (axes.get_xlim()[0] < low) == (arrows == 0)
+    assert [tuple(line.get_ydata()) for line in found] == [(0,)] * arrows
+    axes.figure.canvas.draw()
+
+
 def test_labels_of_many_decades_do_not_overlap():
     figure = Figure(figsize=(2.2, 2.0))
     axes = figure.add_axes((0.1, 0.3, 0.8, 0.6))
