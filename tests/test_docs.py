@@ -1,5 +1,6 @@
 """The pages of public names and of the command line: whole, and without a reference to nothing."""
 
+import ast
 import importlib
 import inspect
 from pathlib import Path
@@ -55,6 +56,23 @@ def test_every_verb_is_documented(verb: str) -> None:
     assert [one.name for one in options if not one.help] == []
     readmes = [*ROOT.glob("README.md"), *ROOT.glob("*/README.md")]
     assert any(f"`{verb} " in file.read_text(encoding="utf-8") for file in readmes)
+
+
+def options_of(study: ast.Module) -> list[str]:
+    """Options that the parser of a study takes."""
+    calls = (node for node in ast.walk(study) if isinstance(node, ast.Call) and node.args)
+    added = (call.args[0] for call in calls if ast.unparse(call.func).endswith(".add_argument"))
+    return [a.value for a in added if isinstance(a, ast.Constant) and str(a.value).startswith("-")]
+
+
+STUDIES = sorted((ROOT / "tests" / "studies").glob("*.py"))
+
+
+@pytest.mark.parametrize("file", STUDIES, ids=lambda file: file.stem)
+def test_a_study_begins_with_its_options(file: Path) -> None:
+    study = ast.parse(file.read_text(encoding="utf-8"))
+    words = ast.get_docstring(study) or ""
+    assert [option for option in options_of(study) if option not in words] == []
 
 
 @pytest.mark.parametrize("module", PUBLIC)

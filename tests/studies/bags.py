@@ -6,6 +6,8 @@ python -m tests.studies.bags cut --folder FOLDER [--places 20] [--kind mcap ...]
 `size` writes a bag of that size (and one of a tenth), reads and decodes every message with rosbags,
 imports it, and prints times and the largest memory of either. `cut` truncates a bag at random
 places, and prints how much of what was left could be read, and what was said. Bags are deleted.
+For `size` the file calls itself with `one --call NAME --path BAG --out FOLDER`, so that each way of
+reading has a process, and a largest memory, of its own.
 """
 
 import argparse

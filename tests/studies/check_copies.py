@@ -2,10 +2,12 @@
 
     python -m tests.studies.check_copies --split first
     python -m tests.studies.check_copies --split second --seed 5 --only gyro_is_twist_of_treads
+                                         [--real] [--cache FOLDER]
 
 TERRAIN_ODOMETRY_DATA names the folder of shared recordings. Each fault of
 tests/blind/faults/copied.py is put into each recording that has what it needs, with each treatment.
-Right, acceptable (sensors disagree), another cause first, or nothing; as in check_faults.py.
+With --real there are no simulated recordings; --cache keeps those. Right, acceptable (sensors
+disagree), another cause first, or nothing; as in check_faults.py.
 """
 
 import argparse

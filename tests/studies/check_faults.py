@@ -2,10 +2,14 @@
 
     python -m tests.studies.check_faults --seeds 1 --split first
     python -m tests.studies.check_faults --seeds 10 --split second --only pose_late
+                                         [--first-seed 0] [--clean yes] [--processes 1]
+                                         [--quiet] [--cache FOLDER]
 
 TERRAIN_ODOMETRY_DATA names the folder of shared recordings. Thresholds are chosen on the first
 split; figures are stated of the second, whose drives the first does not have
-(tests/blind/faults/bases.py lists both).
+(tests/blind/faults/bases.py lists both). `--clean` takes the recordings without a fault as well
+(yes), not (no), or alone (only); `--quiet` prints the tables alone; `--cache` keeps the simulated
+recordings.
 
 Noticed: a finding at the fault's level or a more severe one, which the clean recording does not
 have. Cause first: the first such refusal or warning (of a fault that is only noted: finding) names

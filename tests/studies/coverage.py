@@ -1,6 +1,7 @@
 """How often 95 % intervals hold the truth: by duration, pose rate, dropouts and model.
 
     python -m tests.studies.coverage [--seeds 500] [--model icr] [--stated 1.0] [--wander 0.0]
+                                     [--duration S ...] [--runs 1]
 
 Each seed is a drive of its own: commands that hold for 0.8 to 2.5 s and are reached along ramps,
 integrated by fourth-order steps of the twist in continuous time (no code of the packages), read

@@ -2,6 +2,7 @@
 
     python -m tests.studies.estimation_faults [--only KEY ...] [--bases NAME ...] [--seeds 1]
                                               [--half] [--save FILE] [--against FILE]
+                                              [--scratch FOLDER]
 
 Needs TERRAIN_ODOMETRY_DATA. Faults come from tests/blind/estimation, at random moments; half of
 them and more the project's issue does not name. Errors are distances from the clean reference.

@@ -5,7 +5,10 @@ over both sets of photographs, is best out of fold. The choice is nested: it is 
 training part of every outer fold, and evaluated on photographs that took no part in it. Candidates
 are copies that cost little beside the grey image.
 
-usage: python -m tests.studies.fast_copies DATA/terrain-images/ground DATA/terrain-images/pavements
+    python -m tests.studies.fast_copies DATA/terrain-images/ground DATA/terrain-images/pavements
+                                        [--copies 4] [--per-photo 12]
+
+The folders hold labelled photographs; so many patches of each are taken.
 """
 
 import argparse

@@ -1,7 +1,10 @@
 """Terrain by feel on recordings: whole runs held out, terrains and speeds left out of training.
 
-Run `python -m tests.studies.feel FOLDER`; FOLDER holds run folders with imu.csv that name one
-terrain each.
+    python -m tests.studies.feel FOLDER [--seeds 3] [--window 2.0 ...]
+                                 [--only nested unknown speeds]
+
+FOLDER holds run folders with imu.csv that name one terrain each; the folds are drawn so many
+times, for windows of each length [s].
 """
 
 import argparse

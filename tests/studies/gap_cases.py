@@ -1,7 +1,7 @@
 """The gap workflow on blind cases: what it names, and how much of the held-out excess it closes.
 
     python -m tests.studies.gap_cases [--seeds 20] [--group seen slips] [--kinds KIND ...]
-                                      [--out gap_cases] [--jobs 2]
+                                      [--first-seed 0] [--out gap_cases] [--jobs 2]
 
 Cases come from `tests/blind`, whose generators know nothing of the catalogue of effects. Seeds
 take turns at three noise levels of the pose. Every case is a row of cases.csv, written as soon as

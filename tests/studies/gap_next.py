@@ -1,6 +1,7 @@
 """What to drive next: whether driving it distinguishes rivals, on blind cases of rivals.
 
-    python -m tests.studies.gap_next [--seeds 1] [--pairs NAME ...] [--out gap_next] [--jobs 2]
+    python -m tests.studies.gap_next [--seeds 1] [--first-seed 0] [--pairs NAME ...]
+                                     [--out gap_next] [--jobs 2]
 
 `tests/blind/rivals` writes runs about which two hypotheses say the same; one of them is the truth.
 The gap workflow proposes a drive in words; it is driven with the truth for as long as it is meant

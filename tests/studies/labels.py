@@ -1,6 +1,7 @@
 """Patches that `label` cuts from one synthesised run, and how a classifier of them drives the next.
 
     python -m tests.studies.labels [--seeds 5] [--photos FOLDER] [--terrains gravel sand tile]
+                                   [--first-seed 0] [--image-rate 4.0]
 
 Without --photos both runs lie on the left halves of scikit-image's photographs, laid at other
 places: a robot that comes back to a site. With FOLDER/<terrain>/*.jpg the photographs are parted by

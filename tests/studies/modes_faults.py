@@ -1,6 +1,8 @@
 """Modes under faults that begin at some moment of a run: how often a wrong mode is named.
 
     python -m tests.studies.modes_faults --folder FOLDER [--seeds 10 11] [--faults KEY ...]
+                                         [--worlds NAME ...] [--name answers]
+                                         [--without-poses]
 
 Robots, modes, drives and faults are those of tests/blind/modes, which know nothing of how modes are
 recognised. Modes are identified on a minute or two in each; every run changes between two of them,
@@ -8,7 +10,7 @@ and the fault begins later. Shares are of the time from its onset to the end (of
 clean): with a mode named that is not the true one (`wrong`), with the true one (`right`), with
 `none of these`, with `undetermined`; of that with the true mode among candidates that are fewer
 than all (`narrowed`). On a terrain that is no mode, any mode is wrong. Simulated runs are kept in
-FOLDER; every run is a row of FOLDER/answers.csv. Faults that were made later are not run unless
+FOLDER; every run is a row of FOLDER/NAME.csv. Faults that were made later are not run unless
 they are named (`--faults further_cable_dragged robot_payload_shifts ...`).
 """
 

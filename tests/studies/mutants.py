@@ -1,6 +1,7 @@
 """Mutation testing: which small changes of the code does no test notice?
 
-    pip install cosmic-ray==8.7.0 && python -m tests.studies.mutants texture region --sample 30
+    pip install cosmic-ray==8.7.0
+    python -m tests.studies.mutants texture region --sample 30 --seed 0
 
 For each room of `[tool.mutants]` in pyproject.toml: cosmic-ray's operators give every small change
 (an operator, a number, a comparison, a condition) of its files; a sample of them, drawn from a

@@ -1,12 +1,12 @@
 """Chen's experiment on synthesised runs: terrain A - B - A, with and without vision.
 
-    python -m tests.studies.switching [--seeds 20] [--out FOLDER] [--tuned]
+    python -m tests.studies.switching [--seeds 20] [--out FOLDER] [--rough] [--tuned]
 
 For each seed a run is made, a classifier is trained on its patches (photos that do not lie on its
 ground), and the run is replayed with vision, with the true labels at the true edge, by the
 paper's own system, without vision, without but with jumps of the ICRs detected from the
 innovations, and with --tuned without but with the process noise tuned on these very runs, in its
-favour.
+favour. With --rough wheels are noisier and ICRs wander.
 Printed: error per metre over 5 m horizons, mean position error, delay of the switches, time and
 metres until the ICRs are within 5 % after a change.
 """
