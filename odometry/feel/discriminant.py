@@ -111,25 +111,32 @@ class Pooled:
     means : (K, D)
     whole : (D, D)
         Covariance of a window of a new run.
+    of_runs : (D, D)
+        Covariance of the mean of a run among the runs of its class.
     usual : (D,)
         Mean over runs.
     """
 
     means: FloatArray
     whole: FloatArray
+    of_runs: FloatArray
     usual: FloatArray
 
     def columns(self, places: Sequence[int]) -> "Pooled":
         """Some of the columns."""
         rows = np.asarray(places)
-        return Pooled(self.means[:, rows], self.whole[rows[:, None], rows], self.usual[rows])
+        square = (rows[:, None], rows)
+        return Pooled(
+            self.means[:, rows], self.whole[square], self.of_runs[square], self.usual[rows]
+        )
 
 
 def pooled(moments: Moments, names: tuple[str, ...]) -> Pooled:
     """Pool the moments of K classes with equal weights.
 
     The covariance is that of a window of a new run: within runs, plus that of run
-    means B (1 + 1 / n), n runs of a class.
+    means B (1 + 1 / n), n runs of a class. That of run means alone counts the covariance within
+    runs as one run more, so that few runs do not seem alike in a column by chance.
     """
     rows = [np.flatnonzero(moments.labels == name) for name in names]
     means = np.stack([moments.means[of].mean(axis=0) for of in rows])
@@ -140,9 +147,10 @@ def pooled(moments: Moments, names: tuple[str, ...]) -> Pooled:
     within = np.tensordot(weights[used], moments.covariances[used], axes=1)
     off = [moments.means[of] - mean for of, mean in zip(rows, means, strict=True)]
     free = max(sum(len(of) - 1 for of in off), 1)
-    between = sum(of.T @ of for of in off) / free
+    squares = np.asarray(sum(of.T @ of for of in off))
     new = float(np.mean([1 + 1 / len(of) for of in off]))
-    return Pooled(means, within + new * between, moments.means[used].mean(axis=0))
+    whole, of_runs = within + new * squares / free, (squares + within) / (free + 1)
+    return Pooled(means, whole, of_runs, moments.means[used].mean(axis=0))
 
 
 def fitted_discriminant(of: Pooled, covariates: int, shrinkage: float) -> Discriminant:
@@ -163,10 +171,29 @@ def fitted_discriminant(of: Pooled, covariates: int, shrinkage: float) -> Discri
     ----------
     Friedman 1989, "Regularized discriminant analysis", eq. 18, with one covariance.
     """
-    means, whole = of.means, of.whole
-    size = whole.shape[0] - covariates
-    columns, cross, own = whole[:size, :size], whole[size:, :size], whole[size:, size:]
-    slopes = np.asarray(np.linalg.solve(own + RIDGE * _diagonal(own), cross), dtype=np.float64)
+    return _discriminant(of.means, of.whole, _slopes(of.whole, covariates), shrinkage)
+
+
+def fitted_to_means(of: Pooled, covariates: int, shrinkage: float) -> Discriminant:
+    """The same, whitened by the covariance of the means of runs; slopes are those of windows."""
+    return _discriminant(of.means, of.of_runs, _slopes(of.whole, covariates), shrinkage)
+
+
+def _slopes(whole: FloatArray, covariates: int) -> FloatArray:
+    size = len(whole) - covariates
+    own = whole[size:, size:]
+    return np.asarray(np.linalg.solve(own + RIDGE * _diagonal(own), whole[size:, :size]))
+
+
+def _discriminant(
+    means: FloatArray, covariance: FloatArray, slopes: FloatArray, shrinkage: float
+) -> Discriminant:
+    size = len(covariance) - len(slopes)
+    columns, cross, own = (
+        covariance[:size, :size],
+        covariance[size:, :size],
+        covariance[size:, size:],
+    )
     residual = columns - cross.T @ slopes - slopes.T @ cross + slopes.T @ own @ slopes
     scale = np.sqrt(np.maximum(np.diag(residual), 1e-12))
     correlation = (1 - shrinkage) * residual / np.outer(scale, scale)

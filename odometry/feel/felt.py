@@ -10,6 +10,7 @@ from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.config import require, require_positive
 from odometry.feel.held_out import Scores
 from odometry.feel.model import FeelModel, Probabilities, Summed
+from odometry.feel.strangeness import SURE
 from odometry.feel.windows import FeelWindows, joined_windows, windows_since
 from odometry.run import UNKNOWN
 
@@ -33,7 +34,7 @@ class FeelConfig:
     """
 
     stretch_s: float = 10.0
-    sure: float = 0.6
+    sure: float = SURE
     unknown_share: float | None = None
 
     def __post_init__(self) -> None:

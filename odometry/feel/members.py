@@ -7,10 +7,18 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.feel.design import CROSS, SHAPE, SPECTRAL, Design
-from odometry.feel.discriminant import Discriminant, Pooled, fitted_discriminant, pooled
+from odometry.feel.discriminant import (
+    Discriminant,
+    Pooled,
+    fitted_discriminant,
+    fitted_to_means,
+    pooled,
+)
 from odometry.feel.logistic import Logistic, fitted_logistic
 from odometry.feel.motion_features import SPEED_NAMES
 from odometry.feel.table import FeelTable
+
+SHRINKAGE_OF_RUNS = 0.1  # of correlations of run means, of which there are few; 0.3 did the same
 
 
 @dataclass(frozen=True)
@@ -71,11 +79,16 @@ class Members:
     usual : tuple of (d + q,)
         What stands for a number that is missing in a window, one a classifier.
     logistic : Logistic or None
+    of_runs : Discriminant or None
+        Of the columns of the logistic regression, whitened as the means of runs differ on one
+        terrain: along columns in which these hardly differ, another terrain shows first. Files of
+        older versions hold none.
     """
 
     discriminants: tuple[Discriminant, ...]
     usual: tuple[FloatArray, ...]
     logistic: Logistic | None = None
+    of_runs: Discriminant | None = None
 
     def offsets(self, tables: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
         """How far windows are from each class, in standard deviations of a new run's window.
@@ -84,16 +97,20 @@ class Members:
         -------
         (W, K), (W, K, C)
             Squared distance in all columns, the mean over discriminants, and the offset in the
-            spaces of all discriminants, one beside the other: the sum of the squares of an offset
-            is the mean over discriminants of the squared distance.
+            spaces of all discriminants, and in the columns of `of_runs`, one beside the other: the
+            sum of the squares of an offset is the mean over discriminants of the squared distance
+            plus the mean over the columns of `of_runs`.
         """
         whole, within = [], []
         for one, table, usual in zip(self.discriminants, tables, self.usual, strict=False):
             left = one.left(filled(table, usual))
             whole.append((left**2).sum(axis=2))
             within.append(left @ one.between.T)
-        joined = np.concatenate(within, axis=2) / np.sqrt(len(within))
-        return np.asarray(np.mean(whole, axis=0)), np.asarray(joined)
+        joined = [np.concatenate(within, axis=2) / np.sqrt(len(within))]
+        if self.of_runs is not None:
+            left = self.of_runs.left(filled(tables[-1], self.usual[-1]))
+            joined.append(left / np.sqrt(left.shape[2]))
+        return np.asarray(np.mean(whole, axis=0)), np.concatenate(joined, axis=2)
 
     def log_likelihoods(self, squared: FloatArray, tables: Sequence[FloatArray]) -> FloatArray:
         """Of W windows by each kind of classifier (W, F, K), with their distances (W, K)."""
@@ -133,8 +150,12 @@ def fitted_members(
             fitted_discriminant(one, table.covariates, choice.shrinkage)
             for one in of[: len(of) - choice.logistic]
         )
-        regression = regressions[choice.sets] if choice.logistic else None
-        found.append(Members(discriminants, tuple(one.usual for one in of), regression))
+        usual = tuple(one.usual for one in of)
+        if not choice.logistic:
+            found.append(Members(discriminants, usual))
+            continue
+        of_runs = fitted_to_means(of[-1], table.covariates, SHRINKAGE_OF_RUNS)
+        found.append(Members(discriminants, usual, regressions[choice.sets], of_runs))
     return found
 
 

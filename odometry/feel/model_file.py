@@ -26,7 +26,9 @@ class FeelFileError(OdometryError):
     """A file of how terrains feel is damaged, foreign, or newer than this program."""
 
 
-FEEL = FileKind("terrain-odometry feel", 3, "model of feel", FeelFileError)
+FEEL = FileKind("terrain-odometry feel", 4, "model of feel", FeelFileError)
+
+OF_RUNS = "of_runs"  # beside the numbers of the discriminants
 
 
 def write_feel_model(
@@ -47,11 +49,9 @@ def write_feel_model(
     """
     arrays: dict[str, AnyArray] = {}
     for place, one in enumerate(model.members.discriminants):
-        arrays |= {
-            f"slopes_{place}": one.slopes,
-            f"means_{place}": one.means,
-            f"whitening_{place}": one.whitening,
-        }
+        arrays |= _arrays(one, place)
+    if model.members.of_runs is not None:
+        arrays |= _arrays(model.members.of_runs, OF_RUNS)
     arrays |= {f"usual_{place}": usual for place, usual in enumerate(model.members.usual)}
     if model.members.logistic is not None:
         arrays |= {
@@ -165,20 +165,36 @@ def _members(arrays: Mapping[str, AnyArray], sizes: Sequence[int], terrains: int
         _array(arrays, f"usual_{place}", (size + covariates,)) for place, size in enumerate(sizes)
     ]
     discriminants = [
-        Discriminant(
-            _array(arrays, f"slopes_{place}", (covariates, size)),
-            _array(arrays, f"means_{place}", (terrains, size)),
-            _array(arrays, f"whitening_{place}", (size, size)),
-        )
+        _discriminant(arrays, place, size, terrains)
         for place, size in enumerate(sizes[: len(sizes) - with_logistic])
     ]
-    logistic = None
+    logistic, of_runs = None, None
+    if f"means_{OF_RUNS}" in arrays:
+        of_runs = _discriminant(arrays, OF_RUNS, sizes[-1], terrains)
     if with_logistic:
         logistic = Logistic(
             _array(arrays, "logistic_weights", (sizes[-1] + covariates, terrains)),
             _array(arrays, "logistic_levels", (terrains,)),
         )
-    return Members(tuple(discriminants), tuple(usual), logistic)
+    return Members(tuple(discriminants), tuple(usual), logistic, of_runs)
+
+
+def _arrays(one: Discriminant, place: int | str) -> dict[str, AnyArray]:
+    return {
+        f"slopes_{place}": one.slopes,
+        f"means_{place}": one.means,
+        f"whitening_{place}": one.whitening,
+    }
+
+
+def _discriminant(
+    arrays: Mapping[str, AnyArray], place: int | str, size: int, terrains: int
+) -> Discriminant:
+    return Discriminant(
+        _array(arrays, f"slopes_{place}", (len(SPEED_NAMES), size)),
+        _array(arrays, f"means_{place}", (terrains, size)),
+        _array(arrays, f"whitening_{place}", (size, size)),
+    )
 
 
 def _calibration(settings: Mapping[str, Any]) -> Calibration:

@@ -51,8 +51,7 @@ def fitted_strangeness(
     if not parts["window"]:
         return Strangeness.none()
     weights = {length: fitted_weights(of) for length, of in parts.items()}
-    share = max(modest_share(of, weights[length]) for length, of in parts.items())
-    return Strangeness(weights, share)
+    return Strangeness(weights, modest_share(parts, weights))
 
 
 def _without(

@@ -3,7 +3,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.distance import cdist
 
-from odometry.feel.discriminant import fitted_discriminant, moments_of, pooled
+from odometry.feel.discriminant import (
+    fitted_discriminant,
+    fitted_to_means,
+    moments_of,
+    pooled,
+)
 
 NAMES = ("a", "b")
 
@@ -51,6 +56,20 @@ def test_distances_are_those_of_mahalanobis():
         ]
     covariance = np.mean(within, axis=0) + 1.25 * between
     expected = cdist(columns, np.stack(off), "mahalanobis", VI=np.linalg.inv(covariance))
+    np.testing.assert_allclose(np.sqrt((one.left(columns) ** 2).sum(axis=2)), expected, rtol=1e-6)
+
+
+def test_run_means_are_whitened_by_what_runs_differ_and_one_run_more():
+    """Of windows within a run; by scipy's distance from means and covariances made here."""
+    table, labels, runs = made(5)
+    columns = table[:, :3]
+    one = fitted_to_means(pooled(moments_of(columns, labels, runs), NAMES), 0, 0.0)
+    means = np.stack([columns[runs == run].mean(axis=0) for run in range(8)])
+    within = [np.cov(columns[runs == run].T, bias=True) for run in range(8)]
+    centres = np.stack([means[0::2].mean(axis=0), means[1::2].mean(axis=0)])
+    left = means - centres[np.arange(8) % 2]
+    covariance = (left.T @ left + np.mean(within, axis=0)) / (8 - 2 + 1)
+    expected = cdist(columns, centres, "mahalanobis", VI=np.linalg.inv(covariance))
     np.testing.assert_allclose(np.sqrt((one.left(columns) ** 2).sum(axis=2)), expected, rtol=1e-6)
 
 

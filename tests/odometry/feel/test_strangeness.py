@@ -5,10 +5,10 @@ import pytest
 from sklearn.linear_model import LogisticRegression
 
 from odometry.feel.strangeness import (
-    BOLD,
-    MOST_BOLD,
+    MOST_NAMED,
     RIDGE,
     SHARES,
+    SURE,
     TERMS,
     Strangeness,
     Unseen,
@@ -71,17 +71,26 @@ def test_without_evidence_unknown_is_as_probable_as_before(share):
     np.testing.assert_allclose(found, [0.0, 1.0], atol=1e-300)
 
 
-def test_what_was_left_out_is_rarely_named_boldly():
-    easy, hard = simulated(4, [6.0]), simulated(5, [0.0])
-    assert modest_share([easy], fitted_weights([easy])) == SHARES[0]
-    weights = fitted_weights([easy, hard])
-    share = modest_share([easy, hard], weights)
-    bold = [
-        (of.sure * (1 - unknown_probability(of.table @ weights, share)) >= BOLD)[of.is_unseen]
-        for of in (easy, hard)
-    ]
-    assert np.mean(bold) <= MOST_BOLD
-    assert share > SHARES[0]
+def test_what_was_left_out_is_rarely_named():
+    """Without a distance that helps, the share is the greatest that leaves sure names possible."""
+    easy, fair, blind = simulated(4, [6.0]), simulated(5, [2.5]), simulated(6, [0.0])
+
+    def found(*parts):
+        weights = fitted_weights(parts)
+        share = modest_share({"run": parts}, {"run": weights})
+        unknown = [unknown_probability(of.table @ weights, share) for of in parts]
+        named = [
+            (of.sure * (1 - one) >= SURE)[of.is_unseen].mean()
+            for of, one in zip(parts, unknown, strict=True)
+        ]
+        return share, np.mean(named)
+
+    assert found(easy)[0] == SHARES[0]
+    share, named = found(easy, fair, fair)
+    assert SHARES[0] < share < SHARES[-1]
+    assert named <= MOST_NAMED
+    assert found(blind)[0] == SHARES[-1]
+    assert 1 - SHARES[-1] > SURE
 
 
 def test_what_cannot_be_distinguished_has_no_weights():
