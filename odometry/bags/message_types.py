@@ -117,7 +117,7 @@ def _shipped(encoding: str) -> dict[str, Any]:
 
 
 def _idl_texts(definition: str) -> Iterator[str]:
-    """The parts of a definition in IDL; parts of several types are parted by a ruler."""
+    """The parts of a definition in IDL; parts of several types are separated by a ruler."""
     ruler = 80 * "=" + "\n"
     if not definition.startswith(f"{ruler}IDL: "):
         yield definition

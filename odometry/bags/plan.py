@@ -46,7 +46,7 @@ class Plan:
     robot : RobotFrame
     wheels : WheelSource
     separation_m : float
-        Between the sides, by which a twist is parted into tread speeds.
+        Between the sides, by which a twist is divided into tread speeds.
     imu, reference, images, camera_info : str
         Names of topics; empty where none is taken.
     frames : Mapping of topic to str

@@ -197,7 +197,7 @@ def topic_lines(survey: Survey) -> Iterator[str]:
 
 
 def said_of(topic: Topic) -> str:
-    """What a topic is probably good for, or why it cannot be read."""
+    """What a topic is probably used for, or why it cannot be read."""
     if topic.problem:
         return f"cannot be read: {topic.problem}"
     if topic.message_type in TRANSFORM_LISTS:

@@ -1,4 +1,4 @@
-"""What each topic of a bag is probably good for, by its type and its name."""
+"""What each topic of a bag is probably used for, by its type and its name."""
 
 import re
 from collections.abc import Callable, Iterable, Mapping
@@ -47,7 +47,7 @@ SIMPLE_ARRAY = re.compile(r"std_msgs/msg/(Float|U?Int)\d+MultiArray")
 
 
 class Guess(NamedTuple):
-    """What a topic may be good for.
+    """What a topic may be used for.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ LIKELY = 100
 
 
 def guess(topic: Topic) -> list[Guess]:
-    """What a topic may be good for; empty where it is for nothing here."""
+    """What a topic may be used for; empty where it is of no use here."""
     kind, name = topic.message_type, topic.name
     if topic.sample is None or kind in TRANSFORM_LISTS:
         return []

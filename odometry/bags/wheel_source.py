@@ -150,7 +150,7 @@ def _sides(
         seen = joints if joints is not None else list(number_paths(topic.sample))
         raise BagError(
             f"{topic.name}: which are the wheels of the left and of the right side? Seen: "
-            f"{', '.join(seen[:24])}. Give --left and --right, several parted by commas"
+            f"{', '.join(seen[:24])}. Give --left and --right, several separated by commas"
         )
     return left, right
 

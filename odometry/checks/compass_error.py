@@ -67,7 +67,7 @@ def _yaw_bent(evidence: Evidence) -> Iterator[Finding]:
         f"yaw of pose.csv deviates from the gyroscope by up to {np.degrees(size):.0f} degrees, "
         f"with the direction in which the robot points (they part by {np.degrees(before):.1f} "
         f"degrees in {np.median(spans.lasts_s):.2g} s, without this by {np.degrees(after):.1f})",
-        "Yaw is bent by magnetism: iron of the robot deviates its compass",
+        "Yaw is distorted by magnetism: iron of the robot deflects its compass",
         "Calibrate the compass on the robot (hard iron), or leave yaw empty",
         mend=changed("pose", "yaw", lambda yaw: _straightened(yaw, sine, cosine)),
     )

@@ -70,7 +70,7 @@ def _offset(evidence: Evidence, heading: Heading) -> Iterator[Finding]:
             seen,
             "Yaw is off by 180 degrees (sensor mounted backwards), or the treads are swapped and "
             f"both have the wrong sign: these have the same effect{_as_well(evidence)}",
-            "Add pi to yaw, or mend the treads",
+            "Add pi to yaw, or correct the treads",
             yaw_plus(offset),
         )
     elif abs(abs(degrees) - 90) < 20:

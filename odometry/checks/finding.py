@@ -27,7 +27,7 @@ class Finding:
         Row of the catalogue.
     level : Level
     seen : str
-        What was seen, with numbers.
+        What was found, with numbers.
     cause : str
         The likeliest cause. Where several cannot be distinguished, all of them, likeliest first.
     remedy : str

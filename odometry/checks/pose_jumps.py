@@ -121,7 +121,7 @@ def _slip_episodes(evidence: Evidence, at_s: FloatArray, first_m: float) -> Find
         f"the treads drive on while the poses hardly move ({counted(len(at_s), 'time')}, first by "
         f"{first_m:.2f} m at {evidence.run_time_s(at_s[0]):.1f} s)",
         "The robot is stuck or slips while its wheels spin, or poses are frozen for a moment",
-        "Judge by what the robot drove on; cut with --from and --to",
+        "Decide by what the robot drove on; cut with --from and --to",
         moments(evidence, at_s),
     )
 

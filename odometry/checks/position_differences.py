@@ -116,7 +116,7 @@ def paths_apart(evidence: Evidence) -> str:
         return ""
     return (
         "the path of pose.csv is not the one that treads and gyroscope say: turned and scaled to "
-        f"fit, they have a likeness of {likeness:.2f} (1 where they are the same)"
+        f"fit, their similarity is {likeness:.2f} (1 where they are the same)"
     )
 
 

@@ -186,7 +186,7 @@ def scale_change(evidence: Evidence) -> Iterator[Finding]:
         f"and by {along[1].slope:.3g} m after, and turns change by the same factor",
         "The scale of the tread speeds changes while recording (unit, gear, wheel radius or "
         "settings of the driver); slip changes turns and the way along by different factors",
-        f"Cut the recording at {at_s:.0f} s, and mend the scale of the part that is wrong",
+        f"Cut the recording at {at_s:.0f} s, and correct the scale of the part that is wrong",
         spans_s=((at_s, at_s),),
         mend=_as_before(moment_s, factor),
     )

@@ -47,7 +47,7 @@ def without_window_changes(evidence: Evidence, rows: IntArray, positions: FloatA
 def step_sizes(stamps_s: FloatArray, off: FloatArray) -> FloatArray:
     """Distance (M,) between the medians of `off` (M, 2) shortly before and after each pose.
 
-    Medians bear jitter of stamps. NaN next to the ends and to gaps.
+    Medians are robust to jitter of stamps. NaN next to the ends and to gaps.
     """
     period_s = float(np.median(np.diff(stamps_s)))
     near_s, far_s = NEAR_S, max(FAR_S, NEAR_S + 3 * period_s)

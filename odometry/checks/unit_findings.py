@@ -90,7 +90,7 @@ def slip_along(seen: str, tight: bool) -> Finding:
         f"{seen}; the factor is {'constant' if tight else 'not known to be constant'}",
         "Heavy slip (ice, snow, a robot that is stuck) where terrain allows it, else a wrong "
         "scale of treads or positions: these cannot be distinguished",
-        "Where it truly slipped nothing can be mended: what is learned holds on such terrain alone",
+        "Where it truly slipped nothing can be corrected; what is learned holds on it alone",
     )
 
 
@@ -106,7 +106,7 @@ def scale_along(seen: str, forward: float, radius_known: bool) -> Finding:
         f"{seen}; the factor is constant",
         f"Tread speeds are {size} ({units}wheel radius or diameter, gear ratio, unit{missed}), "
         "or positions are scaled",
-        "Compare a straight stretch with a tape measure, and mend the wheel radius",
+        "Compare a straight stretch with a tape measure, and correct the wheel radius",
         mend=treads_times(1 / factor, 1 / factor),
     )
 

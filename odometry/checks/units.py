@@ -217,7 +217,7 @@ def _across(evidence: Evidence, forward: float | None, width: float, tight: bool
             seen,
             "Heavy slip in turns (snow), or tread speeds in another unit (rad/s, km/h), or a wrong "
             "track_width: these cannot be distinguished here",
-            "Judge by what the robot drove on; add poses to distinguish them",
+            "Decide by what the robot drove on; add poses to distinguish them",
         )
     unit = " (mm?)" if width < 0.01 else _tenfold(width / ORDINARY_WIDTH)
     return Finding(

@@ -109,7 +109,7 @@ CAUSES = (
         "A file that every run folder has is missing",
         "Write it, see the format of a run folder",
     ),
-    (r"as TOML", "run.toml is not TOML", "Mend run.toml at the place that is named"),
+    (r"as TOML", "run.toml is not TOML", "Correct run.toml at the place that is named"),
 )
 MOST_ENTRIES = 1000  # of a folder that are listed
 NEEDED = "a run folder holds run.toml and odometry.csv"
@@ -126,7 +126,7 @@ def unreadable(error: RunFolderError) -> Finding:
         Level.REFUSED,
         message,
         "A file of the run folder is not as the format says",
-        "Mend the file at the place that is named",
+        "Correct the file at the place that is named",
     )
 
 

@@ -58,7 +58,7 @@ class Predictor:
     def to_parameters(self) -> TerrainParameters:
         """The table of a parameter set.
 
-        What was left open stands in its source, and no covariance is stated then.
+        Parameters that the data leave open are named in its source, and no covariance is stated.
         """
         if self.undetermined:
             source = f"{self.source}; not determined: {'; '.join(self.undetermined)}"

@@ -181,7 +181,7 @@ def _robot_poses(
 ) -> FloatArray:
     """Poses (M, 3) of the robot when the poses stamped (M,) were measured, from the origin.
 
-    Before the first and after the last stamp of odometry the robot stands.
+    Before the first and after the last stamp of odometry the robot is stationary.
     """
     odometry_s = run.odometry.stamps_s
     late_s = delay_s(effects, pose_s - odometry_s[0])

@@ -33,7 +33,8 @@ class Comparison:
         Over the given horizons.
     fitness : tuple of RunFitness
     parameters : Mapping of (robot, model) to ParameterSet
-        Of the identified models, from all that they may see; without those of `not_identified`.
+        Of the identified models, from all runs that are not held out; without those of
+        `not_identified`.
     config : ComparisonConfig
     by_training_horizon : tuple of HorizonErrors
         Empty where no training horizons were given.

@@ -162,7 +162,7 @@ class Effect(ABC):
 
     @property
     def searched(self) -> int:
-        """Numbers that were searched beside the parameters, and pay as they do."""
+        """How many numbers were searched beside the parameters: each costs as much evidence."""
         return 0
 
     def constants(self) -> dict[str, float]:

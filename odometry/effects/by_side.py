@@ -19,11 +19,11 @@ LEAST_APART = 0.2  # share of the larger by which the numbers of both treads dif
 class BySide(CommandEffect):
     """An effect on commands of one number, with a number for each tread.
 
-    Beside the form of one number for both it is another form of the same name, and pays for the
-    second number.
+    Beside the form of one number for both it is another form of the same name, and its
+    second number costs evidence.
     """
 
-    looks_like = "turns to one side that nobody asked for, where this tread has its fault"
+    looks_like = "turns to one side that were not commanded, where this tread has its fault"
     of_both: CommandEffect
 
     def __init_subclass__(cls, of: type[CommandEffect]) -> None:

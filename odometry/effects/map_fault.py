@@ -165,9 +165,9 @@ class DriftingMap(OfEachRun):
     in_words = "a map that drifts, in each run its own way"
     equation = "(x, y) -> (x, y) + (v_x, v_y) t"
     source = "definition"
-    looks_like = "a robot that stands and moves all the same, always to one side of the map"
+    looks_like = "a stationary robot that moves all the same, always to one side of the map"
     mimicked_by = "wind, a current or a belt that carries the robot"
-    remedy = "let the robot stand for a minute: what its pose moves is the drift of the reference"
+    remedy = "let the robot stand still for a minute: its pose moves as the reference drifts"
     needs = "headings over half a turn or more"
     own = (
         EffectParameter("v_x", "m/s", -1.0, 1.0, 0.0, 0.005),

@@ -13,7 +13,7 @@ from odometry.run import UNKNOWN
 
 @dataclass(frozen=True)
 class Recorded:
-    """Measured runs as the effects see them.
+    """Measured runs as the effects use them.
 
     Attributes
     ----------

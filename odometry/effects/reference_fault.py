@@ -17,11 +17,11 @@ LEAST_SHARE = 0.01  # of the samples, in a sector
 
 
 class Compass(MeasurementEffect):
-    """The measured yaw is bent by iron on the robot: an error of one wave a turn."""
+    """Iron on the robot distorts the measured yaw: an error of one wave a turn."""
 
     name = "reference_fault"
     form = "compass"
-    in_words = "a compass that is bent by iron"
+    in_words = "a compass that iron deflects"
     equation = "yaw -> yaw + a cos(yaw) + b sin(yaw)"
     source = "hard-iron error, to first order"
     looks_like = "turns that come out short towards one direction and long towards the opposite"

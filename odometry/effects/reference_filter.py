@@ -64,7 +64,7 @@ class FilteredPositions(ReferenceFilter):
     in_words = "positions of the reference that follow slowly, with a yaw that does not"
     equation = "lag d(x, y)_seen/dt = (x, y) - (x, y)_seen"
     source = "first-order lag"
-    looks_like = "a robot that is where it was a moment ago, but looks where it looks now"
+    looks_like = "a robot at the position of a moment ago, with the heading of now"
     mimicked_by = "a robot that turns at once and follows slowly"
     alike: ClassVar[Mapping[str, str]] = {
         "time_offset": "quick changes of speed: a lag rounds them, late stamps do not",

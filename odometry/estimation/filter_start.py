@@ -78,7 +78,7 @@ def agree(refused: Sequence[FloatArray], pose_covariance: FloatArray) -> bool:
     """Whether refused poses agree with each other, by their residuals (m,).
 
     Outliers differ from each other as much as from the filter; poses that jumped and stayed,
-    or a filter that lost its way, differ by about the same from pose to pose.
+    or a filter that has diverged, differ by about the same from pose to pose.
     """
     last = refused[-1]
     of_last_kind = [residual for residual in refused if len(residual) == len(last)]
@@ -118,7 +118,7 @@ def new_start_event(refused: Sequence[FloatArray], stamp_s: float) -> FilterEven
         stamp_s,
         stamp_s,
         f"{len(refused)} poses in a row were refused and agreed with each other, "
-        f"{' and '.join(parts)} from the filter: it started anew there (the poses jumped, or "
+        f"{' and '.join(parts)} from the filter: it started again there (the poses jumped, or "
         "treads and gyroscope lost their way)",
         (float(len(refused)),),
     )

@@ -106,7 +106,8 @@ def ended(watch: RestWatch, stamp_s: float) -> tuple[FilterEvent, ...]:
     if watch.stood_m is None:
         return ()
     text = (
-        f"the treads stood, and the poses moved by {watch.moved_m:.2f} m or turned: the robot was "
-        "pushed or slid, or the poses wander; the filter followed them and learned nothing of it"
+        f"the treads were stationary, and the poses moved by {watch.moved_m:.2f} m or turned: the "
+        "robot was pushed or slid, or the poses drift; the filter followed them and learned "
+        "nothing of it"
     )
     return (FilterEvent("moved_at_rest", watch.moved_since_s, stamp_s, text, (watch.moved_m,)),)

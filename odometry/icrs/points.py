@@ -15,7 +15,7 @@ def icrs_of_twist(
 ) -> FloatArray:
     """The ICRs that both treads must have had for a robot to move so: `icr_twist` turned round.
 
-    Baril 2020 eq. 4 to 6 with the sign and the place of alpha mended, Chen 2023 eq. 2,
+    Baril 2020 eq. 4 to 6 with the sign and the place of alpha corrected, Chen 2023 eq. 2,
     Martinez 2017 eq. 1 to 3.
 
     Parameters

@@ -43,7 +43,7 @@ def icr_twist(icrs: FloatArray, tread_speeds: FloatArray) -> FloatArray:
 def icr_twist_jacobian(icrs: FloatArray, tread_speeds: FloatArray) -> FloatArray:
     """Derivative (..., 3, 3) of `icr_twist` by (y_left, y_right, x_icr).
 
-    This is Chen 2023 eq. 10 in the body frame, with its misprints mended.
+    This is Chen 2023 eq. 10 in the body frame, with its misprints corrected.
     """
     omega = icr_twist(icrs, tread_speeds)[..., 2]
     jacobian = zero_matrices(np.shape(omega), 3, 3)

@@ -1,7 +1,7 @@
+from .camera_prior import SeenGround
 from .detection import detections
 from .files import write_modes
 from .mode_set import DWELL_S, UNDETERMINED
-from .sight import SeenGround
 from .words import sentences
 
 __all__ = [

@@ -50,9 +50,9 @@ def candidates(track: ModeTrack, sure: float) -> BoolArray:
 
 
 def disagreements(
-    track: ModeTrack, sight: AnyArray, sure: float, lasting_s: float
+    track: ModeTrack, by_camera: AnyArray, sure: float, lasting_s: float
 ) -> tuple[tuple[float, float, str, str], ...]:
-    """Where camera and feel name different terrains for long: from, to [s], seen, felt.
+    """Where camera and motion name different terrains for long: from, to [s], and both names.
 
     While one of them has no answer, a disagreement neither ends nor lasts.
 
@@ -60,21 +60,21 @@ def disagreements(
     ----------
     track : ModeTrack
         Of motion alone.
-    sight : (N,) of str
+    by_camera : (N,) of str
         The terrain under the robot by the camera; "unknown" where there is no label.
     sure, lasting_s : float
     """
-    felt = named_modes(track, sure)
+    by_motion = named_modes(track, sure)
     lasts_s = np.append(np.diff(track.stamps_s), 0.0)
-    both = np.flatnonzero(~np.isin(felt, NO_MODES) & (sight != UNKNOWN))
-    changes = (felt[both][1:] != felt[both][:-1]) | (sight[both][1:] != sight[both][:-1])
+    both = np.flatnonzero(~np.isin(by_motion, NO_MODES) & (by_camera != UNKNOWN))
+    changes = np.any([n[both][1:] != n[both][:-1] for n in (by_motion, by_camera)], axis=0)
     found = []
     for rows in np.split(both, np.flatnonzero(changes) + 1):
-        if not len(rows) or felt[rows[0]] == sight[rows[0]]:
+        if not len(rows) or by_motion[rows[0]] == by_camera[rows[0]]:
             continue
         if lasts_s[rows].sum() >= lasting_s:
             begin, end = track.stamps_s[rows[[0, -1]]].tolist()
-            found.append((begin, end, str(sight[rows[0]]), str(felt[rows[0]])))
+            found.append((begin, end, str(by_camera[rows[0]]), str(by_motion[rows[0]])))
     return tuple(found)
 
 

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.modes.bank_inputs import Signals
 from odometry.modes.innovation_test import windowed
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.response import SLOWEST_HZ, lagged
-from odometry.modes.signals import Signals
 from odometry.modes.velocity import VelocityModes
 
 WINDOW_S = 16.0

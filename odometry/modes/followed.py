@@ -8,19 +8,19 @@ import numpy as np
 from odometry.arrays import AnyArray, IntArray
 from odometry.feel.model import FeelModel
 from odometry.modes.answers import candidates, disagreements, named_modes
+from odometry.modes.bank_inputs import Signals
+from odometry.modes.camera_prior import SeenGround, seen_labels
 from odometry.modes.detection import Score, score_of
 from odometry.modes.feel_source import feel_source, with_feel
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED, ModeSet
 from odometry.modes.mode_track import ModeTrack
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.sight import SeenGround, seen_labels
-from odometry.modes.signals import Signals
 from odometry.modes.track import follow_signals, judged_signals
 from odometry.run import UNKNOWN, Run
 
 BOUND = 2.0  # standard deviations: 95 % of what is left of a mode that is true
 
-MOTION, FELT, SIGHTED = "motion alone", "motion and feel", "motion and sight"
+MOTION, FELT, SIGHTED = "motion alone", "motion and feel", "motion and camera"
 
 
 @dataclass(frozen=True)

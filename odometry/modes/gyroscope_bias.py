@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
+from odometry.modes.bank_inputs import BIAS_SIGMA_RAD_S, STANDING_M_S, Signals
 from odometry.modes.heading_check import WINDOW_S, HeadingCheck
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.signals import BIAS_SIGMA_RAD_S, STANDING_M_S, Signals
 
 JUMP_SIGMAS = 4.0  # from the estimated bias: farther off it is another one
 

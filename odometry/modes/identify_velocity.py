@@ -7,9 +7,9 @@ from tqdm import tqdm
 
 from odometry.arrays import FloatArray
 from odometry.errors import IdentificationError
+from odometry.modes.bank_inputs import forward_speed_m_s, velocity_signals
 from odometry.modes.mode_windows import stretches_by_label
 from odometry.modes.response import Record, errors_of, fitted_response, growing_power
-from odometry.modes.signals import forward_speed_m_s, velocity_signals
 from odometry.modes.velocity import VelocityModes
 from odometry.run import UNKNOWN, Run
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.modes.bank_inputs import STANDING_M_S
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.signals import STANDING_M_S
 from odometry.modes.traction import TractionModes, twists_of
 from odometry.modes.velocity import VelocityModes
 from odometry.run import Run

@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, IntArray
 from odometry.errors import IdentificationError, WindowError
-from odometry.modes.signals import STANDING_M_S
+from odometry.modes.bank_inputs import STANDING_M_S
 from odometry.modes.traction import LEFT_TURN, RIGHT_TURN, turns_of
 from odometry.modes.yaw_rate_noise import Heard, heard_of
 from odometry.run import UNKNOWN, Run

@@ -43,7 +43,7 @@ class ModesConfig:
     alike_sigmas : float
         Of what lasts of the errors of modes; below it two modes are taken for equal.
     bias_sigmas : float
-        Of the bias that is expected: farther off only a mode that is not true says so.
+        Within so many of them a bias is expected; only a mode that is not true needs a larger one.
     """
 
     floor: float = 1e-6

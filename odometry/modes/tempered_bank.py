@@ -8,8 +8,8 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.estimation.ekf_bank import EkfBank, wrapped
 from odometry.estimation.imm import Bank
 from odometry.estimation.mode_belief import ModeBelief
+from odometry.modes.bank_inputs import Signals
 from odometry.modes.gyroscope_bias import moving
-from odometry.modes.signals import Signals
 from odometry.windows.spans import touched
 
 OUTLIERS = 1e-3  # share of measurements that follow a Cauchy distribution

@@ -11,13 +11,13 @@ from odometry.arrays import FloatArray
 from odometry.estimation.ekf_bank import EkfBank
 from odometry.estimation.imm import Imm
 from odometry.estimation.mode_belief import ModeBelief
+from odometry.modes.bank_inputs import Signals
+from odometry.modes.camera_prior import SeenGround, mode_chains
 from odometry.modes.gyroscope_bias import bias_readings, with_reading
 from odometry.modes.innovation_test import Innovations, mode_fit
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.mode_track import ModeTrack
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.sight import SeenGround, mode_chains
-from odometry.modes.signals import Signals
 from odometry.modes.tempered_bank import (
     OwnFilters,
     TemperedBank,

@@ -3,13 +3,13 @@
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.modes.bank_inputs import Signals
 from odometry.modes.between_modes import BetweenModes, between_modes
 from odometry.modes.gyroscope_bias import GyroscopeTrust, bias_readings, gyroscope_trust
 from odometry.modes.innovation_test import Innovations, windowed
 from odometry.modes.mode_set import DWELL_S, ModeSet
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.response import BLOCK_S
-from odometry.modes.signals import Signals
 from odometry.modes.travel_check import TravelCheck, travel_check
 from odometry.modes.turn_agreement import turns_disagree
 from odometry.modes.velocity import VelocityModes

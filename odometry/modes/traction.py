@@ -12,8 +12,8 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.estimation.ekf_bank import EkfModel
 from odometry.geometry import se2
+from odometry.modes.bank_inputs import BIAS_SIGMA_RAD_S, BIAS_WALK_RAD2_S3, Signals, pose_signals
 from odometry.modes.response import SHORTEST_LAG_S
-from odometry.modes.signals import BIAS_SIGMA_RAD_S, BIAS_WALK_RAD2_S3, Signals, pose_signals
 from odometry.run import Run
 
 MEASURED = np.hstack([np.eye(4), np.array([[0.0], [0.0], [0.0], [1.0]])])  # yaw rate and bias
@@ -49,8 +49,8 @@ class TractionModes:
         the modes, too, for a gyroscope read as often as in the runs identified from: of what it
         says in a second, its own noise is the least.
     variance_growth : float
-        By what part variances grow for each (m/s^2)^2 of acceleration of a tread: who speeds up in
-        a turn slips by more than the gains say.
+        By what part variances grow for each (m/s^2)^2 of acceleration of a tread: a
+        robot that speeds up in a turn slips by more than the gains say.
     """
 
     names: tuple[str, ...]

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
+from odometry.modes.bank_inputs import Signals
 from odometry.modes.measured_steps import MeasuredTravel, StepWindows, during, step_windows
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.response import SLOWEST_HZ, lagged
-from odometry.modes.signals import Signals
 from odometry.modes.velocity import VelocityModes
 
 WINDOWS_S = (5.0, 10.0)

@@ -8,9 +8,9 @@ its neighbour differ by over the same drive, the gyroscope does not say which of
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.modes.bank_inputs import Signals
 from odometry.modes.measured_steps import MeasuredTurn, StepWindows, during, step_windows
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.signals import Signals
 from odometry.modes.velocity import VelocityModes
 
 WINDOWS_S = (5.0, 10.0)

@@ -10,7 +10,7 @@ from odometry.modes.followed import FELT, MOTION, SIGHTED, Followed, Misfit
 from odometry.modes.mode_set import NO_MODES, UNDETERMINED
 from odometry.modes.mode_track import ModeTrack
 
-WHOSE = {MOTION: "", FELT: " with feel", SIGHTED: " with sight"}
+WHOSE = {MOTION: "", FELT: " with feel", SIGHTED: " with camera"}
 FEW = 4  # stretches, or answers, that are given one by one
 LEAST_SHARE = 0.005  # less is not reported
 LEAST_OPEN = 0.1  # of the undetermined time: sets of modes that are named

@@ -7,8 +7,8 @@ import numpy as np
 from scipy.optimize import nnls
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.modes.bank_inputs import STANDING_M_S, accelerations_m_s2, yaw_rates_of
 from odometry.modes.response import BLOCK_S, LEAST_VARIANCE, block_means, lagged
-from odometry.modes.signals import STANDING_M_S, accelerations_m_s2, yaw_rates_of
 from odometry.modes.traction import twists_of
 from odometry.run import Run
 

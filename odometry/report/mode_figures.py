@@ -32,7 +32,7 @@ WIDTH_IN = 7.0
 STRIP_IN, LINES_IN, ROW_IN, STATE_IN, GAP_IN = 0.24, 1.45, 0.19, 1.25, 0.32
 LEGEND_ROW_IN, COLUMNS = 0.22, 4
 LEFT_IN, LETTER_IN = 0.77, 0.052
-ANSWERS = {MOTION: "answer", FELT: "with feel", SIGHTED: "with sight"}
+ANSWERS = {MOTION: "answer", FELT: "with feel", SIGHTED: "with camera"}
 
 
 def modes_picture(followed: Followed, folder: Path) -> Picture:
@@ -127,7 +127,7 @@ def _strips(followed: Followed) -> dict[str, AnyArray]:
     if (followed.motion.labels != UNKNOWN).any():
         strips["true"] = followed.motion.labels
     if followed.seen:
-        strips["seen"] = followed.seen_labels
+        strips["camera"] = followed.seen_labels
     answers = {ANSWERS[name]: followed.answers(track) for name, track in followed.tracks.items()}
     return strips | answers
 

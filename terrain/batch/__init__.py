@@ -1,1 +1,1 @@
-"""Many runs: the jobs, who does them, and what comes of all of them together."""
+"""Many runs: the jobs, the processes that do them, and the results of all together."""

@@ -99,7 +99,7 @@ def next_step(reports: Mapping[Path, "CheckReport"], files: Mapping[Path, Path])
     others = [str(folder) for folder in odd if str(folder) not in slipping]
     advice = []
     if others:
-        advice.append(f"mend or leave out {', '.join(others)}, and check again")
+        advice.append(f"correct or leave out {', '.join(others)}, and check again")
     if slipping:
         advice.append(
             f"use {', '.join(slipping)} as recorded if the robot truly slipped (nothing can be "

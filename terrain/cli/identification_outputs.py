@@ -119,7 +119,7 @@ def require_determined(found: "Identification") -> None:
             for warning in report.at(Level.WARNING)
         ]
         lines = [str(error)]
-        lines += ["Mend first what the check warned of:", *causes] if causes else []
+        lines += ["First correct what the check warned of:", *causes] if causes else []
         lines += ["Nothing is written. The fit that is refused:"]
         lines += [f"  {in_short(name, one)}" for name, one in found.terrains.items()]
         lines += [f"  {words(found.left_out)}"] if found.left_out else []

@@ -169,8 +169,8 @@ def _followed(
     span: "Span",
 ) -> "Followed":
     from odometry.errors import RunFolderError
+    from odometry.modes.camera_prior import seen_grounds
     from odometry.modes.followed import followed
-    from odometry.modes.sight import seen_grounds
     from terrain.cli.recordings import read_run, with_turns
 
     (run,) = with_turns([read_run(folder, span)])

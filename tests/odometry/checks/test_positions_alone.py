@@ -70,12 +70,12 @@ def test_positions_of_another_run_disagree(seed):
     assert warnings(run) == warnings(without_gyroscope(run)) == []
     (found,) = check_recording(mixed).at(Level.WARNING)
     assert found.name == "sensors_disagree"
-    assert "likeness" in found.seen
+    assert "similarity" in found.seen
 
 
 @pytest.mark.parametrize(("degrees", "said"), [(5.0, True), (12.0, False)])
 def test_on_steep_terrain_robots_slide_off_their_path(degrees, said):
-    """Figure eights at 12 degrees have a likeness of 0.2, without any fault."""
+    """Figure eights at 12 degrees have a similarity of 0.2, without any fault."""
     run = without_yaw(winding(0.05 * np.arange(4000), 0))
     other = winding(0.05 * np.arange(4000), 10)
     pitch = np.full(len(run.odometry), np.radians(degrees))

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from odometry.modes.bank_inputs import BIAS_SIGMA_RAD_S, Signals
 from odometry.modes.gyroscope_bias import (
     BiasReading,
     bias_is_open,
@@ -11,7 +12,6 @@ from odometry.modes.gyroscope_bias import (
 )
 from odometry.modes.heading_check import HeadingCheck
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.signals import BIAS_SIGMA_RAD_S, Signals
 
 STEP_S, SIZE = 0.02, 1000
 STAMPS_S = STEP_S * np.arange(SIZE)

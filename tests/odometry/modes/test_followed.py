@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from odometry.modes.camera_prior import PULLED_S, SeenGround
 from odometry.modes.files import content_of, write_modes, write_runs
 from odometry.modes.followed import MOTION, SIGHTED, Followed, followed
-from odometry.modes.sight import PULLED_S, SeenGround
 from odometry.modes.track import ModesConfig
 from odometry.modes.words import answer_words, sentences
 from tests.odometry.modes.mode_examples import run_of, track, traction_set, velocity_set

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from odometry.modes.bank_inputs import BIAS_SIGMA_RAD_S, BIAS_WALK_RAD2_S3, Signals
 from odometry.modes.mode_set import ModeSet
-from odometry.modes.signals import BIAS_SIGMA_RAD_S, BIAS_WALK_RAD2_S3, Signals
 from odometry.modes.track import follow_signals
 from odometry.modes.velocity import VelocityModes
 from tests.odometry.modes.mode_drives import velocities, wandering

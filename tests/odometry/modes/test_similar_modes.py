@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from odometry.modes.answers import named_modes
+from odometry.modes.bank_inputs import Signals
 from odometry.modes.mode_set import DWELL_S, UNDETERMINED, ModeSet
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.response import BLOCK_S
-from odometry.modes.signals import Signals
 from odometry.modes.track import follow_signals
 from odometry.modes.track_checks import similar_modes
 from odometry.modes.velocity import VelocityModes

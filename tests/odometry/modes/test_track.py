@@ -5,9 +5,9 @@ import pytest
 
 from odometry.errors import ConfigError, ParameterError, RunFolderError
 from odometry.modes import velocity
+from odometry.modes.bank_inputs import BIAS_SIGMA_RAD_S, BIAS_WALK_RAD2_S3, Signals
+from odometry.modes.camera_prior import SeenGround
 from odometry.modes.mode_set import ModeSet
-from odometry.modes.sight import SeenGround
-from odometry.modes.signals import BIAS_SIGMA_RAD_S, BIAS_WALK_RAD2_S3, Signals
 from odometry.modes.track import ModesConfig, follow_modes, follow_signals, judged_signals
 from odometry.modes.traction import TractionModes
 from odometry.modes.velocity import VelocityModes

@@ -13,8 +13,8 @@ from odometry.estimation.imm import Imm
 from odometry.estimation.markov import ModeChain
 from odometry.estimation.mode_belief import ModeBelief
 from odometry.evaluation.open_loop_consistency import consistency, normalised_squared_errors
+from odometry.modes.bank_inputs import Signals
 from odometry.modes.mode_set import ModeSet
-from odometry.modes.signals import Signals
 from odometry.modes.tempered_bank import TemperedBank, with_shared_bias
 from odometry.modes.track import follow_signals
 from odometry.modes.velocity import FIRST_SIGMAS, VelocityModes

@@ -3,8 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from odometry.modes.bank_inputs import BIAS_SIGMA_RAD_S
 from odometry.modes.mode_set import ModeSet
-from odometry.modes.signals import BIAS_SIGMA_RAD_S
 from odometry.modes.track import follow_modes
 from odometry.modes.traction import TractionModes
 from tests.odometry.modes.mode_drives import (

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from odometry.errors import RunFolderError
+from odometry.modes.bank_inputs import BIAS_SIGMA_RAD_S, BIAS_WALK_RAD2_S3
 from odometry.modes.response import lagged
-from odometry.modes.signals import BIAS_SIGMA_RAD_S, BIAS_WALK_RAD2_S3
 from tests.odometry.modes.mode_drives import run_of_tables
 from tests.odometry.modes.traction_examples import MODES
 

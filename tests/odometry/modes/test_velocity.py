@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from odometry.errors import ParameterError
-from odometry.modes.signals import BIAS_SIGMA_RAD_S, BIAS_WALK_RAD2_S3
+from odometry.modes.bank_inputs import BIAS_SIGMA_RAD_S, BIAS_WALK_RAD2_S3
 from odometry.modes.velocity import VelocityModes
 from tests.odometry.modes.mode_drives import integrated, run_of_tables
 

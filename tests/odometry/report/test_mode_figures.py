@@ -8,8 +8,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
+from odometry.modes.camera_prior import SeenGround
 from odometry.modes.followed import Followed, followed
-from odometry.modes.sight import SeenGround
 from odometry.modes.track import ModesConfig
 from odometry.report import mode_figures, mode_panels, modes_page
 from odometry.report.figure import LINE_STYLES, mode_colours
@@ -123,7 +123,7 @@ def test_a_page_of_velocity_modes(grounds, tmp_path):
     assert "Where the answer is none of these" not in page
     assert "With the camera: " in page
     assert "By motion alone." in page
-    assert "By motion and sight." in page
+    assert "By motion and camera." in page
 
 
 def test_where_no_mode_fits_the_page_says_so(tmp_path):
@@ -201,7 +201,7 @@ def test_the_legend_names_few_modes_and_what_is_open(grounds, drawn, tmp_path):
     assert words == ["ice", "tar", "none of these", "undetermined"]
     strips, motion, _, speed, rate = figure.axes
     names = [tick.get_text() for tick in strips.get_yticklabels()]
-    assert names == ["true", "seen", "answer", "with sight"]
+    assert names == ["true", "camera", "answer", "with camera"]
     assert motion.get_title(loc="left") == "motion alone"
     assert (speed.get_ylabel(), rate.get_ylabel()) == ("V [m/s]", "omega [rad/s]")
     assert motion.get_xlim() == (0.0, grounds.motion.stamps_s[-1])

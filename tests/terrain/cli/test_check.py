@@ -53,9 +53,9 @@ def test_findings_by_run_and_an_unreadable_folder_between(curvy_run, faulty, tmp
 def test_a_picture_is_proposed_only_of_what_can_be_read(faulty, tmp_path):
     nowhere = tmp_path / "nowhere"
     last = invoke(faulty, nowhere).stdout.splitlines()[-1]
-    assert f"check {faulty} --picture pictures; mend or leave out {faulty}, {nowhere}" in last
+    assert f"check {faulty} --picture pictures; correct or leave out {faulty}, {nowhere}" in last
     last = invoke(nowhere).stdout.splitlines()[-1]
-    assert last == f"Next: mend or leave out {nowhere}, and check again"
+    assert last == f"Next: correct or leave out {nowhere}, and check again"
 
 
 def found(folder, *names):
@@ -77,7 +77,7 @@ def test_true_slip_is_not_to_be_mended():
         Path("good"): found("good"),
     }
     last = next_step(reports, {})
-    assert "mend or leave out both, and check again" in last
+    assert "correct or leave out both, and check again" in last
     assert "use ice as recorded if the robot truly slipped" in last
     alone = next_step({Path("ice"): reports[Path("ice")]}, {})
     assert "leave out" not in alone

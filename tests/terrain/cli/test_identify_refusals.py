@@ -28,7 +28,7 @@ def test_a_refusal_says_what_the_check_warned_of(command, curvy_run, tmp_path):
         text = text.replace(old, new)
     (swapped / "odometry.csv").write_text(text)
     answer = command(swapped, *SHORT)
-    assert_refused(command, answer, "Mend first what the check warned of", "swapped")
+    assert_refused(command, answer, "First correct what the check warned of", "swapped")
 
 
 def test_a_straight_run_is_refused_with_names_and_nothing_is_written(command, across_run):

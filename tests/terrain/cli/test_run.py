@@ -143,7 +143,7 @@ def test_after_a_jump_of_the_poses_what_was_learned_is_not_recommended(world, tm
     events = content_of(tmp_path / "out")["filter"]["events"]
     assert [event["kind"] for event in events] == ["reinitialised"]
     assert "Note: " in answer.output
-    assert "it started anew there" in answer.output
+    assert "it started again there" in answer.output
     assert "learned.toml is not recommended: " in answer.output
 
 

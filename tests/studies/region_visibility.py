@@ -1,7 +1,7 @@
 """How many images get a label where they miss a corner of the region, and how good it is.
 
-    python -m tests.studies.region_sight [--data FOLDER] [--every 2.0]
-    python -m tests.studies.region_sight --accuracy [--seeds 2] [--data FOLDER]
+    python -m tests.studies.region_visibility [--data FOLDER] [--every 2.0]
+    python -m tests.studies.region_visibility --accuracy [--seeds 2] [--data FOLDER]
 
 The first counts, for real cameras (data/camera-frames) and the motion of real recordings
 (data/motion, whose robots turn by an ordinary effective width): of the moments at which the middle

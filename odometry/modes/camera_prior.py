@@ -87,8 +87,8 @@ def mode_chains(
 
     A label is a prior on where modes change to: from the labelled place on, every other mode
     leads to the labelled one, within PULLED_S where the label is certain, and as before where its
-    confidence is that of chance. So it decides where motion is no evidence, and yields to motion
-    that contradicts it for long.
+    confidence is that of chance. So it decides where motion is no evidence; motion that
+    contradicts it for long overrules it.
 
     Returns
     -------

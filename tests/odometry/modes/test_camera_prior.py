@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import ParameterError, RunFolderError
-from odometry.modes.sight import (
+from odometry.modes.camera_prior import (
     BLIND_LENGTHS,
     PULLED_S,
     SeenGround,

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from odometry.modes.bank_inputs import BIAS_SIGMA_RAD_S, Signals
 from odometry.modes.gyroscope_bias import SETTLES_S, standing_biases
-from odometry.modes.signals import BIAS_SIGMA_RAD_S, Signals
 from odometry.modes.track import follow_signals
 from tests.odometry.modes.mode_examples import velocity_set
 
