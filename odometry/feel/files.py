@@ -54,10 +54,8 @@ def _more(felt: Felt) -> Iterator[str]:
     if felt.foreign[-1]:
         how = felt.model.shape_so_far.plus(felt.windows).words
         yield (
-            "The shape of the vibration's spectrum, all axes together, is unlike that of every run "
-            f"of the model ({how}): another filter, sampling rate or mounting of the IMU, or tyres "
-            "or a terrain that shake the robot unlike all of them. Unknown; identify a model with "
-            "this IMU."
+            f"{how}, or tyres or a terrain that shake the robot unlike all of them. Unknown; "
+            "identify a model with this IMU."
         )
     if is_unlike(felt):
         share = (felt.answers[moving] == UNKNOWN).mean()

@@ -12,6 +12,8 @@ GRAVITY_SHARE = 0.15  # by which the mean size may differ
 MOST_TILT_RAD = 0.79  # of gravity from the robot's z: 45 degrees are no slope that one drives
 MOST_YAW_GAIN = 5.0  # yaw rate over that of the treads; a skid-steer robot has less than 1.2
 LEAST_TURN_RAD_S = 0.05  # of the treads, root mean square, for its gain to be determined
+LEAST_S = 10.0  # of samples for its sense: on ice a robot turns on against its treads for 4 s
+MOST_BIAS_RAD_S = 0.02  # of a gyroscope: what it turns against the treads beyond is no bias
 
 
 @dataclass(frozen=True)
@@ -25,14 +27,21 @@ class ImuSums:
     yaw : (3,)
         Of the product of measured yaw rate and that of the treads, of the square of the latter
         [rad2/s2], and how many.
+    seconds : float
+        Of these samples.
     """
 
     accel: FloatArray = field(default_factory=lambda: np.zeros(3))
     accel_counts: FloatArray = field(default_factory=lambda: np.zeros(3))
     yaw: FloatArray = field(default_factory=lambda: np.zeros(3))
+    seconds: float = 0.0
 
     def plus(
-        self, axes: Mapping[str, FloatArray], treads_m_s: FloatArray, track_width_m: float
+        self,
+        axes: Mapping[str, FloatArray],
+        treads_m_s: FloatArray,
+        rate_hz: float,
+        track_width_m: float,
     ) -> "ImuSums":
         """With N samples more, in the robot frame; NaN is left out.
 
@@ -40,9 +49,9 @@ class ImuSums:
         ----------
         axes : Mapping of str to (N,)
         treads_m_s : (N, 2)
-        track_width_m : float
+        rate_hz, track_width_m : float
         """
-        accel, counts, yaw = self.accel, self.accel_counts, self.yaw
+        accel, counts, yaw, seconds = self.accel, self.accel_counts, self.yaw, self.seconds
         names = [f"accel_{axis}" for axis in "xyz"]
         if all(name in axes for name in names):
             table = np.stack([axes[name] for name in names])
@@ -53,7 +62,8 @@ class ImuSums:
             both = np.isfinite(turning) & np.isfinite(axes["gyro_z"])
             turning, yaw_rate = turning[both], axes["gyro_z"][both]
             yaw = yaw + np.array([yaw_rate @ turning, turning @ turning, len(turning)])
-        return ImuSums(accel, counts, yaw)
+            seconds += len(turning) / rate_hz
+        return ImuSums(accel, counts, yaw, seconds)
 
     def fault(self) -> str:
         """What contradicts rad/s and m/s2 with gravity along z; "" if nothing does."""
@@ -85,5 +95,12 @@ class ImuSums:
             return (
                 f"gyro_z is {gain:.0f} times the yaw rate that the treads give, expected at most "
                 "about 1; is it in degrees a second?"
+            )
+        against_rad_s = -gain * np.sqrt(power / count)  # that goes with the turns of the treads
+        if self.seconds >= LEAST_S and against_rad_s > MOST_BIAS_RAD_S:
+            return (
+                f"gyro_z turns against the treads ({gain:.2f} times their yaw rate, over "
+                f"{self.seconds:.0f} s); expected the same sense: left is positive; is a sign, or "
+                "left and right, the other way round, or are these the stamps of two clocks?"
             )
         return ""

@@ -61,7 +61,7 @@ class LiveFeel:
     -----
     A window is measured as by `follow_feel`, from rows up to the stamp from which it is known, and
     given at the first frame there or later. Memory does not grow with time. What needs the whole
-    run is not checked: one clock, the sense of gyro_z, samples that repeat.
+    run is not checked: one clock, samples that repeat.
 
     Examples
     --------
@@ -186,7 +186,10 @@ class LiveFeel:
     def _measured(self, count: int, rate_hz: float, complete_s: float) -> FeltWindows | None:
         """The next window and those of the stretch before; None where nothing can be felt."""
         signals = self._signals(count, rate_hz)
-        self._sums = self._sums.plus(signals.axes, signals.treads_m_s, self._width_m)
+        step = steps_of(self._window_s, rate_hz)[1]  # what the window before did not have
+        axes = {name: of[-step:] for name, of in signals.axes.items()}
+        new = (axes, signals.treads_m_s[-step:], rate_hz, self._width_m)
+        self._sums = self._sums.plus(*new)
         self.note = self._sums.fault()
         if self.note:
             return None

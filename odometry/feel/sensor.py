@@ -1,4 +1,4 @@
-"""Whether a spectrum can be that of the IMU which a model was identified with, by its shape."""
+"""Whether vibration can be that of the IMU which a model was identified with, by its spectrum."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -24,21 +24,24 @@ class SensorShape:
 
     A shape is the logarithm of the density in equally wide bands less its mean, and the mean of
     that over all axes. Terrains change it less than a filter, another sampling rate or a soft
-    mounting of the IMU, which change all axes alike.
+    mounting of the IMU, which change all axes alike. With both kinds of axes there is one number
+    more: the mean logarithm of the gyroscope less that of the accelerations. How much a robot
+    rotates while it is shaken is its geometry, and another scale of one kind changes it.
 
     Attributes
     ----------
     edges_hz : (B + 1,)
-    mean, deviation : (B,)
-        Over runs.
-    limit : float
-        Greatest distance (see `distance`) of one of the runs from the others.
+    mean, deviation : (N,)
+        Over runs; N is B, or with the ratio of both kinds of axes B + 1.
+    limits : (1,) or (2,)
+        Greatest distance (see `_distances`) of one of the runs from the others, of the shape and
+        of the ratio.
     """
 
     edges_hz: FloatArray
     mean: FloatArray
     deviation: FloatArray
-    limit: float
+    limits: FloatArray
 
     @classmethod
     def of(cls, windows: Sequence[FeelWindows], design: Design) -> "SensorShape | None":
@@ -56,21 +59,42 @@ class SensorShape:
         table = np.array(runs)
         others = [np.delete(table, row, axis=0) for row in range(len(table))]
         apart = [
-            float(_distance(row, of.mean(axis=0), of.std(axis=0, ddof=1)))
+            _distances(row, of.mean(axis=0), of.std(axis=0, ddof=1), bands)
             for row, of in zip(table, others, strict=True)
         ]
-        return cls(edges_hz, table.mean(axis=0), table.std(axis=0, ddof=1), max(apart))
+        mean, deviation = table.mean(axis=0), table.std(axis=0, ddof=1)
+        return cls(edges_hz, mean, deviation, np.max(apart, axis=0))
+
+    def of_windows(self, windows: FeelWindows, axes: Sequence[str]) -> FloatArray:
+        """Shapes (W, N) of windows; files before version 0.16 hold no ratio."""
+        return shapes(windows, axes, self.edges_hz)[:, : len(self.mean)]
 
     def excess(self, shape: FloatArray) -> FloatArray:
-        """Distance of shapes (..., B) in units of the limit."""
-        return np.asarray(_distance(shape, self.mean, self.deviation) / self.limit)
+        """The larger distance of shapes (..., N), in units of its limit."""
+        return np.asarray(self._excesses(shape).max(axis=-1))
+
+    def _excesses(self, shape: FloatArray) -> FloatArray:
+        apart = _distances(shape, self.mean, self.deviation, len(self.edges_hz) - 1)
+        return np.asarray(apart / self.limits)
 
     def words(self, shape: FloatArray) -> str:
-        """Where a shape (B,) is farthest off, and how."""
-        off = (shape - self.mean) / self.deviation
+        """What of a shape (N,) is farthest off, and how."""
+        bands = len(self.edges_hz) - 1
+        if self._excesses(shape).argmax():
+            times = np.exp((shape[bands] - self.mean[bands]) / 2)
+            return (
+                f"The vibration turns the robot {times:.2g} times as much, against how it moves "
+                "it, as in the runs of the model: another scale or unit of the gyroscope or of the "
+                "accelerations"
+            )
+        off = ((shape - self.mean) / self.deviation)[:bands]
         most = int(np.abs(off).argmax())
         low, high = self.edges_hz[most : most + 2]
-        return f"{'weaker' if off[most] < 0 else 'stronger'} from {low:.0f} to {high:.0f} Hz"
+        how = f"{'weaker' if off[most] < 0 else 'stronger'} from {low:.0f} to {high:.0f} Hz"
+        return (
+            "The shape of the vibration's spectrum, all axes together, is unlike that of every run "
+            f"of the model ({how}): another filter, sampling rate or mounting of the IMU"
+        )
 
     def arrays(self) -> dict[str, AnyArray]:
         """Everything learned, by name."""
@@ -78,7 +102,7 @@ class SensorShape:
             "sensor_edges": self.edges_hz,
             "sensor_mean": self.mean,
             "sensor_deviation": self.deviation,
-            "sensor_limit": np.array([self.limit]),
+            "sensor_limit": self.limits,
         }
 
     @classmethod
@@ -92,14 +116,15 @@ class SensorShape:
         """
         if "sensor_mean" not in arrays:
             return None
-        edges, mean, deviation, limit = (
+        edges, mean, deviation, limits = (
             arrays[f"sensor_{name}"] for name in ("edges", "mean", "deviation", "limit")
         )
-        if not mean.shape == deviation.shape == (len(edges) - 1,) or limit.shape != (1,):
+        sizes = len(edges) - 2 + len(limits)
+        if not mean.shape == deviation.shape == (sizes,) or limits.shape not in ((1,), (2,)):
             raise ValueError(f"shapes of spectra: {mean.shape}, {deviation.shape}, {edges.shape}")
-        if not (deviation > 0).all() or limit[0] <= 0:
+        if not (deviation > 0).all() or not (limits > 0).all():
             raise ValueError("shapes of spectra without spread")
-        return cls(edges, mean, deviation, float(limit[0]))
+        return cls(edges, mean, deviation, limits)
 
 
 @dataclass(frozen=True)
@@ -115,7 +140,7 @@ class ShapeSoFar:
         Without one no IMU is another.
     axes : tuple of str
         Of the model.
-    total, part : (B,)
+    total, part : (N,)
         Sums over all windows, and over those of the part that goes on.
     count : int
         Of windows.
@@ -141,7 +166,7 @@ class ShapeSoFar:
         if self.sensor is None or not windows.felt.any():
             return self
         found = self
-        for shape in shapes(windows, self.axes, self.sensor.edges_hz)[windows.felt]:
+        for shape in self.sensor.of_windows(windows, self.axes)[windows.felt]:
             found = found._with(self.sensor, shape)
         return found
 
@@ -167,13 +192,19 @@ class ShapeSoFar:
 
 
 def shapes(windows: FeelWindows, axes: Sequence[str], edges_hz: FloatArray) -> FloatArray:
-    """The shape (W, B) of the spectrum of each window."""
+    """The shape (W, B) of the spectrum of each window, and with both kinds of axes the ratio."""
     rows = [windows.axes.index(axis) for axis in axes]
     both = windows.densities[:, pair_rows(len(windows.axes), rows)]
     logs = np.log(both[:, np.equal(*np.triu_indices(len(rows)))] + LEAST_POWER)
     first = np.searchsorted(np.arange(logs.shape[-1]) * windows.step_hz, edges_hz - 1e-9)
     bands = np.stack([logs[..., a:b].mean(axis=-1) for a, b in pairwise(first)], axis=-1)
-    return np.asarray((bands - bands.mean(axis=-1, keepdims=True)).mean(axis=1))
+    levels = bands.mean(axis=-1)
+    shape = (bands - levels[..., None]).mean(axis=1)
+    gyro = np.array([axis.startswith("gyro") for axis in axes])
+    if gyro.all() or not gyro.any():
+        return np.asarray(shape)
+    ratio = levels[:, gyro].mean(axis=1) - levels[:, ~gyro].mean(axis=1)
+    return np.column_stack([shape, ratio])
 
 
 def _bands(windows: Sequence[FeelWindows], design: Design) -> int:
@@ -182,6 +213,13 @@ def _bands(windows: Sequence[FeelWindows], design: Design) -> int:
     return min(BANDS, most) if design.axes else 0
 
 
-def _distance(shape: FloatArray, mean: FloatArray, deviation: FloatArray) -> AnyArray:
-    """Mean square of the differences of shapes (..., B), in deviations of each band."""
-    return np.asarray((((shape - mean) / deviation) ** 2).mean(axis=-1))
+def _distances(
+    shape: FloatArray, mean: FloatArray, deviation: FloatArray, bands: int
+) -> FloatArray:
+    """Mean square of the differences of shapes (..., N), in deviations, of the bands (..., 1).
+
+    With the ratio, beside it the square of its difference (..., 2).
+    """
+    squares = ((shape - mean) / deviation) ** 2
+    of_bands = squares[..., :bands].mean(axis=-1, keepdims=True)
+    return np.concatenate([of_bands, squares[..., bands:]], axis=-1)

@@ -68,8 +68,8 @@ def feel_signals(run: Run) -> FeelSignals:
     ------
     RunFolderError
         If there is no axis, they are recorded too slowly, their sizes are not in rad/s and m/s2
-        with gravity along z (see `imu_check`), or gyro_z does not turn when the treads do (see
-        `clock_check`).
+        with gravity along z, gyro_z turns against the treads (see `imu_check`), or not when they do
+        (see `clock_check`).
     """
     table, axes = axes_of(run)
     stamps_s = table.stamps_s
@@ -102,9 +102,10 @@ def feel_signals(run: Run) -> FeelSignals:
         row_terrains(run)[held],
         _repeats(run, stamps_s, axes),
     )
-    fault = ImuSums().plus(signals.axes, treads, run.robot.track_width).fault()
-    if not fault and "gyro_z" in axes:
-        fault = clock_fault(signals.axes["gyro_z"], treads, rate_hz, run.robot.track_width)
+    width_m, fault = run.robot.track_width, ""
+    if "gyro_z" in axes:
+        fault = clock_fault(signals.axes["gyro_z"], treads, rate_hz, width_m)
+    fault = fault or ImuSums().plus(signals.axes, treads, rate_hz, width_m).fault()
     if fault:
         raise RunFolderError(f"{table.file}: {fault}")
     return signals

@@ -51,7 +51,8 @@ def fitted(runs: list[Run], windows: list[FeelWindows], known: np.ndarray) -> Fe
     names = tuple(sorted(set(main_labels(table, len(runs))[known])))
     members = fitted_members(table, known, names, [best.choice])[0]
     sensor = SensorShape.of([windows[row] for row in np.flatnonzero(known)], table.design)
-    repeats = max(windows[row].repeats for row in np.flatnonzero(known))
+    axes = table.design.axes
+    repeats = max(windows[row].most_repeats(axes) for row in np.flatnonzero(known))
     return FeelModel(names, table.design, best.choice, members, best.calibration, best.strangeness,
                      best.limits, sensor, runs[0].robot.track_width, "",
                      repeats=repeats)  # fmt: skip

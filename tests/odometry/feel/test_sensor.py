@@ -77,6 +77,37 @@ def test_a_filter_or_another_rate_is_unknown_and_said(model, name, change):
     assert " Hz)" in why
 
 
+def scaled(factor, kind):
+    """Another scale of the gyroscope, or of what the accelerations differ from their mean."""
+
+    def change(columns):
+        for name, of in columns.items():
+            if name.startswith(kind):
+                middle = of.mean() if kind == "accel" else 0.0
+                columns[name] = middle + factor * (of - middle)
+        return columns
+
+    return change
+
+
+@pytest.mark.parametrize("name", ["gravel", "snow"])  # twice of tiles, the least, is within
+@pytest.mark.parametrize(
+    ("change", "times"),
+    [(scaled(2.0, "gyro"), 2.0), (scaled(0.5, "gyro"), 0.5), (scaled(2.0, "accel"), 0.5)],
+)
+def test_another_scale_of_one_sensor_is_unknown_and_said(model, name, change, times):
+    felt = follow_feel(with_imu(drive(name, 950), change), model)
+    assert felt.foreign.all()
+    assert felt.answer_of_run[0] == UNKNOWN
+    (why,) = [line for line in sentences(felt) if "another scale" in line]
+    said = float(why.partition("turns the robot ")[2].partition(" ")[0])
+    assert said == pytest.approx(times, rel=0.4)
+    same = model.sensor.of_windows(feel_windows(drive(name, 950)), model.design.axes)
+    other = model.sensor.of_windows(felt.windows, model.design.axes)
+    np.testing.assert_allclose(other[:, :-1], same[:, :-1], atol=1e-4)
+    np.testing.assert_allclose(other[:, -1] - same[:, -1], np.log(times**2), atol=1e-4)
+
+
 def test_fresh_runs_of_the_same_imu_are_not_foreign(model):
     felt = [follow_feel(drive(name, 960 + i), model) for i, name in enumerate(NAMES * 4)]
     assert np.mean([one.foreign.any() for one in felt]) <= 1 / 6
@@ -137,7 +168,7 @@ def test_a_shape_is_that_of_all_axes_whatever_their_size(model):
         for factor in (1.0, 9.0)
     )
     np.testing.assert_allclose(one, other, atol=1e-4)  # the least power is added to both
-    np.testing.assert_allclose(one.mean(axis=1), 0, atol=1e-12)
+    np.testing.assert_allclose(one[:, :-1].mean(axis=1), 0, atol=1e-12)
 
 
 def test_the_limit_is_the_farthest_of_the_runs_from_the_others(model):
@@ -150,8 +181,8 @@ def test_the_limit_is_the_farthest_of_the_runs_from_the_others(model):
     for row in range(len(table)):
         others = np.delete(table, row, axis=0)
         off = (table[row] - others.mean(0)) / others.std(0, ddof=1)
-        apart.append(np.mean(off**2))
-    assert found.limit == pytest.approx(max(apart))
+        apart.append((np.mean(off[:-1] ** 2), off[-1] ** 2))
+    np.testing.assert_allclose(found.limits, np.max(apart, axis=0))
     np.testing.assert_allclose(found.excess(found.mean), 0)
     so_far = ShapeSoFar.none(found, model.design.axes)
     assert not so_far.is_foreign
@@ -196,12 +227,17 @@ def test_a_file_keeps_it_and_older_ones_have_none(model, tmp_path):
     file = tmp_path / "a.feel"
     write_feel_model(file, model)
     read = read_feel_model(file).sensor
-    assert read.limit == model.sensor.limit
+    np.testing.assert_array_equal(read.limits, model.sensor.limits)
     np.testing.assert_array_equal(read.mean, model.sensor.mean)
     settings, arrays = read_array_file(file, FEEL)
     old = {name: of for name, of in arrays.items() if not name.startswith("sensor_")}
     write_array_file(tmp_path / "old.feel", FEEL, settings, old)
     assert read_feel_model(tmp_path / "old.feel").sensor is None
+    no_ratio = {"sensor_mean": read.mean[:-1], "sensor_deviation": read.deviation[:-1]}
+    older = arrays | no_ratio | {"sensor_limit": read.limits[:1]}
+    write_array_file(tmp_path / "older.feel", FEEL, settings, older)
+    twice = with_imu(drive("gravel", 960), scaled(2.0, "gyro"))
+    assert not follow_feel(twice, read_feel_model(tmp_path / "older.feel")).foreign.any()
     for bad in ({"sensor_limit": np.zeros(1)}, {"sensor_mean": np.zeros(3)}):
         write_array_file(tmp_path / "bad.feel", FEEL, settings, arrays | bad)
         with pytest.raises(FeelFileError, match="shapes of spectra"):

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import RunFolderError
+from odometry.feel.imu_check import ImuSums
 from odometry.feel.signals import feel_signals, usual_rate_hz
 from odometry.feel.windows import feel_windows
 from odometry.geometry.se3 import rotation_from_roll_pitch_yaw
@@ -122,6 +123,16 @@ def test_a_gyroscope_that_turns_against_the_treads_is_refused():
     with pytest.raises(RunFolderError, match="turns against the treads"):
         feel_signals(with_imu(run, against))
     feel_signals(with_imu(drive("gravel", 7, seconds=60.0, turning=0.0), against))
+    feel_signals(with_imu(drive("gravel", 6, seconds=8.0, turning=0.3), against))  # too short
+
+
+def test_a_steady_circle_against_the_treads_is_refused_and_a_bias_is_not():
+    """A steady turn has no correlation; a bias looks like a turn the other way."""
+    treads = np.tile([0.5, 0.54], (2000, 1))  # 0.1 rad/s of a track width of 0.4 m
+    for yaw_rate, refused in ((-0.05, True), (-0.015, False), (0.05, False)):
+        axes = {"gyro_z": np.full(2000, yaw_rate)}
+        assert ("against" in ImuSums().plus(axes, treads, 100.0, 0.4).fault()) is refused
+        assert ImuSums().plus(axes, treads, 400.0, 0.4).fault() == ""  # 5 s
 
 
 def test_samples_that_repeat_are_counted_while_the_robot_moves():
