@@ -1,6 +1,6 @@
 """Fit effects, and what is uncertain of the base, to measured runs."""
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -112,16 +112,25 @@ class Fitted:
 
 
 class Fitter:
-    """Fits hypotheses to the same measured windows."""
+    """Fits hypotheses to the same measured windows, each once."""
 
     def __init__(self, calibration: Calibration, measured: Measured) -> None:
         self.calibration = calibration
         self.measured = measured
+        self._fits: dict[tuple[Hashable, ...], tuple[tuple[Effect, ...], Fitted]] = {}
 
     def fit(
         self, effects: Sequence[Effect], known: Sequence[Added] = (), *, pin_slow: bool = False
     ) -> Fitted:
         """Fit effects; `known` are values to start from, where slow ones stay if `pin_slow`."""
+        starts = ((id(added.effect), added.values.tobytes()) for added in known)
+        asked = (*map(id, effects), pin_slow, *starts)
+        if asked not in self._fits:
+            named = (*effects, *(added.effect for added in known))  # kept: an id is of what lives
+            self._fits[asked] = named, self._fitted(effects, known, pin_slow)
+        return self._fits[asked][1]
+
+    def _fitted(self, effects: Sequence[Effect], known: Sequence[Added], pin_slow: bool) -> Fitted:
         hypothesis = Hypothesis(self.calibration, self.measured, tuple(effects))
         started = {added.effect.key: added.values for added in known}
         known_starts = [started.get(effect.key) for effect in effects]

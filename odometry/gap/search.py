@@ -95,12 +95,15 @@ class Search:
         if best is None or self.fitter.spread(best.fitted) < self.config.contact_spread:
             return judged
         taken = {added.effect.name for added in before.effects}
-        scenes, calibration = self.fitter.measured.scenes, self.fitter.calibration
-        contacts = [e for e in contact_effects(scenes, calibration) if e.name not in taken]
+        contacts = [e for e in self._contacts if e.name not in taken]
         slow = of_the_same_robot(contacts, [added.effect for added in before.effects])
         more = judge(self.fitter, before, slow, self.config, self.progress)
         fits = [one.fitted for one in (*judged, *more)]
         return ranked(self.fitter, before, fits, self.config)
+
+    @cached_property
+    def _contacts(self) -> tuple[Effect, ...]:
+        return contact_effects(self.fitter.measured.scenes, self.fitter.calibration)
 
     def _reference_first(self, judged: Sequence[Judged], before: Fitted) -> Judged | None:
         """The first that pays, if it is a fault of the reference: motion may do it as well."""

@@ -55,6 +55,22 @@ def sure(scenes, known):
     return Fitter(known, measured_of(scenes, known, CONFIG))
 
 
+def test_the_same_fit_is_searched_once(fitter):
+    """The effect itself, its start and what is pinned decide; an equal effect is another."""
+    scale = WheelScale()
+    once = fitter.fit([scale])
+    assert fitter.fit([scale]) is once
+    elsewhere = Added(scale, 2 * once.effects[0].values - 1)
+    for other in (
+        fitter.fit([WheelScale()]),
+        fitter.fit([scale], once.effects),
+        fitter.fit([scale], [elsewhere]),
+        fitter.fit([scale], once.effects, pin_slow=True),
+    ):
+        assert other is not once
+        np.testing.assert_allclose(other.effects[0].values, once.effects[0].values, atol=1e-3)
+
+
 def test_planted_values_are_found_within_their_own_covariance(sure):
     fit = sure.fit([WheelScale()])
     (added,) = fit.effects
