@@ -64,6 +64,7 @@ CATALOGUE: dict[str, str] = {
     "yaw_jumps": "yaw that jumps and stays",
     "pose_mirrored": "poses in a frame with z down (NED)",
     "positions_mirrored": "x and y swapped, or one negated",
+    "position_axes": "positions of other axes, one of them vertical",
     "position_unit": "positions in mm, cm, km, feet",
     "latitude_longitude": "positions in degrees",
     "earth_centred": "positions from the centre of the earth (ECEF)",
@@ -179,6 +180,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "treads_both_reversed": YAW,
     "clocks_apart": frozenset(
         {"gyroscope_unit", "pose_late", "treads_late", "pose_jumps", "poses_unrelated"}
+        | {"slip_episodes", "treads_frozen"}
     ),
     "stuck_encoder": frozenset(
         {"slip", "slip_in_turns", "scale", "pose_jumps", "treads_unrelated", "gyroscope_unrelated"}
@@ -202,6 +204,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     ),
     "coarse_speeds": frozenset({"stuck_encoder"}),
     "position_unit": frozenset({"far_sensor"}),
+    "position_axes": POSES | YAW | {"position_unit", "positions_stretched", "positions_mirrored"},
     "positions_stretched": frozenset({"scale"}),
 }
 

@@ -7,7 +7,14 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.cleaned_recording import CleanedRecording
-from odometry.checks.heading import CONSISTENT, Heading, across_m, along_m, headings
+from odometry.checks.heading import (
+    CONSISTENT,
+    Heading,
+    across_m,
+    along_m,
+    headings,
+    turns_in_radians,
+)
 from odometry.checks.motion import Integrals, Motion, motion_between, scattered
 from odometry.checks.relation import Relation, relation
 
@@ -74,6 +81,8 @@ class Evidence(CleanedRecording):
         if not self.yaw_measured:
             return False
         raw, read = self.raw_motion, self.raw_motion.with_yaw(np.radians)
+        if turns_in_radians(raw, self.turn_rad(raw), self.run.robot.track_width):
+            return False
         readings = headings(raw, self.turn_rad(read))
         plain, degrees = (
             max((readings[n].concentration for n in names if n in readings), default=0.0)

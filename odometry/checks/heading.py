@@ -7,12 +7,20 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.motion import Motion
+from odometry.checks.relation import relation
 
 FAR = 0.3  # share of the usual longest distance from which the course of a window is known
 STRAIGHT_RAD = (0.3, 0.6, 1.0)  # windows that turn less have a course; the first with enough
 ON_THE_SPOT = 0.15  # share of the tread travel that is common: below, the robot has no course
 LEAST_WINDOWS = 10
 CONSISTENT = 0.8  # concentration from which yaw and course belong together
+
+HELD = 0.9  # correlation of turns that are the same
+OF_GYROSCOPE = (0.7, 1.4)  # ratio of turns in one unit
+# Turns for each rad that treads without slip say: 0.1 to 1 of robots that were measured. In degrees
+# they are 57 times as large.
+OF_TREADS = (0.08, 1.4)
+NEVER = 8.0
 
 # What the column yaw may hold instead of the heading [rad, counter-clockwise].
 READINGS: dict[str, Callable[[FloatArray], FloatArray]] = {
@@ -67,6 +75,26 @@ def headings(motion: Motion, turn_rad: FloatArray) -> dict[str, Heading]:
     }
 
 
+def turns_in_radians(motion: Motion, turn_rad: FloatArray, track_width_m: float) -> bool:
+    """Whether raw yaw turns by what the gyroscope, or else the treads, say: it is in radians.
+
+    Parameters
+    ----------
+    motion : Motion
+        Of the yaw as it is in the file.
+    turn_rad : (K,)
+        By the gyroscope; of no use where it is NaN or the yaw itself, for lack of one.
+    track_width_m : float
+    """
+    by_treads = relation(motion.turn_rad, motion.difference_m / track_width_m)
+    if by_treads is not None and by_treads.certain() and abs(by_treads.slope) > NEVER:
+        return False
+    measured = np.isfinite(motion.gyroscope_rad).any()
+    found = relation(motion.turn_rad, turn_rad) if measured else by_treads
+    low, high = OF_GYROSCOPE if measured else OF_TREADS
+    return found is not None and found.correlation > HELD and low < found.slope < high
+
+
 def _far_and_straight(motion: Motion, turn_rad: FloatArray) -> BoolArray | None:
     distance = motion.distance_m
     known = np.isfinite(distance) & np.isfinite(motion.yaw_rad).all(axis=1)
@@ -95,7 +123,7 @@ def across_m(motion: Motion, heading: Heading) -> FloatArray:
 
 def middle_yaw(motion: Motion, heading: Heading) -> FloatArray:
     """Measured yaw (K,) in the middle of each window, as the reading has it."""
-    return _middle(READINGS[heading.reading](motion.yaw_rad))
+    return middle_rad(READINGS[heading.reading](motion.yaw_rad))
 
 
 def _off_axis(motion: Motion, heading: Heading) -> FloatArray:
@@ -104,12 +132,13 @@ def _off_axis(motion: Motion, heading: Heading) -> FloatArray:
     return np.asarray(motion.course_rad - middle - axis)
 
 
-def _middle(yaw: FloatArray) -> FloatArray:
+def middle_rad(yaw: FloatArray) -> FloatArray:
+    """Direction (K,) in the middle of two (K, 2)."""
     return np.asarray(np.angle(np.exp(1j * yaw).sum(axis=1)))
 
 
 def _heading(name: str, yaw: FloatArray, course: FloatArray, ahead: FloatArray) -> Heading:
-    middle = _middle(yaw)
+    middle = middle_rad(yaw)
     doubled = np.mean(np.exp(2j * (course - middle)))
     offset = float(np.angle(doubled) / 2)
     along = np.cos(course - middle - offset)

@@ -25,6 +25,7 @@ from odometry.checks.gyroscope import gyroscope
 from odometry.checks.one_encoder import one_encoder
 from odometry.checks.pose_values import pose_values
 from odometry.checks.poses import pose_outages, poses
+from odometry.checks.position_axes import position_axes
 from odometry.checks.proportion import proportion
 from odometry.checks.settings import columns, settings
 from odometry.checks.sides import scale_change, sides
@@ -51,6 +52,7 @@ CHECKS: tuple[Check, ...] = (
     yaw_against_course,
     turning,
     course,
+    position_axes,
     equal_treads,
     one_encoder,
     unsigned,

@@ -24,7 +24,7 @@ LEAST_LAG_S = (
 USUAL_PERIOD_S = 0.05  # of such logs; values of slower ones are held, and seem late, for longer
 CERTAIN = 4.0  # standard deviations
 MOST_LAG_S = 3.5
-CLOCK = 0.03  # relative difference of clocks that is searched for
+CLOCK, WIDEST_S = 0.03, 20.0  # relative difference of clocks that is searched for
 LEAST_DRIFT_S = 0.2  # over the recording
 LEAST_DRIFT = 1e-3  # relative: quartz clocks differ by less
 TOGETHER = 0.7  # share of the pieces that have one lag, or one that grows evenly
@@ -105,10 +105,34 @@ def _lag(
     width_s = max(0.5, 2 * period_s, 2 * evidence.period_s)
     late, early = signals[late_name], signals[early_name]
     found = lag_between(late, early, (start_s, end_s), width_s, MOST_LAG_S)
-    if found is not None and found.pieces >= 5:
+    if found is None or found.pieces < 5:
+        wide_s = min(MOST_LAG_S + CLOCK * (end_s - start_s), WIDEST_S)
+        found = lag_between(late, early, (start_s, end_s), width_s, wide_s) or found
+    if found is None or not _grows(evidence, found):
         return found
-    wide_s = MOST_LAG_S + CLOCK * (end_s - start_s)
-    return lag_between(late, early, (start_s, end_s), width_s, min(wide_s, 20.0)) or found
+    return _with_growth_undone(late, early, found, (start_s, end_s), width_s) or found
+
+
+def _with_growth_undone(
+    late: Signal, early: Signal, first: Lag, span_s: tuple[float, float], width_s: float
+) -> Lag | None:
+    """The lag found again with its growth undone, which blurs it within each piece.
+
+    None where the pieces then do not have one lag: what grew was chance.
+    """
+    middle_s, keeps = sum(span_s) / 2, 1 - first.drift
+
+    def on_time(at_s: FloatArray) -> FloatArray:
+        return late(middle_s + (at_s - middle_s + first.seconds) / keeps)
+
+    left = lag_between(on_time, early, span_s, width_s, MOST_LAG_S)
+    if left is None or left.pieces < first.pieces or left.together < TOGETHER:
+        return None
+    return replace(
+        left,
+        seconds=first.seconds + left.seconds - left.drift * first.seconds,
+        drift=first.drift + left.drift * keeps,
+    )
 
 
 def _drifting(evidence: Evidence, lags: dict[tuple[str, str], Lag]) -> dict[tuple[str, str], Lag]:
@@ -128,10 +152,12 @@ def _differ(first: float, second: float) -> bool:
 
 
 def _drifts(evidence: Evidence, lag: Lag) -> bool:
+    return lag.pieces >= 5 and lag.together >= TOGETHER and _grows(evidence, lag)
+
+
+def _grows(evidence: Evidence, lag: Lag) -> bool:
     return (
-        lag.pieces >= 5
-        and lag.together >= TOGETHER
-        and abs(lag.drift) > CERTAIN * lag.drift_sigma
+        abs(lag.drift) > CERTAIN * lag.drift_sigma
         and abs(lag.drift) * evidence.duration_s > max(LEAST_DRIFT_S, pose_period_s(evidence))
         and abs(lag.drift) > LEAST_DRIFT
     )

@@ -8,7 +8,15 @@ from odometry.checks.finding import Finding, Level
 from odometry.checks.motion import scattered
 from odometry.checks.relation import relation
 from odometry.checks.undo import gyroscope_times, treads_times
-from odometry.checks.unit_tables import ORDINARY_FORWARD, Unit, matching, of_wheels, tread_units
+from odometry.checks.unit_tables import (
+    EQUAL,
+    ORDINARY_FORWARD,
+    Unit,
+    as_likely,
+    matching,
+    of_wheels,
+    tread_units,
+)
 
 WIDEST_M = 50.0  # no robot is wider
 FARTHEST = 1.1  # the same, at most: 0.92 to 1.02 where real robots drive straight
@@ -16,8 +24,7 @@ STEADY = 0.98  # correlation from which a factor on straight lines is constant
 STRAIGHT = 0.05  # way of an arm in a turn, as a share of the way of the robot
 
 
-SLIP_OR_TRACK = "; or heavy slip in turns (snow), or a wrong track_width"
-ALIKE = (0.8, 1.25)  # factors that cannot be distinguished
+SLIP_OR_TRACK = "there is heavy slip in turns (snow), or a wrong track_width"
 
 
 def gyroscope_unit(evidence: Evidence, factor: float) -> Finding:
@@ -58,25 +65,18 @@ def too_fast(evidence: Evidence) -> Finding:
     )
 
 
-def tread_unit(seen: str, unit: Unit, evidence: Evidence, others: str = "") -> Finding:
-    """Tread speeds in another unit, and what else the factor may be: `others`, and known ones."""
+def tread_unit(seen: str, unit: Unit, evidence: Evidence, *others: str) -> Finding:
+    """Tread speeds in another unit, and what else the factor may be, the likeliest first."""
+    words = as_likely(unit, evidence.run.robot.wheel_radius, evidence.period_s)
+    words = [*(words or [f"in {unit.words}"]), *others]
     if 1 / 4 < unit.factor < 4:
-        equal_units = [
-            other.words
-            for other in tread_units(evidence.run.robot.wheel_radius, evidence.period_s)
-            if other.words != unit.words and 0.8 < other.factor / unit.factor < 1.25
-        ]
-        half = "half" if unit.factor < 1 else "twice"
-        others += "".join(f"; or in {words}" for words in equal_units)
-        others += (
-            f"; or scaled by {unit.factor:.2g} (wheel diameter for radius gives {half} the speed; "
-            "gear ratio): these cannot be distinguished"
-        )
+        words.append(f"scaled by {unit.factor:.2g} (gear ratio)")
+    several = ": these cannot be distinguished" if len(words) > 1 else ""
     return Finding(
         "tread_unit",
         Level.WARNING,
         f"{seen}; treads run at up to {evidence.fastest_m_s:.4g} m/s",
-        f"Tread speeds are in {unit.words}, not m/s{others}",
+        f"Tread speeds are {'; or '.join(words)}{several}",
         "Convert v_left and v_right to m/s: wheel rate times radius",
         mend=treads_times(1 / unit.factor, 1 / unit.factor),
     )
@@ -163,7 +163,7 @@ def imported_unit(
     equal_units = [
         unit.words
         for unit in others
-        if unit is not found and ALIKE[0] < unit.factor / found.factor < ALIKE[1]
+        if unit is not found and EQUAL[0] < unit.factor / found.factor < EQUAL[1]
     ]
     units = " or ".join([found.words, *equal_units])
     return Finding(

@@ -61,6 +61,31 @@ def matching(
     return near if low <= ratio(near) <= high else None
 
 
+RARE = ("miles per hour", "feet per second")  # in robotics
+EQUAL = (0.8, 1.25)  # ratio of factors that cannot be distinguished
+
+
+def as_likely(unit: Unit, wheel_radius_m: float | None, period_s: float) -> list[str]:
+    """What speeds may be that are too large by the factor of a unit, the likeliest first.
+
+    A wheel whose radius is stated comes first, then its diameter; a wheel of any radius fits
+    nearly any factor.
+    """
+    twice = Unit("twice too large (the diameter of the wheels was taken for their radius)", 2.0)
+    half = Unit("half of the right ones (the radius of the wheels is set to half of it)", 0.5)
+    units = [_in(of) for of in tread_units(wheel_radius_m, period_s)]
+    units[0 if wheel_radius_m is None else 1 : 0] = [twice, half]
+    near = [of.words for of in units if EQUAL[0] < of.factor / unit.factor < EQUAL[1]]
+    wheels = () if wheel_radius_m is not None else of_wheels(ORDINARY_FORWARD / unit.factor)
+    rare = [words for words in near if words.removeprefix("in ") in RARE]
+    usual = [words for words in near if words not in rare]
+    return [*usual, *(f"in {words}" for words in wheels), *rare]
+
+
+def _in(unit: Unit) -> Unit:
+    return Unit(f"in {unit.words}", unit.factor)
+
+
 def counts(forward: float, radius_known: bool) -> Unit:
     """What speeds are that are far too large for m/s: of wheels, motors or encoders."""
     units = () if radius_known else of_wheels(forward)

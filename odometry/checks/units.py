@@ -44,7 +44,7 @@ HALF = 0.5  # share of the turns explained from which they have a width
 LEAST_WINDOWS = 15  # from which a factor without heading can be called constant
 PLAUSIBLE_M_S = 10.0  # no skid-steer robot is faster
 NEARLY = 0.9  # of the ordinary way: farther off, the unit may be another one
-OR_COUNTS = ", or are encoder ticks: these cannot be distinguished"
+COUNTS = "encoder ticks"
 ORDINARY_WIDTH = 1.8
 SLIPPERY_WIDTH = 2.1  # in track widths; where robots slipped along the way they turned as if 2.3
 ONE_AXIS_STRETCHED = 1.6  # degrees of longitude taken for those of latitude
@@ -169,7 +169,7 @@ def _along(evidence: Evidence, forward: float, tight: bool, width: float | None)
         tread_fits = True
     if tread is not None and tread_fits and (tight or extreme):
         counted = extreme and forward * tread.factor < NEARLY * ORDINARY_FORWARD
-        return tread_unit(seen, tread, evidence, OR_COUNTS if counted else "")
+        return tread_unit(seen, tread, evidence, *([COUNTS] if counted else []))
     if (
         position is not None
         and (tight or extreme)

@@ -1,0 +1,71 @@
+"""Positions that hardly change along one axis while the robot drives along it."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.checks.evidence import Evidence
+from odometry.checks.finding import Finding, Level
+from odometry.checks.heading import middle_rad
+from odometry.checks.relation import relation
+from odometry.checks.turn_signs import Sense, gyroscope_sense, pose_sense
+
+MISSING = 0.1  # of what is measured along the other axis; good poses have 0.9 and more
+SURE = 5.0  # standard deviations
+LEAST_DRIVEN_M = 3.0  # along the direction that is missing
+HELD = 0.9  # correlation of turns with those of the gyroscope, or of positions with the way
+
+
+def position_axes(evidence: Evidence) -> Iterator[Finding]:
+    """One direction of the drive is missing, and yaw turns as the gyroscope does.
+
+    Displacements in the frame of the poses are a matrix times those of the treads along the yaw: a
+    rotation and a scale, whose two singular values are equal. One of them near zero is an axis
+    that is vertical, or was not measured.
+    """
+    if not evidence.yaw_measured or not _yaw_holds(evidence):
+        return
+    m = evidence.motion
+    yaw = middle_rad(m.yaw_rad)
+    driven_m = m.mean_m[:, None] * np.stack([np.cos(yaw), np.sin(yaw)], axis=-1)
+    fits = [relation(moved, *driven_m.T) for moved in m.moved_m.T]
+    if any(fit is None or not fit.distinct for fit in fits):
+        return
+    known = [fit for fit in fits if fit is not None]
+    axes, sizes, ways = np.linalg.svd([fit.coefficients for fit in known])
+    sigma = max(float(fit.sigmas.max()) for fit in known)
+    best = max(fit.correlation for fit in known)
+    if sizes[1] + SURE * sigma > MISSING * sizes[0] or best < HELD:
+        return
+    missing_m = float(np.nansum(np.abs(driven_m @ ways[1])))
+    if missing_m < LEAST_DRIVEN_M:
+        return
+    axis = _axis(axes[:, 1])
+    yield Finding(
+        "position_axes",
+        Level.WARNING,
+        f"positions of pose.csv hardly change along {axis} ({sizes[1]:.2g} m for each m that "
+        f"the robot drives that way by treads and yaw, {missing_m:.3g} m in all), and "
+        f"{sizes[0]:.3g} m for each m across it; yaw turns as the other sensors do",
+        "Positions are of other axes, one of which is vertical (a camera has x to the right, y "
+        "down and z ahead), or one of their columns was not measured (a constant): these cannot be "
+        "distinguished",
+        "Write x and y of the horizontal plane in which yaw counts: x forward and y left at yaw 0",
+    )
+
+
+def _yaw_holds(evidence: Evidence) -> bool:
+    """Whether measured yaw turns as the gyroscope, else as the treads do."""
+    found = evidence.pose_turn_by_gyroscope
+    if found is not None and gyroscope_sense(evidence) is not Sense.OPPOSITE:
+        return found.certain() and found.correlation > HELD and found.slope > 0
+    return pose_sense(evidence) is Sense.AGREES
+
+
+def _axis(direction: FloatArray) -> str:
+    """A direction in the frame of the poses in words."""
+    degrees = round(float(np.degrees(np.arctan2(direction[1], direction[0])))) % 180
+    names = {0: "x", 90: "y"}
+    near = next((at for at in (0, 90, 180) if abs(degrees - at) <= 10), None)
+    return names[near % 180] if near is not None else f"{degrees} degrees of their frame"

@@ -1,0 +1,41 @@
+"""Clocks of another rate, also where a lag grows by more within a piece than it is uncertain."""
+
+import pytest
+
+from odometry.checks.recording import check_recording
+from odometry.run import Run
+from tests.odometry.checks.faulty import pose_stamps
+from tests.odometry.checks.test_confirmed_causes import turning_all_round
+
+REAL = (
+    *("warthog_grass_20240729_1404", "warthog_grass_20240729_1446", "warthog_grass_20240808_1556"),
+    *("husky_tile_20231212_1616_s00", "marmotte_boreal_20240125_1215_s02"),
+)
+
+
+def rate_of(finding):
+    """Growth of the lag, and its standard deviation, in per cent."""
+    words = finding.seen.split(" grows by ")[1].split(" ms ")[0]
+    return [float(number) / 10 for number in words.split(" +- ")]
+
+
+def of_rate(percent):
+    return lambda t: t[0] + (1 + percent / 100) * (t - t[0])
+
+
+@pytest.mark.parametrize("percent", [-3.0, -2.0, 2.0, 3.0])
+@pytest.mark.parametrize("name", [*REAL, "simulated"])
+def test_a_clock_that_runs_fast_or_slow_is_named_with_its_rate(shared_data, name, percent):
+    motion = shared_data / "motion"
+    run = turning_all_round() if name == "simulated" else Run.read(motion / name)
+    (found,) = check_recording(pose_stamps(run, of_rate(percent))).findings[:1]
+    assert found.name == "clocks_apart", found.line
+    rate, sigma = rate_of(found)
+    assert sigma < 0.2
+    assert rate == pytest.approx(percent / (1 + percent / 100), abs=4 * sigma + 0.05)
+
+
+def test_a_robot_that_stops_while_its_clock_drifts_has_not_lost_its_odometry(shared_data):
+    run = Run.read(shared_data / "motion" / "warthog_grass_20240808_1556")
+    names = [f.name for f in check_recording(pose_stamps(run, of_rate(3.0))).findings]
+    assert names == ["clocks_apart"]

@@ -1,0 +1,51 @@
+"""Positions of other axes are no yaw in degrees."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.checks.finding import Level
+from odometry.checks.recording import check_recording
+from odometry.run import Run
+from tests.odometry.checks.faulty import gyroscope, positions, put, yaw
+from tests.odometry.checks.test_confirmed_causes import turning_all_round
+
+
+def first_warning(run):
+    return check_recording(run).at(Level.WARNING)[0]
+
+
+def height(x):
+    return np.random.default_rng(3).normal(0, 0.01, len(x))
+
+
+def without_gyroscope(run):
+    columns = {name: of for name, of in run.odometry.columns.items() if name != "gyro_z"}
+    return replace(run, odometry=replace(run.odometry, columns=columns))
+
+
+@pytest.mark.parametrize("sensors", [lambda run: run, without_gyroscope])
+@pytest.mark.parametrize(
+    ("axis", "change"),
+    [("y", lambda x, y: (-y, height(x))), ("x", lambda x, y: (height(y), x))],
+)
+def test_positions_of_a_camera_are_named_by_the_axis_that_is_missing(sensors, axis, change):
+    found = first_warning(positions(sensors(turning_all_round()), change))
+    assert found.name == "position_axes"
+    assert f"hardly change along {axis} (" in found.seen
+    assert "cannot be distinguished" in found.cause
+    assert "degrees" not in found.cause
+
+
+def test_a_column_that_was_not_measured_on_a_real_recording(shared_data):
+    run = Run.read(shared_data / "motion" / "warthog_grass_20240808_1556")
+    found = first_warning(put(run, "pose", y=0 * run.pose["y"]))
+    assert found.name == "position_axes"
+
+
+@pytest.mark.parametrize("of_gyroscope", [lambda rate: rate, np.degrees])
+def test_yaw_in_degrees_is_still_named(of_gyroscope):
+    run = gyroscope(turning_all_round(), of_gyroscope)
+    names = [finding.name for finding in check_recording(yaw(run, np.degrees)).findings]
+    assert "yaw_in_degrees" in names
