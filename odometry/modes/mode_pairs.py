@@ -55,13 +55,18 @@ def pairs(modes: VelocityModes | TractionModes, runs: Sequence[Run]) -> tuple[Pa
 
 
 def _velocity_seconds(modes: VelocityModes, speeds: FloatArray, step_s: float) -> FloatArray:
-    """For row against column (M, M); no sooner than errors change, each such time counting once."""
-    gains, variances = modes.steady_gains(), modes.measurement_variance
+    """For row against column (M, M); no sooner than errors change, each such time counting once.
+
+    By the yaw rate, and of modes of one model by noise, as in `track_checks.similar_modes`: where
+    models differ, however little, noise is what a road or a recording may change as well.
+    """
+    gains, variances = modes.steady_gains()[:, 1], modes.measurement_variance
     apart = gains[:, None] - gains[None]
-    squares = speeds.T @ speeds / len(speeds)
-    differences = np.einsum("ijqa,ab,ijqb->ijq", apart, squares, apart)
+    one_model = (apart == 0).all(axis=-1)
+    of_yaw = np.einsum("ija,ab,ijb->ij", apart, speeds.T @ speeds / len(speeds), apart)
     ratio = variances[:, None] / variances[None]
-    divergence = (ratio - 1 - np.log(ratio) + differences / variances[None]).sum(axis=-1) / 2
+    of_noise = (ratio - 1 - np.log(ratio)).sum(axis=-1)
+    divergence = np.where(one_model, of_noise, of_yaw / variances[None, :, 1]) / 2
     equal = divergence <= 0
     once_s = max(modes.errors_last_s, step_s)
     needed = once_s * np.maximum(1.0, LOG_ODDS / np.where(equal, 1.0, divergence))

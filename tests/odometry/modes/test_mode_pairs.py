@@ -31,6 +31,16 @@ def test_modes_of_one_gain_differ_in_their_noise_alone():
     assert pair.seconds == pytest.approx(np.log(9) * 0.02 / worse)
 
 
+def test_noise_distinguishes_no_modes_whose_models_differ_by_little():
+    """`modes` takes such modes for equal, whatever their noise."""
+    modes = velocity_set((1.0, 1.001)).modes
+    (alike,) = pairs(modes, [run_of(1.0)])
+    noisier = replace(modes, measurement_variance=np.array([[0.01, 0.01], [0.02, 0.02]]))
+    (still_alike,) = pairs(noisier, [run_of(1.0)])
+    assert alike.seconds > 1e3
+    assert still_alike.seconds > alike.seconds
+
+
 def test_the_most_alike_come_first():
     found = pairs(velocity_set((1.0, 2.0, 2.1), ("a", "b", "c")).modes, [run_of(1.0)])
     assert [pair.names for pair in found] == [("b", "c"), ("a", "b"), ("a", "c")]
