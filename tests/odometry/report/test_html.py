@@ -4,6 +4,8 @@ import base64
 from html.parser import HTMLParser
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from odometry.report.html import (
     Grid,
@@ -72,6 +74,17 @@ def test_text_of_files_comes_out_as_text(page):
     assert not read.named("script")
     said = [tag for tag, text in read.texts if text == NASTY]
     assert said == ["title", "h1", "p", "h2", "p", "li", "caption", "th", "th", "td", "figcaption"]
+
+
+@given(st.text(st.characters(codec="utf-8", exclude_characters="\r\x00"), min_size=1))
+def test_any_text_is_text_on_the_page(text):
+    blocks = (Paragraph(text), Listing([text]), Grid((text,), [(text,)], text))
+    read = Reader(render_page(text, text, [Section(text, blocks)]))
+    assert read.open == []
+    said = text.strip()
+    found = [tag for tag, words in read.texts if words == said]
+    assert found[:-1] == (["title", "h1", "p", "h2", "p", "li", "caption", "th"] if said else [])
+    assert set(found[-1:]) <= {"td", "th"}  # of numbers the first column heads its row
 
 
 def test_nothing_is_loaded_from_elsewhere(page):

@@ -5,6 +5,9 @@ import json
 import cv2
 import numpy as np
 import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
 
 from terrain.camera_files.read import read_calibration
 from terrain.errors import CameraError
@@ -169,3 +172,43 @@ def test_a_lens_wider_than_a_pinhole(tmp_path):
     text = text.replace("[-0.01, 0.02, -0.01, 0.002]", "[0, 0, 0, 0]")
     with pytest.raises(CameraError, match=r"more than 80 degrees.*fisheye.undistortImage"):
         read_calibration(written(tmp_path, text), name="cam1")
+
+
+FOCUS, CENTRE = st.floats(200.0, 900.0), st.floats(-5.0, 5.0)
+COEFFICIENTS = st.lists(st.floats(-1e-3, 1e-3), min_size=5, max_size=5)
+
+
+SIZES = st.tuples(st.integers(60, 4000), st.integers(60, 4000))
+
+
+@given(SIZES, st.tuples(FOCUS, FOCUS), CENTRE, COEFFICIENTS)
+def test_every_format_gives_the_lens_that_was_written(tmp_path_factory, size, focus, off, lens):
+    """To the last digit: nothing is rounded or mixed up on the way."""
+    (width, height), scale = size, size[0] / 640
+    matrix = [
+        [focus[0] * scale, 0.0, width / 2 + off],
+        [0.0, focus[1] * scale, height / 2 - off],
+        [0.0, 0.0, 1.0],
+    ]
+    flat = [value for row in matrix for value in row]
+    ros = {
+        "image_width": width,
+        "image_height": height,
+        "camera_matrix": {"rows": 3, "cols": 3, "data": flat},
+        "distortion_model": "plumb_bob",
+        "distortion_coefficients": {"rows": 1, "cols": 5, "data": lens},
+    }
+    kalibr = {
+        "camera_model": "pinhole",
+        "intrinsics": [flat[0], flat[4], flat[2], flat[5]],
+        "distortion_model": "radtan",
+        "distortion_coeffs": lens[:4],
+        "resolution": [width, height],
+    }
+    folder = tmp_path_factory.mktemp("lenses")
+    for content, expected in ((ros, lens), ({"cam0": kalibr}, lens[:4])):
+        found = read_calibration(written(folder, yaml.safe_dump(content))).lens
+        assert found.image_size == (width, height)
+        np.testing.assert_array_equal(found.matrix, matrix)
+        np.testing.assert_array_equal(found.distortion[: len(expected)], expected)
+        assert not found.distortion[len(expected) :].any()
