@@ -72,7 +72,7 @@ def distort(points: FloatArray, distortion: FloatArray) -> FloatArray:
     points = np.asarray(points, dtype=np.float64)
     coefficients, limit, unfolded = _known(*distortion.tolist())
     square = points[:, 0] ** 2 + points[:, 1] ** 2
-    within = np.where((square <= limit**2)[:, None], points, np.nan)
+    within = np.where((square <= limit * limit)[:, None], points, np.nan)
     image = _tilt(_lens(within, coefficients[:12]), coefficients[12:])
     doubtful = square > unfolded**2
     if doubtful.any():

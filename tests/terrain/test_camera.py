@@ -169,6 +169,13 @@ def test_every_seen_ground_point_is_found_again(*, k1, k2, k3, p1, p2):
     np.testing.assert_allclose(camera.pixels_to_ground(pixels[seen]), ground[seen], atol=1e-6)
 
 
+@pytest.mark.parametrize("k1", [-2e-323, -1e-300, 5e-324])
+def test_a_lens_of_next_to_no_distortion_bends_nothing(k1):
+    """Its limit is a radius whose square no float holds."""
+    points = np.array([[0.3, -0.7], [1e3, 0.0]])
+    np.testing.assert_array_equal(distort(points, np.array([k1, 0.0, 0.0, 0.0])), points)
+
+
 @pytest.mark.parametrize("scale", [1.0, -3.0, 1e-4])
 def test_homography_of_any_scale_and_sign_is_the_same_camera(scale):
     one = mounted()

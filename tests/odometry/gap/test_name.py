@@ -17,14 +17,21 @@ SINGLE = tuple(kind for kind in FORMULA if kind not in PAIR[0].split("+"))
 CASES = (*((kind, 0) for kind in (*SINGLE, "unknown_pull", "none", "contact_slope")), PAIR)
 
 
-# Of each run with an effect, these are driven of 160 s, to be quick; not where the moment is later.
-LONGEST_S = 80.0
-OTHERS_S = {"inertia": 50.0, PAIR[0]: 50.0, "traction_loss": 160.0, "clock_step": 160.0}
+# Of each run of 160 s with an effect this span is taken, to be quick, around moments it needs.
+SPAN = Span(0.0, 80.0)
+SPANS = {
+    "inertia": Span(0.0, 50.0),
+    PAIR[0]: Span(0.0, 50.0),
+    "contact_slope": Span(0.0, 40.0),
+    "lever_arm": Span(0.0, 40.0),
+    "traction_loss": Span(30.0, 130.0),
+    "clock_step": Span(0.0, 160.0),
+}
 
 
 def read(case):
     calibration = Run.read(case.calibration)
-    span = Span(0.0, OTHERS_S.get(case.kind, LONGEST_S))
+    span = SPANS.get(case.kind, SPAN)
     measured, holdout = (cut_run(Run.read(of), span) for of in (case.measured, case.holdout))
     return measured, calibration, holdout
 
