@@ -12,7 +12,7 @@ from odometry.frames import Frame
 from odometry.live_frames import RunningOdometer
 from odometry.parameters import ParameterSet, read_parameters
 from odometry.pipeline import TerrainSource, can_start, started, stepped
-from odometry.run import Robot
+from odometry.run import UNKNOWN, Robot
 from odometry.windows.gaps import GapsSoFar
 from terrain.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
@@ -41,7 +41,8 @@ class LiveOdometry:
     parameters : ParameterSet or path, optional
         Without effects: those are known along a whole run only.
     terrain : str, optional
-        In force until the first switch; by default the first of `parameters`.
+        In force until the first switch; by default the first of `parameters`, or with `feel` as
+        the source "unknown".
     config : Config, optional
         `[filter] causal` counts as set.
     source : TerrainSource, optional
@@ -103,6 +104,8 @@ class LiveOdometry:
         if feel is not None and source is not None:
             raise ConfigError("feel was given and a source of your own; expected one of them")
         live = None if feel is None else live_feel(feel, robot, imu_rad)
+        if live is not None and model is None and terrain is None:
+            initial = UNKNOWN  # a wrong start would mislead the gyroscope's bias
         self._felt: LiveFelt | None = None
         if source is None:
             source, felt = live_source(

@@ -100,8 +100,8 @@ def terrain_source(
     config : Config
     initial : str
         In force until the first switch; of labels only where `terrain` says so too, and of modes
-        where `terrain` or the run does: else a wrong start would mislead the gyroscope's bias, and
-        the terrain is `unknown` until the motion supports one.
+        and feel where `terrain` or the run does: else a wrong start would mislead the gyroscope's
+        bias, and the terrain is `unknown` until motion or feel supports one.
     terrain : str, optional
         What the user named.
     model : Classifier, optional
@@ -121,18 +121,18 @@ def terrain_source(
         if model is None:
             raise ConfigError("the terrain source 'camera' needs a model (made by `train`)")
         return _watcher(run, model, initial, config, feel)
+    first = initial if terrain is not None or run.terrain == initial else UNKNOWN
     if name == "feel":
         if feel is None:
             raise ConfigError("the terrain source 'feel' needs a model (`identify-feel`)")
         felt = felt_of(run, feel, causal=config.filter.causal)
         return NamedTerrain.of_answers(
-            initial, felt.stamps_s, felt.lasting_answers, (*SILENT, UNKNOWN)
+            first, felt.stamps_s, felt.lasting_answers, (*SILENT, UNKNOWN)
         )
     if name == "modes":
         if modes is None:
             raise ConfigError("the terrain source 'modes' needs a set of modes (`identify-modes`)")
-        named = terrain is not None or run.terrain == initial
-        return moved_terrain(run, modes, initial if named else UNKNOWN, show_progress=show_progress)
+        return moved_terrain(run, modes, first, show_progress=show_progress)
     return ConstantTerrain(initial)
 
 

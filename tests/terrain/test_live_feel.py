@@ -10,8 +10,9 @@ from odometry.errors import ConfigError, RunFolderError
 from odometry.estimation.config import IcrEkfConfig
 from odometry.feel.identify_feel import identify_feel
 from odometry.feel.live_run import follow_feel_live
+from odometry.parameters import ParameterSet
 from odometry.pipeline import ConstantTerrain
-from odometry.run import Robot, Run
+from odometry.run import UNKNOWN, Robot, Run
 from odometry.table import Table
 from terrain.camera import Camera
 from terrain.config import Config
@@ -20,6 +21,7 @@ from terrain.main_job import run_odometry
 from terrain.switch import SwitchConfig
 from tests.odometry.feel.feel_drives import drive, drives, with_imu
 from tests.terrain.test_feel_labels import joined
+from tests.terrain.test_sources import table_of
 
 CAUSAL = Config(filter=IcrEkfConfig(causal=True))
 TOLERANCE = {"rtol": 1e-12, "atol": 1e-13}
@@ -95,6 +97,18 @@ def test_feel_alone_is_the_source_of_run_and_what_it_never_felt_contradicts(mode
     assert {step.terrain for step in steps} == {"boards", "gravel"}
     assert told(of_steps(steps)) == told(result.contradictions)
     assert any(one.is_new for one in result.contradictions)
+
+
+def test_feel_alone_that_nobody_named_begins_as_unknown(model):
+    """The first table of the set is another terrain."""
+    run, _ = joined(drive("gravel", 60, **STRAIGHT), drive("snow", 61, **STRAIGHT))
+    tar = ParameterSet({"tar": table_of(0.8)})
+    for parameters in (None, tar):
+        steps = fed(run, feel=model, parameters=parameters)
+        result = run_odometry(run, feel=model, parameters=parameters, config=CAUSAL)
+        assert_same(steps, run, result, model)
+        assert (result.initial_terrain, steps[0].terrain) == (UNKNOWN, UNKNOWN)
+        assert [change.terrain for change in result.changes] == ["gravel", "boards"]
 
 
 def shaken(run, seed):
