@@ -77,7 +77,11 @@ def _more(felt: Felt) -> Iterator[str]:
             f"{100 * outside:.0f} % of the windows are driven at speeds that the model does not "
             f"know ({limits.slowest_m_s:.2f} to {limits.fastest_m_s:.2f} m/s): unknown."
         )
-    for name, word in ((STATIONARY, "the robot stands"), (NOT_MEASURED, "samples are missing")):
+    silent = {
+        STATIONARY: "the robot stands",
+        NOT_MEASURED: "samples are missing, or the gyroscope turns while the treads stand",
+    }
+    for name, word in silent.items():
         share = (felt.answers == name).mean()
         if share > OFTEN:
             yield f"In {100 * share:.0f} % of the windows {word}."
@@ -118,20 +122,31 @@ def write_feel(felt: Felt, out: Path, about: Mapping[str, Any] | None = None) ->
     return written
 
 
-def write_feel_runs(felt: Sequence[Felt], names: Sequence[str], file: Path) -> None:
-    """Write one row a run: the answer for all of it."""
-    answers = [one.answer_of_run for one in felt]
-    by_terrain = [shares(one) for one in felt]
+def write_feel_runs(rows: Mapping[str, Felt | str], terrains: Sequence[str], file: Path) -> None:
+    """Write one row a run, by name: the answer for all of it, or why it failed.
+
+    Parameters
+    ----------
+    rows : Mapping
+        By the name of each run, what it feels like, or why that is not known.
+    terrains : sequence of str
+        Those of the model.
+    file : Path
+    """
+    felt = [None if isinstance(row, str) else row for row in rows.values()]
+    answers = [("", np.nan, np.nan) if one is None else one.answer_of_run for one in felt]
     columns = {
-        "run": np.array(names),
+        "run": np.array(list(rows)),
         "label": np.array([label for label, _, _ in answers]),
         "probability": np.array([probability for _, probability, _ in answers]),
         "probability_unknown": np.array([unknown for _, _, unknown in answers]),
-        "windows": np.array([int(one.windows.felt.sum()) for one in felt]),
-        "true_label": np.array([one.run.terrain or "" for one in felt]),
+        "windows": np.array([0 if one is None else int(one.windows.felt.sum()) for one in felt]),
+        "true_label": np.array(["" if one is None else one.run.terrain or "" for one in felt]),
     }
-    for name in (*felt[0].model.names, UNKNOWN):
-        columns[f"share_{name}"] = np.array([of.get(name, 0.0) for of in by_terrain])
+    for name in (*terrains, UNKNOWN):
+        of_runs = [np.nan if one is None else shares(one).get(name, 0.0) for one in felt]
+        columns[f"share_{name}"] = np.array(of_runs)
+    columns["failed"] = np.array([row if isinstance(row, str) else "" for row in rows.values()])
     write_csv_table(file, columns)
 
 

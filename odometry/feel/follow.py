@@ -44,7 +44,7 @@ class Felt(FeltWindows):
         unknown = 1 - sum(probabilities.values())
         moving = self.windows.felt
         if not moving.any():
-            return (STATIONARY if self.windows.standing.any() else NOT_MEASURED), 0.0, unknown
+            return (STATIONARY if self.windows.standing.all() else NOT_MEASURED), 0.0, unknown
         is_unlike = (self.lasting_answers[moving] == UNKNOWN).mean() > UNLIKE_SHARE
         if is_novel or is_unlike or self.foreign[-1] or self.outside_speeds[moving].all():
             return UNKNOWN, 0.0, unknown

@@ -15,6 +15,7 @@ from odometry.run import UNKNOWN, Run
 
 SHORTEST_S, LONGEST_S = 1.0, 5.0
 STANDING_M_S = 0.03  # mean speed of the treads in a window; below it the robot is stationary
+TURNING_RAD_S = 0.05  # mean yaw rate of a window: a robot whose treads stand does not turn so
 STEPS = 2  # windows begin after 1 / STEPS of their length
 AVERAGE_S = 0.15  # of the yaw rate
 CHUNK = 256  # windows of which spectra are made at once
@@ -32,7 +33,8 @@ class FeelWindows:
     labels : (W,) of str
         The terrain that the run names all through a window, else "unknown".
     whole : (W,)
-        Whether nothing is missing in it; the others hold no features.
+        Whether nothing is missing in it, and the gyroscope does not turn while the treads stand,
+        which is then not measured; the others hold no features.
     standing : (W,)
         Whether the robot is stationary.
     speeds_m_s : (W,)
@@ -167,7 +169,11 @@ def windows_of(
     axes = tuple(name for name in AXES if name in signals.axes)
     for name in axes:
         whole &= np.isfinite(signals.axes[name][rows]).all(axis=1)
-    speeds = np.where(whole, np.abs(np.nan_to_num(treads)).mean(axis=(1, 2)), 0.0)
+    speeds = np.abs(np.nan_to_num(treads)).mean(axis=(1, 2))
+    if "gyro_z" in axes:
+        turning = np.abs(signals.axes["gyro_z"][rows].mean(axis=1)) > TURNING_RAD_S
+        whole &= ~((speeds < STANDING_M_S) & turning)
+    speeds = np.where(whole, speeds, 0.0)
     felt = whole & (speeds >= STANDING_M_S)
     labels = signals.labels[rows[:, 0]].copy()
     labels[(signals.labels[rows] != labels[:, None]).any(axis=1)] = UNKNOWN

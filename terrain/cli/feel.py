@@ -1,6 +1,6 @@
 """`terrain-odometry feel`: which terrain runs feel like."""
 
-from collections.abc import Sequence
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,7 +11,12 @@ from terrain.cli.recordings import span_options
 from terrain.cli.results import print_table, print_written
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from odometry.feel.felt import FeelConfig
     from odometry.feel.follow import Felt
+    from odometry.feel.model import FeelModel
+    from odometry.outputs.output_folder import OutputFolder
     from odometry.run_span import Span
 
 FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
@@ -52,47 +57,85 @@ def feel(
 
     Writes feel.csv with the answers and the probability of each terrain, and one page. "unknown"
     is the answer where the run feels like none of the terrains of the model, "stationary" where
-    the robot stands. Several runs get a folder each, and one table, runs.csv.
+    the robot stands. Several runs get a folder each; one that cannot be used becomes a row of
+    runs.csv that says why, and the exit code is then 1.
 
     \b
     Example:
       terrain-odometry feel my_run --model my_robot.feel --out felt
     """
     from odometry.feel.felt import FeelConfig
-    from odometry.feel.files import write_feel, write_feel_runs
-    from odometry.feel.follow import follow_feel
     from odometry.feel.model_file import read_feel_model
-    from odometry.report.feel_page import write_feel_report
-    from terrain.cli.outputs import about, claim_folder, folder_names
-    from terrain.cli.recordings import read_run
+    from terrain.cli.outputs import claim_folder
 
     output = claim_folder(out)
     config = FeelConfig(stretch_s=stretch, sure=sure)
     read = read_feel_model(model)
-    names = folder_names(folders)
-    felt = [follow_feel(read_run(folder, span), read, config) for folder in folders]
+    if len(folders) == 1:
+        _one(folders[0], read, config, output, span)
+    else:
+        _several(folders, read, config, output, span)
+
+
+def _one(
+    folder: Path, model: "FeelModel", config: "FeelConfig", output: "OutputFolder", span: "Span"
+) -> None:
+    from odometry.feel.files import sentences, write_feel
+    from odometry.feel.follow import follow_feel
+    from odometry.report.feel_page import write_feel_report
+    from terrain.cli.outputs import about
+    from terrain.cli.recordings import read_run
+
+    felt = follow_feel(read_run(folder, span), model, config)
     with output.writing() as part:
-        for name, one in zip(names, felt, strict=True):
-            place = part / name if len(felt) > 1 else part
-            write_feel(one, place, about(output.made))
-            write_feel_report(one, place)
-        if len(felt) > 1:
-            write_feel_runs(felt, names, part / "runs.csv")
-    _print(felt, names)
+        write_feel(felt, part, about(output.made))
+        write_feel_report(felt, part)
+    for sentence in sentences(felt):
+        click.echo(sentence)
     print_written(output.out)
-    page = output.out / (names[0] if len(felt) > 1 else "") / "report.html"
-    click.echo(f"Next: open {page}")
+    click.echo(f"Next: open {output.out / 'report.html'}")
 
 
-def _print(felt: "Sequence[Felt]", names: Sequence[str]) -> None:
-    from odometry.feel.files import sentences
+def _several(
+    folders: tuple[Path, ...],
+    model: "FeelModel",
+    config: "FeelConfig",
+    output: "OutputFolder",
+    span: "Span",
+) -> None:
+    """A folder for each run, and runs.csv; a run that fails is a row."""
+    from odometry.errors import OdometryError
+    from odometry.feel.files import write_feel, write_feel_runs
+    from odometry.feel.follow import Felt, follow_feel
+    from odometry.report.feel_page import write_feel_report
+    from terrain.cli.outputs import about, folder_names
+    from terrain.cli.recordings import read_run
 
-    if len(felt) == 1:
-        for sentence in sentences(felt[0]):
-            click.echo(sentence)
-        return
+    rows: dict[str, Felt | str] = {}
+    with output.writing() as part:
+        for name, folder in zip(folder_names(folders), folders, strict=True):
+            try:
+                felt = follow_feel(read_run(folder, span), model, config)
+            except OdometryError as error:
+                rows[name] = str(error)
+                click.echo(f"{name}: failed: {error}")
+                continue
+            write_feel(felt, part / name, about(output.made))
+            write_feel_report(felt, part / name)
+            rows[name] = felt
+        write_feel_runs(rows, model.names, part / "runs.csv")
+    done = {name: row for name, row in rows.items() if isinstance(row, Felt)}
+    _print(done)
+    print_written(output.out)
+    if done:
+        click.echo(f"Next: open {output.out / next(iter(done)) / 'report.html'}")
+    if len(done) < len(rows):
+        sys.exit(1)
+
+
+def _print(felt: "Mapping[str, Felt]") -> None:
     rows = []
-    for name, one in zip(names, felt, strict=True):
+    for name, one in felt.items():
         answer, probability, unknown = one.answer_of_run
         windows = str(int(one.windows.felt.sum()))
         rows.append((name, answer, f"{probability:.2f}", f"{unknown:.2f}", windows))

@@ -102,6 +102,22 @@ def test_standing_is_no_feeling_and_a_short_run_is_refused():
         feel_windows(drive("gravel", 5, seconds=1.0))
 
 
+def test_a_robot_that_turns_does_not_stand_whatever_its_treads_say():
+    still = drive("gravel", 4, seconds=12.0, speed=0.0, turning=0.0)
+
+    def turned(columns):
+        late = columns["t"] >= 6.0
+        return columns | {"gyro_z": columns["gyro_z"] + 0.2 * late}
+
+    windows = feel_windows(with_imu(still, turned))
+    before, after = windows.ends_s <= 6.0, windows.begins_s >= 6.0
+    assert windows.standing[before].all()
+    assert not windows.standing[after].any()
+    assert not windows.whole[after].any()
+    biased = with_imu(still, lambda columns: columns | {"gyro_z": columns["gyro_z"] + 0.03})
+    assert feel_windows(biased).standing.all()
+
+
 def delayed(seconds):
     return lambda columns: columns | {"t": columns["t"] + seconds}
 

@@ -81,6 +81,22 @@ def test_several_runs_get_a_folder_each_and_one_table(model, folders, tmp_path):
     assert row.split()[1] == "tiles"
 
 
+def test_a_run_that_cannot_be_used_is_a_row(model, folders, tmp_path):
+    shutil.copytree(folders / "gravel_1", tmp_path / "without_imu")
+    (tmp_path / "without_imu" / "imu.csv").unlink()
+    runs = [tmp_path / "without_imu", folders / "tiles_2"]
+    answer = invoke(*runs, "--model", model[1], "--out", tmp_path / "felt")
+    assert answer.exit_code == 1
+    with (tmp_path / "felt" / "runs.csv").open(newline="") as stream:
+        failed, done = csv.DictReader(stream)
+    assert (failed["run"], failed["label"], failed["share_tiles"]) == ("without_imu", "", "")
+    assert "needs one" in failed["failed"]
+    assert "needs one" in answer.output
+    assert (done["label"], done["failed"]) == ("tiles", "")
+    assert (tmp_path / "felt" / "tiles_2" / "report.html").is_file()
+    assert not (tmp_path / "felt" / "without_imu").exists()
+
+
 def test_no_output_is_left_where_a_run_cannot_be_felt(model, folders, tmp_path):
     shutil.copytree(folders / "gravel_1", tmp_path / "run")
     (tmp_path / "run" / "imu.csv").unlink()
