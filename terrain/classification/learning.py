@@ -6,8 +6,10 @@ import numpy as np
 from sklearn.base import clone
 
 from odometry.arrays import AnyArray, ByteImage
-from terrain.classification.feature_jobs import Transformed
+from terrain.classification.feature_jobs import Transformed, features_of
 from terrain.classification.features import FeatureSettings
+from terrain.classification.neighbours import DiscriminantNeighbours
+from terrain.classification.other_things import OtherThings, squares_of_things
 from terrain.classification.presets import PRESETS
 from terrain.classification.rejection import quantiles, rejection_distances
 from terrain.classification.trained import TrainedClassifier
@@ -74,3 +76,12 @@ class LearningClassifier(TrainedClassifier):
         self.image_rejection_distances_ = (
             None if preset.as_published else quantiles(found.image_distances, self.rejected_share)
         )
+        self.other_things_ = self._learn_other_things(samples)
+
+    def _learn_other_things(self, samples: Samples) -> OtherThings | None:
+        if self._features is None or not isinstance(self._neighbours, DiscriminantNeighbours):
+            return None
+        scaled = self._neighbours.scaler.transform
+        things = features_of(squares_of_things(self.patch_size_px), self._features)
+        terrain = scaled(samples.features)
+        return OtherThings.of(terrain, samples.codes, samples.groups, scaled(things))

@@ -17,6 +17,7 @@ from terrain.classification.neighbours import Neighbours
 from terrain.classification.network_features import NetworkFeatures
 from terrain.classification.no_ground import ShownGround
 from terrain.classification.old_samples import OldSamples
+from terrain.classification.other_things import OtherThings
 from terrain.classification.presets import PRESETS
 from terrain.classification.trained_on import TrainedOn, check_codes
 from terrain.errors import ImageError, ModelFileError, NetworkError
@@ -44,6 +45,7 @@ class ModelFile:
     trained_on_: TrainedOn | None
     training_look_: TrainingLook | None
     shown_ground_: ShownGround | None
+    other_things_: OtherThings | None
     old_samples_: OldSamples | None
     features: Transformer | None
     _features: FeatureSettings | Transformed | None
@@ -68,6 +70,8 @@ class ModelFile:
             arrays |= self.training_look_.arrays()
         if self.shown_ground_ is not None:
             arrays |= self.shown_ground_.arrays()
+        if self.other_things_ is not None:
+            arrays |= self.other_things_.arrays()
         if self.old_samples_ is not None:
             arrays |= self.old_samples_.arrays(self.classes_)
         if isinstance(self._features, FeatureSettings):
@@ -113,6 +117,7 @@ class ModelFile:
         model.old_samples_ = OldSamples.from_arrays(arrays, model.classes_)
         model.training_look_ = TrainingLook.from_arrays(arrays, len(settings.classes))
         model.shown_ground_ = ShownGround.from_arrays(arrays, len(settings.classes))
+        model.other_things_ = OtherThings.from_arrays(arrays, len(settings.classes))
         check_codes(arrays["codes"], len(settings.classes))
         model._neighbours = PRESETS[model.preset].neighbours.from_arrays(arrays)
         model._check_that_parts_fit(model._features)
@@ -127,6 +132,9 @@ class ModelFile:
         self._neighbours.distances(features)
         if self.image_rejection_distances_ is not None:
             self._neighbours.labels_and_image_distances(features, 1, [np.arange(1)])
+        things = self.other_things_
+        if things is not None and len(things.direction) != self.n_features_in_:
+            raise ValueError(f"a direction of things for {len(things.direction)} features")
         if len(self.classes_) != len(self._neighbours.class_weights_):
             raise ValueError(f"{len(self.classes_)} class names for the samples of others")
 

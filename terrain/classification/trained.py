@@ -15,7 +15,8 @@ from terrain.classification.feature_jobs import features_of
 from terrain.classification.likeness import Likeness
 from terrain.classification.look import look_of, middle_of
 from terrain.classification.model_file import ModelFile
-from terrain.classification.neighbours import Neighbours, vote
+from terrain.classification.neighbours import DiscriminantNeighbours, Neighbours, vote
+from terrain.classification.other_things import THINGS
 from terrain.classification.patches import cut_patches
 from terrain.classification.rejection import as_of_one_patch
 from terrain.classification.trained_on import holds_images
@@ -102,8 +103,8 @@ class TrainedClassifier(ModelFile):
         their distance together, on the scale of one patch, decides whether it is unknown: that of
         their mean place among the discriminants, or with ``chen2023`` and models of files before
         version 0.13 the median of their distances. It is unknown as well where it shows no ground,
-        see `Classification.reason`; ``chen2023``, models of features and of files before version
-        0.14 do not check that.
+        or things, see `Classification.reason`; ``chen2023``, models of features and of files
+        before version 0.14 do not check that, and those before 0.16 not whether it shows things.
 
         Raises
         ------
@@ -154,13 +155,23 @@ class TrainedClassifier(ModelFile):
         """Classify one image by the features (patches, F) of its patches."""
         probabilities, distance = self._of_patches(features)
         best, names = int(probabilities.argmax()), self.classes_.tolist()  # eq. 26
+        reason = self._other_than_terrain(features, best)
         return Classification(
-            names[best] if distance <= self.rejection_distance_ else UNKNOWN,
+            names[best] if distance <= self.rejection_distance_ and not reason else UNKNOWN,
             float(probabilities[best]),
             distance,
             dict(zip(names, probabilities.tolist(), strict=True)),
             len(features),
+            reason,
         )
+
+    def _other_than_terrain(self, features: FloatArray, code: int) -> str:
+        """Why patches (m, F) of an image named a terrain show things; "" where they may not."""
+        neighbours = self._neighbours
+        if self.other_things_ is None or not isinstance(neighbours, DiscriminantNeighbours):
+            return ""
+        scaled = neighbours.scaler.transform(features)
+        return THINGS if self.other_things_.include(scaled, code) else ""
 
     @property
     def neighbours(self) -> Neighbours:

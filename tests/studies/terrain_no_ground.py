@@ -5,29 +5,56 @@
 Five folds by photo_id of ground/ (128 px) and pavements/ (96 px), 12 patches a photograph in
 training. Each fold's model classifies the held-out photographs (whole, and their patches), patches
 of real skies (the upper parts of camera-frames/husky, and of pictures of scikit-image), made skies,
-black, white, walls, noise, and patches of held-out photographs that were blurred, over- and
-underexposed. "Before" is the distance to the nearest class alone.
+black, white, walls, noise, patches of held-out photographs that were blurred, over- and
+underexposed, and things (`terrain_things.py`). Things whose photographs a model is taught are
+judged by one that did not see them, the others are a test. The last lines are of patches of
+pavements/ by a model of ground/ (96 px).
 """
 
 import argparse
 import os
+from collections.abc import Callable
+from copy import copy
+from functools import cache, partial
 from pathlib import Path
 
 import cv2
 import numpy as np
 from skimage import data as pictures
 
-from odometry.arrays import AnyArray, ByteImage
+from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
 from odometry.run import UNKNOWN
 from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.features import feature_matrix
+from terrain.classification.other_things import (
+    PHOTOGRAPHS,
+    SQUARES,
+    THINGS,
+    OtherThings,
+    squares_of_things,
+)
 from terrain.classification.patches import LabelledPatches, cut_patches, find_photos, load_patches
+from terrain.classification.presets import PRESETS
 from terrain.classification.trained import Classification
 from terrain.classification.validation import grouped_folds
 from terrain.images import read_image
+from tests.studies.terrain_things import development, test
 
 MADE = 60
 Shown = dict[str, list[ByteImage]]
-Shares = dict[str, list[tuple[bool, bool]]]
+Refusals = list[tuple[bool, bool, bool, bool]]
+Shares = dict[str, Refusals]
+NEARER_SHARE = 0.07
+TAUGHT_BY = {
+    "cat": "cat",
+    "cup on a table": "coffee",
+    "person": "astronaut",
+    "coins": "coins",
+    "page": "page",
+    "handwriting": "text",
+    "handwriting, twice as large": "text",
+    "chessboard": "checkerboard",
+}  # of which photograph in training a source is
 
 
 def made_sky(rng: np.random.Generator, size: int) -> ByteImage:
@@ -88,22 +115,58 @@ def altered(patches: list[ByteImage]) -> Shown:
     }
 
 
-def refused(model: TerrainClassifier, answer: Classification) -> tuple[bool, bool]:
-    """Before, and with the check."""
-    return answer.distance > model.rejection_distance_, answer.label == UNKNOWN
+def refused(model: TerrainClassifier, answers: list[Classification]) -> Refusals:
+    """By the distance alone, with the check for ground, with that for things; by a nearer distance.
+
+    Beyond the nearer one lie 7 % of the training patches; with it goes the check for ground alone.
+    """
+    nearer = np.quantile(model.cross_validation_.image_distances[0], 1 - NEARER_SHARE)
+    rows = []
+    for answer in answers:
+        far = answer.distance > model.rejection_distance_
+        empty = answer.reason not in {"", THINGS}
+        instead = answer.distance > nearer or empty
+        rows.append((far, far or empty, answer.label == UNKNOWN, instead))
+    return rows
 
 
 def judged(
-    model: TerrainClassifier, patches: LabelledPatches, test: AnyArray, empty: Shown, found: Shares
+    model: TerrainClassifier, patches: LabelledPatches, rows: AnyArray, empty: Shown, found: Shares
 ) -> None:
     """Add the answers of one fold's model to those of the others."""
-    held_out = [patches.images[i] for i in test]
+    held_out = [patches.images[i] for i in rows]
     shown = {"known, by patch": held_out} | empty | altered(held_out[::10])
     for name, images in shown.items():
-        found.setdefault(name, []).extend(refused(model, of) for of in model.classify(images))
-    files = dict.fromkeys(patches.photos[i] for i in test)
+        found.setdefault(name, []).extend(refused(model, model.classify(images)))
+    files = dict.fromkeys(patches.photos[i] for i in rows)
     answers = model.classify([read_image(file) for file in files])
-    found.setdefault("known, by photograph", []).extend(refused(model, of) for of in answers)
+    found.setdefault("known, by photograph", []).extend(refused(model, answers))
+
+
+def judged_on_things(
+    model: TerrainClassifier, taught: Callable[[str], OtherThings], size: int, found: Shares
+) -> None:
+    """The same of things; for those that a model is taught by one that did not see them."""
+    for name, images in development(size).items():
+        other = copy(model)
+        other.other_things_ = taught(TAUGHT_BY.get(name, ""))
+        found.setdefault(f"{name} (left out)", []).extend(refused(other, other.classify(images)))
+    for name, images in test(size).items():
+        found.setdefault(f"{name} (test)", []).extend(refused(model, model.classify(images)))
+
+
+def of_other_camera(root: Path, model: TerrainClassifier) -> None:
+    """Patches of pavements/ by a model of ground/ at the same scale: right, or refused."""
+    found = load_patches(find_photos(root / "pavements"), model.patch_size_px, max_per_photo=12)
+    of = [i for i, label in enumerate(found.labels) if label in model.classes_]
+    answers = model.classify([found.images[i] for i in of])
+    names = model.classes_.tolist()
+    right = [names[np.argmax(list(each.probabilities.values()))] == found.labels[i]
+             for each, i in zip(answers, of, strict=True)]  # fmt: skip
+    table = np.array(refused(model, answers))
+    either = (table | np.array(right)[:, None]).mean(axis=0)
+    print("ground/ to pavements/: refused", *(f"{share:.3f}" for share in table.mean(axis=0)))
+    print("  right or refused            ", *(f"{share:.3f}" for share in either), flush=True)
 
 
 def main() -> None:
@@ -114,15 +177,37 @@ def main() -> None:
         photos = find_photos(root / "terrain-images" / folder)
         patches = load_patches(photos, size, max_per_photo=12)
         labels, groups = np.array(patches.labels), np.array(patches.groups)
+        codes = np.unique(labels, return_inverse=True)[1]
+        features = feature_matrix(patches.images, PRESETS["default"].features)
+        things = feature_matrix(squares_of_things(size), PRESETS["default"].features)
         empty, found = without_ground(root, size), Shares()
-        for train, test in grouped_folds(np.unique(labels, return_inverse=True)[1], groups):
+        for train, held_out in grouped_folds(codes, groups):
             images = [patches.images[i] for i in train]
             model = TerrainClassifier().fit(images, labels[train], groups[train])
-            judged(model, patches, test, empty, found)
-        print(f"{folder}: answers, unknown before, with the check")
+            scaled = [model.neighbours.scaler.transform(of) for of in (features[train], things)]
+            taught = partial(_taught, codes[train], groups[train], *scaled)
+            judged(model, patches, held_out, empty, found)
+            judged_on_things(model, cache(taught), size, found)
+        print(
+            f"{folder}: answers; unknown by distance, with ground, now; by {NEARER_SHARE} instead"
+        )
         for name, answers in found.items():
-            before, after = np.mean(answers, axis=0)
-            print(f"  {name:24s} {len(answers):5d}  {before:.3f}  {after:.3f}", flush=True)
+            shares = np.mean(answers, axis=0)
+            print(f"  {name:38s} {len(answers):5d} ", *(f"{of:.3f}" for of in shares), flush=True)
+    photos = find_photos(root / "terrain-images" / "ground")
+    patches = load_patches(photos, 96, max_per_photo=12)
+    of_other_camera(
+        root / "terrain-images",
+        TerrainClassifier().fit(patches.images, patches.labels, patches.groups),
+    )
+
+
+def _taught(
+    codes: IntArray, groups: AnyArray, terrain: FloatArray, things: FloatArray, left_out: str
+) -> OtherThings:
+    """What a model learns of scaled features without those of one photograph of things."""
+    others = np.repeat(PHOTOGRAPHS, SQUARES) != left_out
+    return OtherThings.of(terrain, codes, groups, things[others])
 
 
 if __name__ == "__main__":
