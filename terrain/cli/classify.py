@@ -25,8 +25,9 @@ if TYPE_CHECKING:
 def classify(model: Path, images: tuple[Path, ...], *, as_json: bool, own_statistics: bool) -> None:
     """Name the terrain of each of IMAGES with MODEL, a file that `train` wrote.
 
-    Prints label, confidence, and the distance to the nearest class; a label is unknown where the
-    distance is beyond the rejection threshold. An image larger than the model's patches is cut
+    Prints label, confidence, and the distance to the nearest class; a label is unknown, without a
+    confidence, where the distance is beyond the rejection threshold or the image shows no ground
+    (the reason follows). An image larger than the model's patches is cut
     into patches. An image that cannot be used becomes a row with the reason, and the exit code 1.
 
     With one folder FOLDER/<terrain>/*.jpg or *.png in place of images: how often each terrain gets
@@ -89,6 +90,8 @@ def _row(classifier: "TerrainClassifier", path: Path) -> dict[str, Any]:
 
 
 def _table(classifier: "TerrainClassifier", rows: list[dict[str, Any]]) -> str:
+    from odometry.run import UNKNOWN
+
     width = max(len(row["image"]) for row in rows)
     names = max(len(name) for name in [*classifier.classes_, "unknown"])
     lines = [f"{'image':{width}}  {'label':{names}}  confidence  distance"]
@@ -96,8 +99,10 @@ def _table(classifier: "TerrainClassifier", rows: list[dict[str, Any]]) -> str:
         if "error" in row:
             lines.append(f"{row['image']:{width}}  error: {row['error']}")
         else:
+            # of a known terrain, which it is not
+            sure = "-" if row["label"] == UNKNOWN else f"{row['confidence']:.2f}"
             lines.append(
-                f"{row['image']:{width}}  {row['label']:{names}}  {row['confidence']:10.2f}  "
+                f"{row['image']:{width}}  {row['label']:{names}}  {sure:>10}  "
                 f"{row['distance']:8.4g}  {row['reason']}".rstrip()
             )
     lines.append(f"Beyond a distance of {classifier.rejection_distance_:.4g} the label is unknown.")

@@ -31,6 +31,8 @@ def draw_region(
 ) -> None:
     """Outline the region of an image label on the raw image, with its label and confidence.
 
+    That of `unknown` is not written: it is the probability of a known terrain.
+
     Parameters
     ----------
     axes : Axes
@@ -46,8 +48,9 @@ def draw_region(
     shape = camera.ground_to_pixels(outline(image_label.region.rectangle))
     draw_outline(axes, shape, colour)
     name = image_label.label or NO_LABEL
-    sure = f" {image_label.confidence:.0%}" if np.isfinite(image_label.confidence) else ""
-    _write_inside(axes, shape, f"{name}{sure}", 10.0)
+    sure = image_label.confidence if image_label.label != UNKNOWN else np.nan  # of a known terrain
+    percent = f" {sure:.0%}" if np.isfinite(sure) else ""
+    _write_inside(axes, shape, f"{name}{percent}", 10.0)
 
 
 def draw_cells(axes: Axes, camera: Camera, cells: Sequence[Cell], tints: Mapping[str, str]) -> None:

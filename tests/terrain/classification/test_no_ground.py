@@ -189,7 +189,11 @@ def test_classify_says_so_of_each_image_and_of_all(model, rng, tmp_path):
     answer = CliRunner().invoke(classify, [str(tmp_path / "a.model"), *files])
     assert answer.exit_code == 0
     assert "Note: 1 of 2 images show no ground and are unknown: black (1)" in answer.stderr
-    assert "no ground: black" in answer.stdout.splitlines()[1]
+    rows = answer.stdout.splitlines()
+    assert rows[1].split()[1:3] == ["unknown", "-"]
+    assert "no ground: black" in rows[1]
+    assert rows[2].split()[1] == "slabs"
+    assert 0.5 < float(rows[2].split()[2]) <= 1
     answer = CliRunner().invoke(classify, [str(tmp_path / "a.model"), *files, "--json"])
     assert [row["reason"] for row in json.loads(answer.stdout)] == ["no ground: black", ""]
 

@@ -73,6 +73,8 @@ def test_the_region_is_outlined_where_its_border_is_seen(axes, camera, world):
     on_y = np.minimum(abs(points[:, 1] - 0.15), abs(points[:, 1] + 0.15))
     assert np.minimum(on_x, on_y).max() < 0.006
     assert [text.get_text() for text in axes.texts] == ["$ice^$ 88%"]
+    draw_region(axes, camera, ImageLabel(1.0, "a.png", "unknown", 0.97, REGION), TINTS)
+    assert axes.texts[-1].get_text() == "unknown"  # the confidence is that of a known terrain
     axes.figure.canvas.draw()
 
 
