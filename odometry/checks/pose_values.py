@@ -8,6 +8,7 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.heading import headings
+from odometry.positions.rounding import rounding_step_m
 
 EARTH_M = (6.2e6, 6.5e6)  # distance from the centre of the earth
 MAP_M = 1e5  # coordinates above are of a map of the country (UTM)
@@ -25,7 +26,7 @@ def pose_values(evidence: Evidence) -> Iterator[Finding]:
     rows = np.flatnonzero(used)
     positions, stamps_s = pose.stack("x", "y")[rows], pose.stamps_s[rows]
     yield from _frame(evidence, positions)
-    yield from _coarse(positions)
+    yield from _coarse(stamps_s, positions)
     yield from _interpolated(stamps_s, positions)
     yield from _noisy(evidence, stamps_s)
     if evidence.yaw_measured:
@@ -68,12 +69,13 @@ def _frame(evidence: Evidence, positions: FloatArray) -> Iterator[Finding]:
         )
 
 
-def _coarse(positions: FloatArray) -> Iterator[Finding]:
+def _coarse(stamps_s: FloatArray, positions: FloatArray) -> Iterator[Finding]:
     steps = [step for column in positions.T if (step := _grid(column)) is not None]
-    if len(steps) == 2 and max(steps) > COARSE_M:
+    step_m = max(steps) if len(steps) == 2 else rounding_step_m(stamps_s, positions)
+    if step_m > COARSE_M:
         yield _finding(
             "coarse_positions",
-            f"positions come in steps of {max(steps):.3g} m",
+            f"positions come in steps of {step_m:.3g} m",
             "Positions are rounded: single precision (float32) of large coordinates, or too few "
             "digits in the log",
             "Write positions in double precision, relative to the start",

@@ -29,6 +29,7 @@ from odometry.effects.map_fault import DriftingMap, DriftingYaw, StretchedMap, T
 from odometry.effects.reference_fault import Compass
 from odometry.effects.reference_filter import FilteredPositions, SlowYaw, SmoothedPoses, SwayingMast
 from odometry.effects.reference_outliers import FrozenPoses, JumpingPoses, ReferenceOutliers
+from odometry.effects.reference_rounding import RoundedPositions
 from odometry.effects.reference_step import ClockStep
 from odometry.effects.residual import Residual
 from odometry.effects.sensor_mount import HeadingOffset, LeverArm
@@ -95,7 +96,7 @@ EFFECTS: tuple[type[Effect], ...] = (
     GyroscopeError,
 )
 OUTLIERS = (ReferenceOutliers, FrozenPoses, JumpingPoses)
-KNOWN: tuple[type[Effect], ...] = (*EFFECTS, *OUTLIERS, Residual, History)
+KNOWN: tuple[type[Effect], ...] = (*EFFECTS, *OUTLIERS, RoundedPositions, Residual, History)
 BY_FORM = {(effect.name, effect.form): effect for effect in KNOWN}
 
 COURSES = (FromAMoment.name, Gradual.name, InBursts.name)

@@ -12,6 +12,7 @@ from odometry.effects.corrected import Added
 from odometry.effects.in_course import lasting
 from odometry.effects.map_fault import OfEachRun
 from odometry.effects.reference_outliers import ReferenceOutliers
+from odometry.effects.reference_rounding import RoundedPositions
 from odometry.effects.reference_step import ReferenceStep
 from odometry.effects.residual import ResidualOfEachRun
 from odometry.effects.terrain import SHIFTED, Terrain
@@ -27,7 +28,10 @@ from odometry.run import UNKNOWN, UNNAMED_TERRAIN
 
 FORMAT = 1  # of gap.json
 # No part of the model of another run.
-OF_ONE_RUN = (Terrain, ResidualOfEachRun, OfEachRun, ReferenceStep, ReferenceOutliers)
+OF_ONE_RUN = (
+    *(Terrain, ResidualOfEachRun, OfEachRun, ReferenceStep, ReferenceOutliers),
+    RoundedPositions,
+)
 LEAST_LATENCY_S = 5e-3  # less is nothing that a model must know
 
 

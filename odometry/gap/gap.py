@@ -19,6 +19,7 @@ from odometry.gap.name import explained
 from odometry.gap.own_moments import with_own_moments
 from odometry.gap.pieces import numbered_pieces
 from odometry.gap.result import Closing, GapResult
+from odometry.gap.rounding import named_rounding, rounding_notes
 from odometry.gap.scenes import (
     alike,
     dealt,
@@ -131,6 +132,9 @@ def find_gap(
     named = named_effects(found, effects, believed_m)
     if outliers is not None:
         named = (named_outliers(outliers, closings[0].before.value, believed_m), *named)
+    rounding = named_rounding(fitted_scenes, held_scenes, known, floor, config)
+    if rounding is not None:
+        named = (rounding, *named)
     more = rivals_of_one_heading(found, fitter, config)
     equivalent = equivalents(found, more, fitter, config)
     return GapResult(
@@ -146,7 +150,7 @@ def find_gap(
         measured_scenes=tuple(fitted_scenes),
         holdout_scenes=tuple(held_scenes),
         horizon_s=config.horizon_s,
-        notes=headings.notes,
+        notes=(*headings.notes, *rounding_notes(known_scenes, fitted_scenes, held_scenes)),
         next_drives=drives_apart(found, (*found.first, *more), equivalent, fitter, config),
         refusals=found.refusals,
         holdout_before=() if outliers is None else tuple(raw_scenes[1]),

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from odometry.effects.reference_rounding import RoundedPositions
 from odometry.effects.residual import Residual
 from odometry.gap.quantities import Share, held_out_share, metres, percent, with_interval
 from odometry.gap.region_words import noun_of_residual
@@ -86,6 +87,15 @@ def _how_sure(result: GapResult, share: Share | None) -> str:
     floor = f"the noise floor is {with_interval(held.noise_floor)}"
     if not result.effects:
         return f"The gap on held-out data is {with_interval(held.before)}; {floor}."
+    if all(isinstance(effect.added.effect, RoundedPositions) for effect in result.effects):
+        rest = ""
+        if held.before.is_above(held.noise_floor):
+            left_m = held.before.value - held.noise_floor.value
+            rest = f", and {metres(left_m)} stays unexplained"
+        return (
+            f"The gap on held-out data is {with_interval(held.before)}; with the rounding {floor}"
+            f"{rest}."
+        )
     change = f"from {with_interval(held.before)} to {with_interval(held.after)}"
     if held.after.value > held.before.value:
         return f"The gap on held-out data gets worse, {change}: do not trust the name."

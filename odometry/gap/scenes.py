@@ -14,6 +14,7 @@ from odometry.gap.frozen import Isolated
 from odometry.gap.jumps import Jumps
 from odometry.gap.outliers import Outliers, closes, outliers_of
 from odometry.gap.pieces import held_back
+from odometry.gap.rounding import rounded_m
 from odometry.positions.heading import Headed
 from odometry.run import Run
 from odometry.windows.averaged import averaged_windows
@@ -32,8 +33,9 @@ def dealt(
 
 
 def scene_of(run: Run, config: GapConfig) -> DenseWindows:
-    """Windows of a run."""
-    return averaged_windows(dense_windows_of(run, config.horizon_s))
+    """Windows of a run, with the step to which its positions were rounded."""
+    scene = averaged_windows(dense_windows_of(run, config.horizon_s))
+    return replace(scene, rounded_m=rounded_m(run))
 
 
 def scenes_of(

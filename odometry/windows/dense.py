@@ -45,6 +45,8 @@ class DenseWindows:
         Poses of each window; neighbours share one.
     left_out : Counter of str
         How many windows of the run there are not, by reason (`odometry.windows.windows`).
+    rounded_m : float
+        Step to which measured positions were rounded, where that is known: noise of the reference.
     """
 
     run: Run
@@ -55,6 +57,7 @@ class DenseWindows:
     poses: FloatArray
     windows: IntArray
     left_out: Counter[str] = field(default_factory=Counter)
+    rounded_m: float = 0.0
 
     def __len__(self) -> int:
         return len(self.windows)

@@ -161,11 +161,18 @@ def covariance_parts(scene: DenseWindows) -> FloatArray:
     return parts
 
 
+def with_rounding(variances: FloatArray, scene: DenseWindows) -> FloatArray:
+    """The five variances of a scene whose positions were rounded: uniform within a step."""
+    known = variances.copy()
+    known[0] += scene.rounded_m**2 / 12
+    return known
+
+
 def end_variance(scene: DenseWindows, noise: Noise) -> FloatArray:
     """Variance (K, 3) of the residuals at the end of each window."""
     x, y, _ = np.moveaxis(scene.measured, -1, 0)
     added_m = added_travel_m(scene)
-    position, yaw, wander, turn, _ = noise.all_variances
+    position, yaw, wander, turn, _ = with_rounding(noise.all_variances, scene)
     ahead, aside = (  # from the poses before each step to the last
         of[:, -1:] - np.pad(of[:, :-1], ((0, 0), (1, 0))) for of in (x, y)
     )
@@ -183,7 +190,8 @@ def end_variance(scene: DenseWindows, noise: Noise) -> FloatArray:
 
 def whitening(scene: DenseWindows, noise: Noise) -> FloatArray:
     """Matrices (K, R, R) that make the residuals of each window white, of unit variance."""
-    covariance = np.tensordot(noise.all_variances, covariance_parts(scene), axes=1)
+    variances = with_rounding(noise.all_variances, scene)
+    covariance = np.tensordot(variances, covariance_parts(scene), axes=1)
     factor = np.linalg.cholesky(covariance)
     identity = np.broadcast_to(np.eye(factor.shape[-1]), factor.shape)
     return np.asarray(np.linalg.solve(factor, identity))
@@ -194,7 +202,8 @@ def estimated_noise(
 ) -> Noise:
     """Most likely variances of the residuals (K, R) of each scene, by Fisher scoring.
 
-    `start` is an answer to nearly the same residuals.
+    Those of positions are beyond what is known of their rounding. `start` is an answer to nearly
+    the same residuals.
     """
     chosen, rows = [], []
     share = MOST_WINDOWS / max(1, sum(map(len, scenes)))
@@ -211,8 +220,9 @@ def estimated_noise(
     variances = FIRST_GUESS.copy() if start is None else start.all_variances
     for _ in range(ROUNDS):
         score, information = np.zeros(len(variances)), np.zeros((len(variances),) * 2)
-        for one, part, of in zip(factors, parts, rows, strict=True):
-            inverse = np.linalg.inv(np.tensordot(variances, part, axes=1))
+        for scene, one, part, of in zip(chosen, factors, parts, rows, strict=True):
+            known = with_rounding(variances, scene)
+            inverse = np.asarray(np.linalg.inv(np.tensordot(known, part, axes=1)), dtype=np.float64)
             scored = one.score(inverse, of[:, one.order])
             score, information = score + scored[0], information + scored[1]
         step = np.linalg.lstsq(information, score, rcond=None)[0]

@@ -1,0 +1,92 @@
+"""Positions that were rounded: the step of the grid on which they lie.
+
+Positions of step g have residues modulo g that agree, which a mean of unit phasors measures: the
+quantogram of Kendall 1974 (Phil. Trans. R. Soc. A 276, 231), of all steps at once by a Fourier
+transform. A robot that rests, or drives the same lanes again, agrees by itself: what counts is by
+how much positions agree more than the mean of their neighbours does, while the robot moves.
+"""
+
+import numpy as np
+
+from odometry.arrays import AnyArray, FloatArray
+
+LEAST_STEP_M, MOST_STEP_M = 0.02, 1.5  # that are looked for
+BANDS = 19
+BAND = (MOST_STEP_M / LEAST_STEP_M) ** (1 / BANDS)  # of steps that are tried together
+BIN = 1 / 16  # of the least step of a band
+FINER = 4  # frequencies than positions resolve
+AROUND_S = 1.0  # to each side of a position, of its neighbours
+LEAST_MOVED = 2.0  # steps that the neighbours of a position must span
+LEAST_POSES = 40  # of which these are
+LEAST_AGREEMENT = float(np.exp(-(np.pi**2) / 6))  # that noise as large as that of rounding leaves
+BY_CHANCE = 1e-6  # probability of as good an agreement of any step
+AS_GOOD = 0.9  # of the best agreement: the largest such step is the one, its parts agree, too
+
+
+def rounding_step_m(stamps_s: FloatArray, positions: FloatArray) -> float:
+    """Step of the grid on which positions (M, 2) lie, that of the coarser axis; 0 without one.
+
+    Each axis along which the robot moved enough must show one. A grid that was turned after
+    positions were rounded is not found.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 120.0, 0.1)
+    >>> path = np.column_stack([8 * np.cos(t / 20), 8 * np.sin(t / 20)])
+    >>> measured = np.round(path / 0.05) * 0.05
+    >>> round(rounding_step_m(t, measured), 4), rounding_step_m(t, path)
+    (0.05, 0.0)
+    """
+    found = [step for axis in positions.T if (step := _step_of(stamps_s, axis)) is not None]
+    return max(found) if found and min(found) > 0 else 0.0
+
+
+def _step_of(stamps_s: FloatArray, places_m: FloatArray) -> float | None:
+    """Step of one axis (M,); 0 without one, None where the robot moved too little to say."""
+    means, spans = _neighbours(stamps_s, places_m)
+    decided, best, step = False, 0.0, 0.0
+    for least in np.geomspace(LEAST_STEP_M, MOST_STEP_M, BANDS + 1)[:-1]:
+        used = spans > LEAST_MOVED * BAND * least
+        count = np.count_nonzero(used)
+        if count < LEAST_POSES:
+            continue
+        decided = True
+        steps, agreement, of_means = _agreements(places_m[used], means[used], least)
+        by_chance = float(np.sqrt(np.log(BANDS * len(steps) / BY_CHANCE) / count))
+        sure = agreement - of_means > max(LEAST_AGREEMENT, by_chance)
+        place = int(np.argmax(np.where(sure, agreement, 0.0)))
+        if sure[place] and agreement[place] > AS_GOOD * best:
+            best, step = max(best, float(agreement[place])), float(steps[place])
+    return step if decided else None
+
+
+def _agreements(
+    places_m: FloatArray, means_m: FloatArray, least_m: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Steps (F,) of a band, and how well places (M,) and their means agree with each."""
+    origin, width = float(min(places_m.min(), means_m.min())), BIN * least_m
+    count = int(np.ptp(np.concatenate([places_m, means_m])) / width) + 1
+    size = 1 << int(np.ceil(np.log2(FINER * count)))
+    of_places, of_means = (_phasors(of - origin, width, size) for of in (places_m, means_m))
+    frequencies = np.fft.rfftfreq(size, width)
+    inside = (frequencies > 1 / (BAND * least_m)) & (frequencies <= 1 / least_m)
+    return 1 / frequencies[inside], np.abs(of_places[inside]), np.abs(of_means[inside])
+
+
+def _phasors(places_m: FloatArray, width_m: float, size: int) -> AnyArray:
+    """Means (F,) of unit phasors of places at all frequencies."""
+    counts = np.bincount((places_m / width_m).astype(np.int64), minlength=size)
+    return np.fft.rfft(counts) / len(places_m)
+
+
+def _neighbours(stamps_s: FloatArray, places_m: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Mean (M,) of the places around each without itself, and the way between the outermost."""
+    first = np.searchsorted(stamps_s, stamps_s - AROUND_S)
+    last = np.searchsorted(stamps_s, stamps_s + AROUND_S, side="right") - 1
+    rows = np.arange(len(stamps_s))
+    half = np.maximum(1, np.minimum(rows - first, last - rows))
+    first, last = np.maximum(rows - half, 0), np.minimum(rows + half, len(rows) - 1)
+    summed = np.concatenate([[0.0], np.cumsum(places_m)])
+    means = (summed[last + 1] - summed[first] - places_m) / np.maximum(last - first, 1)
+    return means, np.abs(places_m[last] - places_m[first])
