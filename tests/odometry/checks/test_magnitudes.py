@@ -59,3 +59,20 @@ def test_no_robot_goes_farther_than_its_treads(factor):
 def test_one_side_of_another_unit_is_one_cause(factor):
     run = treads(driven(winding()), lambda left, right: (factor * left, right))
     assert [name for name in names(run) if name != "slip_episodes"] == ["treads_unequal"]
+
+
+def test_positions_rounded_before_noise_are_noticed(rng):
+    """The steps are no longer multiples of one step; the residues modulo it still agree."""
+    run = winding()
+    noise_m = 0.01 * rng.standard_normal((2, len(run.pose)))
+
+    def coarse(x, y):
+        return tuple(
+            np.round(of / 0.1) * 0.1 + off for of, off in zip((x, y), noise_m, strict=True)
+        )
+
+    (found,) = [
+        one for one in check_recording(positions(run, coarse)).findings if "steps of" in one.seen
+    ]
+    assert found.name == "coarse_positions"
+    assert "0.1 m" in found.seen
