@@ -97,6 +97,50 @@ def damped(hz: float, ratio: float) -> Change:
     return change
 
 
+def everything(factor: float) -> Change:
+    """All vibration by a factor: other tyres, pressure or load."""
+    return scaled(factor, slice(None))
+
+
+def slow_part(factor: float, below_hz: float) -> Change:
+    """Vibration below a frequency by a factor: a heavier robot."""
+    part = low_pass(2, below_hz / RATE_HZ)
+    return lambda axes: axes + (factor - 1) * (part(axes) - axes.mean(axis=1, keepdims=True))
+
+
+def tone(hz: float, accel_m_s2: float, gyro_rad_s: float, harmonics: int = 1) -> Change:
+    """An engine that runs: a tone in all axes, with its harmonics."""
+    phases = np.random.default_rng(11).uniform(0, 2 * np.pi, (harmonics, len(AXES), 1))
+    size = np.array([gyro_rad_s] * 3 + [accel_m_s2] * 3)[:, None]
+
+    def change(axes: FloatArray) -> FloatArray:
+        turns = 2 * np.pi * hz * np.arange(axes.shape[1]) / RATE_HZ
+        waves = [np.sin(n * turns + of) / n for n, of in enumerate(phases, start=1)]
+        return axes + size * np.sum(waves, axis=0)
+
+    return change
+
+
+def bursts(share: float, samples: int, lost: Callable[[FloatArray, int], FloatArray]) -> Change:
+    """A share of the samples lost in bursts; `lost` gives the axes (A, 1) at a burst's start."""
+
+    def change(axes: FloatArray) -> FloatArray:
+        found, count = axes.copy(), axes.shape[1]
+        rng = np.random.default_rng(11)
+        for at in rng.integers(1, count - samples, int(share * count / samples)):
+            found[:, at : at + samples] = lost(axes, int(at))
+        return found
+
+    return change
+
+
+def resonant(hz: float, gain: float, width: float) -> Change:
+    """A part that rings: a peak added to the response."""
+    turn = 2 * np.pi * hz
+    above, below = bilinear([gain * width * turn, 0], [1, width * turn, turn**2], fs=RATE_HZ)
+    return lambda axes: axes + lfilter(above, below, axes - axes.mean(axis=1, keepdims=True))
+
+
 def on_rows(rows: slice, of: Change) -> Change:
     """A change of some axes alone."""
 
@@ -167,5 +211,17 @@ ALTERED: dict[str, Change] = {
     "gyro in .01 rad/s": rounded(0.01, GYRO),
     "gyro in .02 rad/s": rounded(0.02, GYRO),
     "accel in 1 m/s2": rounded(1.0, ACCEL),
+    "all x .5": everything(0.5),
+    "all x 2": everything(2.0),
+    "below 10 Hz x .5": slow_part(0.5, 10.0),
+    "below 10 Hz x 1.5": slow_part(1.5, 10.0),
+    "tone of 12 Hz": tone(12.0, 0.5, 0.02),
+    "tone of 25 Hz": tone(25.0, 0.5, 0.02),
+    "13 Hz, harmonics": tone(13.0, 1.0, 0.04, harmonics=3),
+    "resonance of 8 Hz": resonant(8.0, 1.0, 0.3),
+    "resonance of 12 Hz": resonant(12.0, 1.5, 0.15),
+    "lost, 10 %": bursts(0.1, 20, lambda axes, _: np.full((len(axes), 1), np.nan)),
+    "held, 5 %": bursts(0.05, 10, lambda axes, at: axes[:, at - 1 : at]),
+    "zeros, .5 %": bursts(0.005, 1, lambda axes, _: np.zeros((len(axes), 1))),
     "each sample twice": lambda axes: np.repeat(axes[:, ::2], 2, axis=1)[:, : axes.shape[1]],
 }
