@@ -26,7 +26,7 @@ def classify(model: Path, images: tuple[Path, ...], *, as_json: bool, own_statis
     """Name the terrain of each of IMAGES with MODEL, a file that `train` wrote.
 
     Prints label, confidence, and the distance to the nearest class; a label is unknown, without a
-    confidence, where the distance is beyond the rejection threshold or the image shows no ground
+    confidence, where the distance is beyond the rejection threshold or the image shows no terrain
     (the reason follows). An image larger than the model's patches is cut
     into patches. An image that cannot be used becomes a row with the reason, and the exit code 1.
 
