@@ -31,11 +31,10 @@ README_FILES = [
         "odometry/README.md",
         "terrain/README.md",
         "tests/README.md",
-        "tests/studies/README.md",
     )
-]
+] + sorted((ROOT / "tests/studies").glob("*.md"))
 each_readme = pytest.mark.parametrize(
-    "readme", README_FILES, ids=lambda file: str(file.parent.relative_to(ROOT))
+    "readme", README_FILES, ids=lambda file: str(file.relative_to(ROOT))
 )
 
 
@@ -61,7 +60,7 @@ def anchors(readme: Path) -> set[str]:
 def test_every_readme_is_tested() -> None:
     folders = ("data", "notebooks", "odometry", "terrain", "tests")
     found = [file for folder in folders for file in (ROOT / folder).rglob("README.md")]
-    assert {*found, ROOT / "README.md"} == set(README_FILES)
+    assert {*found, ROOT / "README.md"} <= set(README_FILES)
 
 
 @each_readme
@@ -78,7 +77,7 @@ def test_links(readme: Path) -> None:
         assert not anchor or anchor in anchors(file), target
 
 
-@pytest.mark.parametrize("readme", README_FILES[1:], ids=lambda file: str(file.parent.name))
+@pytest.mark.parametrize("readme", README_FILES[1:], ids=lambda file: str(file.relative_to(ROOT)))
 def test_contents(readme: Path) -> None:
     """Every section stands in the line of contents below the title."""
     text = prose(readme)

@@ -16,7 +16,7 @@ TERMS = 2
 LEAST_SCALE = 0.3  # of the distance: one that hardly varies gets no steep weight
 SHARES = (0.1, 0.15, 0.2, 0.25, 0.3, 0.35)  # with more, nothing is named where no distance helps
 SURE = 0.6  # probability from which a terrain is named, which
-MOST_NAMED = 0.3  # of what is of a terrain left out may get; see tests/studies/README.md
+MOST_NAMED = 0.3  # of what is of a terrain left out may get; see tests/studies/feel.md
 
 
 @dataclass(frozen=True)
