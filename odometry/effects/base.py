@@ -67,10 +67,12 @@ class Effect(ABC):
     includes : Mapping of name to str
         Effects that are this one at some values, and what distinguishes them.
     of_reference : bool
-        Whether it is a fault of the reference sensor, not of the robot.
+        Whether it is a fault of the reference sensor.
     mimicked_by : str
-        What a robot may do that looks the same in whatever a run holds. Such an effect is never
-        named; where it explains most, no other effect is named either.
+        What a robot may do that looks the same in any run. Such an effect is never named; where
+        it explains most, no other effect is named either.
+    robot_alike : str
+        The same, of a fault that is named with it as it is more common.
     essential : tuple of str
         Parameters without which it is another effect: most of what it does must be theirs.
     constant_names : tuple of str
@@ -80,8 +82,7 @@ class Effect(ABC):
     slow : bool
         Whether it takes long to compute.
     physics : str
-        Effects of the same physics have the same parameters and constants, which are the same
-        numbers in one model; "" where its parameters are its own.
+        Effects of the same physics share their numbers in one model; "" where they are its own.
     """
 
     name: ClassVar[str]
@@ -97,6 +98,7 @@ class Effect(ABC):
     includes: ClassVar[Mapping[str, str]] = {}
     of_reference: ClassVar[bool] = False
     mimicked_by: ClassVar[str] = ""
+    robot_alike: ClassVar[str] = ""
     essential: ClassVar[tuple[str, ...]] = ()
     constant_names: ClassVar[tuple[str, ...]] = ()
     course: ClassVar[str] = ""

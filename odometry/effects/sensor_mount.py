@@ -70,6 +70,7 @@ class HeadingOffset(MeasurementEffect):
     looks_like = "straights on which the robot seems to drift to one side, forward and backward"
     remedy = "turn the sensor, or its frame, by the angle; then the yaw is the robot's"
     of_reference = True
+    robot_alike = "a robot that always travels to one side of where it points"
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:

@@ -87,7 +87,7 @@ def drives_apart(
     fits = {one.effect.name: one.fitted for one in sorted(candidates, key=_evidence)}
     names = [one.name for one in equivalent if not one.by_equation]
     rivals = {name: fits[name] for name in names if name in fits}
-    if not rivals or found.names[0] not in fits:
+    if not rivals or not found.names or found.names[0] not in fits:
         return ()
     of_form = {one.effect.key: one.fitted for one in found.first}
     first = {found.names[0]: of_form.get(found.effects[0].key, found.steps[0].fitted)}

@@ -36,8 +36,10 @@ def equivalents(
 
     An effect that includes another has values to spare for whatever else is imperfect: the other
     is as near where it closes nearly as much. `more` are rivals of the first name that were no
-    candidates.
+    candidates. Where nothing is named see `done_by_others_too`.
     """
+    if all(isinstance(effect, Residual) for effect in found.effects):
+        return done_by_others_too(found, config)
     alike: dict[str, Equivalent] = {}
     for added in found.fitted.effects:
         _add_same(alike, added, by_equation=True)
@@ -54,6 +56,25 @@ def equivalents(
             alike[rival.effect.name] = Equivalent(rival.effect.name, best.effect.name, reason)
             _add_same(alike, rival.fitted.effects[-1])
     return tuple(one for name, one in alike.items() if name not in found.names)
+
+
+def done_by_others_too(found: Explanation, config: GapConfig) -> tuple[Equivalent, ...]:
+    """The first candidate, where it is refused as something else moves a robot in the same way.
+
+    In place of "unknown", if it closes nearly as much as the smooth functions that are added.
+    """
+    if not found.first:
+        return ()
+    best = found.first[0]
+    refused = any((one.name, one.form) == _named(best) for one in found.refusals)
+    closed = found.start.cost - found.fitted.cost
+    if not (best.effect.mimicked_by and refused and best.gain >= config.mostly_closed * closed):
+        return ()
+    return (Equivalent(best.effect.name, "unknown", best.effect.remedy),)
+
+
+def _named(one: Judged) -> tuple[str, str]:
+    return one.effect.name, one.effect.form
 
 
 def _as_near(

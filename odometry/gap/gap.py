@@ -135,10 +135,11 @@ def find_gap(
     rounding = named_rounding(fitted_scenes, held_scenes, known, floor, config)
     if rounding is not None:
         named = (rounding, *named)
+    verdict = named[0].added.effect.name if named else verdict_of(found, closings[1])
     more = rivals_of_one_heading(found, fitter, config)
-    equivalent = equivalents(found, more, fitter, config)
+    equivalent = () if verdict == "none" else equivalents(found, more, fitter, config)
     return GapResult(
-        verdict=named[0].added.effect.name if named else verdict_of(found, closings[1]),
+        verdict=verdict,
         effects=named,
         equivalent=equivalent,
         location=locate(known.base, (), fitted_scenes, floor.value, config, calibration=known),

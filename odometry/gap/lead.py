@@ -20,6 +20,10 @@ def lead(result: GapResult) -> tuple[str, str, str]:
 
 def _missing(result: GapResult) -> str:
     model = result.calibration.base.model.name
+    others = _instead(result.equivalent).get("unknown")
+    if others:
+        reasons = [one.reason for one in result.refusals if one.name in others]
+        return f"Something is missing in {model} (unknown): {reasons[0]}."
     if not result.effects:
         return _nothing_named(result, model)
     named = [e for e in result.effects if not isinstance(e.added.effect, Residual)]
@@ -37,8 +41,10 @@ def _missing(result: GapResult) -> str:
         f"; these runs do not distinguish {name} from {listed(others, 'or')}"
         for name, others in _instead(result.equivalent).items()
     )
+    alike = [e.added.effect.robot_alike for e in named if e.added.effect.robot_alike]
     if all(effect.added.effect.of_reference for effect in named) and not rest:
-        return f"A sensor is at fault, not the robot: {names}{untold}."
+        who = f", or {alike[0]}" if alike else ", not the robot"
+        return f"A sensor is at fault{who}: {names}{untold}."
     return f"Missing in {model}: {names}{untold}."
 
 
@@ -123,7 +129,9 @@ def _what_to_do(result: GapResult) -> str:
     ]
     decided = {name for one in result.next_drives for name in one.between}
     measures = [
-        f"What distinguishes {one.instead_of} from {one.name}: {one.told_apart_by}."
+        f"If it is {one.name}: {one.told_apart_by}."
+        if one.instead_of == "unknown"
+        else f"What distinguishes {one.instead_of} from {one.name}: {one.told_apart_by}."
         for one in result.equivalent
         if one.name not in decided
     ]

@@ -73,6 +73,7 @@ class Equivalent:
     Attributes
     ----------
     name, instead_of : str
+        In place of "unknown": a fault of the reference that is not named, as robots do the same.
     told_apart_by : str
         Measure or drive.
     by_equation : bool

@@ -10,8 +10,8 @@ from odometry.effects.corrected import Added
 from odometry.effects.lateral_skid import LateralSkid
 from odometry.effects.residual import Residual
 from odometry.effects.wheel_scale import WheelScale
-from odometry.gap.answer import named_effects, rivals_of, verdict_of
-from odometry.gap.result import Closing
+from odometry.gap.answer import drives_apart, named_effects, rivals_of, verdict_of
+from odometry.gap.result import Closing, Equivalent
 from odometry.gap.statistic import Gap
 from odometry.gap.verdict import Refusal
 
@@ -117,3 +117,9 @@ def test_a_smooth_function_is_no_rival_of_names():
     first, step = judged(SCALE, 4.0, 0.3), judged(Residual("v"), 9.0, 0.1)
     (found,) = rivals_of(explained(first=(first,), steps=(step,)))
     assert (found.name, found.added) == ("wheel_scale", False)
+
+
+def test_no_drive_is_proposed_beside_unknown():
+    candidate = SimpleNamespace(effect=SKID, fitted=None, evidence=5.0)
+    beside = (Equivalent(SKID.name, "unknown", "another drive"),)
+    assert drives_apart(explained(), [candidate], beside, None, None) == ()

@@ -10,6 +10,8 @@ from odometry.effects.catalogue import EFFECTS
 from odometry.effects.corrected import Added
 from odometry.effects.late_treads import CommandDelay
 from odometry.effects.lateral_skid import LateralSkid
+from odometry.effects.map_fault import DriftingMap
+from odometry.effects.residual import Residual
 from odometry.effects.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.terrain import NewIcrs
 from odometry.effects.time_offset import TimeOffset
@@ -20,6 +22,7 @@ from odometry.gap.equivalent import equivalents
 from odometry.gap.explanation import Explanation
 from odometry.gap.result import Equivalent
 from odometry.gap.simulate import residuals
+from odometry.gap.verdict import Refusal
 from odometry.models.inputs import Inputs
 
 SHIFT = np.array([0.05, 0.05, -0.3, 0.0, 0.0])
@@ -216,3 +219,23 @@ def asked_about(candidates, found, monkeypatch, steps=()):
     explained = replace(explained, steps=steps or explained.steps)
     answer.drives_apart(explained, candidates, found, fitter, GapConfig())
     return asked
+
+
+@pytest.mark.parametrize(
+    ("closed", "reason", "expected"),
+    [
+        (1200.0, "a map that drifts, or wind", ["reference_fault"]),
+        (1300.0, "a map that drifts, or wind", []),
+        (1200.0, "", []),
+    ],
+)
+def test_a_fault_that_a_robot_may_do_as_well_stands_beside_unknown(closed, reason, expected):
+    """It closes 1000 of 1200 or 1300 that a smooth function closes, or was not refused."""
+    map_fault = judged(DriftingMap(runs=1), 900.0, 1000.0)
+    smooth = judged(Residual("heading", (("world_x", 0),)), closed, closed)
+    smooth.fitted.cost = 5000.0 - closed
+    refusals = (Refusal("reference_fault", "drifting_map", reason),) if reason else ()
+    found = Explanation(SimpleNamespace(cost=5000.0), (smooth,), (map_fault,), refusals=refusals)
+    answered = equivalents(found, (), Alone(), GapConfig())
+    assert [one.name for one in answered] == expected
+    assert [one.instead_of for one in answered] == ["unknown"] * len(expected)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.effects.corrected import Added
+from odometry.effects.sensor_mount import HeadingOffset
 from odometry.effects.time_offset import TimeOffset
 from odometry.gap.next_drives import NextDrive
 from odometry.gap.quantities import (
@@ -16,7 +17,7 @@ from odometry.gap.quantities import (
     rounded,
     with_interval,
 )
-from odometry.gap.result import NamedEffect
+from odometry.gap.result import Equivalent, NamedEffect
 from odometry.gap.statistic import Gap
 from odometry.gap.verdict import Refusal
 from odometry.gap.words import sentences
@@ -86,6 +87,13 @@ def test_a_fault_of_the_reference_is_none_of_the_robot(scaled_result):
     )
 
 
+def test_a_turned_reference_may_be_a_robot_that_goes_to_one_side(scaled_result):
+    one = np.array([0.1])
+    turned = NamedEffect(Added(HeadingOffset(), one), one, one, 0.2, 0.1, 50.0)
+    said = sentences(replace(scaled_result, effects=(turned,), equivalent=()))
+    assert said[0].startswith("A sensor is at fault, or a robot that always travels to one side")
+
+
 def test_a_worse_gap_is_said_in_words(scaled_result):
     worse = replace(scaled_result.holdout, after=Gap(9.0, 8.0, 10.0))
     said = sentences(replace(scaled_result, holdout=worse))
@@ -120,6 +128,20 @@ def test_unknown_without_any_name_says_so(none_result):
     first, _, to_do, *_ = sentences(replace(none_result, verdict="unknown", holdout=sure))
     assert first.startswith("Something is missing in icr (unknown): neither an effect")
     assert to_do.startswith("Look at the worst stretches")
+
+
+def test_unknown_that_a_fault_of_the_reference_explains_as_well_says_so(none_result):
+    reason = "a map that drifts, or wind: no data of a run distinguish them"
+    beside = Equivalent("reference_fault", "unknown", "let the robot stand still")
+    result = replace(
+        none_result,
+        verdict="unknown",
+        equivalent=(beside,),
+        refusals=(Refusal("reference_fault", "drifting_map", reason),),
+    )
+    missing, _, to_do, *_ = sentences(result)
+    assert missing == f"Something is missing in icr (unknown): {reason}."
+    assert to_do.endswith("If it is reference_fault: let the robot stand still.")
 
 
 def test_unknown_of_a_gap_that_is_not_surely_above_the_floor_says_so(none_result):
