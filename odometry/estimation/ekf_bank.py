@@ -1,5 +1,6 @@
 """Extended Kalman filters of all modes at once: their models, and steps in array operations."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -104,11 +105,13 @@ def log_density(normalised_squared: FloatArray | float, covariance: FloatArray) 
 
 
 def wrapped(values: FloatArray, angles: tuple[int, ...]) -> FloatArray:
-    """Values (..., n) with the entries `angles` in (-pi, pi]."""
-    if not angles:
+    """Values (..., n) with the entries `angles` in (-pi, pi]; the same where they are."""
+    part = entries(angles)
+    of_angles = values[..., part]
+    if all(-math.pi < angle <= math.pi for angle in of_angles.ravel().tolist()):
         return values
-    values, part = np.array(values), entries(angles)
-    values[..., part] = wrap(values[..., part])
+    values = np.array(values)
+    values[..., part] = wrap(of_angles)
     return values
 
 

@@ -38,7 +38,8 @@ def moments(
     if angles:
         mixed[:, part] = _mean_angles(weights, means[:, part])
     deviations = means - mixed[:, None, :]  # (K, M, n)
-    if angles:
+    if angles and not _are_near(means[:, part]):
+        mixed[:, part] = wrap(mixed[:, part])
         deviations[..., part] = wrap(deviations[..., part])
     within = (weights @ covariances.reshape(modes, size * size)).reshape(-1, size, size)
     between = (deviations * weights[..., None]).swapaxes(1, 2) @ deviations
@@ -46,12 +47,21 @@ def moments(
 
 
 def _mean_angles(weights: FloatArray, angles: FloatArray) -> FloatArray:
-    """Mean directions (K, a) of angles (M, a), taken from the heaviest so that equals stay so."""
+    """Mean directions (K, a) of angles (M, a), taken from the heaviest so that equals stay so.
+
+    Not wrapped: between the angles where these are within half a turn of each other.
+    """
     heaviest = angles[weights.argmax(axis=1)]
     turned = angles - heaviest[:, None, :]  # (K, M, a)
     sine, cosine = ((weights[:, None, :] @ part)[:, 0] for part in (np.sin(turned), np.cos(turned)))
     turn = np.where(np.hypot(sine, cosine) > NO_DIRECTION, np.arctan2(sine, cosine), 0.0)
-    return wrap(heaviest + turn)
+    return np.asarray(heaviest + turn)
+
+
+def _are_near(angles: FloatArray) -> bool:
+    """Whether each column of angles (M, a), all in (-pi, pi], spans less than half a turn."""
+    columns = angles.T.tolist()
+    return all(max(of) - min(of) < math.pi for of in columns)
 
 
 def log_sum(logs: FloatArray) -> FloatArray:
@@ -168,4 +178,6 @@ class ModeBelief:
 
 
 def _are_finite(values: FloatArray) -> bool:
+    if math.isfinite(np.add.reduce(values, axis=None)):
+        return True
     return bool(np.logical_and.reduce(np.isfinite(values), axis=None))
