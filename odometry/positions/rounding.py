@@ -6,6 +6,8 @@ transform. A robot that rests, or drives the same lanes again, agrees by itself:
 how much positions agree more than the mean of their neighbours does, while the robot moves.
 """
 
+import math
+
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
@@ -15,6 +17,7 @@ BANDS = 19
 BAND = (MOST_STEP_M / LEAST_STEP_M) ** (1 / BANDS)  # of steps that are tried together
 BIN = 1 / 16  # of the least step of a band
 FINER = 4  # frequencies than positions resolve
+MOST_BINS = 2**17  # of a transform: steps of 0.02 m are looked for on 160 m, of 0.5 m on 4 km
 AROUND_S = 1.0  # to each side of a position, of its neighbours
 LEAST_MOVED = 2.0  # steps that the neighbours of a position must span
 LEAST_POSES = 40  # of which these are
@@ -27,7 +30,8 @@ def rounding_step_m(stamps_s: FloatArray, positions: FloatArray) -> float:
     """Step of the grid on which positions (M, 2) lie, that of the coarser axis; 0 without one.
 
     Each axis along which the robot moved enough must show one. A grid that was turned after
-    positions were rounded is not found.
+    positions were rounded is not found, nor one that is finer than 1 in 8,000 of the way between
+    the outermost positions.
 
     Examples
     --------
@@ -49,7 +53,7 @@ def _step_of(stamps_s: FloatArray, places_m: FloatArray) -> float | None:
     for least in np.geomspace(LEAST_STEP_M, MOST_STEP_M, BANDS + 1)[:-1]:
         used = spans > LEAST_MOVED * BAND * least
         count = np.count_nonzero(used)
-        if count < LEAST_POSES:
+        if count < LEAST_POSES or _bins(places_m[used], means[used], least) > MOST_BINS:
             continue
         decided = True
         steps, agreement, of_means = _agreements(places_m[used], means[used], least)
@@ -66,12 +70,16 @@ def _agreements(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Steps (F,) of a band, and how well places (M,) and their means agree with each."""
     origin, width = float(min(places_m.min(), means_m.min())), BIN * least_m
-    count = int(np.ptp(np.concatenate([places_m, means_m])) / width) + 1
-    size = 1 << int(np.ceil(np.log2(FINER * count)))
+    size = 1 << math.ceil(math.log2(FINER * _bins(places_m, means_m, least_m)))
     of_places, of_means = (_phasors(of - origin, width, size) for of in (places_m, means_m))
     frequencies = np.fft.rfftfreq(size, width)
     inside = (frequencies > 1 / (BAND * least_m)) & (frequencies <= 1 / least_m)
     return 1 / frequencies[inside], np.abs(of_places[inside]), np.abs(of_means[inside])
+
+
+def _bins(places_m: FloatArray, means_m: FloatArray, least_m: float) -> int:
+    """How many bins of a band reach from the least to the greatest of places and means."""
+    return int(np.ptp(np.concatenate([places_m, means_m])) / (BIN * least_m)) + 1
 
 
 def _phasors(places_m: FloatArray, width_m: float, size: int) -> AnyArray:

@@ -56,3 +56,15 @@ def test_rounding_much_finer_than_noise_is_none(rng):
         pytest.approx(0.05, rel=0.02),
     )
     assert rounding_step_m(STAMPS_S, rounded(LOOPS, 0.05) + noise) == 0.0
+
+
+@pytest.mark.parametrize("far_m", [1e6, 1e12, 1e300])
+def test_positions_far_apart_are_searched_for_coarse_steps_alone(far_m):
+    """One stray position made a transform of as many gigabytes as it is kilometres away."""
+    stray = rounded(LOOPS, 0.1)
+    stray[700] = far_m
+    assert rounding_step_m(STAMPS_S, stray) == 0.0
+
+
+def test_a_step_of_a_long_way_is_found():
+    assert rounding_step_m(STAMPS_S, rounded(100 * LOOPS, 0.4)) == pytest.approx(0.4, rel=0.02)
