@@ -32,6 +32,7 @@ CATALOGUE: dict[str, str] = {
     "tread_right_reversed": "right tread with the wrong sign",
     "treads_or_gyroscope_reversed": "treads and gyroscope turn opposite ways, no poses",
     "treads_unequal": "one side has another scale",
+    "straight_drives": "one side has another scale, or the robot pulls to one side",
     "tread_offset": "one tread reads a constant besides its speed",
     "treads_are_twist": "the columns hold speed and turn rate",
     "treads_equal": "both columns hold one speed",
@@ -184,7 +185,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     ),
     "stuck_encoder": frozenset(
         {"slip", "slip_in_turns", "scale", "pose_jumps", "treads_unrelated", "gyroscope_unrelated"}
-        | {"tread_offset", "treads_unequal"}
+        | {"tread_offset", "treads_unequal", "treads_late", "treads_are_commands"}
     ),
     "gyroscope_clipped": frozenset(
         {"yaw_jumps", "gyroscope_unit", "gyroscope_dead", "gyroscope_bias", "yaw_bent"}

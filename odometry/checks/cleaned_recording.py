@@ -131,7 +131,7 @@ class CleanedRecording:
     def left_out(self, start_s: FloatArray, end_s: FloatArray) -> BoolArray:
         """Whether each time between two stamps (K,) touches what is left out."""
         touched = np.zeros(len(start_s), dtype=np.bool_)
-        for begin_s, stop_s in np.array(self.left_out_s).reshape(-1, 2) + self.stamps_s[0]:
+        for begin_s, stop_s in np.array(self.left_out_s).reshape(-1, 2) + self.run.began_s:
             touched |= (end_s >= begin_s) & (start_s <= stop_s)
         return touched
 

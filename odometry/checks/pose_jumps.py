@@ -44,7 +44,7 @@ class Steps:
 
 
 def jumps(
-    evidence: Evidence, rows: IntArray, travel_m: FloatArray, frozen_s: FloatArray
+    evidence: Evidence, rows: IntArray, travel_m: FloatArray, left_out_s: FloatArray
 ) -> Iterator[Finding]:
     """Steps of the difference between the poses and dead reckoning along their own yaw.
 
@@ -55,8 +55,8 @@ def jumps(
         Of pose.csv: the poses that are checked.
     travel_m : (M,)
         Tread travel at each of them.
-    frozen_s : (S, 2)
-        Run time in which the poses are frozen: jumps are not searched there.
+    left_out_s : (S, 2)
+        Run time in which poses are frozen or a tread was lost: jumps are not searched there.
     """
     if evidence.run.pose is None:
         return
@@ -76,7 +76,7 @@ def jumps(
     if evidence.heading is None:
         step = np.maximum(step - scale * _driven_m(stamps_s, travel_m), 0.0)
     speed = rate_of(travel_m, stamps_s)
-    known = np.isfinite(step) & ~within(stamps_s - evidence.stamps_s[0], _widened(frozen_s))
+    known = np.isfinite(step) & ~within(stamps_s - evidence.run.began_s, _widened(left_out_s))
     if known.sum() < LEAST_POSES:
         return
     moving = known & (speed > 0.2 * evidence.fastest_m_s)

@@ -37,7 +37,7 @@ def poses(evidence: Evidence) -> Iterator[Finding]:
     repeated = list(_repeated(positions, travel_m))
     frozen = list(_frozen(evidence, stamps_s, positions, travel_m))
     yield from repeated or frozen
-    spans_s = [span for finding in frozen for span in finding.spans_s]
+    spans_s = [*evidence.left_out_s, *(span for finding in frozen for span in finding.spans_s)]
     yield from yaw_jumps(evidence, rows)
     yield from _lever_arm(evidence)
     yield from jumps(evidence, rows, travel_m, np.array(spans_s).reshape(-1, 2))

@@ -1,6 +1,7 @@
 """Check a recording before anything is fitted to it."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -30,6 +31,7 @@ from odometry.checks.proportion import proportion
 from odometry.checks.settings import columns, settings
 from odometry.checks.sides import scale_change, sides
 from odometry.checks.stamps import stamps, unreadable_stamps
+from odometry.checks.stuck_encoders import stuck_encoders
 from odometry.checks.timing import timing
 from odometry.checks.tread_motion import tread_motion
 from odometry.checks.treads import equal_treads, treads
@@ -116,8 +118,12 @@ def check_recording(run: Run | str | Path) -> CheckReport:
 
 
 def _found(evidence: Evidence) -> list[Finding]:
-    found = [finding for check in CHECKS for finding in check(evidence)]
-    return [*found, *sensors_disagree(evidence, found)]
+    """All findings; where one tread was lost, nothing else is said of that time."""
+    lost = list(stuck_encoders(evidence))
+    spans = (span for finding in lost for span in finding.spans_s)
+    left = replace(evidence, left_out_s=(*evidence.left_out_s, *spans)) if lost else evidence
+    found = [*lost, *(finding for check in CHECKS for finding in check(left))]
+    return [*found, *sensors_disagree(left, found)]
 
 
 def _skipped(evidence: Evidence) -> Iterator[str]:
@@ -205,8 +211,8 @@ def _parts(
     if not cuts_s:
         return [Evidence(run, left_out_s)]
     first_s, last_s = run.odometry.stamps_s[[0, -1]]
-    begins = [first_s, *(first_s + cut_s + AROUND_S for cut_s in cuts_s)]
-    ends = [*(first_s + cut_s - AROUND_S for cut_s in cuts_s), last_s]
+    begins = [first_s, *(run.began_s + cut_s + AROUND_S for cut_s in cuts_s)]
+    ends = [*(run.began_s + cut_s - AROUND_S for cut_s in cuts_s), last_s]
     long = [(b, e) for b, e in zip(begins, ends, strict=True) if e - b > LEAST_S]
     parts = []
     for begin_s, end_s in sorted(long, key=lambda part: part[0] - part[1])[:MOST_PARTS]:

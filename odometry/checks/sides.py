@@ -9,6 +9,7 @@ from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, disagreement
 from odometry.checks.motion import turns_both_ways
 from odometry.checks.relation import Relation, pieces, relation
+from odometry.checks.straight_drives import straight_drives
 from odometry.checks.undo import TREADS, Mend, changed, in_turn, treads_times
 from odometry.run import Run
 
@@ -31,8 +32,8 @@ def sides(evidence: Evidence) -> Iterator[Finding]:
     yield from twist
     if twist or turn is None:
         return
-    offset = list(_offset(evidence))
-    yield from offset or _unequal(evidence, turn, forward)
+    found = list(_offset(evidence)) or list(_unequal(evidence, turn, forward))
+    yield from found or straight_drives(evidence)
 
 
 def _twist(turn: Relation | None, forward: Relation | None) -> Iterator[Finding]:

@@ -9,74 +9,18 @@ from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.motion import Motion
 from odometry.checks.relation import Relation, relation
-from odometry.windows.spans import constant_spans, within
+from odometry.windows.spans import constant_spans
 
-STUCK_S = 2.0
 BOTH_STUCK_S = 1.0
-OTHER_MOVES = 0.05  # of the ordinary fastest speed, by which the other tread changes meanwhile
 CONTRADICTED = 5.0  # times the usual residual
 SHORT = 0.1  # share of the windows: a span of fewer hardly moves a robust fit to all of them
 SURELY = 0.1  # of the ordinary motion of a window: what a span that goes with the treads is off by
 
 
 def tread_motion(evidence: Evidence) -> Iterator[Finding]:
-    """Counters in place of speeds, stuck encoders, odometry that is lost."""
+    """Counters in place of speeds, odometry that is lost."""
     yield from _counters(evidence)
-    yield from _stuck(evidence)
     yield from _both_still(evidence)
-
-
-def _stuck(evidence: Evidence) -> Iterator[Finding]:
-    """A tread that keeps one value while its motion goes on by gyroscope or poses."""
-    for side, name in enumerate(("v_left", "v_right")):
-        speeds = evidence.speeds_m_s
-        spans = constant_spans(evidence.stamps_s, speeds[:, side], STUCK_S)
-        contradicted = [span for span in spans if _contradicted(evidence, span, side)]
-        if not contradicted:
-            continue
-        lasts_s = sum(end_s - begin_s for begin_s, end_s in contradicted)
-        row = int(np.searchsorted(evidence.stamps_s, contradicted[0][0]))
-        yield Finding(
-            "stuck_encoder",
-            Level.WARNING,
-            f"{name} stays at {speeds[row, side]:.4g} m/s for {lasts_s:.1f} s (from "
-            f"{evidence.run_time_s(contradicted[0][0]):.1f} s of run time) while gyroscope or "
-            "poses say that this tread goes on differently",
-            f"The encoder of the {name.removeprefix('v_')} tread is stuck or was lost",
-            "Cut the recording with --from and --to, or leave it out",
-            tuple((evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in contradicted),
-        )
-
-
-def _contradicted(evidence: Evidence, span: FloatArray, side: int) -> bool:
-    """Whether turns or the way along in a span are far from what the treads say elsewhere.
-
-    Where both treads keep their values, a held command has the same effect: that is no evidence.
-    """
-    begin_s, end_s = span
-    rows = within(evidence.stamps_s, span[None])
-    if rows.sum() * evidence.period_s < 0.5 * (end_s - begin_s):
-        return False  # a gap, or one long hold
-    low, high = np.quantile(evidence.speeds_m_s[rows, 1 - side], (0.1, 0.9))
-    if high - low < OTHER_MOVES * evidence.fastest_m_s:
-        return False  # what changes at the edge of the span alone may be the end of the other's
-    for motion, target, of_all in _targets(evidence):
-        inside = (motion.start_s >= begin_s) & (motion.end_s <= end_s)
-        if _is_as_elsewhere(target, of_all, inside):
-            continue
-        outside = ~within((motion.start_s + motion.end_s) / 2, span[None])
-        if inside.sum() < 2:
-            continue
-        fit = relation(np.where(outside, target, np.nan), motion.left_m, motion.right_m)
-        if fit is None or fit.correlation < 0.8:
-            continue
-        usual = float(np.median(np.abs(fit.residuals[outside & np.isfinite(target)])))
-        size = float(np.quantile(np.abs(target[np.isfinite(target)]), 0.9))
-        treads = np.stack([motion.left_m[inside], motion.right_m[inside]], axis=-1)
-        here = target[inside] - treads @ fit.coefficients
-        if np.nanmedian(np.abs(here)) > max(CONTRADICTED * usual, 0.2 * size):
-            return True
-    return False
 
 
 def _both_still(evidence: Evidence) -> Iterator[Finding]:

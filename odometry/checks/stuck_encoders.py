@@ -1,0 +1,172 @@
+"""One tread that stands, or keeps one value, while its motion goes on."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.checks.evidence import Evidence
+from odometry.checks.finding import Finding, Level
+from odometry.checks.motion import Motion
+from odometry.checks.relation import relation
+from odometry.windows.spans import constant_spans, runs_of
+
+STUCK_S = 2.0  # that a tread keeps its value, and that another sensor contradicts it
+STANDING = 0.01  # of the ordinary fastest speed: noise of a tread that stands
+BOTH = 0.8  # share of such a time in which both treads keep their values: a held command does so
+MOVING = 0.1  # of the ordinary fastest speed, of either tread: at rest all sensors agree
+CONTRADICTED = 5.0  # times the usual residual
+OFF = 0.1  # of the ordinary fastest speed, by which the tread is wrong at least
+CORRELATED = 0.8  # that the motion elsewhere goes with the treads
+LEAST_WINDOWS = 4
+OFTEN = 0.4  # share of the windows of such a time, of a value that the tread passes now and then
+RARELY = 3.0  # times more often within such a time than elsewhere
+PIVOTS = 0.8  # share of the turns that the other tread explains where the robot turns about one
+LEAST_ROWS = 20  # windows
+SHOWN = 3  # times of which begin and end are printed
+
+
+def stuck_encoders(evidence: Evidence) -> Iterator[Finding]:
+    """A tread that keeps one value while gyroscope or poses say that it goes on differently."""
+    for side, name in enumerate(("v_left", "v_right")):
+        if _is_dead(evidence, side):
+            yield _dead(evidence, name)
+            continue
+        spans = [s for span in _kept(evidence, side) for s in _contradicted(evidence, span, side)]
+        if not spans:
+            continue
+        row = int(np.searchsorted(evidence.stamps_s, spans[0][0]))
+        in_run_time = [(evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in spans]
+        times = ", ".join(f"from {b:.1f} to {e:.1f} s" for b, e in in_run_time[:SHOWN])
+        more = " ..." if len(spans) > SHOWN else ""
+        tread = name.removeprefix("v_")
+        yield Finding(
+            "stuck_encoder",
+            Level.WARNING,
+            f"{name} stays at {evidence.speeds_m_s[row, side]:.4g} m/s {times}{more} of run time, "
+            "while gyroscope or poses say that this tread goes on differently",
+            f"The encoder of the {tread} tread is stuck or was lost",
+            "Cut the recording with --from and --to, or leave it out",
+            tuple(in_run_time),
+        )
+
+
+def _is_dead(evidence: Evidence, side: int) -> bool:
+    """Whether a tread stands all the time, and what is measured does not follow the other alone."""
+    speeds = np.abs(evidence.speeds_m_s)
+    if np.quantile(speeds[:, side], 0.99) > STANDING * evidence.fastest_m_s:
+        return False
+    for measured in _measured(evidence):
+        of_other = (measured.motion.right_m, measured.motion.left_m)[side]
+        fit = relation(measured.target, of_other)
+        if fit is not None and fit.measured >= LEAST_ROWS and fit.explained < PIVOTS:
+            return True
+    return False
+
+
+def _dead(evidence: Evidence, name: str) -> Finding:
+    tread, other = (("left", "right"), ("right", "left"))[name == "v_right"]
+    return Finding(
+        "stuck_encoder",
+        Level.WARNING,
+        f"{name} stays near 0 m/s all the time, while v_{other} reaches "
+        f"{evidence.fastest_m_s:.3g} m/s and the robot does not turn about the {tread} tread",
+        f"The encoder of the {tread} tread is stuck or was lost, or its column was not filled",
+        "Record again with both encoders",
+        ((evidence.run_time_s(evidence.stamps_s[0]), evidence.run_time_s(evidence.stamps_s[-1])),),
+    )
+
+
+def _kept(evidence: Evidence, side: int) -> list[FloatArray]:
+    """Times in which one tread stands or keeps one value, and the other does not keep a speed."""
+    stamps_s, speeds = evidence.stamps_s, evidence.speeds_m_s
+    stands = np.abs(speeds[:, side]) < STANDING * evidence.fastest_m_s
+    rows = runs_of(stands)
+    standing = np.stack([stamps_s[rows[:, 0]], stamps_s[rows[:, 1] - 1]], axis=-1)
+    constant = constant_spans(stamps_s, np.where(stands, np.nan, speeds[:, side]), STUCK_S)
+    other_stands = np.abs(speeds[:, 1 - side]) < STANDING * evidence.fastest_m_s
+    both = constant_spans(stamps_s, np.where(other_stands[:, None], np.nan, speeds), 0.0)
+    return [
+        span
+        for span in (*standing[np.ptp(standing, axis=1) >= STUCK_S], *constant)
+        if not _are_both(span, both) and not _is_a_gap(evidence, span)
+    ]
+
+
+def _are_both(span: FloatArray, both: FloatArray) -> bool:
+    overlaps = np.minimum(both[:, 1], span[1]) - np.maximum(both[:, 0], span[0])
+    return bool(np.max(overlaps, initial=0.0) > BOTH * (span[1] - span[0]))
+
+
+def _is_a_gap(evidence: Evidence, span: FloatArray) -> bool:
+    """Whether most of its rows are lost, or one is held for long."""
+    rows = np.diff(np.searchsorted(evidence.stamps_s, span))[0]
+    return bool(rows * evidence.period_s < 0.5 * (span[1] - span[0]))
+
+
+def _contradicted(evidence: Evidence, span: FloatArray, side: int) -> list[tuple[float, float]]:
+    """From when to when what a sensor measures is far from what the treads say; [] where never."""
+    for measured in _measured(evidence):
+        found = measured.contradicts(evidence.fastest_m_s, span, side)
+        if found is not None:
+            return [found]
+    return []
+
+
+@dataclass(frozen=True)
+class _Measured:
+    """Motion of K windows, and what one sensor measured of it (K,)."""
+
+    motion: Motion
+    target: FloatArray
+
+    def contradicts(
+        self, fastest_m_s: float, span: FloatArray, side: int
+    ) -> tuple[float, float] | None:
+        """First and last stamp of the windows in a span that are contradicted for long enough.
+
+        The relation of treads and sensor is that of all windows outside. Windows at rest say
+        nothing: the tread may have stood before it was lost.
+        """
+        m, treads = self.motion, np.stack([self.motion.left_m, self.motion.right_m], axis=-1)
+        way_m = fastest_m_s * m.lasts_s
+        moving = np.isfinite(self.target) & (np.abs(treads).max(axis=1) > MOVING * way_m)
+        inside = moving & (m.start_s >= span[0]) & (m.end_s <= span[1])
+        outside = (m.end_s <= span[0]) | (m.start_s >= span[1])
+        if inside.sum() < LEAST_WINDOWS or (outside & moving).sum() < LEAST_WINDOWS:
+            return None
+        fit = relation(np.where(outside, self.target, np.nan), *treads.T)
+        if fit is None or fit.correlation < CORRELATED:
+            return None
+        off = np.abs(self.target - treads @ fit.coefficients)
+        usual = float(np.median(off[outside & moving]))
+        least = np.maximum(CONTRADICTED * usual, OFF * abs(fit.coefficients[side]) * way_m)
+        odd = moving & (off > least)
+        often = float(np.mean(odd[inside]))
+        if often < RARELY * np.mean(odd[outside & moving]):
+            return None
+        return _ends(m, inside & odd) if often > OFTEN else _lasting(m, inside, odd)
+
+
+def _lasting(m: Motion, inside: BoolArray, odd: BoolArray) -> tuple[float, float] | None:
+    """First and last stamp of unbroken windows that are odd for long, of those inside."""
+    rows = np.flatnonzero(inside)
+    ends = [(rows[first], rows[after - 1]) for first, after in runs_of(odd[rows])]
+    long = [
+        (first, last)
+        for first, last in ends
+        if last - first + 1 >= LEAST_WINDOWS and m.end_s[last] - m.start_s[first] >= STUCK_S
+    ]
+    return _ends(m, np.ravel(long)) if long else None
+
+
+def _ends(m: Motion, rows: BoolArray | IntArray) -> tuple[float, float]:
+    return float(m.start_s[rows][0]), float(m.end_s[rows][-1])
+
+
+def _measured(evidence: Evidence) -> Iterator[_Measured]:
+    """Turns by gyroscope and poses. The way along is none of them: it changes where treads slip."""
+    if evidence.yaw_rate is not None:
+        yield _Measured(evidence.uniform, evidence.uniform.gyroscope_rad)
+    yield _Measured(evidence.turn_motion, evidence.pose_turn_rad)

@@ -1,0 +1,122 @@
+"""A tread that stands, or keeps one value, while the robot drives on."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.checks.recording import check_recording
+from odometry.run import Run
+from odometry.run_span import Span, cut_run
+from tests.odometry.checks.faulty import put
+from tests.odometry.checks.test_other_robots import drive, winding, without_gyroscope
+
+SENSORS = {
+    "gyroscope and poses": lambda run: run,
+    "gyroscope": lambda run: replace(run, pose=None),
+    "poses": without_gyroscope,
+}
+
+
+def held(run, name, begin_s, end_s, value=None):
+    """One tread as at the beginning of a time, or at a value, until the end of it."""
+    at_s = run.odometry.stamps_s - run.odometry.stamps_s[0]
+    rows = (at_s >= begin_s) & (at_s < end_s)
+    value = run.odometry[name][np.argmax(rows)] if value is None else value
+    return put(run, "odometry", **{name: np.where(rows, value, run.odometry[name])})
+
+
+def stuck(run):
+    return [finding for finding in check_recording(run).findings if finding.name == "stuck_encoder"]
+
+
+def straight_between_stands():
+    """Half of the time at rest; turns at first, then straight on alone."""
+    at_s = 0.05 * np.arange(4000)
+    moves = (at_s % 40 > 20).astype(float)
+    return drive(1.2 * moves, 0.4 * np.sin(at_s) * moves * (at_s < 80))
+
+
+@pytest.mark.parametrize("sensors", SENSORS)
+@pytest.mark.parametrize(("begin_s", "end_s"), [(100, 160), (86, 196), (103, 113)])
+@pytest.mark.parametrize("name", ["v_left", "v_right"])
+def test_a_tread_that_reads_zero_on_a_straight_drive_is_lost(name, begin_s, end_s, sensors):
+    run = held(straight_between_stands(), name, begin_s, end_s, 0.0)
+    (found,) = stuck(SENSORS[sensors](run))
+    assert found.seen.startswith(f"{name} stays at 0 m/s from ")
+    begins_s, ends_s = np.ravel(found.spans_s)
+    at_s = run.odometry.stamps_s
+    moving = at_s[(at_s >= begin_s) & (at_s < end_s) & (run.odometry[f"v_{other(name)}"] > 0.5)]
+    assert begins_s == pytest.approx(moving[0], abs=1.0)
+    assert ends_s == pytest.approx(moving[-1], abs=1.0)
+    assert check_recording(SENSORS[sensors](run)).findings[0] == found
+
+
+def other(name):
+    return {"v_left": "right", "v_right": "left"}[name]
+
+
+@pytest.mark.parametrize("sensors", SENSORS)
+@pytest.mark.parametrize("value", [None, 0.0, 0.7])
+def test_a_tread_that_keeps_a_value_for_ten_seconds_is_lost(value, sensors):
+    (found,) = stuck(SENSORS[sensors](held(winding(), "v_right", 50, 60, value)))
+    assert found.seen.startswith("v_right")
+
+
+@pytest.mark.parametrize("sensors", SENSORS)
+@pytest.mark.parametrize("name", ["v_left", "v_right"])
+def test_a_tread_that_stands_all_the_time_is_lost(name, sensors):
+    run = SENSORS[sensors](held(winding(), name, 0, 1e9, 0.0))
+    found = check_recording(run).findings
+    assert [finding.name for finding in found] == ["stuck_encoder"]
+    assert "all the time" in found[0].seen
+
+
+def test_noise_of_a_tread_that_reads_zero_hides_nothing():
+    run = held(winding(), "v_left", 40, 70, 0.0)
+    noise = 0.002 * np.random.default_rng(0).standard_normal(len(run.odometry))
+    assert stuck(put(run, "odometry", v_left=run.odometry["v_left"] + noise))
+
+
+def about_one_tread():
+    """Turns about the left tread alone, of changing speed."""
+    speed = 0.6 + 0.2 * np.sin(0.05 * np.arange(2400) / 5)
+    return drive(speed, speed / (0.9 / 2))
+
+
+@pytest.mark.parametrize("sensors", SENSORS)
+def test_turns_about_one_tread_are_no_fault(sensors):
+    assert stuck(SENSORS[sensors](held(about_one_tread(), "v_left", 0, 1e9, 0.0))) == []
+
+
+@pytest.mark.parametrize("sensors", SENSORS)
+def test_times_at_rest_are_no_fault(sensors):
+    assert stuck(SENSORS[sensors](straight_between_stands())) == []
+
+
+def test_commands_that_are_held_are_no_stuck_encoder():
+    """Both columns keep their values together, whatever the robot does."""
+    at_s = 0.05 * np.arange(2400)
+    step = at_s // 6
+    run = drive(1 + 0.3 * np.sin(step), 0.5 * np.sin(3 * step))
+    left, right = (
+        np.array([run.odometry[name][step == one].mean() for one in step])
+        for name in ("v_left", "v_right")
+    )
+    assert stuck(put(run, "odometry", v_left=left, v_right=right)) == []
+
+
+def test_a_span_that_is_cut_out_says_the_time_of_the_whole():
+    run = cut_run(held(straight_between_stands(), "v_left", 100, 118, 0.0), Span(30.0, 190.0))
+    (found,) = check_recording(run).findings
+    assert np.ravel(found.spans_s) == pytest.approx([101, 118], abs=1.5)
+
+
+@pytest.mark.parametrize("side", ["v_left", "v_right"])
+@pytest.mark.parametrize("poses", [True, False])
+def test_eighty_seconds_of_a_real_drive(shared_data, side, poses):
+    run = Run.read(shared_data / "motion" / "warthog_grass_20240808_1556")
+    run = held(run if poses else replace(run, pose=None), side, 60, 140, 0.0)
+    found = check_recording(run).findings
+    assert [finding.name for finding in found if finding.level == "warning"] == ["stuck_encoder"]
+    assert found[0].spans_s[0][0] == pytest.approx(60.5, abs=1.0)
