@@ -121,7 +121,7 @@ def test_pages_are_put_together_in_one_file_which_escapes():
     assert found == {"odometry/report/html.py"}
 
 
-def test_who_writes_lines_is_known():
+def test_the_program_that_writes_lines_is_known():
     found = {file for file, _, name, node in calls() if name == "open" and modes_of(node)}
     assert found == set(LINES)
     assert {file for file, called, _, _ in calls() if called == "csv.writer"} == {

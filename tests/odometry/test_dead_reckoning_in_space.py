@@ -79,7 +79,7 @@ def test_straight_up_a_slope():
 
 
 @pytest.mark.parametrize("missing", [None, np.full(30, np.nan), np.zeros(30)])
-def test_level_or_unknown_ground_is_the_plane(missing, rng):
+def test_level_or_unknown_terrain_is_the_plane(missing, rng):
     stamps_s, twists = np.cumsum(rng.uniform(0.01, 1, 30)), rng.normal(size=(30, 3))
     plane = dead_reckon(stamps_s, twists, np.array([1.0, 2, 3]))
     ours = dead_reckon_in_space(stamps_s, twists, missing, missing, np.array([1.0, 2, 7, 3]))

@@ -31,7 +31,7 @@ def mean_of(merged):
     return np.array([merged.parameters.values[name] for name in NAMES])
 
 
-def test_one_run_stays_as_it_is_and_tells_no_spread(rng):
+def test_one_run_stays_as_it_is_and_determines_no_spread(rng):
     tables = drawn(rng, 1)
     merged = merged_terrain(tables)
     assert merged.parameters is tables["run_0"]

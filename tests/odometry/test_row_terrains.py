@@ -7,7 +7,7 @@ ROWS = "t,v_left,v_right,terrain\n0,1,1,\n1,1,1,ice\n2,3,3,ice\n3,0,0,unknown\n4
 
 
 @pytest.mark.parametrize(("given", "expected"), [(None, "ground"), ("sand", "sand")])
-def test_every_ground_gets_a_name(make_run, given, expected):
+def test_every_terrain_gets_a_name(make_run, given, expected):
     run = with_named_terrain(Run.read(make_run(odometry=ROWS)), given)
     assert run.terrain == expected
     assert row_terrains(run).tolist() == [expected, "ice", "ice", expected, "ice"]

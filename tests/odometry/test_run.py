@@ -68,7 +68,7 @@ def test_a_run_of_odometry_alone(make_run):
     assert all(frame.pose is None and frame.image is None for frame in frames)
 
 
-def test_frames_can_be_asked_for_twice(make_run):
+def test_frames_can_be_requested_twice(make_run):
     run = Run.read(make_run(odometry=ODOMETRY, pose=POSE))
     assert [f.stamp_s for f in run.frames()] == [f.stamp_s for f in run.frames()]
 

@@ -26,7 +26,7 @@ def test_no_folder_is_there_twice_however_it_is_written(make_run):
         check_no_run_twice([run, again])
 
 
-def test_robots_have_short_names_where_these_tell_them_apart():
+def test_robots_have_short_names_where_these_distinguish_them():
     assert list(robot_labels([Robot(0.5, "A (new)"), Robot(0.6, "B (new)")]).values()) == ["A", "B"]
     alike = [Robot(0.5, "A (old)"), Robot(0.5, "A (new)"), Robot(0.5)]
     assert list(robot_labels(alike).values()) == ["A (old)", "A (new)", "robot 0.5 m wide"]

@@ -77,7 +77,7 @@ def test_axes_are_turned_into_those_of_the_robot(make_run, rng, angles):
     np.testing.assert_allclose(run.yaw_rate.yaw_rate_rad_s, robot[:, 2], rtol=0, atol=1e-12)
 
 
-def test_one_axis_of_a_tilted_sensor_tells_nothing(make_run):
+def test_one_axis_of_a_tilted_sensor_determines_nothing(make_run):
     """Upside down its sign is wrong: the gyroscope of odometry.csv is taken."""
     tilted = f"{ROBOT}[sensors]\nimu = [3.14159, 0, 0]\n"
     imu = "t,gyro_z\n0,-0.1\n1,-0.2\n"

@@ -228,7 +228,7 @@ def test_a_bag_read_as_if_live_gives_what_its_import_gives(tmp_path):
     np.testing.assert_allclose(means, expected.replay.means[:count], atol=1e-6)
 
 
-def test_what_is_asked_for_in_vain_is_an_error(classifier):
+def test_what_is_requested_in_vain_is_an_error(classifier):
     with pytest.raises(ConfigError, match="no camera"):
         LiveOdometry(Robot(0.5), model=classifier)
     with pytest.raises(ParameterError, match="'unknown' is reserved"):

@@ -91,7 +91,7 @@ def test_the_search_ends_at_its_limits():
 
 
 @pytest.mark.parametrize("speed", [0.03, 0.5, 5.0])
-def test_the_same_ground_is_looked_at_however_slowly_the_robot_drives(speed):
+def test_the_same_terrain_is_looked_at_however_slowly_the_robot_drives(speed):
     region = predict_region(ROBOT, AHEAD, np.array([speed, 0.0, 0.0]), speed, RegionConfig())
     usual = predict_region(ROBOT, AHEAD, np.array([1.0, 0.0, 0.0]), 1.0, RegionConfig())
     assert region.distance_ahead_m == pytest.approx(usual.distance_ahead_m, abs=0.01)

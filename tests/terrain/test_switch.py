@@ -34,7 +34,7 @@ def test_the_change_is_half_way_between_the_last_old_and_the_first_new_label(rul
 
 
 @BOTH_RULES
-def test_unknown_ground_between_two_terrains_is_parted_in_the_middle(rule):
+def test_unknown_terrain_between_two_terrains_is_parted_in_the_middle(rule):
     """Grass to 1.75 m, unknown at 2.0 m, gravel from 2.25 m on."""
     labels = ["grass"] * 4 + ["unknown"] + ["gravel"] * 6
     ((x, name),) = changes(drive(start(**rule), labels)[0])
@@ -143,7 +143,7 @@ def test_on_request_a_label_counts_when_it_is_seen():
     assert event.waited_m == pytest.approx(0.25)
 
 
-def test_ground_without_a_label_for_long_is_no_longer_known():
+def test_terrain_without_a_label_for_long_is_no_longer_known():
     switch, last_m = start(), 0.0
     for x in np.arange(0.0, 40.0, 0.25):
         switch = switch.add_label(seen_at(x, "grass" if x < 5 else "unknown"))
@@ -187,7 +187,7 @@ def test_a_terrain_that_no_label_names_has_what_is_not_reached():
     assert switch.shares == {"grass": 1.0}
 
 
-def test_ground_that_labels_contradict_is_no_longer_known():
+def test_terrain_that_labels_contradict_is_no_longer_known():
     switch = start()
     labels = np.random.default_rng(1).choice(["grass", "gravel", "sand"], 80)
     known = []
@@ -198,7 +198,7 @@ def test_ground_that_labels_contradict_is_no_longer_known():
     assert np.mean(known) < 0.3
 
 
-def test_ground_with_right_labels_stays_known():
+def test_terrain_with_right_labels_stays_known():
     switch = start()
     for x in 0.25 * np.arange(80):
         switch = switch.add_label(seen_at(x, "grass" if x < 9 else "gravel"))

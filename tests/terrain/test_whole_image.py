@@ -94,7 +94,7 @@ def test_a_camera_that_looks_up_or_back_sees_no_cell():
         assert visible_cells(camera, 0.4, 1.0) == []
 
 
-def test_the_classes_of_the_cells_are_those_of_the_ground(world, camera, classifier):
+def test_the_classes_of_the_cells_are_those_of_the_terrain(world, camera, classifier):
     """The edge of boards lies across the image; cells that it cuts may be called anything."""
     edge_m = 0.6
     shift = [world.edges_m[0] - edge_m, 0.0]

@@ -59,7 +59,7 @@ def test_slip_factors_scale_the_treads():
     assert one.states[-1, 0] == pytest.approx(4.5)
 
 
-def test_frames_and_run_tell_the_same():
+def test_frames_and_run_give_the_same():
     rng = np.random.default_rng(2)
     one = drive(weave(10.0, rng), ICRS, NOISE, rng)
     told = list(run_of(one, gyroscope=True).frames())

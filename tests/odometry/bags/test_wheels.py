@@ -239,7 +239,7 @@ def test_commands_are_never_taken_as_measured_speeds(tmp_path):
     ("unsaid", "words"),
     [("robot.wheel_radius", "--wheel-radius METRES"), ("robot.track_width", "--track-width")],
 )
-def test_a_size_that_is_not_known_is_asked_for(unsaid, words, tmp_path):
+def test_a_size_that_is_not_known_is_requested(unsaid, words, tmp_path):
     def message(bag, t, left, right):
         bag.joints(t, ["left_wheel", "right_wheel"], np.zeros(2), [left, right])
 

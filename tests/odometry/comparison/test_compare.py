@@ -74,7 +74,7 @@ def test_identified_models_find_the_truth_and_the_ideal_one_does_not(compared, b
     assert ideal.values == {"track_width": bench.track_width}
 
 
-def test_every_horizon_is_evaluated_and_only_those_asked_for_are_compared(compared):
+def test_every_horizon_is_evaluated_and_only_those_requested_are_compared(compared):
     horizons = {evaluation.horizon_m for evaluation in compared.evaluations}
     assert horizons == {0.5, 1.0, 2.0, 5.0, 10.0}
     assert {each.place.horizon_m for each in compared.differences} == {2.0}
@@ -100,7 +100,7 @@ def test_fitness_is_that_of_a_plain_loop_over_the_whole_run(compared, grass, ben
     assert len(compared.fitness) == 9
 
 
-def test_fitness_changes_parameters_with_the_ground(tmp_path, bench, quick):
+def test_fitness_changes_parameters_with_the_terrain(tmp_path, bench, quick):
     """Given widths of 0.6 m on grass, 1 m on ice, in turn along one run."""
     speeds = bench.varied(np.random.default_rng(4), 20.0)
     names = (["grass"] * 70 + ["ice"] * 60) * 4
@@ -136,7 +136,7 @@ def test_the_only_run_of_a_terrain_is_evaluated_by_halves(grass, quick):
     assert len(comparison.fitness) == 1
 
 
-def test_a_fit_to_all_runs_tells_where_to_search_and_nothing_else(grass, quick):
+def test_a_fit_to_all_runs_determines_where_to_search_and_nothing_else(grass, quick):
     """The models of each split are those that a search from far finds."""
     near = compare(grass, ["icr"], config=replace(quick, solver=SolverConfig(starts=4)))
     for models in near.split_models:
@@ -158,7 +158,7 @@ def test_models_are_identified_on_training_runs_and_evaluated_on_the_others(gras
     assert table.values == models.predictors["icr_symmetric"].values
 
 
-def test_grounds_within_one_run_have_models_of_their_own(tmp_path, bench, quick):
+def test_terrains_within_one_run_have_models_of_their_own(tmp_path, bench, quick):
     """Half of each run on another ground, where the robot turns less."""
     runs = []
     for seed in range(2):

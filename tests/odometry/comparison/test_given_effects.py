@@ -150,7 +150,7 @@ def test_lagging_treads_are_followed_over_the_whole_run(bench, quick, tmp_path):
     assert of_model(comparison, "plain")[0].max() > 0.2
 
 
-def test_sensors_that_differ_by_ground_have_no_fitness(bench, quick, tmp_path):
+def test_sensors_that_differ_by_terrain_have_no_fitness(bench, quick, tmp_path):
     speeds = bench.varied(np.random.default_rng(4), 20.0)
     names = ["grass"] * 200 + ["ice"] * 200
     run = Run.read(bench.write(tmp_path / "r", speeds, terrain_column=names))

@@ -144,7 +144,7 @@ def test_a_part_holds_its_rows_and_the_poses_within_them(make_run):
     assert run.pose.stamps_s.tolist() == [-1, 0, 1, 2.5, 4, 9]  # untouched
 
 
-def test_halves_share_the_wheel_travel_on_their_ground(make_run):
+def test_halves_share_the_wheel_travel_on_their_terrain(make_run):
     """On ice 1 m, then 3 m: half is reached in the row of 3 m/s. Sand does not count."""
     run = with_named_terrain(Run.read(make_run(odometry=ROWS, pose=POSES)), "sand")
     first, second = halves(parts_by_terrain(run, "a")["ice"])

@@ -23,7 +23,7 @@ def compared(grass, quick):
     return compare(grass, MODELS, config=replace(quick, training_horizons_m=(1.0, 900.0)))
 
 
-def test_the_training_horizon_of_the_comparison_takes_part_without_being_asked_for(compared):
+def test_the_training_horizon_of_the_comparison_takes_part_without_being_requested(compared):
     assert compared.config.training.horizon_m == 2.0
     here = [each for each in compared.by_training_horizon if each.training_m == 2.0]
     assert {each.summary.place.horizon_m for each in here} == set(compared.config.evaluated_m)

@@ -60,7 +60,7 @@ def test_a_run_whose_sensor_is_as_it_should_be_is_itself(make_run):
     assert robot_run(replace(run, pose=None), [ARM]).pose is None
 
 
-def test_grounds_share_one_sensor():
+def test_terrains_share_one_sensor():
     assert on_measurement([SKID, ARM, LATE]) == (ARM, LATE)
     assert shared_measurement([[SKID, ARM], [ARM]]) == (ARM,)
     assert shared_measurement([[SKID], []]) == ()

@@ -38,7 +38,7 @@ def test_it_is_added_to_what_another_effect_has_changed(bench, rng):
     np.testing.assert_allclose(both, sliding + skidding, atol=1e-12)
 
 
-def test_level_ground_changes_nothing_and_tells_nothing(bench, rng):
+def test_level_ground_changes_nothing_and_determines_nothing(bench, rng):
     level = Inputs(bench.drive(rng).tread_speeds_m_s)
     plain = bench.base.model.twist(bench.values, level)
     found = corrected_twist(bench.base, [Added(SlopeByIcr(), VALUES)], level)

@@ -133,7 +133,7 @@ def test_a_bias_that_is_estimated_already_is_no_change():
     assert sigma < 0.01
 
 
-def test_poses_that_leave_gyroscope_and_treads_tell_no_bias():
+def test_poses_that_leave_gyroscope_and_treads_determine_no_bias():
     biases = tuple(0.04 + 0.01 * (-1) ** k for k in range(30))
     watch = BiasWatch(biases_rad_s=biases, by_treads_rad_s=(0.0,) * 30, since=30)
     assert changed_bias(watch, 0.0) is None

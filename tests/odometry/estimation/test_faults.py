@@ -163,7 +163,7 @@ def test_a_gyroscope_that_holds_a_value_counts_as_silent(driven, poses, value):
     assert distance(estimates[-1], driven) < 0.1
 
 
-def test_a_held_gyroscope_owes_its_turn_even_where_no_pose_tells():
+def test_a_held_gyroscope_owes_its_turn_even_where_no_pose_shows_it():
     """The turn until it is found is made up for, so that the heading is that of the treads."""
     driven = drive(50.0, speeds_of=lambda t: weaving(t) if t < 40 else (0.5, 0.9))
     given = rates_and_speeds(driven)

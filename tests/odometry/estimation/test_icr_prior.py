@@ -119,7 +119,7 @@ def test_the_uncertainty_of_a_traction_mode_is_that_of_its_width():
     )
 
 
-def test_half_a_traction_mode_tells_no_width():
+def test_half_a_traction_mode_determines_no_width():
     values = {"k": 0.9, "m": 0.6, "track_width": 0.4}
     belief = prior_of(TerrainParameters("traction_mode", values, ("k",), np.array([[4e-4]])))
     np.testing.assert_allclose(icr_block(belief), RESET_M**2 * np.eye(3))

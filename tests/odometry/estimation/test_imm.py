@@ -63,7 +63,7 @@ def test_one_mode_is_the_plain_filter_to_the_last_bit():
         assert belief.log_probabilities[0] == 0
 
 
-def test_equal_modes_are_the_plain_filter_and_tell_nothing_apart():
+def test_equal_modes_are_the_plain_filter_and_distinguish_nothing():
     model = pose_model(0.8, 0.7)
     bank = EkfBank(pose_model(np.full(3, 0.8), np.full(3, 0.7)), 3)
     imm = Imm(bank, ModeChain(np.full(3, 2.0)).transition, state_angles=(2,))

@@ -28,7 +28,7 @@ def test_slip_grows_with_the_way_that_the_treads_make(speeds):
     assert found[YAW] == pytest.approx((CONFIG.yaw_noise**2 + 0.4 * SLIP / WIDTH_M**2) * 0.1)
 
 
-def test_who_stands_does_not_slip_and_a_scale_is_of_slip_alone():
+def test_a_robot_that_stands_does_not_slip_and_a_scale_is_of_slip_alone():
     still = added((0.0, 0.0), slip_scale=9.0)
     assert still[X] == pytest.approx(CONFIG.position_noise**2 * 0.1)
     assert added(slip_scale=9.0)[X] - still[X] == pytest.approx(9.0 * 0.4 * SLIP * 0.1)

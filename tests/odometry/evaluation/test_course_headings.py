@@ -28,7 +28,7 @@ def errors(trajectory, reference):
 
 
 @given(st.floats(-3, 3), st.floats(-50, 50), st.floats(-0.3, 0.3))
-def test_a_turned_and_moved_copy_tells_its_heading(turn, aside, curvature):
+def test_a_turned_and_moved_copy_gives_its_heading(turn, aside, curvature):
     truth = curve(curvature)
     ours = truth.moved(np.array([aside, -aside, turn]))
     rows = np.array([50, 120, 250])
@@ -63,7 +63,7 @@ def test_noise_of_positions_adds_no_more_than_itself(rng):
     assert 0.8 < found.translation_per_m.mean() * 5 / (0.01 * np.sqrt(np.pi)) < 1.2
 
 
-def test_a_robot_that_turns_on_the_spot_tells_no_course():
+def test_a_robot_that_turns_on_the_spot_determines_no_course():
     spin = Trajectory(TRAVEL_M, np.column_stack([0 * TRAVEL_M, 0 * TRAVEL_M, TRAVEL_M]))
     assert len(errors(spin, without_yaw(spin)).start_s) == 0
 

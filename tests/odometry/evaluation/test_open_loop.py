@@ -27,7 +27,7 @@ def test_it_starts_at_the_first_measured_pose_and_meets_every_reference_stamp(ma
     np.testing.assert_array_equal(ours.positions_m[:, 2], 0)
 
 
-def test_on_tilted_ground_the_attitude_is_interpolated(make_run):
+def test_on_tilted_terrain_the_attitude_is_interpolated(make_run):
     run = read(make_run, "t,x,y,yaw,z\n0,1,2,0.3,4\n3,1,1,1,1\n", odometry=TILTED)
     stamps_s, rows = np.array([0.0, 1, 2, 3, 4]), [0, 1, 2, 2, 3]
     roll = np.array([0.1, 0.2, 0.2 - 0.1 / 3, 0.2 - 0.2 / 3, 0.1])

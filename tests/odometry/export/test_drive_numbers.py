@@ -112,7 +112,7 @@ def test_a_model_without_constant_icrs_is_refused():
         drive_numbers("sand", table, TRACK_M)
 
 
-def test_a_missing_track_width_is_asked_for():
+def test_a_missing_track_width_is_requested():
     table = TerrainParameters("icr", {"y_left": 0.7, "y_right": -0.5, "x_icr": 0.1})
     with pytest.raises(ParameterError, match="--track-width"):
         drive_numbers("sand", table, None)

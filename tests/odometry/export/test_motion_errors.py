@@ -9,7 +9,7 @@ from odometry.windows.window_errors import WindowErrors
 PACE = Pace(wheel_speed_m_s=0.8, yaw_rate_rad_s=0.3)
 
 
-def test_means_and_windows_of_normal_errors_tell_the_same(rng):
+def test_means_and_windows_of_normal_errors_give_the_same(rng):
     along, across, yaw = rng.normal(size=(3, 40_000)) * np.array([[0.03], [0.03], [0.02]])
     windows = WindowErrors(np.hypot(along, across), np.abs(yaw))
     of_windows = MotionErrors.of_windows(windows, 5.0, "")

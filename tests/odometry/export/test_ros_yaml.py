@@ -99,7 +99,7 @@ def test_any_name_of_a_terrain_stays_a_key(sand, name):
     assert list(keys) == ["".join(c if c.isprintable() else "?" for c in name)]
 
 
-def test_a_result_tells_its_pace_and_errors(tmp_path):
+def test_a_result_gives_its_pace_and_errors(tmp_path):
     source = read_export_source(write_results(tmp_path / "results"))
     ros_file.write(source, tmp_path)
     text = (tmp_path / "ros.yaml").read_text()

@@ -27,7 +27,7 @@ def limits():
     return Limits.of(by_length, np.array([0.2, 0.5]), 2.0)
 
 
-def test_as_many_known_ones_are_refused_as_asked_for(limits):
+def test_as_many_known_ones_are_refused_as_requested(limits):
     rng = np.random.default_rng(1)
     for name, windows in COUNTS.items():
         given = offsets_of(rng, 4000, windows)

@@ -141,7 +141,7 @@ def test_the_model_is_read_back_as_it_was_found(result, request, tmp_path):
         np.testing.assert_array_equal(one.values, other.values)
 
 
-def test_grounds_are_tables_of_their_own(none_result, make_scene, tmp_path):
+def test_terrains_are_tables_of_their_own(none_result, make_scene, tmp_path):
     """The shifts of a label are of all five parameters; other effects stand on each ground."""
 
     def terrain(t):

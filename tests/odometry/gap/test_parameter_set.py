@@ -46,13 +46,13 @@ def test_an_unknown_name_is_refused_with_those_there_are():
         believed_model("unicycle", [])
 
 
-def test_a_set_of_one_ground_is_taken_as_it_is(runs, set_of):
+def test_a_set_of_one_terrain_is_taken_as_it_is(runs, set_of):
     model, given = believed_model(set_of(grass=ICRS), runs)
     assert model.name == "icr"
     assert {"y_left": 0.45, "y_right": -0.42, "x_icr": 0.02}.items() <= given.items()
 
 
-def test_of_several_grounds_the_asked_one_or_that_of_the_runs(runs, set_of):
+def test_of_several_terrains_the_asked_one_or_that_of_the_runs(runs, set_of):
     file = set_of(grass=ICRS, sand=ICRS.replace("0.45", "0.6"))
     assert believed_model(file, runs, "sand")[1]["y_left"] == 0.6
     assert believed_model(file, [runs[0], on(runs[1], "sand")])[1]["y_left"] == 0.6
@@ -60,7 +60,7 @@ def test_of_several_grounds_the_asked_one_or_that_of_the_runs(runs, set_of):
 
 
 @pytest.mark.parametrize("terrain", [None, "stone"])
-def test_a_ground_that_is_not_there_is_refused_with_those_there_are(runs, set_of, terrain):
+def test_a_terrain_that_is_not_there_is_refused_with_those_there_are(runs, set_of, terrain):
     with pytest.raises(GapError, match=r"set\.toml: no terrain.*grass, sand.*--terrain"):
         believed_model(set_of(grass=ICRS, sand=ICRS), runs, terrain)
 

@@ -41,7 +41,7 @@ def named(fit):
     return {name for found in fit.undetermined for name in found.direction}
 
 
-def test_a_straight_run_tells_the_slip_but_no_icr(excited_by):
+def test_a_straight_run_determines_the_slip_but_no_icr(excited_by):
     """Nothing turns: neither tread ICR shows, nor the one that both share."""
     found = excited_by(lambda _: (0.5, 0.5))
     assert named(found) == {"y_left", "y_right", "x_icr"}

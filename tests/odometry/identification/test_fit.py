@@ -41,7 +41,7 @@ def test_without_noise_the_truth_comes_back(fitted, synthetic):
     np.testing.assert_allclose(found.residuals, 0, atol=1e-9)
 
 
-def test_a_fit_tells_its_numbers_consistently(fitted, winding, synthetic, stated):
+def test_a_fit_gives_its_numbers_consistently(fitted, winding, synthetic, stated):
     run = synthetic.noisy(winding, np.random.default_rng(1))
     found = fitted(run=run, config=stated, starts=3)
     assert found.packed.tolist() == list(found.values.values())
@@ -192,7 +192,7 @@ def test_a_fixed_sign_is_not_tried(fitted, inertial, synthetic):
     assert found.values == pytest.approx(synthetic.inertia, rel=1e-6)
 
 
-def test_the_force_of_inertia_does_not_tell_the_mass(fitted, inertial, synthetic):
+def test_the_force_of_inertia_does_not_determine_the_mass(fitted, inertial, synthetic):
     """Mass times the coefficients is all that shows: a message says so to whoever releases it."""
     run = synthetic.noisy(inertial, np.random.default_rng(1))
     fixed = {name: synthetic.inertia[name] for name in ("x_cm", "y_cm", "track_width", "h")}

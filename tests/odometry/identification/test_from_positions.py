@@ -103,14 +103,14 @@ def test_the_noise_is_found_and_more_of_it_needs_longer_stretches(noise_m):
     assert "[sensors] pose is not stated" in words[1]
 
 
-def test_straight_drives_tell_no_widths():
+def test_straight_drives_determine_no_widths():
     found = identify([emptied(drive(8, most_turn=0.0, noise_m=0.02))], "icr_symmetric")
     with pytest.raises(IdentificationError, match="b_hat"):
         found.require_determined()
 
 
 @pytest.mark.parametrize("gyroscope", [False, True])
-def test_a_circle_does_not_tell_where_it_points(gyroscope):
+def test_a_circle_does_not_determine_where_it_points(gyroscope):
     """At one curvature a robot that drifts aside looks like one that points elsewhere."""
     run = emptied(drive(8, circle=True, noise_m=0.02, gyroscope=gyroscope))
     found = identify([run], "icr", solver_config=ONE_START)

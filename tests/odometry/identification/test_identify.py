@@ -125,14 +125,14 @@ def test_each_terrain_has_its_own_fit(gravel, ice, synthetic):
     found.require_determined()
 
 
-def test_runs_of_one_ground_are_fitted_together(make, ice):
+def test_runs_of_one_terrain_are_fitted_together(make, ice):
     other = make("other", terrain="ice", seed=1)
     found = identify([ice, other], "icr", solver_config=ONE_START).terrains["ice"]
     assert set(found.fit.windows.run) == {"ice_run", "other"}
     assert found.fit.values == pytest.approx(ICE, abs=1e-9)
 
 
-def test_a_run_over_two_grounds_is_parted(make):
+def test_a_run_over_two_terrains_is_parted(make):
     names = ["ice"] * 200 + ["sand"] * 200
     run = make("both", terrain_column=names)
     found = identify([run], "icr", solver_config=ONE_START)
@@ -142,7 +142,7 @@ def test_a_run_over_two_grounds_is_parted(make):
 
 
 @pytest.mark.parametrize(("terrain", "expected"), [(None, "ground"), ("mud", "mud")])
-def test_a_ground_without_name(make, ice, terrain, expected):
+def test_a_terrain_without_name(make, ice, terrain, expected):
     """The given name is for the runs that have none."""
     nameless = make("nameless", seed=1)
     found = identify([nameless, ice], "icr", terrain=terrain, solver_config=ONE_START)

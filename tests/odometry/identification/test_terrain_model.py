@@ -115,7 +115,7 @@ def test_what_the_set_knows_of_the_robot_is_held(winding):
     assert "track_width" in freed.terrains["gravel"].fit.names
 
 
-def test_each_ground_has_the_model_of_its_table(synthetic, tmp_path):
+def test_each_terrain_has_the_model_of_its_table(synthetic, tmp_path):
     odometry = synthetic.commands(np.random.default_rng(5), 1200)
     names = ["sand"] * 600 + ["ice"] * 600
     folder = synthetic.write(
@@ -139,7 +139,7 @@ def test_each_ground_has_the_model_of_its_table(synthetic, tmp_path):
     }
 
 
-def test_the_only_table_of_a_set_is_for_every_ground():
+def test_the_only_table_of_a_set_is_for_every_terrain():
     asked = model_on_terrain("anywhere", set_of(SCALE), Robot(0.5))
     assert effects_of(asked.model)[0].by_name == SCALE["parameters"]
     tables = {"a": TerrainParameters("icr", OLD), "b": TerrainParameters("icr", OLD)}

@@ -32,7 +32,7 @@ def test_level_ground_has_no_tilt():
     assert Inputs(np.zeros((3, 2))).tilt is None
 
 
-def test_a_tilt_once_asked_for_is_not_carried_over(tilted):
+def test_a_tilt_once_requested_is_not_carried_over(tilted):
     """To rows of the stack, to another attitude, or to stacks end to end."""
     assert tilted.tilt is not None
     np.testing.assert_array_equal(tilted.rows(slice(1, 3)).tilt, np.array(tilted.tilt)[:, 1:3])

@@ -81,7 +81,7 @@ def test_a_certain_sight_pulls_all_modes_within_its_time():
     np.testing.assert_allclose(from_mud, usual.rates[1], atol=1e-15)
 
 
-def test_who_is_no_surer_than_chance_or_sees_nothing_pulls_nothing():
+def test_a_source_no_surer_than_chance_pulls_nothing():
     dwell_s = np.full(3, 20.0)
     seen = (SeenGround(0.0, "mud", 1 / 3), SeenGround(1.0, "unknown", 1.0))
     usual, by_chance, unknown = mode_chains(seen, NAMES, dwell_s)

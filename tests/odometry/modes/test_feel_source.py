@@ -116,7 +116,7 @@ def test_probabilities_of_motion_and_feel_are_multiplied():
     np.testing.assert_allclose(both.felt, [[0.6, 0.3, 0.1]])
 
 
-def test_what_motion_cannot_tell_is_left_to_feel():
+def test_what_motion_cannot_decide_is_left_to_feel():
     """b leads and is like a, of which feel says more; c is ruled out by motion."""
     alike = np.array([[True, False, False]])
     both = with_that(by_motion([[0.1, 0.9, 0.0]], alike=alike))
@@ -133,7 +133,7 @@ def test_motion_says_nothing_where_the_rolling_test_does_not_agree():
 
 
 @pytest.mark.parametrize("terrain", NAMES)
-def test_feel_names_what_motion_cannot_tell_apart(model, alike_set, terrain):
+def test_feel_names_what_motion_cannot_distinguish(model, alike_set, terrain):
     run = turning_as_tiles(drive(terrain, 77, seconds=30.0), terrain)
     both = followed(run, alike_set, feel=model)
     late = both.motion.stamps_s > 8.0

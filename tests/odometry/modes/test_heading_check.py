@@ -42,7 +42,7 @@ def test_a_bias_comes_back_within_its_deviation(seed, late_s):
     assert not check.scale_is_off.any()
 
 
-def test_headings_that_are_late_by_much_tell_no_bias():
+def test_headings_that_are_late_by_much_determine_no_bias():
     check = heading_check(run_of(np.random.default_rng(1), bias_rad_s=0.03, late_s=0.3))
     assert not len(check.bias_windows)
     assert not check.scale_is_off.any()
@@ -75,7 +75,7 @@ def test_headings_that_are_not_chained_may_jump():
     np.testing.assert_allclose(jumped.bias_rad_s, smooth.bias_rad_s, atol=1e-9)
 
 
-def test_a_spike_of_the_gyroscope_tells_nothing():
+def test_a_spike_of_the_gyroscope_determines_nothing():
     run = run_of(np.random.default_rng(4))
     spiky = run.odometry["gyro_z"].copy()
     spiky[200::97] = 50.0

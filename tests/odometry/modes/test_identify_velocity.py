@@ -41,7 +41,7 @@ def without(table, *names):
     return replace(table, columns=columns)
 
 
-def test_settled_gains_of_each_ground_are_found(modes):
+def test_settled_gains_of_each_terrain_are_found(modes):
     """Of 3000 samples with noise 0.02, turns of 0.3 m/s: sigma 0.02 / 0.3 / sqrt(3000) = 0.0012.
 
     Both treads go mostly together, and lags smooth them: 0.01 is four times twice that.
@@ -123,7 +123,7 @@ def test_a_yaw_rate_may_stand_in_velocity_csv(grounds, modes):
     np.testing.assert_allclose(identify_velocity_modes(bare).A, modes.A)
 
 
-def test_a_ground_without_a_name_is_reported_by_folder_and_rows():
+def test_a_terrain_without_a_name_is_reported_by_folder_and_rows():
     run = drive(5, [*["ice"] * 600, *["mud"] * 200, *["ice"] * 100], folder="run_17")
     names = np.array(run.odometry["terrain"])
     names[600:800] = "unknown"
@@ -132,7 +132,7 @@ def test_a_ground_without_a_name_is_reported_by_folder_and_rows():
         identify_velocity_modes([replace(run, odometry=odometry)])
 
 
-def test_less_than_ten_seconds_of_a_ground_are_too_few():
+def test_less_than_ten_seconds_of_a_terrain_are_too_few():
     labels = [*["ice"] * 600, *["mud"] * 499]
     with pytest.raises(IdentificationError, match=r"mud: 10\.0 s recorded, expected 10 s"):
         identify_velocity_modes([drive(5, labels)])

@@ -162,7 +162,7 @@ def test_the_signal_that_fits_least_is_said():
     assert one.signal == 1
 
 
-def test_who_expects_more_faults_is_sure_of_them_sooner():
+def test_a_filter_that_expects_more_faults_is_sure_of_them_sooner():
     innovations = np.concatenate([drawn()[:HALF], drawn((3.0, 3.0))[HALF:]])
     sooner, later = (
         np.flatnonzero(fit_of(innovations, share=share).none > 0.9)[0] for share in (0.2, 0.001)

@@ -44,7 +44,7 @@ def test_modes_are_alike_up_to_some_deviations_of_what_lasts(factor, expected):
     assert (alike[200:, 1] == expected).all()
 
 
-def test_a_turn_tells_modes_apart_until_they_have_dwelt_for_long():
+def test_a_turn_distinguishes_modes_until_they_have_dwelt_for_long():
     turn = np.zeros(3000)
     turn[500:700] = 1.0
     signals = drive(turn)
@@ -74,7 +74,7 @@ def test_modes_within_an_error_of_each_other_are_not_named_however_long_one_fits
     assert named_modes(far, 0.9)[-1] == "a"
 
 
-def test_turns_that_are_not_measured_tell_nothing():
+def test_turns_that_are_not_measured_determine_nothing():
     signals = drive(np.ones(500))
     signals.measured[:250] = np.nan
     alike = similar_modes(signals, modes(1.0, 2.0), np.zeros(500, dtype=int))[:, 1]

@@ -47,7 +47,7 @@ def test_what_is_no_bias_is_not_taken(stands, bias_rad_s, noise_rad_s):
     assert not standing_biases(signals_of(stands, bias_rad_s, noise_rad_s))
 
 
-def test_who_stood_knows_the_bias_from_then_on():
+def test_a_robot_that_stood_knows_the_bias_from_then_on():
     """It is twelve times what is expected; before the stand a filter has not yet learnt it."""
     signals = signals_of([(400, 600)], BIAS_RAD_S)
     track = follow_signals(signals, velocity_set())

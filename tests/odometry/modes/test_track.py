@@ -66,7 +66,7 @@ def test_a_change_of_terrain_is_recognised_within_seconds(run):
     assert track.labels.tolist() == np.repeat(NAMES, CHANGE).tolist()
 
 
-def test_what_moves_in_a_gap_of_odometry_tells_nothing(run):
+def test_what_moves_in_a_gap_of_odometry_determines_nothing(run):
     """For 2 s on ice the speeds in force turn two thirds as much as the treads truly did."""
     signals = SET.modes.signals(run)
     gap = slice(500, 600)
@@ -137,7 +137,7 @@ def test_a_rough_stretch_says_less():
     assert most[1] < 0.6
 
 
-def test_who_drives_far_faster_than_identified_learns_nothing(run):
+def test_far_above_the_speeds_of_identification_nothing_is_learned(run):
     """Beyond 1.2 times the fastest run, as if it were not measured."""
     fastest_m_s = float(np.abs(run.odometry.stack("v_left", "v_right")).max())
     slower, equal = (
@@ -197,7 +197,7 @@ def test_motion_overrides_sight_that_is_wrong(run):
     assert (both < motion).mean() > 0.95  # it is heard, though
 
 
-def test_who_stands_learns_from_sight_alone():
+def test_a_robot_that_stands_learns_from_the_camera_alone():
     """Rates from ice to tar and back: 1/20 a second, and 0.8 more for odds of 0.9 from 2 s on."""
     t = STEP_S * np.arange(500)
     still = {"t": t, "v_left": 0 * t, "v_right": 0 * t, "gyro_z": 0.3 * np.sin(t)}

@@ -64,7 +64,7 @@ def test_a_mode_that_fits_needs_nothing_to_be_done():
     assert to_do.startswith("nothing; ")
 
 
-def test_on_straights_turns_are_asked_for():
+def test_on_straights_turns_are_requested():
     run = run_of(0.0, labels=ICE)
     run.odometry.columns["v_left"][:] = run.odometry.columns["v_right"][:] = 0.5
     in_force, _, to_do = in_short(followed(run, velocity_set()))

@@ -37,7 +37,7 @@ def spiral():
     return Course(speeds, Plane())
 
 
-def test_grounds_follow_each_other_in_the_truth_alone(husky, spiral, rng):
+def test_terrains_follow_each_other_in_the_truth_alone(husky, spiral, rng):
     run = terrain_experiment(
         husky, [("crushed_concrete", 4), ("grass", 4), ("asphalt", 4)], spiral, rng
     )

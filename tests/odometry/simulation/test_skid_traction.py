@@ -54,7 +54,7 @@ def test_no_wheel_slipping_is_the_vehicle_at_its_own_friction(husky):
     np.testing.assert_array_equal(own.poses_world, none.poses_world)
 
 
-def test_grounds_have_the_friction_asked_for_and_each_its_own_width(husky):
+def test_terrains_have_the_friction_requested_and_each_its_own_width(husky):
     assert [ground.friction for ground in GROUNDS.values()] == [0.8, 0.55, 0.35]
     speeds = np.minimum(np.arange(301) / 50, 1.0)[:, None] * [0.45, 0.55]
     widths = [
@@ -80,6 +80,6 @@ def test_an_unknown_wheel_is_named(husky, wheels):
         wheel_traction(husky, wheels)
 
 
-def test_an_unknown_ground_is_named(husky):
+def test_an_unknown_terrain_is_named(husky):
     with pytest.raises(SimulationError, match="no terrain 'ice'; there are asphalt"):
         ground_traction(husky, "ice")

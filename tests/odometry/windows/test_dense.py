@@ -94,7 +94,7 @@ def test_windows_go_on_over_speeds_that_were_held(run):
     assert not windows.left_out
 
 
-def test_a_change_of_ground_is_kept_and_cuts_nothing(make_scene):
+def test_a_change_of_terrain_is_kept_and_cuts_nothing(make_scene):
     def terrain(t):
         return np.where(t < 21.3, "stone", "wet grass")
 

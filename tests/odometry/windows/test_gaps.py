@@ -126,7 +126,7 @@ def test_with_nothing_else_only_a_long_hold_of_turning_treads_is_a_gap(lasts_s, 
     assert len(odometry_gaps(run)) == (gaps if turning else 0)
 
 
-def test_a_gyroscope_cannot_tell_that_a_robot_drove_on():
+def test_a_gyroscope_cannot_decide_that_a_robot_drove_on():
     """Straight on at 0.5 m/s: a log that repeats its row every 50 ms would have gone on."""
     run = driven(0, poses=False)
     straight = 0.5 * np.ones(len(run.odometry))

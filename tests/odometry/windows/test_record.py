@@ -153,7 +153,7 @@ def test_a_change_of_terrain_breaks_a_stretch_at_the_odometry_row_that_names_it(
     assert cut.terrains.tolist() == ["ice", "ice", "grass", "grass", "sand", "sand"]
 
 
-def test_other_ground_between_two_poses_breaks_a_stretch(record):
+def test_other_terrain_between_two_poses_breaks_a_stretch(record):
     stamps_s = np.round(np.arange(0, 0.9, 0.1), 1)
     names = ["ice"] * 3 + ["grass"] + ["ice"] * 5
     cut = record(odometry(stamps_s, terrain=names), pose([0.05, 0.25, 0.45, 0.65]))
@@ -165,7 +165,7 @@ def test_other_ground_between_two_poses_breaks_a_stretch(record):
     [(SETTINGS, UNKNOWN), (SETTINGS + '[run]\nterrain = "sand"\n', "sand")],
     ids=["nowhere", "run.toml"],
 )
-def test_without_a_column_the_ground_is_the_runs(record, settings, expected):
+def test_without_a_column_the_terrain_is_the_runs(record, settings, expected):
     assert set(record(odometry([0.0, 1.0]), pose([0.1, 0.2]), settings).terrains) == {expected}
 
 

@@ -91,7 +91,7 @@ def test_too_little_texture():
         mount_from_motion(blind, LENS)
 
 
-def test_a_narrow_view_with_noise_tells_no_pitch():
+def test_a_narrow_view_with_noise_determines_no_pitch():
     """All features within a degree, a pixel of noise each."""
     rng = np.random.default_rng(4)
     made = tracks(MOUNT, rng)

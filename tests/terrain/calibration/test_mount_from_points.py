@@ -132,7 +132,7 @@ def test_files_that_are_wrong(tmp_path, text, words):
 
 
 @pytest.mark.parametrize(("unit", "factor"), [("mm", 1000.0), ("cm", 100.0)])
-def test_points_in_another_unit_are_asked_for_in_metres(unit, factor):
+def test_points_in_another_unit_are_requested_in_metres(unit, factor):
     rows = marked(CAMERA, GROUND) * [1, 1, factor, factor]
     with pytest.raises(CalibrationError, match=f"are x and y in {unit}\\? Expected metres"):
         mount_from_points(LENS, points(rows))

@@ -177,7 +177,7 @@ def test_train_adapts_and_says_what_was_kept(model_file, camera, tmp_path):
     assert "--k follows from the model of --adapt" in refused.output
 
 
-def test_train_says_where_one_photograph_cannot_tell(model_file, camera, tmp_path):
+def test_train_says_where_one_photograph_cannot_decide(model_file, camera, tmp_path):
     root, out = camera(1, same), tmp_path / "new.model"
     options = ["--adapt", str(model_file), "--processes", "1"]
     answer = CliRunner().invoke(train, [str(root), "--out", str(out), *options])

@@ -65,7 +65,7 @@ def test_fresh_patches_get_their_names(trained, rng):
         assert (answer.label == "unknown") == beyond
 
 
-def test_unlike_ground_is_unknown(rng):
+def test_unlike_terrain_is_unknown(rng):
     model = TerrainClassifier().fit(*patches(rng, (grains, stripes)))
     strange = [blobs(rng) for _ in range(10)] + [np.full((SIZE, SIZE), 90, np.uint8)]
     answers = model.classify(strange)
@@ -148,7 +148,7 @@ def test_arrays_that_do_not_fit_are_refused(trained, lost, tmp_path):
             TerrainClassifier.load(tmp_path / "b.model")
 
 
-def test_the_rejection_distance_leaves_its_share_of_known_ground_beyond(rng):
+def test_the_rejection_distance_leaves_its_share_of_known_terrain_beyond(rng):
     model = TerrainClassifier(rejected_share=0.25).fit(*patches(rng, (grains, stripes), 10))
     beyond = np.mean(model.cross_validation_.distances > model.rejection_distance_)
     assert beyond == pytest.approx(0.25, abs=0.02)
@@ -212,7 +212,7 @@ def bluish(rng):
     return np.stack([grains(rng)] * 3, axis=2) // 2 + np.array([0, 0, 60], np.uint8)
 
 
-def test_colour_is_used_only_when_asked_for_and_there(rng, tmp_path):
+def test_colour_is_used_only_when_requested_and_there(rng, tmp_path):
     training = patches(rng, (reddish, bluish), photos=5)
     fresh = [bluish(rng) for _ in range(10)] + [reddish(rng) for _ in range(10)]
     names = ["bluish"] * 10 + ["reddish"] * 10

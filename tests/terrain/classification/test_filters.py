@@ -76,7 +76,7 @@ def test_orientation_ignores_contrast_and_the_others_grow_with_it(rng):
     assert band_pass(1.0)(Scales(4 * grey)).std() > 2 * band_pass(1.0)(Scales(grey)).std()
 
 
-def test_coherence_tells_lines_from_grains(rng):
+def test_coherence_distinguishes_lines_from_grains(rng):
     lines = (128 + 60 * np.sin(COLUMNS / 2)).astype(np.float32)
     grains = rng.normal(128, 40, (96, 96)).astype(np.float32)
     assert coherence(1.4)(Scales(lines))[INSIDE].min() > 250

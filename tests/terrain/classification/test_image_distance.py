@@ -84,7 +84,7 @@ def test_parts_of_photographs_stand_for_images():
     assert len(images_of_patches(groups, 1)) == 11
 
 
-def test_limits_leave_the_share_asked_for_of_held_out_images_beyond(rng, middles):
+def test_limits_leave_the_share_requested_of_held_out_images_beyond(rng, middles):
     features, codes = drawn(rng, middles, 60)
     groups = np.arange(len(codes)) // EACH
     found = cross_validate(linear_neighbours, (9,), Samples(features, codes, groups))

@@ -79,7 +79,7 @@ def test_altered_photographs_are_not_and_it_says_how(training, how):
     assert how in likeness.note
 
 
-def test_a_few_images_cannot_tell(training):
+def test_a_few_images_cannot_decide(training):
     blurred = [ALTERED["more blurred"](image) for image in photographs(2)[0]]
     assert compared(training, blurred[: FEWEST_IMAGES - 1]).is_unlike is None
     assert compared(training, blurred[:FEWEST_IMAGES]).is_unlike is True

@@ -122,7 +122,7 @@ def test_the_given_transformer_stays_as_it_is_and_clones_with_the_classifier(tra
 
 
 @pytest.mark.parametrize("colour", [True, False])
-def test_a_transformer_sees_colour_only_where_it_is_asked_for(training_patches, colour):
+def test_a_transformer_sees_colour_only_where_it_is_requested(training_patches, colour):
     seen = []
 
     class Listening(Moments):

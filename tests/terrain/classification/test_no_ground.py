@@ -84,7 +84,7 @@ def test_what_shows_no_ground_is_unknown_at_any_distance(model, why, rng):
     assert near.is_unknown([EMPTY[why](rng)]).all()
 
 
-def test_known_ground_that_was_held_out_keeps_its_name(model):
+def test_known_terrain_that_was_held_out_keeps_its_name(model):
     images, labels, _ = photographs(2)
     answers = model.classify(images)
     assert np.mean([bool(answer.reason) for answer in answers]) < 0.02

@@ -11,7 +11,7 @@ def test_one_patch_is_judged_by_the_quantile_of_all(rng):
     assert list(limits) == sorted(limits, reverse=True)
 
 
-def test_the_share_of_held_out_photographs_beyond_is_the_one_asked_for(rng):
+def test_the_share_of_held_out_photographs_beyond_is_the_one_requested(rng):
     """Independent photographs of 16 patches: the median of 16 is beyond in 5 %."""
     members = np.repeat(np.arange(2000), 16)
     level = rng.normal(0, 0.3, 2000)[members]

@@ -141,7 +141,7 @@ x_icr = 0.0
 """
 
 
-def test_a_terrain_without_such_numbers_does_not_stop_the_one_that_is_asked_for(tmp_path):
+def test_a_terrain_without_such_numbers_does_not_stop_the_one_that_is_requested(tmp_path):
     """The error of the asked one names it, not the first of the set."""
     (tmp_path / "set.toml").write_text(TWO)
     asked = (tmp_path / "set.toml", "--to", "ros", "--terrain", "sand", "--out", tmp_path / "out")

@@ -166,7 +166,7 @@ def test_an_unknown_model_is_refused_with_those_there_are(command, tmp_path):
     assert_refused(command(model="unicycle"), tmp_path, "unicycle", "icr_symmetric", code=2)
 
 
-def test_of_a_set_with_several_grounds_one_must_be_said(command, tmp_path):
+def test_of_a_set_with_several_terrains_one_must_be_said(command, tmp_path):
     file = tmp_path / "set.toml"
     file.write_text(f"[terrain.grass]\n{ICRS}[terrain.sand]\n{ICRS}")
     assert_refused(command(model=file), tmp_path, "set.toml", "grass, sand", "--terrain")

@@ -91,14 +91,14 @@ def test_known_parameters_can_be_freed(command, curvy_run):
     assert values == pytest.approx({"k": 1.0, "m": 0.6, "track_width": 0.3}, abs=0.02)
 
 
-def test_the_ground_can_be_named(command, curvy_run):
+def test_the_terrain_can_be_named(command, curvy_run):
     code, output, _ = command(curvy_run, *SHORT, "--terrain", "wet grass")
     assert code == 0
     assert output.count("RUN --terrain 'wet grass' --") == 2  # to compare on, and to run
     assert list(read_parameters(command.out).terrains) == ["wet grass"]
 
 
-def test_the_windows_are_those_that_were_asked_for(command, curvy_run):
+def test_the_windows_are_those_that_were_requested(command, curvy_run):
     """6.2 m of wheel travel in 12 s."""
     numbers = []
     for options in (

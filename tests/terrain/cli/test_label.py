@@ -129,7 +129,7 @@ def test_files_that_were_moved_or_removed_stay_so(again):
     assert "Corrections kept: 1 moved, 1 removed." in label_again().stdout
 
 
-def test_a_file_that_lies_in_two_classes_is_asked_about(again):
+def test_a_file_that_lies_in_two_classes_needs_a_decision(again):
     folder, label_again = again
     name = next(iter(rows_of(folder))).split("/")[1]
     for other in ("moss", "ice"):

@@ -123,7 +123,7 @@ def test_classify_prints_what_the_classifier_says(trained, photos):
     assert table[-1].endswith(" the label is unknown.")
 
 
-def test_bad_images_become_rows_and_the_exit_code_tells(trained, photos, tmp_path):
+def test_bad_images_become_rows_and_the_exit_code_says_so(trained, photos, tmp_path):
     model, _ = trained
     (tmp_path / "broken.jpg").write_bytes(b"not an image")
     images = [tmp_path / "broken.jpg", tmp_path / "absent.jpg", photos / "gravel/small.png"]
@@ -227,7 +227,7 @@ def test_a_folder_stands_alone(trained, fresh):
     assert "give one folder alone" in answer.output
 
 
-def test_a_broken_image_is_left_out_and_the_exit_code_tells(trained, fresh):
+def test_a_broken_image_is_left_out_and_the_exit_code_says_so(trained, fresh):
     model, _ = trained
     (fresh / "ice/broken.png").write_bytes(b"no image")
     answer = CliRunner().invoke(classify, [str(model), str(fresh)])

@@ -21,7 +21,7 @@ def table(**columns):
     return Table("a.csv", {name: np.array(of) for name, of in columns.items()}, lines)
 
 
-def test_spans_count_from_a_stamp_and_tell_nothing_between_them(run):
+def test_spans_count_from_a_stamp_and_determine_nothing_between_them(run):
     spans = [TerrainSpan(7, 9, "sand"), TerrainSpan(1, 4, "grass"), TerrainSpan(4, 5, "ice")]
     told = told_by_spans(run, spans, 100.0)
     assert told.terrains == ("grass", "ice", "sand")

@@ -63,7 +63,7 @@ def test_ground_at_an_edge_is_left_out_and_counted(labelled, run):
     assert labelled.seen[run.folder] == len(labelled.chosen) + sum(left_out.values())
 
 
-def test_a_patch_shows_the_ground_that_it_is_of(files, labelled, world):
+def test_a_patch_shows_the_terrain_that_it_is_of(files, labelled, world):
     """Against the textures, drawn from above where the manifest says."""
     for each in labelled.chosen[:: len(labelled.chosen) // 12]:
         patch = read_image(files / each.label / each.of.name).astype(float)

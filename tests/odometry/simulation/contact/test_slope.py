@@ -85,7 +85,7 @@ def test_zones_have_their_slopes_away_from_the_creases():
     np.testing.assert_allclose(rise.imag, 0.0, atol=1e-12)
 
 
-def test_a_held_attitude_is_the_one_asked_for():
+def test_a_held_attitude_is_the_one_requested():
     roll, pitch = np.array([0.1, -0.2]), np.array([-0.3, 0.05])
     held, _ = attitude(HeldAttitude(roll, pitch), POINTS[:2], YAWS[:2])
     np.testing.assert_allclose(held.sin_roll, np.sin(roll), atol=1e-12)
