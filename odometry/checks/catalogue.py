@@ -20,6 +20,7 @@ CATALOGUE: dict[str, str] = {
     "track_width": "track width far from the width that turns imply",
     "sensor_place": "[sensors] pose in mm",
     "terrain_names": "two spellings of one terrain",
+    "one_motion": "a drive that only goes straight, spins, or is one circle",
     "sensors_disagree": "sensors differ, and the cause cannot be determined",
     # Treads
     "tread_unit": "tread speeds in rad/s, RPM, mm/s, ticks ...",

@@ -24,6 +24,7 @@ from odometry.checks.finding import CheckReport, Finding, Level, disagreement, i
 from odometry.checks.gaps import gaps
 from odometry.checks.gyroscope import gyroscope
 from odometry.checks.one_encoder import one_encoder
+from odometry.checks.one_motion import one_motion
 from odometry.checks.pose_values import pose_values
 from odometry.checks.poses import pose_outages, poses
 from odometry.checks.position_axes import position_axes
@@ -73,6 +74,7 @@ CHECKS: tuple[Check, ...] = (
     attitude,
     settings,
     columns,
+    one_motion,
 )
 LEAST_ROWS = 10
 

@@ -11,6 +11,7 @@ import click
 if TYPE_CHECKING:
     from odometry.checks.finding import CheckReport
 
+NO_DRIVE = ("one_motion", "treads_still")  # `identify` refuses such a run alone
 TRUE_SLIP = ("slip", "slip_in_turns", "slip_episodes")  # findings that may be no fault
 
 
@@ -87,10 +88,15 @@ def next_step(reports: Mapping[Path, "CheckReport"], files: Mapping[Path, Path])
     look = f"look at {place}; " if drawn else ""
     odd = {folder: report for folder, report in reports.items() if report.misleads}
     if not odd:
-        with_poses = [str(folder) for folder in reports if (folder / "pose.csv").exists()]
+        with_poses = [folder for folder in reports if (folder / "pose.csv").exists()]
         if not with_poses:
             return f"Next: {look}terrain-odometry run {next(iter(reports))} --out results"
-        runs = " ".join(with_poses)
+        runs = " ".join(map(str, with_poses))
+        if all(_is_no_drive(reports[folder]) for folder in with_poses):
+            return (
+                f"Next: {look}record turns to both sides, of several radii and speeds: identify "
+                f"refuses {runs}"
+            )
         return f"Next: {look}terrain-odometry identify {runs} --model icr --out my_robot.toml"
     readable = [str(folder) for folder, report in odd.items() if not report.at(Level.REFUSED)]
     if readable and not files:
@@ -106,6 +112,10 @@ def next_step(reports: Mapping[Path, "CheckReport"], files: Mapping[Path, Path])
             "mended then); else mend the scale that is wrong, and check again"
         )
     return f"Next: {look}{'; '.join(advice)}"
+
+
+def _is_no_drive(report: "CheckReport") -> bool:
+    return any(finding.name in NO_DRIVE for finding in report.findings)
 
 
 def _only_slips(report: "CheckReport") -> bool:

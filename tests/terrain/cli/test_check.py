@@ -70,6 +70,21 @@ def test_a_run_without_poses_goes_to_run(world, tmp_path):
     assert last == f"Next: terrain-odometry run {blind} --out results"
 
 
+@pytest.mark.parametrize("name", ["one_motion", "treads_still"])
+def test_a_drive_of_one_motion_is_not_to_be_identified(tmp_path, name):
+    straight, good = tmp_path / "straight", tmp_path / "good"
+    for folder in (straight, good):
+        folder.mkdir()
+        (folder / "pose.csv").touch()
+    note = Finding(name, Level.NOTE, "seen", "cause", "remedy")
+    reports = {straight: CheckReport(straight, (note,))}
+    last = next_step(reports, {})
+    assert last.endswith(f"identify refuses {straight}")
+    assert "turns to both sides" in last
+    both = next_step({**reports, good: CheckReport(good, ())}, {})
+    assert both.startswith(f"Next: terrain-odometry identify {straight} {good} ")
+
+
 def test_true_slip_is_not_to_be_mended():
     reports = {
         Path("ice"): found("ice", "slip", "slip_in_turns"),
