@@ -14,6 +14,7 @@ LONGEST_PERIOD_S = 20.0  # poses or images are hardly slower, where odometry.csv
 LONGEST_ODOMETRY_PERIOD_S = 2.5  # nor are treads that are logged evenly
 EVEN = 3.0  # ratio of a long to a short step below which a log is even: no log of changes
 LONGEST_HOLD_S = 1000.0  # commands are usually not held for longer
+LONGEST_GAP_S = 4 * 3600.0  # no recording goes on after a longer one
 SHORTEST_PERIOD_S = 2e-5  # nor is any log faster
 EPOCH_S = 1e8  # stamps above count from 1970 (1e8 s is in 1973)
 USUAL_PERIODS_S = (0.002, 2.0)
@@ -57,9 +58,29 @@ def unreadable_stamps(run: Run) -> Iterator[Finding]:
             )
     if any(_stamp_unit(name, table.stamps_s, odometry_s) for name, table in tables.items()):
         return
+    yield from _clock_of_robot_was_set(run.odometry)
     for name, table in tables.items():
         if name != "odometry.csv":
             yield from _apart(name, table.stamps_s, odometry_s)
+
+
+def _clock_of_robot_was_set(odometry: Table) -> Iterator[Finding]:
+    """A step of hours amid the rows: a robot starts in 1970 and sets its clock by the network."""
+    odometry_s = odometry.stamps_s
+    steps_s = np.diff(odometry_s)
+    row = int(np.argmax(steps_s))
+    if steps_s[row] <= LONGEST_GAP_S:
+        return
+    before_s, after_s = odometry_s[row : row + 2]
+    yield _refused(
+        "clock_set",
+        f"stamps of odometry.csv go from {before_s:.3f} to {after_s:.3f} s in one step (line "
+        f"{odometry.lines[row]} to {odometry.lines[row + 1]})",
+        "The robot's clock was set while recording (by the network or by satellites), or two "
+        "recordings were joined",
+        f"Use one part: --to {before_s - odometry_s[0]:.3f} for what is before, --from "
+        f"{after_s - odometry_s[0]:.3f} for what is after",
+    )
 
 
 def _stamp_unit(name: str, stamps_s: FloatArray, odometry_s: FloatArray) -> str:

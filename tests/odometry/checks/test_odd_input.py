@@ -122,6 +122,18 @@ def test_a_clock_that_was_set_is_not_reported_as_lost_rows_too():
     assert "odometry_gap" not in names
 
 
+def test_a_clock_that_was_set_by_years_is_refused_with_both_parts():
+    """A robot that starts in 1970: grids of time over 50 years needed more memory than there is."""
+    run = drive(1200, *DRIVES["curves"])
+    later = np.where(run.odometry.stamps_s > 30, 1.7e9, 0.0) + run.odometry.stamps_s
+    run = changed(changed(run, "odometry", t=later), "pose", t=later)
+    (refused,) = check_recording(run).findings
+    assert (refused.level, refused.name) == (Level.REFUSED, "clock_set")
+    assert "(line 602 to 603)" in refused.seen
+    assert "--to 30.000" in refused.remedy
+    assert "--from 1700000030.050" in refused.remedy
+
+
 def test_images_and_poses_may_be_rare():
     """One image in half a minute, as of a time-lapse; stamps in ms would lie elsewhere."""
     run = drive(6000, *DRIVES["curves"])
