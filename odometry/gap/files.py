@@ -75,6 +75,7 @@ def content_of(result: GapResult) -> dict[str, Any]:
             for rival in result.rivals
         ],
         "notes": list(result.notes),
+        "faults": [{"run": run, **finding.to_table()} for run, finding in result.faults],
         "depends_on": list(result.depends_on),
         "remedy": result.effects[0].added.effect.remedy if result.effects else "",
         "reference": any(one.added.effect.of_reference for one in result.effects),

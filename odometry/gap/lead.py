@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from odometry.checks.warned import sensor_faults
 from odometry.effects.reference_rounding import RoundedPositions
 from odometry.effects.residual import Residual
 from odometry.gap.quantities import Share, held_out_share, metres, percent, with_interval
@@ -45,6 +46,12 @@ def _missing(result: GapResult) -> str:
     if all(effect.added.effect.of_reference for effect in named) and not rest:
         who = f", or {alike[0]}" if alike else ", not the robot"
         return f"A sensor is at fault{who}: {names}{untold}."
+    faults = sensor_faults(result.faults)
+    if faults:
+        return (
+            f"A sensor or the robot: {names}{untold}; {listed(faults)}, of which check warns in "
+            "these recordings, may have the same effect."
+        )
     return f"Missing in {model}: {names}{untold}."
 
 
@@ -127,6 +134,8 @@ def _what_to_do(result: GapResult) -> str:
         f"{100 * odds[words]:.0f} % of cases)."
         for words, (name, *others) in between.items()
     ]
+    if result.verdict != "none" and sensor_faults(result.faults):
+        drives.insert(0, "First correct what check warns of, and run gap again.")
     decided = {name for one in result.next_drives for name in one.between}
     measures = [
         f"If it is {one.name}: {one.told_apart_by}."

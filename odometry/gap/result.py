@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from odometry.arrays import FloatArray
+from odometry.checks.warned import RunFinding
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual
@@ -130,6 +131,8 @@ class GapResult:
         Names that had evidence and do not stand, and why.
     holdout_before : tuple of DenseWindows
         The held-out windows with poses that are left out after, if there are any.
+    faults : tuple of (run, Finding)
+        What `check` warns of in the same recordings, where it was asked.
     """
 
     verdict: str
@@ -148,6 +151,7 @@ class GapResult:
     next_drives: tuple[NextDrive, ...] = ()
     refusals: tuple[Refusal, ...] = ()
     holdout_before: tuple[DenseWindows, ...] = ()
+    faults: tuple[RunFinding, ...] = ()
 
     @property
     def depends_on(self) -> tuple[str, ...]:

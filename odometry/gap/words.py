@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from odometry.checks.warned import faults_words
 from odometry.effects.base_model import Base
 from odometry.effects.residual import Residual
 from odometry.gap.calibration import Calibration
@@ -21,9 +22,13 @@ RIDGE = 1e-9  # the calibration may leave a number open
 
 
 def sentences(result: GapResult) -> tuple[str, ...]:
-    """What is missing, how sure, what to do (`odometry.gap.lead`), then what that rests on."""
+    """What is missing, how sure, what to do (`odometry.gap.lead`), then what that rests on.
+
+    What the check warns of stands after the first three, where it warns.
+    """
     return (
         *lead(result),
+        *filter(None, [faults_words(result.faults)]),
         _disagreement(result),
         *_where(result),
         *(_effect(effect, number) for number, effect in enumerate(result.effects, start=1)),

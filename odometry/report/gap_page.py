@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
+from odometry.checks.warned import faults_words
 from odometry.effects.base import Effect
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
@@ -130,7 +131,8 @@ def write_gap_report(result: GapResult, out: Path) -> list[Path]:
     share = held_out_share(result)
     missing, how_sure, to_do, *others = sentences(result)
     short = [f"What is missing: {missing}", f"How sure: {how_sure}", f"What to do: {to_do}"]
-    details = [*others, *(f"{note}." for note in result.notes)]
+    short += filter(None, [faults_words(result.faults)])
+    details = [*(one for one in others if one not in short), *(f"{note}." for note in result.notes)]
     sections = [
         Section("In short", [Listing(short), closing_picture(result, folder)]),
         Section(

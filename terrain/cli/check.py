@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from odometry.checks.finding import CheckReport
 
 NO_DRIVE = ("one_motion", "treads_still")  # `identify` refuses such a run alone
-TRUE_SLIP = ("slip", "slip_in_turns", "slip_episodes")  # findings that may be no fault
 
 
 @click.command()
@@ -121,6 +120,7 @@ def _is_no_drive(report: "CheckReport") -> bool:
 def _only_slips(report: "CheckReport") -> bool:
     """Whether all that would mislead may be what the robot truly did."""
     from odometry.checks.finding import Level
+    from odometry.checks.warned import TRUE_SLIP
 
     odd = [finding for finding in report.findings if finding.level is not Level.NOTE]
     return all(finding.name in TRUE_SLIP for finding in odd)

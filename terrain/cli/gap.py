@@ -1,5 +1,6 @@
 """`terrain-odometry gap`: which effect a model lacks, and the gap closed."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -72,13 +73,14 @@ def gap(
     Example:
       terrain-odometry gap hill_1 --calibration yard --holdout hill_2 --out gap
     """
+    from odometry.checks.warned import faults_of
     from odometry.gap.config import GapConfig
     from odometry.gap.files import write_gap
     from odometry.gap.gap import find_gap
     from odometry.gap.uncertain_base import believed_model
     from odometry.report.gap_page import write_gap_report
     from terrain.cli.outputs import about, claim_folder
-    from terrain.cli.recordings import read_runs
+    from terrain.cli.recordings import checks_made, read_runs
 
     require_model(model)
     output = claim_folder(out)
@@ -88,6 +90,7 @@ def gap(
     result = find_gap(
         measured, known, held, model=base, given=given, config=config, show_progress=True
     )
+    result = replace(result, faults=faults_of(checks_made()))
     for note in result.notes:
         click.echo(f"Note: {note}", err=True)
     with output.writing() as part:

@@ -1,5 +1,6 @@
 """What `identify` prints and the files that it writes, claimed before any work."""
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ if TYPE_CHECKING:
 
     from odometry.identification.identification import Identification, Identified
     from odometry.outputs.provenance import Made
+    from odometry.parameters import ParameterSet
     from odometry.run import Run
 
 
@@ -94,6 +96,34 @@ def print_identification(found: "Identification") -> None:
             click.echo(f"Note: {doubt}", err=True)
     if found.left_out:
         click.echo(f"Note: {words(found.left_out)}", err=True)
+
+
+def warned(identified: "ParameterSet") -> "tuple[ParameterSet, str]":
+    """The set whose tables say what the check warns of, and the last words; "" where nothing.
+
+    It is written all the same: what the check finds odd may be what the robot did.
+    """
+    from dataclasses import replace
+
+    from odometry.checks.finding import Level
+    from odometry.checks.warned import faults_of, sensor_faults
+    from terrain.cli.recordings import checks_made
+
+    warnings = [one for one in faults_of(checks_made()) if one[1].level is Level.WARNING]
+    names = ", ".join(sensor_faults(warnings))
+    if not names:
+        return identified, ""
+    tables = {
+        name: replace(table, source=f"{table.source}; check warns of {names}")
+        for name, table in identified.terrains.items()
+    }
+    folders = [str(report.folder) for report in checks_made() if report.at(Level.WARNING)]
+    last = (
+        f"These parameters are not recommended: check warns of {names}, which they take for what "
+        "the robot does.\nNext: correct or leave out what it warns of, and identify again: "
+        f"terrain-odometry check {shlex.join(folders)}"
+    )
+    return replace(identified, terrains=tables), last
 
 
 def require_determined(found: "Identification") -> None:

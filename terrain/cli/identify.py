@@ -12,6 +12,7 @@ from terrain.cli.identification_outputs import (
     print_identification,
     require_determined,
     require_icr_form,
+    warned,
     write_ros,
 )
 from terrain.cli.options import (
@@ -146,14 +147,14 @@ def identify(
     if profile:
         found = with_profiles(found, solver_config)
     print_identification(found)
-    identified = found.to_parameter_set()
+    identified, not_recommended = warned(found.to_parameter_set())
     write_parameters(out, identified, comment(made))
     click.echo(f"Wrote {out}")
     if picture is not None:
         draw(picture, runs, found, terrain)
     if ros is not None:
         write_ros(ros, runs, found, comment(made))
-    click.echo(_next(identified, out, terrain))
+    click.echo(not_recommended or _next(identified, out, terrain))
 
 
 def _next(identified: "ParameterSet", out: Path, terrain: str | None) -> str:

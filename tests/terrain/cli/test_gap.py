@@ -110,6 +110,29 @@ def test_the_answer_is_printed_and_written(command, case, tmp_path):
     assert added.by_name["offset"] == pytest.approx(true_s, abs=0.02)
 
 
+def test_what_check_warns_of_stands_beside_the_answer(command, case, tmp_path):
+    lost = shutil.copytree(case.measured, tmp_path / "lost")
+    header, *rows = (lost / "odometry.csv").read_text().splitlines(keepends=True)
+    place = header.strip().split(",").index("v_left")
+    for number in range(len(rows) // 3, len(rows) // 2):
+        cells = rows[number].split(",")
+        cells[place] = "0"
+        rows[number] = ",".join(cells)
+    (lost / "odometry.csv").write_text("".join([header, *rows]))
+    code, output, messages = command(measured=lost)
+    assert code == 0, messages
+    assert "Check warns: one tread lost (stuck_encoder, lost)" in output
+    content = json.loads((tmp_path / "out" / "gap.json").read_text())
+    warned = {
+        (report["run"], finding["name"])
+        for report in content["check"]
+        for finding in report["findings"]
+        if finding["level"] == "warning"
+    }
+    assert {(one["run"], one["name"]) for one in content["faults"]} == warned
+    assert ("lost", "stuck_encoder") in warned
+
+
 def test_a_given_set_is_taken_as_it_is_and_without_holdout_stretches_are_held_back(
     monkeypatch, capsys, case, tmp_path
 ):

@@ -6,6 +6,7 @@ import shutil
 import numpy as np
 import pytest
 
+from odometry.checks.finding import CheckReport, Finding, Level
 from odometry.parameters import read_parameters
 from tests.terrain.cli.identify_calls import SHORT
 from tests.terrain.conftest import drive_curves
@@ -149,3 +150,32 @@ def test_positions_without_yaw_are_enough(command, tmp_path):
     assert "the noise found of positions is less" in output
     assert "Note: positions without yaw: " in messages
     assert "Note: [sensors] pose is not stated" in messages
+
+
+def test_a_set_of_a_faulty_recording_is_not_recommended(command, curvy_run, tmp_path):
+    late = shutil.copytree(curvy_run, tmp_path / "late")
+    header, *lines = (late / "odometry.csv").read_text().splitlines()
+    place = header.split(",").index("v_left")
+    rows = [line.split(",") for line in lines]
+    for row in rows:
+        row[place] = str(1.3 * float(row[place]))
+    (late / "odometry.csv").write_text("\n".join([header, *map(",".join, rows)]) + "\n")
+    code, output, messages = command(late, *SHORT)
+    assert code == 0, messages
+    *_, words, last = output.splitlines()
+    assert words.startswith("These parameters are not recommended: check warns of treads_unequal")
+    assert last.endswith(f"and identify again: terrain-odometry check {late}")
+    assert "Next, on a run" not in output
+    (table,) = read_parameters(command.out).terrains.values()
+    assert table.source.endswith("; check warns of treads_unequal")
+    assert "# check of late: warning: " in command.out.read_text()
+
+
+def test_true_slip_is_identified_as_it_is(command, curvy_run, monkeypatch):
+    slip = Finding("slip", Level.WARNING, "seen", "cause", "remedy")
+    monkeypatch.setattr(
+        "terrain.checks.recording.check_recording", lambda run: CheckReport(run.folder, (slip,))
+    )
+    _, output, _ = command(curvy_run, *SHORT)
+    assert "not recommended" not in output
+    assert "Next, on a run" in output
