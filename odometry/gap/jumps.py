@@ -1,13 +1,12 @@
 """Jumps of the reference: motion between poses that no robot makes, whatever its treads do.
 
 A tread that slips leaves a robot behind by no more than the tread travelled; a pose that goes
-farther, or aside, has jumped. What follows a jump is as good as what went before. While a tread
-reports rest for a short time between motion, an encoder may have dropped out, and no jump of
-the poses is reported.
+farther, or aside, has jumped, if it also moves unlike just before and after: where an encoder drops
+out, or a robot rolls on after its commands, poses go on as they did. What follows a jump is as good
+as what went before.
 """
 
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 
@@ -19,8 +18,6 @@ from odometry.windows.dense import DenseWindows
 from odometry.windows.dense_noise import end_variance
 
 STEP_S = 0.25  # over which a jump is looked for: maps do not all jump from one pose to the next
-SHORT_REST_S = 2.0  # of a tread between motion: an encoder that dropped out would look like it
-AT_REST, ABRUPT = 0.02, 0.1  # shares of a tread's greatest speed: at rest, just before and after
 LEEWAY = 0.5  # share of the travel of treads by which a robot may go ahead of them, or aside
 
 
@@ -61,30 +58,28 @@ def jumps(scene: DenseWindows, calibration: Calibration, config: GapConfig) -> J
     across_m2 = np.maximum(distances_m**2 - along**2, 0.0)
     beyond_m = np.sqrt((along - behind) ** 2 + across_m2) - LEEWAY * travel_m
     sigma_m = np.sqrt(end_variance(steps, calibration.noise)[:, :2].max(axis=1))
-    sigmas = beyond_m / sigma_m
-    jumped = (sigmas > config.outlier_sigmas) & ~_may_lack_travel(steps)
+    sigmas = np.minimum(beyond_m, _apart_m(steps)) / sigma_m
+    jumped = sigmas > config.outlier_sigmas
     off = np.zeros(len(scene.pose_s), dtype=np.bool_)
     for begin, end in zip(first[jumped], last[jumped], strict=True):
         off[begin + 1 : end + 1] = True
     return Jumps(off, scene.pose_s, distances_m[jumped], sigmas[jumped], len(steps))
 
 
-def _may_lack_travel(steps: DenseWindows) -> BoolArray:
-    """Whether a tread stops short within each step (S,), and is soon as fast again."""
-    speeds_m_s = np.abs(steps.inputs.tread_speeds_m_s)
-    shares = speeds_m_s / np.maximum(speeds_m_s.max(axis=0), np.finfo(float).tiny)
-    lacking = np.zeros(len(shares), dtype=np.bool_)
-    time_s = steps.time_s
-    for share in shares.T:
-        resting = share < AT_REST
-        for begin, end in pairwise(np.flatnonzero(np.diff(resting)) + 1):
-            is_abrupt = min(share[begin - 1], share[end]) > ABRUPT
-            if resting[begin] and is_abrupt and time_s[end] - time_s[begin] < SHORT_REST_S:
-                lacking[begin:end] = True
-    counted = np.concatenate([[0], np.cumsum(lacking)])
-    begin_s, end_s = steps.pose_s[steps.windows].T
-    first = np.maximum(np.searchsorted(time_s, begin_s, side="right") - 1, 0)
-    return np.asarray(counted[np.searchsorted(time_s, end_s)] > counted[first])
+def _apart_m(steps: DenseWindows) -> FloatArray:
+    """How far each step (S,) is from one between those before and after, at their velocities."""
+    lasts_s = np.diff(steps.pose_s[steps.windows])[:, 0]
+    velocities = steps.measured[:, 0, :2] / lasts_s[:, None]
+    before, after = (
+        np.vstack([velocities[:1], velocities[:-1]]),
+        np.vstack([velocities[1:], velocities[-1:]]),
+    )
+    before[0], after[-1] = after[0], before[-1]
+    change = after - before
+    lengths = np.maximum((change**2).sum(axis=1), np.finfo(float).tiny)
+    share = np.clip(((velocities - before) * change).sum(axis=1) / lengths, 0.0, 1.0)
+    between = before + share[:, None] * change
+    return np.asarray(np.hypot(*(velocities - between).T) * lasts_s)
 
 
 def _along(predicted: FloatArray, rows: FloatArray) -> FloatArray:
