@@ -144,27 +144,34 @@ def gyroscope_late(evidence: Evidence, lag: Lag) -> Finding:
     )
 
 
-def treads_apart(evidence: Evidence, lag: Lag, other: str) -> Finding:
-    """Treads that are late, or early: then they may be commands."""
-    word, _ = _words(lag)
+def treads_apart(evidence: Evidence, lag: Lag, other: str, *, decided: bool) -> Finding:
+    """Treads that are late, or early: then they may be commands.
+
+    Where poses have not decided it, the other sensor may be the one, and is named as well.
+    """
+    word, opposite = _words(lag)
     cause = (
         f"Stamps of treads are {word}: a delay of the sensor, its filter or its transport, or "
         "stamps at arrival"
     )
+    undecided = (
+        ""
+        if decided
+        else f"; or stamps of {other} are {opposite}: poses do not decide between these"
+    )
     if lag.seconds > 0:
-        return _treads(
-            "treads_late", lag, other, f"{cause}; or the speeds are smoothed (a low-pass filter)"
-        )
+        smooth = f"{cause}; or the speeds are smoothed (a low-pass filter){undecided}"
+        return _treads("treads_late", lag, other, smooth)
     kind, mend = commands_or_stamps(evidence, -lag.seconds)
     if kind == "stamps":
-        return _treads("treads_late", lag, other, cause, mend)
+        return _treads("treads_late", lag, other, f"{cause}{undecided}", mend)
     either = "; or their stamps are early: these cannot be distinguished"
     more = "" if kind == "commands" else either
     return _treads(
         "treads_are_commands",
         lag,
         other,
-        f"v_left and v_right are commands, which the robot follows later{more}",
+        f"v_left and v_right are commands, which the robot follows later{more}{undecided}",
         mend,
     )
 

@@ -146,7 +146,9 @@ class _Measured:
         often = float(np.mean(odd[inside]))
         if often < RARELY * np.mean(odd[outside & moving]):
             return None
-        return _ends(m, inside & odd) if often > OFTEN else _lasting(m, inside, odd)
+        if often > OFTEN and (inside & odd).sum() >= LEAST_WINDOWS:
+            return _ends(m, inside & odd)
+        return _lasting(m, inside, odd)
 
 
 def _lasting(m: Motion, inside: BoolArray, odd: BoolArray) -> tuple[float, float] | None:

@@ -28,6 +28,7 @@ CLOCK, WIDEST_S = 0.03, 20.0  # relative difference of clocks that is searched f
 LEAST_DRIFT_S = 0.2  # over the recording
 LEAST_DRIFT = 1e-3  # relative: quartz clocks differ by less
 TOGETHER = 0.7  # share of the pieces that have one lag, or one that grows evenly
+ON_TIME = 0.5  # of the lag between two sensors, that the one on time has at most against poses
 OF_PERIOD = 0.25  # of the pose period, by which interpolated poses may seem late
 
 
@@ -183,8 +184,19 @@ def _late(
         yield pose_late(by_gyroscope, "the gyroscope")
     elif by_treads and not wheels:
         yield from _poses_or_treads(evidence, by_treads)
-    if wheels:
-        yield treads_apart(evidence, wheels, "the gyroscope")
+    if wheels and not by_gyroscope and _is_on_time(lags, ("pose", "treads"), wheels):
+        yield gyroscope_late(evidence, replace(wheels, seconds=-wheels.seconds))
+    elif wheels:
+        decided = _is_on_time(lags, ("pose", "gyroscope"), wheels)
+        yield treads_apart(evidence, wheels, "the gyroscope", decided=decided)
+
+
+def _is_on_time(lags: dict[tuple[str, str], Lag], pair: tuple[str, str], than: Lag) -> bool:
+    """Whether poses decide that a sensor is not the one that is late against another."""
+    lag = lags.get(pair)
+    if lag is None or lag.together < TOGETHER:
+        return False
+    return abs(lag.seconds) + 2 * lag.sigma_s < ON_TIME * abs(than.seconds)
 
 
 def _poses_or_treads(evidence: Evidence, lag: Lag) -> Iterator[Finding]:
@@ -192,6 +204,8 @@ def _poses_or_treads(evidence: Evidence, lag: Lag) -> Iterator[Finding]:
     if "gyroscope" not in _headings(evidence) and lag.seconds > 0:
         kind, _ = commands_or_stamps(evidence, lag.seconds)
         if kind == "commands":
-            yield treads_apart(evidence, replace(lag, seconds=-lag.seconds), "the poses")
+            yield treads_apart(
+                evidence, replace(lag, seconds=-lag.seconds), "the poses", decided=True
+            )
             return
     yield pose_late(lag, "the treads")

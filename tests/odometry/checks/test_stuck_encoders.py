@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.checks.recording import check_recording
+from odometry.checks.undo import TREADS
 from odometry.run import Run
 from odometry.run_span import Span, cut_run
 from tests.odometry.checks.faulty import put
@@ -110,6 +111,13 @@ def test_a_span_that_is_cut_out_says_the_time_of_the_whole():
     run = cut_run(held(straight_between_stands(), "v_left", 100, 118, 0.0), Span(30.0, 190.0))
     (found,) = check_recording(run).findings
     assert np.ravel(found.spans_s) == pytest.approx([101, 118], abs=1.5)
+
+
+def test_speeds_that_come_early_are_no_stuck_encoder(shared_data):
+    run = Run.read(shared_data / "motion" / "husky_borealtc_flooring_00")
+    at_s = run.odometry.stamps_s
+    early = {name: np.interp(at_s + 0.6, at_s, run.odometry[name]) for name in TREADS}
+    assert stuck(put(run, "odometry", **early)) == []
 
 
 @pytest.mark.parametrize("side", ["v_left", "v_right"])

@@ -1,0 +1,47 @@
+"""A gyroscope that is late and treads that are early: poses decide, or both are named."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.checks.recording import check_recording
+from odometry.checks.undo import TREADS
+from tests.odometry.checks.faulty import put
+from tests.odometry.checks.test_other_robots import winding
+
+
+def later(run, names, seconds):
+    at_s = run.odometry.stamps_s
+    moved = {name: np.interp(at_s - seconds, at_s, run.odometry[name]) for name in names}
+    return put(run, "odometry", **moved)
+
+
+def sparse(run):
+    """A pose in 2.5 s: between them the robot turns to and fro."""
+    return replace(run, pose=run.pose.rows(np.arange(0, len(run.pose), 25)))
+
+
+WITHOUT = {"no poses": lambda run: replace(run, pose=None), "few poses": sparse}
+
+
+@pytest.mark.parametrize("poses", WITHOUT)
+@pytest.mark.parametrize("names", [("gyro_z",), TREADS], ids=["gyroscope", "treads"])
+@pytest.mark.parametrize("seconds", [-0.4, 0.4])
+def test_where_poses_do_not_decide_both_are_named(poses, names, seconds):
+    found = check_recording(WITHOUT[poses](later(winding(), names, seconds))).findings[0]
+    assert found.name in ("treads_late", "treads_are_commands")
+    of_treads = (seconds > 0) == (names == TREADS)
+    assert f"stamps of the gyroscope are {'early' if of_treads else 'late'}" in found.cause
+    assert "poses do not decide between these" in found.cause
+
+
+@pytest.mark.parametrize("seconds", [-0.4, 0.4])
+def test_where_poses_decide_one_is_named(seconds):
+    gyroscope, treads = (
+        check_recording(later(winding(), names, seconds)).findings[0]
+        for names in (("gyro_z",), TREADS)
+    )
+    assert gyroscope.name == "gyroscope_late"
+    assert treads.name in ("treads_late", "treads_are_commands")
+    assert "poses do not decide" not in treads.cause
