@@ -79,14 +79,22 @@ def _dead(evidence: Evidence, name: str) -> Finding:
 
 
 def _kept(evidence: Evidence, side: int) -> list[FloatArray]:
-    """Times in which one tread stands or keeps one value, and the other does not keep a speed."""
+    """Times in which one tread stands or keeps one value, and the other does not keep a speed.
+
+    Where the other keeps its values as well, at other times, the columns hold commands.
+    """
     stamps_s, speeds = evidence.stamps_s, evidence.speeds_m_s
     stands = np.abs(speeds[:, side]) < STANDING * evidence.fastest_m_s
     rows = runs_of(stands)
     standing = np.stack([stamps_s[rows[:, 0]], stamps_s[rows[:, 1] - 1]], axis=-1)
     constant = constant_spans(stamps_s, np.where(stands, np.nan, speeds[:, side]), STUCK_S)
     other_stands = np.abs(speeds[:, 1 - side]) < STANDING * evidence.fastest_m_s
+    of_other = constant_spans(
+        stamps_s, np.where(other_stands, np.nan, speeds[:, 1 - side]), STUCK_S
+    )
     both = constant_spans(stamps_s, np.where(other_stands[:, None], np.nan, speeds), 0.0)
+    if np.ptp(of_other, axis=1).sum() > np.ptp(constant, axis=1).max(initial=0.0):
+        constant = constant[:0]
     return [
         span
         for span in (*standing[np.ptp(standing, axis=1) >= STUCK_S], *constant)

@@ -128,3 +128,12 @@ def test_eighty_seconds_of_a_real_drive(shared_data, side, poses):
     found = check_recording(run).findings
     assert [finding.name for finding in found if finding.level == "warning"] == ["stuck_encoder"]
     assert found[0].spans_s[0][0] == pytest.approx(60.5, abs=1.0)
+
+
+@pytest.mark.parametrize("sensors", SENSORS)
+def test_commands_that_both_treads_hold_in_turn_are_no_stuck_encoder(sensors):
+    """A joystick holds its values while the robot still follows the last ones."""
+    run = winding()
+    for begin_s in (20, 50, 80, 110):
+        run = held(held(run, "v_left", begin_s, begin_s + 3), "v_right", begin_s + 5, begin_s + 8)
+    assert stuck(SENSORS[sensors](run)) == []
