@@ -135,5 +135,5 @@ def test_commands_that_both_treads_hold_in_turn_are_no_stuck_encoder(sensors):
     """A joystick holds its values while the robot still follows the last ones."""
     run = winding()
     for begin_s in (20, 50, 80, 110):
-        run = held(held(run, "v_left", begin_s, begin_s + 3), "v_right", begin_s + 5, begin_s + 8)
+        run = held(held(run, "v_left", begin_s, begin_s + 8), "v_right", begin_s + 10, begin_s + 18)
     assert stuck(SENSORS[sensors](run)) == []
