@@ -13,9 +13,6 @@ from odometry.arrays import AnyArray, ByteImage
 from odometry.errors import ConfigError
 from terrain.classification.feature_jobs import Transformer, shared_feature_matrix
 from terrain.classification.learning import LearningClassifier
-from terrain.classification.likeness import TrainingLook
-from terrain.classification.look import spread_rows
-from terrain.classification.no_ground import ShownGround
 from terrain.classification.old_samples import OldSamples, SamplesBesideOld
 from terrain.classification.patches import LabelledPatches
 from terrain.classification.presets import PRESETS
@@ -85,6 +82,8 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
         What `likeness` compares images with; None of features and of files of version 0.9.
     shown_ground_, other_things_ : ShownGround, OtherThings or None
         Limits by terrain; None of features, with ``chen2023`` and of files before 0.14, 0.16.
+    confidence_ : AnswerConfidence or None
+        None where `other_things_` is, and where all held-out answers are right or all are wrong.
 
     Notes
     -----
@@ -180,11 +179,13 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
         if copies is not None and (PRESETS[self.preset].as_published or not holds_images(X)):
             raise ConfigError(f"altered copies are for images and not for '{self.preset}'")
         altered = copies or LabelledPatches([], [], [], [], [], [])
+        strange: list[ByteImage] = []
         if holds_images(X):
             labels, photos = _labels_and_groups(len(X), y, groups)
+            strange = self._strange_patches(X, photos)
             images = [*X, *altered.images]
             features = shared_feature_matrix(
-                images,
+                [*images, *strange],
                 self._made_by(images, labels),
                 processes=processes,
                 scheduler=scheduler,
@@ -198,25 +199,18 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
             labels, photos = _labels_and_groups(len(features), labels, groups)
         self.classes_, codes = np.unique(labels, return_inverse=True)
         self.trained_on_ = trained_on
-        self.training_look_ = TrainingLook.of(X, codes, photos) if holds_images(X) else None
         samples = Samples(features[: len(labels)], codes, photos)
-        self.old_samples_ = self.shown_ground_ = None
-        if self.training_look_ is not None and not PRESETS[self.preset].as_published:
-            self.shown_ground_ = ShownGround.of(list(X), codes)
-            rows = spread_rows(photos)
-            self.old_samples_ = OldSamples(samples.features[rows], labels[rows])
+        self._look_at(X if holds_images(X) else None, samples, labels)
         if beside is not None:
             known = beside.of_terrains(self.classes_)
             old_codes = np.searchsorted(self.classes_, known.labels)
             samples = SamplesBesideOld(samples.features, codes, photos, known.features, old_codes)
-        self._learn(
-            samples,
-            Samples(
-                features[len(labels) :],
-                np.searchsorted(self.classes_, altered.labels),
-                np.asarray(altered.groups) if altered.groups else photos[:0],
-            ),
+        others = Samples(
+            features[len(labels) : len(features) - len(strange)],
+            np.searchsorted(self.classes_, altered.labels),
+            np.asarray(altered.groups) if altered.groups else photos[:0],
         )
+        self._learn(samples, others, strange, features[len(features) - len(strange) :])
         return self
 
     def _check_parameters(self) -> None:

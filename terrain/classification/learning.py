@@ -1,14 +1,24 @@
 """How a classifier learns from samples: what makes its features, which way, k and limits."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from sklearn.base import clone
 
-from odometry.arrays import AnyArray, ByteImage
+from odometry.arrays import AnyArray, ByteImage, FloatArray
+from terrain.classification.confidence_learning import (
+    Answers,
+    altered_patch,
+    learned_confidence,
+    shown_patches,
+)
 from terrain.classification.feature_jobs import Transformed, features_of
 from terrain.classification.features import FeatureSettings
-from terrain.classification.neighbours import DiscriminantNeighbours
+from terrain.classification.likeness import TrainingLook
+from terrain.classification.look import spread_rows
+from terrain.classification.neighbours import DiscriminantNeighbours, Neighbours
+from terrain.classification.no_ground import ShownGround
+from terrain.classification.old_samples import OldSamples
 from terrain.classification.other_things import OtherThings, squares_of_things
 from terrain.classification.presets import PRESETS
 from terrain.classification.rejection import quantiles, rejection_distances
@@ -45,7 +55,13 @@ class LearningClassifier(TrainedClassifier):
         return self._features
 
     @one_thread()  # more add up in another order: the last bits of a model are those of the machine
-    def _learn(self, samples: Samples, copies: Samples) -> None:
+    def _learn(
+        self,
+        samples: Samples,
+        copies: Samples,
+        strange: Sequence[ByteImage],
+        strange_features: FloatArray,
+    ) -> None:
         preset = PRESETS[self.preset]
         self.one_patch_ = preset.one_patch
         counts = (self.n_neighbors,) if self.n_neighbors else preset.neighbour_counts
@@ -76,12 +92,54 @@ class LearningClassifier(TrainedClassifier):
         self.image_rejection_distances_ = (
             None if preset.as_published else quantiles(found.image_distances, self.rejected_share)
         )
-        self.other_things_ = self._learn_other_things(samples)
+        self._learn_of_others(way, samples, copies, (strange, strange_features))
 
-    def _learn_other_things(self, samples: Samples) -> OtherThings | None:
+    def _learn_of_others(
+        self,
+        way: Callable[[], Neighbours],
+        samples: Samples,
+        copies: Samples,
+        strange: tuple[Sequence[ByteImage], FloatArray],
+    ) -> None:
+        """Learn of images unlike training: what things are, and how sure answers are."""
+        self.other_things_ = self.confidence_ = None
         if self._features is None or not isinstance(self._neighbours, DiscriminantNeighbours):
-            return None
+            return
+        squares = squares_of_things(self.patch_size_px)
+        things = features_of(squares, self._features)
         scaled = self._neighbours.scaler.transform
-        things = features_of(squares_of_things(self.patch_size_px), self._features)
-        terrain = scaled(samples.features)
-        return OtherThings.of(terrain, samples.codes, samples.groups, scaled(things))
+        self.other_things_ = OtherThings.of(
+            scaled(samples.features), samples.codes, samples.groups, scaled(things)
+        )
+        if self.training_look_ is None or self.image_rejection_distances_ is None:
+            return
+        shown = shown_patches(self.training_look_, samples, strange, (squares, things))
+        answers = Answers(
+            self._neighbours,
+            self.n_neighbors_,
+            self.temperature_,
+            self.image_rejection_distances_,
+            self.training_look_,
+        )
+        self.confidence_ = learned_confidence(answers, way, samples, copies, shown)
+
+    def _strange_patches(self, patches: Sequence[ByteImage], photos: AnyArray) -> list[ByteImage]:
+        """Every second of the patches whose looks are kept, altered."""
+        if PRESETS[self.preset].as_published:
+            return []
+        is_to_scale = self.metres_per_pixel is not None
+        rows = spread_rows(photos)[::2]
+        return [altered_patch(patches[i], is_to_scale=is_to_scale) for i in rows]
+
+    def _look_at(
+        self, patches: Sequence[ByteImage] | None, samples: Samples, labels: AnyArray
+    ) -> None:
+        """Keep how the training patches look, what they show, and some of their features."""
+        self.training_look_ = self.old_samples_ = self.shown_ground_ = None
+        if patches is None:
+            return
+        self.training_look_ = TrainingLook.of(patches, samples.codes, samples.groups)
+        if not PRESETS[self.preset].as_published:
+            self.shown_ground_ = ShownGround.of(list(patches), samples.codes)
+            rows = spread_rows(samples.groups)
+            self.old_samples_ = OldSamples(samples.features[rows], labels[rows])

@@ -49,8 +49,9 @@ class Likeness:
         where the light is that of training, 1 where every image is brighter.
     beyond : float or None
         How far the images are from training over what runs of training photographs are: unlike
-        above 1, see `RunLimits`. None of files before version 0.15, where limits of the ranks
-        and of the exposure decide.
+        above 1, see `RunLimits`. Fewer than five images are compared with one photograph. None
+        without images, of files before version 0.15, where limits of the ranks and of the exposure
+        decide, and of few images by files before version 0.16.
     """
 
     images: int
@@ -62,11 +63,11 @@ class Likeness:
 
     @property
     def is_unlike(self) -> bool | None:
-        """None where there are too few images."""
-        if self.images < FEWEST_IMAGES:
-            return None
+        """None without images, and of old files where there are too few."""
         if self.beyond is not None:
             return self.beyond > 1
+        if self.images < FEWEST_IMAGES:
+            return None
         is_far = self.rank > UNLIKE_RANK and self.rank_in_class > UNLIKE_RANK_IN_CLASS
         return is_far or abs(self.exposure - 0.5) > UNLIKE_EXPOSURE
 
@@ -76,12 +77,14 @@ class Likeness:
         if not self.is_unlike:
             return None
         how = f" ({', '.join(self.how)})" if self.how else ""
+        one = self.images == 1
+        those, these = ("image is", "it is") if one else ("images are", "these images are")
         return (
-            f"the images are unlike the training photographs of the model{how}: another camera, "
+            f"the {those} unlike the training photographs of the model{how}: another camera, "
             f"distance, light or compression. {100 * self.rank:.0f} % of held-out training patches "
-            f"are nearer to the others than these images are, and {100 * self.exposure:.0f} % of "
-            "those of similar texture are darker. Many labels may be wrong; label images of this "
-            "camera and train with them"
+            f"are nearer to the others than {these}, and {100 * self.exposure:.0f} % of "
+            f"those of similar texture are darker. {'The label' if one else 'Many labels'} may be "
+            "wrong; label images of this camera and train with them"
         )
 
 
@@ -134,9 +137,24 @@ class TrainingLook:
     def _scaled(self) -> FloatArray:
         return self.looks / self.spread
 
-    def compared(self, looks: FloatArray) -> Likeness:
-        """Compare the looks (m, 7) of images."""
-        return self.summary(looks, self.differences(looks) if len(looks) else looks)
+    def compared(self, looks: FloatArray, images: int | None = None) -> Likeness:
+        """Compare the looks (m, 7) of images, or of the patches of few images."""
+        return self.summary(looks, self.differences(looks) if len(looks) else looks, images)
+
+    def displacement(self, differences: FloatArray) -> float:
+        """How far an image lies from the most similar training looks, by its differences (m, 10).
+
+        Above 1 it is farther than most photographs held out.
+
+        Raises
+        ------
+        ValueError
+            If the model is of a file before version 0.16, without limits for one photograph.
+        """
+        beyond = None if self.limits is None else self.limits.beyond_one(differences)
+        if beyond is None:
+            raise ValueError("no limits of the looks of one photograph")
+        return float(beyond[0])
 
     def differences(self, looks: FloatArray, left_out: AnyArray | None = None) -> FloatArray:
         """How each of looks (m, 7) differs from the training patches, (m, 10): see `RunLimits`."""
@@ -150,15 +168,21 @@ class TrainingLook:
         exposures = darker.mean(axis=1) - 0.5
         return np.column_stack([nearer.mean(axis=1), in_terrain, exposures, scaled - similar])
 
-    def summary(self, looks: FloatArray, differences: FloatArray) -> Likeness:
-        """Of the looks (m, 7) of a run and their `differences` (m, 10)."""
-        if not len(looks):
+    def summary(
+        self, looks: FloatArray, differences: FloatArray, images: int | None = None
+    ) -> Likeness:
+        """Of the looks (m, 7) of a run, or of patches of few images, and their differences."""
+        images = len(looks) if images is None else images
+        if not images:
             return Likeness(0, float("nan"), float("nan"), ())
         rank, in_class, exposure = differences.mean(axis=0)[:3].tolist()
         beyond = None
-        if self.limits is not None:
+        if self.limits is not None and images < FEWEST_IMAGES:
+            of_one = self.limits.beyond_one(differences)
+            beyond = None if of_one is None else float(of_one.max())
+        elif self.limits is not None:
             beyond = self.limits.beyond(looks / self.spread, differences)
-        return Likeness(len(looks), rank, in_class, self.how(looks), exposure + 0.5, beyond)
+        return Likeness(images, rank, in_class, self.how(looks), exposure + 0.5, beyond)
 
     def _similar(self, scaled: FloatArray, numbers: slice, left_out: AnyArray | None) -> IntArray:
         """Rows (m, 30) of the most similar patches by some numbers of scaled looks (m, 7)."""

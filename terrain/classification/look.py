@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
+from terrain.classification.patches import cut_patches
 from terrain.images import to_grey
 
 NUMBERS = 7  # of a look; files before version 0.14 have the first six
@@ -34,6 +35,13 @@ def middle_of(image: ByteImage, size_px: int) -> ByteImage:
     """The square in the middle of an image; smaller where the image is."""
     top, left = (max(0, (length - size_px) // 2) for length in image.shape[:2])
     return image[top : top + size_px, left : left + size_px]
+
+
+def looks_of(image: ByteImage, size_px: int) -> FloatArray:
+    """Looks (m, 7) of at most 12 patches, spread evenly, or of an image that is smaller."""
+    patches = cut_patches(image, size_px) or [image]
+    few = np.linspace(0, len(patches) - 1, min(len(patches), PATCHES_PER_PHOTO)).astype(int)
+    return np.array([look_of(patches[i]) for i in few])
 
 
 def spread_rows(groups: AnyArray) -> IntArray:

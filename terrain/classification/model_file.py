@@ -9,9 +9,11 @@ import numpy as np
 from odometry.arrays import AnyArray
 from odometry.errors import ConfigError
 from odometry.io.array_file import FileKind, read_array_file, write_array_file
+from terrain.classification.confidence import AnswerConfidence
 from terrain.classification.feature_jobs import Transformed, Transformer, features_of
 from terrain.classification.features import FeatureSettings
 from terrain.classification.likeness import TrainingLook
+from terrain.classification.look import look_of
 from terrain.classification.model_settings import ModelSettings, NetworkSettings
 from terrain.classification.neighbours import Neighbours
 from terrain.classification.network_features import NetworkFeatures
@@ -46,6 +48,7 @@ class ModelFile:
     training_look_: TrainingLook | None
     shown_ground_: ShownGround | None
     other_things_: OtherThings | None
+    confidence_: AnswerConfidence | None
     old_samples_: OldSamples | None
     features: Transformer | None
     _features: FeatureSettings | Transformed | None
@@ -72,6 +75,8 @@ class ModelFile:
             arrays |= self.shown_ground_.arrays()
         if self.other_things_ is not None:
             arrays |= self.other_things_.arrays()
+        if self.confidence_ is not None:
+            arrays |= self.confidence_.arrays()
         if self.old_samples_ is not None:
             arrays |= self.old_samples_.arrays(self.classes_)
         if isinstance(self._features, FeatureSettings):
@@ -118,6 +123,7 @@ class ModelFile:
         model.training_look_ = TrainingLook.from_arrays(arrays, len(settings.classes))
         model.shown_ground_ = ShownGround.from_arrays(arrays, len(settings.classes))
         model.other_things_ = OtherThings.from_arrays(arrays, len(settings.classes))
+        model.confidence_ = AnswerConfidence.from_arrays(arrays)
         check_codes(arrays["codes"], len(settings.classes))
         model._neighbours = PRESETS[model.preset].neighbours.from_arrays(arrays)
         model._check_that_parts_fit(model._features)
@@ -135,6 +141,9 @@ class ModelFile:
         things = self.other_things_
         if things is not None and len(things.direction) != self.n_features_in_:
             raise ValueError(f"a direction of things for {len(things.direction)} features")
+        look = self.training_look_
+        if self.confidence_ is not None and look is not None:
+            look.displacement(look.differences(np.array([look_of(blank)])))
         if len(self.classes_) != len(self._neighbours.class_weights_):
             raise ValueError(f"{len(self.classes_)} class names for the samples of others")
 

@@ -12,8 +12,8 @@ from odometry.arrays import AnyArray, BoolArray, ByteImage, FloatArray
 from odometry.run import UNKNOWN
 from terrain.classification.calibration import tempered
 from terrain.classification.feature_jobs import features_of
-from terrain.classification.likeness import Likeness
-from terrain.classification.look import look_of, middle_of
+from terrain.classification.likeness import FEWEST_IMAGES, Likeness
+from terrain.classification.look import look_of, looks_of, middle_of
 from terrain.classification.model_file import ModelFile
 from terrain.classification.neighbours import DiscriminantNeighbours, Neighbours, vote
 from terrain.classification.other_things import THINGS
@@ -32,7 +32,8 @@ class Classification:
     label : str
         The terrain, or ``unknown`` where `distance` is beyond the rejection threshold.
     confidence : float
-        The probability of the likeliest known terrain, also where the label is ``unknown``.
+        The probability of the likeliest known terrain, also where the label is ``unknown``. It
+        falls where the image is unlike the training photographs.
     distance : float
         Distance to the nearest class in the preset's measure; compare with
         `TerrainClassifier.rejection_distance_`.
@@ -83,7 +84,10 @@ class TrainedClassifier(ModelFile):
         return np.asarray(self.classes_[likeliest])
 
     def predict_proba(self, X: Sequence[ByteImage] | AnyArray) -> FloatArray:
-        """Probabilities (n, classes) of images, whose patches are averaged, or of features."""
+        """Probabilities (n, classes) of images, whose patches are averaged, or of features.
+
+        By the votes alone: those of `classify` fall where images are unlike those of training.
+        """
         return self._votes_and_distances(X)[0]
 
     def is_unknown(self, X: Sequence[ByteImage] | AnyArray) -> BoolArray:
@@ -117,12 +121,25 @@ class TrainedClassifier(ModelFile):
         ]
 
     def checked(self, image: ByteImage, answer: Classification) -> Classification:
-        """The answer for an image, or the same as `unknown` where the image shows no ground."""
+        """The answer for an image with its confidence, `unknown` where it shows no ground."""
+        answer = self._calibrated(image, answer)
         if self.shown_ground_ is None:
             return answer
         code = int(np.argmax(list(answer.probabilities.values())))
         reason = self.shown_ground_.lacks(cut_patches(image, self.patch_size_px), code)
         return replace(answer, label=UNKNOWN, reason=reason) if reason else answer
+
+    def _calibrated(self, image: ByteImage, answer: Classification) -> Classification:
+        look = self.training_look_
+        if self.confidence_ is None or look is None:
+            return answer
+        differences = look.differences(looks_of(image, self.patch_size_px))
+        displacement = look.displacement(differences)
+        distance = answer.distance / self.rejection_distance_
+        votes = np.array([list(answer.probabilities.values())])
+        (given,) = self.confidence_.applied(votes, np.array([distance]), np.array([displacement]))
+        probabilities = dict(zip(answer.probabilities, given.tolist(), strict=True))
+        return replace(answer, confidence=float(given.max()), probabilities=probabilities)
 
     def middle_used(self, shape: tuple[int, int]) -> tuple[int, int]:
         """Rows and columns in the middle of an image of such a shape: whole patches, or one."""
@@ -188,12 +205,19 @@ class TrainedClassifier(ModelFile):
         """Whether images, as a whole, look like the training photographs; None if unknown.
 
         Sharpness, scale of texture, contrast and exposure of the middle of each image are compared
-        with those of the training patches. It says nothing of the terrain.
+        with those of the training patches, of fewer than five images all patches. It says nothing
+        of the terrain.
         """
         if self.training_look_ is None:
             return None
-        looks = [look_of(middle_of(image, self.patch_size_px)) for image in images]
-        return self.training_look_.compared(np.array(looks))
+        looks, few = [], []
+        for image in images:
+            looks.append(look_of(middle_of(image, self.patch_size_px)))
+            if len(looks) < FEWEST_IMAGES:
+                few.append(looks_of(image, self.patch_size_px))
+        if not 0 < len(looks) < FEWEST_IMAGES:
+            return self.training_look_.compared(np.array(looks))
+        return self.training_look_.compared(np.concatenate(few), len(looks))
 
     def _votes_and_distances(
         self, X: Sequence[ByteImage] | AnyArray

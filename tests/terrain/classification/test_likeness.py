@@ -1,13 +1,17 @@
 """Whether images look like the training photographs, whatever terrain they show."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.likeness import FEWEST_IMAGES, Likeness, TrainingLook
 from terrain.classification.look import look_of
 from terrain.classification.model_file import read_model, write_model
+from terrain.cli.classify import classify
 from terrain.errors import ModelFileError
 from terrain.image_labeller import WORTH_OF_UNLIKE, RunLikeness
 
@@ -79,11 +83,34 @@ def test_altered_photographs_are_not_and_it_says_how(training, how):
     assert how in likeness.note
 
 
-def test_a_few_images_cannot_decide(training):
-    blurred = [ALTERED["more blurred"](image) for image in photographs(2)[0]]
-    assert compared(training, blurred[: FEWEST_IMAGES - 1]).is_unlike is None
-    assert compared(training, blurred[:FEWEST_IMAGES]).is_unlike is True
+@pytest.mark.parametrize("count", [1, FEWEST_IMAGES - 1, FEWEST_IMAGES])
+def test_few_images_are_compared_with_one_photograph(training, count):
+    images = photographs(2)[0]
+    blurred = [ALTERED["more blurred"](image) for image in images]
+    assert compared(training, blurred[:count]).is_unlike is True
+    starts = range(0, len(images), 3)
+    alarms = [compared(training, images[i : i + min(count, 3)]).is_unlike for i in starts]
+    assert np.mean(alarms) < 0.2  # limits of 20 photographs a terrain are narrow
+
+
+def test_no_images_and_few_of_older_files_cannot_decide(training):
     assert compared(training, []).is_unlike is None
+    older = replace(training, limits=replace(training.limits, photograph_limits=None))
+    blurred = [ALTERED["more blurred"](image) for image in photographs(2)[0]]
+    assert compared(older, blurred[: FEWEST_IMAGES - 1]).is_unlike is None
+    assert compared(older, blurred[:FEWEST_IMAGES]).is_unlike is True
+
+
+def test_one_image_is_judged_by_all_of_its_patches(classifier, training_patches):
+    image = np.tile(training_patches[0][0], (2, 3))
+    likeness = classifier.likeness([image // 3])
+    assert (likeness.images, likeness.is_unlike) == (1, True)
+    assert likeness.note.startswith("the image is unlike the training photographs")
+    assert "The label may be wrong" in likeness.note
+    corner = image.copy()
+    size = classifier.patch_size_px
+    corner[:size, :size] = 0
+    assert classifier.likeness([corner]).rank > classifier.likeness([image]).rank
 
 
 def test_held_out_distances_have_an_even_rank_among_themselves():
@@ -181,3 +208,14 @@ def test_looks_of_older_files_have_no_compression(training):
     images = photographs(2)[0]
     assert compared(old, images).is_unlike is False
     assert compared(old, [ALTERED["more blurred"](image) for image in images]).is_unlike
+
+
+def test_classify_prints_the_note_on_a_single_image(classifier, training_patches, tmp_path):
+    classifier.save(tmp_path / "a.model")
+    image = np.tile(training_patches[0][0], (2, 3))
+    for name, shown in (("own", image), ("dark", image // 3)):
+        cv2.imwrite(str(tmp_path / f"{name}.png"), shown)
+        files = [str(tmp_path / "a.model"), str(tmp_path / f"{name}.png")]
+        answer = CliRunner().invoke(classify, files)
+        assert answer.exit_code == 0
+        assert ("Note: the image is unlike" in answer.stderr) is (name == "dark")

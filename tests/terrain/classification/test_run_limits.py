@@ -82,10 +82,35 @@ def test_the_displacement_is_the_mahalanobis_distance_of_means_of_photographs():
     assert found.apart(looks[:3], shifted)[0] == pytest.approx(exact, rel=0.01)
 
 
+def test_about_one_photograph_of_twenty_is_beyond_by_any_number_of_patches():
+    fitted = [RunLimits.of(*photographs(seed, photos=150)) for seed in (50, 51, 52)]
+    for count in (1, PATCHES):
+        beyond = [
+            of.beyond_one(differences[:count]).max() > 1
+            for of in fitted
+            for seed in range(2, 6)
+            for _, differences in runs(seed, photos=1)
+        ]
+        assert FALSE_ALARMS / 2 < np.mean(beyond) < 2 * FALSE_ALARMS
+
+
+@pytest.mark.parametrize(("number", "shift"), [(1, 0.5), (2, 0.9), (6, 4.0)])
+def test_a_photograph_is_beyond_where_it_differs_in_one_direction(limits, number, shift):
+    for _, differences in runs(20, photos=1):
+        moved = differences.copy()
+        moved[:, number] += shift
+        assert limits.beyond_one(moved).max() > 1
+
+
 def test_a_file_keeps_them_and_an_older_one_has_none(limits):
     again = RunLimits.from_arrays(limits.arrays())
     for run in runs(40):
         assert again.beyond(*run) == limits.beyond(*run)
+        np.testing.assert_array_equal(again.beyond_one(run[1]), limits.beyond_one(run[1]))
+    before = {name: of for name, of in limits.arrays().items() if "photograph" not in name}
+    assert RunLimits.from_arrays(before).beyond_one(run[1]) is None
     assert RunLimits.from_arrays({}) is None
     with pytest.raises(ValueError, match="shapes"):
         RunLimits.from_arrays(limits.arrays() | {"run_limits": np.ones(2)})
+    with pytest.raises(ValueError, match="shapes"):
+        RunLimits.from_arrays(limits.arrays() | {"run_photograph_limits": np.ones((5, 2))})

@@ -1,0 +1,140 @@
+"""What the confidence of answers is learned from: images whose photograph was held out."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Self
+
+import cv2
+import numpy as np
+
+from odometry.arrays import AnyArray, BoolArray, ByteImage, FloatArray, IntArray
+from terrain.classification.augmentation import Augmentation, altered
+from terrain.classification.calibration import tempered
+from terrain.classification.confidence import WEIGHTS, AnswerConfidence, evidence
+from terrain.classification.likeness import TrainingLook
+from terrain.classification.look import look_of, spread_rows
+from terrain.classification.neighbours import Neighbours, vote
+from terrain.classification.other_things import SQUARES
+from terrain.classification.rejection import PATCHES, as_of_one_patch, images_of_patches
+from terrain.classification.trained_on import image_sum
+from terrain.classification.validation import Samples, grouped_folds
+
+CROP = 4  # times as wide as a patch, at the most, of a patch beside its mirror images
+NO_TERRAIN = -1
+Table = tuple[float, FloatArray, BoolArray]
+
+
+@dataclass(frozen=True)
+class Shown:
+    """Patches to judge: features (n, F), differences of looks (n, 10), true codes and groups (n,).
+
+    The true code of things is -1.
+    """
+
+    features: FloatArray
+    differences: FloatArray
+    codes: IntArray
+    groups: AnyArray
+
+    def of_groups(self, groups: AnyArray) -> Self:
+        """Those of some groups."""
+        rows = np.isin(self.groups, groups)
+        return type(self)(
+            self.features[rows], self.differences[rows], self.codes[rows], self.groups[rows]
+        )
+
+
+def shown_patches(
+    look: TrainingLook,
+    samples: Samples,
+    strange: tuple[Sequence[ByteImage], FloatArray],
+    things: tuple[Sequence[ByteImage], FloatArray],
+) -> tuple[Shown, Shown, Shown]:
+    """Training patches, every second of them altered, and things, with their features.
+
+    The looks of the first two are compared with those of other photographs.
+    """
+    rows = spread_rows(samples.groups)
+    codes, groups = samples.codes[rows], samples.groups[rows]
+    of_strange, of_things = (
+        np.array([look_of(image) for image in images]) for images, _ in (strange, things)
+    )
+    numbers = np.arange(len(of_things))
+    own = groups[:, None] == groups
+    return (
+        Shown(samples.features[rows], look.differences(look.looks, own), codes, groups),
+        Shown(strange[1], look.differences(of_strange, own[::2]), codes[::2], groups[::2]),
+        Shown(
+            things[1],
+            look.differences(of_things),
+            np.full(len(numbers), NO_TERRAIN),
+            numbers // SQUARES,
+        ),
+    )
+
+
+@dataclass(frozen=True)
+class Answers:
+    """How a classifier answers; its neighbours, or others with the same settings."""
+
+    model: Neighbours
+    n_neighbors: int
+    temperature: float | None
+    limits: Sequence[float]
+    look: TrainingLook
+
+    def table(self, model: Neighbours, shown: Shown, patches: int) -> tuple[FloatArray, BoolArray]:
+        """`evidence` (m, 3) of images of so many patches, and which answers are right (m,)."""
+        images = images_of_patches(shown.groups, patches)
+        labels, apart = model.labels_and_image_distances(shown.features, self.n_neighbors, images)
+        votes = tempered(vote(labels, model.class_weights_), self.temperature)
+        means = np.array([votes[rows].mean(axis=0) for rows in images])
+        near = [
+            as_of_one_patch(distance, len(rows), self.limits) / self.limits[0]
+            for distance, rows in zip(apart.tolist(), images, strict=True)
+        ]
+        displaced = [self.look.displacement(shown.differences[rows]) for rows in images]
+        true = np.array([shown.codes[rows[0]] for rows in images])
+        given = evidence(means, np.array(near), np.array(displaced))
+        return given, means.argmax(axis=1) == true
+
+
+def learned_confidence(
+    answers: Answers,
+    way: Callable[[], Neighbours],
+    samples: Samples,
+    copies: Samples,
+    shown: tuple[Shown, Shown, Shown],
+) -> AnswerConfidence | None:
+    """The confidence by patches as they are and altered, each held out, and by things.
+
+    Each counts alone and with the others of its photograph.
+    """
+    *of_terrain, things = shown
+    tables: list[Table] = []
+    for train, test in grouped_folds(samples.codes, samples.groups):
+        fold = way().fit(*samples.with_copies(train, copies))
+        groups = np.unique(samples.groups[test])
+        for share, kind in zip(WEIGHTS, of_terrain, strict=False):
+            held = kind.of_groups(groups)
+            part = len(held.codes) / len(kind.codes)
+            tables += [(share * part, *answers.table(fold, held, n)) for n in _sizes(held)]
+    tables += [(WEIGHTS[-1], *answers.table(answers.model, things, n)) for n in _sizes(things)]
+    return AnswerConfidence.of(tables)
+
+
+def _sizes(shown: Shown) -> tuple[int, ...]:
+    return (PATCHES[0], PATCHES[-1]) if len(shown.codes) else ()
+
+
+def altered_patch(patch: ByteImage, *, is_to_scale: bool) -> ByteImage:
+    """A patch as another camera, light or distance might show it, always the same.
+
+    Unless the scale is known, texture becomes finer: the patch beside its mirror images is reduced.
+    """
+    settings = Augmentation(largest_crop=1.0 if is_to_scale else CROP)
+    rng = np.random.default_rng([settings.seed, int(image_sum(patch), 16)])
+    size_px = len(patch)
+    border = 0 if is_to_scale else (CROP - 1) * size_px // 2
+    wide = cv2.copyMakeBorder(patch, border, border, border, border, cv2.BORDER_REFLECT)
+    return altered(np.asarray(wide, np.uint8), size_px, settings, rng)

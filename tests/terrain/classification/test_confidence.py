@@ -1,0 +1,132 @@
+"""How probable an answer is, by how far its image is from training."""
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+import skimage.data
+
+from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.confidence import MOST, AnswerConfidence, evidence
+from terrain.classification.confidence_learning import altered_patch
+from terrain.classification.model_file import read_model, write_model
+from terrain.errors import ModelFileError
+from tests.terrain.classification.test_no_ground import photographs
+
+NEAR, FAR = np.array([0.1]), np.array([3.0])
+VOTES = np.array([[0.1, 0.7, 0.2]])
+
+
+@pytest.fixture(scope="module")
+def model():
+    return TerrainClassifier().fit(*photographs(1, photos=40))
+
+
+def known(weights=(2.0, 0.5, -1.0, -1.0)):
+    return AnswerConfidence(np.array(weights))
+
+
+def drawn(weights, count, seed):
+    rng = np.random.default_rng(seed)
+    numbers = rng.normal(0, 1, (count, 3))
+    right = rng.random(count) < 1 / (1 + np.exp(-weights[0] - numbers @ weights[1:]))
+    return numbers, right
+
+
+def test_it_finds_the_weights_that_answers_were_drawn_with():
+    weights = np.array([0.5, 0.8, -1.0, -0.4])
+    tables = [(1.0, *drawn(weights, 20_000, seed)) for seed in range(3)]
+    np.testing.assert_allclose(AnswerConfidence.of(tables).weights, weights, atol=0.05)
+
+
+def test_each_table_counts_by_its_weight_and_not_by_its_length():
+    numbers = np.zeros((300, 3))
+    numbers[:, 0] = np.linspace(-1, 1, 300)
+    long, short = (np.resize([True, True, False], n) for n in (300, 30))
+    tables = [(0.5, numbers, long), (0.5, numbers[::10], ~short)]
+    found = AnswerConfidence.of(tables).weights[0]
+    assert found == pytest.approx(0.0, abs=0.02)  # of two thirds and one third
+
+
+def test_without_right_or_without_wrong_answers_nothing_is_learned():
+    numbers = np.zeros((4, 3))
+    for answer in (True, False):
+        assert AnswerConfidence.of([(1.0, numbers, np.full(4, answer))]) is None
+
+
+def test_what_is_farther_away_is_less_probable():
+    sure = [
+        known().applied(VOTES, distance, displacement).max()
+        for distance, displacement in ((NEAR, NEAR), (NEAR, FAR), (FAR, FAR))
+    ]
+    assert sure[0] > sure[1] > sure[2]
+    score = 2.0 + 0.5 * np.log(0.7 / 0.3) - np.log(0.1) - np.log(3.0)
+    assert sure[1] == pytest.approx(1 / (1 + np.exp(-score)))
+
+
+@pytest.mark.parametrize("intercept", [-50.0, -1.0, 0.0, 1.0, 50.0])
+def test_probabilities_add_up_and_the_likeliest_stays_the_likeliest(intercept):
+    votes = np.random.default_rng(0).dirichlet(np.ones(4), 200)
+    far = np.random.default_rng(1).uniform(0, 4, (2, 200))
+    given = known((intercept, 0.5, -1.0, -1.0)).applied(votes, *far)
+    np.testing.assert_allclose(given.sum(axis=1), 1.0)
+    assert np.all(given >= 0)
+    np.testing.assert_array_equal(given.argmax(axis=1), votes.argmax(axis=1))
+    assert np.all((given.max(axis=1) > 0.25) & (given.max(axis=1) <= MOST + 1e-12))
+
+
+def test_evidence_of_what_is_on_a_sample_or_infinitely_far_is_finite():
+    unanimous = np.array([[1.0, 0.0], [0.5, 0.5]])
+    given = evidence(unanimous, np.array([0.0, 1e300]), np.array([0.0, 1e300]))
+    assert np.isfinite(given).all()
+    np.testing.assert_allclose(known().applied(unanimous, FAR[[0, 0]], FAR[[0, 0]]).sum(axis=1), 1)
+
+
+def test_altered_images_and_things_are_less_sure_than_photographs_held_out(model):
+    images, labels, _ = photographs(2, photos=20)
+    own = model.classify(images)
+    right = np.array([of.label == label for of, label in zip(own, labels, strict=True)])
+    assert np.mean([of.confidence for of in own]) == pytest.approx(right.mean(), abs=0.05)
+    blurred = model.classify([cv2.GaussianBlur(image, (0, 0), 2.0) for image in images])
+    things = model.classify([skimage.data.coffee(), skimage.data.rocket()])
+    assert np.mean([of.confidence for of in blurred]) < 0.8
+    assert max(of.confidence for of in things) < 0.7
+
+
+def test_the_likeliest_terrain_is_that_of_the_votes(model):
+    images = photographs(2, photos=2)[0]
+    answers = model.classify(images)
+    names = [max(of.probabilities, key=of.probabilities.get) for of in answers]
+    assert model.predict(images).tolist() == names
+    assert all(of.confidence == max(of.probabilities.values()) for of in answers)
+
+
+def test_altered_patches_are_always_the_same_and_keep_their_scale_where_it_is_known():
+    patch = photographs(3, photos=1)[0][0]
+    altered = altered_patch(patch, is_to_scale=True)
+    assert altered.shape == patch.shape
+    assert altered.dtype == np.uint8
+    np.testing.assert_array_equal(altered, altered_patch(patch, is_to_scale=True))
+    grey = [altered_patch(patch, is_to_scale=of).mean(axis=2).ravel() for of in (True, False)]
+    to_scale, reduced = (np.corrcoef(patch.mean(axis=2).ravel(), of)[0, 1] for of in grey)
+    assert to_scale > 0.3 > abs(reduced)
+
+
+def test_a_model_file_keeps_it_and_older_ones_give_the_votes(model, tmp_path):
+    images = photographs(2, photos=2)[0]
+    model.save(tmp_path / "a.model")
+    assert TerrainClassifier.load(tmp_path / "a.model").classify(images) == model.classify(images)
+    settings, arrays = read_model(tmp_path / "a.model")
+    old = {name: of for name, of in arrays.items() if name != "confidence_weights"}
+    write_model(tmp_path / "old.model", settings, old)
+    before = TerrainClassifier.load(tmp_path / "old.model")
+    assert before.confidence_ is None
+    for now, then in zip(model.classify(images), before.classify(images), strict=True):
+        same = replace(now, confidence=then.confidence, probabilities=then.probabilities)
+        assert same == then
+    del (without := dict(arrays))["run_photograph_limits"]
+    for bad in (arrays | {"confidence_weights": np.ones(3)}, without):
+        write_model(tmp_path / "bad.model", settings, bad)
+        with pytest.raises(ModelFileError, match=r"weights of the confidence|limits of the looks"):
+            TerrainClassifier.load(tmp_path / "bad.model")
