@@ -103,15 +103,16 @@ def _with_clock(evidence: Evidence, table: str, lag: Lag) -> Mend:
     return changed(table, "t", on_time)
 
 
-def pose_late(lag: Lag, other: str) -> Finding:
-    """Poses that are late, or early, against the gyroscope or the treads."""
+def pose_late(lag: Lag, other: str, *, gyroscope: bool = True) -> Finding:
+    """Poses that are late, or early, against the gyroscope or the treads.
+
+    Where there is a `gyroscope` that does not decide, the words say so.
+    """
     word, opposite = _words(lag)
     more = ""
     if other == "the treads":
-        more = (
-            f"; or those of the treads are {opposite}: without a gyroscope this cannot be "
-            "determined"
-        )
+        without = "by the gyroscope here" if gyroscope else "without a gyroscope"
+        more = f"; or those of the treads are {opposite}: {without} this cannot be determined"
         if lag.seconds > 0:
             more += " (v_left and v_right may be commands, which the robot follows later)"
     return Finding(
@@ -164,7 +165,8 @@ def treads_apart(evidence: Evidence, lag: Lag, other: str, *, decided: bool) -> 
         return _treads("treads_late", lag, other, smooth)
     kind, mend = commands_or_stamps(evidence, -lag.seconds)
     if kind == "stamps":
-        return _treads("treads_late", lag, other, f"{cause}{undecided}", mend)
+        delayed = "; or they are commands on which the robot acts so much later"
+        return _treads("treads_late", lag, other, f"{cause}{delayed}{undecided}", mend)
     either = "; or their stamps are early: these cannot be distinguished"
     more = "" if kind == "commands" else either
     return _treads(

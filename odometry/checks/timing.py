@@ -201,11 +201,12 @@ def _is_on_time(lags: dict[tuple[str, str], Lag], pair: tuple[str, str], than: L
 
 def _poses_or_treads(evidence: Evidence, lag: Lag) -> Iterator[Finding]:
     """Without a gyroscope that says more: treads that the robot follows later, or late poses."""
-    if "gyroscope" not in _headings(evidence) and lag.seconds > 0:
+    gyroscope = "gyroscope" in _headings(evidence)
+    if not gyroscope and lag.seconds > 0:
         kind, _ = commands_or_stamps(evidence, lag.seconds)
         if kind == "commands":
             yield treads_apart(
                 evidence, replace(lag, seconds=-lag.seconds), "the poses", decided=True
             )
             return
-    yield pose_late(lag, "the treads")
+    yield pose_late(lag, "the treads", gyroscope=gyroscope)

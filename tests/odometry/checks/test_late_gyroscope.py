@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from odometry.checks.lag import Lag
+from odometry.checks.late_stamps import pose_late
 from odometry.checks.recording import check_recording
 from odometry.checks.undo import TREADS
 from tests.odometry.checks.faulty import put
@@ -45,3 +47,18 @@ def test_where_poses_decide_one_is_named(seconds):
     assert gyroscope.name == "gyroscope_late"
     assert treads.name in ("treads_late", "treads_are_commands")
     assert "poses do not decide" not in treads.cause
+
+
+@pytest.mark.parametrize(
+    ("gyroscope", "words"), [(True, "by the gyroscope here"), (False, "without a gyroscope")]
+)
+def test_late_poses_beside_treads_alone_say_what_does_not_decide(gyroscope, words):
+    lag = Lag(0.2, 0.01, 0.0, 0.0, 0.9, 5, 1.0)
+    found = pose_late(lag, "the treads", gyroscope=gyroscope)
+    assert f"treads are early: {words} this cannot be determined" in found.cause
+
+
+def test_treads_that_are_early_by_a_constant_time_may_be_commands():
+    found = check_recording(later(winding(), TREADS, -0.4)).findings[0]
+    assert found.name == "treads_late"
+    assert "or they are commands on which the robot acts so much later" in found.cause
