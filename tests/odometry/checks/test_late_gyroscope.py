@@ -59,6 +59,6 @@ def test_late_poses_beside_treads_alone_say_what_does_not_decide(gyroscope, word
 
 
 def test_treads_that_are_early_by_a_constant_time_may_be_commands():
-    found = check_recording(later(winding(), TREADS, -0.4)).findings[0]
+    found = check_recording(later(winding(), TREADS, -0.8)).findings[0]
     assert found.name == "treads_late"
     assert "or they are commands on which the robot acts so much later" in found.cause
