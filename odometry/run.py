@@ -150,7 +150,8 @@ def _check_terrain(settings: Mapping[str, Any], file: Path) -> None:
 def _robot(settings: Mapping[str, Any], file: Path) -> Robot:
     table = settings.get("robot")
     if not isinstance(table, Mapping) or "track_width" not in table:
-        raise RunFolderError(f"{file}: [robot] with track_width [m] is required")
+        there = f", and it has {', '.join(map(str, table))}" if isinstance(table, Mapping) else ""
+        raise RunFolderError(f"{file}: [robot] with track_width [m] is required{there}")
     known: dict[str, Any] = {}
     for field in fields(Robot):
         if field.name not in table:

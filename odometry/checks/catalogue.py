@@ -18,6 +18,8 @@ CATALOGUE: dict[str, str] = {
     "odometry_gap": "rows of odometry.csv are lost",
     "clock_set": "a clock that was set while recording",
     "track_width": "track width far from the width that turns imply",
+    "robot_size": "sizes of [robot] in another unit",
+    "setting_name": "a key of run.toml that is not read, with a name like a known one",
     "sensor_place": "[sensors] pose in mm",
     "terrain_names": "two spellings of one terrain",
     "one_motion": "a drive that only goes straight, spins, or is one circle",
@@ -155,6 +157,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     | POSES
     | {"treads_not_proportional", "far_sensor", "treads_unequal", "slip_episodes"},
     "treads_unequal": frozenset({"pose_jumps"}),
+    "track_width": frozenset({"robot_size"}),  # turns say how wide it is
     "treads_are_counters": TREADS
     | POSES
     | YAW

@@ -30,6 +30,7 @@ from odometry.checks.poses import pose_outages, poses
 from odometry.checks.position_axes import position_axes
 from odometry.checks.proportion import proportion
 from odometry.checks.settings import columns, settings
+from odometry.checks.settings_names import robot_sizes, settings_names
 from odometry.checks.sides import scale_change, sides
 from odometry.checks.stamps import stamps, unreadable_stamps
 from odometry.checks.stuck_encoders import stuck_encoders
@@ -56,6 +57,7 @@ CHECKS: tuple[Check, ...] = (
     turning,
     course,
     position_axes,
+    robot_sizes,
     equal_treads,
     one_encoder,
     unsigned,
@@ -74,6 +76,7 @@ CHECKS: tuple[Check, ...] = (
     attitude,
     settings,
     columns,
+    settings_names,
     one_motion,
 )
 LEAST_ROWS = 10

@@ -105,7 +105,7 @@ def _sensors(evidence: Evidence) -> Iterator[Finding]:
         yield Finding(
             "sensor_place",
             Level.WARNING,
-            f"[sensors] pose = {list(pose_m)} m",
+            f"run.toml: [sensors] pose = {list(pose_m)} m, expected at most {FARTHEST_M:g} m",
             "The place of the sensor is in mm or cm, not metres",
             "Write it in metres, in the robot frame",
         )

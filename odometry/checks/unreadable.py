@@ -79,10 +79,20 @@ CAUSES = (
         "Remove the file where it is optional, or record again",
     ),
     (
+        r"\[robot\] \w+ = ([^-\d]|[\d.]+e?[\d+-]*[^\d.e,])",
+        "The value is no number: text, a list, or true or false",
+        "Write a number in metres or kilograms, without quotation marks",
+    ),
+    (
         r"\[robot\] track_width = -|\[robot\] track_width = 0|expected a positive number",
         "track_width or another size of the robot is negative or zero: a sign, or a placeholder "
         "never filled in",
         "Measure it, in metres",
+    ),
+    (
+        r"\[sensors\] \w+ = (?!\[[-+\d.e]+, [-+\d.e]+, [-+\d.e]+\])",
+        "The value is no list of three numbers",
+        "Write three numbers in brackets, without quotation marks",
     ),
     (
         r"\[sensors\] pose",

@@ -1,0 +1,86 @@
+"""Keys of run.toml that are misspelt, and sizes that no robot has."""
+
+from dataclasses import replace
+
+import pytest
+
+from odometry.checks.recording import check_recording
+from odometry.run import Robot
+from tests.odometry.checks.faulty import width
+from tests.odometry.checks.test_other_robots import winding, without_gyroscope
+
+
+def named(run, name):
+    return [one for one in check_recording(run).findings if one.name == name]
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({"sensors": {"pos": [0.1, 0, 0]}}, ("[sensors] has a key pos,", "no pose")),
+        ({"sensors": {"antenna": [0.1, 0, 0]}}, ("[sensors] has a key antenna,", "no pose")),
+        ({"sensors": {"IMU": [0, 0, 0]}}, ("[sensors] has a key IMU,", "no imu")),
+        ({"sensor": {"pose": [0.1, 0, 0]}}, ("run.toml has a table [sensor],", "no [sensors]")),
+        ({"robot": {"wheelradius": 0.1}}, ("[robot] has a key wheelradius,", "no wheel_radius")),
+        ({"run": {"terain": "grass"}}, ("[run] has a key terain,", "no terrain")),
+    ],
+)
+def test_a_key_that_is_not_read_is_noted_with_the_one_that_is_meant(settings, words):
+    (found,) = named(replace(winding(), settings=settings), "setting_name")
+    assert all(word in found.seen for word in words)
+    assert "run.toml" in found.seen
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"sensors": {"pose": [0.1, 0, 0], "antenna": "front"}, "source": {"bag": "x"}},
+        {"robot": {"name": "husky", "serial": 7}, "simulation": {"seed": 1}, "anything": {}},
+    ],
+)
+def test_other_keys_are_kept_and_not_noted(settings):
+    assert named(replace(winding(), settings=settings), "setting_name") == []
+
+
+@pytest.mark.parametrize("factor", [0.002, 100.0])
+def test_a_track_width_in_another_unit_is_named_with_what_was_expected(factor):
+    run = replace(without_gyroscope(winding()), pose=None)
+    found = check_recording(width(run, factor)).findings
+    assert [one.name for one in found if one.level == "warning"] == ["robot_size"]
+    assert "expected 0.05 to 6 m" in found[0].seen
+    assert "[robot] track_width = " in found[0].seen
+
+
+@pytest.mark.parametrize("factor", [0.002, 100.0])
+def test_turns_say_more_of_a_track_width(factor):
+    found = check_recording(width(winding(), factor)).findings
+    assert found[0].name == "track_width"
+    assert "robot_size" not in [one.name for one in found]
+
+
+def test_a_mass_in_grams_is_named():
+    robot = Robot(track_width=0.6, mass=5e5)
+    (found,) = named(replace(winding(), robot=robot), "robot_size")
+    assert "kg" in found.seen
+
+
+@pytest.mark.parametrize(
+    ("toml", "cause"),
+    [
+        ('[robot]\ntrack_width = "0.6"\n', "The value is no number"),
+        ("[robot]\ntrack_width = [0.6]\n", "The value is no number"),
+        ("[robot]\ntrack_width = true\n", "The value is no number"),
+        ("[robot]\ntrack_width = -0.6\n", "negative or zero"),
+        ("[robot]\ntrack_width = 0.6\n[sensors]\npose = 0.3\n", "no list of three numbers"),
+        ('[robot]\ntrack_width = 0.6\n[sensors]\npose = ["1", 0, 0]\n', "no list of three numbers"),
+        ("[robot]\ntrack_width = 0.6\n[sensors]\npose = [0.1, 0]\n", "no list of three numbers"),
+        ("[robot]\ntrack_width = 0.6\n[sensors]\npose = [300, 0, 0]\n", "in mm or cm"),
+        ("[robot]\ntrack_width = 0.6\n[sensors]\nimu = [180, 0, 0]\n", "in degrees"),
+    ],
+)
+def test_a_value_of_a_wrong_type_is_not_called_another_unit(toml, cause, tmp_path):
+    (tmp_path / "run.toml").write_text(toml)
+    (tmp_path / "odometry.csv").write_text("t,v_left,v_right\n0,0,0\n1,0,0\n")
+    (found,) = check_recording(tmp_path).findings
+    assert cause in found.cause
+    assert str(tmp_path / "run.toml") in found.seen
