@@ -83,9 +83,14 @@ def drives_apart(
     """Drives that distinguish the first effect, in its form, from those that came as near.
 
     Of each name it is the form of most evidence: on one heading, some have been no candidates.
+    What is as near as a later effect is no rival of the first.
     """
     fits = {one.effect.name: one.fitted for one in sorted(candidates, key=_evidence)}
-    names = [one.name for one in equivalent if not one.by_equation]
+    names = [
+        one.name
+        for one in equivalent
+        if not one.by_equation and one.instead_of not in found.names[1:]
+    ]
     rivals = {name: fits[name] for name in names if name in fits}
     if not rivals or not found.names or found.names[0] not in fits:
         return ()

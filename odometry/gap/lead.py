@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from odometry.checks.warned import sensor_faults
+from odometry.effects.catalogue import EFFECTS
 from odometry.effects.reference_rounding import RoundedPositions
 from odometry.effects.residual import Residual
 from odometry.gap.quantities import Share, held_out_share, metres, percent, with_interval
@@ -11,6 +12,7 @@ from odometry.gap.result import Equivalent, GapResult
 from odometry.gap.verdict import Refusal
 
 REFUSED = 2  # reasons that are given
+OF_REFERENCE = frozenset(effect.name for effect in EFFECTS if effect.of_reference)
 
 
 def lead(result: GapResult) -> tuple[str, str, str]:
@@ -44,6 +46,8 @@ def _missing(result: GapResult) -> str:
     )
     alike = [e.added.effect.robot_alike for e in named if e.added.effect.robot_alike]
     if all(effect.added.effect.of_reference for effect in named) and not rest:
+        if any(one.name not in OF_REFERENCE for one in result.equivalent):
+            return f"A sensor or the robot: {names}{untold}."
         who = f", or {alike[0]}" if alike else ", not the robot"
         return f"A sensor is at fault{who}: {names}{untold}."
     faults = sensor_faults(result.faults)

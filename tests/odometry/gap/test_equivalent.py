@@ -200,6 +200,14 @@ def test_a_drive_distinguishes_the_first_of_two_names(monkeypatch):
     assert asked == {"lever_arm": first.fitted, "time_offset": rival.fitted}
 
 
+def test_a_rival_of_a_later_effect_is_no_rival_of_the_first(monkeypatch):
+    first, second, rival = (
+        judged(one, 90.0, 104.0) for one in (LeverArm(), HeadingOffset(), TimeOffset())
+    )
+    found = (Equivalent("time_offset", "heading_offset", "a drive"),)
+    assert asked_about((first, rival), found, monkeypatch, steps=(first, second)) == {}
+
+
 def test_a_drive_is_for_the_form_of_most_evidence(beside, monkeypatch):
     """On one heading a form that came as near may have been no candidate."""
     first, far, near = (judged(HeadingOffset(), 90.0, 104.0), *ICRS)

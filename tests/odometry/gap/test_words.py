@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.effects.corrected import Added
-from odometry.effects.sensor_mount import HeadingOffset
+from odometry.effects.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.time_offset import TimeOffset
 from odometry.gap.next_drives import NextDrive
 from odometry.gap.quantities import (
@@ -85,6 +85,14 @@ def test_a_fault_of_the_reference_is_none_of_the_robot(scaled_result):
     assert said[0] == (
         "A sensor is at fault, not the robot: pose stamps that are late or early (time_offset)."
     )
+
+
+def test_a_fault_that_may_be_of_the_robot_is_not_said_to_be_of_a_sensor(scaled_result):
+    two = np.array([0.1, 0.0])
+    arm = NamedEffect(Added(LeverArm(), two), two, two, 0.2, 0.1, 50.0)
+    skid = Equivalent("lateral_skid", "lever_arm", "a second antenna", by_equation=True)
+    said = sentences(replace(scaled_result, effects=(arm,), equivalent=(skid,)))
+    assert said[0].startswith("A sensor or the robot: a reference that is not at the robot's")
 
 
 def test_a_turned_reference_may_be_a_robot_that_goes_to_one_side(scaled_result):
