@@ -8,7 +8,7 @@ from odometry.effects.reference_rounding import RoundedPositions
 from odometry.effects.residual import Residual
 from odometry.gap.quantities import Share, held_out_share, metres, percent, with_interval
 from odometry.gap.region_words import noun_of_residual
-from odometry.gap.result import Equivalent, GapResult
+from odometry.gap.result import Equivalent, GapResult, NamedEffect
 from odometry.gap.verdict import Refusal
 
 REFUSED = 2  # reasons that are given
@@ -44,19 +44,25 @@ def _missing(result: GapResult) -> str:
         f"; these runs do not distinguish {name} from {listed(others, 'or')}"
         for name, others in _instead(result.equivalent).items()
     )
-    alike = [e.added.effect.robot_alike for e in named if e.added.effect.robot_alike]
-    if all(effect.added.effect.of_reference for effect in named) and not rest:
-        if any(one.name not in OF_REFERENCE for one in result.equivalent):
-            return f"A sensor or the robot: {names}{untold}."
-        who = f", or {alike[0]}" if alike else ", not the robot"
-        return f"A sensor is at fault{who}: {names}{untold}."
     faults = sensor_faults(result.faults)
+    if all(effect.added.effect.of_reference for effect in named) and not rest:
+        return f"{_sensor(result, named)}: {names}{untold}."
     if faults:
         return (
             f"A sensor or the robot: {names}{untold}; {listed(faults)}, of which check warns in "
             "these recordings, may have the same effect."
         )
     return f"Missing in {model}: {names}{untold}."
+
+
+def _sensor(result: GapResult, named: Sequence[NamedEffect]) -> str:
+    """Whether faults of the reference alone are named, or what a robot may do as well."""
+    if any(one.name not in OF_REFERENCE for one in result.equivalent):
+        return "A sensor or the robot"
+    alike = [e.added.effect.robot_alike for e in named if e.added.effect.robot_alike]
+    return (
+        f"A sensor is at fault, or {alike[0]}" if alike else "A sensor is at fault, not the robot"
+    )
 
 
 def _instead(equivalent: Sequence[Equivalent]) -> dict[str, list[str]]:
