@@ -1,5 +1,6 @@
 """Numbers that say how an image looks: exposure, sharpness, scale and compression."""
 
+from functools import lru_cache
 from itertools import pairwise
 
 import cv2
@@ -13,6 +14,7 @@ NUMBERS = 7  # of a look; files before version 0.14 have the first six
 SIGMAS_PX = (0.7, 1.4, 2.8, 5.6, 11.2)  # between two of them lies an octave of texture
 PATCHES_PER_PHOTO = 12
 MOST_PATCHES = 2000
+KEPT = 16  # looks: a run asks for that of a patch twice, for its answer and for the run as a whole
 
 
 def look_of(patch: ByteImage) -> FloatArray:
@@ -22,13 +24,21 @@ def look_of(patch: ByteImage) -> FloatArray:
     the variance of an octave over that of the next coarser one, finest first, and of the median
     size of the finest octave over its deviation, which compression sets to zero in most places.
     """
+    return _look(patch.tobytes(), patch.shape)
+
+
+@lru_cache(maxsize=KEPT)
+def _look(content: bytes, shape: tuple[int, ...]) -> FloatArray:
+    patch = np.frombuffer(content, dtype=np.uint8).reshape(shape)
     grey = to_grey(patch).astype(np.float32)
     levels = [grey, *(cv2.GaussianBlur(grey, (0, 0), sigma) for sigma in SIGMAS_PX)]
     octaves = np.log([float(np.var(a - b)) + 0.05 for a, b in pairwise(levels)])
     finest = np.abs(grey - levels[1])
     usual = np.log((np.median(finest) + 0.1) / (np.sqrt(np.mean(finest**2)) + 0.1))
     exposure = [grey.mean() / 255, np.log(grey.std() + 1)]
-    return np.array([*exposure, *(octaves[:-1] - octaves[1:]), usual])
+    look = np.array([*exposure, *(octaves[:-1] - octaves[1:]), usual])
+    look.flags.writeable = False
+    return look
 
 
 def middle_of(image: ByteImage, size_px: int) -> ByteImage:
