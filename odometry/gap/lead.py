@@ -4,6 +4,8 @@ from collections.abc import Sequence
 
 from odometry.checks.warned import sensor_faults
 from odometry.effects.catalogue import EFFECTS
+from odometry.effects.drive_limit import DriveLimit
+from odometry.effects.late_treads import ActuatorLag, CommandDelay
 from odometry.effects.reference_rounding import RoundedPositions
 from odometry.effects.residual import Residual
 from odometry.gap.quantities import Share, held_out_share, metres, percent, with_interval
@@ -12,6 +14,8 @@ from odometry.gap.result import Equivalent, GapResult, NamedEffect
 from odometry.gap.verdict import Refusal
 
 REFUSED = 2  # reasons that are given
+COMMANDS = "treads_are_commands"  # a finding of the check
+OF_DRIVE = frozenset({DriveLimit.name, CommandDelay.name, ActuatorLag.name})
 OF_REFERENCE = frozenset(effect.name for effect in EFFECTS if effect.of_reference)
 
 
@@ -44,7 +48,7 @@ def _missing(result: GapResult) -> str:
         f"; these runs do not distinguish {name} from {listed(others, 'or')}"
         for name, others in _instead(result.equivalent).items()
     )
-    faults = sensor_faults(result.faults)
+    faults = _sensor_faults(result)
     if all(effect.added.effect.of_reference for effect in named) and not rest:
         return f"{_sensor(result, named)}: {names}{untold}."
     if faults:
@@ -53,6 +57,16 @@ def _missing(result: GapResult) -> str:
             "these recordings, may have the same effect."
         )
     return f"Missing in {model}: {names}{untold}."
+
+
+def _sensor_faults(result: GapResult) -> list[str]:
+    """Findings of the check that may stand for what is named.
+
+    That the columns hold commands is none of them where an effect of the drive is named first: it
+    is what a drive does with commands.
+    """
+    of_drive = result.verdict in OF_DRIVE
+    return [one for one in sensor_faults(result.faults) if not (of_drive and one == COMMANDS)]
 
 
 def _sensor(result: GapResult, named: Sequence[NamedEffect]) -> str:
@@ -144,7 +158,7 @@ def _what_to_do(result: GapResult) -> str:
         f"{100 * odds[words]:.0f} % of cases)."
         for words, (name, *others) in between.items()
     ]
-    if result.verdict != "none" and sensor_faults(result.faults):
+    if result.verdict != "none" and _sensor_faults(result):
         drives.insert(0, "First correct what check warns of, and run gap again.")
     decided = {name for one in result.next_drives for name in one.between}
     measures = [

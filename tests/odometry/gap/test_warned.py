@@ -3,12 +3,16 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from odometry.checks.finding import CheckReport, Finding, Level
 from odometry.checks.warned import faults_of, faults_words
+from odometry.effects.corrected import Added
+from odometry.effects.late_treads import ActuatorLag
 from odometry.gap.files import content_of
 from odometry.gap.lead import lead
+from odometry.gap.result import NamedEffect
 from odometry.gap.words import sentences
 from odometry.report.gap_page import write_gap_report
 
@@ -46,6 +50,19 @@ def test_true_slip_accuses_no_sensor_and_is_said(scaled_result):
     said = sentences(replace(scaled_result, faults=faults_of([report("ice", "slip")])))
     assert said[0] == lead(scaled_result)[0]
     assert said[3].startswith("Check warns: the robot moves far less than its treads")
+
+
+def test_columns_of_commands_do_not_contradict_an_effect_of_the_drive(scaled_result):
+    faults = faults_of([report("grass", "treads_are_commands")])
+    one = np.array([0.2])
+    lag = NamedEffect(Added(ActuatorLag(), one), one, one, 0.2, 0.1, 50.0)
+    lagging = replace(scaled_result, verdict="actuator_lag", effects=(lag,), faults=faults)
+    said = sentences(lagging)
+    assert said[0].startswith("Missing in icr: ")
+    assert "First correct" not in said[2]
+    assert "Check warns: " in said[3]
+    scaled = sentences(replace(scaled_result, faults=faults))
+    assert scaled[0].startswith("A sensor or the robot: ")
 
 
 @pytest.mark.parametrize("name", ["none_result", "unknown_result"])
