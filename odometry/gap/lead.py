@@ -99,7 +99,8 @@ def _nothing_named(result: GapResult, model: str) -> str:
     if result.verdict == "unknown":
         return (
             f"Something is missing in {model} (unknown): neither an effect of the catalogue, nor "
-            "a smooth function of what was recorded, nor a slow course in run time explains it."
+            "a smooth function of what was recorded, nor a slow course in run time explains it. A "
+            "reference that is noisier than in the calibration looks the same."
         )
     if not result.measured.before.has_interval:
         return (

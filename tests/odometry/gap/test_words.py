@@ -135,6 +135,7 @@ def test_unknown_without_any_name_says_so(none_result):
     sure = replace(none_result.holdout, before=Gap(0.2, 0.15, 0.3))
     first, _, to_do, *_ = sentences(replace(none_result, verdict="unknown", holdout=sure))
     assert first.startswith("Something is missing in icr (unknown): neither an effect")
+    assert first.endswith("A reference that is noisier than in the calibration looks the same.")
     assert to_do.startswith("Look at the worst stretches")
 
 
