@@ -76,8 +76,8 @@ def _clock_of_robot_was_set(odometry: Table) -> Iterator[Finding]:
         "clock_set",
         f"stamps of odometry.csv go from {before_s:.3f} to {after_s:.3f} s in one step (line "
         f"{odometry.lines[row]} to {odometry.lines[row + 1]})",
-        "The robot's clock was set while recording (by the network or by satellites), or two "
-        "recordings were joined",
+        "The robot's clock was set while recording (by the network or by satellites), the "
+        "recording was paused, or two recordings were joined",
         f"Use one part: --to {before_s - odometry_s[0]:.3f} for what is before, --from "
         f"{after_s - odometry_s[0]:.3f} for what is after",
     )

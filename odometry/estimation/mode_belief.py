@@ -49,7 +49,7 @@ def moments(
 def _mean_angles(weights: FloatArray, angles: FloatArray) -> FloatArray:
     """Mean directions (K, a) of angles (M, a), taken from the heaviest so that equals stay so.
 
-    Not wrapped: between the angles where these are within half a turn of each other.
+    Not wrapped; they lie between the angles where these span less than half a turn.
     """
     heaviest = angles[weights.argmax(axis=1)]
     turned = angles - heaviest[:, None, :]  # (K, M, a)
@@ -59,9 +59,9 @@ def _mean_angles(weights: FloatArray, angles: FloatArray) -> FloatArray:
 
 
 def _are_near(angles: FloatArray) -> bool:
-    """Whether each column of angles (M, a), all in (-pi, pi], spans less than half a turn."""
-    columns = angles.T.tolist()
-    return all(max(of) - min(of) < math.pi for of in columns)
+    """Whether each column of angles (M, a) spans less than half a turn, within (-pi, pi]."""
+    ends = [(min(of), max(of)) for of in angles.T.tolist()]
+    return all(-math.pi < low <= high <= math.pi and high - low < math.pi for low, high in ends)
 
 
 def log_sum(logs: FloatArray) -> FloatArray:

@@ -70,11 +70,8 @@ def _apart_m(steps: DenseWindows) -> FloatArray:
     """How far each step (S,) is from one between those before and after, at their velocities."""
     lasts_s = np.diff(steps.pose_s[steps.windows])[:, 0]
     velocities = steps.measured[:, 0, :2] / lasts_s[:, None]
-    before, after = (
-        np.vstack([velocities[:1], velocities[:-1]]),
-        np.vstack([velocities[1:], velocities[-1:]]),
-    )
-    before[0], after[-1] = after[0], before[-1]
+    padded = np.pad(velocities, ((1, 1), (0, 0)), mode="reflect")
+    before, after = padded[:-2], padded[2:]
     change = after - before
     lengths = np.maximum((change**2).sum(axis=1), np.finfo(float).tiny)
     share = np.clip(((velocities - before) * change).sum(axis=1) / lengths, 0.0, 1.0)

@@ -22,7 +22,7 @@ WEIGHTS = (0.5, 0.25, 0.25)
 def evidence(
     probabilities: FloatArray, distances: FloatArray, displacements: FloatArray
 ) -> FloatArray:
-    """What tells right answers from wrong ones, (n, 3).
+    """What distinguishes right answers from wrong ones, (n, 3).
 
     Parameters
     ----------

@@ -31,7 +31,7 @@ from terrain.classification.trained import Classification
 from terrain.classification.validation import grouped_folds
 from terrain.images import read_image
 from tests.studies.terrain_likeness import blurred, compressed, gamma, noisy
-from tests.studies.terrain_things import development, test
+from tests.studies.terrain_things import development
 
 SIZE_PX, SQUARES, FOLDS, SURE = 96, 4, 3, 0.9
 OTHER = {"ground": "pavements", "pavements": "ground"}
@@ -162,7 +162,7 @@ def shown_to(
     """Everything that a model is shown."""
     found = {name: of_photos(model, held, change) for name, change in ALTERED.items()}
     found["the other folder"] = of_photos(model, other, ALTERED["held out"])
-    for name, things in (("development", development), ("test", test)):
+    for name, things in (("development", development), ("test", reserved)):
         of = [squares[::3][:SQUARES] for squares in things(SIZE_PX).values()]
         every = [square for squares in of for square in squares]
         found[f"things of {name}"] = Answered.by(model, every, ["no terrain"] * len(every))

@@ -38,7 +38,7 @@ from terrain.classification.presets import PRESETS
 from terrain.classification.trained import Classification
 from terrain.classification.validation import grouped_folds
 from terrain.images import read_image
-from tests.studies.terrain_things import development, test
+from tests.studies.terrain_things import development, reserved
 
 MADE = 60
 Shown = dict[str, list[ByteImage]]
@@ -151,7 +151,7 @@ def judged_on_things(
         other = copy(model)
         other.other_things_ = taught(TAUGHT_BY.get(name, ""))
         found.setdefault(f"{name} (left out)", []).extend(refused(other, other.classify(images)))
-    for name, images in test(size).items():
+    for name, images in reserved(size).items():
         found.setdefault(f"{name} (test)", []).extend(refused(model, model.classify(images)))
 
 

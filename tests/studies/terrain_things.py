@@ -172,7 +172,7 @@ def development(size: int) -> Things:
     return _cut(photographs, size) | _all_drawn(made, 11, size)
 
 
-def test(size: int) -> Things:
+def reserved(size: int) -> Things:
     """Square patches of things that are looked at once, at the end."""
     samples = Path(mpl.get_data_path()) / "sample_data"
     motorcycle, _, _ = pictures.stereo_motorcycle()

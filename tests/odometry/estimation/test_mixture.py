@@ -36,6 +36,13 @@ def test_headings_on_both_sides_of_the_cut_have_their_mean_between():
     np.testing.assert_allclose(spread[0], [[1.0, half], [half, half**2]], atol=1e-12)
 
 
+def test_headings_given_beyond_half_a_turn_have_their_mean_within_it():
+    means = np.array([[5.0], [5.2]])
+    mixed, spread = moments(np.full((1, 2), 0.5), means, np.zeros((2, 1, 1)), (0,))
+    np.testing.assert_allclose(mixed, [[5.1 - 2 * np.pi]], atol=1e-12)
+    np.testing.assert_allclose(spread, [[[0.01]]], atol=1e-12)
+
+
 @pytest.mark.parametrize("heavier", [0.4, 0.6])
 def test_mean_headings_lie_in_their_range(heavier):
     """3.1 and -3.0 have their mean beyond pi, on whichever side the heavier one is."""
