@@ -21,6 +21,7 @@ from odometry.checks.unit_tables import (
 WIDEST_M = 50.0  # no robot is wider
 FARTHEST = 1.1  # the same, at most: 0.92 to 1.02 where real robots drive straight
 STEADY = 0.98  # correlation from which a factor on straight lines is constant
+DEGREES = 0.07  # logarithm of a factor by 180 / pi, as poses measure it; gradians are 0.105 off
 STRAIGHT = 0.05  # way of an arm in a turn, as a share of the way of the robot
 
 
@@ -29,11 +30,11 @@ SLIP_OR_TRACK = "there is heavy slip in turns (snow), or a wrong track_width"
 
 def gyroscope_unit(evidence: Evidence, factor: float) -> Finding:
     """A yaw rate that is too large by a factor."""
-    degrees = abs(np.log(factor * np.pi / 180)) < 0.3
+    degrees = abs(np.log(factor * np.pi / 180)) < DEGREES
     cause = (
         "The gyroscope is in degrees per second"
         if degrees
-        else "The gyroscope has a wrong scale (another unit or full-scale range)"
+        else "The gyroscope has a wrong scale (another unit, such as gradians, or full-scale range)"
     )
     return Finding(
         "gyroscope_unit",

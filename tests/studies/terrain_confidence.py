@@ -31,7 +31,7 @@ from terrain.classification.trained import Classification
 from terrain.classification.validation import grouped_folds
 from terrain.images import read_image
 from tests.studies.terrain_likeness import blurred, compressed, gamma, noisy
-from tests.studies.terrain_things import development
+from tests.studies.terrain_things import development, reserved
 
 SIZE_PX, SQUARES, FOLDS, SURE = 96, 4, 3, 0.9
 OTHER = {"ground": "pavements", "pavements": "ground"}

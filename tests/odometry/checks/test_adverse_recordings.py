@@ -53,6 +53,15 @@ def test_a_yaw_rate_in_counts_does_not_accuse_the_track_width():
     assert float(found.seen.split(" is ")[1].split(" times")[0]) == pytest.approx(7505.7, rel=0.02)
 
 
+@pytest.mark.parametrize(("turn", "is_degrees"), [(360.0, True), (400.0, False)])
+def test_gradians_are_not_called_degrees(turn, is_degrees):
+    (found,) = check_recording(gyroscope(winding(), lambda rate: rate * turn / (2 * np.pi))).at(
+        Level.WARNING
+    )
+    assert found.name == "gyroscope_unit"
+    assert ("degrees per second" in found.cause) == is_degrees
+
+
 def test_speeds_clipped_forwards_alone_are_no_stuck_encoders():
     run = treads(winding(), lambda *speeds: tuple(np.minimum(speed, 1.2) for speed in speeds))
     assert set(warnings(run)) == {"saturated_speed"}
