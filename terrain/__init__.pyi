@@ -1,10 +1,10 @@
 from .camera import Camera
 from .checks.recording import check_run
+from .classification.answer import Classification
 from .classification.classifier import TerrainClassifier
 from .classification.network_features import NetworkFeatures
 from .classification.patches import cut_patches
 from .classification.sfta_features import SftaFeatures
-from .classification.trained import Classification
 from .classification.training import Training, train
 from .config import Config
 from .demo import run_demo

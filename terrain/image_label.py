@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from odometry.run import UNKNOWN
-from terrain.classification.trained import Classification
+from terrain.classification.answer import Classification
 from terrain.region import Region
 
 

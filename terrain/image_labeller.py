@@ -57,7 +57,12 @@ class RunLikeness:
         return self._training.summary(np.array(self._looks), np.array(self._differences))
 
     def weighed(self, label: str, probabilities: Mapping[str, float]) -> Mapping[str, float]:
-        """Probabilities of each terrain by a label; closer to chance where images are unlike."""
+        """Probabilities of each terrain by a label; closer to chance where images are unlike.
+
+        Those of a classifier that learned what they are worth there stay as they are.
+        """
+        if getattr(self._classifier, "confidence_", None) is not None:
+            return probabilities
         given = probabilities or ({} if label == UNKNOWN else {label: 1.0})
         likeness = self.likeness
         if likeness is None or not likeness.is_unlike or not given:
@@ -83,7 +88,8 @@ class ImageLabeller:
     Attributes
     ----------
     seen : RunLikeness
-        Whether the images are similar to the training photographs; if not, labels count less.
+        Whether the images are similar to the training photographs; if not, doubtful names are
+        unknown.
     """
 
     def __init__(
@@ -145,6 +151,8 @@ class ImageLabeller:
         answers = self.classifier.classify(views)
         self.seen.add(views)
         self._has_answered = True
+        likeness = self.seen.likeness
+        answers = [answer.unless_doubtful(likeness) for answer in answers]
         return answered(frame.stamp_s, name, region, answers)
 
     def _name(self, image: Path | ByteImage) -> str:

@@ -12,8 +12,8 @@ from odometry.estimation.config import PAPER
 from odometry.parameters import ParameterSet
 from odometry.run import Run
 from terrain.camera import Camera
+from terrain.classification.answer import Classification
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.trained import Classification
 from terrain.config import Config
 from terrain.region import NoRegion, predict_region
 

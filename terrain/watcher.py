@@ -55,7 +55,8 @@ class TerrainWatcher:
     events : list of SwitchEvent
     footprint : Footprint
     seen : RunLikeness
-        Whether the images are similar to the training photographs; if not, labels count less.
+        Whether the images are similar to the training photographs; if not, doubtful names are
+        unknown.
     """
 
     def __init__(

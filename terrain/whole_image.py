@@ -6,7 +6,8 @@ import numpy as np
 
 from odometry.arrays import BoolArray, ByteImage, FloatArray
 from terrain.camera import Camera
-from terrain.classification.trained import Classification, Classifier
+from terrain.classification.answer import Classification
+from terrain.classification.trained import Classifier
 from terrain.errors import TerrainError
 from terrain.region import Rectangle, RegionConfig
 from terrain.warp import ground_sampling_m, ground_view

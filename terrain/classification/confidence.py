@@ -82,6 +82,13 @@ class AnswerConfidence:
         weights = found.coef_[0] / scaler.scale_
         return cls(np.array([found.intercept_[0] - weights @ scaler.mean_, *weights]))
 
+    def of_being_right(
+        self, probabilities: FloatArray, distances: FloatArray, displacements: FloatArray
+    ) -> FloatArray:
+        """Probability (n,) that the likeliest terrain is the right one; arguments of `evidence`."""
+        numbers = evidence(probabilities, distances, displacements)
+        return np.asarray(1 / (1 + np.exp(-self.weights[0] - numbers @ self.weights[1:])))
+
     def applied(
         self, probabilities: FloatArray, distances: FloatArray, displacements: FloatArray
     ) -> FloatArray:
@@ -91,12 +98,10 @@ class AnswerConfidence:
         where it falls. Distances and displacements (n,) are over their limits.
         """
         chance = 1 / probabilities.shape[1]
-        score = (
-            self.weights[0] + evidence(probabilities, distances, displacements) @ self.weights[1:]
-        )
         before = probabilities.max(axis=1, keepdims=True)
         least = chance + LEAST * (before - chance)
-        sure = np.clip(1 / (1 + np.exp(-score[:, None])), least, np.maximum(MOST, least))
+        right = self.of_being_right(probabilities, distances, displacements)[:, None]
+        sure = np.clip(right, least, np.maximum(MOST, least))
         flat = chance + (probabilities - chance) * (sure - chance) / np.maximum(
             before - chance, 1e-9
         )

@@ -9,9 +9,9 @@ from sklearn.metrics import confusion_matrix, roc_auc_score
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.run import UNKNOWN
+from terrain.classification.answer import Classification
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.patches import LabelledPhoto
-from terrain.classification.trained import Classification
 from terrain.classification.trained_on import image_sum
 from terrain.errors import ImageError
 from terrain.images import read_image

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Protocol, Self
 
 import numpy as np
@@ -10,6 +10,7 @@ from sklearn.utils.validation import check_is_fitted, validate_data
 
 from odometry.arrays import AnyArray, BoolArray, ByteImage, FloatArray
 from odometry.run import UNKNOWN
+from terrain.classification.answer import Classification
 from terrain.classification.calibration import tempered
 from terrain.classification.feature_jobs import features_of
 from terrain.classification.likeness import FEWEST_IMAGES, Likeness
@@ -21,43 +22,6 @@ from terrain.classification.patches import cut_patches
 from terrain.classification.rejection import as_of_one_patch
 from terrain.classification.trained_on import holds_images
 from terrain.errors import ImageError
-
-
-@dataclass(frozen=True)
-class Classification:
-    """The answer for one image.
-
-    Attributes
-    ----------
-    label : str
-        The terrain, or ``unknown`` where `distance` is beyond the rejection threshold.
-    confidence : float
-        The probability of the likeliest known terrain, also where the label is ``unknown``. It
-        falls where the image is unlike the training photographs.
-    distance : float
-        Distance to the nearest class in the preset's measure; compare with
-        `TerrainClassifier.rejection_distance_`.
-    probabilities : dict of str to float
-        One per known terrain; they add up to 1.
-    patches : int
-        That the image was cut into.
-    reason : str
-        Why the image shows no ground, where the label is ``unknown`` for that; else "".
-
-    Examples
-    --------
-    >>> import terrain
-    >>> answer = terrain.Classification("unknown", 0.9, 3.2, {"grass": 0.9, "gravel": 0.1})
-    >>> max(answer.probabilities, key=answer.probabilities.get)  # what it would have been
-    'grass'
-    """
-
-    label: str
-    confidence: float
-    distance: float
-    probabilities: dict[str, float]
-    patches: int = 1
-    reason: str = ""
 
 
 class Classifier(Protocol):
@@ -137,9 +101,14 @@ class TrainedClassifier(ModelFile):
         displacement = look.displacement(differences)
         distance = answer.distance / self.rejection_distance_
         votes = np.array([list(answer.probabilities.values())])
-        (given,) = self.confidence_.applied(votes, np.array([distance]), np.array([displacement]))
-        probabilities = dict(zip(answer.probabilities, given.tolist(), strict=True))
-        return replace(answer, confidence=float(given.max()), probabilities=probabilities)
+        numbers = votes, np.array([distance]), np.array([displacement])
+        (given,) = self.confidence_.applied(*numbers)
+        return replace(
+            answer,
+            confidence=float(given.max()),
+            probabilities=dict(zip(answer.probabilities, given.tolist(), strict=True)),
+            probability_right=float(self.confidence_.of_being_right(*numbers)[0]),
+        )
 
     def middle_used(self, shape: tuple[int, int]) -> tuple[int, int]:
         """Rows and columns in the middle of an image of such a shape: whole patches, or one."""

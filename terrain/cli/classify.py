@@ -10,6 +10,7 @@ import click
 
 if TYPE_CHECKING:
     from terrain.classification.classifier import TerrainClassifier
+    from terrain.classification.likeness import Likeness
 
 
 @click.command()
@@ -39,7 +40,12 @@ def classify(model: Path, images: tuple[Path, ...], *, as_json: bool, own_statis
       terrain-odometry classify terrain.model other_photos
     """
     from terrain.classification.classifier import TerrainClassifier
-    from terrain.cli.labelled_images import print_held_out, print_likeness, print_no_ground
+    from terrain.cli.labelled_images import (
+        print_held_out,
+        print_likeness,
+        print_no_ground,
+        readable,
+    )
 
     classifier = TerrainClassifier.load(model)
     folders = [path for path in images if path.is_dir()]
@@ -50,8 +56,9 @@ def classify(model: Path, images: tuple[Path, ...], *, as_json: bool, own_statis
     if folders:
         all_used = print_held_out(classifier, model, folders[0], as_json=as_json)
     else:
-        rows = [_row(classifier, path) for path in images]
-        print_likeness(classifier, images)
+        likeness = classifier.likeness(readable(images))
+        rows = [_row(classifier, path, likeness) for path in images]
+        print_likeness(likeness)
         print_no_ground([row.get("reason", "") for row in rows])
         click.echo(json.dumps(rows, indent=2) if as_json else _table(classifier, rows))
         all_used = not any("error" in row for row in rows)
@@ -76,7 +83,9 @@ def _standardised(
     return own.standardised()
 
 
-def _row(classifier: "TerrainClassifier", path: Path) -> dict[str, Any]:
+def _row(
+    classifier: "TerrainClassifier", path: Path, likeness: "Likeness | None"
+) -> dict[str, Any]:
     from dataclasses import asdict
 
     from terrain.errors import ImageError
@@ -86,7 +95,7 @@ def _row(classifier: "TerrainClassifier", path: Path) -> dict[str, Any]:
         (answer,) = classifier.classify([read_image(path)])
     except ImageError as error:
         return {"image": str(path), "error": str(error)}
-    return {"image": str(path)} | asdict(answer)
+    return {"image": str(path)} | asdict(answer.unless_doubtful(likeness))
 
 
 def _table(classifier: "TerrainClassifier", rows: list[dict[str, Any]]) -> str:

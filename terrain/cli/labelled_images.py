@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +11,7 @@ import click
 if TYPE_CHECKING:
     from terrain.classification.classifier import TerrainClassifier
     from terrain.classification.held_out import HeldOutScore, LabelledAnswer
+    from terrain.classification.likeness import Likeness
 
 SAME_SCALE = 0.02  # share by which two scales may differ
 
@@ -44,7 +45,9 @@ def print_held_out(
         raise PatchError(f"{folder}: nothing is held out: {', '.join(causes)}")
     for note in (*_notes(classifier, model, answers), *_of_scale(classifier, folder)):
         click.echo(f"Note: {note}", err=True)
-    print_likeness(classifier, [each.photo.path for each in held_out])
+    likeness = classifier.likeness(readable([each.photo.path for each in held_out]))
+    held_out = [replace(each, answer=each.answer.unless_doubtful(likeness)) for each in held_out]
+    print_likeness(likeness)
     print_no_ground([each.answer.reason for each in held_out])
     score = held_out_score(classifier.classes_.tolist(), held_out)
     click.echo(
@@ -151,9 +154,8 @@ if TYPE_CHECKING:
     from terrain.classification.classifier import TerrainClassifier
 
 
-def print_likeness(classifier: "TerrainClassifier", paths: Sequence[Path]) -> None:
-    """Say so where the images that can be read are unlike, as a whole; nothing else."""
-    likeness = classifier.likeness(_readable(paths))
+def print_likeness(likeness: "Likeness | None") -> None:
+    """Say so where images are unlike, as a whole; nothing else."""
     if likeness is not None and likeness.note is not None:
         click.echo(f"Note: {likeness.note}", err=True)
 
@@ -167,7 +169,8 @@ def print_no_ground(reasons: Sequence[str]) -> None:
         click.echo(f"Note: {note}", err=True)
 
 
-def _readable(paths: Sequence[Path]) -> Iterator["ByteImage"]:
+def readable(paths: Sequence[Path]) -> Iterator["ByteImage"]:
+    """The images of those files that can be read, one after another."""
     from contextlib import suppress
 
     from terrain.errors import ImageError

@@ -24,10 +24,10 @@ import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
 from odometry.run import UNKNOWN
+from terrain.classification.answer import Classification
 from terrain.classification.calibration import reliability
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.patches import LabelledPhoto, cut_patches, find_photos, load_patches
-from terrain.classification.trained import Classification
 from terrain.classification.validation import grouped_folds
 from terrain.images import read_image
 from tests.studies.terrain_likeness import blurred, compressed, gamma, noisy

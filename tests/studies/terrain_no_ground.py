@@ -24,6 +24,7 @@ from skimage import data as pictures
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
 from odometry.run import UNKNOWN
+from terrain.classification.answer import Classification
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.features import feature_matrix
 from terrain.classification.other_things import (
@@ -35,7 +36,6 @@ from terrain.classification.other_things import (
 )
 from terrain.classification.patches import LabelledPatches, cut_patches, find_photos, load_patches
 from terrain.classification.presets import PRESETS
-from terrain.classification.trained import Classification
 from terrain.classification.validation import grouped_folds
 from terrain.images import read_image
 from tests.studies.terrain_things import development, reserved

@@ -123,8 +123,8 @@ def test_a_model_file_keeps_it_and_older_ones_give_the_votes(model, tmp_path):
     before = TerrainClassifier.load(tmp_path / "old.model")
     assert before.confidence_ is None
     for now, then in zip(model.classify(images), before.classify(images), strict=True):
-        same = replace(now, confidence=then.confidence, probabilities=then.probabilities)
-        assert same == then
+        votes = {"confidence": then.confidence, "probabilities": then.probabilities}
+        assert replace(now, **votes, probability_right=None) == then
     del (without := dict(arrays))["run_photograph_limits"]
     for bad in (arrays | {"confidence_weights": np.ones(3)}, without):
         write_model(tmp_path / "bad.model", settings, bad)

@@ -1,5 +1,6 @@
 """Whether images look like the training photographs, whatever terrain they show."""
 
+from copy import copy
 from dataclasses import replace
 
 import cv2
@@ -168,11 +169,16 @@ def test_a_classifier_of_features_says_nothing():
 
 
 def test_labels_of_unlike_images_count_less(classifier, training_patches):
+    """By a model without a learned confidence; that of others has fallen already."""
     given = {"boards": 0.9, "gravel": 0.1}
-    like, unlike = RunLikeness(classifier), RunLikeness(classifier)
+    (before := copy(classifier)).confidence_ = None
+    like, unlike, learned = (RunLikeness(of) for of in (before, before, classifier))
     for image in training_patches[0][::7]:
         like.add([image])
         unlike.add([image // 3])
+        learned.add([image // 3])
+    assert learned.likeness.is_unlike
+    assert learned.weighed("boards", given) == given
     assert like.likeness.is_unlike is False
     assert like.weighed("boards", given) == given
     assert unlike.likeness.is_unlike

@@ -9,7 +9,7 @@ from matplotlib.patches import Polygon
 
 from odometry.evaluation.stretches import Stretch
 from terrain.camera import Camera
-from terrain.classification.trained import Classification
+from terrain.classification.answer import Classification
 from terrain.image_label import ImageLabel
 from terrain.region import Rectangle, Region
 from terrain.report.plots import (

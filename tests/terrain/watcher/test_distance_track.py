@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from terrain.classification.trained import Classification
+from terrain.classification.answer import Classification
 from terrain.distance_track import DistanceTrack
 from terrain.image_label import ImageLabel
 from tests.terrain.watcher.watched import DARK, ByBrightness, drive

@@ -1,6 +1,7 @@
 """What the watcher does about bad images, and regions that are not to be classified."""
 
 import dataclasses
+from types import SimpleNamespace
 
 import cv2
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from odometry.frames import Frame
 from odometry.run_terrains import Footing
 from terrain.camera import Camera
+from terrain.classification.likeness import Likeness
 from terrain.errors import CameraError
 from terrain.region import RegionConfig
 from terrain.switch import SwitchConfig
@@ -138,3 +140,25 @@ def test_a_frame_without_an_image_cannot_be_looked_at(watch):
     assert watched.watcher.image_labels == watched.watcher.in_force == []
     with pytest.raises(ValueError, match="no image"):
         watched.watcher.look(frame, estimate_at(frame))
+
+
+class Doubting(ByBrightness):
+    """Says that "mud" is more probably wrong than right."""
+
+    def classify(self, images):
+        return [
+            dataclasses.replace(of, probability_right=0.9 if of.label == "snow" else 0.4)
+            for of in super().classify(images)
+        ]
+
+
+@pytest.mark.parametrize(("beyond", "first"), [(0.9, "mud"), (1.1, "unknown")])
+def test_doubtful_names_are_unknown_where_the_images_of_the_run_are_unlike(watch, beyond, first):
+    watched = watch([DARK, BRIGHT, BRIGHT], Doubting())
+    likeness = Likeness(20, 0.5, 0.5, (), beyond=beyond)
+    watched.watcher.seen = watched.watcher._labeller.seen = SimpleNamespace(
+        add=lambda _: None, likeness=likeness, weighed=lambda _, probabilities: probabilities
+    )
+    drive(watched)
+    labels = [image_label.label for image_label in watched.watcher.image_labels]
+    assert labels == [first, "snow", "snow"]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from odometry.estimation.estimate import Estimate
-from terrain.classification.trained import Classification
+from terrain.classification.answer import Classification
 
 BRIGHT, DARK = np.full((120, 160), 200, np.uint8), np.full((120, 160), 50, np.uint8)
 

@@ -1,0 +1,68 @@
+"""The answer of a classifier for one image."""
+
+from dataclasses import dataclass, replace
+from typing import Self
+
+from odometry.run import UNKNOWN
+from terrain.classification.likeness import Likeness
+
+EVEN = 0.5
+DOUBTFUL = "unlike the training photographs, and more probably wrong than right"
+
+
+@dataclass(frozen=True)
+class Classification:
+    """The answer for one image.
+
+    Attributes
+    ----------
+    label : str
+        The terrain, or ``unknown`` where `distance` is beyond the rejection threshold.
+    confidence : float
+        The probability of the likeliest known terrain, also where the label is ``unknown``. It
+        falls where the image is unlike the training photographs.
+    distance : float
+        Distance to the nearest class in the preset's measure; compare with
+        `TerrainClassifier.rejection_distance_`.
+    probabilities : dict of str to float
+        One per known terrain; they add up to 1.
+    patches : int
+        That the image was cut into.
+    reason : str
+        Why the label is ``unknown``: the image shows no ground, or the name is doubtful; else "".
+    probability_right : float or None
+        That the likeliest terrain is the right one, learned from images held out; `confidence` is
+        no less than chance. None of models that did not learn it.
+
+    Examples
+    --------
+    >>> import terrain
+    >>> answer = terrain.Classification("unknown", 0.9, 3.2, {"grass": 0.9, "gravel": 0.1})
+    >>> max(answer.probabilities, key=answer.probabilities.get)  # what it would have been
+    'grass'
+    """
+
+    label: str
+    confidence: float
+    distance: float
+    probabilities: dict[str, float]
+    patches: int = 1
+    reason: str = ""
+    probability_right: float | None = None
+
+    def unless_doubtful(self, likeness: Likeness | None) -> Self:
+        """The answer, ``unknown`` where its name is more probably wrong than right.
+
+        It is asked only where the images together, of which this is one, are unlike the training
+        photographs: elsewhere as many right names would be lost as wrong ones.
+
+        Parameters
+        ----------
+        likeness : Likeness or None
+            Of these images.
+        """
+        if likeness is None or not likeness.is_unlike or self.label == UNKNOWN:
+            return self
+        if self.probability_right is None or self.probability_right >= EVEN:
+            return self
+        return replace(self, label=UNKNOWN, reason=DOUBTFUL)

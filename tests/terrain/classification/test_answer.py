@@ -1,0 +1,58 @@
+"""Names that are more probably wrong than right, of images unlike the training photographs."""
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from terrain.classification.answer import DOUBTFUL, Classification
+from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.likeness import Likeness
+from terrain.cli.classify import classify
+from tests.terrain.classification.test_no_ground import photographs
+
+LIKE, UNLIKE = (Likeness(20, 0.5, 0.5, (), beyond=beyond) for beyond in (0.9, 1.1))
+DOUBTED = Classification("mud", 0.52, 0.1, {"mud": 0.52, "snow": 0.48}, probability_right=0.3)
+
+
+@pytest.fixture(scope="module")
+def model():
+    return TerrainClassifier().fit(*photographs(1, photos=40))
+
+
+def test_a_name_that_is_more_probably_wrong_is_unknown_with_its_reason():
+    answer = DOUBTED.unless_doubtful(UNLIKE)
+    assert answer == replace(DOUBTED, label="unknown", reason=DOUBTFUL)
+
+
+@pytest.mark.parametrize(
+    ("answer", "likeness"),
+    [
+        (DOUBTED, LIKE),
+        (DOUBTED, None),
+        (DOUBTED, Likeness(0, float("nan"), float("nan"), ())),
+        (replace(DOUBTED, probability_right=0.5), UNLIKE),
+        (replace(DOUBTED, probability_right=None), UNLIKE),
+        (replace(DOUBTED, label="unknown", reason="no ground: overexposed"), UNLIKE),
+    ],
+)
+def test_every_other_answer_stays(answer, likeness):
+    assert answer.unless_doubtful(likeness) == answer
+
+
+def test_the_verb_doubts_names_of_images_in_another_light(model, tmp_path):
+    model.save(tmp_path / "a.model")
+    printed = {}
+    for light, power in (("own", 1.0), ("bright", 0.5)):
+        paths = []
+        for i, image in enumerate(photographs(2, photos=3)[0]):
+            paths.append(str(tmp_path / f"{light}_{i}.png"))
+            cv2.imwrite(paths[-1], np.rint(255 * (image / 255) ** power))
+        answered = CliRunner().invoke(classify, [str(tmp_path / "a.model"), *paths])
+        assert answered.exit_code == 0, answered.output
+        printed[light] = answered.output
+    assert "unlike the training photographs of the model" in printed["bright"]
+    assert DOUBTFUL in printed["bright"]
+    assert DOUBTFUL not in printed["own"]
