@@ -8,6 +8,7 @@ import numpy as np
 from odometry.checks.warned import faults_words
 from odometry.effects.base_model import Base
 from odometry.effects.residual import Residual
+from odometry.gap.by_run import runs_differ
 from odometry.gap.calibration import Calibration
 from odometry.gap.lead import lead
 from odometry.gap.quantities import evidence_words, metres, rounded, with_interval
@@ -30,6 +31,7 @@ def sentences(result: GapResult) -> tuple[str, ...]:
         *lead(result),
         *filter(None, [faults_words(result.faults)]),
         _disagreement(result),
+        *filter(None, [runs_differ(result)]),
         *_where(result),
         *(_effect(effect, number) for number, effect in enumerate(result.effects, start=1)),
         *_moved(result),
