@@ -82,6 +82,15 @@ def test_models_do_not_import_what_uses_them():
         assert not rooms & set(users), name
 
 
+def test_rooms_of_the_gap_import_in_the_order_of_the_story():
+    story = ("prepare", "locate", "fit", "name", "answer", "show")
+    for name, targets in GRAPH.items():
+        room = name.removeprefix("odometry.gap.").split(".")[0]
+        if room in story:
+            later = {f"odometry.gap.{other}" for other in story[story.index(room) + 1 :]}
+            assert not {target for target in targets if target.rpartition(".")[0] in later}, name
+
+
 def test_only_the_command_line_imports_click_and_nobody_else_exits():
     for name, file in FILES.items():
         if not name.startswith("terrain.cli"):

@@ -1,5 +1,5 @@
-from .files import write_gap
-from .words import sentences
+from .show.files import write_gap
+from .show.words import sentences
 
 __all__ = [
     "sentences",

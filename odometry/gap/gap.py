@@ -7,20 +7,26 @@ from tqdm import tqdm
 
 from odometry.effects.recorded import labels_of
 from odometry.errors import GapError
-from odometry.gap.answer import drives_apart, named_effects, named_outliers, rivals_of, verdict_of
-from odometry.gap.calibration import Calibration, calibrated
+from odometry.gap.answer.answer import (
+    drives_apart,
+    named_effects,
+    named_outliers,
+    rivals_of,
+    verdict_of,
+)
+from odometry.gap.answer.equivalent import equivalents, rivals_of_one_heading
+from odometry.gap.answer.named_rounding import named_rounding
+from odometry.gap.answer.result import Closing, GapResult
 from odometry.gap.config import GapConfig
-from odometry.gap.contest import sure_sum
-from odometry.gap.equivalent import equivalents, rivals_of_one_heading
-from odometry.gap.fit import Fitter
-from odometry.gap.locate import locate
-from odometry.gap.measured import measured_of
-from odometry.gap.name import explained
-from odometry.gap.own_moments import with_own_moments
-from odometry.gap.pieces import numbered_pieces
-from odometry.gap.result import Closing, GapResult
-from odometry.gap.rounding import named_rounding, rounding_notes
-from odometry.gap.scenes import (
+from odometry.gap.fit.fitter import Fitter
+from odometry.gap.fit.own_moments import with_own_moments
+from odometry.gap.locate.locate import locate
+from odometry.gap.name.names import explained
+from odometry.gap.prepare.calibration import Calibration, calibrated
+from odometry.gap.prepare.measured import measured_of
+from odometry.gap.prepare.pieces import numbered_pieces
+from odometry.gap.prepare.rounding import rounding_notes
+from odometry.gap.prepare.scenes import (
     alike,
     dealt,
     for_chains,
@@ -29,7 +35,7 @@ from odometry.gap.scenes import (
     scenes_of,
     without_outliers,
 )
-from odometry.gap.statistic import floor_of, floor_there, gap_of, squared_errors
+from odometry.gap.prepare.statistic import floor_of, floor_there, gap_of, squared_errors, sure_sum
 from odometry.identification.identify import robot_of
 from odometry.models.base import KinematicModel
 from odometry.models.icr import Icr, IcrByTerrain

@@ -8,9 +8,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
 from odometry.arrays import FloatArray
-from odometry.gap.quantities import metres
-from odometry.gap.result import GapResult
-from odometry.gap.statistic import Gap, squared_errors
+from odometry.gap.answer.result import GapResult
+from odometry.gap.prepare.statistic import Gap, squared_errors
+from odometry.gap.show.quantities import metres
 from odometry.report.figure import LINE_STYLES, LineStyle, save_figure
 from odometry.report.html import Picture
 from odometry.report.labels import broken_beyond

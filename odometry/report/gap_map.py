@@ -12,10 +12,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
-from odometry.gap.region_words import noun_of, shown_unit
-from odometry.gap.result import GapResult
-from odometry.gap.statistic import squared_errors
-from odometry.gap.variables import LABEL, Variable, window_variables
+from odometry.gap.answer.result import GapResult
+from odometry.gap.locate.region_words import noun_of, shown_unit
+from odometry.gap.locate.variables import LABEL, Variable, window_variables
+from odometry.gap.prepare.statistic import squared_errors
 from odometry.report.figure import save_figure
 from odometry.report.html import Picture
 

@@ -13,10 +13,10 @@ from odometry.effects.corrected import Added
 from odometry.effects.in_course import CommandsInCourse, MotionInCourse
 from odometry.effects.reference_outliers import ReferenceOutliers
 from odometry.effects.time_course import InBursts
-from odometry.gap.quantities import Share, held_out_share
-from odometry.gap.result import GapResult
-from odometry.gap.simulate import simulated_poses
-from odometry.gap.words import sentences
+from odometry.gap.answer.result import GapResult
+from odometry.gap.prepare.simulate import simulated_poses
+from odometry.gap.show.quantities import Share, held_out_share
+from odometry.gap.show.words import sentences
 from odometry.geometry import se2
 from odometry.report.figure import REFERENCE_STYLE, save_figure
 from odometry.report.gap_figures import (

@@ -8,9 +8,9 @@ from matplotlib.figure import Figure
 from odometry.arrays import FloatArray
 from odometry.effects.history import BOTH, History
 from odometry.effects.residual import COMPONENTS, TREADS, WORLD, Residual, basis_of, variables_of
-from odometry.gap.answer import WITHIN_95
-from odometry.gap.region_words import noun_of, shown_unit
-from odometry.gap.result import GapResult, NamedEffect
+from odometry.gap.answer.answer import WITHIN_95
+from odometry.gap.answer.result import GapResult, NamedEffect
+from odometry.gap.locate.region_words import noun_of, shown_unit
 from odometry.report.figure import save_figure
 from odometry.report.gap_figures import AFTER, WIDTH_IN
 from odometry.report.html import Picture

@@ -3,12 +3,12 @@
 import numpy as np
 
 from odometry.effects.residual import ResidualOfEachRun
+from odometry.gap.answer.result import Closing, GapResult
 from odometry.gap.config import GapConfig
-from odometry.gap.quantities import Share, evidence_words, percent, rounded, with_interval
-from odometry.gap.region_words import noun_of
-from odometry.gap.result import Closing, GapResult
-from odometry.gap.statistic import squared_errors
-from odometry.gap.words import moves_of
+from odometry.gap.locate.region_words import noun_of
+from odometry.gap.prepare.statistic import squared_errors
+from odometry.gap.show.quantities import Share, evidence_words, percent, rounded, with_interval
+from odometry.gap.show.words import moves_of
 from odometry.report.html import Grid
 
 PART_S = GapConfig.part_s

@@ -11,7 +11,7 @@ from terrain.cli.recordings import span_options
 from terrain.cli.results import print_table, print_written
 
 if TYPE_CHECKING:
-    from odometry.gap.result import GapResult
+    from odometry.gap.answer.result import GapResult
     from odometry.run_span import Span
 
 FOLDER = RunFolder()
@@ -75,9 +75,9 @@ def gap(
     """
     from odometry.checks.warned import faults_of
     from odometry.gap.config import GapConfig
-    from odometry.gap.files import write_gap
     from odometry.gap.gap import find_gap
-    from odometry.gap.uncertain_base import believed_model
+    from odometry.gap.prepare.uncertain_base import believed_model
+    from odometry.gap.show.files import write_gap
     from odometry.report.gap_page import write_gap_report
     from terrain.cli.outputs import about, claim_folder
     from terrain.cli.recordings import checks_made, read_runs
@@ -106,8 +106,8 @@ def gap(
 
 
 def _print_result(result: "GapResult") -> None:
-    from odometry.gap.lead import listed
-    from odometry.gap.words import sentences
+    from odometry.gap.show.lead import listed
+    from odometry.gap.show.words import sentences
 
     rows = [("effect", "form", "gap before [m]", "gap after [m]", "evidence")]
     rows += [

@@ -10,12 +10,12 @@ from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual
 from odometry.effects.sensor_mount import LeverArm
 from odometry.effects.wheel_scale import WheelScale
-from odometry.gap.calibration import Calibration
+from odometry.gap.answer.result import Closing, Equivalent, GapResult, NamedEffect, Rival
 from odometry.gap.config import GapConfig
-from odometry.gap.locate import locate
-from odometry.gap.result import Closing, Equivalent, GapResult, NamedEffect, Rival
-from odometry.gap.statistic import floor_of, gap_of
-from odometry.gap.uncertain_base import Uncertain
+from odometry.gap.locate.locate import locate
+from odometry.gap.prepare.calibration import Calibration
+from odometry.gap.prepare.statistic import floor_of, gap_of
+from odometry.gap.prepare.uncertain_base import Uncertain
 from odometry.models.icr import Icr
 from odometry.run import Robot, Run
 from odometry.table import Table

@@ -20,8 +20,8 @@ import numpy as np
 from joblib import Parallel, delayed
 
 from odometry.errors import OdometryError
-from odometry.gap.files import write_gap
 from odometry.gap.gap import find_gap
+from odometry.gap.show.files import write_gap
 from odometry.run import Run
 from tests.blind.cases import KINDS, NAMES, Case, make_case
 from tests.studies.gap_names import all_named, course_of, score

@@ -6,8 +6,8 @@
 A case whose effect is in the catalogue is answered without the name of the effect and those that
 the equations make the same: `unknown` and `none` are right and any other name is wrong. With
 `--whole` it is answered with the whole catalogue, too. Every row of left_out.csv is one answer,
-with what two gates of `odometry.gap.verdict` were given, so that their thresholds can be compared
-on many cases.
+with what two gates of `odometry.gap.name.verdict` were given, so that their thresholds can be
+compared on many cases.
 """
 
 import argparse
@@ -22,7 +22,7 @@ from unittest.mock import patch
 from joblib import Parallel, delayed
 
 from odometry.effects.catalogue import EFFECTS
-from odometry.gap import accepted_effects, candidates, search
+from odometry.gap.name import accepted_effects, candidates, search
 from tests.blind.cases import Case, make_case
 from tests.studies.gap_cases import NOISES, answer, judged, read
 from tests.studies.gap_names import COURSES, MEANING

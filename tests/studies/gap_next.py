@@ -25,8 +25,8 @@ import numpy as np
 from joblib import Parallel, delayed
 
 from odometry.errors import OdometryError
-from odometry.gap.files import write_gap
 from odometry.gap.gap import find_gap
+from odometry.gap.show.files import write_gap
 from odometry.run import Run
 from tests.blind.rivals.cases import EVERY_PAIR, RivalCase, make_rivals
 from tests.blind.rivals.drives import Proposal

@@ -33,13 +33,13 @@ import numpy as np
 
 from odometry.effects.residual import Residual
 from odometry.errors import OdometryError
+from odometry.gap.answer.result import GapResult, NamedEffect
 from odometry.gap.config import GapConfig
-from odometry.gap.files import write_gap
 from odometry.gap.gap import find_gap
-from odometry.gap.measured import measured_of
-from odometry.gap.quantities import held_out_share, percent, with_interval
-from odometry.gap.result import GapResult, NamedEffect
-from odometry.gap.words import parameter_words
+from odometry.gap.prepare.measured import measured_of
+from odometry.gap.show.files import write_gap
+from odometry.gap.show.quantities import held_out_share, percent, with_interval
+from odometry.gap.show.words import parameter_words
 from odometry.io.files import atomic_write
 from odometry.report.gap_page import write_gap_report
 from tests.studies.gap_real_cases import Case, controls, real, recordings, withheld

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 import scipy.optimize
 
-from odometry.gap import hypothesis as gap_fit
+from odometry.gap.fit import hypothesis as gap_fit
 from odometry.gap.gap import find_gap
 from odometry.gap.solve import Found, differences, least_squares
 from odometry.run import Run

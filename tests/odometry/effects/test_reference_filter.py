@@ -12,7 +12,7 @@ from odometry.effects.reference_filter import (
     SmoothedPoses,
     SwayingMast,
 )
-from odometry.gap.effect_values import is_meant
+from odometry.gap.fit.effect_values import is_meant
 
 STAMPS_S = np.cumsum(np.random.default_rng(3).uniform(0.04, 0.06, 1200))
 MIDDLE = slice(400, 800)

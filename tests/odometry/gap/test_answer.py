@@ -10,10 +10,10 @@ from odometry.effects.corrected import Added
 from odometry.effects.lateral_skid import LateralSkid
 from odometry.effects.residual import Residual
 from odometry.effects.wheel_scale import WheelScale
-from odometry.gap.answer import drives_apart, named_effects, rivals_of, verdict_of
-from odometry.gap.result import Closing, Equivalent
-from odometry.gap.statistic import Gap
-from odometry.gap.verdict import Refusal
+from odometry.gap.answer.answer import drives_apart, named_effects, rivals_of, verdict_of
+from odometry.gap.answer.result import Closing, Equivalent
+from odometry.gap.name.verdict import Refusal
+from odometry.gap.prepare.statistic import Gap
 
 FLOOR = Gap(0.1, 0.08, 0.12)
 SCALE, SKID = WheelScale(), LateralSkid()

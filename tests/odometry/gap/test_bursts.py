@@ -10,15 +10,15 @@ from odometry.effects.corrected import Added
 from odometry.effects.in_course import in_course
 from odometry.effects.time_course import InBursts
 from odometry.effects.tread_slip import SlipOfLeftTread
-from odometry.gap.bursts import burst_effects, states
 from odometry.gap.config import GapConfig
-from odometry.gap.contest import judge
-from odometry.gap.fit import Fitter
-from odometry.gap.measured import measured_of
-from odometry.gap.own_moments import with_own_moments
-from odometry.gap.statistic import gap_of
-from odometry.gap.unnamed import variable_of_events
-from odometry.gap.verdict import come_by_themselves
+from odometry.gap.fit.bursts import burst_effects, states
+from odometry.gap.fit.contest import judge
+from odometry.gap.fit.fitter import Fitter
+from odometry.gap.fit.own_moments import with_own_moments
+from odometry.gap.name.unnamed import variable_of_events
+from odometry.gap.name.verdict import come_by_themselves
+from odometry.gap.prepare.measured import measured_of
+from odometry.gap.prepare.statistic import gap_of
 from odometry.models.inputs import Inputs
 
 CONFIG = GapConfig()

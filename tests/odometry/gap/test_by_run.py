@@ -4,8 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from odometry.gap import by_run
-from odometry.gap.statistic import Gap
+from odometry.gap.prepare.statistic import Gap
+from odometry.gap.show import by_run
 
 FLOOR = Gap(0.03, 0.027, 0.033)
 LARGE, SMALL, BETWEEN = Gap(0.08, 0.07, 0.09), Gap(0.031, 0.028, 0.034), Gap(0.06, 0.031, 0.075)

@@ -7,8 +7,8 @@ import pytest
 from scipy.stats import chi2
 
 from odometry.errors import GapError
-from odometry.gap.calibration import calibrated
 from odometry.gap.config import GapConfig
+from odometry.gap.prepare.calibration import calibrated
 from odometry.models.icr import Icr
 from odometry.models.symmetric import IcrSymmetric
 from odometry.windows.dense import dense_windows_of

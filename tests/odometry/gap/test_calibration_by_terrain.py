@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.gap.calibration import calibrated
 from odometry.gap.config import GapConfig
 from odometry.gap.gap import by_terrain, labels_covered
+from odometry.gap.prepare.calibration import calibrated
 from odometry.models.icr import Icr, IcrByTerrain
 
 CONFIG = GapConfig()

@@ -4,7 +4,7 @@ import pytest
 
 from odometry.effects.contact_effects import InertiaByContact
 from odometry.effects.wheel_scale import WheelScale
-from odometry.gap.candidates import contact_effects, of_the_same_robot, quick_effects
+from odometry.gap.name.candidates import contact_effects, of_the_same_robot, quick_effects
 
 LOSS = ("traction_loss", "k_m", "from_a_moment")
 

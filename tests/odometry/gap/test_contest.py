@@ -10,9 +10,9 @@ from odometry.effects.corrected import Added
 from odometry.effects.sensor_mount import HeadingOffset
 from odometry.effects.slope_icr import SlopeByIcr
 from odometry.gap.config import GapConfig
-from odometry.gap.contest import margin_of, penalty, ranked
-from odometry.gap.fit import Fitter
-from odometry.gap.measured import measured_of
+from odometry.gap.fit.contest import margin_of, penalty, ranked
+from odometry.gap.fit.fitter import Fitter
+from odometry.gap.prepare.measured import measured_of
 
 CONFIG = GapConfig()
 
@@ -104,7 +104,7 @@ def test_of_equal_evidence_the_surer_goes_first_then_the_simpler(fitter):
 
 def test_of_equal_evidence_and_sureness_fewer_parameters_go_first(fitter, monkeypatch):
     before = fitter.fit([])
-    monkeypatch.setattr("odometry.gap.contest.penalty", lambda *_: 0.0)
+    monkeypatch.setattr("odometry.gap.fit.contest.penalty", lambda *_: 0.0)
     few, many = (
         replace(before, effects=(Added(effect, np.zeros(count)),))
         for effect, count in ((HeadingOffset(), 1), (SlopeByIcr(), 3))

@@ -15,10 +15,10 @@ from odometry.effects.time_offset import TimeOffset
 from odometry.effects.tread_slip import SlipBySpeed
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
-from odometry.gap.hypothesis import Hypothesis
-from odometry.gap.measured import measured_of
+from odometry.gap.fit.hypothesis import Hypothesis
+from odometry.gap.prepare.measured import measured_of
+from odometry.gap.prepare.uncertain_base import Uncertain
 from odometry.gap.solve import differences
-from odometry.gap.uncertain_base import Uncertain
 
 SMALL = 1e-4  # of the steps of a search
 SMOOTH = Residual("time", tuple((c, k) for c in COMPONENTS for k in (0, 1)), "", (0.0, 10.0, 20.0))

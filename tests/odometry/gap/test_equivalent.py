@@ -15,14 +15,14 @@ from odometry.effects.residual import Residual
 from odometry.effects.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.terrain import NewIcrs
 from odometry.effects.time_offset import TimeOffset
-from odometry.gap import answer, equivalent
+from odometry.gap.answer import answer, equivalent
+from odometry.gap.answer.equivalent import equivalents
+from odometry.gap.answer.result import Equivalent
 from odometry.gap.config import GapConfig
-from odometry.gap.contest import Judged
-from odometry.gap.equivalent import equivalents
-from odometry.gap.explanation import Explanation
-from odometry.gap.result import Equivalent
-from odometry.gap.simulate import residuals
-from odometry.gap.verdict import Refusal
+from odometry.gap.fit.contest import Judged
+from odometry.gap.name.explanation import Explanation
+from odometry.gap.name.verdict import Refusal
+from odometry.gap.prepare.simulate import residuals
 from odometry.models.inputs import Inputs
 
 SHIFT = np.array([0.05, 0.05, -0.3, 0.0, 0.0])

@@ -8,10 +8,10 @@ import pytest
 from odometry.effects.corrected import Added
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
-from odometry.gap.evenness import Unevenness, between_pieces, unevenness
-from odometry.gap.fit import Fitter
-from odometry.gap.measured import measured_of
-from odometry.gap.verdict import is_even
+from odometry.gap.fit.evenness import Unevenness, between_pieces, unevenness
+from odometry.gap.fit.fitter import Fitter
+from odometry.gap.name.verdict import is_even
+from odometry.gap.prepare.measured import measured_of
 
 PIECES = np.repeat(np.arange(60), 5)
 CONFIG = GapConfig()

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from odometry.gap.config import GapConfig
-from odometry.gap.fit import Fitter
-from odometry.gap.measured import measured_of
-from odometry.gap.name import explained
-from odometry.gap.statistic import floor_of
+from odometry.gap.fit.fitter import Fitter
+from odometry.gap.name.names import explained
+from odometry.gap.prepare.measured import measured_of
+from odometry.gap.prepare.statistic import floor_of
 from odometry.windows.dense import dense_windows_of
 
 CONFIG = GapConfig()

@@ -13,9 +13,9 @@ from odometry.effects.terrain import Terrain
 from odometry.effects.time_course import FromAMoment
 from odometry.effects.time_offset import TimeOffset
 from odometry.effects.tread_slip import TractionLoss
-from odometry.gap.files import write_gap
-from odometry.gap.result import NamedEffect, Rival
-from odometry.gap.statistic import Gap
+from odometry.gap.answer.result import NamedEffect, Rival
+from odometry.gap.prepare.statistic import Gap
+from odometry.gap.show.files import write_gap
 from odometry.models.icr import IcrByTerrain
 from odometry.parameters import read_parameters
 

@@ -11,11 +11,11 @@ from odometry.effects.sensor_mount import LeverArm
 from odometry.effects.time_offset import TimeOffset
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
-from odometry.gap.contest import judge, penalty
-from odometry.gap.fit import Fitter
-from odometry.gap.measured import Measured, measured_of
-from odometry.gap.statistic import gap_of
-from odometry.gap.uncertain_base import Uncertain
+from odometry.gap.fit.contest import judge, penalty
+from odometry.gap.fit.fitter import Fitter
+from odometry.gap.prepare.measured import Measured, measured_of
+from odometry.gap.prepare.statistic import gap_of
+from odometry.gap.prepare.uncertain_base import Uncertain
 
 CONFIG = GapConfig()
 FACTORS = np.array([0.9, 1.05])

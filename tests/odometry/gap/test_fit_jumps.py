@@ -7,10 +7,10 @@ from odometry.effects.base import EffectParameter, MotionEffect
 from odometry.effects.corrected import Added
 from odometry.effects.inertia_icr import InertiaByIndices
 from odometry.effects.time_offset import TimeOffset
-from odometry.gap.calibration import calibrated
 from odometry.gap.config import GapConfig
-from odometry.gap.fit import Fitted, Fitter
-from odometry.gap.measured import measured_of
+from odometry.gap.fit.fitter import Fitted, Fitter
+from odometry.gap.prepare.calibration import calibrated
+from odometry.gap.prepare.measured import measured_of
 from odometry.models.icr import Icr
 from odometry.run import Run
 from odometry.run_span import Span, cut_run

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.gap.config import GapConfig
-from odometry.gap.statistic import Gap, floor_there
+from odometry.gap.prepare.statistic import Gap, floor_there
 from odometry.windows.dense_noise import Noise
 
 FLOOR = Gap(0.03, 0.02, 0.05)

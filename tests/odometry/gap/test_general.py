@@ -17,7 +17,7 @@ from odometry.effects.residual import (
 )
 from odometry.effects.residual_variables import WHAT_WENT_BEFORE
 from odometry.gap.config import GapConfig
-from odometry.gap.general import general_candidates, single_candidates
+from odometry.gap.name.general import general_candidates, single_candidates
 
 CONFIG = GapConfig()
 

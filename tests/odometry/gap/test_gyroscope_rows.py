@@ -7,12 +7,12 @@ import pytest
 
 from odometry.effects.late_treads import CommandDelay
 from odometry.effects.time_offset import TimeOffset
-from odometry.gap.calibration import calibrated
 from odometry.gap.config import GapConfig
-from odometry.gap.fit import Fitter
-from odometry.gap.measured import measured_of
-from odometry.gap.scenes import alike
-from odometry.gap.simulate import all_residuals
+from odometry.gap.fit.fitter import Fitter
+from odometry.gap.prepare.calibration import calibrated
+from odometry.gap.prepare.measured import measured_of
+from odometry.gap.prepare.scenes import alike
+from odometry.gap.prepare.simulate import all_residuals
 from odometry.models.icr import Icr
 from odometry.windows.averaged import averaged_windows
 from odometry.windows.dense import dense_windows_of

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.gap.pieces import held_back, pieces
+from odometry.gap.prepare.pieces import held_back, pieces
 
 
 def resting(scene, resting_s):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.gap.config import GapConfig
-from odometry.gap.scenes import for_chains
+from odometry.gap.prepare.scenes import for_chains
 
 
 @pytest.mark.parametrize(

@@ -11,13 +11,13 @@ from odometry.effects.residual import ANGLES, OF_TREADS, TREADS, VARIABLES
 from odometry.effects.time_course import FromAMoment, InBursts
 from odometry.effects.tread_slip import TractionLoss
 from odometry.gap.config import GapConfig
-from odometry.gap.fit import Fitter
-from odometry.gap.form import slow_course_in_place, without_essence
-from odometry.gap.general import shares_of_motion
-from odometry.gap.measured import measured_of
-from odometry.gap.own_moments import observed_s
-from odometry.gap.unnamed import variable_of_events
-from odometry.gap.verdict import come_by_themselves, is_by_its_essence
+from odometry.gap.fit.fitter import Fitter
+from odometry.gap.fit.own_moments import observed_s
+from odometry.gap.name.form import slow_course_in_place, without_essence
+from odometry.gap.name.general import shares_of_motion
+from odometry.gap.name.unnamed import variable_of_events
+from odometry.gap.name.verdict import come_by_themselves, is_by_its_essence
+from odometry.gap.prepare.measured import measured_of
 
 CONFIG = GapConfig()
 

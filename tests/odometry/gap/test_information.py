@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from odometry.gap.calibration import TOGETHER_S, _information
-from odometry.gap.pieces import pieces
+from odometry.gap.prepare.calibration import TOGETHER_S, _information
+from odometry.gap.prepare.pieces import pieces
 from odometry.gap.solve import Solved
 
 

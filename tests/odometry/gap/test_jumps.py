@@ -7,9 +7,9 @@ import pytest
 
 from odometry.effects.reference_outliers import JumpingPoses
 from odometry.gap.config import GapConfig
-from odometry.gap.jumps import jumps
-from odometry.gap.outliers import closes, outliers_of
-from odometry.gap.scenes import cleaned_runs
+from odometry.gap.prepare.jumps import jumps
+from odometry.gap.prepare.outliers import closes, outliers_of
+from odometry.gap.prepare.scenes import cleaned_runs
 from odometry.windows.dense import dense_windows_of
 
 CONFIG = GapConfig()

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from odometry.gap.config import GapConfig
-from odometry.gap.locate import locate
-from odometry.gap.region_words import noun_of, shown_unit, words_of
+from odometry.gap.locate.locate import locate
+from odometry.gap.locate.region_words import noun_of, shown_unit, words_of
 
 FLOOR_M = 0.0205  # of poses with 1 cm and 0.004 rad of noise over 2 s
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.gap.words import moved_words, moves_of, sentences
+from odometry.gap.show.words import moved_words, moves_of, sentences
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import pytest
 
 from odometry.gap.config import GapConfig
 from odometry.gap.gap import find_gap
-from odometry.gap.statistic import floor_of, floor_there
+from odometry.gap.prepare.statistic import floor_of, floor_there
 from odometry.run import Run
 from odometry.run_span import Span, cut_run
 from tests.blind.cases import FORMULA, make_case

@@ -16,16 +16,16 @@ from odometry.effects.time_course import FromAMoment
 from odometry.effects.time_offset import TimeOffset
 from odometry.effects.tread_slip import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
-from odometry.gap.config import GapConfig
-from odometry.gap.drives import drives_of, scene_of
-from odometry.gap.fit import Fitted
-from odometry.gap.next_drives import (
+from odometry.gap.answer.drives import drives_of, scene_of
+from odometry.gap.answer.next_drives import (
     as_driven,
     chi_squared_left,
     next_drives,
     odds_of,
     rivalling,
 )
+from odometry.gap.config import GapConfig
+from odometry.gap.fit.fitter import Fitted
 
 CONFIG = GapConfig()
 SURE = 1e-8

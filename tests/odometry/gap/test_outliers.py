@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from odometry.gap.config import GapConfig
-from odometry.gap.frozen import frozen_steps, isolated
-from odometry.gap.outliers import closes, outliers_of
-from odometry.gap.scenes import cleaned_runs
+from odometry.gap.prepare.frozen import frozen_steps, isolated
+from odometry.gap.prepare.outliers import closes, outliers_of
+from odometry.gap.prepare.scenes import cleaned_runs
 from odometry.windows.dense import dense_windows_of
 
 CONFIG = GapConfig()

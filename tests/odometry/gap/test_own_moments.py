@@ -8,9 +8,9 @@ from odometry.effects.in_course import in_course
 from odometry.effects.time_course import FromAMoment
 from odometry.effects.tread_slip import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
-from odometry.gap import own_moments
-from odometry.gap.own_moments import observed_s, with_own_moments
-from odometry.gap.statistic import gap_of
+from odometry.gap.fit import own_moments
+from odometry.gap.fit.own_moments import observed_s, with_own_moments
+from odometry.gap.prepare.statistic import gap_of
 
 SHARE, FIRST_S, SECOND_S = 0.6, 50.0, 83.0
 

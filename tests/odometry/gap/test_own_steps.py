@@ -7,8 +7,8 @@ import pytest
 
 from odometry.effects.corrected import Added
 from odometry.effects.reference_step import ClockStep
-from odometry.gap.own_moments import observed_s, with_own_moments
-from odometry.gap.statistic import gap_of
+from odometry.gap.fit.own_moments import observed_s, with_own_moments
+from odometry.gap.prepare.statistic import gap_of
 
 FIRST_S, SECOND_S, SET_S = 50.0, 83.0, 0.3
 

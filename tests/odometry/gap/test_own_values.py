@@ -6,12 +6,12 @@ import pytest
 from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual, ResidualOfEachRun
 from odometry.gap.config import GapConfig
-from odometry.gap.course import best_course
-from odometry.gap.fit import Fitter
-from odometry.gap.measured import measured_of
-from odometry.gap.own_moments import with_own_moments
-from odometry.gap.own_values import by_turns, damped
-from odometry.gap.statistic import gap_of
+from odometry.gap.fit.course import best_course
+from odometry.gap.fit.fitter import Fitter
+from odometry.gap.fit.own_moments import with_own_moments
+from odometry.gap.fit.own_values import by_turns, damped
+from odometry.gap.prepare.measured import measured_of
+from odometry.gap.prepare.statistic import gap_of
 from odometry.windows.averaged import averaged_windows
 
 CONFIG = GapConfig()

@@ -3,7 +3,7 @@
 import pytest
 
 from odometry.errors import GapError, ParameterError
-from odometry.gap.uncertain_base import believed_model
+from odometry.gap.prepare.uncertain_base import believed_model
 
 ICRS = "y_left = 0.45\ny_right = -0.42\nx_icr = 0.02\n"
 EFFECT = """[[terrain.{0}.effects]]

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.stats import kruskal
 
-from odometry.gap.end_residuals import Ends, ends_of
-from odometry.gap.predictors import groups_of, predictors
-from odometry.gap.variables import Variable, window_variables
+from odometry.gap.locate.predictors import groups_of, predictors
+from odometry.gap.locate.variables import Variable, window_variables
+from odometry.gap.prepare.end_residuals import Ends, ends_of
 
 WINDOWS, PIECE = 80, 5
 

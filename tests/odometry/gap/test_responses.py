@@ -10,8 +10,8 @@ from odometry.effects.gyroscope_error import GyroscopeError
 from odometry.effects.residual import COMPONENTS, Residual
 from odometry.effects.sensor_mount import LeverArm
 from odometry.effects.wheel_scale import WheelScale
-from odometry.gap.responses import columns_of, simulated_scenes
-from odometry.gap.simulate import whitened_residuals
+from odometry.gap.prepare.responses import columns_of, simulated_scenes
+from odometry.gap.prepare.simulate import whitened_residuals
 from odometry.windows.averaged import averaged_windows
 from odometry.windows.dense_noise import whitening
 

@@ -5,15 +5,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.gap.candidates import quick_effects
+from odometry.gap.answer.equivalent import equivalents, rivals_of_one_heading
 from odometry.gap.config import GapConfig
-from odometry.gap.contest import cost_of, judge
-from odometry.gap.equivalent import equivalents, rivals_of_one_heading
-from odometry.gap.explanation import Explanation
-from odometry.gap.fit import Fitter
-from odometry.gap.general import knots_of_variables, shares_of_motion
-from odometry.gap.input_noise import noise_of_windows, noisier, surely_dearer, tread_noise_m_s
-from odometry.gap.measured import measured_of
+from odometry.gap.fit.contest import cost_of, judge
+from odometry.gap.fit.fitter import Fitter
+from odometry.gap.fit.input_noise import noise_of_windows, noisier, surely_dearer, tread_noise_m_s
+from odometry.gap.name.candidates import quick_effects
+from odometry.gap.name.explanation import Explanation
+from odometry.gap.name.general import knots_of_variables, shares_of_motion
+from odometry.gap.prepare.measured import measured_of
 from odometry.run import Run
 from odometry.windows.averaged import averaged_windows
 from odometry.windows.dense import dense_windows_of

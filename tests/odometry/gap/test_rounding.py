@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.gap.calibration import Calibration
+from odometry.gap.answer.named_rounding import named_rounding
 from odometry.gap.config import GapConfig
-from odometry.gap.rounding import named_rounding, rounding_notes
-from odometry.gap.scenes import scene_of
-from odometry.gap.statistic import floor_of, floor_there, gap_of
+from odometry.gap.prepare.calibration import Calibration
+from odometry.gap.prepare.rounding import rounding_notes
+from odometry.gap.prepare.scenes import scene_of
+from odometry.gap.prepare.statistic import floor_of, floor_there, gap_of
 from odometry.windows.dense_noise import Noise, end_variance, estimated_noise, whitening
 from tests.odometry.conftest import scaled
 

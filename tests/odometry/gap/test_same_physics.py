@@ -7,9 +7,9 @@ from odometry.effects.base import EffectParameter, MotionEffect
 from odometry.effects.contact_effects import InertiaByContact, SlopeByContact
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
-from odometry.gap.fit import Fitter
-from odometry.gap.hypothesis import Hypothesis, own_values
-from odometry.gap.measured import measured_of
+from odometry.gap.fit.fitter import Fitter
+from odometry.gap.fit.hypothesis import Hypothesis, own_values
+from odometry.gap.prepare.measured import measured_of
 
 SHARE = 0.08
 

@@ -7,7 +7,7 @@ import pytest
 from odometry.effects.tread_slip import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
-from odometry.gap.search import Search
+from odometry.gap.name.search import Search
 
 FREE = 8  # numbers of a base: a chi-squared of 26 is beyond 99.9 %
 
@@ -47,7 +47,7 @@ def test_a_name_does_not_stand_where_a_refused_candidate_gains_much_more(
     monkeypatch, of_refused, expected
 ):
     """A loss of traction that is a gain explains more: something began then, and no wheel is it."""
-    monkeypatch.setattr("odometry.gap.search.is_the_effect", lambda fit, _: fit.reason)
+    monkeypatch.setattr("odometry.gap.name.search.is_the_effect", lambda fit, _: fit.reason)
     fitter = SimpleNamespace(spread=lambda _: 1.0, measured=SimpleNamespace(scenes=()))
     search = Search(fitter, None, (), None, None, GapConfig(), lambda: None)
     monkeypatch.setattr(search, "pays", lambda *_: True)

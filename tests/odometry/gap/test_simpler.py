@@ -9,7 +9,7 @@ from odometry.effects.sensor_mount import LeverArm
 from odometry.effects.terrain import NewIcrs
 from odometry.effects.time_offset import TimeOffset
 from odometry.effects.wheel_scale import WheelScale
-from odometry.gap.name import by_parts
+from odometry.gap.name.names import by_parts
 
 CANDIDATES = (WheelScale(), LateralSkid(), LeverArm(), NewIcrs(), TimeOffset())
 
@@ -21,7 +21,7 @@ def explanation(effects, cost, first=()):
 
 @pytest.fixture(autouse=True)
 def nothing_is_idle(monkeypatch):
-    monkeypatch.setattr("odometry.gap.name.without_idle", lambda _, found: found)
+    monkeypatch.setattr("odometry.gap.name.names.without_idle", lambda _, found: found)
 
 
 def exchanged(effects, cost, cost_of_pair, first=()):

@@ -10,7 +10,7 @@ from odometry.effects.corrected import Added
 from odometry.effects.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.time_offset import TimeOffset
 from odometry.evaluation.open_loop import open_loop
-from odometry.gap.simulate import residuals, simulated_poses
+from odometry.gap.prepare.simulate import residuals, simulated_poses
 from odometry.geometry import se2
 from odometry.run_inputs import inputs_of
 from odometry.windows.dense import dense_windows_of

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.gap.pieces import pieces
-from odometry.gap.simulate import simulated_poses
-from odometry.gap.statistic import Gap, drawn_gaps, floor_of, gap_of, squared_errors
+from odometry.gap.prepare.pieces import pieces
+from odometry.gap.prepare.simulate import simulated_poses
+from odometry.gap.prepare.statistic import Gap, drawn_gaps, floor_of, gap_of, squared_errors
 from odometry.geometry import se2
 
 

@@ -3,10 +3,10 @@
 import pytest
 
 from odometry.effects.wheel_scale import WheelScale
-from odometry.gap.accepted_effects import structure_left
 from odometry.gap.config import GapConfig
-from odometry.gap.fit import Fitter
-from odometry.gap.measured import measured_of
+from odometry.gap.fit.fitter import Fitter
+from odometry.gap.name.accepted_effects import structure_left
+from odometry.gap.prepare.measured import measured_of
 
 CONFIG = GapConfig()
 

@@ -7,13 +7,13 @@ from odometry.effects.in_course import in_course
 from odometry.effects.time_course import FromAMoment
 from odometry.effects.tread_slip import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
-from odometry.gap.accepted_effects import Standing
 from odometry.gap.config import GapConfig
-from odometry.gap.explanation import Explanation
-from odometry.gap.fit import Fitter
-from odometry.gap.measured import measured_of
-from odometry.gap.statistic import floor_of
-from odometry.gap.sudden import sudden_wheels
+from odometry.gap.fit.fitter import Fitter
+from odometry.gap.name.accepted_effects import Standing
+from odometry.gap.name.explanation import Explanation
+from odometry.gap.name.sudden import sudden_wheels
+from odometry.gap.prepare.measured import measured_of
+from odometry.gap.prepare.statistic import floor_of
 
 CONFIG = GapConfig()
 KEPT, MOMENT_S = 0.85, 31.0

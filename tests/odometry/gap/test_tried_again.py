@@ -7,8 +7,8 @@ import pytest
 from odometry.effects.contact_effects import SlopeByContact
 from odometry.effects.residual import Residual
 from odometry.effects.slope_icr import SlopeByIcr
-from odometry.gap.explanation import Explanation
-from odometry.gap.name import _tried_again
+from odometry.gap.name.explanation import Explanation
+from odometry.gap.name.names import _tried_again
 
 SMOOTH = Residual("speed", (("v_x", 0),), "", (0.0, 1.0))
 
@@ -32,7 +32,7 @@ def explanation(*effects):
 def test_it_is_named_where_it_stands_and_closes_no_less(
     monkeypatch, *, named, stood, stands, less, expected
 ):
-    monkeypatch.setattr("odometry.gap.name.closes_less", lambda *_: less)
+    monkeypatch.setattr("odometry.gap.name.names.closes_less", lambda *_: less)
     names, before = explanation(*named), explanation(*stood)
     search = SimpleNamespace(that_stand=lambda found, _: found if stands else explanation(SMOOTH))
     found = _tried_again(search, names, before, ())

@@ -6,14 +6,14 @@ import numpy as np
 
 from odometry.effects.corrected import Added
 from odometry.effects.history import History
-from odometry.gap.accepted_effects import Standing
 from odometry.gap.config import GapConfig
-from odometry.gap.contest import ranked
-from odometry.gap.explanation import Explanation
-from odometry.gap.fit import Fitter
-from odometry.gap.measured import measured_of
-from odometry.gap.statistic import floor_of
-from odometry.gap.unnamed import last_of_each_run
+from odometry.gap.fit.contest import ranked
+from odometry.gap.fit.fitter import Fitter
+from odometry.gap.name.accepted_effects import Standing
+from odometry.gap.name.explanation import Explanation
+from odometry.gap.name.unnamed import last_of_each_run
+from odometry.gap.prepare.measured import measured_of
+from odometry.gap.prepare.statistic import floor_of
 
 CONFIG = GapConfig()
 

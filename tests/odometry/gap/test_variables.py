@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.gap.variables import window_variables
+from odometry.gap.locate.variables import window_variables
 
 
 @pytest.fixture(scope="module")

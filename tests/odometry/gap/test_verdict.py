@@ -15,13 +15,10 @@ from odometry.effects.time_offset import ClockDrift, TimeOffset
 from odometry.effects.tread_slip import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
-from odometry.gap.contest import sure_sum
-from odometry.gap.effect_values import is_the_effect, is_there, within_bounds
-from odometry.gap.fit import Fitted
-from odometry.gap.pieces import numbered_pieces
-from odometry.gap.predictors import Predictor
-from odometry.gap.statistic import Gap
-from odometry.gap.verdict import (
+from odometry.gap.fit.effect_values import is_the_effect, is_there, within_bounds
+from odometry.gap.fit.fitter import Fitted
+from odometry.gap.locate.predictors import Predictor
+from odometry.gap.name.verdict import (
     base_left_calibration,
     closes_a_part,
     closes_held_out,
@@ -34,6 +31,8 @@ from odometry.gap.verdict import (
     raises_measured,
     within_noise,
 )
+from odometry.gap.prepare.pieces import numbered_pieces
+from odometry.gap.prepare.statistic import Gap, sure_sum
 from odometry.models.catalogue import MODELS
 from odometry.run import Robot
 
@@ -114,7 +113,7 @@ def test_a_gain_that_may_be_chance_closes_nothing(make_scene, monkeypatch, gain_
     piece = numbered_pieces([scene], CONFIG.part_s)
     scatter = np.random.default_rng(0).normal(scale=0.05, size=piece.max() + 1)
     errors = iter([np.full(len(piece), 0.2), 0.2 - gain_m + (scatter - scatter.mean())[piece]])
-    monkeypatch.setattr("odometry.gap.verdict.squared_errors", lambda *_: next(errors) ** 2)
+    monkeypatch.setattr("odometry.gap.name.verdict.squared_errors", lambda *_: next(errors) ** 2)
     found = closes_held_out((None, ()), (None, ()), [scene], CONFIG)
     assert found == reason if not reason else reason in found
 
@@ -128,7 +127,7 @@ def test_a_gain_counts_by_the_mean_error_where_a_few_pieces_hold_the_squares(
     before, after = np.where(piece < 2, 3.0, 0.1), np.where(piece < 2, 3.0, 0.08)
     after = after - 0.02 * (piece == 0) + 0.019 * (piece == 1)
     errors = iter([before, after])
-    monkeypatch.setattr("odometry.gap.verdict.squared_errors", lambda *_: next(errors) ** 2)
+    monkeypatch.setattr("odometry.gap.name.verdict.squared_errors", lambda *_: next(errors) ** 2)
     assert closes_held_out((None, ()), (None, ()), [scene], CONFIG) == ""
 
 

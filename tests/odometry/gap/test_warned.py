@@ -10,10 +10,10 @@ from odometry.checks.finding import CheckReport, Finding, Level
 from odometry.checks.warned import faults_of, faults_words
 from odometry.effects.corrected import Added
 from odometry.effects.late_treads import ActuatorLag
-from odometry.gap.files import content_of
-from odometry.gap.lead import lead
-from odometry.gap.result import NamedEffect
-from odometry.gap.words import sentences
+from odometry.gap.answer.result import NamedEffect
+from odometry.gap.show.files import content_of
+from odometry.gap.show.lead import lead
+from odometry.gap.show.words import sentences
 from odometry.report.gap_page import write_gap_report
 
 

@@ -8,8 +8,11 @@ import pytest
 from odometry.effects.corrected import Added
 from odometry.effects.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.time_offset import TimeOffset
-from odometry.gap.next_drives import NextDrive
-from odometry.gap.quantities import (
+from odometry.gap.answer.next_drives import NextDrive
+from odometry.gap.answer.result import Equivalent, NamedEffect
+from odometry.gap.name.verdict import Refusal
+from odometry.gap.prepare.statistic import Gap
+from odometry.gap.show.quantities import (
     Share,
     evidence_words,
     held_out_share,
@@ -17,10 +20,7 @@ from odometry.gap.quantities import (
     rounded,
     with_interval,
 )
-from odometry.gap.result import Equivalent, NamedEffect
-from odometry.gap.statistic import Gap
-from odometry.gap.verdict import Refusal
-from odometry.gap.words import sentences
+from odometry.gap.show.words import sentences
 
 
 def text(result):

@@ -14,12 +14,12 @@ from odometry.effects.residual import ResidualOfEachRun
 from odometry.effects.time_course import InBursts
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
-from odometry.gap.general import general_candidates
-from odometry.gap.locate import Location, Predictor
-from odometry.gap.quantities import with_interval
-from odometry.gap.statistic import gap_of, squared_errors
-from odometry.gap.variables import Variable
-from odometry.gap.words import sentences
+from odometry.gap.locate.locate import Location, Predictor
+from odometry.gap.locate.variables import Variable
+from odometry.gap.name.general import general_candidates
+from odometry.gap.prepare.statistic import gap_of, squared_errors
+from odometry.gap.show.quantities import with_interval
+from odometry.gap.show.words import sentences
 from odometry.report.gap_figures import rolling_rms
 from odometry.report.gap_map import binned_rms, scale_of
 from odometry.report.gap_page import MEASURED_NAME, event_grids, rollout, rollouts, write_gap_report

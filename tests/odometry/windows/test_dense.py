@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import WindowError
-from odometry.gap.pieces import numbered_pieces, pieces
+from odometry.gap.prepare.pieces import numbered_pieces, pieces
 from odometry.windows.dense import dense_windows_of, thinned
 from odometry.windows.record import ODOMETRY_GAP
 

@@ -1,0 +1,1 @@
+"""The answer: the verdict, what the data do not distinguish from it, and what to drive next."""

@@ -1,0 +1,1 @@
+"""Which effects are missing: candidates, the gates that a name must pass, what no name explains."""

@@ -1,0 +1,196 @@
+"""Which names stand: those that pass every gate on the runs measured and held out."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from odometry.effects.base import Effect
+from odometry.effects.residual import Residual
+from odometry.effects.time_course import FromAMoment
+from odometry.gap.config import GapConfig
+from odometry.gap.fit.fitter import Fitted, Fitter
+from odometry.gap.fit.own_moments import with_own_moments
+from odometry.gap.locate.predictors import Predictor, predictors
+from odometry.gap.locate.variables import window_variables
+from odometry.gap.name.explanation import Explanation
+from odometry.gap.name.form import names_alone, of_their_form
+from odometry.gap.name.search import Search
+from odometry.gap.name.sudden import sudden_wheels
+from odometry.gap.name.unnamed import grown, in_bursts, last_of_each_run, with_course
+from odometry.gap.name.verdict import (
+    closes_a_part,
+    closes_held_out,
+    closes_the_most,
+    is_the_main_part,
+    leaves_no_structure,
+    leaves_noise,
+    raises_measured,
+    within_noise,
+)
+from odometry.gap.prepare.end_residuals import ends_of
+from odometry.gap.prepare.statistic import gap_of
+
+
+class Standing(Search):
+    """Keeps the effects that are accepted."""
+
+    def that_stand(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
+        """The effects that close the gap where they were not fitted, and leave noise alone.
+
+        Where no name does, one in bursts or wheels from a moment on may; else smooth functions do
+        as far as they can, and their residuals may follow a course in time that is each run's own.
+        """
+        found = self._less_doubtful(self._of_their_form(found, smooth))
+        if not _named(found):
+            sudden = of_their_form(self, sudden_wheels(self, found), smooth)
+            named = [one for one in (in_bursts(self, found), sudden) if one.steps]
+            found = min([grown(self, found), *named], key=lambda one: one.cost)
+        found = self._without_structure(self._standing(found, smooth), smooth)
+        if not _named(found) and (found.steps or self.unexplained() or self.is_above):
+            found = self._standing(with_course(self, found), smooth)
+        refused = tuple(one for name, one in self.refusals.items() if name not in found.names)
+        unexplained = not found.steps and self.unexplained()
+        return replace(
+            found,
+            refusals=refused,
+            unexplained=unexplained,
+            base_closes=not found.steps and self.base_closes,
+        )
+
+    def _standing(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
+        """Without the last effects as long as they do not stand on held-out data.
+
+        A smooth function that does not may have other coefficients in each run.
+        """
+        while found.steps:
+            reason = self._fails(found)
+            if not reason:
+                break
+            last = found.effects[-1]
+            self.refuse(last, reason)
+            if len(found.steps) == 1 and not isinstance(last, Residual):
+                found = grown(self, found)
+            else:
+                own = last_of_each_run(self, found)
+                found = own or self._of_their_form(found.less_last(), smooth)
+        return found
+
+    def _without_structure(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
+        """Without any name where all close little, or leave structure."""
+        share = self._held_out_share(found) if _named(found) else 1.0
+        if share >= self._most(found.effects):
+            return found
+        left = structure_left(self.fitter, found.fitted, self.config)
+        reason = (
+            closes_a_part(share, self.config)
+            or closes_the_most(share, self.fitter.spread(found.fitted), self.config)
+            or leaves_no_structure(share, left)
+        )
+        if not reason:
+            return found
+        for effect in found.effects:
+            if not isinstance(effect, Residual):
+                self.refuse(effect, reason)
+        return self._standing(grown(self, found), smooth)
+
+    def _held_out_share(self, found: Explanation) -> float:
+        """Of the gap above its noise floor that is closed on held-out data; 1 within the floor."""
+        fit, part_s = found.fitted, self.config.part_s
+        believed, scenes = self.fitter.calibration, self.fitter.measured.scenes
+        effects, held_out = with_own_moments(fit.base, fit.effects, self.held_out, scenes, believed)
+        after_m = gap_of(fit.base, effects, held_out, part_s).value
+        before_m = gap_of(believed.base, (), held_out, part_s).value
+        if after_m <= self.held_floor.high:
+            return 1.0
+        return (before_m - after_m) / (before_m - self.held_floor.value)
+
+    def _most(self, names: Sequence[Effect]) -> float:
+        """Share of an excess that these need to close where they leave what is not noise."""
+        by_contact = any(effect.slow for effect in names)
+        return self.config.contact_closed if by_contact else self.config.mostly_closed
+
+    def _most_fitted(self, names: Sequence[Effect]) -> float:
+        """The same on the measured runs, whose moments are known: what begins at one closes more.
+
+        A step closes most of what comes slowly, too.
+        """
+        sudden = any(effect.course == FromAMoment.name for effect in names)
+        by_contact = any(effect.slow for effect in names)
+        return self.config.bursts_closed if sudden and not by_contact else self._most(names)
+
+    def _believed_gap(self) -> float:
+        """On the measured windows, of the base as it was calibrated."""
+        return self._gap(replace(self.start, base=self.fitter.calibration.base))
+
+    def _of_their_form(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
+        """Without names that do not have the form of what they stand for."""
+        left = of_their_form(self, found, smooth)
+        return left if left.steps or not found.steps else grown(self, found)
+
+    def _less_doubtful(self, found: Explanation) -> Explanation:
+        """Without any name where all leave what is not noise, or are not what does the work."""
+        alone = names_alone(self.fitter, found)
+        names = [added.effect for added in alone.effects]
+        if not names:
+            return found
+        noise = self.fitter.measured.expected
+        excess = max(self.start.cost - noise, self.config.least_excess * noise)
+        closed = (self.start.cost - alone.cost) / excess
+        reason = leaves_noise(
+            self.fitter.spread(alone), closed, self.config.left_over, self._most_fitted(names)
+        )
+        of_all = self.start.cost - found.fitted.cost
+        reason = reason or is_the_main_part(self.start.cost - alone.cost, of_all, self.config)
+        if not reason:
+            return found
+        for name in names:
+            self.refuse(name, reason)
+        return grown(self, found)
+
+    def unexplained(self) -> bool:
+        """Whether the base leaves a gap, and even moved more chi-squared than noise explains."""
+        over = self._believed_gap() > self.floor.high
+        return over and self.fitter.spread(self.start) > self.config.unexplained
+
+    def _fails(self, found: Explanation) -> str:
+        """Why the last effect does not stand on held-out data, beyond what the others close.
+
+        What a base beside the others closes by leaving its calibration is the effect's, if that
+        brings the base back; a latency that is not as calibrated is an effect by itself.
+        """
+        fit, before = found.fitted, (found.steps[-2].fitted if found.steps[1:] else self.start)
+        hidden = self.explains_move(fit, before) or (
+            found.steps[1:] and self._left(before) and self._brings_back(fit, before)
+        )
+        believed = self.fitter.calibration.base
+        less_base = replace(fit.base if hidden else before.base, latency_s=believed.latency_s)
+        pairs = [(less_base, before.effects), (believed, ())]
+        effects, held_out = with_own_moments(
+            fit.base,
+            fit.effects,
+            self.held_out,
+            self.fitter.measured.scenes,
+            self.fitter.calibration,
+        )
+        at_first = gap_of(believed, (), held_out, self.config.part_s)
+        reasons = [
+            within_noise(at_first, self.held_floor, self.config),
+            raises_measured(self._believed_gap(), self._gap(fit)),
+            *(
+                closes_held_out(
+                    (base, effects[: len(less)]), (fit.base, effects), held_out, self.config
+                )
+                for base, less in pairs
+            ),
+        ]
+        return next((reason for reason in reasons if reason), "")
+
+
+def _named(found: Explanation) -> bool:
+    return any(not isinstance(effect, Residual) for effect in found.effects)
+
+
+def structure_left(fitter: Fitter, fit: Fitted, config: GapConfig) -> tuple[Predictor, ...]:
+    """By the same tests that locate a gap, of the residuals beside the effects of a fit."""
+    scenes = fitter.measured.scenes
+    ends = ends_of(fit.base, fit.effects, scenes, fitter.calibration, config.part_s)
+    return predictors(window_variables(fit.base, fit.effects, scenes), ends)

@@ -1,0 +1,147 @@
+"""Whether names have the form of what they stand for.
+
+A name that does not is beaten in its place by a smooth function of something, or fits each piece
+of the runs with another strength.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from odometry.effects.corrected import Added
+from odometry.effects.residual import Residual
+from odometry.effects.time_course import FromAMoment
+from odometry.gap.fit.contest import cost_of, margin_of, penalty
+from odometry.gap.fit.course import CHOSEN, best_course
+from odometry.gap.fit.effect_values import is_meant
+from odometry.gap.fit.evenness import unevenness
+from odometry.gap.fit.fitter import Fitted, Fitter
+from odometry.gap.fit.input_noise import surely_dearer
+from odometry.gap.fit.own_moments import with_own_moments
+from odometry.gap.name.explanation import Explanation
+from odometry.gap.name.search import Search
+from odometry.gap.name.verdict import is_abrupt, is_by_its_essence, is_even, is_special
+from odometry.gap.prepare.statistic import gap_of
+
+
+def of_their_form(search: Search, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
+    """Without names that do not have it: with the function that does better in the place of one.
+
+    Without any step where no name is left.
+    """
+    for effect in found.effects:
+        if isinstance(effect, Residual):
+            continue
+        alone = names_alone(search.fitter, found)
+        names = [added.effect for added in alone.effects]
+        place = names.index(effect)
+        instead = smooth_in_place(search, alone, place, smooth)
+        of = unevenness(search.fitter, found.fitted, found.effects.index(effect))
+        added = alone.effects[place]
+        reason = (
+            is_special(instead)
+            or is_even(of, search.config)
+            or is_meant(added)
+            or is_by_its_essence(without_essence(search.fitter, alone, place), added, search.config)
+            or slow_course_in_place(search, alone, place)
+        )
+        if not reason:
+            continue
+        search.refuse(effect, reason)
+        others = [name for name in names if name is not effect]
+        if not others:
+            return replace(found, steps=())
+        found = search.in_order(found, [*others, instead] if instead else others)
+    return found
+
+
+def without_essence(fitter: Fitter, fit: Fitted, place: int) -> float:
+    """Share of what an effect closes that it closes without its essential parameters."""
+    added = fit.effects[place]
+    if not added.effect.essential:
+        return 0.0
+    absent = [
+        float(value if p.absent is None or p.name not in added.effect.essential else p.absent)
+        for p, value in zip(added.effect.parameters, added.values, strict=True)
+    ]
+    around = fit.effects[:place], fit.effects[place + 1 :]
+    tried = ((added,), (Added(added.effect, np.array(absent)),), ())
+    whole, without, none = (
+        float(np.sum(fitter.measured.rows(fit.base, (*around[0], *one, *around[1])) ** 2))
+        for one in tried
+    )
+    return (none - without) / (none - whole)
+
+
+def slow_course_in_place(search: Search, names: Fitted, place: int) -> str:
+    """Why a name has no moment: the same freedom in time, without one, explains more."""
+    if names.effects[place].effect.course != FromAMoment.name:
+        return ""
+    others = [*names.effects[:place], *names.effects[place + 1 :]]
+    before = _fit(search.fitter, others)
+    course = best_course(search.fitter, before, search.held_out, search.config)
+    if course is None:
+        return ""
+    spread = search.fitter.spread(course.fitted)
+    closed = cost_of(before) - cost_of(names)
+    of_course = course.fitted.cost + penalty(before.freedom + CHOSEN, before)
+    return is_abrupt(of_course, cost_of(names), margin_of(search.config, spread, closed))
+
+
+def names_alone(fitter: Fitter, found: Explanation) -> Fitted:
+    """Fitted without smooth functions, contact forces anew: beside these they had other values."""
+    effects = found.fitted.effects
+    names = [one for one in effects if not isinstance(one.effect, Residual)]
+    if len(names) == len(effects):
+        return found.fitted
+    return fitter.fit([one.effect for one in names], names)
+
+
+def smooth_in_place(
+    search: Search, names: Fitted, place: int, smooth: Sequence[Residual]
+) -> Residual | None:
+    """The smooth function that takes the place of one name with more evidence.
+
+    None where no function beats the name by the margin, or where the name still closes its share
+    beside the best: then the function describes something else. Nor where the name is one of
+    contact forces, whose equations are right and imperfect, and the function closes less than it
+    on held-out data.
+    """
+    fitter, config = search.fitter, search.config
+    others = [*names.effects[:place], *names.effects[place + 1 :]]
+    before = _fit(fitter, others)
+    losses = fitter.linear_losses(before, smooth)
+    promising = np.argsort(losses, kind="stable")[: config.promising]
+    fits = {
+        smooth[i]: fitter.fit([*(one.effect for one in others), smooth[i]], others, pin_slow=True)
+        for i in promising
+        if losses[i] < names.cost
+    }
+    if not fits:
+        return None
+    best = min(fits, key=lambda function: cost_of(fits[function]))
+    cost = cost_of(fits[best])
+    closed = cost_of(before) - cost_of(names)
+    margin = margin_of(config, fitter.spread(fits[best]), closed)
+    if surely_dearer(names, fits[best], fitter.measured) < margin:
+        return None
+    if names.effects[place].effect.slow and closes_less(search, fits[best], names):
+        return None
+    both = _fit(fitter, [*fits[best].effects, names.effects[place]])
+    still = (cost - cost_of(both)) / closed
+    return best if still < config.least_beside else None
+
+
+def closes_less(search: Search, one: Fitted, other: Fitted) -> bool:
+    """Whether one fit leaves more of the gap on held-out data than another."""
+    fitted, believed = search.fitter.measured.scenes, search.fitter.calibration
+    gaps_m = []
+    for fit in (one, other):
+        of_runs = with_own_moments(fit.base, fit.effects, search.held_out, fitted, believed)
+        gaps_m.append(gap_of(fit.base, *of_runs, search.config.part_s).value)
+    return gaps_m[0] > gaps_m[1]
+
+
+def _fit(fitter: Fitter, effects: Sequence[Added]) -> Fitted:
+    return fitter.fit([one.effect for one in effects], effects, pin_slow=True)

@@ -1,0 +1,222 @@
+"""What a name must pass, each gate with the reason that it gives where it refuses.
+
+A gate returns "" where the name passes, else the reason as a clause.
+Every number is one of `GapConfig`.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2
+
+from odometry.effects.base import CommandEffect
+from odometry.effects.base_model import Base
+from odometry.effects.corrected import Added, delay_s
+from odometry.effects.residual import Residual
+from odometry.effects.time_offset import TimeOffset
+from odometry.gap.config import GapConfig
+from odometry.gap.fit.evenness import Unevenness
+from odometry.gap.fit.fitter import Fitted
+from odometry.gap.locate.predictors import Predictor
+from odometry.gap.locate.region_words import noun_of
+from odometry.gap.prepare.pieces import numbered_pieces
+from odometry.gap.prepare.simulate import run_of
+from odometry.gap.prepare.statistic import SEED, Gap, drawn_gaps, squared_errors, sure_sum
+from odometry.windows.dense import DenseWindows
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """A name that does not stand, and why."""
+
+    name: str
+    form: str
+    reason: str
+
+
+def within_noise(held_out: Gap, floor: Gap, config: GapConfig) -> str:
+    """Whether the gap on held-out data, before anything is added, is surely above the noise floor.
+
+    By the lower bound of a difference of two values that have intervals of their own (Zou and
+    Donner 2008, Statistics in Medicine 27, 1693).
+    """
+    unsure_m = float(np.hypot(held_out.value - held_out.low, floor.high - floor.value))
+    if held_out.value - floor.value > config.above_floor * unsure_m:
+        return ""
+    return (
+        f"the gap on held-out data, {held_out.value:.3g} m, is within noise: the floor is "
+        f"{floor.value:.3g} m, and the difference is known to {unsure_m:.2g} m"
+    )
+
+
+def raises_measured(before_m: float, after_m: float) -> str:
+    """Whether the gap on the runs that effects were fitted to falls with them."""
+    if after_m < before_m:
+        return ""
+    return f"the gap on the measured runs rises with it, from {before_m:.2g} to {after_m:.2g} m"
+
+
+def closes_held_out(
+    before: tuple[Base, Sequence[Added]],
+    after: tuple[Base, Sequence[Added]],
+    held_out: Sequence[DenseWindows],
+    config: GapConfig,
+) -> str:
+    """Whether the gap on held-out data is less after than before, surely.
+
+    It must not be greater, and the paired interval of 95 % of the difference must lie above zero:
+    that of the gap, that of the mean error, which a few windows in which a model fails do not
+    decide, or the sum without the pieces that gain most.
+    """
+    squares = [
+        np.concatenate([squared_errors(base, effects, scene) for scene in held_out])
+        for base, effects in (before, after)
+    ]
+    was, now = (float(np.sqrt(of.mean())) for of in squares)
+    if now >= was:
+        return f"the gap on held-out data gets worse with it, from {was:.3g} to {now:.3g} m"
+    rng = np.random.default_rng(SEED)
+    kinds = (*squares, *(np.sqrt(of) for of in squares))
+    means = drawn_gaps(kinds, held_out, config.part_s, rng) ** 2
+    lows = np.quantile([means[0] - means[1], means[2] - means[3]], 0.025, axis=1)
+    _, piece = np.unique(numbered_pieces(held_out, config.part_s), return_inverse=True)
+    of_pieces = np.asarray(np.bincount(piece, weights=squares[0] - squares[1]), dtype=np.float64)
+    if (lows > 0).any() or sure_sum(of_pieces, config.trimmed) > 0:
+        return ""
+    return f"on held-out data the gap goes from {was:.3g} to {now:.3g} m, which may be chance"
+
+
+def base_left_calibration(fit: Fitted, free: int, config: GapConfig) -> bool:
+    """Whether the base moved farther than its calibration allows, all its numbers together."""
+    return free > 0 and bool(chi2.sf(fit.base_alone, free) < config.base_probability)
+
+
+def leaves_noise(spread: float, closed: float, left_over: float, most: float) -> str:
+    """Whether names leave nothing but noise, or close nearly all of a large excess.
+
+    `spread` is the chi-squared a degree of freedom that they leave, `closed` the share of its
+    excess that they close: an equation that is right but imperfect leaves a small part.
+    """
+    if spread <= left_over or closed >= most:
+        return ""
+    return (
+        f"it closes {100 * max(closed, 0.0):.0f} % and leaves {spread:.1f} times the chi-squared "
+        "of noise: not the cause, or not the only one"
+    )
+
+
+def come_by_themselves(variable: str, area: float, config: GapConfig) -> str:
+    """Whether no recorded variable predicts when events are."""
+    if area <= config.events_told:
+        return ""
+    return (
+        f"{noun_of(variable)} predicts when its events are (area {area:.2f} under the receiver "
+        "operating characteristic): it depends on that, and does not come in bursts"
+    )
+
+
+def leaves_no_structure(share_closed: float, predictors: Sequence[Predictor]) -> str:
+    """Whether nothing predicts what names leave that close no more than a share of the gap."""
+    found = [one.name for one in predictors if one.discovered]
+    if not found:
+        return ""
+    return (
+        f"it closes {100 * max(share_closed, 0.0):.0f} % of the gap, and what it leaves depends on "
+        f"{noun_of(found[0])}: not the cause, or not the only one"
+    )
+
+
+def closes_a_part(share_closed: float, config: GapConfig) -> str:
+    """Whether names close more than a small share of the excess on held-out data."""
+    if share_closed >= config.least_held_out:
+        return ""
+    return (
+        f"it closes {100 * max(share_closed, 0.0):.0f} % of the gap on held-out data: what it "
+        "stands for is small, or something else"
+    )
+
+
+def closes_the_most(share_closed: float, spread: float, config: GapConfig) -> str:
+    """Whether names that leave more than noise close at least half of the excess held out.
+
+    `spread` is the chi-squared a degree of freedom that they leave on the measured runs.
+    """
+    if share_closed >= config.least_of_rest or spread <= config.unexplained:
+        return ""
+    return (
+        f"it closes {100 * max(share_closed, 0.0):.0f} % of the gap on held-out data and leaves "
+        f"{spread:.1f} times the chi-squared of noise: not the cause, or not the only one"
+    )
+
+
+def is_unbeaten(gain: float, refused: str, of_refused: float, margin: float) -> str:
+    """Whether no candidate that is refused explains more, by more than a margin of chi-squared.
+
+    What a refused candidate does there is no effect of its name, and still no other name's.
+    """
+    if of_refused - gain <= margin:
+        return ""
+    return f"{refused}, which is refused itself, explains more"
+
+
+def is_the_main_part(of_names: float, of_all: float, config: GapConfig) -> str:
+    """Whether names alone close most of what they close with smooth functions beside them."""
+    if of_names >= config.least_of_all * of_all:
+        return ""
+    return (
+        f"it closes {100 * of_names / of_all:.0f} % of what it closes with a smooth function "
+        "beside it: not the cause, or not the only one"
+    )
+
+
+def is_special(instead: Residual | None) -> str:
+    """Whether no smooth function does better in the place of a name."""
+    if instead is None:
+        return ""
+    return f"a smooth function of {noun_of(instead.variable)} explains more in its place"
+
+
+def is_abrupt(cost_of_course: float, cost: float, margin: float) -> str:
+    """Whether a name with a moment explains as much as a motion that comes and goes slowly."""
+    if cost - cost_of_course < margin:
+        return ""
+    return "a slow course in run time explains more in its place: there is no moment"
+
+
+def is_by_its_essence(without: float, added: Added, config: GapConfig) -> str:
+    """Whether a name closes most by the parameters that make it what it is, not by others."""
+    if without <= config.most_without:
+        return ""
+    return (
+        f"without {', '.join(added.effect.essential)}, which makes it this effect, it closes "
+        f"{100 * without:.0f} % of the same"
+    )
+
+
+def is_resolved(added: Added, before: Sequence[Added], scenes: Sequence[DenseWindows]) -> str:
+    """Whether stamps of poses are off by more than the period of the recorded speeds.
+
+    Beside treads that act late: when within a period they changed their speed is not recorded.
+    """
+    late = any(isinstance(one.effect, CommandEffect) for one in before)
+    if not late or added.effect.name != TimeOffset.name:
+        return ""
+    periods_s = [float(np.median(np.diff(one.run.odometry.stamps_s))) for one in scenes]
+    off_s = max(float(np.abs(delay_s((added,), one.pose_s, run_of(one))).max()) for one in scenes)
+    if off_s > max(periods_s):
+        return ""
+    return (
+        f"{1e3 * off_s:.0f} ms are less than the {1e3 * max(periods_s):.0f} ms from one recorded "
+        "speed to the next: beside treads that act late they cannot be distinguished"
+    )
+
+
+def is_even(of: Unevenness, config: GapConfig) -> str:
+    """Whether an effect has one strength, in all pieces of the runs."""
+    if of.share <= config.uneven or of.probability >= config.uneven_probability:
+        return ""
+    return (
+        f"its strength differs by {100 * of.share:.0f} % from one stretch of the runs to the next: "
+        "something else comes and goes"
+    )

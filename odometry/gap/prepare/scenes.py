@@ -1,0 +1,149 @@
+"""Windows of the runs: how long, to fit effects to, to evaluate them, without poses left out."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from odometry.arrays import BoolArray
+from odometry.effects.reference_outliers import JumpingPoses
+from odometry.errors import GapError
+from odometry.gap.config import GapConfig
+from odometry.gap.prepare.calibration import Calibration
+from odometry.gap.prepare.frozen import Isolated
+from odometry.gap.prepare.jumps import Jumps
+from odometry.gap.prepare.outliers import Outliers, closes, outliers_of
+from odometry.gap.prepare.pieces import held_back
+from odometry.gap.prepare.rounding import rounded_m
+from odometry.positions.heading import Headed
+from odometry.run import Run
+from odometry.windows.averaged import averaged_windows
+from odometry.windows.dense import DenseWindows, covered_s, dense_windows_of, thinned
+
+SHORTER = (1.0, 0.75, 0.5)  # of the usual duration of windows, where stretches ask for it
+SLOWEST_M_S = 0.05  # of a mean speed: a stationary robot has no horizon
+
+
+def dealt(
+    runs: Sequence[Run], measured: int, calibration: int
+) -> tuple[Sequence[Run], Sequence[Run], Sequence[Run]]:
+    """Measured, calibration and held-out runs of all, in this order."""
+    known = measured + calibration
+    return runs[:measured], runs[measured:known], runs[known:]
+
+
+def scene_of(run: Run, config: GapConfig) -> DenseWindows:
+    """Windows of a run, with the step to which its positions were rounded."""
+    scene = averaged_windows(dense_windows_of(run, config.horizon_s))
+    return replace(scene, rounded_m=rounded_m(run))
+
+
+def scenes_of(
+    measured: Sequence[Run], holdout: Sequence[Run], config: GapConfig
+) -> tuple[list[DenseWindows], list[DenseWindows]]:
+    """Scenes to fit and scenes to evaluate."""
+    scenes = [scene_of(run, config).numbered(number) for number, run in enumerate(measured)]
+    if holdout:
+        held = [
+            scene_of(run, config).numbered(number)
+            for number, run in enumerate(holdout, start=len(measured))
+        ]
+    else:
+        outs = [held_back(scene, config.part_s, config.held_back) for scene in scenes]
+        held = [s.where(out) for s, out in zip(scenes, outs, strict=True) if out.any()]
+        scenes = [s.where(~out) for s, out in zip(scenes, outs, strict=True) if not out.all()]
+        if not held or not scenes:
+            raise GapError(
+                "the measured runs are too short to hold stretches of them back: expected "
+                f"{config.held_back * config.part_s:g} s or more with moving treads, or --holdout"
+            )
+    return [thinned(scene, config.most_windows) for scene in scenes], held
+
+
+def alike(*groups: Sequence[DenseWindows]) -> tuple[list[DenseWindows], ...]:
+    """The same scenes without the gyroscope where one of them has none."""
+    if all(scene.reported_turns is not None for scenes in groups for scene in scenes):
+        return tuple(list(scenes) for scenes in groups)
+    return tuple([scene.without_gyroscope() for scene in scenes] for scenes in groups)
+
+
+def without_outliers(
+    runs: tuple[Sequence[Run], Sequence[Run]],
+    scenes: tuple[list[DenseWindows], list[DenseWindows]],
+    known_scenes: Sequence[DenseWindows],
+    known: Calibration,
+    config: GapConfig,
+) -> tuple[list[DenseWindows], list[DenseWindows], Outliers | None]:
+    """Measured and held-out scenes without poses that are far off, where that closes some gap."""
+    held_out = scenes[1] if runs[1] else ()
+    outliers = outliers_of(scenes[0], held_out, known_scenes, known, config)
+    if outliers is None:
+        return *scenes, None
+    cut = scenes_of(*cleaned_runs(*runs, outliers), config)
+    _, fitted_scenes, held_scenes = alike(known_scenes, *cut)
+    if not closes(scenes[1], held_scenes, known.base, config):
+        return *scenes, None
+    return fitted_scenes, held_scenes, outliers
+
+
+def cleaned_runs(
+    measured: Sequence[Run], held_out: Sequence[Run], outliers: Outliers
+) -> tuple[list[Run], list[Run]]:
+    """The runs without these poses, or cut before each where it is good by itself."""
+    jumping = isinstance(outliers.named.effect, JumpingPoses)
+    without = cut_before if jumping else left_out
+    return (
+        [without(run, one) for run, one in zip(measured, outliers.measured, strict=True)],
+        [without(run, one) for run, one in zip(held_out, outliers.held_out, strict=True)],
+    )
+
+
+def left_out(run: Run, found: Isolated | Jumps) -> Run:
+    """The run without these poses."""
+    if run.pose is None:
+        return run
+    return replace(run, pose=run.pose.rows(np.flatnonzero(~_off(run, found))))
+
+
+def cut_before(run: Run, found: Isolated | Jumps) -> Run:
+    """The run with a new `window` of its poses from each of these on."""
+    if run.pose is None:
+        return run
+    steps = np.cumsum(_off(run, found)).astype(np.float64)
+    if "window" in run.pose:
+        _, numbers = np.unique(run.pose.columns["window"], return_inverse=True)
+        steps = steps + (len(steps) + 1.0) * numbers
+    columns = {**run.pose.columns, "window": steps}
+    return replace(run, pose=replace(run.pose, columns=columns))
+
+
+def _off(run: Run, found: Isolated | Jumps) -> BoolArray:
+    """Which poses of a run (M,) are among those found."""
+    pose_s = run.pose.stamps_s if run.pose is not None else np.empty(0)
+    stamps_s = np.round(pose_s - run.odometry.stamps_s[0], 6)
+    return np.asarray(np.isin(stamps_s, np.round(found.stamps_s[found.off], 6)))
+
+
+def for_chains(config: GapConfig, runs: Sequence[Run]) -> GapConfig:
+    """Shorter windows where poses are chained in stretches that longer ones do not fit into.
+
+    The longest of these that leaves out hardly more of the poses than the best one does.
+    """
+    tried_s = [share * config.horizon_s for share in SHORTER]
+    covered = np.sum([covered_s(run, tried_s) for run in runs], axis=0)
+    enough = covered >= config.least_covered * covered.max()
+    return replace(config, horizon_s=tried_s[int(np.argmax(enough))])
+
+
+def for_positions(config: GapConfig, headings: Headed) -> GapConfig:
+    """Longer windows where positions without yaw are too noisy for short ones.
+
+    At most half of a piece, so that pieces still hold windows.
+    """
+    speeds_m_s = [
+        each.run.wheel_travel_m[-1] / np.ptp(each.run.odometry.stamps_s) for each in headings.found
+    ]
+    if not speeds_m_s:
+        return config
+    needed_s = headings.least_horizon_m / max(min(speeds_m_s), SLOWEST_M_S)
+    return replace(config, horizon_s=max(config.horizon_s, min(needed_s, config.part_s / 2)))

@@ -1,0 +1,1 @@
+"""A gap result as sentences and files."""
