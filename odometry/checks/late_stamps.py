@@ -173,7 +173,8 @@ def treads_apart(evidence: Evidence, lag: Lag, other: str, *, decided: bool) -> 
         "treads_are_commands",
         lag,
         other,
-        f"v_left and v_right are commands, which the robot follows later{more}{undecided}",
+        "v_left and v_right are commands, which the robot follows later, or the robot itself turns "
+        f"so much later than its wheels (soft terrain, tracks, a heavy load){more}{undecided}",
         mend,
     )
 
@@ -185,7 +186,9 @@ def _treads(name: str, lag: Lag, other: str, cause: str, mend: Mend | None = Non
         Level.WARNING,
         _seen("treads", lag, other),
         cause,
-        "Log the speeds that the wheels have" if commands else _remedy("treads", lag),
+        "Log the speeds that the wheels have; if these are they, it is the robot"
+        if commands
+        else _remedy("treads", lag),
         mend=mend or sooner(TREADS, lag.seconds),
     )
 

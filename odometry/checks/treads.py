@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, counted
 from odometry.checks.outliers import spikes
@@ -18,6 +18,8 @@ STOP_S = 0.3  # no robot stops and is at full speed again within
 STEPS = 1.5  # of coarse readings, above which a speed does not round to zero
 CHANGING = 0.005
 SATURATED = 0.05  # share of rows at the very largest value
+STRAIGHT, LEAST_TRAVEL, LEAST_WINDOWS = 0.5, 0.3, 8  # windows in which distances are compared
+AS_FAR = 0.03  # by which they may differ: what is clipped by less hardly moves an odometer
 EQUAL = 0.98  # share of the rows in motion; encoders of two treads differ in their last digits
 LEAST_ROWS = 100
 LEAST_TURN_RAD = 1.0  # range of the heading that equal treads do not explain
@@ -89,7 +91,11 @@ def _step(values: FloatArray) -> float | None:
 
 
 def _saturated(evidence: Evidence) -> Iterator[Finding]:
-    """A largest value that is reached to both directions, or by both treads: a limit."""
+    """A largest value that is reached to both directions, or by both treads: a limit.
+
+    A robot that drives at its top speed reaches one as well: there poses go no farther than the
+    treads say.
+    """
     tops = np.abs(evidence.speeds_m_s).max(axis=0)
     shared = abs(float(tops[0] - tops[1])) < 1e-9
     for side, name in enumerate(("v_left", "v_right")):
@@ -101,15 +107,34 @@ def _saturated(evidence: Evidence) -> Iterator[Finding]:
         lively = len(np.unique(np.round(np.abs(values[~at_top]), 4))) > 50
         both = bool((values[at_top] > 0).any() and (values[at_top] < 0).any())
         if at_top.mean() > SATURATED and changes >= 3 and (both or shared) and lively:
+            true = _travels_as_said(evidence, at_top)
             yield Finding(
                 "saturated_speed",
-                Level.WARNING,
+                Level.NOTE if true else Level.WARNING,
                 f"{100 * at_top.mean():.0f} % of {name} are exactly +-{largest:.4g} m/s, reached "
-                f"{changes} times",
-                "The speed saturates: it is clipped at a limit of the sensor or the log, or it is "
-                "the command and not what the wheels did",
-                "Log measured wheel speeds over their whole range",
+                f"{changes} times" + (", and positions go as far there as elsewhere" * true),
+                "The robot drives at its top speed"
+                if true
+                else "The speed saturates: it is clipped at a limit of the sensor or the log, or "
+                "it is the command and not what the wheels did",
+                "Nothing to do" if true else "Log measured wheel speeds over their whole range",
             )
+
+
+def _travels_as_said(evidence: Evidence, at_top: BoolArray) -> bool:
+    """Whether positions go as far a metre of the treads at the largest speed as elsewhere."""
+    m, stamps_s = evidence.motion, evidence.stamps_s
+    ends = np.searchsorted(stamps_s, np.stack([m.start_s, m.end_s]), side="right")
+    counted_before = np.append(0, np.cumsum(at_top))
+    share = np.diff(counted_before[ends], axis=0)[0] / np.maximum(np.diff(ends, axis=0)[0], 1)
+    straight = np.abs(m.difference_m) < STRAIGHT * np.abs(m.mean_m)
+    far = straight & (np.abs(m.mean_m) > LEAST_TRAVEL * evidence.fastest_m_s * m.lasts_s)
+    per_metre = m.distance_m / np.maximum(np.abs(m.mean_m), 1e-9)
+    groups = [per_metre[far & of & np.isfinite(per_metre)] for of in (share > 0.9, share < 0.1)]
+    if min(map(len, groups)) < LEAST_WINDOWS:
+        return False
+    top, other = map(float, map(np.median, groups))
+    return abs(top / other - 1) < AS_FAR
 
 
 def _dropped(evidence: Evidence) -> Iterator[Finding]:

@@ -11,6 +11,7 @@ from odometry.effects.pose_stamps import uneven_s
 from odometry.effects.recorded import Recorded
 from odometry.effects.time_offset import BY_GYROSCOPE
 
+EARLY_S = 0.02  # mean of the stamps, from which they are early
 LEAST_S = 0.01  # standard deviation of stamps about even ones
 
 
@@ -45,6 +46,12 @@ class LateByChance(MeasurementEffect):
             EffectParameter("share", "", -1.0, 2.0, 0.0, 0.02),
             EffectParameter("offset", "s", -1.0, 1.0, 0.0, 0.02),
         )
+
+    def in_words_at(self, values: FloatArray) -> str:
+        """See `Effect.in_words_at`: stamps that are cut to a coarse step are early."""
+        if values[1] > -EARLY_S:
+            return self.in_words
+        return "poses whose stamps are early, some by more than others (cut to a coarse step)"
 
     def is_meant(self, values: FloatArray) -> bool:
         """See `Effect.is_meant`: uneven stamps are late, not measured so."""

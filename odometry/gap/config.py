@@ -112,8 +112,9 @@ class GapConfig:
     least_tilt_rad : float
         Steepest terrain measured, below which no drive on a slope is proposed: nobody could
         find it.
-    knots, tread_knots : int
-        Of a smooth function; of that of a tread's own motion, to each side of zero.
+    knots, tread_knots, even_knots : int
+        Of a smooth function; of that of a tread's own motion, to each side of zero; and of one
+        whose knots are even in its variable.
     most_effects, most_smooth : int
         Names, and smooth functions where no name is accepted.
     outlier_sigmas : float
@@ -177,6 +178,7 @@ class GapConfig:
     least_tilt_rad: float = 0.03
     knots: int = 5
     tread_knots: int = 4
+    even_knots: int = 9
     most_effects: int = 3
     most_smooth: int = 4
     outlier_sigmas: float = 8.0
@@ -217,6 +219,7 @@ class GapConfig:
             value = getattr(self, name)
             require(0 <= value < 1, f"{name} = {value}, expected 0 to 1")
         require(self.knots >= 2, f"knots = {self.knots}, expected 2 or more")
+        require(self.even_knots >= 2, f"even_knots = {self.even_knots}, expected 2 or more")
         require(self.tread_knots >= 1, f"tread_knots = {self.tread_knots}, expected 1 or more")
         require(self.trimmed >= 1, f"trimmed = {self.trimmed}, expected 1 or more")
         require(self.most_effects >= 1, f"most_effects = {self.most_effects}, expected 1 or more")

@@ -9,7 +9,7 @@ from odometry.arrays import FloatArray
 from odometry.errors import IdentificationError
 from odometry.modes.bank_inputs import forward_speed_m_s, velocity_signals
 from odometry.modes.mode_windows import stretches_by_label
-from odometry.modes.response import Record, errors_of, fitted_response, growing_power
+from odometry.modes.response import Record, errors_of, fitted_response, gain_spread, growing_power
 from odometry.modes.velocity import VelocityModes
 from odometry.run import UNKNOWN, Run
 
@@ -75,7 +75,7 @@ def identify_velocity_modes(
     blocks = np.tile(FOLLOWING, (len(names), 1, 1))
     measurement = np.full((len(names), 2), FOLLOWS_SIGMA**2)
     lasting_s = []
-    speed_power = np.zeros((len(names), 2))
+    speed_power, spread = np.zeros((len(names), 2)), np.zeros(len(names))
     for place, name in enumerate(names):
         for row in measured_rows:
             response = fitted_response(pooled if shared else records[name], row)
@@ -85,6 +85,8 @@ def identify_velocity_modes(
             lasting_s.append(errors.power / errors.variance)
             if row == SPEED:
                 speed_power[place] = growing_power(records[name], row, response, by=OMEGA)
+            else:
+                spread[place] = gain_spread(records[name], row, response)
     if common_noise:
         measurement[:] = np.median(measurement, axis=0)
     process = measurement * np.median([record.step_s for record in pooled]) / CORRECTED_S**2
@@ -99,6 +101,7 @@ def identify_velocity_modes(
         errors_last_s,
         fastest_m_s,
         speed_power if SPEED in measured_rows else None,
+        spread,
     )
 
 

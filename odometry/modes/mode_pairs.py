@@ -58,16 +58,21 @@ def _velocity_seconds(modes: VelocityModes, speeds: FloatArray, step_s: float) -
     """For row against column (M, M); no sooner than errors change, each such time counting once.
 
     By the yaw rate, and of modes of one model by noise, as in `track_checks.similar_modes`: where
-    models differ, however little, noise is what a road or a recording may change as well.
+    models differ, however little, noise is what a road or a recording may change as well. Never
+    where yaw rates differ by less than those of one mode do from turn to turn.
     """
     gains, variances = modes.steady_gains()[:, 1], modes.measurement_variance
     apart = gains[:, None] - gains[None]
     one_model = (apart == 0).all(axis=-1)
-    of_yaw = np.einsum("ija,ab,ijb->ij", apart, speeds.T @ speeds / len(speeds), apart)
+    driven = speeds.T @ speeds / len(speeds)
+    of_yaw = np.einsum("ija,ab,ijb->ij", apart, driven, apart)
     ratio = variances[:, None] / variances[None]
     of_noise = (ratio - 1 - np.log(ratio)).sum(axis=-1)
     divergence = np.where(one_model, of_noise, of_yaw / variances[None, :, 1]) / 2
-    equal = divergence <= 0
+    lasting = (ModesConfig.alike_sigmas * modes.lasting_share()) ** 2
+    of_turns = lasting * np.einsum("ia,ab,ib->i", gains, driven, gains)
+    alike = ~one_model & (of_yaw <= np.maximum(of_turns[:, None], of_turns))
+    equal = (divergence <= 0) | alike
     once_s = max(modes.errors_last_s, step_s)
     needed = once_s * np.maximum(1.0, LOG_ODDS / np.where(equal, 1.0, divergence))
     return np.where(equal, np.inf, needed)

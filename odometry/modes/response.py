@@ -1,6 +1,6 @@
 """How one quantity answers to others: a first-order lag, fitted to what it simulates."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +14,7 @@ LOG_RATE_TOLERANCE = 1e-9  # the file is then the same on other processors, but 
 RIDGE = 1e-3  # of the mean square of an input: what inputs that go together leave open is small
 BLOCK_S = 2.0  # over which errors of a model are correlated
 LEAST_VARIANCE = 1e-10
+LEAST_TURN_RAD_S, LEAST_TURN_S, LEAST_TURNS = 0.1, 1.0, 5  # of which a gain says something
 
 SHORTEST_LAG_S = 1e-3
 
@@ -118,6 +119,38 @@ def growing_power(
         return np.zeros(2)
     values, _ = nnls(np.column_stack([np.ones(len(powers)), squares]), powers)
     return np.asarray(values)
+
+
+def gain_spread(records: Sequence[Record], row: int, response: Response) -> float:
+    """Standard deviation of the gain from one turn to the next, as a share of it.
+
+    Of what is measured over what the response predicts, turn by turn, beyond what noise that does
+    not grow with the turn makes of it (the moment estimate of DerSimonian and Laird 1986,
+    Controlled Clinical Trials 7, 177). A gain that depends on the run, on the speed or on how tight
+    a turn is differs from turn to turn, and no noise of single measurements tells of that.
+    """
+    noise = float(growing_power(records, row, response, by=row)[0])
+    found = [turn for one in records for turn in _gains_of_turns(one, row, response)]
+    gains, squares = np.array(found).reshape(-1, 2).T
+    if len(gains) < LEAST_TURNS:
+        return 0.0
+    weights = squares / max(noise, LEAST_VARIANCE)
+    mean = weights @ gains / weights.sum()
+    beyond = weights @ (gains - mean) ** 2 - (len(gains) - 1)
+    scale = weights.sum() - weights @ weights / weights.sum()
+    return float(np.sqrt(max(beyond / scale, 0.0)) / abs(mean))
+
+
+def _gains_of_turns(record: Record, row: int, response: Response) -> Iterator[tuple[float, float]]:
+    """Of each turn to one side the gain, and the time integral of what is predicted, squared."""
+    inputs, target = _simulated(record, row, response.rate_hz)
+    predicted = inputs @ response.gains
+    side = np.where(np.abs(predicted) > LEAST_TURN_RAD_S, np.sign(predicted), 0.0)
+    changes = np.flatnonzero(np.diff(side)) + 1
+    for turn in np.split(np.arange(len(side)), changes):
+        if side[turn[0]] and len(turn) * record.step_s >= LEAST_TURN_S:
+            square = float(predicted[turn] @ predicted[turn])
+            yield float(predicted[turn] @ target[turn]) / square, square * record.step_s
 
 
 def block_powers(errors: FloatArray, step_s: float) -> FloatArray:

@@ -73,10 +73,13 @@ def turns_are_off(
         of 18 clean runs 3 have a sum beyond 3.5 somewhere.
     """
     config = config or ModesConfig()
+    # while the robot stands nothing takes back what its turns contradicted
+    measured = np.isfinite(innovations.of_leading[:, -1])
+    driven_s = np.cumsum(np.diff(innovations.stamps_s, prepend=innovations.stamps_s[0]) * measured)
     sums = [turn_sums(innovations, predicted_rad_s, window_s) for window_s in WINDOWS_S]
     off = np.asarray((np.abs(sums) > config.turn_sigmas).any(axis=(0, 2)))
     last = np.maximum.accumulate(np.where(off, np.arange(len(off)), -1))
-    since_s = innovations.stamps_s - innovations.stamps_s[last]
+    since_s = driven_s - driven_s[last]
     return np.asarray((last >= 0) & (since_s <= config.turn_holds_s))
 
 
@@ -116,7 +119,8 @@ def similar_modes(
     means, lasts_s = _means(predicted, signals.stamps_s)
     # the deviation of what lasts of errors in a mean over so long
     share = np.minimum(modes.errors_last_s / lasts_s, 1.0)[:, None]
-    lasting = np.sqrt(modes.measurement_variance[:, 1] * share)
+    of_turns = modes.lasting_share() * np.abs(means)
+    lasting = np.sqrt(modes.measurement_variance[:, 1] * share + of_turns**2)
     rows, count = np.arange(len(means)), means.shape[1]
     alike = np.empty((len(means), count), dtype=np.bool_)
     for place in range(count):

@@ -46,6 +46,9 @@ class VelocityModes:
     speed_power : (M, 2) or None
         Power at low frequency of errors of the forward speed [m^2/s]: on a straight, and what each
         (rad/s)^2 of yaw rate adds. None where it was identified without measured speeds.
+    gain_spread : (M,) or None
+        Standard deviation of the yaw rate for given treads from one turn to the next, as a share of
+        it. None of sets of versions before 0.18.
     """
 
     names: tuple[str, ...]
@@ -56,6 +59,7 @@ class VelocityModes:
     errors_last_s: float = 0.0
     fastest_m_s: float = np.inf
     speed_power: FloatArray | None = None
+    gain_spread: FloatArray | None = None
 
     kind = "velocity"
     state_angles: tuple[int, ...] = ()
@@ -110,6 +114,10 @@ class VelocityModes:
     def steady_gains(self) -> FloatArray:
         """Speed and yaw rate (M, 2, 2) per tread speed, once all has settled: -A^-1 B."""
         return np.asarray(-np.linalg.solve(self.A, self.B))
+
+    def lasting_share(self) -> FloatArray:
+        """By how much (M,) the yaw rate of a mode may be off for as long as a turn, as a share."""
+        return np.zeros(len(self.names)) if self.gain_spread is None else self.gain_spread
 
     def steady_yaw_rates(self, tread_speeds_m_s: FloatArray) -> FloatArray:
         """Yaw rates (N, M) of tread speeds (N, 2), once all has settled [rad/s]."""

@@ -40,11 +40,7 @@ def answer_words(followed: Followed, track: ModeTrack) -> str:
     """How soon and how well modes were detected; where the run names none, what the answers are."""
     score = followed.score(track)
     if not score.detections:
-        shares = list(followed.shares(track).items())
-        said = [f"{name} {percent(share)} of the time" for name, share in shares[:FEW]]
-        others = len(shares) - FEW
-        said += [f"{others} others the rest"] if others > 0 else []
-        return f"{', '.join(said)}."
+        return f"{_shares_said(followed.shares(track), ' of the time')}."
     if len(score.detections) > FEW:
         return _together(score)
     said = [_stretch(one, _answered(followed, track, one)) for one in score.detections]
@@ -170,8 +166,8 @@ def _in_force(followed: Followed) -> str:
     return f"{last} {when}; of the time {_shares_said(followed.shares(track))}."
 
 
-def _shares_said(shares: Mapping[str, float]) -> str:
-    said = [f"{name} {percent(of)}" for name, of in shares.items() if of >= LEAST_SHARE]
+def _shares_said(shares: Mapping[str, float], unit: str = "") -> str:
+    said = [f"{name} {percent(of)}{unit}" for name, of in shares.items() if of >= LEAST_SHARE]
     others = len(said) - FEW
     if others > 0:
         said[FEW:] = ["1 other" if others == 1 else f"{others} others"]
@@ -179,11 +175,9 @@ def _shares_said(shares: Mapping[str, float]) -> str:
 
 
 def _how_sure(followed: Followed) -> str:
-    """How well modes fit, and whether nothing checked the scale of the gyroscope."""
-    said = _fit_said(followed)
-    if followed.signals.heading_check is None:
-        said += "".join(f" Not checked: {what}." for what in not_checked(followed)[:1])
-    return said
+    """How well modes fit, and what nothing checked."""
+    said = [_fit_said(followed), *(f"Not checked: {what}." for what in not_checked(followed))]
+    return " ".join(said)
 
 
 def _fit_said(followed: Followed) -> str:

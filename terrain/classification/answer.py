@@ -6,8 +6,10 @@ from typing import Self
 from odometry.run import UNKNOWN
 from terrain.classification.likeness import Likeness
 
-EVEN = 0.5
-DOUBTFUL = "unlike the training photographs, and more probably wrong than right"
+TRUSTED = (
+    0.7  # probability of being right: a wrong name costs more than twice what a right one brings
+)
+DOUBTFUL = f"unlike the training photographs, and not right with a probability of {TRUSTED} or more"
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,7 @@ class Classification:
     probability_right: float | None = None
 
     def unless_doubtful(self, likeness: Likeness | None) -> Self:
-        """The answer, ``unknown`` where its name is more probably wrong than right.
+        """The answer, ``unknown`` where its name is not right with `TRUSTED` or more.
 
         It is asked only where the images together, of which this is one, are unlike the training
         photographs: elsewhere as many right names would be lost as wrong ones.
@@ -63,6 +65,6 @@ class Classification:
         """
         if likeness is None or not likeness.is_unlike or self.label == UNKNOWN:
             return self
-        if self.probability_right is None or self.probability_right >= EVEN:
+        if self.probability_right is None or self.probability_right >= TRUSTED:
             return self
         return replace(self, label=UNKNOWN, reason=DOUBTFUL)

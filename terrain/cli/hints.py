@@ -51,7 +51,7 @@ def hints(result: RunResult, *, vision: bool, named: str | None = None) -> list[
         if likeness is not None and likeness.note is not None:
             doubted = sum(label.reason == DOUBTFUL for label in result.watcher.image_labels)
             learned = getattr(result.watcher.classifier, "confidence_", None) is not None
-            what = f"Names that are more probably wrong than right are unknown ({doubted} images)"
+            what = f"Names that are not surely enough right are unknown ({doubted} images)"
             found.append(f"{likeness.note}. {what if learned else 'Here they count less'}")
         empty = no_ground_note([image_label.reason for image_label in result.watcher.image_labels])
         if empty is not None:

@@ -132,7 +132,7 @@ def _several(
     """A folder for each run, and runs.csv; a run that fails is a row."""
     from odometry.errors import OdometryError
     from odometry.modes.files import write_modes, write_runs
-    from odometry.modes.words import sentences
+    from odometry.modes.words import in_short, sentences
     from odometry.report.modes_page import write_modes_report
     from terrain.cli.outputs import about, folder_names
 
@@ -150,6 +150,7 @@ def _several(
             write_modes_report(result, part / name)
             rows[name] = result
             click.echo(f"{name}: {sentences(result)[0]}")
+            click.echo(f"  how sure: {in_short(result)[1]}")
         write_runs(rows, part / "runs.csv")
     done = [name for name, row in rows.items() if not isinstance(row, str)]
     click.echo(f"Wrote to {out}: runs.csv, and a folder of each run that was followed")

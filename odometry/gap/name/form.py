@@ -21,39 +21,44 @@ from odometry.gap.fit.input_noise import surely_dearer
 from odometry.gap.fit.own_moments import with_own_moments
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.search import Search
-from odometry.gap.name.verdict import is_abrupt, is_by_its_essence, is_even, is_special
+from odometry.gap.name.verdict import is_a_clock, is_abrupt, is_by_its_essence, is_even, is_special
 from odometry.gap.prepare.statistic import gap_of
 
 
 def of_their_form(search: Search, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
     """Without names that do not have it: with the function that does better in the place of one.
 
-    Without any step where no name is left.
+    What is left is tested again: a name may have passed by what another did. Without any step
+    where no name is left.
     """
-    for effect in found.effects:
-        if isinstance(effect, Residual):
-            continue
-        alone = names_alone(search.fitter, found)
-        names = [added.effect for added in alone.effects]
-        place = names.index(effect)
+    alone = names_alone(search.fitter, found)
+    names = [added.effect for added in alone.effects]
+    for place, effect in enumerate(names):
         instead = smooth_in_place(search, alone, place, smooth)
-        of = unevenness(search.fitter, found.fitted, found.effects.index(effect))
-        added = alone.effects[place]
-        reason = (
-            is_special(instead)
-            or is_even(of, search.config)
-            or is_meant(added)
-            or is_by_its_essence(without_essence(search.fitter, alone, place), added, search.config)
-            or slow_course_in_place(search, alone, place)
-        )
+        reason = is_special(instead) or _of_no_form(search, found, alone, place)
         if not reason:
             continue
         search.refuse(effect, reason)
         others = [name for name in names if name is not effect]
         if not others:
             return replace(found, steps=())
-        found = search.in_order(found, [*others, instead] if instead else others)
+        left = search.in_order(found, [*others, instead] if instead else others)
+        return of_their_form(search, left, smooth)
     return found
+
+
+def _of_no_form(search: Search, found: Explanation, alone: Fitted, place: int) -> str:
+    """Why one of the names does not have the form of what it stands for, by itself."""
+    added = alone.effects[place]
+    of = unevenness(search.fitter, found.fitted, found.effects.index(added.effect))
+    others = [one for one in alone.effects if one is not added]
+    return (
+        is_even(of, search.config)
+        or is_meant(added)
+        or is_a_clock(added, others, search.fitter.measured.scenes)
+        or is_by_its_essence(without_essence(search.fitter, alone, place), added, search.config)
+        or slow_course_in_place(search, alone, place)
+    )
 
 
 def without_essence(fitter: Fitter, fit: Fitted, place: int) -> float:

@@ -29,6 +29,7 @@ MOTIONS = (  # components, each by what it may grow with
     *(("v_x", ""), ("v_x", "v_x"), ("v_x", "omega"), ("v_y", ""), ("v_y", "speed")),
     *(("v_y", "omega"), ("omega", ""), ("omega", "speed"), ("omega", "omega")),
 )
+WHOLE = ("v_x", "omega")  # parts of a twist of which a share may be taken
 
 
 def general_candidates(
@@ -60,18 +61,30 @@ def general_candidates(
 def shares_of_motion(
     scenes: Sequence[DenseWindows], base: Base, config: GapConfig
 ) -> tuple[Residual, ...]:
-    """Shares of each tread's speed, or of the forward speed, as functions of every variable.
+    """Shares of each tread's speed, of the forward speed or of the turn, by every variable.
 
-    Most names take away a share of a motion: functions that cannot are no rivals of them.
+    Most names take away a share of a motion: functions that cannot are no rivals of them. Knots of
+    the whole motion are once even in samples and once in the variable: of a speed most samples lie
+    at rest and at full speed, and what bends between has no knot there.
     """
     found: list[Residual] = []
     for name, knots in knots_of_variables(scenes, base, config).items():
         functions = len(knots) or 2 * HARMONICS + 1
         if name != "time":
             found.append(Residual(name, _every(TREADS, functions), "speed", knots))
-        if name not in OF_TREADS:
-            found.append(Residual(name, _every(("v_x",), functions), "v_x", knots))
+        if name in OF_TREADS:
+            continue
+        found += [Residual(name, _every((part,), functions), part, knots) for part in WHOLE]
+        found += _even_shares(name, knots, config)
     return tuple(found)
+
+
+def _even_shares(name: str, knots: Sequence[float], config: GapConfig) -> list[Residual]:
+    """Shares of the forward speed and of the turn, of knots that are even in the variable."""
+    if not knots:
+        return []
+    evenly = tuple(map(float, np.linspace(knots[0], knots[-1], config.even_knots)))
+    return [Residual(name, _every((part,), len(evenly)), part, evenly) for part in WHOLE]
 
 
 def single_candidates(
@@ -92,6 +105,8 @@ def single_candidates(
         elif name != "time":
             added += MOTIONS
         found += [Residual(name, _every((to,), functions), by, knots) for to, by in added]
+        if name not in OF_TREADS and name != "time":
+            found += _even_shares(name, knots, config)
     return tuple(found)
 
 

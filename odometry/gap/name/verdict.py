@@ -13,8 +13,9 @@ from scipy.stats import chi2
 from odometry.effects.base import CommandEffect
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added, delay_s
+from odometry.effects.late_treads import ActuatorLag, CommandDelay
 from odometry.effects.residual import Residual
-from odometry.effects.time_offset import TimeOffset
+from odometry.effects.time_offset import ClockDrift, TimeOffset
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.evenness import Unevenness
 from odometry.gap.fit.fitter import Fitted
@@ -209,6 +210,21 @@ def is_resolved(added: Added, before: Sequence[Added], scenes: Sequence[DenseWin
     return (
         f"{1e3 * off_s:.0f} ms are less than the {1e3 * max(periods_s):.0f} ms from one recorded "
         "speed to the next: beside treads that act late they cannot be distinguished"
+    )
+
+
+def is_a_clock(added: Added, others: Sequence[Added], scenes: Sequence[DenseWindows]) -> str:
+    """Whether a clock that runs fast or slow is no change of treads that act late.
+
+    Beside these, and without a gyroscope, which follows the motion and not the stamps of poses.
+    """
+    late = any(one.effect.name in (ActuatorLag.name, CommandDelay.name) for one in others)
+    heard = all(scene.reported_turns is not None for scene in scenes)
+    if not late or heard or not isinstance(added.effect, ClockDrift):
+        return ""
+    return (
+        "beside treads that act late it may be a lag that changes over the run: without gyro_z "
+        "they cannot be distinguished"
     )
 
 

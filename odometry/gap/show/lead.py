@@ -89,6 +89,11 @@ def _instead(equivalent: Sequence[Equivalent]) -> dict[str, list[str]]:
 
 def _nothing_named(result: GapResult, model: str) -> str:
     held = result.holdout
+    if _is_not_held_out(result):
+        return (
+            f"Something is missing in {model} on the measured runs (unknown), and held-out data "
+            f"do not show it{_refused(result)}."
+        )
     if result.verdict == "unknown" and not (
         held.before.is_above(held.noise_floor) or _is_doubtful(result)
     ):
@@ -159,7 +164,7 @@ def _what_to_do(result: GapResult) -> str:
         f"{100 * odds[words]:.0f} % of cases)."
         for words, (name, *others) in between.items()
     ]
-    if result.verdict != "none" and _sensor_faults(result):
+    if _sensor_faults(result):
         drives.insert(0, "First correct what check warns of, and run gap again.")
     decided = {name for one in result.next_drives for name in one.between}
     measures = [
@@ -170,13 +175,15 @@ def _what_to_do(result: GapResult) -> str:
         if one.name not in decided
     ]
     remedy = _remedy(result)
-    if drives:
+    if drives and result.verdict != "none":
         remedy = f"If it is {result.verdict}: {remedy[0].lower()}{remedy[1:]}"
     return " ".join([*drives, remedy, *measures])
 
 
 def _remedy(result: GapResult) -> str:
     if not result.effects:
+        if _is_not_held_out(result):
+            return "Hold out runs that are driven as the measured ones are (--holdout)."
         if result.verdict == "unknown":
             return "Look at the worst stretches in report.html, and record what may differ there."
         if _is_doubtful(result):
@@ -187,6 +194,16 @@ def _remedy(result: GapResult) -> str:
         return "Keep the model as it is."
     remedies = dict.fromkeys(effect.added.effect.remedy for effect in result.effects)
     return f"{'; '.join(remedies)}.".capitalize()
+
+
+def _is_not_held_out(result: GapResult) -> bool:
+    """Whether the measured runs show what is unknown and the held-out data do not."""
+    held = result.holdout
+    return (
+        result.verdict == "unknown"
+        and _is_doubtful(result)
+        and held.before.low <= held.noise_floor.high
+    )
 
 
 def _is_doubtful(result: GapResult) -> bool:

@@ -73,7 +73,10 @@ def _where(result: GapResult) -> Iterator[str]:
         yield "None of the recorded variables predicts the disagreement beyond chance."
     for number, region in enumerate(location.regions[:REGIONS]):
         if region.words == EVERYWHERE:
-            yield f"It is the same everywhere: {metres(region.excess_m)} above the noise floor."
+            yield (
+                "None of them says where it is larger: it is "
+                f"{metres(region.excess_m)} above the noise floor in all."
+            )
             continue
         which = "The largest part of it" if number == 0 else "The next part"
         yield (

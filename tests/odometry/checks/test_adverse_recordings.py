@@ -67,6 +67,20 @@ def test_speeds_clipped_forwards_alone_are_no_stuck_encoders():
     assert set(warnings(run)) == {"saturated_speed"}
 
 
+def test_a_robot_at_its_top_speed_is_not_clipped():
+    """It goes as far for each metre of its treads there as elsewhere."""
+    at_s = 0.05 * np.arange(2400)
+    forward = np.minimum(1 + 0.3 * np.sin(at_s / 4), 1.2)
+    top = forward == 1.2  # to the last digit in both treads: clean encoders, or commands
+    driven = treads(
+        drive(forward, np.sin(at_s / 3) * (1.2 - forward)),
+        lambda *speeds: tuple(np.where(top, 1.3, np.minimum(speed, 1.29)) for speed in speeds),
+    )
+    found = {one.name: one for one in check_recording(driven).findings}
+    assert found["saturated_speed"].level is Level.NOTE
+    assert "top speed" in found["saturated_speed"].cause
+
+
 def test_a_clock_of_the_poses_that_was_set_amid_the_drive_is_no_jump_of_positions():
     run = pose_stamps(winding(), lambda t: t + np.where(t > 60, 3600.0, 0.0))
     assert warnings(run) == ["clock_set"]

@@ -7,9 +7,11 @@ import pytest
 
 from odometry.effects.contact_effects import SlopeByContact
 from odometry.effects.corrected import Added
+from odometry.effects.curvature import Curvature
 from odometry.effects.in_course import in_course
+from odometry.effects.residual import Residual
 from odometry.effects.time_course import InBursts
-from odometry.effects.tread_slip import TractionLoss
+from odometry.effects.tread_slip import SlipBySpeed, TractionLoss
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import Judged
 from odometry.gap.fit.evenness import Unevenness
@@ -27,10 +29,40 @@ def test_what_other_effects_have_bent_is_asked_again(monkeypatch, mu, stands):
     fitted = SimpleNamespace(effects=(Added(effect, np.array([mu, 0.2, 0.3, 0.0, 0.03])),))
     found = Explanation(None, (Judged(effect, fitted, 90.0, 80.0, 70.0, 0.1),), ())
     search = SimpleNamespace(
-        fitter=None, config=GapConfig(), refuse=lambda *reason: refused.append(reason)
+        fitter=SimpleNamespace(measured=SimpleNamespace(scenes=())),
+        config=GapConfig(),
+        refuse=lambda *reason: refused.append(reason),
     )
     assert bool(of_their_form(search, found, ()).steps) == stands
     assert bool(refused) != stands
+
+
+def test_a_name_that_passed_by_what_another_did_is_tested_again(monkeypatch):
+    """A slip by speed is beaten in its place; without it, so is the curvature beside it."""
+    curvature, slip = Curvature(), SlipBySpeed()
+    function = Residual("speed", (("omega", 0), ("omega", 1)), "omega", (0.0, 1.0))
+    beaten_with = {(curvature, slip): slip, (curvature,): curvature}
+
+    def in_place(_, alone, place, __):
+        names = tuple(added.effect for added in alone.effects)
+        return function if names[place] is beaten_with[names] else None
+
+    def explained(effects):
+        added = tuple(Added(one, np.ones(len(one.parameters))) for one in effects)
+        steps = [Judged(one, None, 9.0, 8.0, 7.0, 0.1) for one in effects[:-1]]
+        last = Judged(effects[-1], SimpleNamespace(effects=added), 9.0, 8.0, 7.0, 0.1)
+        return Explanation(None, (*steps, last), ())
+
+    monkeypatch.setattr("odometry.gap.name.form.smooth_in_place", in_place)
+    monkeypatch.setattr("odometry.gap.name.form._of_no_form", lambda *_: "")
+    refused = []
+    search = SimpleNamespace(
+        fitter=SimpleNamespace(fit=lambda effects, _: explained(effects).fitted),
+        refuse=lambda effect, _: refused.append(effect),
+        in_order=lambda _, effects: explained(effects),
+    )
+    assert of_their_form(search, explained([curvature, slip]), ()).steps == ()
+    assert refused == [slip, curvature]
 
 
 @pytest.mark.parametrize(

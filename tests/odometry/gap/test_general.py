@@ -17,7 +17,7 @@ from odometry.effects.residual import (
 )
 from odometry.effects.residual_variables import WHAT_WENT_BEFORE
 from odometry.gap.config import GapConfig
-from odometry.gap.name.general import general_candidates, single_candidates
+from odometry.gap.name.general import general_candidates, shares_of_motion, single_candidates
 
 CONFIG = GapConfig()
 
@@ -91,6 +91,20 @@ def test_what_does_not_vary_is_left_out(scenes, known, share):
 def test_single_ones_add_to_one_component_or_tread(scenes, known):
     single = single_candidates(scenes, known.base, CONFIG)
     assert {one.variable for one in single} == {*VARIABLES, HISTORY}
-    assert len({one.key for one in single}) == len(single)
+    assert len({(one.key, getattr(one, "knots", ())) for one in single}) == len(single)
     for one in single:
         assert len({component for component, _ in one.terms}) == 1
+
+
+def test_shares_of_the_whole_motion_have_knots_even_in_the_variable_as_well(scenes, known):
+    for found in (
+        shares_of_motion(scenes, known.base, CONFIG),
+        single_candidates(scenes, known.base, CONFIG),
+    ):
+        evenly = [
+            one
+            for one in found
+            if len(one.knots) == CONFIG.even_knots and np.ptp(np.diff(one.knots)) < 1e-9
+        ]
+        assert {(one.by, one.terms[0][0]) for one in evenly} == {("v_x", "v_x"), ("omega", "omega")}
+        assert "speed" in {one.variable for one in evenly}

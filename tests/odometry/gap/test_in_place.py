@@ -92,10 +92,11 @@ def test_shares_of_motion_follow_every_variable(make_scene, known):
     of_treads = {one.variable for one in found if one.by == "speed"}
     forward = {one.variable for one in found if one.by == "v_x"}
     assert of_treads == set(VARIABLES) - {"time"}  # that is among the general ones
+    assert forward == {one.variable for one in found if one.by == "omega"}
     assert forward == set(VARIABLES) - set(OF_TREADS)
     for one in found:
         added_to = {component for component, _ in one.terms}
-        assert added_to == (set(TREADS) if one.by == "speed" else {"v_x"})
+        assert added_to == (set(TREADS) if one.by == "speed" else {one.by})
         assert bool(one.knots) == (one.variable not in ANGLES)
 
 

@@ -1,5 +1,7 @@
 """What a name must pass: it is what it says, within its bounds, and closes what was held out."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,7 @@ from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.effects.curvature import Curvature
 from odometry.effects.in_course import in_course
-from odometry.effects.late_treads import CommandDelay
+from odometry.effects.late_treads import ActuatorLag, CommandDelay
 from odometry.effects.sensor_mount import HeadingOffset
 from odometry.effects.slope_icr import SlopeByIcr
 from odometry.effects.time_course import FromAMoment
@@ -23,6 +25,7 @@ from odometry.gap.name.verdict import (
     closes_a_part,
     closes_held_out,
     closes_the_most,
+    is_a_clock,
     is_resolved,
     is_the_main_part,
     is_unbeaten,
@@ -215,6 +218,20 @@ def test_stamps_off_by_less_than_a_period_are_no_name_beside_late_treads(
     late = Added(CommandDelay(), np.array([0.2]))
     assert (is_resolved(added, [late], scenes) == "") is stands
     assert is_resolved(added, [], scenes) == ""
+
+
+@pytest.mark.parametrize("heard", [False, True])
+def test_a_clock_beside_late_treads_needs_a_gyroscope(heard):
+    """A lag that changes over the run is a clock that runs fast, to first order."""
+    scenes = [SimpleNamespace(reported_turns=np.zeros(1) if heard else None)]
+    drift, constant = (
+        Added(of(), np.array(values))
+        for of, values in ((ClockDrift, [0.2, -0.004]), (TimeOffset, [0.2]))
+    )
+    lag, wheels = Added(ActuatorLag(), np.array([0.3])), Added(WheelScale(), np.ones(2))
+    assert (is_a_clock(drift, [lag], scenes) == "") == heard
+    assert is_a_clock(drift, [wheels], scenes) == ""
+    assert is_a_clock(constant, [lag], scenes) == ""
 
 
 @pytest.mark.parametrize(("of_names", "stands"), [(63.0, False), (77.0, True), (100.0, True)])

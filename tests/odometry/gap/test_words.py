@@ -139,6 +139,13 @@ def test_unknown_without_any_name_says_so(none_result):
     assert to_do.startswith("Look at the worst stretches")
 
 
+def test_a_gap_that_only_the_measured_runs_show_asks_for_another_run_to_hold_out(none_result):
+    measured = replace(none_result.measured, before=Gap(0.2, 0.15, 0.3))
+    first, _, to_do, *_ = sentences(replace(none_result, verdict="unknown", measured=measured))
+    assert "on the measured runs (unknown), and held-out data do not show it" in first
+    assert to_do.startswith("Hold out runs that are driven as the measured ones are")
+
+
 def test_unknown_that_a_fault_of_the_reference_explains_as_well_says_so(none_result):
     reason = "a map that drifts, or wind: no data of a run distinguish them"
     beside = Equivalent("reference_fault", "unknown", "let the robot stand still")

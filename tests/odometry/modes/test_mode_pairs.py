@@ -41,6 +41,14 @@ def test_noise_distinguishes_no_modes_whose_models_differ_by_little():
     assert still_alike.seconds > alike.seconds
 
 
+@pytest.mark.parametrize(("spread", "never"), [(0.1, True), (0.05, False)])
+def test_modes_that_differ_by_less_than_one_does_from_turn_to_turn_never_are(spread, never):
+    """By a seventh of the gain of the second, of which two deviations are a fifth, or a tenth."""
+    modes = replace(velocity_set((6.0, 7.0)).modes, gain_spread=np.array([0.0, spread]))
+    (pair,) = pairs(modes, [run_of(1.0)])
+    assert np.isinf(pair.seconds) == never
+
+
 def test_the_most_alike_come_first():
     found = pairs(velocity_set((1.0, 2.0, 2.1), ("a", "b", "c")).modes, [run_of(1.0)])
     assert [pair.names for pair in found] == [("b", "c"), ("a", "b"), ("a", "c")]

@@ -9,6 +9,7 @@ from odometry.modes.response import (
     block_powers,
     errors_of,
     fitted_response,
+    gain_spread,
 )
 from tests.odometry.modes.mode_drives import integrated, wandering
 
@@ -149,3 +150,33 @@ def test_errors_too_short_for_a_block_have_no_power(rng):
     errors = errors_of([noisy(0.1 * rng.normal(size=30))], 1, KNOWN[1])
     assert errors.power == 0.0
     assert errors.variance > 0.0
+
+
+def turning(rng, spread, sigma, *, turns=60, turn_s=4.0):
+    """Turns to either side, each with a gain of its own; yaw rates that follow at once."""
+    size = round(turn_s / STEP_S)
+    rates = np.repeat(rng.uniform(0.3, 1.0, turns) * np.resize([1, -1], turns), size)
+    gains = np.repeat(1 + spread * rng.normal(size=turns), size)
+    measured = gains * rates + sigma * rng.normal(size=len(rates))
+    return Record(STEP_S, np.column_stack([0.5 + 0 * rates, measured, -rates / 2, rates / 2]))
+
+
+@pytest.mark.parametrize("spread", [0.0, 0.01, 0.05])
+def test_the_spread_of_gains_from_turn_to_turn_comes_back(spread):
+    """Within two standard deviations of a sample of sixty, noise of single samples left out."""
+    rng, at_once = np.random.default_rng(3), Response(200.0, np.array([0.0, -200.0, 200.0]))
+    found = gain_spread([turning(rng, spread, 0.02)], 1, at_once)
+    assert found == pytest.approx(spread, abs=0.003 + 0.2 * spread)
+
+
+def test_a_gain_that_depends_on_the_run_is_a_spread():
+    rng, at_once = np.random.default_rng(4), Response(200.0, np.array([0.0, -200.0, 200.0]))
+    runs = [turning(rng, 0.0, 0.02, turns=20) for _ in range(2)]
+    faster = Record(STEP_S, runs[1].table * [1.0, 1.06, 1.0, 1.0])
+    assert gain_spread(runs, 1, at_once) < 0.005
+    assert gain_spread([runs[0], faster], 1, at_once) == pytest.approx(0.03, rel=0.2)
+
+
+def test_few_turns_say_nothing_of_a_spread():
+    rng, at_once = np.random.default_rng(5), Response(200.0, np.array([0.0, -200.0, 200.0]))
+    assert gain_spread([turning(rng, 0.1, 0.02, turns=4)], 1, at_once) == 0.0

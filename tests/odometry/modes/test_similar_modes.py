@@ -1,5 +1,7 @@
 """Modes whose motions are equal within their own lasting errors, by gains that are put in."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -41,6 +43,17 @@ def test_modes_are_alike_up_to_some_deviations_of_what_lasts(factor, expected):
     signals = drive(np.full(500, factor * ModesConfig.alike_sigmas * LASTING_RAD_S / 0.5))
     alike = similar_modes(signals, modes(1.0, 1.5), np.zeros(500, dtype=int))
     assert not alike[:, 0].any()
+    assert (alike[200:, 1] == expected).all()
+
+
+@pytest.mark.parametrize(("factor", "expected"), [(0.95, True), (1.05, False)])
+def test_modes_are_alike_up_to_some_deviations_of_their_gain_from_turn_to_turn(factor, expected):
+    """The yaw rate of the faster mode, of which its gain is off by 10 %, is so large that noise is
+    none."""
+    signals = drive(np.full(500, 100.0))
+    apart = 1 / (1 - factor * ModesConfig.alike_sigmas * 0.1)
+    known = replace(modes(1.0, apart), gain_spread=np.array([0.0, 0.1]))
+    alike = similar_modes(signals, known, np.zeros(500, dtype=int))
     assert (alike[200:, 1] == expected).all()
 
 

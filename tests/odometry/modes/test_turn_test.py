@@ -79,6 +79,16 @@ def test_nothing_is_off_on_straights_nor_where_nothing_was_measured():
     assert not turns_are_off(left_over(np.full(SIZE, np.nan)), asked(WEAVING)).any()
 
 
+def test_a_rest_does_not_take_back_what_turns_contradicted():
+    """Off in the first half, nothing measured after it: by the clock it would be named again."""
+    half = SIZE // 2
+    known = white() + 0.8 * np.sign(WEAVING)
+    known[half:] = np.nan
+    off = turns_are_off(left_over(known), asked(WEAVING))
+    assert off[half - 1]
+    assert off[half:].all()
+
+
 def test_a_mode_that_turns_contradict_is_not_named():
     known = replace(track(["a", "a"], ["a"] * 2), turns_are_off=np.array([False, True]))
     assert named_modes(known, 0.9).tolist() == ["a", UNDETERMINED]

@@ -143,7 +143,7 @@ def test_a_frame_without_an_image_cannot_be_looked_at(watch):
 
 
 class Doubting(ByBrightness):
-    """Says that "mud" is more probably wrong than right."""
+    """Says that "mud" is doubtful."""
 
     def classify(self, images):
         return [
