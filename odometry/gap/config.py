@@ -74,7 +74,8 @@ class GapConfig:
         names close 0.22 at least, a loss of traction in the place of slippery patches 0.05.
     least_of_rest : float
         Share of it that names must close where they leave more than `unexplained`. A drift in the
-        place of a clock that was set closed 0.43.
+        place of a clock that was set closed 0.43. And share of what an answer closes that poses
+        which were left out must close to be its first name.
     least_of_all : float
         Share of what names and smooth functions close together that names must close alone.
     most_without : float

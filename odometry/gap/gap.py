@@ -2,13 +2,12 @@
 
 from collections.abc import Callable, Mapping, Sequence
 
-import numpy as np
 from tqdm import tqdm
 
-from odometry.effects.recorded import labels_of
 from odometry.errors import GapError
 from odometry.gap.answer.answer import (
     drives_apart,
+    is_first,
     named_effects,
     named_outliers,
     rivals_of,
@@ -22,9 +21,9 @@ from odometry.gap.fit.fitter import Fitter
 from odometry.gap.fit.own_moments import with_own_moments
 from odometry.gap.locate.locate import locate
 from odometry.gap.name.names import explained
-from odometry.gap.prepare.calibration import Calibration, calibrated
+from odometry.gap.prepare.by_terrain import by_terrain
+from odometry.gap.prepare.calibration import calibrated
 from odometry.gap.prepare.measured import measured_of
-from odometry.gap.prepare.pieces import numbered_pieces
 from odometry.gap.prepare.rounding import rounding_notes
 from odometry.gap.prepare.scenes import (
     alike,
@@ -35,15 +34,12 @@ from odometry.gap.prepare.scenes import (
     scenes_of,
     without_outliers,
 )
-from odometry.gap.prepare.statistic import floor_of, floor_there, gap_of, squared_errors, sure_sum
+from odometry.gap.prepare.statistic import floor_of, floor_there, gap_of
 from odometry.identification.identify import robot_of
 from odometry.models.base import KinematicModel
-from odometry.models.icr import Icr, IcrByTerrain
+from odometry.models.icr import Icr
 from odometry.positions.heading import headed
 from odometry.run import Run, check_no_run_twice
-from odometry.windows.dense import DenseWindows
-
-LEAST_S = 20.0  # on a terrain, for its own ICRs
 
 
 def find_gap(
@@ -137,7 +133,14 @@ def find_gap(
     believed_m = gap_of(known.base, (), fitted_scenes, config.part_s).value
     named = named_effects(found, effects, believed_m)
     if outliers is not None:
-        named = (named_outliers(outliers, closings[0].before.value, believed_m), *named)
+        alone = gap_of(known.base, (), held_scenes, config.part_s)
+        first = is_first(closings[1], alone, config)
+        raw_m = gap_of(base, effects, raw_scenes[0], config.part_s).value
+        before_m, after_m = (
+            (closings[0].before.value, believed_m) if first else (raw_m, closings[0].after.value)
+        )
+        left_out = named_outliers(outliers, before_m, after_m)
+        named = (left_out, *named) if first else (*named, left_out)
     rounding = named_rounding(fitted_scenes, held_scenes, known, floor, config)
     if rounding is not None:
         named = (rounding, *named)
@@ -169,37 +172,3 @@ def _counting(bar: "tqdm[None]") -> Callable[[], None]:
         bar.update()
 
     return count
-
-
-def by_terrain(
-    known: Calibration, scenes: Sequence[DenseWindows], config: GapConfig
-) -> Calibration:
-    """The calibration with ICRs by terrain, where these explain held-back stretches better.
-
-    By the sum of squared position errors, sure at 95 % over pieces of the runs. The same where the
-    base is another model or was given, or fewer than two terrains are labelled for long enough.
-    """
-    labels = labels_covered(scenes)
-    base_is_open = isinstance(known.base.model, Icr) and known.uncertain.latency_is_free
-    if not base_is_open or len(labels) < 2:
-        return known
-    split = calibrated(scenes, IcrByTerrain(labels), known.base.robot, config)
-    kept = [scene for _, scene in known.held_back]
-    gains = [
-        squared_errors(base, (), scene) - squared_errors(own, (), scene)
-        for (base, scene), (own, _) in zip(known.held_back, split.held_back, strict=True)
-    ]
-    _, piece = np.unique(numbered_pieces(kept, config.part_s), return_inverse=True)
-    of_pieces = np.asarray(np.bincount(piece, weights=np.concatenate(gains)), dtype=np.float64)
-    return split if sure_sum(of_pieces, config.trimmed) > 0 else known
-
-
-def labels_covered(scenes: Sequence[DenseWindows]) -> tuple[str, ...]:
-    """Terrains on which the runs are for `LEAST_S` or more, the longest first."""
-    lasting_s: dict[str, float] = {}
-    for scene in scenes:
-        for label in sorted(labels_of(scene.inputs)):
-            here = np.asarray(scene.inputs.terrain) == label
-            lasting_s[label] = lasting_s.get(label, 0.0) + float(scene.steps_s[here].sum())
-    covered = [label for label, of in lasting_s.items() if of >= LEAST_S]
-    return tuple(sorted(covered, key=lambda label: -lasting_s[label]))

@@ -15,6 +15,7 @@ from odometry.gap.fit.fitter import Fitter
 from odometry.gap.fit.own_moments import SPACING_S
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.prepare.outliers import Outliers
+from odometry.gap.prepare.statistic import Gap
 
 WITHIN_95 = 1.96  # standard deviations
 MOMENT_KNOWN_S = SPACING_S  # the moment of a run held out is known as well as it was searched
@@ -71,6 +72,15 @@ def named_outliers(outliers: Outliers, before_m: float, after_m: float) -> Named
     return NamedEffect(
         outliers.named, outliers.low, outliers.high, before_m, after_m, outliers.evidence
     )
+
+
+def is_first(held_out: Closing, without: Gap, config: GapConfig) -> bool:
+    """Whether poses that were left out are the main part of what an answer closes on held-out data.
+
+    `without` is the gap without these poses, and before anything else is added.
+    """
+    closed_m = held_out.before.value - held_out.after.value
+    return held_out.before.value - without.value >= config.least_of_rest * closed_m
 
 
 def drives_apart(

@@ -33,15 +33,27 @@ def _missing(result: GapResult) -> str:
         return f"Something is missing in {model} (unknown): {reasons[0]}."
     if not result.effects:
         return _nothing_named(result, model)
-    named = [e for e in result.effects if not isinstance(e.added.effect, Residual)]
     kinds = [e.added.effect for e in result.effects]
     rest = list(dict.fromkeys(noun_of_residual(e) for e in kinds if isinstance(e, Residual)))
-    if not named:
-        return (
-            f"Something is missing in {model} that the catalogue of effects does not have "
-            f"(unknown): it depends on {listed(rest)}."
-        )
+    named = [e for e in result.effects if not isinstance(e.added.effect, Residual)]
+    if named:
+        return _of_names(result, model, named, rest)
+    return (
+        f"Something is missing in {model} that the catalogue of effects does not have "
+        f"(unknown): it depends on {listed(rest)}."
+    )
+
+
+def _of_names(
+    result: GapResult, model: str, named: Sequence[NamedEffect], rest: Sequence[str]
+) -> str:
+    """Of effects that have a name, beside what is unknown and depends on the `rest`."""
     names = listed([f"{e.added.in_words} ({e.added.effect.name})" for e in named])
+    if result.verdict == "unknown":
+        return (
+            f"Something is missing in {model} (unknown): it depends on {listed(rest)}; a smaller "
+            f"part of the gap is {names}."
+        )
     if rest:
         names += f", and something unknown that depends on {listed(rest)}"
     untold = "".join(

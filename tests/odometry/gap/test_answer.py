@@ -10,8 +10,15 @@ from odometry.effects.corrected import Added
 from odometry.effects.lateral_skid import LateralSkid
 from odometry.effects.residual import Residual
 from odometry.effects.wheel_scale import WheelScale
-from odometry.gap.answer.answer import drives_apart, named_effects, rivals_of, verdict_of
+from odometry.gap.answer.answer import (
+    drives_apart,
+    is_first,
+    named_effects,
+    rivals_of,
+    verdict_of,
+)
 from odometry.gap.answer.result import Closing, Equivalent
+from odometry.gap.config import GapConfig
 from odometry.gap.name.verdict import Refusal
 from odometry.gap.prepare.statistic import Gap
 
@@ -91,6 +98,13 @@ def test_an_interval_ends_at_the_bounds_of_its_search():
     assert (named.low[0], named.high[0]) == (SCALE.parameters[0].low, SCALE.parameters[0].high)
     np.testing.assert_array_equal(named.low[1:], values[1:])
     np.testing.assert_array_equal(named.high[1:], values[1:])
+
+
+@pytest.mark.parametrize(("without_m", "first"), [(0.26, False), (0.24, True), (0.1, True)])
+def test_poses_left_out_are_the_first_name_where_they_close_half_of_it(without_m, first):
+    """From 0.3 to 0.2 m in all."""
+    held = Closing(Gap(0.3, 0.2, 0.4), Gap(0.2, 0.1, 0.3), FLOOR)
+    assert is_first(held, Gap(without_m, 0.1, 0.4), GapConfig()) == first
 
 
 def test_rivals_are_all_candidates_for_the_first_effect_most_evidence_first():

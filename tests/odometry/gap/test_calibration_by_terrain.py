@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.gap.config import GapConfig
-from odometry.gap.gap import by_terrain, labels_covered
+from odometry.gap.prepare.by_terrain import by_terrain, labels_covered
 from odometry.gap.prepare.calibration import calibrated
 from odometry.models.icr import Icr, IcrByTerrain
 

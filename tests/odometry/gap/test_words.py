@@ -184,6 +184,14 @@ def test_a_named_effect_beside_an_unknown_one(scaled_result, unknown_result):
     assert said[0].endswith("(wheel_scale), and something unknown that depends on heading.")
 
 
+def test_a_name_that_is_a_smaller_part_goes_after_what_is_unknown(scaled_result, unknown_result):
+    effects = (*unknown_result.effects, *scaled_result.effects)
+    first = sentences(replace(unknown_result, effects=effects, equivalent=()))[0]
+    assert first.startswith("Something is missing in icr (unknown): it depends on ")
+    assert "; a smaller part of the gap is " in first
+    assert "(wheel_scale)" in first.partition(";")[2]
+
+
 def test_every_sentence_ends_and_holds_no_odd_number(scaled_result, none_result, unknown_result):
     for result in (scaled_result, none_result, unknown_result):
         for sentence in sentences(result):
