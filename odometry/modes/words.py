@@ -74,8 +74,6 @@ def _more(followed: Followed) -> Iterator[str]:
     yield from _open_words(followed)
     for one in doubts(followed):
         yield f"No mode is named where {one.reason}."
-    for what in not_checked(followed):
-        yield f"Not checked: {what}."
     if followed.felt is not None:
         yield f"With feel: {answer_words(followed, followed.felt)}"
     if followed.sighted is not None:

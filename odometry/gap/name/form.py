@@ -117,11 +117,12 @@ def smooth_in_place(
     others = [*names.effects[:place], *names.effects[place + 1 :]]
     before = _fit(fitter, others)
     losses = fitter.linear_losses(before, smooth)
-    promising = np.argsort(losses, kind="stable")[: config.promising]
+    promising = np.argsort(losses, kind="stable")[: config.promising_in_place]
+    most = names.cost + config.beyond_first_order * (before.cost - names.cost)
     fits = {
         smooth[i]: fitter.fit([*(one.effect for one in others), smooth[i]], others, pin_slow=True)
         for i in promising
-        if losses[i] < names.cost
+        if losses[i] < most
     }
     if not fits:
         return None

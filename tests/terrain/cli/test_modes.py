@@ -151,6 +151,7 @@ def test_several_runs_get_a_folder_each_and_a_failed_one_a_row(make, models, tmp
     assert answer.exit_code == 1
     assert "blind: failed: " in answer.stdout
     assert "no yaw rate; expected gyro_z" in answer.stdout
+    assert answer.stdout.count("\n  how sure: a mode is named from a probability of 90 % on") == 2
     with (out / "runs.csv").open(newline="") as stream:
         rows = {row["run"]: row for row in csv.DictReader(stream)}
     assert list(rows) == ["drive", "blind", "drive_2", "absent"]
