@@ -1,4 +1,7 @@
-"""Feature vectors of patches: SFTA of the grey image and of filtered copies of it."""
+"""Feature vectors of patches: SFTA of the grey image and of filtered copies of it, and statistics.
+
+SFTA comes first.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -20,6 +23,7 @@ from terrain.classification.filters import (
     reduced,
     yellow_blue,
 )
+from terrain.classification.patch_statistics import STATISTICS
 from terrain.images import to_grey
 from terrain.texture import feature_names as names_of_sfta
 from terrain.texture.box_counting import byte_histogram
@@ -70,6 +74,8 @@ class FeatureSettings:
     filtered_greys : int
         Bins of the histogram in which the thresholds of filtered copies are found; those of the
         grey image itself are exact.
+    statistics : tuple of str
+        What stands beside SFTA, by name: "joint" and "gabor".
     """
 
     grey_copies: tuple[str, ...]
@@ -77,23 +83,29 @@ class FeatureSettings:
     n_thresholds: int
     counts_per_area: bool
     filtered_greys: int = ALL_GREYS
+    statistics: tuple[str, ...] = ()
 
     @classmethod
     def from_table(cls, table: Mapping[str, Any]) -> Self:
-        """Read back what `dataclasses.asdict` and JSON made; ValueError for an unknown copy."""
+        """Read back what `dataclasses.asdict` and JSON made; ValueError for an unknown name."""
         grey, colour = tuple(table["grey_copies"]), tuple(table["colour_copies"])
         unknown = (set(grey) - set(GREY_COPIES)) | (set(colour) - set(COLOUR_COPIES))
         if unknown:
             raise ValueError(f"copies that this program does not know: {sorted(unknown)}")
+        statistics = tuple(table.get("statistics", ()))  # older files have none
+        if strange := set(statistics) - set(STATISTICS):
+            raise ValueError(f"statistics that this program does not know: {sorted(strange)}")
         greys = int(table.get("filtered_greys", ALL_GREYS))  # files of version 0.9 have none
         if greys not in {ALL_GREYS, FEWER_GREYS}:
             raise ValueError(f"filtered_greys = {greys}, expected {ALL_GREYS} or {FEWER_GREYS}")
         n_thresholds, per_area = int(table["n_thresholds"]), bool(table["counts_per_area"])
-        return cls(grey, colour, n_thresholds, per_area, greys)
+        return cls(grey, colour, n_thresholds, per_area, greys, statistics)
 
 
 def patch_features(images: Sequence[ByteImage], settings: FeatureSettings) -> FloatArray:
-    """Features of patches as rows: per copy D, C and G of ``2 * n_thresholds`` binary images.
+    """Features of patches as rows: SFTA of each copy, then the statistics of `settings`.
+
+    SFTA is D, C and G of ``2 * n_thresholds`` binary images for each copy.
 
     Parameters
     ----------
@@ -103,11 +115,12 @@ def patch_features(images: Sequence[ByteImage], settings: FeatureSettings) -> Fl
 
     Returns
     -------
-    FloatArray, shape (patches, 6 * n_thresholds * copies)
+    FloatArray, shape (patches, 6 * n_thresholds * copies + number of statistics)
         C is divided by the area of the copy if `settings.counts_per_area`.
     """
     names = (*settings.grey_copies, *settings.colour_copies)
-    copies = [copy for image in images for copy in _copies(image, settings)]
+    described = [_described(image, settings) for image in images]
+    copies = [copy for of_patch, _ in described for copy in of_patch]
     histograms = np.stack([byte_histogram(copy) for copy in copies])
     is_itself = np.array([name == ITSELF for name in names] * len(images))
     thresholds = _thresholds(histograms, is_itself, settings)
@@ -118,7 +131,8 @@ def patch_features(images: Sequence[ByteImage], settings: FeatureSettings) -> Fl
         features[of] = rows.reshape(len(of), -1, 3)
         if settings.counts_per_area:
             features[of, :, 1] /= greys[0].size
-    return features.reshape(len(images), -1)
+    beside = np.stack([statistics for _, statistics in described])
+    return np.hstack([features.reshape(len(images), -1), beside])
 
 
 def _thresholds(
@@ -134,11 +148,14 @@ def _thresholds(
     return thresholds
 
 
-def _copies(image: ByteImage, settings: FeatureSettings) -> list[ByteImage]:
-    """The copies of one patch, in their order."""
+def _described(image: ByteImage, settings: FeatureSettings) -> tuple[list[ByteImage], FloatArray]:
+    """The copies of one patch, in their order, and its statistics (n,)."""
     scales = Scales(to_grey(image))
-    copies = [GREY_COPIES[name](scales) for name in settings.grey_copies]
-    return copies + [COLOUR_COPIES[name](image) for name in settings.colour_copies]
+    copies = {name: GREY_COPIES[name](scales) for name in settings.grey_copies}
+    copies |= {name: COLOUR_COPIES[name](image) for name in settings.colour_copies}
+    coloured = image if settings.colour_copies else None
+    groups = [STATISTICS[name].of(copies, scales, coloured) for name in settings.statistics]
+    return list(copies.values()), np.concatenate([*groups, np.empty(0)])
 
 
 def _alike(copies: Sequence[ByteImage]) -> list[list[int]]:
@@ -150,9 +167,12 @@ def _alike(copies: Sequence[ByteImage]) -> list[list[int]]:
 
 
 def feature_names(settings: FeatureSettings) -> list[str]:
-    """The name of each of the features: copy, quantity and number of the binary image."""
-    copies = (*settings.grey_copies, *settings.colour_copies)
-    return [f"{copy}_{name}" for copy in copies for name in names_of_sfta(settings.n_thresholds)]
+    """The name of each feature: copy, quantity and number of the binary image; then statistics."""
+    copies, colour = (*settings.grey_copies, *settings.colour_copies), bool(settings.colour_copies)
+    names = [f"{copy}_{name}" for copy in copies for name in names_of_sfta(settings.n_thresholds)]
+    return names + [
+        name for group in settings.statistics for name in STATISTICS[group].names(copies, colour)
+    ]
 
 
 def feature_matrix(images: Sequence[ByteImage], settings: FeatureSettings) -> FloatArray:

@@ -31,7 +31,7 @@ class Scales:
     def blurred(self, sigma_px: float) -> AnyArray:
         """The patch under a Gaussian of `sigma_px`."""
         if sigma_px not in self._blurred:
-            self._blurred[sigma_px] = _blur(self.grey, sigma_px)
+            self._blurred[sigma_px] = blur(self.grey, sigma_px)
         return self._blurred[sigma_px]
 
     def gradient(self, sigma_px: float) -> tuple[AnyArray, AnyArray]:
@@ -54,14 +54,14 @@ def reduced(factor: int) -> Filter:
     def apply(scales: Scales) -> ByteImage:
         grey = scales.grey
         size = (max(grey.shape[1] // factor, 1), max(grey.shape[0] // factor, 1))
-        return _to_bytes(cv2.resize(grey, size, interpolation=cv2.INTER_AREA))
+        return rounded_bytes(cv2.resize(grey, size, interpolation=cv2.INTER_AREA))
 
     return apply
 
 
 def band_pass(sigma_px: float) -> Filter:
     """Difference of Gaussians of `sigma_px` and its double, 8 grey levels a level."""
-    return lambda scales: _to_bytes(
+    return lambda scales: rounded_bytes(
         128 + 8 * (scales.blurred(sigma_px) - scales.blurred(2 * sigma_px))
     )
 
@@ -71,7 +71,7 @@ def gradient_magnitude(sigma_px: float) -> Filter:
 
     def apply(scales: Scales) -> ByteImage:
         across, down = scales.gradient(sigma_px)
-        return _to_bytes(90 + 40 * np.log(_length(across, down) + 0.2))
+        return rounded_bytes(90 + 40 * np.log(_length(across, down) + 0.2))
 
     return apply
 
@@ -91,8 +91,8 @@ def local_contrast(sigma_px: float) -> Filter:
 
     def apply(scales: Scales) -> ByteImage:
         grey, mean = scales.grey, scales.blurred(sigma_px)
-        variance = np.maximum(_blur(grey * grey, sigma_px) - mean * mean, 0)
-        return _to_bytes(128 + 50 * (grey - mean) / (np.sqrt(variance) + 1.5))
+        variance = np.maximum(blur(grey * grey, sigma_px) - mean * mean, 0)
+        return rounded_bytes(128 + 50 * (grey - mean) / (np.sqrt(variance) + 1.5))
 
     return apply
 
@@ -102,8 +102,8 @@ def coherence(sigma_px: float) -> Filter:
 
     def apply(scales: Scales) -> ByteImage:
         across, down = scales.gradient(sigma_px)
-        xx, yy, xy = (_blur(p, 2 * sigma_px) for p in (across * across, down * down, across * down))
-        return _to_bytes(255 * _length(xx - yy, 2 * xy) / (xx + yy + 1e-3))
+        xx, yy, xy = (blur(p, 2 * sigma_px) for p in (across * across, down * down, across * down))
+        return rounded_bytes(255 * _length(xx - yy, 2 * xy) / (xx + yy + 1e-3))
 
     return apply
 
@@ -111,16 +111,17 @@ def coherence(sigma_px: float) -> Filter:
 def red_green(image: ByteImage) -> ByteImage:
     """Red less green of an RGB image (rows, columns, 3), 2 grey levels a level."""
     red, green, _ = cv2.split(image.astype(np.float32))
-    return _to_bytes(128 + 2 * (red - green))
+    return rounded_bytes(128 + 2 * (red - green))
 
 
 def yellow_blue(image: ByteImage) -> ByteImage:
     """Mean of red and green less blue of an RGB image, 2 grey levels a level."""
     red, green, blue = cv2.split(image.astype(np.float32))
-    return _to_bytes(128 + 2 * ((red + green) / 2 - blue))
+    return rounded_bytes(128 + 2 * ((red + green) / 2 - blue))
 
 
-def _blur(image: AnyArray, sigma_px: float) -> AnyArray:
+def blur(image: AnyArray, sigma_px: float) -> AnyArray:
+    """The image under a Gaussian of `sigma_px`."""
     return np.asarray(cv2.GaussianBlur(image, (0, 0), sigma_px))
 
 
@@ -130,6 +131,6 @@ def _length(across: AnyArray, down: AnyArray) -> AnyArray:
     return np.asarray(length, np.float32)
 
 
-def _to_bytes(image: AnyArray) -> ByteImage:
-    """Rounded, half to even, and held within 0 to 255, in one pass."""
-    return np.asarray(cv2.addWeighted(image, 1.0, image, 0.0, 0.0, dtype=cv2.CV_8U))
+def rounded_bytes(image: AnyArray, offset: float = 0.0) -> ByteImage:
+    """With `offset` added, rounded, half to even, and held within 0 to 255, in one pass."""
+    return np.asarray(cv2.addWeighted(image, 1.0, image, 0.0, offset, dtype=cv2.CV_8U))

@@ -88,6 +88,7 @@ _CHEN2023 = FeatureSettings(("grey",), (), n_thresholds=4, counts_per_area=False
 _ALL_GREY = tuple(GREY_COPIES)
 _ALL_COLOUR = tuple(COLOUR_COPIES)
 _FEW_GREY = ("grey", "magnitude_0.7", "coherence_0.7", "band_2")  # chosen one after another
+_BOTH = ("joint", "gabor")
 _DISCRIMINANT = (
     DiscriminantNeighbours,
     (linear_neighbours, DiscriminantNeighbours),
@@ -95,12 +96,18 @@ _DISCRIMINANT = (
 )
 
 
-def _of(grey_copies: tuple[str, ...], colour_copies: tuple[str, ...] = ()) -> FeatureSettings:
-    return FeatureSettings(grey_copies, colour_copies, 4, True, filtered_greys=FEWER_GREYS)
+def _of(
+    grey_copies: tuple[str, ...],
+    colour_copies: tuple[str, ...] = (),
+    statistics: tuple[str, ...] = (),
+) -> FeatureSettings:
+    return FeatureSettings(grey_copies, colour_copies, 4, True, FEWER_GREYS, statistics)
 
 
 PRESETS = {
-    "default": Preset(_of(_ALL_GREY), _of(_ALL_GREY, _ALL_COLOUR), *_DISCRIMINANT),
+    "default": Preset(
+        _of(_ALL_GREY, (), _BOTH), _of(_ALL_GREY, _ALL_COLOUR, _BOTH), *_DISCRIMINANT
+    ),
     "fast": Preset(_of(_FEW_GREY), _of(_FEW_GREY, _ALL_COLOUR), *_DISCRIMINANT, one_patch=True),
     "chen2023": Preset(
         _CHEN2023,

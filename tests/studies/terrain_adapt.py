@@ -19,17 +19,16 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from terrain.classification.adaptation import ALONE, MIXED, OLD, clearly_best
-from terrain.classification.feature_jobs import shared_feature_matrix
 from terrain.classification.held_out import balanced_accuracy
 from terrain.classification.neighbours import Neighbours, vote
 from terrain.classification.old_samples import SamplesBesideOld
 from terrain.classification.patches import find_photos, load_patches
 from terrain.classification.presets import PRESETS
 from terrain.classification.validation import Samples, cross_validate
-from tests.studies.terrain_grounds import COPIES, PER_COPY, Grounds
+from tests.studies.terrain_grounds import COLUMNS, GREY, Grounds, both_features
 
 PRESET = PRESETS["default"]
-GREY = slice(0, COPIES["bank"] * PER_COPY)
+COLOUR = COLUMNS["bank and colour"]
 SIZE_PX, PER_OLD_PHOTO = 96, 12
 
 
@@ -38,8 +37,7 @@ def read(folder: Path, per_photo: int, store: Path) -> Grounds:
     file = store / f"{folder.name}_{SIZE_PX}_{per_photo}.npz"
     if not file.exists():
         patches = load_patches(find_photos(folder), SIZE_PX, per_photo)
-        settings = PRESET.colour_features
-        bank = shared_feature_matrix(patches.images, settings, processes=1, show_progress=True)
+        bank = both_features(patches.images)
         names = [str(photo) for photo in patches.photos]
         np.savez(file, bank[:, :0], bank, patches.labels, patches.groups, names)
     with np.load(file) as arrays:
@@ -92,8 +90,9 @@ def one_draw(
     if photos > 1:
         right = {name: of for name, (_, _, of) in ways.items()}
         kept = clearly_best(codes, right, some.groups)
-    model, k, _ = learned(Samples(some.bank, codes, some.groups), judged=photos > 1)
-    return found, kept, balanced_accuracy(test, answers(model, k, rest.bank))
+    colour = some.bank[:, COLOUR]
+    model, k, _ = learned(Samples(colour, codes, some.groups), judged=photos > 1)
+    return found, kept, balanced_accuracy(test, answers(model, k, rest.bank[:, COLOUR]))
 
 
 def main() -> None:

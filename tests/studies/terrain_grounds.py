@@ -1,14 +1,16 @@
 """Features of folders of photographs, and classifiers chosen on training photographs alone."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from odometry.arrays import AnyArray, FloatArray, IntArray
+from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
 from terrain.classification.augmentation import Augmentation, load_copies
 from terrain.classification.calibration import tempered
 from terrain.classification.feature_jobs import shared_feature_matrix
+from terrain.classification.features import feature_names
 from terrain.classification.held_out import balanced_accuracy
 from terrain.classification.neighbours import Neighbours, vote
 from terrain.classification.patches import find_photos, load_patches
@@ -17,8 +19,14 @@ from terrain.classification.rejection import as_of_one_patch, quantiles, rejecti
 from terrain.classification.validation import Samples, best_way
 
 REJECTED_SHARE = 0.05
-COPIES = {"grey": 1, "scales": 3, "bank": 19, "bank and colour": 21}
 PER_COPY = 24
+GREY = slice(0, len(feature_names(PRESETS["default"].features)))  # of both; then those in colour
+COLUMNS = {
+    "grey": slice(0, PER_COPY),
+    "scales": slice(0, 3 * PER_COPY),
+    "bank": GREY,
+    "bank and colour": slice(GREY.stop, None),
+}
 
 
 @dataclass(frozen=True)
@@ -41,6 +49,13 @@ class Grounds:
         return np.unique(self.labels, return_inverse=True)[1]
 
 
+def both_features(images: Sequence[ByteImage]) -> FloatArray:
+    """Features of the default preset without colour, then those with colour."""
+    preset, shared = PRESETS["default"], {"processes": 1, "show_progress": True}
+    settings = (preset.features, preset.colour_features)
+    return np.hstack([shared_feature_matrix(images, of, **shared) for of in settings])
+
+
 def read_grounds(folder: Path, size_px: int, store: Path) -> Grounds:
     """Compute the features of a folder of photographs, or read them from `store`."""
     file = store / f"{folder.name}_{size_px}.npz"
@@ -48,7 +63,7 @@ def read_grounds(folder: Path, size_px: int, store: Path) -> Grounds:
         patches = load_patches(find_photos(folder), size_px)
         shared = {"processes": 1, "show_progress": True}
         plain = shared_feature_matrix(patches.images, PRESETS["chen2023"].features, **shared)
-        bank = shared_feature_matrix(patches.images, PRESETS["default"].colour_features, **shared)
+        bank = both_features(patches.images)
         names = [str(photo) for photo in patches.photos]
         np.savez(file, plain, bank, patches.labels, patches.groups, names)
         print(f"{folder.name}: {len(patches.too_small)} photographs smaller than {size_px} px")
@@ -61,8 +76,7 @@ def read_copies(folder: Path, size_px: int, store: Path) -> Grounds:
     file = store / f"{folder.name}_{size_px}_copies.npz"
     if not file.exists():
         copies = load_copies(find_photos(folder), size_px, Augmentation())
-        settings = PRESETS["default"].colour_features
-        bank = shared_feature_matrix(copies.images, settings, processes=1, show_progress=True)
+        bank = both_features(copies.images)
         names = [str(photo) for photo in copies.photos]
         np.savez(file, bank, copies.labels, copies.groups, names)
     with np.load(file) as arrays:
@@ -114,7 +128,7 @@ def choose(
     """
     best, best_score = None, -1.0
     for name in structures:
-        columns = slice(0, COPIES[name] * PER_COPY)
+        columns = COLUMNS[name]
         samples = Samples(features[:, columns], train.codes, train.groups)
         altered = copies and _samples_of(copies, train, columns)
         way, found = best_way(

@@ -26,9 +26,9 @@ from terrain.classification.held_out import rejection_roc_area
 from terrain.classification.nearest import NEIGHBOURS, VOTERS, classes_left_open, nearest
 from terrain.classification.neighbours import DiscriminantNeighbours, vote
 from terrain.classification.validation import grouped_folds
-from tests.studies.terrain_grounds import Grounds, read_grounds
+from tests.studies.terrain_grounds import GREY, Grounds, read_grounds
 
-PER_PHOTO, FOLDS, GREY = 12, 2, slice(0, 456)
+PER_PHOTO, FOLDS = 12, 2
 REJECTED = 0.05  # of known patches, and of known photographs, at the limit of the last columns
 SAMPLES_AND_SPARSITY = (1.0, 0.0, 1.0, 0.0)  # of version 0.11
 IN_USE = (1.0, 1.0, 3.0, 1.0)

@@ -20,9 +20,9 @@ from odometry.arrays import FloatArray, IntArray
 from terrain.classification.held_out import rejection_roc_area
 from terrain.classification.neighbours import DiscriminantNeighbours, linear_neighbours
 from terrain.classification.validation import grouped_folds
-from tests.studies.terrain_grounds import Grounds, read_grounds
+from tests.studies.terrain_grounds import GREY, Grounds, read_grounds
 from tests.studies.terrain_unknown import FOLDS as FEWER_FOLDS
-from tests.studies.terrain_unknown import GREY, REJECTED, parts, thinned
+from tests.studies.terrain_unknown import REJECTED, parts, thinned
 
 PATCHES = (1, 2, 4, 12)
 WAYS = ("version 0.4, median", "in use, median", "in use, together")
