@@ -151,11 +151,12 @@ def _thresholds(
 def _described(image: ByteImage, settings: FeatureSettings) -> tuple[list[ByteImage], FloatArray]:
     """The copies of one patch, in their order, and its statistics (n,)."""
     scales = Scales(to_grey(image))
-    copies = {name: GREY_COPIES[name](scales) for name in settings.grey_copies}
-    copies |= {name: COLOUR_COPIES[name](image) for name in settings.colour_copies}
+    copies = [GREY_COPIES[name](scales) for name in settings.grey_copies]
+    copies += [COLOUR_COPIES[name](image) for name in settings.colour_copies]
+    by_name = dict(zip((*settings.grey_copies, *settings.colour_copies), copies, strict=True))
     coloured = image if settings.colour_copies else None
-    groups = [STATISTICS[name].of(copies, scales, coloured) for name in settings.statistics]
-    return list(copies.values()), np.concatenate([*groups, np.empty(0)])
+    groups = [STATISTICS[name].of(by_name, scales, coloured) for name in settings.statistics]
+    return copies, np.concatenate([*groups, np.empty(0)])
 
 
 def _alike(copies: Sequence[ByteImage]) -> list[list[int]]:

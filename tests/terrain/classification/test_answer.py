@@ -45,7 +45,7 @@ def test_every_other_answer_stays(answer, likeness):
 def test_the_verb_doubts_names_of_images_in_another_light(model, tmp_path):
     model.save(tmp_path / "a.model")
     printed = {}
-    for light, power in (("own", 1.0), ("bright", 0.5)):
+    for light, power in (("own", 1.0), ("dark", 2.0)):
         paths = []
         for i, image in enumerate(photographs(2, photos=3)[0]):
             paths.append(str(tmp_path / f"{light}_{i}.png"))
@@ -53,6 +53,6 @@ def test_the_verb_doubts_names_of_images_in_another_light(model, tmp_path):
         answered = CliRunner().invoke(classify, [str(tmp_path / "a.model"), *paths])
         assert answered.exit_code == 0, answered.output
         printed[light] = answered.output
-    assert "unlike the training photographs of the model" in printed["bright"]
-    assert DOUBTFUL in printed["bright"]
+    assert "unlike the training photographs of the model" in printed["dark"]
+    assert DOUBTFUL in printed["dark"]
     assert DOUBTFUL not in printed["own"]

@@ -130,8 +130,10 @@ def test_a_model_of_features_looks_at_no_image(whole, tmp_path):
         model.save(tmp_path / "terrain.model")
 
 
-def test_names_of_features_tell_copy_and_binary_image():
+def test_names_of_features_tell_copy_and_binary_image_and_come_before_those_of_statistics():
     names = SftaFeatures("default", colour=True).get_feature_names_out()
-    assert len(set(names)) == len(names) == 21 * 24
+    assert len(set(names)) == len(names) == 21 * 24 + 377 + 46
     assert names[0] == "grey_D1"
-    assert names[-1] == "yellow_blue_G8"
+    assert names[21 * 24 - 1] == "yellow_blue_G8"
+    assert names[21 * 24] == "joint_grey_grey"
+    assert names[-1] == "gabor_third_14"
