@@ -27,7 +27,7 @@ from odometry.gap.name.verdict import (
     within_noise,
 )
 from odometry.gap.prepare.end_residuals import ends_of
-from odometry.gap.prepare.statistic import gap_of
+from odometry.gap.prepare.statistic import Gap, gap_of
 
 
 class Standing(Search):
@@ -76,14 +76,17 @@ class Standing(Search):
 
     def _without_structure(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
         """Without any name where all close little, or leave structure."""
-        share = self._held_out_share(found) if _named(found) else 1.0
+        if not _named(found):
+            return found
+        left, share = self._held_out_left(found)
         if share >= self._most(found.effects):
             return found
-        left = structure_left(self.fitter, found.fitted, self.config)
+        structure = structure_left(self.fitter, found.fitted, self.config)
+        of_gap, spread = (left, self.held_floor), self.fitter.spread(found.fitted)
         reason = (
             closes_a_part(share, self.config)
-            or closes_the_most(share, self.fitter.spread(found.fitted), self.config)
-            or leaves_no_structure(share, left)
+            or closes_the_most(share, spread, of_gap, self.config)
+            or leaves_no_structure(share, structure)
         )
         if not reason:
             return found
@@ -92,16 +95,19 @@ class Standing(Search):
                 self.refuse(effect, reason)
         return self._standing(grown(self, found), smooth)
 
-    def _held_out_share(self, found: Explanation) -> float:
-        """Of the gap above its noise floor that is closed on held-out data; 1 within the floor."""
+    def _held_out_left(self, found: Explanation) -> tuple[Gap, float]:
+        """The gap that is left on held-out data, and the share of its excess that is closed.
+
+        All of it where the gap is within the noise floor.
+        """
         fit, part_s = found.fitted, self.config.part_s
         believed, scenes = self.fitter.calibration, self.fitter.measured.scenes
         effects, held_out = with_own_moments(fit.base, fit.effects, self.held_out, scenes, believed)
-        after_m = gap_of(fit.base, effects, held_out, part_s).value
+        after = gap_of(fit.base, effects, held_out, part_s)
         before_m = gap_of(believed.base, (), held_out, part_s).value
-        if after_m <= self.held_floor.high:
-            return 1.0
-        return (before_m - after_m) / (before_m - self.held_floor.value)
+        if after.value <= self.held_floor.high:
+            return after, 1.0
+        return after, (before_m - after.value) / (before_m - self.held_floor.value)
 
     def _most(self, names: Sequence[Effect]) -> float:
         """Share of an excess that these need to close where they leave what is not noise."""

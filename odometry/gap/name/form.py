@@ -21,7 +21,13 @@ from odometry.gap.fit.input_noise import surely_dearer
 from odometry.gap.fit.own_moments import with_own_moments
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.search import Search
-from odometry.gap.name.verdict import is_a_clock, is_abrupt, is_by_its_essence, is_even, is_special
+from odometry.gap.name.verdict import (
+    is_abrupt,
+    is_by_its_essence,
+    is_even,
+    is_of_stamps,
+    is_special,
+)
 from odometry.gap.prepare.statistic import gap_of
 
 
@@ -55,7 +61,7 @@ def _of_no_form(search: Search, found: Explanation, alone: Fitted, place: int) -
     return (
         is_even(of, search.config)
         or is_meant(added)
-        or is_a_clock(added, others, search.fitter.measured.scenes)
+        or is_of_stamps(added, others, search.fitter.measured.scenes)
         or is_by_its_essence(without_essence(search.fitter, alone, place), added, search.config)
         or slow_course_in_place(search, alone, place)
     )

@@ -12,6 +12,7 @@ from scipy.stats import chi2
 
 from odometry.effects.base import CommandEffect
 from odometry.effects.base_model import Base
+from odometry.effects.by_side import DelayBySide
 from odometry.effects.corrected import Added, delay_s
 from odometry.effects.late_treads import ActuatorLag, CommandDelay
 from odometry.effects.residual import Residual
@@ -138,16 +139,22 @@ def closes_a_part(share_closed: float, config: GapConfig) -> str:
     )
 
 
-def closes_the_most(share_closed: float, spread: float, config: GapConfig) -> str:
+def closes_the_most(
+    share_closed: float, spread: float, left: tuple[Gap, Gap], config: GapConfig
+) -> str:
     """Whether names that leave more than noise close at least half of the excess held out.
 
-    `spread` is the chi-squared a degree of freedom that they leave on the measured runs.
+    `spread` is the chi-squared a degree of freedom that they leave on the measured runs, `left`
+    the gap that they leave on held-out data, and its noise floor.
     """
-    if share_closed >= config.least_of_rest or spread <= config.unexplained:
+    gap, floor = left
+    noise = spread <= config.unexplained and gap.low <= floor.high
+    if share_closed >= config.least_of_rest or noise:
         return ""
     return (
         f"it closes {100 * max(share_closed, 0.0):.0f} % of the gap on held-out data and leaves "
-        f"{spread:.1f} times the chi-squared of noise: not the cause, or not the only one"
+        f"{gap.value:.2g} m there, and {spread:.1f} times the chi-squared of noise: not the cause, "
+        "or not the only one"
     )
 
 
@@ -213,18 +220,26 @@ def is_resolved(added: Added, before: Sequence[Added], scenes: Sequence[DenseWin
     )
 
 
-def is_a_clock(added: Added, others: Sequence[Added], scenes: Sequence[DenseWindows]) -> str:
-    """Whether a clock that runs fast or slow is no change of treads that act late.
+def is_of_stamps(added: Added, others: Sequence[Added], scenes: Sequence[DenseWindows]) -> str:
+    """Whether stamps of poses are no change of treads that act late.
 
     Beside these, and without a gyroscope, which follows the motion and not the stamps of poses.
+    One side that acts late under poses that are as late is the other side, recorded late.
     """
-    late = any(one.effect.name in (ActuatorLag.name, CommandDelay.name) for one in others)
-    heard = all(scene.reported_turns is not None for scene in scenes)
-    if not late or heard or not isinstance(added.effect, ClockDrift):
+    late = [
+        one.effect for one in others if one.effect.name in (ActuatorLag.name, CommandDelay.name)
+    ]
+    if not late or all(scene.reported_turns is not None for scene in scenes):
+        return ""
+    if isinstance(added.effect, ClockDrift):
+        other = "a lag that changes over the run"
+    elif isinstance(added.effect, TimeOffset) and any(isinstance(e, DelayBySide) for e in late):
+        other = "an encoder of one side that is late"
+    else:
         return ""
     return (
-        "beside treads that act late it may be a lag that changes over the run: without gyro_z "
-        "they cannot be distinguished"
+        f"beside treads that act late it may be {other}: without gyro_z they cannot be "
+        "distinguished"
     )
 
 
