@@ -15,11 +15,13 @@ from odometry.pipeline import ConstantTerrain
 from odometry.run import UNKNOWN, Robot, Run
 from odometry.table import Table
 from terrain.camera import Camera
+from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config
 from terrain.live_odometry import LiveOdometry
 from terrain.main_job import run_odometry
 from terrain.switch import SwitchConfig
 from tests.odometry.feel.feel_drives import drive, drives, with_imu
+from tests.terrain.conftest import METRES_PER_PIXEL
 from tests.terrain.test_feel_labels import joined
 from tests.terrain.test_sources import table_of
 
@@ -136,8 +138,11 @@ def shaken(run, seed):
 
 
 def test_camera_and_feel_are_weighed_as_in_run_with_the_same_contradictions(
-    model, across_run, classifier
+    model, across_run, training_patches
 ):
+    """By the plain classifier of Chen 2023: where the camera is sure, feel changes nothing."""
+    classifier = TerrainClassifier(preset="chen2023", metres_per_pixel=METRES_PER_PIXEL)
+    classifier.fit(*training_patches)
     run = shaken(Run.read(across_run), 70)
     wide = replace(model, track_width_m=run.robot.track_width)
     camera = Camera.from_table(run.settings["camera"])
