@@ -6,9 +6,8 @@ from typing import Self
 from odometry.run import UNKNOWN
 from terrain.classification.likeness import Likeness
 
-TRUSTED = (
-    0.7  # probability of being right: a wrong name costs more than twice what a right one brings
-)
+# Probability of being right: a wrong name costs more than twice what a right one brings.
+TRUSTED = 0.7
 DOUBTFUL = f"unlike the training photographs, and not right with a probability of {TRUSTED} or more"
 
 

@@ -99,6 +99,36 @@ def stiff_turns(rng, scene):
     return hide
 
 
+def wide_when_fast(rng, scene):
+    """The faster the robot, the less it turns: by a quarter to a half at its speed."""
+    share = rng.uniform(0.33, 1.0)
+
+    def hide(rng, clock):
+        def twist(values, treads):
+            less = 1 / (1 + share * np.abs(values[:, 0]) / scene.speed_m_s)
+            return np.column_stack([values[:, :2], less * values[:, 2]])
+
+        return Hidden({"share": share}, twist=twist)
+
+    return hide
+
+
+def lost_teeth(rng, scene):
+    """An encoder of one side counts every second tooth of what is above half of the speed."""
+    side, most = int(rng.integers(2)), rng.uniform(0.4, 0.6) * scene.speed_m_s
+
+    def hide(rng, clock):
+        def reported(asked, v):
+            read = np.array(v)
+            beyond = np.maximum(np.abs(v[:, side]) - most, 0.0)
+            read[:, side] -= np.sign(v[:, side]) * beyond / 2
+            return read
+
+        return Hidden({"side": side, "most_m_s": most}, reported=reported)
+
+    return hide
+
+
 def slow_turns(rng, scene):
     """Turns begin and end 0.15 to 0.5 s late, speeds do not: a long robot on soft terrain."""
     constant_s = rng.uniform(0.15, 0.5)
@@ -177,6 +207,8 @@ UNUSUAL = {
     "leaning_load": Kind(leaning_load, acceptable=("inertia",)),
     "dragged_cable": Kind(dragged_cable),
     "stiff_turns": Kind(stiff_turns, acceptable=("drive limits", "turn radius")),
+    "wide_when_fast": Kind(wide_when_fast),
+    "lost_teeth": Kind(lost_teeth),
     "slow_turns": Kind(slow_turns, acceptable=("slow drive", "late commands", "inertia")),
     "coasting": Kind(coasting, acceptable=("slow drive", "drive limits")),
     "course_for_yaw": Kind(course_for_yaw, (("reference",),)),

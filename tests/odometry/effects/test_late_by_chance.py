@@ -37,3 +37,8 @@ def test_it_is_a_candidate_where_stamps_are_uneven(bench, rng, most_s, count):
 def test_early_stamps_are_no_late_ones():
     assert LateByChance().is_meant(np.array([1.0, 0.0]))
     assert not LateByChance().is_meant(np.array([-0.5, 0.0]))
+
+
+@pytest.mark.parametrize(("offset_s", "word"), [(0.05, "later"), (-0.01, "later"), (-0.1, "early")])
+def test_stamps_that_are_cut_are_called_early(offset_s, word):
+    assert word in LateByChance().in_words_at(np.array([1.0, offset_s]))
