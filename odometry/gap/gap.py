@@ -134,13 +134,11 @@ def find_gap(
     named = named_effects(found, effects, believed_m)
     if outliers is not None:
         alone = gap_of(known.base, (), held_scenes, config.part_s)
-        first = is_first(closings[1], alone, config)
-        raw_m = gap_of(base, effects, raw_scenes[0], config.part_s).value
-        before_m, after_m = (
-            (closings[0].before.value, believed_m) if first else (raw_m, closings[0].after.value)
-        )
-        left_out = named_outliers(outliers, before_m, after_m)
-        named = (left_out, *named) if first else (*named, left_out)
+        if is_first(closings[1], alone, config):
+            named = (named_outliers(outliers, closings[0].before.value, believed_m), *named)
+        else:
+            raw_m = gap_of(base, effects, raw_scenes[0], config.part_s).value
+            named = (*named, named_outliers(outliers, raw_m, closings[0].after.value))
     rounding = named_rounding(fitted_scenes, held_scenes, known, floor, config)
     if rounding is not None:
         named = (rounding, *named)
