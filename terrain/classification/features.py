@@ -10,21 +10,8 @@ from typing import Any, Self
 import numpy as np
 
 from odometry.arrays import BoolArray, ByteImage, FloatArray
-from terrain.classification.filters import (
-    ColourFilter,
-    Filter,
-    Scales,
-    band_pass,
-    coherence,
-    gradient_magnitude,
-    gradient_orientation,
-    local_contrast,
-    red_green,
-    reduced,
-    yellow_blue,
-)
+from terrain.classification.copies import COLOUR_COPIES, GREY_COPIES, ITSELF, Copies
 from terrain.classification.patch_statistics import STATISTICS
-from terrain.images import to_grey
 from terrain.texture import feature_names as names_of_sfta
 from terrain.texture.box_counting import byte_histogram
 from terrain.texture.coarse_otsu import coarse_otsu
@@ -32,31 +19,8 @@ from terrain.texture.otsu import multilevel_otsu
 from terrain.texture.stack import features_between
 from terrain.texture.ttbd import VARIANTS
 
-ITSELF = "grey"  # the copy that is the grey image
 ALL_GREYS, FEWER_GREYS = 256, 64
-GREY_COPIES: dict[str, Filter] = {
-    ITSELF: reduced(1),
-    "grey_2": reduced(2),
-    "grey_4": reduced(4),
-    "magnitude_0.7": gradient_magnitude(0.7),
-    "magnitude_1.4": gradient_magnitude(1.4),
-    "magnitude_2.8": gradient_magnitude(2.8),
-    "orientation_0.7": gradient_orientation(0.7),
-    "orientation_1.4": gradient_orientation(1.4),
-    "orientation_2.8": gradient_orientation(2.8),
-    "coherence_0.7": coherence(0.7),
-    "coherence_1.4": coherence(1.4),
-    "coherence_2.8": coherence(2.8),
-    "contrast_2": local_contrast(2.0),
-    "contrast_5.6": local_contrast(5.6),
-    "contrast_16": local_contrast(16.0),
-    "band_0.7": band_pass(0.7),
-    "band_1": band_pass(1.0),
-    "band_2": band_pass(2.0),
-    "band_4": band_pass(4.0),
-}
 TOGETHER = 8  # patches; what is made of them stays in the cache
-COLOUR_COPIES: dict[str, ColourFilter] = {"red_green": red_green, "yellow_blue": yellow_blue}
 
 
 @dataclass(frozen=True)
@@ -119,8 +83,8 @@ def patch_features(images: Sequence[ByteImage], settings: FeatureSettings) -> Fl
         C is divided by the area of the copy if `settings.counts_per_area`.
     """
     names = (*settings.grey_copies, *settings.colour_copies)
-    described = [_described(image, settings) for image in images]
-    copies = [copy for of_patch, _ in described for copy in of_patch]
+    patches = [Copies(image) for image in images]
+    copies = [patch[name] for patch in patches for name in names]
     histograms = np.stack([byte_histogram(copy) for copy in copies])
     is_itself = np.array([name == ITSELF for name in names] * len(images))
     thresholds = _thresholds(histograms, is_itself, settings)
@@ -131,7 +95,7 @@ def patch_features(images: Sequence[ByteImage], settings: FeatureSettings) -> Fl
         features[of] = rows.reshape(len(of), -1, 3)
         if settings.counts_per_area:
             features[of, :, 1] /= greys[0].size
-    beside = np.stack([statistics for _, statistics in described])
+    beside = np.stack([_statistics(patch, settings) for patch in patches])
     return np.hstack([features.reshape(len(images), -1), beside])
 
 
@@ -148,15 +112,11 @@ def _thresholds(
     return thresholds
 
 
-def _described(image: ByteImage, settings: FeatureSettings) -> tuple[list[ByteImage], FloatArray]:
-    """The copies of one patch, in their order, and its statistics (n,)."""
-    scales = Scales(to_grey(image))
-    copies = [GREY_COPIES[name](scales) for name in settings.grey_copies]
-    copies += [COLOUR_COPIES[name](image) for name in settings.colour_copies]
-    by_name = dict(zip((*settings.grey_copies, *settings.colour_copies), copies, strict=True))
-    coloured = image if settings.colour_copies else None
-    groups = [STATISTICS[name].of(by_name, scales, coloured) for name in settings.statistics]
-    return copies, np.concatenate([*groups, np.empty(0)])
+def _statistics(patch: Copies, settings: FeatureSettings) -> FloatArray:
+    """What stands beside SFTA in the features of a patch, (n,)."""
+    colour = bool(settings.colour_copies)
+    groups = [STATISTICS[name].of(patch, colour) for name in settings.statistics]
+    return np.concatenate([*groups, np.empty(0)])
 
 
 def _alike(copies: Sequence[ByteImage]) -> list[list[int]]:
@@ -172,7 +132,7 @@ def feature_names(settings: FeatureSettings) -> list[str]:
     copies, colour = (*settings.grey_copies, *settings.colour_copies), bool(settings.colour_copies)
     names = [f"{copy}_{name}" for copy in copies for name in names_of_sfta(settings.n_thresholds)]
     return names + [
-        name for group in settings.statistics for name in STATISTICS[group].names(copies, colour)
+        name for group in settings.statistics for name in STATISTICS[group].names(colour)
     ]
 
 

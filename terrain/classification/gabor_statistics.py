@@ -14,7 +14,7 @@ from functools import cache
 import cv2
 import numpy as np
 
-from odometry.arrays import AnyArray, ByteImage, FloatArray
+from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
 from terrain.classification.byte_moments import byte_moments, third_moments
 from terrain.classification.filters import blur, rounded_bytes
 
@@ -48,15 +48,10 @@ def gabor_statistics(grey: AnyArray) -> FloatArray:
     shape = (len(WAVES), len(ANGLES_DEG))
     means, covariance = byte_moments(images)
     by_angle = means.reshape(shape) / STEPS
-    third = third_moments(images).reshape(shape) / STEPS**3
-    return np.concatenate(
-        [
-            by_angle.mean(axis=1),
-            np.abs(np.fft.rfft(by_angle, axis=1))[:, 1:].ravel(),
-            *_apart((covariance / STEPS**2).reshape(shape * 2)),
-            third.mean(axis=1),
-        ]
-    )
+    apart = covariance.ravel()[_places_apart()].mean(axis=2) / STEPS**2
+    third = third_moments(images).reshape(shape).mean(axis=1) / STEPS**3
+    over_angles = np.abs(np.fft.rfft(by_angle, axis=1))[:, 1:]
+    return np.concatenate([by_angle.mean(axis=1), over_angles.ravel(), apart.ravel(), third])
 
 
 def gabor_names() -> list[str]:
@@ -83,14 +78,15 @@ def log_energies(grey: AnyArray) -> list[ByteImage]:
     for _ in range(max(halvings for halvings, _ in WAVES)):
         levels.append(_reduced(levels[-1], 2))
     size = (max(columns // 2, 1), max(rows // 2, 1))
+    offset = -STEPS * float(np.log(FAINT))
     images = []
     for halvings, wavelength_px in WAVES:
         how = cv2.INTER_AREA if halvings == 0 else cv2.INTER_LINEAR
         for energy in energies(levels[halvings], wavelength_px):
-            logarithm: AnyArray = cv2.log(energy + np.float32(FAINT))
+            logarithm = cv2.log(energy + np.float32(FAINT))
             if logarithm.shape != size[::-1]:
                 logarithm = cv2.resize(logarithm, size, interpolation=how)
-            images.append(rounded_bytes(STEPS * logarithm, -STEPS * float(np.log(FAINT))))
+            images.append(rounded_bytes(logarithm, offset, STEPS))
     return images
 
 
@@ -136,12 +132,17 @@ def _reduced(image: AnyArray, factor: int) -> AnyArray:
     return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA))
 
 
-def _apart(covariance: FloatArray) -> list[FloatArray]:
-    """Covariances (4, 4, 4, 4) at 0, 45 and 90 degrees apart, each of 10 pairs of wavelengths."""
+@cache
+def _places_apart() -> IntArray:
+    """Which covariances (3, 10, 8) of the flat matrix are of directions 0, 45 and 90 degrees apart.
+
+    Of 10 pairs of wavelengths; the mean of 8 is a feature.
+    """
+    shape = (len(WAVES), len(ANGLES_DEG))
+    places = np.arange((len(WAVES) * len(ANGLES_DEG)) ** 2).reshape(shape * 2)
     angle = np.arange(len(ANGLES_DEG))
-    found = []
+    apart = []
     for steps in (0, 1, 2):
-        ahead, behind = (angle + steps) % len(angle), (angle - steps) % len(angle)
-        both = covariance[:, angle, :, ahead] + covariance[:, angle, :, behind]
-        found.append(both.mean(axis=0)[PAIRS] / 2)
-    return found
+        either = [places[:, angle, :, (angle + sign * steps) % len(angle)] for sign in (1, -1)]
+        apart.append(np.concatenate(either)[:, *PAIRS].T)
+    return np.stack(apart)

@@ -11,13 +11,14 @@ Arsigny, Fillard, Pennec and Ayache 2006, "Log-Euclidean metrics for fast and si
 diffusion tensors", Magnetic Resonance in Medicine 56, 411-421.
 """
 
-from collections.abc import Iterable, Mapping
+from functools import cache
 
 import cv2
 import numpy as np
 
-from odometry.arrays import AnyArray, ByteImage, FloatArray
+from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
 from terrain.classification.byte_moments import byte_moments
+from terrain.classification.copies import COLOUR_COPIES, GREY_COPIES, Copies
 from terrain.classification.filters import Scales, blur, rounded_bytes
 
 LEFT_OUT = {"grey_2", "grey_4"}  # smaller than the patch
@@ -28,9 +29,7 @@ MEAN_UNIT = 50.0  # greys
 CHROMATICITIES = ("redness", "yellowness", "slow_redness", "slow_yellowness")
 
 
-def joint_statistics(
-    copies: Mapping[str, ByteImage], scales: Scales, image: ByteImage | None
-) -> FloatArray:
+def joint_statistics(copies: Copies, *, colour: bool) -> FloatArray:
     """Logarithm of the covariance of the copies of one patch, and their means.
 
     Distances between logarithms of covariances treat a variance that is twice as large as one
@@ -38,38 +37,46 @@ def joint_statistics(
 
     Parameters
     ----------
-    copies : mapping of str to (rows, columns) array of uint8
-        Filtered copies of the patch, by name.
-    scales : Scales
-        What they were made of.
-    image : (rows, columns, 3) array of uint8, or None
-        The patch in RGB where colour is wanted.
+    copies : Copies
+        Of the patch.
+    colour : bool
+        Whether copies in colour and chromaticities take part.
 
     Returns
     -------
     (r (r + 3) / 2,) array
-        For r images, the copies but for LEFT_OUT and those of `joint_images`: the upper triangle
-        of the matrix logarithm of their covariance [log of greys squared], row by row, then r
-        means [50 greys].
+        For r images, all copies but for LEFT_OUT, directions and, of colour, chromaticities: the
+        upper triangle of the matrix logarithm of their covariance [log of greys squared], row by
+        row, then r means [50 greys].
     """
-    used = [copy for name, copy in copies.items() if name not in LEFT_OUT]
+    images = [copies[name] for name in _copies_used(colour=colour)]
     for sigma_px in DIRECTION_SIGMAS_PX:
-        used += directions(scales, sigma_px)
-    if image is not None:
-        used += chromaticities(image)
-    means, covariance = byte_moments(used)
-    values, vectors = np.linalg.eigh(covariance + SMALLEST_VARIANCE * np.eye(len(used)))
+        images += directions(copies.scales, sigma_px)
+    if colour:
+        images += chromaticities(copies.image)
+    means, covariance = byte_moments(images)
+    values, vectors = np.linalg.eigh(covariance + SMALLEST_VARIANCE * np.eye(len(images)))
     logarithm = (vectors * np.log(values)) @ vectors.T
-    return np.concatenate([logarithm[np.triu_indices(len(used))], means / MEAN_UNIT])
+    return np.concatenate([logarithm[_upper(len(images))], means / MEAN_UNIT])
 
 
-def joint_names(copies: Iterable[str], *, colour: bool) -> list[str]:
+def joint_names(*, colour: bool) -> list[str]:
     """Names of the features: of each pair of images, then of each mean."""
-    used = [name for name in copies if name not in LEFT_OUT]
+    used = _copies_used(colour=colour)
     used += [f"{part}_{s}" for s in DIRECTION_SIGMAS_PX for part in ("along", "aslant")]
     used += CHROMATICITIES if colour else ()
-    pairs = zip(*np.triu_indices(len(used)), strict=True)
+    pairs = zip(*_upper(len(used)), strict=True)
     return [f"joint_{used[i]}_{used[j]}" for i, j in pairs] + [f"joint_mean_{of}" for of in used]
+
+
+def _copies_used(*, colour: bool) -> list[str]:
+    names = (*GREY_COPIES, *COLOUR_COPIES) if colour else GREY_COPIES
+    return [name for name in names if name not in LEFT_OUT]
+
+
+@cache
+def _upper(size: int) -> tuple[IntArray, IntArray]:
+    return np.triu_indices(size)
 
 
 def directions(scales: Scales, sigma_px: float) -> list[ByteImage]:

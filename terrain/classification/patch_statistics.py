@@ -1,10 +1,10 @@
 """The groups of statistics that stand beside SFTA in the features of a patch, by name."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
-from odometry.arrays import ByteImage, FloatArray
-from terrain.classification.filters import Scales
+from odometry.arrays import FloatArray
+from terrain.classification.copies import Copies
 from terrain.classification.gabor_statistics import gabor_names, gabor_statistics
 from terrain.classification.joint_statistics import joint_names, joint_statistics
 
@@ -16,22 +16,22 @@ class PatchStatistics:
     Attributes
     ----------
     of : callable
-        The features (n,) of a patch, from its filtered copies by name, what they were made of,
-        and the patch in RGB where colour is wanted.
+        The features (n,) of a patch, from its filtered copies and whether colour is wanted.
     names : callable
-        The names of the n features, from those of the copies and whether colour is wanted.
+        The names of the n features, from whether colour is wanted.
     """
 
-    of: Callable[[Mapping[str, ByteImage], Scales, ByteImage | None], FloatArray]
-    names: Callable[[Sequence[str], bool], list[str]]
+    of: Callable[[Copies, bool], FloatArray]
+    names: Callable[[bool], list[str]]
 
 
 STATISTICS = {
     "joint": PatchStatistics(
-        joint_statistics, lambda copies, colour: joint_names(copies, colour=colour)
+        lambda copies, colour: joint_statistics(copies, colour=colour),
+        lambda colour: joint_names(colour=colour),
     ),
     "gabor": PatchStatistics(
-        lambda _copies, scales, _image: gabor_statistics(scales.grey),
-        lambda _copies, _colour: gabor_names(),
+        lambda copies, _colour: gabor_statistics(copies.scales.grey),
+        lambda _colour: gabor_names(),
     ),
 }

@@ -8,7 +8,8 @@ import numpy as np
 from sklearn.pipeline import make_pipeline
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
-from terrain.classification.features import COLOUR_COPIES, FEWER_GREYS, GREY_COPIES, FeatureSettings
+from terrain.classification.copies import COLOUR_COPIES, GREY_COPIES
+from terrain.classification.features import FEWER_GREYS, FeatureSettings
 from terrain.classification.nearest import brute_force, labels_and_sample_distances
 from terrain.classification.neighbours import DiscriminantNeighbours, Neighbours, linear_neighbours
 
@@ -86,6 +87,7 @@ class Preset:
 
 _CHEN2023 = FeatureSettings(("grey",), (), n_thresholds=4, counts_per_area=False)
 _ALL_GREY = tuple(GREY_COPIES)
+_SCALES = ("grey", "grey_2", "grey_4")  # with statistics beside them, the others bring no more
 _ALL_COLOUR = tuple(COLOUR_COPIES)
 _FEW_GREY = ("grey", "magnitude_0.7", "coherence_0.7", "band_2")  # chosen one after another
 _BOTH = ("joint", "gabor")
@@ -105,9 +107,7 @@ def _of(
 
 
 PRESETS = {
-    "default": Preset(
-        _of(_ALL_GREY, (), _BOTH), _of(_ALL_GREY, _ALL_COLOUR, _BOTH), *_DISCRIMINANT
-    ),
+    "default": Preset(_of(_SCALES, (), _BOTH), _of(_ALL_GREY, _ALL_COLOUR, _BOTH), *_DISCRIMINANT),
     "fast": Preset(_of(_FEW_GREY), _of(_FEW_GREY, _ALL_COLOUR), *_DISCRIMINANT, one_patch=True),
     "chen2023": Preset(
         _CHEN2023,

@@ -1,5 +1,6 @@
 """Box-counting dimension of up to eight binary images at once."""
 
+from collections.abc import Iterable
 from functools import lru_cache
 
 import cv2
@@ -86,8 +87,8 @@ def _parts(pixels: tuple[int, ...]) -> tuple[IntArray, IntArray]:
     return np.concatenate(parts), firsts
 
 
-def count_bytes(planes: ByteImage, histograms: AnyArray) -> None:
-    """Add the number of pixels of each value of planes (N, H, W) to float32 (N, 256)."""
+def count_bytes(planes: Iterable[ByteImage], histograms: AnyArray) -> None:
+    """Add the number of pixels of each value of N planes (H, W) to float32 (N, 256)."""
     for plane, histogram in zip(planes, histograms, strict=True):
         cv2.calcHist([plane], [0], None, [256], [0, 256], histogram, accumulate=True)
 

@@ -19,12 +19,8 @@ import numpy as np
 from sklearn.metrics import balanced_accuracy_score
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
-from terrain.classification.features import (
-    FEWER_GREYS,
-    GREY_COPIES,
-    FeatureSettings,
-    feature_matrix,
-)
+from terrain.classification.copies import GREY_COPIES
+from terrain.classification.features import FEWER_GREYS, FeatureSettings, feature_matrix
 from terrain.classification.neighbours import linear_neighbours, vote
 from terrain.classification.patches import find_photos, load_patches
 from terrain.classification.presets import PRESETS

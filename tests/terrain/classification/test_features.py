@@ -5,9 +5,8 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_limits
 
+from terrain.classification.copies import COLOUR_COPIES, GREY_COPIES
 from terrain.classification.features import (
-    COLOUR_COPIES,
-    GREY_COPIES,
     FeatureSettings,
     feature_matrix,
     feature_names,
@@ -19,7 +18,7 @@ from terrain.texture import sfta
 
 GREY = PRESETS["default"].features
 BANK = PRESETS["default"].colour_features
-SFTA_ALONE = replace(GREY, statistics=())
+SFTA_ALONE = replace(GREY, grey_copies=tuple(GREY_COPIES), statistics=())
 
 
 def features_of(image, settings):
@@ -60,7 +59,7 @@ def test_counts_by_area_do_not_depend_on_the_size_of_the_patch(rng):
 def test_a_matrix_has_a_row_per_patch(rng):
     images = list(rng.integers(0, 256, (3, 24, 24), dtype=np.uint8))
     matrix = feature_matrix(images, GREY)
-    assert matrix.shape == (3, 24 * 19 + 230 + 46)
+    assert matrix.shape == (3, 24 * 3 + 230 + 46)
     np.testing.assert_array_equal(matrix[2], features_of(images[2], GREY))
     assert np.isfinite(feature_matrix([np.zeros((24, 24), np.uint8)], GREY)).all()
 
@@ -134,4 +133,4 @@ def test_models_of_older_versions_have_no_statistics_and_unknown_ones_are_refuse
     with pytest.raises(ValueError, match=r"statistics .* does not know: .*moods"):
         FeatureSettings.from_table(table | {"statistics": ["joint", "moods"]})
     del table["statistics"]
-    assert FeatureSettings.from_table(table) == SFTA_ALONE
+    assert FeatureSettings.from_table(table) == replace(GREY, statistics=())

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.linalg import logm
 
-from terrain.classification.features import COLOUR_COPIES, GREY_COPIES
+from terrain.classification.copies import GREY_COPIES, Copies
 from terrain.classification.filters import Scales
 from terrain.classification.joint_statistics import (
     LEFT_OUT,
@@ -11,7 +11,6 @@ from terrain.classification.joint_statistics import (
     joint_names,
     joint_statistics,
 )
-from terrain.images import to_grey
 
 ROWS, COLUMNS = np.mgrid[0:96, 0:96].astype(np.float32)
 
@@ -23,8 +22,7 @@ def blotches(rng, shape=(96, 96)):
 
 
 def statistics_of(grey):
-    scales = Scales(grey)
-    return joint_statistics({n: of(scales) for n, of in GREY_COPIES.items()}, scales, None)
+    return joint_statistics(Copies(grey), colour=False)
 
 
 def test_it_is_the_matrix_logarithm_of_the_covariance_of_the_images(rng):
@@ -35,27 +33,25 @@ def test_it_is_the_matrix_logarithm_of_the_covariance_of_the_images(rng):
     pixels = np.array([image.ravel() for image in images], float)
     expected = logm(np.cov(pixels, bias=True) + 4 * np.eye(20))
     found = statistics_of(grey)
-    assert len(found) == len(joint_names(GREY_COPIES, colour=False)) == 230
+    assert len(found) == len(joint_names(colour=False)) == 230
     np.testing.assert_allclose(found[:210], expected[np.triu_indices(20)], atol=1e-9)
     np.testing.assert_allclose(found[210:], pixels.mean(axis=1) / 50)
 
 
 def test_names_stand_at_their_places(rng):
     grey = blotches(rng)
-    found = dict(zip(joint_names(GREY_COPIES, colour=False), statistics_of(grey), strict=True))
+    found = dict(zip(joint_names(colour=False), statistics_of(grey), strict=True))
     assert found["joint_mean_grey"] == pytest.approx(grey.mean() / 50)
     across, _ = directions(Scales(grey), 2.8)
     assert found["joint_mean_along_2.8"] == pytest.approx(across.mean() / 50)
-    louder = dict(
-        zip(joint_names(GREY_COPIES, colour=False), statistics_of(grey // 2), strict=True)
-    )
+    louder = dict(zip(joint_names(colour=False), statistics_of(grey // 2), strict=True))
     assert louder["joint_grey_grey"] < found["joint_grey_grey"] - 1
 
 
 def test_a_mirror_changes_signs_of_slanting_directions_alone(rng):
     """Sines of twice the angle turn round; bytes that are rounded the other way move the rest."""
     grey = blotches(rng)
-    names = joint_names(GREY_COPIES, colour=False)
+    names = joint_names(colour=False)
     slanting = np.array([name.count("aslant") == 1 for name in names])
     means = np.array([name.startswith("joint_mean") for name in names])
     sign = np.where(slanting, -1, 1)
@@ -94,11 +90,8 @@ def test_chromaticities_by_hand_and_in_shadow():
 
 def test_colour_adds_six_images(rng):
     image = rng.integers(0, 256, (40, 48, 3), dtype=np.uint8)
-    scales = Scales(to_grey(image))
-    copies = {name: of(scales) for name, of in GREY_COPIES.items()}
-    copies |= {name: of(image) for name, of in COLOUR_COPIES.items()}
-    found = joint_statistics(copies, scales, image)
-    names = joint_names(copies, colour=True)
+    found = joint_statistics(Copies(image), colour=True)
+    names = joint_names(colour=True)
     assert len(found) == len(names) == len(set(names)) == 377
     assert found[names.index("joint_mean_redness")] == pytest.approx(
         chromaticities(image)[0].mean() / 50
