@@ -3,7 +3,7 @@
 from typing import Self
 
 import numpy as np
-from scipy.linalg import eigh
+from scipy.linalg import cho_factor, cho_solve
 from sklearn.base import BaseEstimator, TransformerMixin
 from sklearn.covariance import ledoit_wolf, shrunk_covariance
 from sklearn.decomposition import PCA
@@ -36,7 +36,9 @@ class DiscriminantMetric(TransformerMixin, BaseEstimator):  # type: ignore[misc]
 
     Fisher's linear discriminant analysis. The covariance within classes, of all classes
     together, is shrunk towards a multiple of the identity by Ledoit and Wolf's share, at least
-    1 %: it stays defined with fewer samples than features.
+    1 %: it stays defined with fewer samples than features. With S that covariance and B the
+    weighted class means, discriminants w solve B B^T w = v S w; they are S^-1 B u, where u are the
+    eigenvectors of the small matrix B^T S^-1 B. Each has unit length within classes.
 
     Attributes
     ----------
@@ -60,9 +62,13 @@ class DiscriminantMetric(TransformerMixin, BaseEstimator):  # type: ignore[misc]
         within = X - means[codes]
         _, share = ledoit_wolf(within, assume_centered=True)
         covariance = shrunk_covariance(within.T @ within / len(X), max(share, SMALLEST_SHRINKAGE))
-        between = np.atleast_2d(np.cov(means.T, fweights=counts, bias=True))
-        _, vectors = eigh(between, covariance)  # ascending, of unit length within classes
-        self.projection_ = np.ascontiguousarray(vectors[:, : -len(classes) : -1])
+        shares = counts / len(X)
+        between = (means - shares @ means).T * np.sqrt(shares)  # times its transpose: covariance
+        sharpened = cho_solve(cho_factor(covariance), between)
+        values, vectors = np.linalg.eigh(between.T @ sharpened)  # as many as classes, ascending
+        kept = slice(-1, -len(classes), -1)
+        lengths = np.sqrt(np.maximum(values[kept], np.finfo(float).tiny))
+        self.projection_ = np.ascontiguousarray(sharpened @ vectors[:, kept] / lengths)
         return self
 
     def transform(self, X: FloatArray) -> FloatArray:

@@ -1,4 +1,7 @@
 import numpy as np
+import pytest
+from scipy.linalg import eigh
+from sklearn.covariance import ledoit_wolf, shrunk_covariance
 
 from terrain.classification.metric import AppearanceMetric, ClippedScaler, DiscriminantMetric
 
@@ -31,6 +34,28 @@ def test_two_normal_classes_are_projected_on_fishers_direction(rng):
     fisher = np.linalg.solve(spread, gap)
     cosine = direction @ fisher / np.linalg.norm(direction) / np.linalg.norm(fisher)
     assert abs(cosine) > 0.999
+
+
+@pytest.mark.parametrize("classes", [2, 5])
+def test_discriminants_solve_the_generalised_problem_of_eigenvalues(classes, rng):
+    codes = np.append(np.arange(classes), rng.integers(0, classes, 300))  # rare and common ones
+    features = (rng.normal(size=(classes, 20))[codes] + rng.normal(size=(len(codes), 20))) * 3
+    projection = DiscriminantMetric().fit(features, codes).projection_
+    means = np.array([features[codes == c].mean(axis=0) for c in range(classes)])
+    within = features - means[codes]
+    share = ledoit_wolf(within, assume_centered=True)[1]
+    covariance = shrunk_covariance(within.T @ within / len(codes), share)
+    between = np.cov(means.T, fweights=np.bincount(codes), bias=True)
+    _, vectors = eigh(between, covariance)
+    expected = vectors[:, :-classes:-1]
+    signs = np.sign(np.sum(projection * expected, axis=0))
+    np.testing.assert_allclose(projection, signs * expected, atol=1e-12)
+
+
+def test_classes_of_equal_means_have_no_discriminant_and_no_error(rng):
+    features = np.vstack([noise := rng.normal(size=(30, 4)), noise])
+    projected = DiscriminantMetric().fit(features, np.repeat([0, 1], 30)).transform(features)
+    assert np.isfinite(projected).all()
 
 
 def test_fewer_samples_than_features_still_separate(rng):
