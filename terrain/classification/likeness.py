@@ -191,7 +191,7 @@ class TrainingLook:
         if left_out is not None:
             apart[left_out] = np.inf
             few = min(few, int((~left_out).sum(axis=1).min()))
-        return np.argsort(apart, axis=1, kind="stable")[:, :few]
+        return np.argpartition(apart, few - 1, axis=1)[:, :few]
 
     def how(self, looks: FloatArray) -> tuple[str, ...]:
         """In what looks (m, 7) of images differ from those in training, most of all first."""

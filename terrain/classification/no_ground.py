@@ -10,6 +10,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
 from terrain.images import to_bytes, to_grey
+from terrain.texture.box_counting import byte_histogram
 
 OCTAVES = 4  # of texture, finest first
 FLOOR = 0.05  # grey levels squared; below it lies rounding
@@ -74,14 +75,15 @@ class Showing:
     def of(cls, image: ByteImage) -> Self:
         """Of an image, grey or RGB."""
         grey = to_grey(image)
-        white, black = float(np.mean(grey >= WHITE)), float(np.mean(grey <= BLACK))
+        shares = byte_histogram(grey) / grey.size
         level: AnyArray = grey.astype(np.float32)
         octaves = []
         for _ in range(OCTAVES):
             coarser = np.asarray(cv2.pyrDown(level), np.float32)
             octaves.append((level - cv2.pyrUp(coarser, dstsize=level.shape[::-1])) ** 2)
             level = coarser
-        texture = np.log([float(octave.mean()) + FLOOR for octave in octaves])
+        texture = np.log([cv2.mean(octave)[0] + FLOOR for octave in octaves])
+        white, black = float(shares[WHITE:].sum()), float(shares[: BLACK + 1].sum())
         return cls(texture, _unevenness(octaves[0]), white, black, _blueness(image))
 
 
