@@ -129,7 +129,8 @@ def yellow_blue(image: ByteImage) -> ByteImage:
 def blur(image: AnyArray, sigma_px: float) -> AnyArray:
     """The image under a Gaussian of `sigma_px`; a wide one blurs the image reduced to a quarter.
 
-    That is within 0.1 grey of the Gaussian itself (root mean square), and 1 near the edge.
+    On photographs that is within 0.1 grey of the Gaussian itself (root mean square), and 1 at most,
+    at the edge, where the mirror lies half a pixel farther out.
     """
     rows, columns = image.shape
     if sigma_px < WIDE_PX or min(rows, columns) < LEAST_REDUCED_PX:

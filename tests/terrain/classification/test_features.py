@@ -48,6 +48,15 @@ def test_each_copy_gives_its_sfta_with_counts_by_area(rng):
     assert blocks[..., 1].max() <= 1
 
 
+def test_the_default_preset_begins_with_sfta_of_the_patch_at_three_scales(rng):
+    image = np.kron(rng.integers(0, 256, (10, 12), dtype=np.uint8), np.ones((4, 4), np.uint8))
+    features = features_of(image, replace(GREY, filtered_greys=256))
+    for place, reduced in enumerate((image, image[::2, ::2], image[::4, ::4])):
+        expected = sfta(reduced).reshape(8, 3) / [1, reduced.size, 1]
+        found = features[24 * place : 24 * place + 24].reshape(8, 3)
+        np.testing.assert_allclose(found, expected, atol=1e-12)
+
+
 def test_counts_by_area_do_not_depend_on_the_size_of_the_patch(rng):
     tile = np.kron(rng.integers(0, 256, (16, 16), dtype=np.uint8), np.ones((4, 4), np.uint8))
     settings = FeatureSettings(("grey", "grey_4"), (), 3, counts_per_area=True)

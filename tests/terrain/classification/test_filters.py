@@ -1,9 +1,11 @@
+import cv2
 import numpy as np
 import pytest
 
 from terrain.classification.filters import (
     Scales,
     band_pass,
+    blur,
     coherence,
     gradient_magnitude,
     gradient_orientation,
@@ -100,3 +102,20 @@ def test_small_and_flat_images_give_bytes(apply, shape):
 def test_means_between_two_greys_are_rounded_to_the_even_one():
     grey = np.repeat(np.array([[0, 1, 1, 2, 254, 255]], np.uint8), 2, axis=0)
     np.testing.assert_array_equal(reduced(2)(Scales(grey)), [[0, 2, 254]])
+
+
+@pytest.mark.parametrize("shape", [(96, 96), (128, 200), (97, 131)])
+@pytest.mark.parametrize("sigma_px", [11.2, 16.0])
+def test_a_wide_blur_is_nearly_the_gaussian(shape, sigma_px, rng):
+    grey = cv2.GaussianBlur(rng.uniform(0, 255, shape).astype(np.float32), (0, 0), 1.0)
+    grey += np.linspace(-40, 40, shape[1], dtype=np.float32)
+    off = blur(grey, sigma_px) - cv2.GaussianBlur(grey, (0, 0), sigma_px)
+    assert np.sqrt(np.mean(off[INSIDE] ** 2)) < 0.1
+    assert np.abs(off).max() < 1.0
+
+
+@pytest.mark.parametrize(("shape", "sigma_px"), [((31, 200), 16.0), ((96, 96), 8.0)])
+def test_a_blur_that_is_not_wide_and_one_of_a_small_patch_are_the_gaussian(shape, sigma_px, rng):
+    grey = rng.uniform(0, 255, shape).astype(np.float32)
+    expected = cv2.GaussianBlur(grey, (0, 0), sigma_px)
+    np.testing.assert_array_equal(blur(grey, sigma_px), expected)
