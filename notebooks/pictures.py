@@ -177,6 +177,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, default=OUT)
     out = parser.parse_args().out
+    out.mkdir(parents=True, exist_ok=True)
     frame(out / "frame.png")
     data = os.environ.get("TERRAIN_ODOMETRY_DATA")
     if data is None:
