@@ -7,7 +7,6 @@ speeds before any slip: then they do not depend on what else is fitted, and are 
 """
 
 from abc import abstractmethod
-from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -15,13 +14,14 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.effects.base import Effect, EffectParameter, MotionEffect
 from odometry.effects.base_model import Base
 from odometry.effects.recorded import Recorded
+from odometry.effects.remembered import Remembered
 from odometry.effects.slope_icr import half_length_m
 from odometry.models.contact import GUESSED_HEIGHT, Contact
 from odometry.models.inputs import Inputs
 
 MODEL = Contact()
 MEAN_S = 0.2
-REMEMBERED = 64  # answers
+LATEST = 8  # answers from which the next one is searched
 FEWEST, MANY = 2.0, 4.0  # contacts a side
 STARTS = ((0.4, 0.01), (0.4, 0.08), (0.8, 0.01), (0.8, 0.08))  # friction, scale of slip
 IN_BALANCE = [0, 4, 5, 2, 8]  # where the parameters are among those of `Contact`
@@ -42,15 +42,16 @@ class ContactChange(MotionEffect):
     form = "contact"
     slow = True
     physics = "contact"
+    answers_to = ""
     constant_names = ("half_width", "contacts")
     source = "force balance of this project (odometry.models.contact)"
 
     def __init__(self, half_width: float | None = None, contacts: float | None = None) -> None:
         self.half_width = half_width
         self.contacts = contacts
-        self._changes: dict[bytes, FloatArray] = {}
-        self._balanced: dict[bytes, FloatArray] = {}
-        self._latest: dict[bytes, FloatArray] = {}
+        self._changes = Remembered()
+        self._balanced = Remembered()
+        self._latest: list[tuple[FloatArray, FloatArray]] = []
 
     @classmethod
     def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
@@ -110,8 +111,7 @@ class ContactChange(MotionEffect):
         self, values: FloatArray, twist: FloatArray, inputs: Inputs, base: Base
     ) -> FloatArray:
         """See `MotionEffect.twist`."""
-        means, counts = _means(inputs)
-        return np.asarray(twist + np.repeat(self._change(values, means, base), counts, axis=0))
+        return np.asarray(twist + self._change(values, inputs, base))
 
     def added_by_values(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
         """Derivative (P, N, 3) of what `twist` adds, whatever the twist is."""
@@ -120,22 +120,22 @@ class ContactChange(MotionEffect):
 
     def balanced(self, balances: FloatArray, inputs: Inputs) -> FloatArray:
         """Balanced twists (K, 3) of parameters (K, 9) of `Contact`."""
-        driven = (inputs.tread_speeds_m_s, inputs.roll_rad, inputs.pitch_rad)
-        return _remembered(
-            self._balanced, (balances, *driven), lambda: self._balance(balances, inputs, driven)
+        stack = (inputs.tread_speeds_m_s, inputs.roll_rad, inputs.pitch_rad)
+        driven = np.column_stack(stack)
+        return self._balanced.to(
+            (balances, driven), lambda: self._balance(balances, inputs, driven)
         )
 
-    def _balance(
-        self, balances: FloatArray, inputs: Inputs, driven: Sequence[FloatArray]
-    ) -> FloatArray:
-        """The same, searched from the latest answer on these inputs."""
-        key = _key(driven)
-        latest = self._latest.pop(key, None)
-        if latest is None:
+    def _balance(self, balances: FloatArray, inputs: Inputs, driven: FloatArray) -> FloatArray:
+        """The same, searched from the answer to the inputs (K, 4) most like these."""
+        alike = [one for one in self._latest if one[0].shape == driven.shape]
+        apart = [float(np.abs(of - driven).sum()) for of, _ in alike]
+        if not alike:
             answer = MODEL.twist(balances, inputs)
         else:
-            answer = MODEL.twist_near(balances, inputs, latest)
-        _keep(self._latest, key, answer)
+            answer = MODEL.twist_near(balances, inputs, alike[int(np.argmin(apart))][1])
+        others = [one for one in self._latest if not np.array_equal(one[0], driven)]
+        self._latest = [*others, (driven, answer)][-LATEST:]
         return answer
 
     def balanced_by_values(self, balances: FloatArray, inputs: Inputs) -> FloatArray:
@@ -143,32 +143,17 @@ class ContactChange(MotionEffect):
         jacobian = MODEL.derivative_at(balances, inputs, self.balanced(balances, inputs))
         return np.moveaxis(jacobian[..., IN_BALANCE], -1, 0)
 
-    def _change(self, values: FloatArray, means: Inputs, base: Base) -> FloatArray:
+    def _change(self, values: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
+        """What it adds to the twist (N, 3)."""
         known = np.array([self._half_width_m(base)])
-        time_s = np.empty(0) if means.time_s is None else means.time_s
-        recorded = (means.tread_speeds_m_s, means.roll_rad, means.pitch_rad, time_s)
-        stack = (values, known, *recorded)
-        return _remembered(self._changes, stack, lambda: self.change(values, means, base))
+        time_s = np.empty(0) if inputs.time_s is None else inputs.time_s
+        recorded = (inputs.tread_speeds_m_s, inputs.roll_rad, inputs.pitch_rad, time_s)
 
+        def answer() -> FloatArray:
+            means, counts = _means(inputs)
+            return np.repeat(self.change(values, means, base), counts, axis=0)
 
-def _remembered(
-    answers: dict[bytes, FloatArray], stack: Sequence[FloatArray], answer: Callable[[], FloatArray]
-) -> FloatArray:
-    """What was answered to the same numbers, or the answer now."""
-    key = _key(stack)
-    if key not in answers:
-        _keep(answers, key, answer())
-    return answers[key]
-
-
-def _keep(answers: dict[bytes, FloatArray], key: bytes, answer: FloatArray) -> None:
-    while len(answers) >= REMEMBERED:
-        answers.pop(next(iter(answers)))
-    answers[key] = answer
-
-
-def _key(stack: Sequence[FloatArray]) -> bytes:
-    return b"".join(np.ascontiguousarray(of).tobytes() for of in stack)
+        return self._changes.to((values, known, *recorded), answer)
 
 
 def _means(inputs: Inputs) -> tuple[Inputs, IntArray]:

@@ -1,6 +1,7 @@
 """Sliding downhill and inertia by the forces of ground contacts."""
 
 import numpy as np
+from scipy.linalg.lapack import dtbtrs
 
 from odometry.arrays import FloatArray
 from odometry.effects.base import Effect
@@ -10,6 +11,7 @@ from odometry.effects.held_commands import held_spans
 from odometry.effects.recorded import Recorded
 from odometry.effects.slope_icr import lacks_tilt
 from odometry.models.contact_balance import Balance, balance_at
+from odometry.models.contact_solve import solve_3x3
 from odometry.models.contact_stance import stance_of
 from odometry.models.inertia_model import G_M_S2
 from odometry.models.inputs import Inputs
@@ -91,40 +93,47 @@ def followed(values: FloatArray, inputs: Inputs, balanced: FloatArray) -> FloatA
     held_s, starts = held_spans(inputs.time_s)
     kept = _kept(values, inputs, balanced, held_s)
     steps = np.diff(balanced, axis=0, prepend=balanced[:1])
-    behind = np.zeros_like(balanced)
-    for row in np.flatnonzero(~starts):
-        behind[row] = kept[row] @ (behind[row - 1] - steps[row])
-    return balanced + behind
+    kept[..., starts] = 0.0
+    return balanced + _recursion(kept, -np.einsum("ijn,nj->ni", kept, steps))
+
+
+def _recursion(kept: FloatArray, pushed: FloatArray) -> FloatArray:
+    """Rows (N, 3), each `kept` (3, 3, N) times the row before and what is `pushed` (N, 3).
+
+    One triangular system, whose diagonals are five below the main one.
+    """
+    diagonals = np.zeros((6, pushed.size))
+    for row, column in np.ndindex(3, 3):
+        diagonals[3 + row - column, column:-3:3] = -kept[row, column, 1:]
+    rows, _ = dtbtrs(diagonals, pushed.reshape(-1, 1), uplo="L", diag="U")
+    return np.asarray(rows.reshape(-1, 3))
 
 
 def _kept(
     values: FloatArray, inputs: Inputs, balanced: FloatArray, held_s: FloatArray
 ) -> FloatArray:
-    """What (N, 3, 3) a sample leaves of a distance from the balance, never of more energy.
+    """What (3, 3, N) a sample leaves of a distance from the balance, never of more energy.
 
     Where a robot is about to tip over the derivative of the forces may push away from it.
     """
     stance = stance_of(np.broadcast_to(values, (len(balanced), len(values))), inputs)
     balance = balance_at(stance, balanced.T)
-    by_twist = np.moveaxis(balance.by_twist, -1, 0)
     inertia = _inertia(values)
-    of_loads = _loads_shifted(balance) @ inertia[:2]
-    rates = G_M_S2 * np.linalg.solve(inertia + of_loads, by_twist)
+    pushed = inertia[..., None] + np.einsum("ijn,jk->ikn", _loads_shifted(balance), inertia[:2])
+    kept = solve_3x3(pushed - G_M_S2 * held_s * balance.by_twist, pushed)
     root = np.linalg.cholesky(inertia).T
-    unrooted = np.linalg.inv(root)
-    kept = root @ np.linalg.inv(np.eye(3) - held_s[:, None, None] * rates) @ unrooted
-    large = np.linalg.norm(kept, axis=(1, 2)) > 1.0  # by the sum of squares, which is no less
-    sizes = np.linalg.norm(kept[large], ord=2, axis=(1, 2))
-    kept[large] /= np.maximum(1.0, sizes)[:, None, None]
-    return np.asarray(unrooted @ kept @ root)
+    scaled = np.tensordot(root, kept, axes=1).transpose(2, 0, 1) @ np.linalg.inv(root)
+    large = np.linalg.norm(scaled, axis=(1, 2)) > 1.0  # by the sum of squares, which is no less
+    sizes = np.linalg.norm(scaled[large], ord=2, axis=(1, 2))
+    kept[..., large] /= np.maximum(1.0, sizes)
+    return kept
 
 
 def _loads_shifted(balance: Balance) -> FloatArray:
-    """Friction lost (N, 3, 2) to loads shifting as the centre of mass speeds up, by its rate."""
+    """Friction lost (3, 2, N) to loads shifting as the centre of mass speeds up, by its rate."""
     stance = balance.stance
     levers = balance.reach * stance.height_m / (stance.normal * stance.base_m)
-    shifts = [balance.by_shift(levers * axis[:, None]) for axis in np.eye(2)]
-    return np.moveaxis(np.asarray(shifts), (0, 1, 2), (2, 1, 0))
+    return np.stack([balance.by_shift(levers * axis[:, None]) for axis in np.eye(2)], axis=1)
 
 
 def _inertia(values: FloatArray) -> FloatArray:

@@ -9,6 +9,7 @@ from odometry.effects.base import CommandEffect, Effect, EffectParameter
 from odometry.effects.base_model import Base
 from odometry.effects.held_commands import held_spans
 from odometry.effects.recorded import Recorded
+from odometry.effects.remembered import Remembered
 from odometry.models.inputs import Inputs
 
 EDGE_M_S = 0.005  # over which a command begins to act: samples there have a derivative
@@ -16,7 +17,6 @@ BLURRED_M_S = 0.01  # by noise of the recorded speeds, a deadband
 HARDEST_M_S2 = 20.0
 HIGHEST_LEAST_M_S = 0.5
 STARTS_M_S = (0.02, 0.04, 0.06, 0.09, 0.12, 0.15, 0.18, 0.21, 0.25)
-REMEMBERED = 64  # results: beside other effects one is evaluated with the same values again
 
 
 class DriveLimit(CommandEffect):
@@ -109,7 +109,7 @@ class RateLimit(DriveLimit):
     needs = "tread speeds that change in steps, and a measured pose"
 
     def __init__(self) -> None:
-        self._answers: dict[bytes, FloatArray] = {}
+        self._limits = Remembered()
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
@@ -125,19 +125,15 @@ class RateLimit(DriveLimit):
         speeds = inputs.tread_speeds_m_s
         if inputs.time_s is None:
             return speeds
-        key = b"".join(np.ascontiguousarray(of).tobytes() for of in (values, speeds, inputs.time_s))
-        if key not in self._answers:
-            while len(self._answers) >= REMEMBERED:
-                self._answers.pop(next(iter(self._answers)))
-            self._answers[key] = self._limited(float(values[0]), speeds, inputs.time_s)
-        return self._answers[key]
+        asked = (values, speeds, inputs.time_s)
+        return self._limits.to(asked, lambda: limited(float(values[0]), speeds, *asked[2:]))
 
-    def _limited(self, most: float, speeds: FloatArray, time_s: FloatArray) -> FloatArray:
-        held_s, starts = held_spans(time_s)
-        limited = [
-            _limited(tread.tolist(), held_s.tolist(), starts.tolist(), most) for tread in speeds.T
-        ]
-        return np.stack(limited, axis=-1)
+
+def limited(most: float, speeds: FloatArray, time_s: FloatArray) -> FloatArray:
+    """Mean speeds (N, T) of T treads that change theirs (N, T) by no more than `most` [m/s^2]."""
+    held_s, starts = held_spans(time_s)
+    spans = held_s.tolist(), starts.tolist()
+    return np.stack([_limited(tread.tolist(), *spans, most) for tread in speeds.T], axis=-1)
 
 
 def _limited(
