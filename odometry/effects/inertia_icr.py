@@ -6,6 +6,7 @@ from odometry.arrays import FloatArray
 from odometry.effects.base import Effect, EffectParameter, MotionEffect
 from odometry.effects.base_model import Base, slip_factors, tread_icrs
 from odometry.effects.recorded import Recorded
+from odometry.effects.remembered import Remembered
 from odometry.models.icr import icr_twist
 from odometry.models.icr_inertia import IcrInertia
 from odometry.models.inertia_model import G_M_S2
@@ -30,6 +31,7 @@ class InertiaByIndices(MotionEffect):
     name = "inertia"
     in_words = "inertia in fast turns"
     form = "icr_inertia"
+    answers_to = "base"
     equation = "zeta, epsilon, eta change with |F| by zeta_1, epsilon_1, eta_1, eta_2 and signs"
     constant_names = ("mass", "track_width")
     source = "Martinez 2017 eq. 17-30"
@@ -39,6 +41,7 @@ class InertiaByIndices(MotionEffect):
 
     def __init__(self, mass: float = 1.0, track_width: float | None = None) -> None:
         self.mass, self.track_width = mass, track_width
+        self._moved = Remembered()
 
     @classmethod
     def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
@@ -87,5 +90,6 @@ class InertiaByIndices(MotionEffect):
             *(h, self.mass, 0.0, 0.0, width),
         ]
         speeds = alphas * inputs.tread_speeds_m_s
-        moved = MODEL.twist(np.array(coefficients), Inputs(speeds))
+        packed = np.array(coefficients)
+        moved = self._moved.to((packed, speeds), lambda: MODEL.twist(packed, Inputs(speeds)))
         return np.asarray(twist + moved - icr_twist(icrs, speeds))

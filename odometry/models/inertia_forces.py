@@ -6,7 +6,8 @@ from enum import IntEnum
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import FloatArray, IntArray
+from odometry.models.base import vectors
 
 
 class Column(IntEnum):
@@ -40,7 +41,11 @@ TOLERANCE = 4 * np.finfo(float).eps  # of the limit
 ForceAt = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 
 
-def consistent_force(force_at: ForceAt, limit_n: FloatArray) -> FloatArray:
+def consistent_force(
+    force_at: ForceAt,
+    limit_n: FloatArray,
+    of_some: Callable[[IntArray], ForceAt] | None = None,
+) -> FloatArray:
     """Force (...) with force = min(force_at(force), limit), by Newton's method within a bracket.
 
     Between 0 and the limit there is always such a force. Newton's method starts from no force;
@@ -55,14 +60,19 @@ def consistent_force(force_at: ForceAt, limit_n: FloatArray) -> FloatArray:
         cause, not negative, and its derivative.
     limit_n : (...)
         [N]
+    of_some : callable, optional
+        From numbers of samples, of a stack (N,), to `force_at` of these: what has settled is then
+        not computed again.
     """
+    answer = np.empty_like(limit_n)
+    left = np.arange(answer.size)
     low, high = np.zeros_like(limit_n), np.array(limit_n)
     force = low
     for step in range(NEWTON_STEPS + HALVINGS):
         caused, slope = force_at(force)
         excess = np.minimum(caused, limit_n) - force
-        settled = np.abs(excess) <= TOLERANCE * limit_n
-        if np.all(settled):
+        open_ = np.abs(excess) > TOLERANCE * limit_n
+        if not np.any(open_):
             break
         low, high = np.where(excess > 0, force, low), np.where(excess > 0, high, force)
         proposed = (low + high) / 2
@@ -70,8 +80,15 @@ def consistent_force(force_at: ForceAt, limit_n: FloatArray) -> FloatArray:
             slope = np.where(caused < limit_n, slope, 0.0)
             ahead = force + excess / np.where(slope < 1, 1 - slope, np.inf)
             proposed = np.where((slope < 1) & (ahead > low) & (ahead <= high), ahead, proposed)
-        force = np.where(settled, force, proposed)
-    return force
+        force = np.where(open_, proposed, force)
+        if of_some is not None and 2 * np.count_nonzero(open_) < len(open_):
+            answer[left] = force  # what is settled stays
+            left, force_at = left[open_], of_some(left[open_])
+            low, high, force, limit_n = (of[open_] for of in (low, high, force, limit_n))
+    if of_some is None:
+        return force
+    answer[left] = force
+    return answer
 
 
 LEAST_ETA = 0.1  # the tread ICRs stay at least a tenth of the track width apart
@@ -135,7 +152,7 @@ def by_force(coefficients: FloatArray, at: Indices) -> FloatArray:
     _, zeta_1, _, epsilon_1, _, eta_1, eta_2 = np.moveaxis(coefficients, -1, 0)
     both = at.x1_sign * at.x2_sign
     by_eta = at.eta_is_free * (eta_1 * both + 2 * eta_2 * at.force_n)
-    return np.stack(np.broadcast_arrays(zeta_1 * at.x2_sign, epsilon_1 * both, by_eta), axis=-1)
+    return vectors(zeta_1 * at.x2_sign, epsilon_1 * both, by_eta)
 
 
 def by_coefficient(at: Indices) -> FloatArray:

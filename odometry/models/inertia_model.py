@@ -18,6 +18,7 @@ from odometry.models.inertia_forces import (
     PARAMETERS,
     SPEEDS,
     Column,
+    ForceAt,
     Indices,
     by_coefficient,
     by_force,
@@ -133,14 +134,25 @@ class InertiaModel(KinematicModel):
     def turn(self, values: FloatArray, inputs: Inputs) -> Turn:
         """The motion that causes the force of inertia which it is under."""
         stack = np.broadcast_shapes(values.shape[:-1], inputs.shape)
+        limit_n = np.broadcast_to(values[..., Column.MASS] * G_M_S2, stack)
+        in_a_row = values.ndim == 1 and len(stack) == 1
+        force_n = consistent_force(
+            self.force_at(values, inputs),
+            limit_n,
+            (lambda some: self.force_at(values, inputs.rows(some))) if in_a_row else None,
+        )
+        return _turn_under(values, inputs, force_n, signs_of(values, inputs))
+
+    def force_at(self, values: FloatArray, inputs: Inputs) -> ForceAt:
+        """The force that the motion under a force causes, and its derivative."""
+        signs = signs_of(values, inputs)
 
         def force_at(force_n: FloatArray) -> tuple[FloatArray, FloatArray]:
-            turn = _turn_under(values, inputs, force_n)
+            turn = _turn_under(values, inputs, force_n, signs)
             force, by_turn = self.caused_force(values, turn)
-            return force, (by_turn * _turn_by_force(values, turn)).sum(axis=-1)
+            return force, np.einsum("...i,...i->...", by_turn, _turn_by_force(values, turn))
 
-        limit_n = np.broadcast_to(values[..., Column.MASS] * G_M_S2, stack)
-        return _turn_under(values, inputs, consistent_force(force_at, limit_n))
+        return force_at
 
     def _jacobian(self, values: FloatArray, turn: Turn) -> FloatArray:
         """Derivative (..., 3, 14) of the twist by each `Column`."""
@@ -160,12 +172,18 @@ class InertiaModel(KinematicModel):
         return np.asarray(jacobian)
 
 
-def _turn_under(values: FloatArray, inputs: Inputs, force_n: FloatArray) -> Turn:
-    """The motion (...) under a force (...), with the signs of eq. 14-15."""
+def signs_of(values: FloatArray, inputs: Inputs) -> tuple[FloatArray, FloatArray]:
+    """Those (...) of V_l - V_r and of V_l + H V_r (Martinez 2017 eq. 14-15)."""
     left, right = inputs.left, inputs.right
-    x1_sign, x2_sign = np.sign(left - right), np.sign(left + values[..., Column.H] * right)
-    found = indices_under(values[..., COEFFICIENTS], force_n, x1_sign, x2_sign)
-    omega = (right - left) / (values[..., Column.TRACK_WIDTH] * found.eta)  # eq. 20
+    return np.sign(left - right), np.sign(left + values[..., Column.H] * right)
+
+
+def _turn_under(
+    values: FloatArray, inputs: Inputs, force_n: FloatArray, signs: tuple[FloatArray, FloatArray]
+) -> Turn:
+    """The motion (...) under a force (...)."""
+    found = indices_under(values[..., COEFFICIENTS], force_n, *signs)
+    omega = (inputs.right - inputs.left) / (values[..., Column.TRACK_WIDTH] * found.eta)  # eq. 20
     return Turn(inputs, omega, found)
 
 
