@@ -9,10 +9,11 @@ wheel travel adds to the place and to the yaw, and of what a second adds to the 
 gyroscope reports, which follows the robot where its motion wanders.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg.lapack import dtrtri
 
 from odometry.arrays import FloatArray
 from odometry.windows.dense import DenseWindows
@@ -127,38 +128,37 @@ class Noise:
         return np.append(self.variances, self.gyro_rad**2)
 
 
-def covariance_parts(scene: DenseWindows) -> FloatArray:
-    """Derivative (5, K, R, R) of the covariance of a window's residuals by each variance.
+def covariance_parts(scene: DenseWindows) -> Iterator[FloatArray]:
+    """Derivatives (K, R, R) of the covariance of a window's residuals by the five variances.
 
     The R residuals are those of n poses, three of each, then the n of a gyroscope if there is one.
     """
     motion = scene.measured
     count, steps, _ = motion.shape
+    of_poses, size = 3 * steps, scene.rows_per_window
     added_m = added_travel_m(scene)
-    level = np.zeros((count, steps, 3, steps, 3))
+    part = np.zeros((count, size, size))
+    part[:, :of_poses:3, :of_poses:3] = np.ones((steps, steps)) + np.eye(steps)
+    part[:, 1:of_poses:3, 1:of_poses:3] = part[:, :of_poses:3, :of_poses:3]
+    yield part
+    lever = np.stack([-motion[..., 1], motion[..., 0], np.ones((count, steps))], axis=-1)
+    lever = lever.reshape(count, -1)
+    part = np.zeros((count, size, size))
+    part[:, :of_poses, :of_poses] = lever[:, :, None] * lever[:, None, :]
+    yaws = np.arange(2, of_poses, 3)
+    part[:, yaws, yaws] += 1.0
+    yield part
     j = np.arange(steps)
-    shared = np.ones((steps, steps)) + np.eye(steps)
-    position, yaw, wander = (level.copy() for _ in range(3))
-    for axis in (0, 1):
-        position[:, :, axis, :, axis] = shared
-    lever = np.concatenate(
-        [-motion[..., 1:2], motion[..., :1], np.ones((count, steps, 1))], axis=-1
-    )
-    yaw += np.einsum("kja,klb->kjalb", lever, lever)
-    yaw[:, j, 2, j, 2] += 1.0
-    summed = np.cumsum(added_m, axis=1)
-    reached = np.minimum(j[:, None], j[None, :])
-    for axis in (0, 1):
-        wander[:, :, axis, :, axis] = summed[:, reached]
-    of_poses = 3 * steps
+    summed = np.cumsum(added_m, axis=1)[:, np.minimum(j[:, None], j)]
+    part = np.zeros((count, size, size))
+    part[:, :of_poses:3, :of_poses:3] = part[:, 1:of_poses:3, 1:of_poses:3] = summed
+    yield part
     turns = wandering_turns(scene)
-    parts = np.zeros((5, count, turns.shape[-1], turns.shape[-1]))
-    for place, part in enumerate((position, yaw, wander)):
-        parts[place, :, :of_poses, :of_poses] = part.reshape(count, of_poses, of_poses)
-    parts[3] = turns.swapaxes(1, 2) @ turns
-    gyro = np.arange(of_poses, turns.shape[-1])
-    parts[4][:, gyro, gyro] = np.diff(scene.pose_s[scene.windows], axis=1)[:, : len(gyro)]
-    return parts
+    yield turns.swapaxes(1, 2) @ turns
+    part = np.zeros((count, size, size))
+    gyro = np.arange(of_poses, size)
+    part[:, gyro, gyro] = np.diff(scene.pose_s[scene.windows], axis=1)[:, : len(gyro)]
+    yield part
 
 
 def with_rounding(variances: FloatArray, scene: DenseWindows) -> FloatArray:
@@ -189,12 +189,18 @@ def end_variance(scene: DenseWindows, noise: Noise) -> FloatArray:
 
 
 def whitening(scene: DenseWindows, noise: Noise) -> FloatArray:
-    """Matrices (K, R, R) that make the residuals of each window white, of unit variance."""
+    """Matrices (K, R, R) that make the residuals of each window white, of unit variance.
+
+    They are lower triangular.
+    """
     variances = with_rounding(noise.all_variances, scene)
-    covariance = np.tensordot(variances, covariance_parts(scene), axes=1)
-    factor = np.linalg.cholesky(covariance)
-    identity = np.broadcast_to(np.eye(factor.shape[-1]), factor.shape)
-    return np.asarray(np.linalg.solve(factor, identity))
+    covariance = np.zeros((len(scene), *[scene.rows_per_window] * 2))
+    for variance, part in zip(variances, covariance_parts(scene), strict=True):
+        covariance += np.multiply(part, variance, out=part)
+    white = np.linalg.cholesky(covariance)
+    for factor in white:
+        factor[:] = dtrtri(factor.T)[0].T
+    return np.asarray(white)
 
 
 def estimated_noise(
@@ -214,7 +220,7 @@ def estimated_noise(
         rows.append(of[picked].reshape(len(picked), -1))
     factors = [Factors(scene) for scene in chosen]
     parts = [
-        covariance_parts(scene)[:, :, one.order[:, None], one.order]
+        [part[:, one.order[:, None], one.order] for part in covariance_parts(scene)]
         for scene, one in zip(chosen, factors, strict=True)
     ]
     variances = FIRST_GUESS.copy() if start is None else start.all_variances
@@ -222,7 +228,10 @@ def estimated_noise(
         score, information = np.zeros(len(variances)), np.zeros((len(variances),) * 2)
         for scene, one, part, of in zip(chosen, factors, parts, rows, strict=True):
             known = with_rounding(variances, scene)
-            inverse = np.asarray(np.linalg.inv(np.tensordot(known, part, axes=1)), dtype=np.float64)
+            covariance = np.zeros_like(part[0])
+            for variance, by_variance in zip(known, part, strict=True):
+                covariance += variance * by_variance
+            inverse = np.asarray(np.linalg.inv(covariance), dtype=np.float64)
             scored = one.score(inverse, of[:, one.order])
             score, information = score + scored[0], information + scored[1]
         step = np.linalg.lstsq(information, score, rcond=None)[0]
