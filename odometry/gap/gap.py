@@ -34,7 +34,7 @@ from odometry.gap.prepare.scenes import (
     scenes_of,
     without_outliers,
 )
-from odometry.gap.prepare.statistic import floor_of, floor_there, gap_of
+from odometry.gap.prepare.statistic import floor_of, floor_there, gap_m, gap_of
 from odometry.identification.identify import robot_of
 from odometry.models.base import KinematicModel
 from odometry.models.icr import Icr
@@ -130,14 +130,14 @@ def find_gap(
         )
         for scenes, raw in zip((fitted_scenes, held_scenes), raw_scenes, strict=True)
     ]
-    believed_m = gap_of(known.base, (), fitted_scenes, config.part_s).value
+    believed_m = gap_m(known.base, (), fitted_scenes)
     named = named_effects(found, effects, believed_m)
     if outliers is not None:
         alone = gap_of(known.base, (), held_scenes, config.part_s)
         if is_first(closings[1], alone, config):
             named = (named_outliers(outliers, closings[0].before.value, believed_m), *named)
         else:
-            raw_m = gap_of(base, effects, raw_scenes[0], config.part_s).value
+            raw_m = gap_m(base, effects, raw_scenes[0])
             named = (*named, named_outliers(outliers, raw_m, closings[0].after.value))
     rounding = named_rounding(fitted_scenes, held_scenes, known, floor, config)
     if rounding is not None:

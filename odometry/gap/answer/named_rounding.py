@@ -12,7 +12,7 @@ from odometry.gap.config import GapConfig
 from odometry.gap.name.verdict import within_noise
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.end_residuals import ends_of
-from odometry.gap.prepare.statistic import Gap, floor_there, gap_of
+from odometry.gap.prepare.statistic import Gap, floor_there, gap_m, gap_of
 from odometry.windows.dense import DenseWindows
 
 
@@ -40,7 +40,7 @@ def named_rounding(
     evidence = _evidence(measured, known, config)
     if closed < config.least_of_rest or evidence < config.least_evidence:
         return None
-    before_m = gap_of(known.base, (), measured, config.part_s).value
+    before_m = gap_m(known.base, (), measured)
     return NamedEffect(
         Added(RoundedPositions(), np.array([np.mean(steps_m)])),
         np.array([min(steps_m)]),

@@ -8,7 +8,7 @@ import numpy as np
 from odometry.effects.base import Effect
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.fitter import Fitted, Fitter
-from odometry.gap.prepare.statistic import gap_of, sure_sum
+from odometry.gap.prepare.statistic import gap_m, sure_sum
 
 DIGITS = 6  # of evidence: what differs by less is a tie
 
@@ -93,7 +93,7 @@ def _judged(
         gain,
         float(gain / spread - paid),
         float((sure_sum(fitter.by_piece(gains), config.trimmed) + moved) / spread - paid),
-        gap_of(fit.base, fit.effects, fitter.measured.scenes, config.part_s).value,
+        gap_m(fit.base, fit.effects, fitter.measured.scenes),
     )
 
 

@@ -12,7 +12,7 @@ from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.fit.own_values import PARITIES, by_turns, with_values_of_each_run
 from odometry.gap.prepare.measured import Measured, at_fewer_poses
 from odometry.gap.prepare.responses import Responses, columns_of, simulated_scenes
-from odometry.gap.prepare.statistic import gap_of, sure_sum
+from odometry.gap.prepare.statistic import gap_m, sure_sum
 from odometry.windows.dense import DenseWindows
 
 ADDED_TO = (  # components, and what they grow with
@@ -84,5 +84,5 @@ def _judged(fitter: Fitter, before: Fitted, effect: ResidualOfEachRun, config: G
     paid = CHOSEN * float(np.log(len(fit.held_out)))
     gain = float(gains.sum())
     least = sure_sum(fitter.by_piece(gains), config.trimmed)
-    after = gap_of(fit.base, fit.effects, fitter.measured.scenes, config.part_s).value
+    after = gap_m(fit.base, fit.effects, fitter.measured.scenes)
     return Judged(effect, fit, gain, gain / spread - paid, least / spread - paid, after)

@@ -27,7 +27,7 @@ from odometry.gap.name.verdict import (
     within_noise,
 )
 from odometry.gap.prepare.end_residuals import ends_of
-from odometry.gap.prepare.statistic import Gap, gap_of
+from odometry.gap.prepare.statistic import Gap, gap_m, gap_of
 
 
 class Standing(Search):
@@ -104,7 +104,7 @@ class Standing(Search):
         believed, scenes = self.fitter.calibration, self.fitter.measured.scenes
         effects, held_out = with_own_moments(fit.base, fit.effects, self.held_out, scenes, believed)
         after = gap_of(fit.base, effects, held_out, part_s)
-        before_m = gap_of(believed.base, (), held_out, part_s).value
+        before_m = gap_m(believed.base, (), held_out)
         if after.value <= self.held_floor.high:
             return after, 1.0
         return after, (before_m - after.value) / (before_m - self.held_floor.value)

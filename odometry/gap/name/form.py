@@ -28,7 +28,7 @@ from odometry.gap.name.verdict import (
     is_of_stamps,
     is_special,
 )
-from odometry.gap.prepare.statistic import gap_of
+from odometry.gap.prepare.statistic import gap_m
 
 
 def of_their_form(search: Search, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
@@ -151,7 +151,7 @@ def closes_less(search: Search, one: Fitted, other: Fitted) -> bool:
     gaps_m = []
     for fit in (one, other):
         of_runs = with_own_moments(fit.base, fit.effects, search.held_out, fitted, believed)
-        gaps_m.append(gap_of(fit.base, *of_runs, search.config.part_s).value)
+        gaps_m.append(gap_m(fit.base, *of_runs))
     return gaps_m[0] > gaps_m[1]
 
 

@@ -22,7 +22,7 @@ from odometry.gap.name.verdict import (
     is_resolved,
     is_unbeaten,
 )
-from odometry.gap.prepare.statistic import Gap, gap_of
+from odometry.gap.prepare.statistic import Gap, gap_m, gap_of
 from odometry.windows.dense import DenseWindows
 
 
@@ -160,8 +160,7 @@ class Search:
         )
 
     def _gap(self, fit: Fitted) -> float:
-        scenes = self.fitter.measured.scenes
-        return gap_of(fit.base, fit.effects, scenes, self.config.part_s).value
+        return gap_m(fit.base, fit.effects, self.fitter.measured.scenes)
 
     def best_earner(self, judged: Sequence[Judged], before: Fitted) -> Judged | None:
         """Of most evidence among those that earn a name, if none that is refused beats it."""

@@ -63,6 +63,12 @@ def gap_of(
     return _pooled([(squared_errors(base, effects, scene), scene) for scene in scenes], part_s)
 
 
+def gap_m(base: Base, effects: Sequence[Added], scenes: Sequence[DenseWindows]) -> float:
+    """The gap [m] without its interval, which takes longer."""
+    squares = [squared_errors(base, effects, scene) for scene in scenes]
+    return float(np.sqrt(np.concatenate(squares).mean()))
+
+
 def floor_of(held_back: Sequence[tuple[Base, DenseWindows]], part_s: float) -> Gap:
     """The noise floor: the same over stretches of calibration runs, each with its own base."""
     return _pooled([(squared_errors(base, (), scene), scene) for base, scene in held_back], part_s)
