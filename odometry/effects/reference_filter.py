@@ -128,11 +128,12 @@ class SwayingMast(ReferenceFilter):
 
     def seen(self, values: FloatArray, poses: FloatArray, reported: Reported) -> FloatArray:
         """See `MeasurementEffect.seen`; by the bilinear transform, at rest before the first."""
-        from scipy.signal import bilinear, lfilter, lfilter_zi  # noqa: PLC0415 - slow to load
+        from scipy.signal import lfilter, lfilter_zi  # noqa: PLC0415 - slow to load
 
         bend, frequency, damping = values
         square, rate = frequency**2, 2 * damping * frequency
-        numbers = bilinear([1 - bend * square, rate, square], [1.0, rate, square], 1 / GRID_S)
+        below = _bilinear(1.0, rate, square)
+        numbers = _bilinear(1 - bend * square, rate, square) / below[0], below / below[0]
         stamps_s = reported.stamps_s
         grid_s = np.arange(stamps_s[0], stamps_s[-1] + GRID_S, GRID_S)
         rest = lfilter_zi(*numbers)
@@ -142,6 +143,16 @@ class SwayingMast(ReferenceFilter):
             swung = lfilter(*numbers, course, zi=rest * course[0])[0]
             seen[:, column] = np.interp(stamps_s, grid_s, swung)
         return seen
+
+
+def _bilinear(second: float, first: float, constant: float) -> FloatArray:
+    """Coefficients (3,) in 1, 1/z, 1/z^2 of a polynomial in s = 2 / GRID_S (1 - 1/z) / (1 + 1/z).
+
+    Times (1 + 1/z)^2.
+    """
+    rate = 2 / GRID_S
+    square, turn = second * rate**2, first * rate
+    return np.array([square + turn + constant, 2 * (constant - square), square - turn + constant])
 
 
 def _integral(

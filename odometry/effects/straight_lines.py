@@ -15,6 +15,7 @@ REFINED = np.linspace(-1.0, 1.0, 21)
 SURE = 8.0  # standard deviations by which bends gather at the fixes
 LEAST_BENDS = 4  # poses between two fixes, or they are fixes themselves
 LEAST_POSES = 64  # of a run
+TOGETHER = 64  # rates at a time
 NORMAL = 1.4826  # standard deviations of the median absolute deviation
 
 
@@ -100,29 +101,45 @@ def _most_gathered(
     Of the rates tried that at which they are largest.
     """
     usual = float(bends.mean()), float(bends.std())
-    tried = [(*_largest(at_s, bends, of, spacing_s, usual), of) for of in tried_hz.tolist()]
+    tried = [
+        one
+        for some in np.array_split(tried_hz, len(tried_hz) // TOGETHER + 1)
+        for one in zip(*_largest(at_s, bends, some, spacing_s, usual), some.tolist(), strict=True)
+    ]
     sure = max(size for size, _, _ in tried)
     alike = [one for one in tried if not one[0] < sure]
-    return max((size, _phase(at_s, bends, place, of), of) for size, place, of in alike)
+    return max((size, _phase(at_s, bends, near, of), of) for size, near, of in alike)
 
 
 def _largest(
     at_s: FloatArray,
     bends: FloatArray,
-    rate_hz: float,
+    rates_hz: FloatArray,
     spacing_s: float,
     usual: tuple[float, float],
-) -> tuple[float, BoolArray]:
-    """By how much bends are larger at one phase of a rate, and which bends are there."""
-    count = max(4, int(1 / (rate_hz * spacing_s)))
-    place = np.minimum(((at_s * rate_hz) % 1.0 * count).astype(np.int64), count - 1)
-    sums, numbers = np.bincount(place, bends, count), np.bincount(place, minlength=count)
-    sums, numbers = sums + np.roll(sums, -1), numbers + np.roll(numbers, -1)
-    numbers = np.maximum(numbers, 1)
+) -> tuple[list[float], BoolArray]:
+    """By how much bends are larger at one phase of each rate (T,), and which are there (T, B)."""
+    counts = np.maximum(4, (1 / (rates_hz * spacing_s)).astype(np.int64))
+    ends = np.cumsum(counts)
+    firsts = ends - counts
+    turns = at_s * rates_hz[:, None]
+    place = np.minimum(
+        ((turns - np.floor(turns)) * counts[:, None]).astype(np.int64), counts[:, None] - 1
+    )
+    of_rate = (place + firsts[:, None]).ravel()
+    sums = np.bincount(of_rate, np.tile(bends, len(rates_hz)), ends[-1])
+    numbers = np.bincount(of_rate, minlength=ends[-1])
+    after = np.arange(1, ends[-1] + 1)
+    after[ends - 1] = firsts
+    sums, numbers = sums + sums[after], np.maximum(numbers + numbers[after], 1)
     errors = np.maximum(usual[1] / np.sqrt(numbers), np.finfo(float).tiny)
     sizes = (sums / numbers - usual[0]) / errors
-    best = int(np.argmax(sizes))
-    return float(sizes[best]), (place == best) | (place == (best + 1) % count)
+    best = [
+        first + int(np.argmax(sizes[first:end])) for first, end in zip(firsts, ends, strict=True)
+    ]
+    chosen = (np.array(best) - firsts)[:, None]
+    near = (place == chosen) | (place == (chosen + 1) % counts[:, None])
+    return sizes[best].tolist(), near
 
 
 def _phase(at_s: FloatArray, bends: FloatArray, near: BoolArray, rate_hz: float) -> float:
